@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: Apache-2.0
+#
+# skein_module(NAME LAYER n SOURCES ... HEADERS ... [DEPS ...] [PRIVATE_DEPS ...]
+#              [LIBRARIES ...] [PRIVATE_LIBRARIES ...] [TESTS ...] [TEST_DEPS ...])
+#   A library skein::NAME with its own include root `include/`. DEPS and PRIVATE_DEPS are Skein
+#   modules and must lie in a lower layer, or the configuration fails. A header of a module that was
+#   not named is not on the include path. LIBRARIES are packages. TESTS (x_test.cpp beside the code)
+#   become one test program NAME_test; TEST_DEPS are what only the tests use.
+#
+# skein_program(NAME SOURCES ... DEPS ... [LIBRARIES ...])
+#   An executable; the top of the graph. Nothing can depend on it.
+
+function(_skein_check_layers target layer)
+  foreach(dep IN LISTS ARGN)
+    if(NOT TARGET skein_${dep})
+      message(FATAL_ERROR "${target}: there is no module '${dep}' below it (add_subdirectory order is layer order)")
+    endif()
+    get_target_property(dep_layer skein_${dep} SKEIN_LAYER)
+    if(NOT dep_layer LESS layer)
+      message(FATAL_ERROR "${target} (layer ${layer}) must not depend on ${dep} (layer ${dep_layer})")
+    endif()
+  endforeach()
+endfunction()
+
+function(_skein_tests name)
+  cmake_parse_arguments(T "" "" "SOURCES;DEPS" ${ARGN})
+  if(NOT T_SOURCES)
+    return()
+  endif()
+  list(TRANSFORM T_DEPS PREPEND "skein::")
+  add_executable(${name}_test ${T_SOURCES})
+  target_link_libraries(${name}_test PRIVATE ${T_DEPS} GTest::gtest GTest::gmock GTest::gtest_main skein_warnings)
+  add_test(NAME ${name} COMMAND ${name}_test)
+  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+endfunction()
+
+function(skein_module name)
+  cmake_parse_arguments(M "" "LAYER"
+    "SOURCES;HEADERS;DEPS;PRIVATE_DEPS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPS" ${ARGN})
+  if(M_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "skein_module(${name}): unknown words ${M_UNPARSED_ARGUMENTS}")
+  endif()
+  _skein_check_layers(${name} ${M_LAYER} ${M_DEPS} ${M_PRIVATE_DEPS})
+  list(TRANSFORM M_DEPS PREPEND "skein::" OUTPUT_VARIABLE deps)
+  list(TRANSFORM M_PRIVATE_DEPS PREPEND "skein::" OUTPUT_VARIABLE private_deps)
+  if(M_SOURCES)
+    add_library(skein_${name} STATIC ${M_SOURCES})
+    target_sources(skein_${name} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${M_HEADERS})
+    target_link_libraries(skein_${name} PUBLIC ${deps} ${M_LIBRARIES}
+      PRIVATE ${private_deps} ${M_PRIVATE_LIBRARIES} $<BUILD_INTERFACE:skein_warnings>)
+  else()
+    add_library(skein_${name} INTERFACE)
+    target_sources(skein_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${M_HEADERS})
+    target_link_libraries(skein_${name} INTERFACE ${deps} ${M_LIBRARIES})
+  endif()
+  add_library(skein::${name} ALIAS skein_${name})
+  set_target_properties(skein_${name} PROPERTIES
+    SKEIN_LAYER ${M_LAYER} VERIFY_INTERFACE_HEADER_SETS ON)
+  _skein_tests(${name} SOURCES ${M_TESTS} DEPS ${name} ${M_PRIVATE_DEPS} ${M_TEST_DEPS})
+endfunction()
+
+function(skein_program name)
+  cmake_parse_arguments(P "" "" "SOURCES;DEPS;LIBRARIES" ${ARGN})
+  _skein_check_layers(${name} 100 ${P_DEPS})
+  list(TRANSFORM P_DEPS PREPEND "skein::")
+  add_executable(${name} ${P_SOURCES})
+  target_link_libraries(${name} PRIVATE ${P_DEPS} ${P_LIBRARIES} skein_warnings)
+endfunction()

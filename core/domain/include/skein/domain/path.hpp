@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "skein/base/geometry.hpp"
+#include "skein/base/static_vector.hpp"
+#include "skein/base/time.hpp"
+
+namespace skein {
+
+/// A piece of constant curvature: a line (0) or an arc (1/m, positive turns left).
+struct Segment {
+  double curvature_per_m = 0.0;
+  double length_m = 0.0;  ///< >= 0
+};
+
+inline constexpr std::size_t kPathSegmentsMax = 64;
+
+/// A planar path of lines and arcs, continuous in position and heading. Trivially copyable.
+struct Path {
+  Pose2 start;
+  StaticVector<Segment, kPathSegmentsMax> segments;
+
+  [[nodiscard]] double length_m() const;
+  /// The pose after `distance_m`, clamped to [0, length].
+  [[nodiscard]] Pose2 pose_at(double distance_m) const;
+  [[nodiscard]] double curvature_at(double distance_m) const;
+  [[nodiscard]] Pose2 end() const { return pose_at(length_m()); }
+  /// The largest |curvature| of a segment of positive length, 1/m.
+  [[nodiscard]] double curvature_max_per_m() const;
+  /// False, and nothing added, when there is no room. A piece of no length is skipped.
+  [[nodiscard]] bool append(const Segment& segment);
+  [[nodiscard]] bool append(const Path& next);
+};
+
+/// A path flown at one constant ground speed from a start time. It never ends: after its last
+/// segment the vehicle orbits (`tail_curvature_per_m`), which is the hold pattern. So whoever
+/// follows it always knows what to do, also when nothing new ever arrives.
+struct TimedPath {
+  Instant start_time{};
+  double speed_mps = 0.0;             ///< > 0, over the ground
+  double tail_curvature_per_m = 0.0;  ///< of the hold; 0 flies straight on
+  Path path;
+
+  /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
+  [[nodiscard]] double distance_at(Instant t) const;
+  [[nodiscard]] Pose2 pose_at(Instant t) const { return pose_at_distance(distance_at(t)); }
+  /// As Path::pose_at, but beyond the end along the tail.
+  [[nodiscard]] Pose2 pose_at_distance(double distance_m) const;
+  [[nodiscard]] double curvature_at_distance(double distance_m) const;
+  [[nodiscard]] Instant end_time() const;
+};
+
+}  // namespace skein

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "skein/base/frames.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/domain/task.hpp"
+
+namespace skein {
+
+/// What a vehicle is (Wang 2022, eq. 2-4).
+struct VehicleSpec {
+  VehicleId id;
+  double cruise_speed_mps = 0.0;     ///< v; paths are planned at it
+  double speed_min_mps = 0.0;        ///< airspeed limits, for keeping time in wind
+  double speed_max_mps = 0.0;
+  double turn_radius_m = 0.0;        ///< r_min, at cruise speed
+  double heading_gain_per_s = 1.0;   ///< W: d heading/dt = W (commanded - heading)
+  double range_m = 0.0;              ///< L_max
+  Capabilities capabilities;
+  double sensor_radius_m = 0.0;      ///< C^r: detection and the survey arc
+  double assess_radius_m = 0.0;      ///< C^e: the assessment arc
+  std::uint8_t loads = 0;            ///< C^s at the start
+  double final_approach_m = 0.0;     ///< L^s: straight run into the site
+  double height_m = 0.0;             ///< the vehicle's layer, above the mission origin
+  /// Paths are planned at this factor times turn_radius_m, so that wind and tracking errors can be
+  /// corrected without flying below the turn radius. >= 1.
+  double turn_radius_margin = 1.1;
+
+  [[nodiscard]] double planning_radius_m() const { return turn_radius_m * turn_radius_margin; }
+};
+
+/// What the flight controller reports. Trivially copyable.
+struct VehicleState {
+  Instant time{};
+  double x_m = 0.0;  ///< mission frame
+  double y_m = 0.0;
+  double z_m = 0.0;
+  double heading_rad = 0.0;
+  double course_rad = 0.0;       ///< of the velocity over the ground
+  double groundspeed_mps = 0.0;
+  double airspeed_mps = 0.0;
+  double distance_flown_m = 0.0;  ///< over the ground, since the start; what the range budget counts
+  [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
+  [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
+};
+
+/// What control asks of the flight controller. Trivially copyable.
+struct Setpoint {
+  double heading_rad = 0.0;  ///< commanded heading, see VehicleSpec::heading_gain_per_s
+  double airspeed_mps = 0.0;
+  double height_m = 0.0;
+};
+
+}  // namespace skein

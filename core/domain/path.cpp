@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/domain/path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skein {
+
+double Path::length_m() const {
+  double sum = 0.0;
+  for (const auto& s : segments) sum += s.length_m;
+  return sum;
+}
+
+Pose2 Path::pose_at(double distance_m) const {
+  double left = std::max(distance_m, 0.0);
+  Pose2 pose = start;
+  for (const auto& s : segments) {
+    const double step = std::min(left, s.length_m);
+    pose = advance(pose, s.curvature_per_m, step);
+    left -= step;
+    if (left <= 0.0) break;
+  }
+  return pose;
+}
+
+double Path::curvature_at(double distance_m) const {
+  double left = std::max(distance_m, 0.0);
+  for (const auto& s : segments) {
+    if (left < s.length_m) return s.curvature_per_m;
+    left -= s.length_m;
+  }
+  return segments.empty() ? 0.0 : segments.back().curvature_per_m;
+}
+
+double Path::curvature_max_per_m() const {
+  double largest = 0.0;
+  for (const auto& s : segments) {
+    if (s.length_m > 0.0) largest = std::max(largest, std::abs(s.curvature_per_m));
+  }
+  return largest;
+}
+
+bool Path::append(const Segment& segment) {
+  return segment.length_m <= 0.0 || segments.try_push_back(segment);
+}
+
+bool Path::append(const Path& next) {
+  const auto pieces = static_cast<std::size_t>(std::count_if(
+      next.segments.begin(), next.segments.end(), [](const Segment& s) { return s.length_m > 0.0; }));
+  if (segments.size() + pieces > kPathSegmentsMax) return false;
+  return std::all_of(next.segments.begin(), next.segments.end(),
+                     [this](const Segment& s) { return append(s); });
+}
+
+double TimedPath::distance_at(Instant t) const {
+  return std::max(0.0, to_seconds(t - start_time) * speed_mps);
+}
+
+Pose2 TimedPath::pose_at_distance(double distance_m) const {
+  const double length = path.length_m();
+  const Pose2 pose = path.pose_at(distance_m);
+  return distance_m <= length ? pose : advance(pose, tail_curvature_per_m, distance_m - length);
+}
+
+double TimedPath::curvature_at_distance(double distance_m) const {
+  return distance_m < path.length_m() ? path.curvature_at(distance_m) : tail_curvature_per_m;
+}
+
+Instant TimedPath::end_time() const { return start_time + from_seconds(path.length_m() / speed_mps); }
+
+}  // namespace skein
