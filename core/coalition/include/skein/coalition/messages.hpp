@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/geometry.hpp"
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/task.hpp"
+
+/// The messages of the contract net (Wang 2022, eq. 19-25, and what the field needs besides).
+/// Words after FIPA SC00029: announcement = call for proposals, bid = propose.
+namespace skein::coalition {
+
+/// One coalition: who founded it, and its number among those that this leader founded. `instance`
+/// tells a leader that has restarted from its earlier self.
+struct CoalitionId {
+  VehicleId leader;
+  InstanceId instance;
+  std::uint32_t number = 0;
+  friend auto operator<=>(const CoalitionId&, const CoalitionId&) = default;
+};
+
+/// A coalition goes through rounds: each announcement opens one, and an award of that round replaces
+/// the award of any earlier one. Handled twice, every message has the effect of once.
+struct Round {
+  CoalitionId coalition;
+  std::uint32_t number = 0;
+  friend auto operator<=>(const Round&, const Round&) = default;
+};
+
+/// "Who can do these tasks?" (eq. 19)
+struct Announcement {
+  Round round;
+  Site site;
+  std::vector<TaskId> tasks;   ///< those still to be done
+  Instant announced_at{};      ///< t0
+  Instant bids_until{};        ///< later bids are not considered
+  Instant formed_at{};         ///< t_e: what bids must predict their pose for (eq. 21)
+  double reward = 0.0;         ///< of those tasks together; decides conflicts
+  Vec2 leader_at_formation{0.0, 0.0};
+};
+
+/// "I can, and this is where I shall be." (eq. 22-23)
+struct Bid {
+  Round round;
+  VehicleId bidder;
+  Pose2 pose_at_formation;
+  double speed_mps = 0.0;
+  double planning_radius_m = 0.0;
+  double range_left_m = 0.0;
+  double final_approach_m = 0.0;
+  double assess_radius_m = 0.0;
+  Capabilities capabilities;
+  std::uint8_t loads = 0;
+  Instant eta{};  ///< at the site, by the shortest path with free final heading (eq. 23)
+};
+
+/// "These are your tasks." Names the whole plan, so that every member knows what the others do and
+/// the plan survives its leader. A bidder of the round that is not in it is released (eq. 24-25).
+struct Award {
+  Round round;
+  Site site;
+  Instant formed_at{};
+  std::vector<TaskAssignment> assignments;
+  /// The lease: until then, and no longer, the members own their tasks. Renewed by LeaseRenewal.
+  Instant lease_until{};
+};
+
+/// A member's answer to an award.
+struct Confirmation {
+  Round round;
+  VehicleId member;
+  bool accepted = false;
+  std::string reason;  ///< why not
+};
+
+/// Everyone in the round is released, and every lease in it ends at once.
+struct Cancel {
+  Round round;
+  std::string reason;
+};
+
+/// The leader's heartbeat to those members that it hears.
+struct LeaseRenewal {
+  Round round;
+  std::vector<VehicleId> members;
+  Instant lease_until{};
+};
+
+enum class TaskState : std::uint8_t { planned, started, done, failed, count };
+[[nodiscard]] std::string_view to_string(TaskState state);
+
+/// A member's heartbeat to its leader, with the state of each of its tasks.
+struct MemberStatus {
+  struct Entry {
+    TaskId task;
+    TaskState state = TaskState::planned;
+    Instant time{};  ///< when it came into that state
+  };
+  Round round;
+  VehicleId member;
+  std::vector<Entry> tasks;
+};
+
+using Message = std::variant<Announcement, Bid, Award, Confirmation, Cancel, LeaseRenewal, MemberStatus>;
+
+/// Limits on what is accepted from the network; larger messages are dropped and counted.
+inline constexpr std::size_t kTasksMax = 32;
+inline constexpr std::size_t kMembersMax = 64;
+inline constexpr std::size_t kReasonMax = 200;
+
+}  // namespace skein::coalition

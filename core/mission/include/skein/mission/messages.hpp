@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/coalition/messages.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/task.hpp"
+#include "skein/domain/vehicle.hpp"
+
+/// What crosses the mission network besides the coalition's own messages.
+namespace skein::mission {
+
+/// What a vehicle is doing (Wang 2022, protocol states).
+enum class Activity : std::uint8_t { searching, surveying, leading, bidding, executing, monitoring, holding, count };
+[[nodiscard]] std::string_view to_string(Activity activity);
+
+/// Best effort, several times a second.
+struct Telemetry {
+  VehicleId vehicle;
+  InstanceId instance;
+  VehicleState state;
+  Activity activity = Activity::searching;
+  double range_left_m = 0.0;
+  std::uint8_t loads = 0;
+  std::uint32_t plan_number = 0;      ///< of the flight plan being followed; grows with every new one
+  std::uint32_t control_overruns = 0; ///< missed control periods since the start
+  std::uint32_t messages_dropped = 0; ///< by full queues and bad packets since the start
+};
+
+/// A leader asks the operator for a decision on one plan. Sent again until answered.
+struct AuthorisationRequest {
+  coalition::Round round;
+  SiteId site;
+  Vec2 site_position{0.0, 0.0};
+  struct Delivery {
+    TaskAssignment assignment;
+    double bearing_rad = 0.0;
+  };
+  std::vector<Delivery> deliveries;
+  Instant decide_by{};  ///< after it the vehicles hold and the plan is timed anew
+};
+
+/// The operator's decision on that plan, and on no other. Sent again until it is of no more use.
+struct Authorisation {
+  coalition::Round round;
+  SiteId site;
+  bool granted = false;
+  std::string decided_by;
+  Instant decided_at{};
+};
+
+enum class EventKind : std::uint8_t {
+  site_detected, survey_started, survey_done, announced, bid_sent, bid_declined, allocation_done,
+  allocation_failed, awarded, confirmed, refused, coalition_formed, cancelled, released,
+  lease_granted, lease_ended, authorisation_requested, authorised, authorisation_refused,
+  authorisation_late, task_started, task_done, task_failed, plan_changed, hazard_known,
+  conflict_yielded, monitoring, site_done, warning, count
+};
+[[nodiscard]] std::string_view to_string(EventKind kind);
+
+/// Something worth a line in the log and a mark on the time line.
+struct MissionEvent {
+  VehicleId vehicle;
+  Instant time{};
+  EventKind kind = EventKind::warning;
+  coalition::Round round;   ///< where it applies
+  TaskId task;              ///< where it applies; task.site for events of a site
+  double value = 0.0;       ///< the kind's number: seconds, metres or a count, see docs/protocol.md
+  std::string text;         ///< for people
+};
+
+enum class CommandKind : std::uint8_t { hold, resume, return_home, count };
+[[nodiscard]] std::string_view to_string(CommandKind kind);
+
+/// From the ground station to one vehicle, or to all (vehicle 0).
+struct Command {
+  VehicleId vehicle;
+  std::uint32_t number = 0;  ///< grows; a repeated or older number has no effect
+  CommandKind kind = CommandKind::hold;
+};
+
+/// A survey sensor or an operator has found a site. `finder` is the vehicle that should survey it.
+struct SiteReport {
+  VehicleId finder;
+  Site site;
+};
+
+struct HazardReport {
+  Hazard hazard;
+};
+
+using Message = std::variant<coalition::Message, Telemetry, AuthorisationRequest, Authorisation,
+                             MissionEvent, Command, SiteReport, HazardReport>;
+
+}  // namespace skein::mission
