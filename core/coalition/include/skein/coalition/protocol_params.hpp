@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "skein/base/time.hpp"
+
+namespace skein::coalition {
+
+/// The numbers of the contract net (Wang 2022, 5.1 and eq. 20-21).
+struct ProtocolParams {
+  double radio_range_m = 1500.0;  ///< r_n: who leaves it before t_e does not bid
+  Duration message_delay = std::chrono::milliseconds{200};    ///< dt_d, the longest
+  Duration allocation_time = std::chrono::milliseconds{500};  ///< t_TA
+  Duration margin = std::chrono::milliseconds{300};           ///< delta_t
+
+  Duration lease = std::chrono::seconds{15};       ///< how far a renewal reaches
+  Duration heartbeat = std::chrono::seconds{1};    ///< of leader and members
+  Duration silence = std::chrono::seconds{5};      ///< after it a member counts as lost
+  Duration clock_guard = std::chrono::milliseconds{500};  ///< largest difference of two clocks
+  Duration monitoring_interval = std::chrono::seconds{5};  ///< between attempts
+  Duration authorisation_lead = std::chrono::seconds{8};   ///< what the operator has at least
+
+  /// delta_max (eq. 20): from the announcement to the standing coalition.
+  [[nodiscard]] Duration formation_time() const {
+    return 3 * message_delay + allocation_time + margin;
+  }
+};
+
+}  // namespace skein::coalition
