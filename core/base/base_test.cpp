@@ -15,12 +15,16 @@ namespace skein {
 namespace {
 
 template <class A, class B>
-concept Subtractable = requires(A a, B b) { a - b; };
+concept Subtractable = requires(A a, B b) {
+  a - b;
+};
 static_assert(Subtractable<Position<MissionEnu>, Position<MissionEnu>>);
 static_assert(!Subtractable<Position<MissionEnu>, Position<BodyFrd>>);
 
 template <class C>
-concept ReadsTime = requires { C::now(); };
+concept ReadsTime = requires {
+  C::now();
+};
 static_assert(!ReadsTime<MissionTime>);
 
 TEST(Time, SecondsRoundTripToTheNanosecond) {
@@ -43,9 +47,9 @@ TEST(Angles, WrapKeepsTheDirectionAndTheInterval) {
 }
 
 TEST(Angles, CompassAndMathematicalHeadings) {
-  EXPECT_NEAR(heading_from_compass_deg(90.0), 0.0, 1e-15);          // east
-  EXPECT_NEAR(heading_from_compass_deg(0.0), kPi / 2.0, 1e-15);     // north
-  EXPECT_NEAR(compass_deg_from_heading(kPi), 270.0, 1e-12);         // west
+  EXPECT_NEAR(heading_from_compass_deg(90.0), 0.0, 1e-15);       // east
+  EXPECT_NEAR(heading_from_compass_deg(0.0), kPi / 2.0, 1e-15);  // north
+  EXPECT_NEAR(compass_deg_from_heading(kPi), 270.0, 1e-12);      // west
   for (double c = 0.0; c < 360.0; c += 7.0) {
     EXPECT_NEAR(compass_deg_from_heading(heading_from_compass_deg(c)), c, 1e-9);
   }
@@ -112,7 +116,8 @@ TEST(Geometry, DistanceToPieceAgreesWithSampling) {
     const Vec2 point{random.uniform(-40, 40), random.uniform(-40, 40)};
     double least = 1e9;
     for (int k = 0; k <= 5000; ++k) {
-      least = std::min(least, (advance(start, curvature, length * k / 5000.0).position() - point).norm());
+      least = std::min(least,
+                       (advance(start, curvature, length * k / 5000.0).position() - point).norm());
     }
     EXPECT_NEAR(distance_to_piece(point, start, curvature, length), least, 0.011);
   }

@@ -49,7 +49,8 @@ double Random::normal(double mean, double standard_deviation) {
     const double u = uniform(-1.0, 1.0);
     const double v = uniform(-1.0, 1.0);
     const double s = u * u + v * v;
-    if (s > 0.0 && s < 1.0) return mean + standard_deviation * u * std::sqrt(-2.0 * std::log(s) / s);
+    if (s > 0.0 && s < 1.0)
+      return mean + standard_deviation * u * std::sqrt(-2.0 * std::log(s) / s);
   }
 }
 

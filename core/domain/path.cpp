@@ -46,8 +46,9 @@ bool Path::append(const Segment& segment) {
 }
 
 bool Path::append(const Path& next) {
-  const auto pieces = static_cast<std::size_t>(std::count_if(
-      next.segments.begin(), next.segments.end(), [](const Segment& s) { return s.length_m > 0.0; }));
+  const auto pieces =
+      static_cast<std::size_t>(std::count_if(next.segments.begin(), next.segments.end(),
+                                             [](const Segment& s) { return s.length_m > 0.0; }));
   if (segments.size() + pieces > kPathSegmentsMax) return false;
   return std::all_of(next.segments.begin(), next.segments.end(),
                      [this](const Segment& s) { return append(s); });
@@ -67,6 +68,8 @@ double TimedPath::curvature_at_distance(double distance_m) const {
   return distance_m < path.length_m() ? path.curvature_at(distance_m) : tail_curvature_per_m;
 }
 
-Instant TimedPath::end_time() const { return start_time + from_seconds(path.length_m() / speed_mps); }
+Instant TimedPath::end_time() const {
+  return start_time + from_seconds(path.length_m() / speed_mps);
+}
 
 }  // namespace skein

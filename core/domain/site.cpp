@@ -5,10 +5,14 @@ namespace skein {
 
 std::size_t Site::task_count(TaskKind kind) const {
   switch (kind) {
-    case TaskKind::survey: return 1;
-    case TaskKind::deliver: return deliveries.size();
-    case TaskKind::assess: return assessments.size();
-    case TaskKind::count: break;
+    case TaskKind::survey:
+      return 1;
+    case TaskKind::deliver:
+      return deliveries.size();
+    case TaskKind::assess:
+      return assessments.size();
+    case TaskKind::count:
+      break;
   }
   return 0;
 }

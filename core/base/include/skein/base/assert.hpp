@@ -13,6 +13,6 @@ void set_assert_handler(AssertHandler handler);
 }  // namespace skein
 
 /// An invariant of the program: a failure is a bug, never bad input. On in every build.
-#define SKEIN_ASSERT(condition)                                                   \
-  (static_cast<bool>(condition) ? static_cast<void>(0)                            \
+#define SKEIN_ASSERT(condition)                        \
+  (static_cast<bool>(condition) ? static_cast<void>(0) \
                                 : ::skein::assert_failed(#condition, __FILE__, __LINE__))

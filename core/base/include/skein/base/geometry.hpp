@@ -24,7 +24,9 @@ struct Pose2 {
 /// The vector turned a quarter counter-clockwise.
 [[nodiscard]] inline Vec2 left_of(const Vec2& v) { return {-v.y(), v.x()}; }
 /// z of the cross product: positive when b lies counter-clockwise of a.
-[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+[[nodiscard]] inline double cross(const Vec2& a, const Vec2& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
 
 /// The pose after `distance_m` along a line (curvature 0) or circle (1/m, positive turns left).
 /// Exact for any distance, also negative; well-conditioned as the curvature goes to 0.

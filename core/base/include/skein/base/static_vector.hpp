@@ -56,7 +56,9 @@ class StaticVector {
   [[nodiscard]] const T* end() const { return items_.data() + size_; }
   [[nodiscard]] T* begin() { return items_.data(); }
   [[nodiscard]] T* end() { return items_.data() + size_; }
-  operator std::span<const T>() const { return {items_.data(), size_}; }  // NOLINT(google-explicit-constructor)
+  operator std::span<const T>() const {
+    return {items_.data(), size_};
+  }  // NOLINT(google-explicit-constructor)
 
  private:
   std::array<T, Capacity> items_{};

@@ -24,7 +24,9 @@ using Instant = MissionTime::time_point;
 
 /// A duration from seconds, to the nearest nanosecond. Precondition: |s| < 9.2e9.
 [[nodiscard]] inline Duration from_seconds(double s) { return Duration{std::llround(s * 1e9)}; }
-[[nodiscard]] constexpr double to_seconds(Duration d) { return static_cast<double>(d.count()) * 1e-9; }
+[[nodiscard]] constexpr double to_seconds(Duration d) {
+  return static_cast<double>(d.count()) * 1e-9;
+}
 
 /// The instant `s` seconds after the epoch, and back.
 [[nodiscard]] inline Instant at_seconds(double s) { return Instant{from_seconds(s)}; }

@@ -26,8 +26,8 @@ struct CoalitionId {
   friend auto operator<=>(const CoalitionId&, const CoalitionId&) = default;
 };
 
-/// A coalition goes through rounds: each announcement opens one, and an award of that round replaces
-/// the award of any earlier one. Handled twice, every message has the effect of once.
+/// A coalition goes through rounds: each announcement opens one, and an award of that round
+/// replaces the award of any earlier one. Handled twice, every message has the effect of once.
 struct Round {
   CoalitionId coalition;
   std::uint32_t number = 0;
@@ -38,11 +38,11 @@ struct Round {
 struct Announcement {
   Round round;
   Site site;
-  std::vector<TaskId> tasks;   ///< those still to be done
-  Instant announced_at{};      ///< t0
-  Instant bids_until{};        ///< later bids are not considered
-  Instant formed_at{};         ///< t_e: what bids must predict their pose for (eq. 21)
-  double reward = 0.0;         ///< of those tasks together; decides conflicts
+  std::vector<TaskId> tasks;  ///< those still to be done
+  Instant announced_at{};     ///< t0
+  Instant bids_until{};       ///< later bids are not considered
+  Instant formed_at{};        ///< t_e: what bids must predict their pose for (eq. 21)
+  double reward = 0.0;        ///< of those tasks together; decides conflicts
   Vec2 leader_at_formation{0.0, 0.0};
 };
 
@@ -108,7 +108,8 @@ struct MemberStatus {
   std::vector<Entry> tasks;
 };
 
-using Message = std::variant<Announcement, Bid, Award, Confirmation, Cancel, LeaseRenewal, MemberStatus>;
+using Message =
+    std::variant<Announcement, Bid, Award, Confirmation, Cancel, LeaseRenewal, MemberStatus>;
 
 /// Limits on what is accepted from the network; larger messages are dropped and counted.
 inline constexpr std::size_t kTasksMax = 32;

@@ -12,10 +12,10 @@ struct ProtocolParams {
   Duration allocation_time = std::chrono::milliseconds{500};  ///< t_TA
   Duration margin = std::chrono::milliseconds{300};           ///< delta_t
 
-  Duration lease = std::chrono::seconds{15};       ///< how far a renewal reaches
-  Duration heartbeat = std::chrono::seconds{1};    ///< of leader and members
-  Duration silence = std::chrono::seconds{5};      ///< after it a member counts as lost
-  Duration clock_guard = std::chrono::milliseconds{500};  ///< largest difference of two clocks
+  Duration lease = std::chrono::seconds{15};               ///< how far a renewal reaches
+  Duration heartbeat = std::chrono::seconds{1};            ///< of leader and members
+  Duration silence = std::chrono::seconds{5};              ///< after it a member counts as lost
+  Duration clock_guard = std::chrono::milliseconds{500};   ///< largest difference of two clocks
   Duration monitoring_interval = std::chrono::seconds{5};  ///< between attempts
   Duration authorisation_lead = std::chrono::seconds{8};   ///< what the operator has at least
 

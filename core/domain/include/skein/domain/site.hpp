@@ -35,7 +35,7 @@ struct Site {
   Vec2 position{0.0, 0.0};
   ArcRequirement survey;
   std::vector<DeliveryRequirement> deliveries;  ///< at most kTasksPerKindMax
-  Duration assess_wait{};  ///< from the last delivery to the first assessment
+  Duration assess_wait{};                       ///< from the last delivery to the first assessment
   std::vector<ArcRequirement> assessments;      ///< at most kTasksPerKindMax
   double reward = 1.0;                          ///< F of each task (eq. 9)
   double reward_decay_per_s = 0.0;              ///< beta (eq. 9)

@@ -15,18 +15,18 @@ namespace skein {
 /// What a vehicle is (Wang 2022, eq. 2-4).
 struct VehicleSpec {
   VehicleId id;
-  double cruise_speed_mps = 0.0;     ///< v; paths are planned at it
-  double speed_min_mps = 0.0;        ///< airspeed limits, for keeping time in wind
+  double cruise_speed_mps = 0.0;  ///< v; paths are planned at it
+  double speed_min_mps = 0.0;     ///< airspeed limits, for keeping time in wind
   double speed_max_mps = 0.0;
-  double turn_radius_m = 0.0;        ///< r_min, at cruise speed
-  double heading_gain_per_s = 1.0;   ///< W: d heading/dt = W (commanded - heading)
-  double range_m = 0.0;              ///< L_max
+  double turn_radius_m = 0.0;       ///< r_min, at cruise speed
+  double heading_gain_per_s = 1.0;  ///< W: d heading/dt = W (commanded - heading)
+  double range_m = 0.0;             ///< L_max
   Capabilities capabilities;
-  double sensor_radius_m = 0.0;      ///< C^r: detection and the survey arc
-  double assess_radius_m = 0.0;      ///< C^e: the assessment arc
-  std::uint8_t loads = 0;            ///< C^s at the start
-  double final_approach_m = 0.0;     ///< L^s: straight run into the site
-  double height_m = 0.0;             ///< the vehicle's layer, above the mission origin
+  double sensor_radius_m = 0.0;   ///< C^r: detection and the survey arc
+  double assess_radius_m = 0.0;   ///< C^e: the assessment arc
+  std::uint8_t loads = 0;         ///< C^s at the start
+  double final_approach_m = 0.0;  ///< L^s: straight run into the site
+  double height_m = 0.0;          ///< the vehicle's layer, above the mission origin
   /// Paths are planned at this factor times turn_radius_m, so that wind and tracking errors can be
   /// corrected without flying below the turn radius. >= 1.
   double turn_radius_margin = 1.1;
@@ -41,10 +41,11 @@ struct VehicleState {
   double y_m = 0.0;
   double z_m = 0.0;
   double heading_rad = 0.0;
-  double course_rad = 0.0;       ///< of the velocity over the ground
+  double course_rad = 0.0;  ///< of the velocity over the ground
   double groundspeed_mps = 0.0;
   double airspeed_mps = 0.0;
-  double distance_flown_m = 0.0;  ///< over the ground, since the start; what the range budget counts
+  double distance_flown_m =
+      0.0;  ///< over the ground, since the start; what the range budget counts
   [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
   [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
 };

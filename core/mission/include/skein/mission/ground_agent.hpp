@@ -18,7 +18,7 @@ namespace skein::mission {
 struct ScriptedDecision {
   SiteId site;
   bool grant = true;
-  Duration reaction{};     ///< after the request arrived
+  Duration reaction{};  ///< after the request arrived
   Instant not_before{};
 };
 
@@ -45,7 +45,8 @@ struct PendingAuthorisation {
 
 /// All decisions of the ground station, without I/O: keeps the fleet picture, holds requests for
 /// authorisation, sends decisions and commands until they are of no more use. Same calling rules as
-/// VehicleAgent. An authorisation is only ever made by authorise(), refuse() or a scripted decision.
+/// VehicleAgent. An authorisation is only ever made by authorise(), refuse() or a scripted
+/// decision.
 class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
@@ -60,7 +61,8 @@ class GroundAgent {
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   [[nodiscard]] std::optional<Message> poll_message();
-  [[nodiscard]] std::optional<MissionEvent> poll_event();  ///< its own and those of vehicles, once each
+  [[nodiscard]] std::optional<MissionEvent>
+  poll_event();  ///< its own and those of vehicles, once each
   [[nodiscard]] Instant next_timeout() const;
 
   [[nodiscard]] const std::map<VehicleId, FleetEntry>& fleet() const { return fleet_; }
@@ -68,7 +70,8 @@ class GroundAgent {
 
  private:
   Result<void> decide(SiteId site, bool granted, const std::string& by, Instant now);
-  void report(EventKind kind, const coalition::Round& round, const TaskId& task, Instant now, std::string text);
+  void report(EventKind kind, const coalition::Round& round, const TaskId& task, Instant now,
+              std::string text);
 
   GroundAgentConfig config_;
   std::map<VehicleId, FleetEntry> fleet_;

@@ -18,7 +18,16 @@
 namespace skein::mission {
 
 /// What a vehicle is doing (Wang 2022, protocol states).
-enum class Activity : std::uint8_t { searching, surveying, leading, bidding, executing, monitoring, holding, count };
+enum class Activity : std::uint8_t {
+  searching,
+  surveying,
+  leading,
+  bidding,
+  executing,
+  monitoring,
+  holding,
+  count
+};
 [[nodiscard]] std::string_view to_string(Activity activity);
 
 /// Best effort, several times a second.
@@ -29,9 +38,9 @@ struct Telemetry {
   Activity activity = Activity::searching;
   double range_left_m = 0.0;
   std::uint8_t loads = 0;
-  std::uint32_t plan_number = 0;      ///< of the flight plan being followed; grows with every new one
-  std::uint32_t control_overruns = 0; ///< missed control periods since the start
-  std::uint32_t messages_dropped = 0; ///< by full queues and bad packets since the start
+  std::uint32_t plan_number = 0;  ///< of the flight plan being followed; grows with every new one
+  std::uint32_t control_overruns = 0;  ///< missed control periods since the start
+  std::uint32_t messages_dropped = 0;  ///< by full queues and bad packets since the start
 };
 
 /// A leader asks the operator for a decision on one plan. Sent again until answered.
@@ -57,11 +66,36 @@ struct Authorisation {
 };
 
 enum class EventKind : std::uint8_t {
-  site_detected, survey_started, survey_done, announced, bid_sent, bid_declined, allocation_done,
-  allocation_failed, awarded, confirmed, refused, coalition_formed, cancelled, released,
-  lease_granted, lease_ended, authorisation_requested, authorised, authorisation_refused,
-  authorisation_late, task_started, task_done, task_failed, plan_changed, hazard_known,
-  conflict_yielded, monitoring, site_done, warning, count
+  site_detected,
+  survey_started,
+  survey_done,
+  announced,
+  bid_sent,
+  bid_declined,
+  allocation_done,
+  allocation_failed,
+  awarded,
+  confirmed,
+  refused,
+  coalition_formed,
+  cancelled,
+  released,
+  lease_granted,
+  lease_ended,
+  authorisation_requested,
+  authorised,
+  authorisation_refused,
+  authorisation_late,
+  task_started,
+  task_done,
+  task_failed,
+  plan_changed,
+  hazard_known,
+  conflict_yielded,
+  monitoring,
+  site_done,
+  warning,
+  count
 };
 [[nodiscard]] std::string_view to_string(EventKind kind);
 
@@ -70,10 +104,10 @@ struct MissionEvent {
   VehicleId vehicle;
   Instant time{};
   EventKind kind = EventKind::warning;
-  coalition::Round round;   ///< where it applies
-  TaskId task;              ///< where it applies; task.site for events of a site
-  double value = 0.0;       ///< the kind's number: seconds, metres or a count, see docs/protocol.md
-  std::string text;         ///< for people
+  coalition::Round round;  ///< where it applies
+  TaskId task;             ///< where it applies; task.site for events of a site
+  double value = 0.0;      ///< the kind's number: seconds, metres or a count, see docs/protocol.md
+  std::string text;        ///< for people
 };
 
 enum class CommandKind : std::uint8_t { hold, resume, return_home, count };

@@ -33,7 +33,8 @@ struct FlightPlan {
   TimedPath timed;
 };
 
-/// Long work for the planner thread: call planning::allocate(params, problem), hand the outcome back.
+/// Long work for the planner thread: call planning::allocate(params, problem), hand the outcome
+/// back.
 struct PlanningRequest {
   coalition::Round round;
   planning::AllocationParams params;
@@ -65,7 +66,8 @@ class VehicleAgent {
 
   [[nodiscard]] std::optional<Message> poll_message();  ///< to be sent; events are among them
   [[nodiscard]] std::optional<FlightPlan> poll_plan();  ///< to the control thread
-  [[nodiscard]] std::optional<MissionEvent> poll_event();  ///< to the recorder; also sent as messages
+  [[nodiscard]] std::optional<MissionEvent>
+  poll_event();  ///< to the recorder; also sent as messages
   [[nodiscard]] std::optional<PlanningRequest> poll_planning_request();
   [[nodiscard]] Instant next_timeout() const;
 

@@ -31,8 +31,8 @@ struct AllocationProblem {
   std::vector<TaskId> open_tasks;  ///< of that site, none of them surveys
   std::vector<Candidate> candidates;
   std::vector<Hazard> hazards;
-  Instant start{};               ///< t_e: when the candidates are at their predicted poses
-  Instant earliest_delivery{};   ///< no delivery before it (the operator needs time to decide)
+  Instant start{};              ///< t_e: when the candidates are at their predicted poses
+  Instant earliest_delivery{};  ///< no delivery before it (the operator needs time to decide)
   /// When the last delivery of the site was or will be flown by somebody outside this problem;
   /// assessments wait for it too.
   Instant deliveries_done{};
@@ -46,7 +46,7 @@ struct AllocationParams {
 
 struct Allocation {
   std::vector<TaskAssignment> assignments;  ///< by task, each open task once
-  double first_delivery_s = 0.0;  ///< after the problem's start; 0 without deliveries
+  double first_delivery_s = 0.0;            ///< after the problem's start; 0 without deliveries
 };
 
 /// Vehicles to tasks, one task each: deliveries by bottleneck assignment (the earliest common time,
@@ -57,11 +57,11 @@ struct Allocation {
 [[nodiscard]] Result<Allocation> allocate(const AllocationParams& params,
                                           const AllocationProblem& problem);
 
-/// The path of one assignment, from where the vehicle is at `start`: to the task's entry, timed, and
-/// the task's run. `gate_m` is where the run begins: a delivery does not pass it unauthorised.
+/// The path of one assignment, from where the vehicle is at `start`: to the task's entry, timed,
+/// and the task's run. `gate_m` is where the run begins: a delivery does not pass it unauthorised.
 struct TaskPlan {
-  TimedPath timed;       ///< transit + run, tail = orbit of the planning radius to the left
-  double gate_m = 0.0;   ///< distance along timed.path at which the task's run begins
+  TimedPath timed;      ///< transit + run, tail = orbit of the planning radius to the left
+  double gate_m = 0.0;  ///< distance along timed.path at which the task's run begins
 };
 [[nodiscard]] Result<TaskPlan> plan_task(const AllocationParams& params, const Candidate& vehicle,
                                          Instant start, const Site& site,
@@ -69,8 +69,9 @@ struct TaskPlan {
                                          std::span<const Hazard> hazards);
 
 /// The path that surveys the site soonest; its start angle is the required one, or the best.
-[[nodiscard]] Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& vehicle,
-                                           const Pose2& from, Instant start, const Site& site,
+[[nodiscard]] Result<TaskPlan> plan_survey(const AllocationParams& params,
+                                           const VehicleSpec& vehicle, const Pose2& from,
+                                           Instant start, const Site& site,
                                            std::span<const Hazard> hazards);
 
 }  // namespace skein::planning

@@ -14,15 +14,15 @@ namespace skein::planning {
 struct Transit {
   Pose2 from;
   Pose2 to;
-  double radius_m = 0.0;        ///< least turn radius
-  double length_max_m = 0.0;    ///< the range that may be used
+  double radius_m = 0.0;      ///< least turn radius
+  double length_max_m = 0.0;  ///< the range that may be used
   std::span<const Hazard> hazards;
 };
 
 /// A clear path from pose to pose of exactly `length_m` (within 1e-6 m): larger turn radii first
-/// (ref. 28 of Wang 2022), then detours, then whole extra loops. Fails with the reason, and the next
-/// longer length that it can fly, where the length lies below the shortest or in a gap
-/// (Chen et al., arXiv 2109.02125), or above length_max_m.
+/// (ref. 28 of Wang 2022), then detours, then whole extra loops. Fails with the reason, and the
+/// next longer length that it can fly, where the length lies below the shortest or in a gap (Chen
+/// et al., arXiv 2109.02125), or above length_max_m.
 [[nodiscard]] Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
                                           double length_m);
 

@@ -20,9 +20,11 @@ struct FollowError {
 /// Control of a planned path to its times, for one control period: the heading and airspeed to
 /// command so that the vehicle is at plan.pose_at(now). Turn commands respect the vehicle's turn
 /// radius and heading dynamics, airspeed its limits; wind is estimated from the difference of
-/// velocity over the ground and through the air. Pure: no state, no allocation, no clock; bounded time.
+/// velocity over the ground and through the air. Pure: no state, no allocation, no clock; bounded
+/// time.
 [[nodiscard]] Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicle,
                                    const TimedPath& plan, const VehicleState& state, Instant now);
-[[nodiscard]] FollowError follow_error(const TimedPath& plan, const VehicleState& state, Instant now);
+[[nodiscard]] FollowError follow_error(const TimedPath& plan, const VehicleState& state,
+                                       Instant now);
 
 }  // namespace skein::planning

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/coalition/messages.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/coalition/state_table.hpp"
+
+namespace skein::coalition {
+
+/// The leader's side of the contract net for one site: announces, collects bids, awards, renews
+/// leases, and goes through further rounds for what is not done. It does no I/O, reads no clock and
+/// plans nothing: it asks for an allocation (AllocationWanted) and is told (allocated(), ...).
+/// The leader's own bid and tasks go through its own Participant like anybody's.
+class Initiator {
+ public:
+  enum class State : std::uint8_t {
+    announcing,
+    allocating,
+    awarding,
+    executing,
+    monitoring,
+    closed,
+    count
+  };
+  enum class Event : std::uint8_t {
+    bids_closed,
+    allocated,
+    allocation_failed,
+    confirmed,
+    not_confirmed,
+    try_again,
+    all_done,
+    closed,
+    count
+  };
+  static constexpr std::array kTable{
+      Transition<State, Event>{State::announcing, Event::bids_closed, State::allocating},
+      Transition<State, Event>{State::announcing, Event::closed, State::closed},
+      Transition<State, Event>{State::allocating, Event::allocated, State::awarding},
+      Transition<State, Event>{State::allocating, Event::allocation_failed, State::monitoring},
+      Transition<State, Event>{State::allocating, Event::closed, State::closed},
+      Transition<State, Event>{State::awarding, Event::confirmed, State::executing},
+      Transition<State, Event>{State::awarding, Event::not_confirmed, State::monitoring},
+      Transition<State, Event>{State::awarding, Event::closed, State::closed},
+      Transition<State, Event>{State::executing, Event::all_done, State::closed},
+      Transition<State, Event>{State::executing, Event::try_again, State::announcing},
+      Transition<State, Event>{State::executing, Event::closed, State::closed},
+      Transition<State, Event>{State::monitoring, Event::try_again, State::announcing},
+      Transition<State, Event>{State::monitoring, Event::all_done, State::closed},
+      Transition<State, Event>{State::monitoring, Event::closed, State::closed},
+  };
+
+  /// Bids are in. Answer with allocated() or allocation_failed() by `answer_by`.
+  struct AllocationWanted {
+    Round round;
+    Instant formed_at{};
+    std::vector<TaskId> tasks;
+    std::vector<Bid> bids;  ///< by bidder id
+    Instant answer_by{};
+  };
+  /// Everybody has confirmed.
+  struct Formed {
+    Round round;
+    std::vector<TaskAssignment> assignments;
+  };
+  /// Not enough bids, or no plan, or an award unconfirmed: the leader monitors and tries again.
+  struct NotFormed {
+    Round round;
+    std::string why;
+  };
+  /// A task whose owner fell silent or failed: it is announced again.
+  struct TaskLost {
+    Round round;
+    TaskAssignment assignment;
+    std::string why;
+  };
+  /// A delivery that was due when its owner fell silent. Whether it was flown is not known, so it
+  /// is not flown again.
+  struct TaskUnknown {
+    Round round;
+    TaskAssignment assignment;
+  };
+  struct AllDone {
+    Round round;
+  };
+  using Output = std::variant<AllocationWanted, Formed, NotFormed, TaskLost, TaskUnknown, AllDone>;
+
+  /// Opens the first round at once: poll_message() has the announcement.
+  Initiator(const ProtocolParams& params, const CoalitionId& id, const Site& site,
+            const Vec2& leader_at_formation, Instant now);
+
+  void on_bid(const Bid& message, Instant now);
+  void on_confirmation(const Confirmation& message, Instant now);
+  void on_status(const MemberStatus& message, Instant now);
+  void on_timeout(Instant now);
+
+  void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
+  void allocation_failed(const Round& round, const std::string& why, Instant now);
+  /// The operator's grant came for that round: from then on a silent owner's delivery that is due
+  /// may have been flown.
+  void authorised(const Round& round);
+  /// Opens another round for what is not done (times have become impossible).
+  void announce_again(const std::string& why, Instant now);
+  /// Ends the coalition and releases everyone.
+  void close(const std::string& why, Instant now);
+
+  [[nodiscard]] std::optional<Message> poll_message();
+  [[nodiscard]] std::optional<Output> poll_output();
+  [[nodiscard]] Instant next_timeout() const;
+
+  [[nodiscard]] State state() const { return machine_.state(); }
+  [[nodiscard]] const Round& round() const { return announcement_.round; }
+  [[nodiscard]] const Site& site() const { return announcement_.site; }
+  [[nodiscard]] const Announcement& announcement() const { return announcement_; }
+  /// Where the leader will be at the next formation, for its next announcement.
+  void set_leader_at_formation(const Vec2& position) { leader_at_formation_ = position; }
+  /// The latest time of a delivery that is done or may have been flown; nothing when there is none.
+  [[nodiscard]] std::optional<Instant> last_delivery() const;
+  /// The tasks that others still own in this round, with their times.
+  [[nodiscard]] std::vector<TaskAssignment> owned() const;
+  [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
+
+ private:
+  enum class Ownership : std::uint8_t { open, leased, done, unknown };
+  struct Entry {
+    TaskId task;
+    Ownership ownership = Ownership::open;
+    TaskAssignment assignment;  ///< of the owner, while leased, and of who did it
+    Round round;                ///< of that award
+    TaskState reported = TaskState::planned;
+    Instant lease_until{};  ///< the latest that the owner may believe in
+    Instant done_at{};
+  };
+  void start_round(Instant now);
+  void collect_open_tasks(Instant now);
+  void close_bids(Instant now);
+  void expire(Instant now);
+  void heartbeat(Instant now);
+  void not_formed(Event event, const std::string& why, Instant now);
+  void finish_if_done();
+  [[nodiscard]] bool all_confirmed() const;
+  [[nodiscard]] Entry* find(const TaskId& task);
+
+  ProtocolParams params_;
+  StateMachine<State, Event> machine_{kTable, State::announcing};
+  Announcement announcement_;
+  Vec2 leader_at_formation_;
+  std::vector<Entry> ledger_;  ///< one entry a task, in the order of the site
+  std::map<VehicleId, Bid> bids_;
+  std::optional<Award> award_;
+  std::map<VehicleId, bool> confirmed_;  ///< members of award_
+  std::map<VehicleId, Instant> heard_;   ///< members, by when they last spoke
+  std::map<std::uint32_t, bool> authorised_rounds_;
+  Instant deadline_{};  ///< of the present state
+  Instant next_repeat_{};
+  Instant next_heartbeat_{};
+  BoundedQueue<Message> messages_{64};
+  BoundedQueue<Output> outputs_{64};
+};
+
+[[nodiscard]] std::string_view to_string(Initiator::State state);
+[[nodiscard]] std::string_view to_string(Initiator::Event event);
+
+}  // namespace skein::coalition

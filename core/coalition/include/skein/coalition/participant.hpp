@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/coalition/messages.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/coalition/state_table.hpp"
+
+namespace skein::coalition {
+
+/// A vehicle's side of the contract net: bids, is locked to one leader, holds leases, reports
+/// tasks. It does no I/O and reads no clock, and decides nothing about flying: it asks (BidWanted,
+/// AwardReceived) and is told (bid(), decline(), accept(), refuse(), task_*()).
+/// Call with a `now` that never decreases; drain poll_message() and poll_event() after each call.
+class Participant {
+ public:
+  enum class State : std::uint8_t { free, bidding, deciding, member, rebidding, count };
+  enum class Event : std::uint8_t {
+    bid,
+    award_received,
+    accepted,
+    refused,
+    not_awarded,
+    no_award,
+    released,
+    new_round,
+    count
+  };
+  static constexpr std::array kTable{
+      Transition<State, Event>{State::free, Event::bid, State::bidding},
+      Transition<State, Event>{State::bidding, Event::award_received, State::deciding},
+      Transition<State, Event>{State::bidding, Event::not_awarded, State::free},
+      Transition<State, Event>{State::bidding, Event::no_award, State::free},
+      Transition<State, Event>{State::bidding, Event::released, State::free},
+      Transition<State, Event>{State::bidding, Event::new_round, State::free},
+      Transition<State, Event>{State::deciding, Event::accepted, State::member},
+      Transition<State, Event>{State::deciding, Event::refused, State::free},
+      Transition<State, Event>{State::member, Event::bid, State::rebidding},
+      Transition<State, Event>{State::member, Event::released, State::free},
+      Transition<State, Event>{State::rebidding, Event::award_received, State::deciding},
+      Transition<State, Event>{State::rebidding, Event::not_awarded, State::free},
+      Transition<State, Event>{State::rebidding, Event::no_award, State::free},
+      Transition<State, Event>{State::rebidding, Event::released, State::free},
+      Transition<State, Event>{State::rebidding, Event::new_round, State::free},
+  };
+
+  /// Shall this vehicle bid? Answer with bid() or decline(), in the same step.
+  struct BidWanted {
+    Announcement announcement;
+  };
+  /// Can this be flown? Answer with accept() or refuse(), in the same step.
+  struct AwardReceived {
+    Award award;
+    std::vector<TaskAssignment> mine;
+  };
+  /// A lease was granted or renewed.
+  struct LeaseGranted {
+    Round round;
+    TaskId task;
+    Instant until{};
+  };
+  /// A lease ended: the task was done, taken back, given up or it ran out.
+  struct LeaseEnded {
+    Round round;
+    TaskId task;
+    std::string why;
+  };
+  /// Not (any more) in a coalition; all leases have ended.
+  struct Released {
+    Round round;
+    std::string why;
+  };
+  using Output = std::variant<BidWanted, AwardReceived, LeaseGranted, LeaseEnded, Released>;
+
+  Participant(const ProtocolParams& params, VehicleId self);
+
+  void on_announcement(const Announcement& message, Instant now);
+  void on_award(const Award& message, Instant now);
+  void on_cancel(const Cancel& message, Instant now);
+  void on_lease_renewal(const LeaseRenewal& message, Instant now);
+  void on_timeout(Instant now);
+
+  /// Answers to BidWanted. Precondition: the announcement is the one asked about.
+  void bid(const Announcement& announcement, Bid bid, Instant now);
+  void decline(const Announcement& announcement);
+  /// Answers to AwardReceived.
+  void accept(Instant now);
+  void refuse(const std::string& reason, Instant now);
+
+  /// How the tasks go. A task that is done or failed is no longer held.
+  void task_started(const TaskId& task, Instant now);
+  void task_done(const TaskId& task, Instant now);
+  void task_failed(const TaskId& task, Instant now);
+  /// Leaves the coalition: tasks that are not done are reported as failed.
+  void withdraw(const std::string& reason, Instant now);
+
+  [[nodiscard]] std::optional<Message> poll_message();
+  [[nodiscard]] std::optional<Output> poll_output();
+  [[nodiscard]] Instant next_timeout() const;
+
+  [[nodiscard]] State state() const { return machine_.state(); }
+  [[nodiscard]] bool free() const { return machine_.in(State::free); }
+  [[nodiscard]] const Round& round() const { return round_; }
+  /// Is a lease on the task held at `now`, and does it last until `until`?
+  [[nodiscard]] bool holds(const TaskId& task, Instant now, Instant until) const;
+  [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
+
+ private:
+  struct Lease {
+    TaskId task;
+    TaskState state = TaskState::planned;
+    Instant until{};
+  };
+  struct Finished {
+    Round round;
+    MemberStatus::Entry entry;
+    Instant report_until{};
+  };
+  void finish(const TaskId& task, TaskState state, Instant now);
+  void end_leases(const std::string& why, bool unstarted_only);
+  void leave(Event event, const std::string& why);
+  void send_status(Instant now);
+  [[nodiscard]] bool task_in_progress() const;
+
+  ProtocolParams params_;
+  VehicleId self_;
+  StateMachine<State, Event> machine_{kTable, State::free};
+  Round round_;             ///< the round bid in, or awarded in
+  std::optional<Bid> bid_;  ///< sent again when the announcement is heard again
+  std::optional<Award> award_;
+  std::optional<Confirmation> confirmation_;  ///< sent again when the award is heard again
+  Instant bidding_until_{};
+  std::vector<Lease> leases_;
+  std::vector<Finished> finished_;  ///< reported until the leader knows
+  Instant next_status_{};
+  BoundedQueue<Message> messages_{64};
+  BoundedQueue<Output> outputs_{256};
+};
+
+[[nodiscard]] std::string_view to_string(Participant::State state);
+[[nodiscard]] std::string_view to_string(Participant::Event event);
+
+}  // namespace skein::coalition

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/coalition/participant.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/base/assert.hpp"
+
+namespace skein::coalition {
+namespace {
+/// How long a finished task is reported to a leader that does not say that it knows.
+constexpr Duration kReportFinishedFor = std::chrono::seconds{60};
+}  // namespace
+
+Participant::Participant(const ProtocolParams& params, VehicleId self)
+    : params_{params}, self_{self} {}
+
+void Participant::on_announcement(const Announcement& message, Instant now) {
+  // A leader that announces what is done here has not heard of it: tell it again, at once.
+  for (const auto& done : finished_) {
+    if (std::find(message.tasks.begin(), message.tasks.end(), done.entry.task) !=
+        message.tasks.end()) {
+      next_status_ = now;
+    }
+  }
+  if (message.round == round_ && bid_ &&
+      (machine_.in(State::bidding) || machine_.in(State::rebidding))) {
+    messages_.push(*bid_);
+    return;
+  }
+  if (now >= message.bids_until) return;
+  const bool newer_of_mine =
+      message.round.coalition == round_.coalition && message.round.number > round_.number;
+  if (machine_.in(State::free)) {
+    outputs_.push(BidWanted{message});
+  } else if (machine_.in(State::member)) {
+    if (newer_of_mine && !task_in_progress()) outputs_.push(BidWanted{message});
+  } else if (newer_of_mine) {  // bidding: the round that was bid in has come to nothing
+    leave(Event::new_round, "the leader opened another round");
+    outputs_.push(BidWanted{message});
+  }
+}
+
+void Participant::bid(const Announcement& announcement, Bid bid, Instant now) {
+  if (!machine_.fire(Event::bid)) return;
+  // Bidding anew gives the old tasks back: the leader may award them to somebody else from now on.
+  end_leases("bid in a new round", true);
+  round_ = announcement.round;
+  bid.round = round_;
+  bid.bidder = self_;
+  bid_ = bid;
+  award_.reset();
+  confirmation_.reset();
+  bidding_until_ = std::max(announcement.formed_at, now) + params_.formation_time();
+  messages_.push(std::move(bid));
+}
+
+void Participant::decline(const Announcement& announcement) {
+  // Nothing is sent: a leader counts the bids that it gets, and silence is the cheaper refusal.
+  SKEIN_ASSERT(announcement.round != round_ || !bid_);
+}
+
+void Participant::on_award(const Award& message, Instant now) {
+  if (message.round != round_) return;
+  if (confirmation_ && !machine_.in(State::bidding) && !machine_.in(State::rebidding)) {
+    messages_.push(*confirmation_);  // the leader has not heard it
+    return;
+  }
+  if (!machine_.in(State::bidding) && !machine_.in(State::rebidding)) return;
+  std::vector<TaskAssignment> mine;
+  for (const auto& a : message.assignments) {
+    if (a.vehicle == self_) mine.push_back(a);
+  }
+  if (mine.empty() || now >= message.lease_until) {
+    leave(Event::not_awarded, mine.empty() ? "not needed" : "the award came too late");
+    return;
+  }
+  if (!machine_.fire(Event::award_received)) return;
+  award_ = message;
+  outputs_.push(AwardReceived{message, std::move(mine)});
+}
+
+void Participant::accept(Instant now) {
+  SKEIN_ASSERT(award_.has_value());
+  if (!machine_.fire(Event::accepted)) return;
+  for (const auto& a : award_->assignments) {
+    if (a.vehicle != self_) continue;
+    leases_.push_back({a.task, TaskState::planned, award_->lease_until});
+    outputs_.push(LeaseGranted{round_, a.task, award_->lease_until});
+  }
+  confirmation_ = Confirmation{round_, self_, true, {}};
+  messages_.push(*confirmation_);
+  next_status_ = now + params_.heartbeat;
+}
+
+void Participant::refuse(const std::string& reason, Instant /*now*/) {
+  confirmation_ = Confirmation{round_, self_, false, reason.substr(0, kReasonMax)};
+  messages_.push(*confirmation_);
+  leave(Event::refused, reason);
+}
+
+void Participant::on_cancel(const Cancel& message, Instant /*now*/) {
+  if (message.round != round_ || machine_.in(State::free)) return;
+  leave(Event::released, message.reason);
+}
+
+void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
+  const bool named =
+      std::find(message.members.begin(), message.members.end(), self_) != message.members.end();
+  if (!named) {
+    // The leader holds nothing against this vehicle any more: it knows what was finished.
+    std::erase_if(finished_,
+                  [&](const Finished& f) { return f.round.coalition == message.round.coalition; });
+    return;
+  }
+  if (message.round.coalition != round_.coalition || message.round.number < round_.number) return;
+  for (auto& lease : leases_) {
+    if (lease.until <= now || message.lease_until <= lease.until) continue;
+    lease.until = message.lease_until;
+    outputs_.push(LeaseGranted{round_, lease.task, lease.until});
+  }
+}
+
+void Participant::on_timeout(Instant now) {
+  if ((machine_.in(State::bidding) || machine_.in(State::rebidding)) && now >= bidding_until_) {
+    leave(Event::no_award, "no award came");
+  }
+  const auto ran_out = [now](const Lease& lease) { return lease.until <= now; };
+  if (std::any_of(leases_.begin(), leases_.end(), ran_out)) {
+    for (const auto& lease : leases_) {
+      if (ran_out(lease)) outputs_.push(LeaseEnded{round_, lease.task, "the lease ran out"});
+    }
+    std::erase_if(leases_, ran_out);
+    if (leases_.empty() && machine_.in(State::member)) leave(Event::released, "the lease ran out");
+  }
+  std::erase_if(finished_, [now](const Finished& f) { return f.report_until <= now; });
+  if (now >= next_status_ && (!leases_.empty() || !finished_.empty())) send_status(now);
+}
+
+bool Participant::task_in_progress() const {
+  return std::any_of(leases_.begin(), leases_.end(),
+                     [](const Lease& l) { return l.state == TaskState::started; });
+}
+
+bool Participant::holds(const TaskId& task, Instant now, Instant until) const {
+  return std::any_of(leases_.begin(), leases_.end(), [&](const Lease& l) {
+    return l.task == task && l.until > now && l.until >= until;
+  });
+}
+
+void Participant::task_started(const TaskId& task, Instant now) {
+  for (auto& lease : leases_) {
+    if (lease.task == task) lease.state = TaskState::started;
+  }
+  send_status(now);
+}
+
+void Participant::task_done(const TaskId& task, Instant now) { finish(task, TaskState::done, now); }
+
+void Participant::task_failed(const TaskId& task, Instant now) {
+  finish(task, TaskState::failed, now);
+}
+
+void Participant::finish(const TaskId& task, TaskState state, Instant now) {
+  const auto lease =
+      std::find_if(leases_.begin(), leases_.end(), [&](const Lease& l) { return l.task == task; });
+  if (lease == leases_.end()) return;
+  leases_.erase(lease);
+  outputs_.push(LeaseEnded{round_, task, std::string{to_string(state)}});
+  finished_.push_back({round_, {task, state, now}, now + kReportFinishedFor});
+  send_status(now);
+  if (leases_.empty() && machine_.in(State::member)) {
+    leave(Event::released, "its tasks are " + std::string{to_string(state)});
+  }
+}
+
+void Participant::withdraw(const std::string& reason, Instant now) {
+  while (!leases_.empty()) finish(leases_.front().task, TaskState::failed, now);
+  if (!machine_.in(State::free)) leave(Event::released, reason);
+}
+
+void Participant::end_leases(const std::string& why, bool unstarted_only) {
+  const auto ends = [unstarted_only](const Lease& l) {
+    return !unstarted_only || l.state == TaskState::planned;
+  };
+  for (const auto& lease : leases_) {
+    if (ends(lease)) outputs_.push(LeaseEnded{round_, lease.task, why});
+  }
+  std::erase_if(leases_, ends);
+}
+
+void Participant::leave(Event event, const std::string& why) {
+  if (!machine_.fire(event)) return;
+  end_leases(why, false);
+  bid_.reset();
+  award_.reset();
+  outputs_.push(Released{round_, why});
+}
+
+void Participant::send_status(Instant now) {
+  std::map<CoalitionId, MemberStatus> by_coalition;
+  for (const auto& lease : leases_) {
+    auto& status = by_coalition[round_.coalition];
+    status.round = round_;
+    status.tasks.push_back({lease.task, lease.state, now});
+  }
+  for (const auto& done : finished_) {
+    auto& status = by_coalition[done.round.coalition];
+    status.round = std::max(status.round, done.round);
+    status.tasks.push_back(done.entry);
+  }
+  for (auto& [id, status] : by_coalition) {
+    status.member = self_;
+    messages_.push(std::move(status));
+  }
+  next_status_ = now + params_.heartbeat;
+}
+
+std::optional<Message> Participant::poll_message() { return messages_.pop(); }
+std::optional<Participant::Output> Participant::poll_output() { return outputs_.pop(); }
+
+Instant Participant::next_timeout() const {
+  Instant next = Instant::max();
+  if (machine_.in(State::bidding) || machine_.in(State::rebidding)) next = bidding_until_;
+  for (const auto& lease : leases_) next = std::min(next, lease.until);
+  if (!leases_.empty() || !finished_.empty()) next = std::min(next, next_status_);
+  return next;
+}
+
+std::string_view to_string(Participant::State state) {
+  static constexpr std::array<std::string_view, 5> kNames{"free", "bidding", "deciding", "member",
+                                                          "rebidding"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Participant::State::count));
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+std::string_view to_string(Participant::Event event) {
+  static constexpr std::array<std::string_view, 8> kNames{"bid",      "award_received", "accepted",
+                                                          "refused",  "not_awarded",    "no_award",
+                                                          "released", "new_round"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Participant::Event::count));
+  return kNames.at(static_cast<std::size_t>(event));
+}
+
+}  // namespace skein::coalition
