@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "skein/hal/flight_controller.hpp"
+#include "skein/models/heading_dynamics.hpp"
+#include "skein/models/wind.hpp"
+
+namespace skein::hal {
+
+/// A flight controller with its aircraft, in this process: models::HeadingDynamics, integrated up
+/// to `now` whenever it is asked. Until mission time 0 it stays at its start.
+class SimulatedFlightController final : public FlightController {
+ public:
+  SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
+                            const models::WindParams& wind);
+
+  [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
+  void command(const Setpoint& setpoint, Instant now) override;
+
+ private:
+  void advance_to(Instant now);
+
+  models::HeadingDynamics model_;
+};
+
+}  // namespace skein::hal

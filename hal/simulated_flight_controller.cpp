@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hal/simulated_flight_controller.hpp"
+
+#include <algorithm>
+
+namespace skein::hal {
+
+SimulatedFlightController::SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
+                                                     const models::WindParams& wind)
+    : model_{vehicle, models::Wind{wind}, start, Instant{}} {}
+
+void SimulatedFlightController::advance_to(Instant now) {
+  if (now > model_.state().time) model_.advance_to(now);
+}
+
+std::optional<VehicleState> SimulatedFlightController::state(Instant now) {
+  advance_to(now);
+  VehicleState state = model_.state();
+  state.time = std::min(now, state.time);  // at rest before mission time 0, yet not out of date
+  return state;
+}
+
+void SimulatedFlightController::command(const Setpoint& setpoint, Instant now) {
+  advance_to(now);  // the setpoint before this one stood until now
+  model_.command(setpoint);
+}
+
+}  // namespace skein::hal
