@@ -8,7 +8,10 @@
 #   become one test program NAME_test; TEST_DEPS are what only the tests use.
 #
 # skein_program(NAME SOURCES ... DEPS ... [LIBRARIES ...])
-#   An executable; the top of the graph. Nothing can depend on it.
+#   An executable; the top of the graph. Nothing can depend on it. The target `programs` builds them
+#   all, and whatever else a mission needs at run time (add_dependencies(programs ...)).
+
+add_custom_target(programs)
 
 function(_skein_check_layers target layer)
   foreach(dep IN LISTS ARGN)
@@ -65,4 +68,5 @@ function(skein_program name)
   list(TRANSFORM P_DEPS PREPEND "skein::")
   add_executable(${name} ${P_SOURCES})
   target_link_libraries(${name} PRIVATE ${P_DEPS} ${P_LIBRARIES} skein_warnings)
+  add_dependencies(programs ${name})
 endfunction()
