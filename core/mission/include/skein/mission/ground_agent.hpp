@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
@@ -14,7 +16,8 @@
 
 namespace skein::mission {
 
-/// A decision that a scripted scenario takes in the operator's place.
+/// A decision that a scripted scenario takes in the operator's place. The first request for a site
+/// gets the site's first decision, the second the second, and so on; the last one serves all later.
 struct ScriptedDecision {
   SiteId site;
   bool grant = true;
@@ -44,9 +47,9 @@ struct PendingAuthorisation {
 };
 
 /// All decisions of the ground station, without I/O: keeps the fleet picture, holds requests for
-/// authorisation, sends decisions and commands until they are of no more use. Same calling rules as
-/// VehicleAgent. An authorisation is only ever made by authorise(), refuse() or a scripted
-/// decision.
+/// authorisation, sends decisions (every 0.5 s until the last delivery's time has passed) and
+/// commands (every 1 s for 5 s). Same calling rules as VehicleAgent. An authorisation is only ever
+/// made by authorise(), refuse() or a scripted decision.
 class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
@@ -54,10 +57,12 @@ class GroundAgent {
   void on_message(const Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
 
-  /// The operator's decision on the newest request for that site. Fails when there is none waiting.
+  /// The operator's decision on the newest request for that site. Fails when there is none waiting,
+  /// and does not grant what a vehicle id used twice is part of.
   Result<void> authorise(SiteId site, const std::string& operator_name, Instant now);
   Result<void> refuse(SiteId site, const std::string& operator_name, Instant now);
-  /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet.
+  /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,
+  /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   [[nodiscard]] std::optional<Message> poll_message();
@@ -69,21 +74,40 @@ class GroundAgent {
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
 
  private:
-  Result<void> decide(SiteId site, bool granted, const std::string& by, Instant now);
+  using EventKey = std::tuple<Instant, VehicleId, EventKind, TaskId, std::string>;
+  struct SentCommand {
+    Command command;
+    Instant next{};
+    Instant repeat_until{};
+  };
+
+  void on_telemetry(const Telemetry& telemetry, Instant now);
+  void on_request(const AuthorisationRequest& request, Instant now);
+  void on_event(const MissionEvent& event);
+  void mark_silent(Instant now);
+  void mark_mended(Instant now);
+  void decide_by_script(Instant now);
+  void send_again(Instant now);
+  [[nodiscard]] const ScriptedDecision* script_for(SiteId site) const;
+  [[nodiscard]] bool expects(VehicleId vehicle) const;
+  [[nodiscard]] std::optional<Instant> script_due(const PendingAuthorisation& pending) const;
+  Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
+  Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
+                      Instant now);
   void report(EventKind kind, const coalition::Round& round, const TaskId& task, Instant now,
               std::string text);
 
   GroundAgentConfig config_;
   std::map<VehicleId, FleetEntry> fleet_;
+  /// Who spoke with each id lately, and when.
+  std::map<VehicleId, std::map<InstanceId, Instant>> instances_;
   std::vector<PendingAuthorisation> pending_;
-  struct SentCommand {
-    Command command;
-    Instant repeat_until{};
-  };
+  std::map<SiteId, std::size_t> scripted_;  ///< decisions that the script has taken so far
+  Instant script_again_{Instant::min()};    ///< after a decision that could not be taken
   std::vector<SentCommand> commands_;
-  std::uint32_t next_command_ = 1;
-  Instant now_{};
-  Instant next_repeat_{};
+  std::uint32_t last_command_ = 0;
+  Instant next_repeat_ = Instant::max();  ///< of the authorisations
+  std::set<EventKey> seen_events_;
   BoundedQueue<Message> messages_{256};
   BoundedQueue<MissionEvent> events_{4096};
 };

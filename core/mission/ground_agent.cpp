@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_agent.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace skein::mission {
+namespace {
+
+constexpr Duration kAuthorisationRepeat = std::chrono::milliseconds{500};
+constexpr Duration kCommandRepeat = std::chrono::seconds{1};
+constexpr Duration kCommandRepeatedFor = std::chrono::seconds{5};
+// What a flood from the network can make us remember.
+constexpr std::size_t kAuthorisationsMax = 64;
+constexpr std::size_t kStrangersMax = 64;
+constexpr std::size_t kInstancesMax = 8;
+constexpr std::size_t kSeenEventsMax = 8192;
+
+std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
+std::string name_of(SiteId site) { return "site " + std::to_string(site.value); }
+
+Instant last_delivery(const AuthorisationRequest& request) {
+  Instant last = request.decide_by;
+  for (const auto& delivery : request.deliveries) last = std::max(last, delivery.assignment.time);
+  return last;
+}
+
+}  // namespace
+
+GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/) : config_{config} {
+  for (const auto vehicle : config_.expected) fleet_[vehicle];
+}
+
+void GroundAgent::on_message(const Message& message, VehicleId sender, Instant now) {
+  if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
+    if (telemetry->vehicle == sender) on_telemetry(*telemetry, now);
+  } else if (const auto* request = std::get_if<AuthorisationRequest>(&message)) {
+    on_request(*request, now);
+  } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
+    on_event(*event);
+  }
+  on_timeout(now);
+}
+
+void GroundAgent::on_timeout(Instant now) {
+  mark_silent(now);
+  mark_mended(now);
+  decide_by_script(now);
+  send_again(now);
+}
+
+bool GroundAgent::expects(VehicleId vehicle) const {
+  return std::find(config_.expected.begin(), config_.expected.end(), vehicle) !=
+         config_.expected.end();
+}
+
+void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
+  const VehicleId vehicle = telemetry.vehicle;
+  if (!fleet_.contains(vehicle)) {
+    if (fleet_.size() >= config_.expected.size() + kStrangersMax) return;
+    report(EventKind::warning, {}, {}, now,
+           name_of(vehicle) + " speaks, but is not in the fleet; check its id");
+  }
+  FleetEntry& entry = fleet_[vehicle];
+
+  // A restarted vehicle has a new instance and its old one never speaks again. Two vehicles with
+  // one id take turns: the one that we took for replaced is heard once more.
+  auto& instances = instances_[vehicle];
+  std::erase_if(instances, [&](const auto& i) { return i.second + config_.silence <= now; });
+  const bool known = instances.contains(telemetry.instance);
+  const bool changed = entry.telemetry && entry.telemetry->instance != telemetry.instance;
+  if (known || instances.size() < kInstancesMax) instances[telemetry.instance] = now;
+  if (changed && known && !entry.duplicate) {
+    entry.duplicate = true;
+    report(EventKind::warning, {}, {}, now,
+           "two vehicles answer to the id of " + name_of(vehicle) +
+               "; nothing is commanded to it until one of them is stopped or renumbered");
+  } else if (changed && !known && !entry.duplicate) {
+    report(EventKind::warning, {}, {}, now, name_of(vehicle) + " has started anew");
+  }
+
+  const bool older =
+      entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;
+  if (!older) entry.telemetry = telemetry;
+  if (entry.silent) {
+    entry.silent = false;
+    report(
+        EventKind::warning, {}, {}, now,
+        name_of(vehicle) + " is heard again after " +
+            std::to_string(std::chrono::round<std::chrono::seconds>(now - entry.heard_at).count()) +
+            " s");
+  }
+  entry.heard_at = now;
+}
+
+void GroundAgent::mark_silent(Instant now) {
+  for (auto& [vehicle, entry] : fleet_) {
+    if (!entry.telemetry || entry.silent || now < entry.heard_at + config_.silence) continue;
+    entry.silent = true;
+    report(EventKind::warning, {}, {}, now, name_of(vehicle) + " is silent");
+  }
+}
+
+void GroundAgent::mark_mended(Instant now) {
+  for (auto& [vehicle, entry] : fleet_) {
+    if (!entry.duplicate) continue;
+    auto& instances = instances_[vehicle];
+    std::erase_if(instances, [&](const auto& i) { return i.second + config_.silence <= now; });
+    if (instances.size() > 1) continue;
+    entry.duplicate = false;
+    report(EventKind::warning, {}, {}, now, "the id of " + name_of(vehicle) + " is unique again");
+  }
+}
+
+void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
+  for (const auto& known : pending_) {
+    if (known.request.site == request.site && known.request.round == request.round) return;
+    // Late copies of a plan that has been replaced must not become the newest request.
+    if (known.request.site == request.site &&
+        known.request.round.coalition == request.round.coalition &&
+        known.request.round.number > request.round.number) {
+      return;
+    }
+  }
+  std::erase_if(pending_, [&](const PendingAuthorisation& p) {
+    return !p.decision && p.request.site == request.site &&
+           p.request.round.coalition == request.round.coalition;
+  });
+  if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
+  pending_.push_back({request, now, std::nullopt});
+}
+
+void GroundAgent::on_event(const MissionEvent& event) {
+  if (!seen_events_.emplace(event.time, event.vehicle, event.kind, event.task, event.text).second) {
+    return;
+  }
+  if (seen_events_.size() > kSeenEventsMax) seen_events_.erase(seen_events_.begin());
+  events_.push(event);
+}
+
+Result<void> GroundAgent::authorise(SiteId site, const std::string& operator_name, Instant now) {
+  return decide_newest(site, true, operator_name, now);
+}
+Result<void> GroundAgent::refuse(SiteId site, const std::string& operator_name, Instant now) {
+  return decide_newest(site, false, operator_name, now);
+}
+
+Result<void> GroundAgent::decide_newest(SiteId site, bool granted, const std::string& by,
+                                        Instant now) {
+  const auto waiting = std::find_if(pending_.rbegin(), pending_.rend(), [&](const auto& p) {
+    return p.request.site == site && !p.decision && now < p.request.decide_by;
+  });
+  if (waiting != pending_.rend()) return decide(*waiting, granted, by, now);
+  const auto last = std::find_if(pending_.rbegin(), pending_.rend(),
+                                 [&](const auto& p) { return p.request.site == site; });
+  if (last == pending_.rend()) return Error{"no request for " + name_of(site) + " is waiting"};
+  if (last->decision) {
+    return Error{"the request for " + name_of(site) + " was already " +
+                 (last->decision->granted ? "authorised" : "refused") + " by " +
+                 last->decision->decided_by};
+  }
+  return Error{"the request for " + name_of(site) +
+               " has run out; the vehicles hold and will ask again with new times"};
+}
+
+Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, const std::string& by,
+                                 Instant now) {
+  const auto& request = pending.request;
+  if (granted) {
+    for (const auto& delivery : request.deliveries) {
+      const auto member = fleet_.find(delivery.assignment.vehicle);
+      if (member == fleet_.end() || !member->second.duplicate) continue;
+      return Error{"two vehicles answer to the id of " + name_of(member->first) +
+                   ", which is part of this plan; stop or renumber one of them first"};
+    }
+  }
+  pending.decision = Authorisation{request.round, request.site, granted, by, now};
+  report(granted ? EventKind::authorised : EventKind::authorisation_refused, request.round,
+         {request.site, TaskKind::deliver, 0}, now, "by " + by);
+  messages_.push(Message{*pending.decision});
+  next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
+  return {};
+}
+
+const ScriptedDecision* GroundAgent::script_for(SiteId site) const {
+  const auto taken = scripted_.find(site);
+  std::size_t skip = taken == scripted_.end() ? 0 : taken->second;
+  const ScriptedDecision* last = nullptr;
+  for (const auto& decision : config_.decisions) {
+    if (decision.site != site) continue;
+    last = &decision;
+    if (skip-- == 0) break;
+  }
+  return last;
+}
+
+std::optional<Instant> GroundAgent::script_due(const PendingAuthorisation& pending) const {
+  const auto* scripted = script_for(pending.request.site);
+  if (scripted == nullptr || pending.decision) return std::nullopt;
+  return std::max({pending.asked_at + scripted->reaction, scripted->not_before, script_again_});
+}
+
+void GroundAgent::decide_by_script(Instant now) {
+  for (auto& pending : pending_) {
+    const auto due = script_due(pending);
+    if (!due || now < *due || now >= pending.request.decide_by) continue;
+    const SiteId site = pending.request.site;
+    if (decide(pending, script_for(site)->grant, "scenario", now).ok()) {
+      ++scripted_[site];
+    } else {
+      script_again_ = now + kAuthorisationRepeat;
+    }
+  }
+}
+
+Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant now) {
+  const bool all = vehicle == kGroundStation;
+  if (!all && !expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
+  for (const auto& [id, entry] : fleet_) {
+    const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
+    if (!concerned || !entry.duplicate) continue;
+    return Error{"two vehicles answer to the id of " + name_of(id) +
+                 "; stop or renumber one of them first"};
+  }
+  // Numbers grow also over a restart of this process, or vehicles would take new commands for old.
+  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(
+                               std::max(now, Instant{}).time_since_epoch())
+                               .count();
+  last_command_ = std::max(last_command_, static_cast<std::uint32_t>(since_epoch)) + 1;
+  std::erase_if(commands_,
+                [&](const SentCommand& sent) { return all || sent.command.vehicle == vehicle; });
+  const Command command{vehicle, last_command_, kind};
+  messages_.push(Message{command});
+  commands_.push_back({command, now + kCommandRepeat, now + kCommandRepeatedFor});
+  return {};
+}
+
+void GroundAgent::send_again(Instant now) {
+  if (now >= next_repeat_) {
+    next_repeat_ = Instant::max();
+    for (const auto& pending : pending_) {
+      if (!pending.decision || now > last_delivery(pending.request)) continue;
+      messages_.push(Message{*pending.decision});
+      next_repeat_ = now + kAuthorisationRepeat;
+    }
+  }
+  for (auto& sent : commands_) {
+    if (now < sent.next) continue;
+    messages_.push(Message{sent.command});
+    sent.next = now + kCommandRepeat;
+  }
+  std::erase_if(commands_, [&](const SentCommand& sent) { return sent.next > sent.repeat_until; });
+}
+
+std::optional<Message> GroundAgent::poll_message() { return messages_.pop(); }
+std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
+
+Instant GroundAgent::next_timeout() const {
+  Instant next = next_repeat_;
+  for (const auto& sent : commands_) next = std::min(next, sent.next);
+  for (const auto& [vehicle, entry] : fleet_) {
+    if (entry.telemetry && !entry.silent) next = std::min(next, entry.heard_at + config_.silence);
+    if (!entry.duplicate) continue;
+    for (const auto& [instance, heard_at] : instances_.at(vehicle)) {
+      next = std::min(next, heard_at + config_.silence);
+    }
+  }
+  for (const auto& pending : pending_) {
+    const auto due = script_due(pending);
+    if (due && *due < pending.request.decide_by) next = std::min(next, *due);
+  }
+  return next;
+}
+
+void GroundAgent::report(EventKind kind, const coalition::Round& round, const TaskId& task,
+                         Instant now, std::string text) {
+  events_.push({kGroundStation, now, kind, round, task, 0.0, std::move(text)});
+}
+
+}  // namespace skein::mission

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_agent.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace skein::mission {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr VehicleId kLeader{2};
+constexpr SiteId kSite{3};
+
+GroundAgentConfig fleet_of_three() {
+  GroundAgentConfig config;
+  config.expected = {{1}, {2}, {3}};
+  return config;
+}
+
+Telemetry telemetry_of(VehicleId vehicle, std::uint64_t instance, double seconds) {
+  Telemetry t;
+  t.vehicle = vehicle;
+  t.instance = {instance};
+  t.state.time = at_seconds(seconds);
+  return t;
+}
+
+AuthorisationRequest request(std::uint32_t round, double decide_by_s, double deliver_at_s,
+                             SiteId site = kSite) {
+  AuthorisationRequest r;
+  r.round = {{kLeader, {77}, 1}, round};
+  r.site = site;
+  r.deliveries.push_back({{{site, TaskKind::deliver, 0}, kLeader, at_seconds(deliver_at_s)}, 0.5});
+  r.decide_by = at_seconds(decide_by_s);
+  return r;
+}
+
+/// The agent and what came out of it since the last look.
+struct Bench {
+  explicit Bench(const GroundAgentConfig& config = fleet_of_three()) : agent{config, Instant{}} {}
+
+  void hear(const Telemetry& t, double seconds) {
+    agent.on_message(Message{t}, t.vehicle, at_seconds(seconds));
+  }
+  void ask(const AuthorisationRequest& r, double seconds) {
+    agent.on_message(Message{r}, kLeader, at_seconds(seconds));
+  }
+  template <class T>
+  std::vector<T> sent() {
+    std::vector<T> found;
+    while (auto message = agent.poll_message()) {
+      if (const auto* wanted = std::get_if<T>(&*message)) found.push_back(*wanted);
+    }
+    return found;
+  }
+  std::vector<MissionEvent> events() {
+    std::vector<MissionEvent> all;
+    while (auto event = agent.poll_event()) all.push_back(*event);
+    return all;
+  }
+  /// Steps the agent at its own timeouts until `seconds`; the number of steps shows a busy loop.
+  int run_until(double seconds) {
+    int steps = 0;
+    while (agent.next_timeout() <= at_seconds(seconds)) {
+      agent.on_timeout(agent.next_timeout());
+      if (++steps > 10000) break;
+    }
+    agent.on_timeout(at_seconds(seconds));
+    return steps;
+  }
+
+  GroundAgent agent;
+};
+
+TEST(GroundAgent, KnowsItsFleetBeforeItSpeaks) {
+  const Bench bench;
+  ASSERT_EQ(bench.agent.fleet().size(), 3U);
+  EXPECT_FALSE(bench.agent.fleet().at({2}).telemetry);
+  EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
+}
+
+TEST(GroundAgent, TellsSilenceAndReturn) {
+  Bench bench;
+  bench.hear(telemetry_of({1}, 10, 1.0), 1.0);
+  EXPECT_EQ(bench.agent.next_timeout(), at_seconds(6.0));
+  bench.run_until(6.0);
+  EXPECT_TRUE(bench.agent.fleet().at({1}).silent);
+  auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_THAT(events[0].text, HasSubstr("vehicle 1 is silent"));
+  bench.hear(telemetry_of({1}, 10, 9.0), 9.0);
+  EXPECT_FALSE(bench.agent.fleet().at({1}).silent);
+  events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_THAT(events[0].text, HasSubstr("heard again after 8 s"));
+}
+
+TEST(GroundAgent, TwoInstancesWithOneIdAreADuplicateUntilMended) {
+  Bench bench;
+  bench.hear(telemetry_of({1}, 10, 1.0), 1.0);
+  bench.hear(telemetry_of({1}, 11, 1.1), 1.1);
+  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);  // could be a restart
+  bench.hear(telemetry_of({1}, 10, 1.2), 1.2);
+  EXPECT_TRUE(bench.agent.fleet().at({1}).duplicate);
+  EXPECT_FALSE(bench.agent.command({1}, CommandKind::hold, at_seconds(1.3)).ok());
+  EXPECT_FALSE(bench.agent.command(kGroundStation, CommandKind::resume, at_seconds(1.3)).ok());
+  EXPECT_TRUE(bench.agent.command(kGroundStation, CommandKind::hold, at_seconds(1.3)).ok());
+  for (int i = 0; i < 60; ++i) {
+    bench.hear(telemetry_of({1}, 10, 1.4 + 0.1 * i), 1.4 + 0.1 * i);
+  }
+  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);
+  EXPECT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(8.0)).ok());
+}
+
+TEST(GroundAgent, ARestartIsNoDuplicate) {
+  Bench bench;
+  for (int i = 0; i < 10; ++i) bench.hear(telemetry_of({1}, 10, 0.1 * i), 0.1 * i);
+  for (int i = 10; i < 100; ++i) bench.hear(telemetry_of({1}, 11, 0.1 * i), 0.1 * i);
+  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);
+  const auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_THAT(events[0].text, HasSubstr("started anew"));
+}
+
+TEST(GroundAgent, WarnsOnceOfAStranger) {
+  Bench bench;
+  bench.hear(telemetry_of({9}, 10, 1.0), 1.0);
+  bench.hear(telemetry_of({9}, 10, 1.1), 1.1);
+  const auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_THAT(events[0].text, HasSubstr("vehicle 9 speaks, but is not in the fleet"));
+  EXPECT_FALSE(bench.agent.command({9}, CommandKind::hold, at_seconds(2.0)).ok());
+}
+
+TEST(GroundAgent, AFloodOfStrangersIsBounded) {
+  Bench bench;
+  for (std::uint16_t id = 100; id < 5000; ++id) bench.hear(telemetry_of({id}, 1, 1.0), 1.0);
+  EXPECT_LE(bench.agent.fleet().size(), 3U + 64U);
+}
+
+TEST(GroundAgent, ForwardsEveryEventOnce) {
+  Bench bench;
+  MissionEvent event{
+      {2}, at_seconds(4.0), EventKind::task_done, {}, {kSite, TaskKind::deliver, 1}, 0.0, {}};
+  bench.agent.on_message(Message{event}, {2}, at_seconds(4.1));
+  bench.agent.on_message(Message{event}, {2}, at_seconds(4.2));
+  event.task.index = 2;
+  bench.agent.on_message(Message{event}, {2}, at_seconds(4.2));
+  EXPECT_EQ(bench.events().size(), 2U);
+}
+
+TEST(GroundAgent, NothingIsAuthorisedUnlessSomebodyDoesIt) {
+  Bench bench;
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  bench.ask(request(1, 20.0, 30.0), 10.5);
+  EXPECT_EQ(bench.agent.authorisations().size(), 1U);
+  bench.run_until(100.0);
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  const auto late = bench.agent.authorise(kSite, "Ada", at_seconds(100.0));
+  ASSERT_FALSE(late.ok());
+  EXPECT_THAT(late.error().message, HasSubstr("run out"));
+  EXPECT_FALSE(bench.agent.authorise({8}, "Ada", at_seconds(100.0)).ok());
+}
+
+TEST(GroundAgent, SendsADecisionUntilTheLastDelivery) {
+  Bench bench;
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)).ok());
+  auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_TRUE(sent[0].granted);
+  EXPECT_EQ(sent[0].decided_by, "Ada");
+  EXPECT_EQ(sent[0].round.number, 1U);
+  EXPECT_EQ(sent[0].decided_at, at_seconds(12.0));
+  bench.run_until(60.0);
+  EXPECT_EQ(bench.sent<Authorisation>().size(), 36U);  // 12.5 to 30.0
+  EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
+  const auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind, EventKind::authorised);
+
+  const auto again = bench.agent.refuse(kSite, "Bob", at_seconds(13.0));
+  ASSERT_FALSE(again.ok());
+  EXPECT_THAT(again.error().message, HasSubstr("already authorised by Ada"));
+}
+
+TEST(GroundAgent, ADecisionIsForTheNewestPlanAndNoOther) {
+  Bench bench;
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  bench.ask(request(2, 25.0, 35.0), 11.0);
+  bench.ask(request(1, 20.0, 30.0), 11.5);  // late copy
+  EXPECT_EQ(bench.agent.authorisations().size(), 1U);
+  ASSERT_TRUE(bench.agent.refuse(kSite, "Ada", at_seconds(12.0)).ok());
+  const auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].round.number, 2U);
+  EXPECT_FALSE(sent[0].granted);
+  EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(12.5)).ok());
+}
+
+TEST(GroundAgent, DoesNotAuthoriseADuplicate) {
+  GroundAgentConfig config = fleet_of_three();
+  config.decisions = {{.site = kSite, .reaction = from_seconds(1.0)}};
+  Bench bench{config};
+  for (const std::uint64_t instance : {5, 6, 5})
+    bench.hear(telemetry_of(kLeader, instance, 9.0), 9.0);
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  EXPECT_LT(bench.run_until(13.0), 20);
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(13.0)).ok());
+  bench.run_until(16.0);  // both silent by now: nothing answers to the id twice
+  EXPECT_FALSE(bench.sent<Authorisation>().empty());
+}
+
+TEST(GroundAgent, TheScriptDecidesInItsOrderAtItsTime) {
+  GroundAgentConfig config = fleet_of_three();
+  config.decisions = {{.site = kSite, .grant = false, .reaction = from_seconds(2.0)},
+                      {.site = {4}, .grant = true},
+                      {.site = kSite,
+                       .grant = true,
+                       .reaction = from_seconds(1.0),
+                       .not_before = at_seconds(50.0)}};
+  Bench bench{config};
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  bench.run_until(11.9);
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  bench.run_until(12.0);
+  auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_FALSE(sent[0].granted);
+  EXPECT_EQ(sent[0].decided_by, "scenario");
+
+  bench.ask(request(2, 70.0, 80.0), 40.0);
+  bench.run_until(49.9);
+  for (const auto& a : bench.sent<Authorisation>()) EXPECT_EQ(a.round.number, 1U);
+  bench.run_until(50.0);
+  sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_TRUE(sent[0].granted);
+  EXPECT_EQ(sent[0].decided_at, at_seconds(50.0));
+
+  bench.run_until(90.0);
+  (void)bench.sent<Authorisation>();
+  bench.ask(request(3, 120.0, 130.0), 100.0);  // the last decision serves again
+  bench.run_until(101.0);
+  sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_TRUE(sent[0].granted);
+}
+
+TEST(GroundAgent, RepeatsCommandsWithGrowingNumbers) {
+  Bench bench;
+  ASSERT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(10.0)).ok());
+  bench.run_until(30.0);
+  auto sent = bench.sent<Command>();
+  ASSERT_EQ(sent.size(), 6U);  // at once, then every second for five
+  const auto first = sent.front().number;
+  EXPECT_TRUE(
+      std::all_of(sent.begin(), sent.end(), [&](const Command& c) { return c.number == first; }));
+  ASSERT_TRUE(bench.agent.command({1}, CommandKind::resume, at_seconds(30.0)).ok());
+  ASSERT_TRUE(bench.agent.command(kGroundStation, CommandKind::hold, at_seconds(30.0)).ok());
+  bench.run_until(31.0);
+  sent = bench.sent<Command>();
+  ASSERT_EQ(sent.size(), 3U);  // `all` has replaced the repeats of the first
+  EXPECT_LT(first, sent[0].number);
+  EXPECT_LT(sent[0].number, sent[1].number);
+  EXPECT_EQ(sent[1].number, sent[2].number);
+
+  Bench restarted;
+  ASSERT_TRUE(restarted.agent.command({1}, CommandKind::hold, at_seconds(32.0)).ok());
+  EXPECT_LT(sent[2].number, restarted.sent<Command>().front().number);
+}
+
+}  // namespace
+}  // namespace skein::mission
