@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "skein/recording/reader.hpp"
+#include "skein/recording/writer.hpp"
+
+namespace skein::recording {
+namespace {
+
+using mission::EventKind;
+using mission::MissionEvent;
+using ::testing::HasSubstr;
+
+class RecordingTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("skein-recording-" + std::to_string(::getpid()) + "-" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  void append(const std::string& name, const std::string& text) const {
+    std::ofstream{folder_ / name, std::ios::app | std::ios::binary} << text;
+  }
+
+  std::filesystem::path folder_;
+};
+
+MissionEvent awkward_event() {
+  MissionEvent event;
+  event.vehicle = VehicleId{7};
+  event.time = Instant{Duration{123456789012345}};
+  event.kind = EventKind::lease_granted;
+  event.round = {{VehicleId{27}, InstanceId{0xFFFFFFFFFFFFFFFFULL}, 3}, 4};
+  event.task = {SiteId{3}, TaskKind::deliver, 5};
+  event.value = 0.1 + 0.2;
+  event.text = "said \"no\", then\nleft";
+  return event;
+}
+
+TEST_F(RecordingTest, WhatIsWrittenReadsBack) {
+  PlanRecord plan;
+  plan.number = 2;
+  plan.since = Instant{Duration{5'000'000'001}};
+  plan.plan.start_time = Instant{Duration{-4}};
+  plan.plan.speed_mps = 50.0 / 3.0;
+  plan.plan.tail_curvature_per_m = -1.0 / 150.0;
+  plan.plan.path.start = {1.0 / 3.0, -2e-9, 3.1};
+  plan.plan.path.segments.push_back({1.0 / 170.0, 1234.5678901234});
+  plan.plan.path.segments.push_back({0.0, 1e-12});
+  TrackPoint point;
+  point.state = {at_seconds(17.05), 2200.12345, -3.5, 300.0, -3.1415926, 1.5, 49.9, 50.1, 852.5};
+  point.plan_number = 2;
+  point.along_error_m = -1.25;
+  {
+    auto writer = Writer::open(folder_);
+    ASSERT_TRUE(writer.ok());
+    writer->write(point);
+    writer->write(awkward_event());
+    writer->write(plan);
+    writer->write(PlanRecord{});
+    EXPECT_TRUE(writer->flush().ok());
+  }
+  const auto read_back = read(folder_, VehicleId{7});
+  ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+  EXPECT_EQ(read_back->vehicle, VehicleId{7});
+  EXPECT_EQ(read_back->truncated_lines, 0U);
+
+  ASSERT_EQ(read_back->track.size(), 1U);
+  EXPECT_EQ(read_back->track[0].state.time, point.state.time);
+  EXPECT_NEAR(read_back->track[0].state.x_m, point.state.x_m, 1e-4);
+  EXPECT_NEAR(read_back->track[0].state.heading_rad, point.state.heading_rad, 1e-7);
+  EXPECT_EQ(read_back->track[0].plan_number, 2U);
+  EXPECT_EQ(read_back->track[0].along_error_m, -1.25);
+
+  const MissionEvent expected = awkward_event();
+  ASSERT_EQ(read_back->events.size(), 1U);
+  const MissionEvent& event = read_back->events[0];
+  EXPECT_EQ(event.time, expected.time);
+  EXPECT_EQ(event.kind, expected.kind);
+  EXPECT_EQ(event.round, expected.round);
+  EXPECT_EQ(event.task, expected.task);
+  EXPECT_EQ(event.value, expected.value);
+  EXPECT_EQ(event.text, "said \"no\", then left");
+
+  ASSERT_EQ(read_back->plans.size(), 2U);
+  const PlanRecord& first = read_back->plans[0];
+  EXPECT_EQ(first.since, plan.since);
+  EXPECT_EQ(first.plan.start_time, plan.plan.start_time);
+  EXPECT_EQ(first.plan.speed_mps, plan.plan.speed_mps);
+  EXPECT_EQ(first.plan.path.start.y_m, plan.plan.path.start.y_m);
+  ASSERT_EQ(first.plan.path.segments.size(), 2U);
+  EXPECT_EQ(first.plan.path.segments[0].curvature_per_m, 1.0 / 170.0);
+  EXPECT_EQ(first.plan.path.segments[1].length_m, 1e-12);
+  EXPECT_TRUE(read_back->plans[1].plan.path.segments.empty());
+}
+
+TEST_F(RecordingTest, EveryEventKindReadsBack) {
+  {
+    auto writer = Writer::open(folder_);
+    ASSERT_TRUE(writer.ok());
+    MissionEvent event;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(EventKind::count); ++i) {
+      event.kind = static_cast<EventKind>(i);
+      writer->write(event);
+    }
+  }
+  const auto read_back = read(folder_, VehicleId{1});
+  ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+  ASSERT_EQ(read_back->events.size(), static_cast<std::size_t>(EventKind::count));
+  for (std::size_t i = 0; i < read_back->events.size(); ++i) {
+    EXPECT_EQ(read_back->events[i].kind, static_cast<EventKind>(i));
+  }
+}
+
+TEST_F(RecordingTest, ALineCutOffAtTheEndIsLeftOutAndCounted) {
+  {
+    auto writer = Writer::open(folder_);
+    ASSERT_TRUE(writer.ok());
+    writer->write(awkward_event());
+  }
+  append("events.csv", "123,7,task_done,2");
+  append("track.csv", "1.0");
+  const auto read_back = read(folder_, VehicleId{7});
+  ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+  EXPECT_EQ(read_back->events.size(), 1U);
+  EXPECT_EQ(read_back->truncated_lines, 2U);
+}
+
+TEST_F(RecordingTest, DamageIsToldWithFileAndLine) {
+  struct Case {
+    std::string file;
+    std::string text;
+    std::string reason;
+  };
+  const std::vector<Case> cases{
+      {"track.csv", "1,2,3\n", "track.csv:2: expected 12 fields, found 3"},
+      {"track.csv", "1,2,3,4,5,6,7,8,9,10,11,nan\n", "cross_error_m is no number"},
+      {"events.csv", "1,1,landed,0,0,0,0,0,survey,0,0,\"\"\n", "unknown kind 'landed'"},
+      {"events.csv", "1,70000,warning,0,0,0,0,0,survey,0,0,\"\"\n", "vehicle is no number"},
+      {"events.csv", "1,1,warning,0,0,0,0,0,survey,0,0,\"open\n", "a quote that does not close"},
+      {"plans.csv", "1,0,0,50,0,0,0,0,0.1:5|0.1\n", "plans.csv:2: no segment: '0.1'"},
+      {"plans.csv", "1,0,0,50,0,0,0,0,0.1:-5\n", "no segment: '0.1:-5'"},
+  };
+  for (const Case& c : cases) {
+    ASSERT_TRUE(Writer::open(folder_).ok());
+    append(c.file, c.text);
+    const auto read_back = read(folder_, VehicleId{1});
+    ASSERT_FALSE(read_back.ok()) << c.text;
+    EXPECT_THAT(read_back.error().message, HasSubstr(c.reason));
+  }
+}
+
+TEST_F(RecordingTest, AFileOfAnotherKindIsRefused) {
+  ASSERT_TRUE(Writer::open(folder_).ok());
+  std::ofstream{folder_ / "track.csv"} << "time,x,y\n1,2,3\n";
+  const auto read_back = read(folder_, VehicleId{1});
+  ASSERT_FALSE(read_back.ok());
+  EXPECT_THAT(read_back.error().message, HasSubstr("track.csv:1: expected the header"));
+}
+
+TEST_F(RecordingTest, AMissingFolderIsToldByName) {
+  const auto read_back = read(folder_ / "nowhere", VehicleId{1});
+  ASSERT_FALSE(read_back.ok());
+  EXPECT_THAT(read_back.error().message, HasSubstr("nowhere"));
+  EXPECT_FALSE(read_run(folder_ / "nowhere").ok());
+}
+
+TEST_F(RecordingTest, ARunIsReadInOrderOfIds) {
+  for (const unsigned id : {12U, 0U, 3U, 101U}) {
+    ASSERT_TRUE(
+        Writer::open(folder_ / folder_name(VehicleId{static_cast<std::uint16_t>(id)})).ok());
+  }
+  std::filesystem::create_directories(folder_ / "vehicle-x");
+  std::filesystem::create_directories(folder_ / "vehicle-3");
+  const auto run = read_run(folder_);
+  ASSERT_TRUE(run.ok()) << run.error().message;
+  ASSERT_EQ(run->size(), 4U);
+  EXPECT_EQ((*run)[0].vehicle, kGroundStation);
+  EXPECT_EQ((*run)[1].vehicle, VehicleId{3});
+  EXPECT_EQ((*run)[2].vehicle, VehicleId{12});
+  EXPECT_EQ((*run)[3].vehicle, VehicleId{101});
+}
+
+TEST_F(RecordingTest, AFullDiskIsToldByFlush) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  std::filesystem::create_directories(folder_);
+  std::filesystem::create_symlink("/dev/full", folder_ / "events.csv");
+  const auto writer = Writer::open(folder_);
+  ASSERT_FALSE(writer.ok());
+  EXPECT_THAT(writer.error().message, HasSubstr("events.csv: No space left"));
+}
+
+TEST_F(RecordingTest, AFolderThatCannotBeMadeIsToldByName) {
+  std::filesystem::create_directories(folder_);
+  std::ofstream{folder_ / "file"} << "in the way";
+  const auto writer = Writer::open(folder_ / "file" / "vehicle-01");
+  ASSERT_FALSE(writer.ok());
+  EXPECT_THAT(writer.error().message, HasSubstr("vehicle-01"));
+}
+
+}  // namespace
+}  // namespace skein::recording
