@@ -50,7 +50,7 @@ TEST(Angles, CompassAndMathematicalHeadings) {
   EXPECT_NEAR(heading_from_compass_deg(90.0), 0.0, 1e-15);       // east
   EXPECT_NEAR(heading_from_compass_deg(0.0), kPi / 2.0, 1e-15);  // north
   EXPECT_NEAR(compass_deg_from_heading(kPi), 270.0, 1e-12);      // west
-  for (double c = 0.0; c < 360.0; c += 7.0) {
+  for (int c = 0; c < 360; c += 7) {
     EXPECT_NEAR(compass_deg_from_heading(heading_from_compass_deg(c)), c, 1e-9);
   }
 }

@@ -52,7 +52,7 @@ void Participant::bid(const Announcement& announcement, Bid bid, Instant now) {
   award_.reset();
   confirmation_.reset();
   bidding_until_ = std::max(announcement.formed_at, now) + params_.formation_time();
-  messages_.push(std::move(bid));
+  messages_.push(bid);
 }
 
 void Participant::decline(const Announcement& announcement) {

@@ -26,7 +26,7 @@ class Random {
   [[nodiscard]] Random fork();
 
  private:
-  std::array<std::uint64_t, 4> state_;
+  std::array<std::uint64_t, 4> state_{};
 };
 
 }  // namespace skein

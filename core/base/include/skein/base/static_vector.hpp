@@ -56,9 +56,8 @@ class StaticVector {
   [[nodiscard]] const T* end() const { return items_.data() + size_; }
   [[nodiscard]] T* begin() { return items_.data(); }
   [[nodiscard]] T* end() { return items_.data() + size_; }
-  operator std::span<const T>() const {
-    return {items_.data(), size_};
-  }  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor): as the standard containers convert
+  operator std::span<const T>() const { return {items_.data(), size_}; }
 
  private:
   std::array<T, Capacity> items_{};
