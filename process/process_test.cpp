@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "skein/base/assert.hpp"
+#include "skein/process/event_text.hpp"
+#include "skein/process/log.hpp"
+#include "skein/process/mission_clock.hpp"
+#include "skein/process/shutdown.hpp"
+
+namespace skein::process {
+namespace {
+
+std::int64_t unix_ns_in(Duration d) {
+  return std::chrono::duration_cast<Duration>(
+             (std::chrono::system_clock::now() + d).time_since_epoch())
+      .count();
+}
+
+TEST(MissionClock, WithoutAnEpochStartsAtZero) {
+  const MissionClock clock{0, 1.0};
+  EXPECT_GE(clock.now(), Instant{});
+  EXPECT_LT(clock.now(), at_seconds(5.0));
+}
+
+TEST(MissionClock, CountsFromTheEpochAtTheRate) {
+  const MissionClock future{unix_ns_in(std::chrono::seconds{100}), 2.0};
+  EXPECT_NEAR(to_seconds(future.now()), -200.0, 5.0);
+  const MissionClock past{unix_ns_in(std::chrono::seconds{-100}), 0.5};
+  EXPECT_NEAR(to_seconds(past.now()), 50.0, 5.0);
+}
+
+TEST(MissionClock, RunsAtTheRate) {
+  const MissionClock clock{0, 20.0};
+  const auto steady_before = std::chrono::steady_clock::now();
+  const Instant before = clock.now();
+  clock.sleep_until(before + std::chrono::milliseconds{400});
+  const Instant after = clock.now();
+  const auto steady = std::chrono::steady_clock::now() - steady_before;
+  EXPECT_GE(after - before, std::chrono::milliseconds{400});
+  EXPECT_GE(steady, std::chrono::milliseconds{20});
+  EXPECT_LE(after - before, 20 * steady);
+}
+
+TEST(MissionClock, WaitsForThePastNotAtAllAndForTheEndOfTimeOneDay) {
+  const MissionClock clock{0, 1.0};
+  const auto now = std::chrono::steady_clock::now();
+  clock.sleep_until(Instant::min());
+  EXPECT_LE(clock.steady_time_of(Instant::min()), std::chrono::steady_clock::now());
+  EXPECT_GT(clock.steady_time_of(Instant::max()), now + std::chrono::hours{23});
+  EXPECT_LT(clock.steady_time_of(Instant::max()), now + std::chrono::hours{25});
+}
+
+TEST(Shutdown, WaitsUntilAsked) {
+  const Shutdown shutdown;
+  std::thread other{[&] { shutdown.request(); }};
+  EXPECT_STREQ(shutdown.wait(), "SIGTERM");
+  other.join();
+}
+
+TEST(LogDeathTest, ABrokenInvariantIsLoggedAndEndsTheProcess) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const MissionClock clock{0, 1.0};
+  EXPECT_EXIT(
+      {
+        start_log(clock);
+        SKEIN_ASSERT(1 + 1 == 3);
+      },
+      ::testing::ExitedWithCode(kExitBrokenInvariant), "");
+}
+
+TEST(Log, WritesAnInstantForPeople) { EXPECT_EQ(text_of(at_seconds(12.3456)), "12.346 s"); }
+
+TEST(EventText, SaysWhoWhatAndWhere) {
+  mission::MissionEvent event{
+      {7}, {}, mission::EventKind::task_done, {}, {{1}, TaskKind::deliver, 2}, 0.4, "late"};
+  EXPECT_EQ(text_of(event), "vehicle 7: task done, site 1 deliver 3 (0.4): late");
+  event = {kGroundStation, {}, mission::EventKind::warning, {}, {}, 0.0, "vehicle 2 is silent"};
+  EXPECT_EQ(text_of(event), "ground station: warning: vehicle 2 is silent");
+  event = {{2}, {}, mission::EventKind::coalition_formed, {}, {{4}, TaskKind::survey, 0}, 10.0, {}};
+  EXPECT_EQ(text_of(event), "vehicle 2: coalition formed, site 4 (10)");
+}
+
+}  // namespace
+}  // namespace skein::process
