@@ -27,6 +27,24 @@ TEST(TimedPath, FliesItsSegmentsThenHoldsForEver) {
   EXPECT_NEAR(plan.pose_at(at_seconds(20.0 + 2 * half)).y_m, 0.0, 1e-6);
 }
 
+TEST(TimedPath, APieceOfItIsFlownTheSame) {
+  TimedPath plan;
+  plan.speed_mps = 10.0;
+  plan.tail_curvature_per_m = -0.02;
+  ASSERT_TRUE(plan.path.append(Segment{0.0, 100.0}));
+  ASSERT_TRUE(plan.path.append(Segment{0.01, 50.0}));
+  const auto piece = plan.piece(60.0, 300.0);
+  ASSERT_TRUE(piece);
+  EXPECT_EQ(piece->segments.size(), 3U);
+  EXPECT_NEAR(piece->length_m(), 240.0, 1e-9);
+  for (double d = 0.0; d <= 240.0; d += 7.0) {
+    const Pose2 a = piece->pose_at(d);
+    const Pose2 b = plan.pose_at_distance(60.0 + d);
+    EXPECT_NEAR(a.x_m, b.x_m, 1e-9);
+    EXPECT_NEAR(a.y_m, b.y_m, 1e-9);
+  }
+}
+
 TEST(Path, RefusesMoreSegmentsThanItHolds) {
   Path path;
   for (std::size_t i = 0; i < kPathSegmentsMax; ++i) ASSERT_TRUE(path.append(Segment{0.0, 1.0}));

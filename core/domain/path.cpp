@@ -72,4 +72,20 @@ Instant TimedPath::end_time() const {
   return start_time + from_seconds(path.length_m() / speed_mps);
 }
 
+std::optional<Path> TimedPath::piece(double from_m, double to_m) const {
+  Path cut;
+  cut.start = pose_at_distance(from_m);
+  double begin = 0.0;
+  const auto add = [&](double curvature, double end) {
+    const double length = std::min(to_m, end) - std::max(from_m, begin);
+    begin = end;
+    return length <= 0.0 || cut.append(Segment{curvature, length});
+  };
+  for (const auto& s : path.segments) {
+    if (!add(s.curvature_per_m, begin + s.length_m)) return std::nullopt;
+  }
+  if (!add(tail_curvature_per_m, std::max(begin, to_m))) return std::nullopt;
+  return cut;
+}
+
 }  // namespace skein

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include "skein/base/geometry.hpp"
 #include "skein/base/static_vector.hpp"
@@ -50,6 +51,8 @@ struct TimedPath {
   [[nodiscard]] Pose2 pose_at_distance(double distance_m) const;
   [[nodiscard]] double curvature_at_distance(double distance_m) const;
   [[nodiscard]] Instant end_time() const;
+  /// What is flown between two distances, tail included; nothing when it has too many pieces.
+  [[nodiscard]] std::optional<Path> piece(double from_m, double to_m) const;
 };
 
 }  // namespace skein
