@@ -181,8 +181,8 @@ void Initiator::finish_if_done() {
   });
   if (!over || !machine_.accepts(Event::all_done)) return;
   machine_.fire(Event::all_done);
-  // Members that are named by no renewal know that their reports have arrived.
-  messages_.push(LeaseRenewal{announcement_.round, {}, announcement_.formed_at});
+  // So that members need not go on reporting.
+  messages_.push(LeaseRenewal{announcement_.round, {}, done_tasks(), announcement_.formed_at});
   outputs_.push(AllDone{announcement_.round});
 }
 
@@ -209,21 +209,20 @@ void Initiator::heartbeat(Instant now) {
   std::set<VehicleId> members;
   for (const auto& entry : ledger_) {
     if (entry.ownership != Ownership::leased) continue;
-    const auto heard = heard_.find(entry.assignment.vehicle);
     const auto confirmed = confirmed_.find(entry.assignment.vehicle);
     const bool unconfirmed =
         entry.round == announcement_.round && confirmed != confirmed_.end() && !confirmed->second;
-    if (unconfirmed || heard == heard_.end() || now - heard->second > params_.silence) continue;
+    if (unconfirmed || !hears(entry.assignment.vehicle, now)) continue;
     members.insert(entry.assignment.vehicle);
   }
-  if (members.empty()) return;
   const Instant until = now + params_.lease;
   for (auto& entry : ledger_) {
     if (entry.ownership == Ownership::leased && members.contains(entry.assignment.vehicle)) {
       entry.lease_until = std::max(entry.lease_until, until);
     }
   }
-  messages_.push(LeaseRenewal{announcement_.round, {members.begin(), members.end()}, until});
+  messages_.push(
+      LeaseRenewal{announcement_.round, {members.begin(), members.end()}, done_tasks(), until});
 }
 
 void Initiator::announce_again(const std::string& why, Instant now) {
@@ -273,10 +272,12 @@ void Initiator::on_timeout(Instant now) {
       if (now >= deadline_ && machine_.fire(Event::try_again)) start_round(now);
       break;
     case State::executing: {
-      const auto needs_round = [now](const Entry& e) {
-        return e.ownership == Ownership::open ||
-               (e.ownership == Ownership::leased && e.reported == TaskState::planned &&
-                now > e.assignment.time + kOverdue);
+      const auto needs_round = [&](const Entry& e) {
+        // An owner that is heard and has not begun in time holds at its gate. One that is not heard
+        // keeps its lease until that runs out.
+        const bool overdue = e.ownership == Ownership::leased && e.reported == TaskState::planned &&
+                             now > e.assignment.time + kOverdue && hears(e.assignment.vehicle, now);
+        return e.ownership == Ownership::open || overdue;
       };
       if (std::any_of(ledger_.begin(), ledger_.end(), needs_round)) {
         announce_again("tasks are open again", now);
@@ -319,6 +320,19 @@ std::vector<TaskAssignment> Initiator::owned() const {
 
 std::optional<Message> Initiator::poll_message() { return messages_.pop(); }
 std::optional<Initiator::Output> Initiator::poll_output() { return outputs_.pop(); }
+
+std::vector<TaskId> Initiator::done_tasks() const {
+  std::vector<TaskId> tasks;
+  for (const auto& entry : ledger_) {
+    if (entry.ownership == Ownership::done) tasks.push_back(entry.task);
+  }
+  return tasks;
+}
+
+bool Initiator::hears(VehicleId member, Instant now) const {
+  const auto heard = heard_.find(member);
+  return heard != heard_.end() && now - heard->second <= params_.silence;
+}
 
 Initiator::Entry* Initiator::find(const TaskId& task) {
   const auto it =

@@ -16,12 +16,15 @@ Participant::Participant(const ProtocolParams& params, VehicleId self)
     : params_{params}, self_{self} {}
 
 void Participant::on_announcement(const Announcement& message, Instant now) {
-  // A leader that announces what is done here has not heard of it: tell it again, at once.
-  for (const auto& done : finished_) {
-    if (std::find(message.tasks.begin(), message.tasks.end(), done.entry.task) !=
-        message.tasks.end()) {
-      next_status_ = now;
-    }
+  // A leader that announces what is done here has not heard of it: it is told again, and gets no
+  // bid until it knows. A bid would say that the task was given back (Initiator::close_bids).
+  const bool done_here = std::any_of(finished_.begin(), finished_.end(), [&](const Finished& f) {
+    return f.entry.state == TaskState::done && std::find(message.tasks.begin(), message.tasks.end(),
+                                                         f.entry.task) != message.tasks.end();
+  });
+  if (done_here) {
+    send_status(now);
+    return;
   }
   if (message.round == round_ && bid_ &&
       (machine_.in(State::bidding) || machine_.in(State::rebidding))) {
@@ -85,6 +88,7 @@ void Participant::accept(Instant now) {
   if (!machine_.fire(Event::accepted)) return;
   for (const auto& a : award_->assignments) {
     if (a.vehicle != self_) continue;
+    std::erase_if(finished_, [&](const Finished& f) { return f.entry.task == a.task; });
     leases_.push_back({a.task, TaskState::planned, award_->lease_until});
     outputs_.push(LeaseGranted{round_, a.task, award_->lease_until});
   }
@@ -105,14 +109,12 @@ void Participant::on_cancel(const Cancel& message, Instant /*now*/) {
 }
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
-  const bool named =
-      std::find(message.members.begin(), message.members.end(), self_) != message.members.end();
-  if (!named) {
-    // The leader holds nothing against this vehicle any more: it knows what was finished.
-    std::erase_if(finished_,
-                  [&](const Finished& f) { return f.round.coalition == message.round.coalition; });
+  std::erase_if(finished_, [&](const Finished& f) {
+    return f.round.coalition == message.round.coalition &&
+           std::find(message.done.begin(), message.done.end(), f.entry.task) != message.done.end();
+  });
+  if (std::find(message.members.begin(), message.members.end(), self_) == message.members.end())
     return;
-  }
   if (message.round.coalition != round_.coalition || message.round.number < round_.number) return;
   for (auto& lease : leases_) {
     if (lease.until <= now || message.lease_until <= lease.until) continue;

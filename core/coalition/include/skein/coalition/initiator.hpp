@@ -147,6 +147,8 @@ class Initiator {
   void not_formed(Event event, const std::string& why, Instant now);
   void finish_if_done();
   [[nodiscard]] bool all_confirmed() const;
+  [[nodiscard]] std::vector<TaskId> done_tasks() const;
+  [[nodiscard]] bool hears(VehicleId member, Instant now) const;
   [[nodiscard]] Entry* find(const TaskId& task);
 
   ProtocolParams params_;

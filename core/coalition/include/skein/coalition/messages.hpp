@@ -90,6 +90,7 @@ struct Cancel {
 struct LeaseRenewal {
   Round round;
   std::vector<VehicleId> members;
+  std::vector<TaskId> done;  ///< the tasks that the leader knows to be done: need not be reported again
   Instant lease_until{};
 };
 

@@ -1,0 +1,439 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <sstream>
+
+#include "skein/base/random.hpp"
+#include "skein/coalition/initiator.hpp"
+#include "skein/coalition/participant.hpp"
+
+namespace skein::coalition {
+namespace {
+
+using namespace std::chrono_literals;
+
+Site site_with(std::size_t deliveries, std::size_t assessments) {
+  Site site;
+  site.id = SiteId{1};
+  site.deliveries.resize(deliveries);
+  site.assessments.resize(assessments);
+  return site;
+}
+
+/// One leader and some vehicles on a network that a test can make unreliable. Time moves in steps
+/// of 10 ms. Tasks are given to bidders in order of id; each takes as long as the test says.
+class Team {
+ public:
+  using Fault =
+      std::function<int(const Message&, VehicleId to)>;  ///< copies that arrive; 1 is perfect
+
+  Team(std::size_t vehicles, Site site) : site_{std::move(site)} {
+    for (std::uint16_t i = 1; i <= vehicles; ++i) {
+      members_.emplace(VehicleId{i}, Member{Participant{params, VehicleId{i}}});
+    }
+    initiator_ = std::make_unique<Initiator>(params, CoalitionId{VehicleId{1}, InstanceId{1}, 1},
+                                             site_, Vec2{0, 0}, now);
+    drain();
+  }
+
+  void run_for(Duration d) {
+    for (const Instant end = now + d; now < end;) {
+      now += 10ms;
+      deliver_due();
+      if (leader_alive) initiator_->on_timeout(now);
+      for (auto& [id, m] : members_) {
+        if (!silent.contains(id)) m.participant.on_timeout(now);
+      }
+      work();
+      drain();
+      check_leases();
+    }
+  }
+  bool run_until(const std::function<bool()>& condition, Duration at_most) {
+    for (const Instant end = now + at_most; now < end;) {
+      if (condition()) return true;
+      run_for(10ms);
+    }
+    return condition();
+  }
+
+  [[nodiscard]] Initiator& leader() { return *initiator_; }
+  [[nodiscard]] Participant& vehicle(std::uint16_t id) {
+    return members_.at(VehicleId{id}).participant;
+  }
+  [[nodiscard]] bool everyone_free() const {
+    return std::all_of(members_.begin(), members_.end(),
+                       [](const auto& m) { return m.second.participant.free(); });
+  }
+
+  Instant now{};
+  ProtocolParams params;
+  Fault fault = [](const Message&, VehicleId) { return 1; };
+  std::function<Duration()> delay = [] { return Duration{50ms}; };
+  std::set<VehicleId> silent;     ///< neither send nor hear nor work
+  std::set<VehicleId> unwilling;  ///< do not bid
+  std::set<VehicleId> unable;     ///< refuse awards
+  bool leader_alive = true;
+  Duration task_takes = 4s;
+  std::map<TaskId, int> flown;  ///< how often each task was done
+  std::vector<Initiator::Output> leader_outputs;
+  int lease_conflicts = 0;
+
+ private:
+  struct Member {
+    Participant participant;
+    std::map<TaskId, Instant> held{};  ///< leases, by expiry, as the vehicle believes
+    std::map<TaskId, Instant> due{};   ///< when its tasks will be done
+  };
+  struct Packet {
+    Instant at;
+    VehicleId to;
+    Message message;
+  };
+
+  void post(const Message& message, VehicleId from) {
+    if (silent.contains(from)) return;
+    for (auto& [to, m] : members_) {
+      if (to == from) {
+        inbox_.push_back({now, to, message});
+        continue;
+      }
+      for (int copies = fault(message, to); copies > 0; --copies) {
+        inbox_.push_back({now + delay(), to, message});
+      }
+    }
+  }
+
+  void deliver_due() {
+    std::vector<Packet> due;
+    std::stable_sort(inbox_.begin(), inbox_.end(),
+                     [](const Packet& a, const Packet& b) { return a.at < b.at; });
+    while (!inbox_.empty() && inbox_.front().at <= now) {
+      due.push_back(inbox_.front());
+      inbox_.erase(inbox_.begin());
+    }
+    for (const auto& p : due) {
+      if (silent.contains(p.to)) continue;
+      receive(p.to, p.message);
+      drain();
+    }
+  }
+
+  void receive(VehicleId to, const Message& message) {
+    auto& participant = members_.at(to).participant;
+    const bool leads = to == VehicleId{1} && leader_alive;
+    if (const auto* a = std::get_if<Announcement>(&message)) participant.on_announcement(*a, now);
+    if (const auto* a = std::get_if<Award>(&message)) participant.on_award(*a, now);
+    if (const auto* c = std::get_if<Cancel>(&message)) participant.on_cancel(*c, now);
+    if (const auto* l = std::get_if<LeaseRenewal>(&message)) participant.on_lease_renewal(*l, now);
+    if (!leads) return;
+    if (const auto* b = std::get_if<Bid>(&message)) initiator_->on_bid(*b, now);
+    if (const auto* c = std::get_if<Confirmation>(&message)) initiator_->on_confirmation(*c, now);
+    if (const auto* s = std::get_if<MemberStatus>(&message)) initiator_->on_status(*s, now);
+  }
+
+  void drain() {
+    while (leader_alive) {
+      if (const auto m = initiator_->poll_message()) {
+        post(*m, VehicleId{1});
+      } else if (const auto o = initiator_->poll_output()) {
+        leader_outputs.push_back(*o);
+        if (const auto* wanted = std::get_if<Initiator::AllocationWanted>(&*o)) allocate(*wanted);
+      } else {
+        break;
+      }
+    }
+    for (auto& [id, m] : members_) {
+      while (const auto o = m.participant.poll_output()) answer(id, m, *o);
+      while (const auto message = m.participant.poll_message()) post(*message, id);
+    }
+  }
+
+  void allocate(const Initiator::AllocationWanted& wanted) {
+    if (wanted.bids.size() < wanted.tasks.size()) {
+      initiator_->allocation_failed(wanted.round, "too few bids", now);
+      return;
+    }
+    std::vector<TaskAssignment> assignments;
+    for (std::size_t i = 0; i < wanted.tasks.size(); ++i) {
+      assignments.push_back(
+          {wanted.tasks[i], wanted.bids[i].bidder, wanted.formed_at + task_takes});
+    }
+    initiator_->allocated(wanted.round, assignments, now);
+  }
+
+  void answer(VehicleId id, Member& m, const Participant::Output& output) {
+    if (const auto* wanted = std::get_if<Participant::BidWanted>(&output)) {
+      if (unwilling.contains(id)) {
+        m.participant.decline(wanted->announcement);
+      } else {
+        m.participant.bid(wanted->announcement, Bid{}, now);
+      }
+    } else if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {
+      if (unable.contains(id)) {
+        m.participant.refuse("no path", now);
+        return;
+      }
+      for (const auto& a : award->mine) m.due[a.task] = a.time;
+      m.participant.accept(now);
+    } else if (const auto* granted = std::get_if<Participant::LeaseGranted>(&output)) {
+      m.held[granted->task] = granted->until;
+    } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
+      m.held.erase(ended->task);
+      m.due.erase(ended->task);
+    }
+  }
+
+  /// Vehicles fly their tasks, whether anybody hears them or not, as long as they hold the lease.
+  void work() {
+    for (auto& [id, m] : members_) {
+      if (silent.contains(id)) continue;
+      const auto due = m.due;
+      for (const auto& [task, when] : due) {
+        if (now < when || !m.participant.holds(task, now, now)) continue;
+        ++flown[task];
+        m.participant.task_done(task, now);
+      }
+    }
+  }
+
+  void check_leases() {
+    std::map<TaskId, int> owners;
+    for (const auto& [id, m] : members_) {
+      for (const auto& [task, until] : m.held) owners[task] += until > now ? 1 : 0;
+    }
+    for (const auto& [task, count] : owners) lease_conflicts += count > 1 ? 1 : 0;
+  }
+
+  Site site_;
+  std::map<VehicleId, Member> members_;
+  std::unique_ptr<Initiator> initiator_;
+  std::vector<Packet> inbox_;
+};
+
+template <class T>
+int count(const std::vector<Initiator::Output>& outputs) {
+  return static_cast<int>(std::count_if(
+      outputs.begin(), outputs.end(), [](const auto& o) { return std::holds_alternative<T>(o); }));
+}
+
+TEST(Coalition, StandsWithinDeltaMaxAndFinishes) {
+  Team team{5, site_with(3, 1)};
+  ASSERT_TRUE(team.run_until([&] { return team.leader().state() == Initiator::State::executing; },
+                             team.params.formation_time()));
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 10s));
+  EXPECT_EQ(count<Initiator::AllDone>(team.leader_outputs), 1);
+  EXPECT_EQ(team.flown.size(), 4U);
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+  team.run_for(2s);
+  EXPECT_TRUE(team.everyone_free());
+  EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, EverythingTwiceHasTheEffectOfOnce) {
+  Team team{4, site_with(3, 0)};
+  team.fault = [](const Message&, VehicleId) { return 2; };
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 15s));
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+  EXPECT_EQ(count<Initiator::Formed>(team.leader_outputs), 1);
+}
+
+TEST(Coalition, WithTooFewBiddersTheLeaderMonitorsAndTriesAgain) {
+  Team team{4, site_with(3, 0)};
+  team.unwilling = {VehicleId{3}, VehicleId{4}};
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::monitoring; }, 3s));
+  team.run_for(300ms);
+  EXPECT_TRUE(team.everyone_free()) << "a failed coalition locks nobody";
+  team.unwilling.clear();
+  ASSERT_TRUE(team.run_until([&] { return team.leader().state() == Initiator::State::executing; },
+                             team.params.monitoring_interval + team.params.formation_time()));
+  EXPECT_EQ(team.leader().round().number, 2U);
+}
+
+TEST(Coalition, ARefusedAwardReleasesEveryoneAndIsTriedAgain) {
+  Team team{4, site_with(3, 0)};
+  team.unable = {VehicleId{2}};
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::monitoring; }, 3s));
+  team.run_for(300ms);
+  EXPECT_TRUE(team.everyone_free());
+  team.unable.clear();
+  EXPECT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 20s));
+  EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, ASilentMembersTaskIsGivenAwayOnlyAfterItsLease) {
+  Team team{4, site_with(3, 0)};
+  team.task_takes = 40s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.run_for(2s);
+  team.silent = {VehicleId{2}};
+  const Instant fell_silent = team.now;
+  ASSERT_TRUE(
+      team.run_until([&] { return count<Initiator::TaskLost>(team.leader_outputs) == 1; }, 30s));
+  EXPECT_GE(team.now - fell_silent, team.params.lease - team.params.heartbeat);
+  EXPECT_LE(team.now - fell_silent,
+            team.params.lease + team.params.silence + 2 * team.params.heartbeat);
+  // Vehicle 4 was free: it takes the place of the lost one.
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 90s));
+  EXPECT_EQ(team.lease_conflicts, 0);
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+}
+
+TEST(Coalition, AnAuthorisedDeliveryThatMayHaveBeenFlownIsNotFlownAgain) {
+  Team team{4, site_with(2, 0)};
+  team.task_takes = 6s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.leader().authorised(team.leader().round());
+  team.silent = {VehicleId{2}};
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 40s));
+  EXPECT_EQ(count<Initiator::TaskUnknown>(team.leader_outputs), 1);
+  EXPECT_EQ(team.leader().round().number, 1U) << "nothing was announced again";
+}
+
+TEST(Coalition, LostReportsOfDoneTasksAreRepeated) {
+  Team team{4, site_with(3, 0)};
+  Instant open_from = Instant::max();
+  team.fault = [&](const Message& m, VehicleId) {
+    return std::holds_alternative<MemberStatus>(m) && team.now < open_from ? 0 : 1;
+  };
+  ASSERT_TRUE(team.run_until([&] { return team.flown.size() == 3; }, 10s));
+  open_from = team.now + 3s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 20s));
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+}
+
+TEST(Coalition, WithoutItsLeaderAMemberIsFreeWhenTheLeaseHasRunOut) {
+  Team team{4, site_with(3, 0)};
+  team.task_takes = 60s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.leader_alive = false;
+  team.run_for(team.params.lease + 1s);
+  EXPECT_TRUE(team.everyone_free());
+  EXPECT_TRUE(team.flown.empty());
+}
+
+TEST(Coalition, CloseReleasesEveryone) {
+  Team team{4, site_with(3, 0)};
+  team.task_takes = 60s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.leader().close("refused by the operator", team.now);
+  team.run_for(300ms);
+  EXPECT_TRUE(team.everyone_free());
+}
+
+/// Loss, doubling, delay, reordering and silence at random, then a network that works: at no time
+/// has a task two owners, no delivery is flown twice, and in the end nothing is forgotten.
+TEST(Coalition, RandomFaultsBreakNoInvariantAndAllIsDoneOnceTheyEnd) {
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    Team team{6, site_with(3, 2)};
+    const double loss = random.uniform(0.0, 0.6);
+    const double twice = random.uniform(0.0, 0.3);
+    const double slow = random.uniform(0.01, 0.4);
+    team.task_takes = from_seconds(random.uniform(3.0, 30.0));
+    bool faults = true;
+    team.fault = [&](const Message&, VehicleId) {
+      if (!faults) return 1;
+      return random.chance(loss) ? 0 : (random.chance(twice) ? 2 : 1);
+    };
+    team.delay = [&] { return from_seconds(faults ? random.uniform(0.0, slow) : 0.05); };
+    for (int i = 0; i < 20; ++i) {
+      for (int k = 0; k < 200; ++k) {
+        team.run_for(10ms);
+        team.leader().authorised(team.leader().round());
+      }
+      team.silent.clear();
+      if (random.chance(0.3))
+        team.silent.insert(VehicleId{static_cast<std::uint16_t>(2 + random.index(5))});
+    }
+    faults = false;
+    team.silent.clear();
+    ASSERT_TRUE(
+        team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 120s))
+        << "state " << to_string(team.leader().state());
+    EXPECT_EQ(team.lease_conflicts, 0);
+    int unknown = 0;
+    for (const auto& output : team.leader_outputs) {
+      const auto* u = std::get_if<Initiator::TaskUnknown>(&output);
+      if (u != nullptr && team.flown[u->assignment.task] == 0) ++unknown;
+    }
+    int done = 0;
+    for (const auto& [task, times] : team.flown) {
+      done += times > 0 ? 1 : 0;
+      if (task.kind == TaskKind::deliver) {
+        EXPECT_LE(times, 1) << to_string(task);
+      }
+    }
+    EXPECT_EQ(done + unknown, 5) << "a task was forgotten";
+  }
+}
+
+template <class Machine>
+void every_state_is_reached(typename Machine::State initial) {
+  using State = typename Machine::State;
+  std::set<State> reached{initial};
+  for (std::size_t i = 0; i < Machine::kTable.size(); ++i) {
+    for (const auto& t : Machine::kTable) {
+      if (reached.contains(t.from)) reached.insert(t.to);
+    }
+  }
+  EXPECT_EQ(reached.size(), static_cast<std::size_t>(State::count));
+  for (std::size_t i = 0; i < Machine::kTable.size(); ++i) {
+    for (std::size_t j = i + 1; j < Machine::kTable.size(); ++j) {
+      const bool same = Machine::kTable[i].from == Machine::kTable[j].from &&
+                        Machine::kTable[i].event == Machine::kTable[j].event;
+      EXPECT_FALSE(same) << "two entries for one state and event";
+    }
+  }
+}
+
+TEST(StateTables, ReachEveryStateAndAreUnambiguous) {
+  every_state_is_reached<Initiator>(Initiator::State::announcing);
+  every_state_is_reached<Participant>(Participant::State::free);
+}
+
+/// docs/protocol.md shows the machines as they are in the code. After a change of a table, paste
+/// what this prints into it.
+TEST(StateTables, AreDrawnInTheProtocolDocument) {
+  std::ifstream file{SKEIN_SOURCE_DIR "/docs/protocol.md"};
+  std::stringstream document;
+  document << file.rdbuf();
+  const auto initiator =
+      mermaid<Initiator::State, Initiator::Event>(Initiator::kTable, Initiator::State::announcing);
+  const auto participant = mermaid<Participant::State, Participant::Event>(
+      Participant::kTable, Participant::State::free);
+  for (const auto& diagram : {initiator, participant}) {
+    EXPECT_NE(document.str().find(diagram), std::string::npos) << "docs/protocol.md lacks:\n"
+                                                               << diagram;
+  }
+}
+
+TEST(StateTables, AnEventWithoutAnEntryIsCountedAndChangesNothing) {
+  StateMachine<Participant::State, Participant::Event> machine{Participant::kTable,
+                                                               Participant::State::free};
+  EXPECT_FALSE(machine.fire(Participant::Event::accepted));
+  EXPECT_EQ(machine.state(), Participant::State::free);
+  EXPECT_EQ(machine.protocol_errors(), 1U);
+}
+
+}  // namespace
+}  // namespace skein::coalition
