@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/path.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+
+namespace skein::mission {
+
+/// The plan that the vehicle is following, and the ways to change it. Every new plan continues the
+/// old one from where that is now, so control never sees a jump.
+class Flight {
+ public:
+  Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance, std::vector<Vec2> search);
+
+  /// The first plan: from where the vehicle is, along the search route.
+  void start(const Pose2& pose, const std::vector<Hazard>& hazards, Instant now);
+  [[nodiscard]] bool started() const { return plan_.number > 0; }
+
+  /// Where the plan has the vehicle at `t`. Precondition of these: started().
+  [[nodiscard]] Pose2 pose_at(Instant t) const { return plan_.timed.pose_at(t); }
+  [[nodiscard]] const FlightPlan& plan() const { return plan_; }
+
+  /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`.
+  /// False, and nothing changed, when that has too many pieces.
+  bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now);
+  /// The same without a next path: an orbit from here on, clear of the hazards where it can be.
+  void hold(const std::vector<Hazard>& hazards, Instant now);
+  /// Along what is left of the search route, then an orbit at its end.
+  void search(const std::vector<Hazard>& hazards, Instant now);
+  void fly_home(const std::vector<Hazard>& hazards, Instant now);
+  [[nodiscard]] bool searching() const { return searching_; }
+
+  /// An orbit's curvature at that pose: to the left, or to the right where only that is clear.
+  [[nodiscard]] double hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const;
+
+  /// The newest plan, once.
+  [[nodiscard]] std::optional<FlightPlan> poll_plan();
+
+ private:
+  void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards, Instant now);
+  void replace(const TimedPath& timed);
+  void pass_waypoints(Instant now);
+
+  VehicleSpec vehicle_;
+  planning::AvoidanceParams avoidance_;
+  std::vector<Vec2> search_;  ///< what is left of the route; its last point is never dropped
+  std::vector<double>
+      search_marks_;  ///< distances along the search plan at which a point is passed
+  Vec2 home_{0.0, 0.0};
+  FlightPlan plan_;
+  bool searching_ = false;
+  bool fresh_ = false;
+};
+
+}  // namespace skein::mission

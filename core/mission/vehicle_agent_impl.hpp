@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "flight.hpp"
+#include "skein/base/bounded_queue.hpp"
+#include "skein/coalition/initiator.hpp"
+#include "skein/coalition/participant.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+#include "task_flight.hpp"
+
+namespace skein::mission {
+
+/// The parts of the agent and their wiring. Sources: vehicle_agent_routing.cpp (inputs to parts and
+/// back), vehicle_agent_member.cpp (bids, awards, flying tasks), vehicle_agent_leader.cpp (sites,
+/// surveys, leading).
+class VehicleAgent::Impl {
+ public:
+  Impl(const VehicleAgentConfig& config, Instant now);
+
+  void on_state(const VehicleState& state, Instant now);
+  void on_message(const Message& message, VehicleId sender, Instant now);
+  void on_planning_result(const PlanningResult& result, Instant now);
+  void on_timeout(Instant now);
+  [[nodiscard]] std::optional<FlightPlan> poll_plan() { return flight_.poll_plan(); }
+  [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] Telemetry telemetry() const;
+  [[nodiscard]] Activity activity() const;
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const;
+
+  BoundedQueue<Message> messages{256};
+  BoundedQueue<MissionEvent> events{1024};
+  BoundedQueue<PlanningRequest> planning_requests{4};
+
+ private:
+  // Routing: everything that came in is worked off before a call returns.
+  void step(Instant now);
+  void pump(Instant now);
+  void send(const coalition::Message& message, Instant now);
+  void receive(const coalition::Message& message, Instant now);
+  void report(EventKind kind, const coalition::Round& round, const TaskId& task, double value,
+              std::string text, Instant time);
+
+  // Member: answers what the participant asks, and flies what was awarded.
+  void answer(const coalition::Participant::Output& output, Instant now);
+  void answer_bid_wanted(const coalition::Announcement& announcement, Instant now);
+  [[nodiscard]] Result<coalition::Bid> make_bid(const coalition::Announcement& announcement,
+                                                Instant now) const;
+  void answer_award(const coalition::Participant::AwardReceived& award, Instant now);
+  void fly_task(Instant now);
+  void commit_delivery(Instant now);
+  void drop_task(Instant now);
+  void on_authorisation(const Authorisation& message, Instant now);
+  void on_command(const Command& message, Instant now);
+  void on_hazard(const Hazard& hazard, Instant now);
+  void idle(Instant now);
+
+  // Leader: surveys what was found and sees its tasks done.
+  void on_site_report(const SiteReport& message, Instant now);
+  void take_up_site(Instant now);
+  void fly_survey(Instant now);
+  void lead(const Site& site, Instant now);
+  void answer(const coalition::Initiator::Output& output, Instant now);
+  void request_allocation(const coalition::Initiator::AllocationWanted& wanted);
+  void request_authorisation(const coalition::Initiator::Formed& formed, Instant now);
+  void watch_authorisation(Instant now);
+  void yield_to(const coalition::Announcement& other, Instant now);
+  void stop_leading(Instant now);
+
+  [[nodiscard]] bool on_track(const TimedPath& timed) const;
+  [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
+  [[nodiscard]] double range_left(Instant at) const;
+
+  VehicleAgentConfig config_;
+  VehicleState state_;
+  Flight flight_;
+  std::vector<Hazard> hazards_;
+  std::uint8_t loads_ = 0;
+  bool held_by_operator_ = false;
+  std::uint32_t last_command_ = 0;
+  bool duplicate_id_ = false;
+
+  coalition::Participant participant_;
+  std::optional<TaskFlight> task_;
+
+  std::optional<SurveyFlight> survey_;
+  std::vector<Site> surveyed_;  ///< surveyed here, waiting to be led
+  std::vector<Site> found_;     ///< found here, waiting to be surveyed
+  std::set<SiteId> known_;      ///< found or announced by anybody
+  std::optional<coalition::Initiator> initiator_;
+  std::uint32_t coalitions_led_ = 0;
+  std::map<VehicleId, coalition::Bid> bids_;  ///< of the round being allocated or flown
+
+  /// The request that awaits the operator's decision.
+  std::optional<AuthorisationRequest> request_;
+  Instant request_again_{};
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "skein/base/angles.hpp"
+#include "skein/planning/avoidance.hpp"
+#include "skein/planning/dubins.hpp"
+#include "vehicle_agent_impl.hpp"
+
+namespace skein::mission {
+namespace {
+/// The flight plan leads past the gate only from this long before it on, when the authorisation and
+/// the lease have been looked at for the last time.
+constexpr Duration kCommitLead = std::chrono::seconds{1};
+/// Later than this before the gate control could no longer take the new plan over in time.
+constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
+/// A plan that starts now, for an award that came after the agreed moment.
+constexpr Duration kLateStart = std::chrono::milliseconds{200};
+}  // namespace
+
+using coalition::Participant;
+
+void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) {
+  if (const auto* wanted = std::get_if<Participant::BidWanted>(&output)) {
+    answer_bid_wanted(wanted->announcement, now);
+  } else if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {
+    answer_award(*award, now);
+  } else if (const auto* granted = std::get_if<Participant::LeaseGranted>(&output)) {
+    report(EventKind::lease_granted, granted->round, granted->task, to_seconds(granted->until), {},
+           now);
+  } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
+    report(EventKind::lease_ended, ended->round, ended->task, 0.0, ended->why, now);
+    if (task_ && task_->assignment.task == ended->task) drop_task(now);
+  } else if (const auto* released = std::get_if<Participant::Released>(&output)) {
+    report(EventKind::released, released->round, {}, 0.0, released->why, now);
+  }
+}
+
+void VehicleAgent::Impl::answer_bid_wanted(const coalition::Announcement& announcement,
+                                           Instant now) {
+  const auto bid = make_bid(announcement, now);
+  if (bid) {
+    report(EventKind::bid_sent, announcement.round, {announcement.site.id, {}, 0},
+           to_seconds(bid->eta), {}, now);
+    participant_.bid(announcement, *bid, now);
+  } else {
+    report(EventKind::bid_declined, announcement.round, {announcement.site.id, {}, 0}, 0.0,
+           bid.error().message, now);
+    participant_.decline(announcement);
+  }
+}
+
+Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcement& announcement,
+                                                    Instant now) const {
+  const bool own = initiator_ && announcement.round.coalition == initiator_->round().coalition;
+  if (held_by_operator_) return Error{"held by the operator"};
+  if (duplicate_id_) return Error{"another vehicle uses this id"};
+  if (survey_) return Error{"surveying"};
+  if (initiator_ && !own) return Error{"leading its own site"};
+  if (task_ && task_->begun) return Error{"a task is in progress"};
+
+  const auto& vehicle = config_.vehicle;
+  const auto can = [&](const TaskId& t) {
+    return vehicle.capabilities.has(t.kind) && (t.kind != TaskKind::deliver || loads_ > 0);
+  };
+  if (std::none_of(announcement.tasks.begin(), announcement.tasks.end(), can)) {
+    return Error{"no capability or load for these tasks"};
+  }
+  const Pose2 pose = flight_.pose_at(announcement.formed_at);
+  for (const Vec2& position : {flight_.pose_at(now).position(), pose.position()}) {
+    if ((position - announcement.leader_at_formation).norm() > config_.protocol.radio_range_m) {
+      return Error{"out of the leader's radio range before the coalition stands"};
+    }
+  }
+  const double way =
+      planning::shortest_to_point(pose, announcement.site.position, vehicle.planning_radius_m())
+          .length_m();
+  const auto self = candidate(pose, announcement.formed_at);
+  if (way > self.range_left_m) return Error{"not enough range left"};
+
+  coalition::Bid bid;
+  bid.pose_at_formation = pose;
+  bid.speed_mps = self.speed_mps;
+  bid.planning_radius_m = self.planning_radius_m;
+  bid.range_left_m = self.range_left_m;
+  bid.final_approach_m = self.final_approach_m;
+  bid.assess_radius_m = self.assess_radius_m;
+  bid.capabilities = self.capabilities;
+  bid.loads = self.loads;
+  bid.eta = announcement.formed_at + from_seconds(way / vehicle.cruise_speed_mps);
+  return bid;
+}
+
+planning::Candidate VehicleAgent::Impl::candidate(const Pose2& pose, Instant at) const {
+  const auto& vehicle = config_.vehicle;
+  return {vehicle.id,
+          pose,
+          vehicle.cruise_speed_mps,
+          vehicle.planning_radius_m(),
+          range_left(at),
+          vehicle.final_approach_m,
+          vehicle.assess_radius_m,
+          vehicle.capabilities,
+          loads_};
+}
+
+void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, Instant now) {
+  const auto refuse = [&](const std::string& why) {
+    report(EventKind::refused, award.award.round, award.mine.front().task, 0.0, why, now);
+    participant_.refuse(why, now);
+  };
+  if (award.mine.size() != 1) return refuse("it can fly one task at a time");
+  const auto& mine = award.mine.front();
+  // From the pose that was bid, or from where it is by now when the award came late.
+  const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
+  const Pose2 pose = flight_.pose_at(start);
+  const auto plan = planning::plan_task(config_.planning, candidate(pose, start), start,
+                                        award.award.site, mine, hazards_);
+  if (!plan) return refuse(plan.error().message);
+
+  TaskFlight task{award.award.round, award.award.site, mine, *plan};
+  Path path = plan->timed.path;
+  double tail = plan->timed.tail_curvature_per_m;
+  if (task.is_delivery()) {  // as far as the gate, and hold there
+    const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
+    if (!to_gate) return refuse("its path has too many pieces");
+    path = *to_gate;
+    tail = flight_.hold_curvature(path.end(), hazards_);
+  }
+  if (!flight_.continue_with(start, path, tail, now)) return refuse("its path has too many pieces");
+  report(EventKind::confirmed, task.round, mine.task, to_seconds(mine.time), {}, now);
+  task_ = task;
+  participant_.accept(now);
+}
+
+void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant now) {
+  if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
+      task_->site.id == message.site && !task_->authorised) {
+    task_->authorised = true;
+    report(EventKind::authorised, message.round, task_->assignment.task, 0.0, message.decided_by,
+           now);
+  }
+  if (!initiator_ || !request_ || message.round != request_->round) return;
+  request_.reset();
+  if (message.granted) {
+    initiator_->authorised(message.round);
+    return;
+  }
+  report(EventKind::authorisation_refused, message.round, {message.site, TaskKind::deliver, 0}, 0.0,
+         message.decided_by, now);
+  initiator_->close("refused by the operator", now);
+  stop_leading(now);
+}
+
+void VehicleAgent::Impl::commit_delivery(Instant now) {
+  const Instant gate = task_->begin_time();
+  const bool in_time = now >= gate - kCommitLead && now <= gate - kCommitLatest;
+  if (task_->committed || !in_time || !task_->authorised) return;
+  if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
+  const auto& timed = task_->plan.timed;
+  const Instant at = std::max(now, timed.start_time);
+  const auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
+  if (!rest) return;
+  task_->committed =
+      flight_.continue_with(at, *rest, flight_.hold_curvature(timed.path.end(), hazards_), now);
+}
+
+void VehicleAgent::Impl::fly_task(Instant now) {
+  if (task_->is_delivery()) commit_delivery(now);
+  const TaskId id = task_->assignment.task;
+  if (!task_->begun && now >= task_->begin_time()) {
+    if (task_->is_delivery() && !task_->committed) {
+      if (!std::exchange(task_->late, true)) {
+        report(EventKind::authorisation_late, task_->round, id, 0.0,
+               task_->authorised ? "the lease does not reach over the delivery"
+                                 : "holding at the gate",
+               now);
+      }
+      return;
+    }
+    task_->begun = true;
+    report(EventKind::task_started, task_->round, id, to_seconds(task_->begin_time()), {},
+           task_->begin_time());
+    participant_.task_started(id, now);
+  }
+  if (!task_->begun || now < task_->end_time()) return;
+  const bool flown = on_track(task_->plan.timed);
+  if (task_->is_delivery() && loads_ > 0) --loads_;
+  const auto task = *std::exchange(task_, std::nullopt);
+  report(flown ? EventKind::task_done : EventKind::task_failed, task.round, id,
+         to_seconds(task.assignment.time), flown ? "" : "off the planned path", task.end_time());
+  flown ? participant_.task_done(id, now) : participant_.task_failed(id, now);
+}
+
+/// The lease has gone: the plan must lead past no gate.
+void VehicleAgent::Impl::drop_task(Instant now) {
+  const bool leads_on = task_->committed || !task_->is_delivery();
+  task_.reset();
+  if (leads_on) flight_.hold(hazards_, now);
+}
+
+void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
+  const bool mine = message.vehicle == config_.vehicle.id || message.vehicle == kGroundStation;
+  if (!mine || message.number <= last_command_ || !flight_.started()) return;
+  last_command_ = message.number;
+  report(EventKind::plan_changed, {}, {}, 0.0,
+         "the operator commands: " + std::string{to_string(message.kind)}, now);
+  if (message.kind == CommandKind::resume) {
+    held_by_operator_ = false;
+    if (!task_ && !survey_) flight_.search(hazards_, now);
+    return;
+  }
+  held_by_operator_ = true;
+  participant_.withdraw("the operator commands " + std::string{to_string(message.kind)}, now);
+  if (initiator_) {
+    surveyed_.push_back(initiator_->site());
+    initiator_->close("the operator holds the leader", now);
+    stop_leading(now);
+  }
+  if (survey_) found_.push_back(std::exchange(survey_, std::nullopt)->site);
+  pump(now);
+  if (message.kind == CommandKind::return_home) {
+    flight_.fly_home(hazards_, now);
+  } else {
+    flight_.hold(hazards_, now);
+  }
+}
+
+void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
+  const auto same = [&](const Hazard& h) { return h.id == hazard.id; };
+  if (std::any_of(hazards_.begin(), hazards_.end(), same)) return;
+  hazards_.push_back(hazard);
+  report(EventKind::hazard_known, {}, {}, hazard.radius_m,
+         "hazard " + std::to_string(hazard.id.value), now);
+  if (!flight_.started()) return;
+  const auto& timed = flight_.plan().timed;
+  const double ahead = timed.distance_at(now);
+  const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
+  if (rest && planning::is_clear(*rest, hazards_)) return;
+  if (flight_.searching()) {
+    flight_.search(hazards_, now);
+  } else {
+    // Its way is barred: the task goes back to the leader, who finds another way or another
+    // vehicle.
+    participant_.withdraw("a hazard bars its path", now);
+    pump(now);
+    flight_.hold(hazards_, now);
+  }
+}
+
+/// Nothing to do: search on, or take up a site that waits.
+void VehicleAgent::Impl::idle(Instant now) {
+  if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
+  if (initiator_) return;  // it keeps circling its site
+  take_up_site(now);
+  if (!survey_ && !initiator_ && !flight_.searching()) flight_.search(hazards_, now);
+}
+
+}  // namespace skein::mission

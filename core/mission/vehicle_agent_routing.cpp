@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "skein/planning/path_follower.hpp"
+#include "vehicle_agent_impl.hpp"
+
+namespace skein::mission {
+namespace {
+/// A task counts as flown when the vehicle is this close to where its plan has it.
+constexpr double kOnTrackM = 30.0;
+
+template <class... Fs>
+struct Overloaded : Fs... {
+  using Fs::operator()...;
+};
+template <class... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;
+}  // namespace
+
+VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
+    : config_{config},
+      flight_{config.vehicle, config.planning.avoidance, config.search},
+      hazards_{config.hazards},
+      loads_{config.vehicle.loads},
+      participant_{config.protocol, config.vehicle.id} {}
+
+void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
+  state_ = state;
+  if (!flight_.started()) flight_.start(state.pose(), hazards_, now);
+  step(now);
+}
+
+void VehicleAgent::Impl::on_timeout(Instant now) { step(now); }
+
+void VehicleAgent::Impl::on_message(const Message& message, VehicleId /*sender*/, Instant now) {
+  std::visit(Overloaded{[&](const coalition::Message& m) { receive(m, now); },
+                        [&](const Authorisation& m) { on_authorisation(m, now); },
+                        [&](const Command& m) { on_command(m, now); },
+                        [&](const SiteReport& m) { on_site_report(m, now); },
+                        [&](const HazardReport& m) { on_hazard(m.hazard, now); },
+                        [&](const Telemetry& m) {
+                          if (m.vehicle != config_.vehicle.id || m.instance == config_.instance ||
+                              duplicate_id_) {
+                            return;
+                          }
+                          duplicate_id_ = true;
+                          report(EventKind::warning, {}, {}, 0.0,
+                                 "another vehicle uses this id; this one bids and leads no more",
+                                 now);
+                        },
+                        [](const AuthorisationRequest&) {}, [](const MissionEvent&) {}},
+             message);
+  step(now);
+}
+
+void VehicleAgent::Impl::step(Instant now) {
+  if (!flight_.started()) return;
+  if (initiator_) {
+    initiator_->set_leader_at_formation(
+        flight_.pose_at(now + config_.protocol.formation_time()).position());
+    initiator_->on_timeout(now);
+  }
+  participant_.on_timeout(now);
+  pump(now);
+  watch_authorisation(now);
+  if (task_) fly_task(now);
+  if (survey_) fly_survey(now);
+  pump(now);
+  idle(now);
+  pump(now);
+}
+
+void VehicleAgent::Impl::pump(Instant now) {
+  // Each pass hands on what the last one brought forth; what a vehicle leads it also takes part in.
+  for (bool busy = true; busy;) {
+    busy = false;
+    if (initiator_) {
+      if (const auto message = initiator_->poll_message()) {
+        send(*message, now);
+        busy = true;
+        continue;
+      }
+      if (const auto output = initiator_->poll_output()) {
+        answer(*output, now);
+        busy = true;
+        continue;
+      }
+    }
+    if (const auto message = participant_.poll_message()) {
+      send(*message, now);
+      busy = true;
+    } else if (const auto wanted = participant_.poll_output()) {
+      answer(*wanted, now);
+      busy = true;
+    }
+  }
+}
+
+void VehicleAgent::Impl::send(const coalition::Message& message, Instant now) {
+  messages.push(Message{message});
+  receive(message, now);  // its own leader, or its own member
+}
+
+void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now) {
+  if (!flight_.started()) return;
+  std::visit(
+      Overloaded{[&](const coalition::Announcement& m) {
+                   known_.insert(m.site.id);
+                   yield_to(m, now);
+                   participant_.on_announcement(m, now);
+                 },
+                 [&](const coalition::Bid& m) {
+                   if (initiator_) initiator_->on_bid(m, now);
+                 },
+                 [&](const coalition::Award& m) { participant_.on_award(m, now); },
+                 [&](const coalition::Confirmation& m) {
+                   if (initiator_) initiator_->on_confirmation(m, now);
+                 },
+                 [&](const coalition::Cancel& m) { participant_.on_cancel(m, now); },
+                 [&](const coalition::LeaseRenewal& m) { participant_.on_lease_renewal(m, now); },
+                 [&](const coalition::MemberStatus& m) {
+                   if (initiator_) initiator_->on_status(m, now);
+                 }},
+      message);
+}
+
+void VehicleAgent::Impl::report(EventKind kind, const coalition::Round& round, const TaskId& task,
+                                double value, std::string text, Instant time) {
+  const MissionEvent event{config_.vehicle.id, time, kind, round, task, value, std::move(text)};
+  events.push(event);
+  // Renewals and refusals to bid are many and of interest to the recording only.
+  if (kind != EventKind::lease_granted && kind != EventKind::bid_declined) messages.push(event);
+}
+
+bool VehicleAgent::Impl::on_track(const TimedPath& timed) const {
+  const auto error = planning::follow_error(timed, state_, state_.time);
+  return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;
+}
+
+double VehicleAgent::Impl::range_left(Instant at) const {
+  const double until_then =
+      std::max(0.0, to_seconds(at - state_.time)) * config_.vehicle.cruise_speed_mps;
+  return config_.vehicle.range_m - state_.distance_flown_m - until_then;
+}
+
+Instant VehicleAgent::Impl::next_timeout() const {
+  Instant next = participant_.next_timeout();
+  if (initiator_) next = std::min(next, initiator_->next_timeout());
+  if (request_) next = std::min({next, request_again_, request_->decide_by});
+  if (task_) next = std::min(next, task_->begun ? task_->end_time() : task_->begin_time());
+  if (survey_) next = std::min(next, survey_->begun ? survey_->end_time() : survey_->begin_time());
+  return next;
+}
+
+Activity VehicleAgent::Impl::activity() const {
+  if (held_by_operator_) return Activity::holding;
+  if (task_) return Activity::executing;
+  if (initiator_) {
+    return initiator_->state() == coalition::Initiator::State::monitoring ? Activity::monitoring
+                                                                          : Activity::leading;
+  }
+  if (survey_) return Activity::surveying;
+  if (!participant_.free()) return Activity::bidding;
+  return Activity::searching;
+}
+
+Telemetry VehicleAgent::Impl::telemetry() const {
+  Telemetry t;
+  t.vehicle = config_.vehicle.id;
+  t.instance = config_.instance;
+  t.state = state_;
+  t.activity = activity();
+  t.range_left_m = config_.vehicle.range_m - state_.distance_flown_m;
+  t.loads = loads_;
+  t.plan_number = flight_.plan().number;
+  t.messages_dropped = static_cast<std::uint32_t>(messages.dropped());
+  return t;
+}
+
+std::map<std::string, std::uint64_t> VehicleAgent::Impl::counters() const {
+  return {{"protocol_errors",
+           participant_.protocol_errors() + (initiator_ ? initiator_->protocol_errors() : 0)},
+          {"messages_dropped", messages.dropped()},
+          {"events_dropped", events.dropped()}};
+}
+
+}  // namespace skein::mission
