@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "skein/base/geometry.hpp"
+#include "skein/base/time.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mission/ground_agent.hpp"
+#include "skein/mission/messages.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+#include "skein/models/wind.hpp"
+#include "skein/planning/allocation.hpp"
+
+namespace skein::hil {
+
+struct SimulatedVehicle {
+  VehicleSpec spec;
+  Pose2 start;
+  std::vector<Vec2> search;
+};
+
+/// A hazard and when it comes into being; everyone is told then.
+struct TimedHazard {
+  Hazard hazard;
+  Instant known_from{};
+};
+
+/// The radio of the simulator. Between vehicles a message arrives after `delay` +- `jitter` when
+/// both are within range at the moment of sending and it is not lost; the ground station is heard
+/// and hears everywhere.
+struct SimulatedRadio {
+  double range_m = 1500.0;
+  Duration delay = std::chrono::milliseconds{60};
+  Duration jitter = std::chrono::milliseconds{30};
+  double loss = 0.0;  ///< probability
+};
+
+/// A whole mission in virtual time.
+struct TeamMission {
+  std::vector<SimulatedVehicle> vehicles;
+  std::vector<Site> sites;
+  std::vector<TimedHazard> hazards;
+  coalition::ProtocolParams protocol;
+  planning::AllocationParams planning;
+  std::vector<mission::ScriptedDecision> decisions;
+  SimulatedRadio radio;
+  models::WindParams wind;
+  Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
+  Duration duration_max = std::chrono::seconds{300};
+  std::uint64_t seed = 1;
+};
+
+/// What is observed while it runs; called in the order of time.
+struct TeamObserver {
+  std::function<void(const mission::MissionEvent&)>
+      event;  ///< of vehicles and of the ground (id 0)
+  std::function<void(VehicleId, const mission::FlightPlan&, Instant)> plan;
+  std::function<void(VehicleId, const VehicleState&, const mission::FlightPlan&)> track;
+};
+
+struct TeamResult {
+  Instant ended_at{};
+  std::size_t sites_done = 0;
+  std::uint64_t messages = 0;         ///< sent, counted once for each sender
+  std::uint64_t protocol_errors = 0;  ///< sum over the vehicles
+};
+
+/// Flies the mission with the production agents, guidance and vehicle model, in one thread and in
+/// virtual time, until all sites are done (and 5 s more) or duration_max. Nothing in it reads a
+/// clock or an unseeded generator: the same mission gives the same calls, byte for byte.
+TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer);
+
+/// One line an event, for traces and their comparison.
+[[nodiscard]] std::string trace_line(const mission::MissionEvent& event);
+
+}  // namespace skein::hil

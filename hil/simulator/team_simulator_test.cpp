@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/team_simulator.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::hil {
+namespace {
+
+using mission::EventKind;
+using mission::MissionEvent;
+
+VehicleSpec spec(std::uint16_t id, std::initializer_list<TaskKind> kinds, std::uint8_t loads) {
+  VehicleSpec v;
+  v.id = VehicleId{id};
+  v.cruise_speed_mps = 30.0;
+  v.speed_min_mps = 24.0;
+  v.speed_max_mps = 36.0;
+  v.turn_radius_m = 60.0;
+  v.heading_gain_per_s = 1.5;
+  v.range_m = 20'000.0;
+  for (const TaskKind kind : kinds) v.capabilities.add(kind);
+  v.sensor_radius_m = 150.0;
+  v.assess_radius_m = 150.0;
+  v.loads = loads;
+  v.final_approach_m = 100.0;
+  v.height_m = 100.0 + 10.0 * id;
+  return v;
+}
+
+/// A scout finds a site 600 m to its east; three carriers deliver at once, two vehicles assess.
+TeamMission small_mission() {
+  TeamMission team;
+  team.vehicles = {
+      {spec(1, {TaskKind::survey, TaskKind::assess}, 0), {-600, 0, 0}, {{0, 100}}},
+      {spec(2, {TaskKind::deliver}, 1), {-300, -500, 1}, {{-300, -500}}},
+      {spec(3, {TaskKind::deliver}, 1), {300, -500, 2}, {{300, -500}}},
+      {spec(4, {TaskKind::deliver}, 1), {300, 500, 3}, {{300, 500}}},
+      {spec(5, {TaskKind::assess}, 0), {-300, 500, -1}, {{-300, 500}}},
+  };
+  Site site;
+  site.id = SiteId{1};
+  site.survey.dwell = from_seconds(5);
+  site.deliveries = {{radians(0), {}}, {radians(120), {}}, {radians(-120), {}}};
+  site.assess_wait = from_seconds(5);
+  site.assessments = {{radians(0), from_seconds(6)}, {radians(180), from_seconds(6)}};
+  team.sites = {site};
+  team.decisions = {{SiteId{1}, true, from_seconds(2), Instant{}}};
+  team.wind.steady_mps = {2.0, 1.0};
+  team.duration_max = from_seconds(200);
+  return team;
+}
+
+struct Flown {
+  TeamResult result;
+  std::vector<MissionEvent> events;
+  std::string trace;
+
+  [[nodiscard]] std::vector<MissionEvent> of(EventKind kind) const {
+    std::vector<MissionEvent> some;
+    std::copy_if(events.begin(), events.end(), std::back_inserter(some),
+                 [kind](const MissionEvent& e) { return e.kind == kind; });
+    return some;
+  }
+  [[nodiscard]] std::vector<MissionEvent> done(TaskKind kind) const {
+    auto some = of(EventKind::task_done);
+    std::erase_if(some, [kind](const MissionEvent& e) { return e.task.kind != kind; });
+    return some;
+  }
+};
+
+Flown fly(const TeamMission& team) {
+  Flown flown;
+  TeamObserver observer;
+  observer.event = [&](const MissionEvent& e) {
+    flown.events.push_back(e);
+    flown.trace += trace_line(e) + "\n";
+  };
+  observer.track = [&](VehicleId id, const VehicleState& s, const mission::FlightPlan& plan) {
+    flown.trace += std::to_string(id.value) + " " + std::to_string(s.x_m) + " " +
+                   std::to_string(s.y_m) + " " + std::to_string(plan.number) + "\n";
+  };
+  flown.result = simulate_team(team, observer);
+  return flown;
+}
+
+TEST(TeamSimulator, TheSmallMissionIsFlownToItsEnd) {
+  const auto flown = fly(small_mission());
+  EXPECT_EQ(flown.result.sites_done, 1U) << flown.trace.substr(0, 4000);
+  EXPECT_EQ(flown.result.protocol_errors, 0U);
+  const auto deliveries = flown.done(TaskKind::deliver);
+  ASSERT_EQ(deliveries.size(), 3U);
+  for (const auto& e : deliveries) {
+    EXPECT_LT(std::abs(to_seconds(e.time - deliveries[0].time)), 0.05) << "simultaneous";
+  }
+  const auto assessments = flown.done(TaskKind::assess);
+  ASSERT_EQ(assessments.size(), 2U);
+  for (const auto& e : assessments) {
+    EXPECT_NEAR(e.value, to_seconds(deliveries[0].time) + 5.0, 0.05) << "start, after the wait";
+  }
+}
+
+TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {
+  auto team = small_mission();
+  team.radio.loss = 0.1;
+  team.wind.gust_mps = 1.0;
+  const auto once = fly(team);
+  EXPECT_EQ(once.trace, fly(team).trace);
+  team.seed = 2;
+  EXPECT_NE(once.trace, fly(team).trace);
+}
+
+TEST(TeamSimulator, NothingIsDeliveredWithoutAnAuthorisation) {
+  auto team = small_mission();
+  team.decisions.clear();
+  const auto flown = fly(team);
+  EXPECT_TRUE(flown.done(TaskKind::deliver).empty());
+  EXPECT_GT(flown.of(EventKind::authorisation_late).size(), 2U)
+      << "and the plan is timed anew, again and again";
+  EXPECT_EQ(flown.result.sites_done, 0U);
+}
+
+TEST(TeamSimulator, ALateAuthorisationIsForAPlanThatIsTimedAnew) {
+  auto team = small_mission();
+  team.decisions[0].not_before = at_seconds(60);
+  const auto flown = fly(team);
+  EXPECT_EQ(flown.result.sites_done, 1U);
+  const auto deliveries = flown.done(TaskKind::deliver);
+  ASSERT_EQ(deliveries.size(), 3U);
+  for (const auto& delivery : deliveries) {
+    EXPECT_GT(delivery.time, at_seconds(60));
+    // The operator granted that very round before the approach began.
+    const auto granted = flown.of(EventKind::authorised);
+    EXPECT_TRUE(std::any_of(granted.begin(), granted.end(), [&](const MissionEvent& e) {
+      return e.vehicle == kGroundStation && e.round == delivery.round && e.time < delivery.time;
+    }));
+  }
+}
+
+TEST(TeamSimulator, ARefusalEndsTheCoalition) {
+  auto team = small_mission();
+  team.decisions[0].grant = false;
+  const auto flown = fly(team);
+  EXPECT_TRUE(flown.done(TaskKind::deliver).empty());
+  EXPECT_EQ(flown.of(EventKind::authorisation_requested).size(), 1U);
+  EXPECT_GE(flown.of(EventKind::released).size(), 4U);
+}
+
+TEST(TeamSimulator, MessagesThatAreLostDelayTheMissionAndBreakNothing) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    auto team = small_mission();
+    team.seed = seed;
+    team.radio.loss = 0.3;
+    const auto flown = fly(team);
+    EXPECT_EQ(flown.result.sites_done, 1U) << "seed " << seed;
+    EXPECT_EQ(flown.done(TaskKind::deliver).size(), 3U) << "seed " << seed;
+  }
+}
+
+TEST(TeamSimulator, TooFewVehiclesInRangeMakeTheLeaderMonitor) {
+  auto team = small_mission();
+  team.vehicles[3].search = {{3000, 3000}};
+  team.vehicles[3].start = {3000, 3000, 0};
+  const auto flown = fly(team);
+  EXPECT_EQ(flown.result.sites_done, 0U);
+  EXPECT_GT(flown.of(EventKind::monitoring).size(), 5U);
+  EXPECT_TRUE(flown.done(TaskKind::deliver).empty());
+}
+
+}  // namespace
+}  // namespace skein::hil
