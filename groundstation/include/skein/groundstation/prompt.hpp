@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/mission/messages.hpp"
+
+/// What the operator can type.
+namespace skein::groundstation {
+
+enum class View { help, status, sites, pending };
+/// The operator's decision on the deliveries at a site.
+struct Decision {
+  SiteId site;
+  bool grant = false;
+};
+/// A command to a vehicle, or to all (kGroundStation).
+struct Order {
+  VehicleId vehicle;
+  mission::CommandKind kind = mission::CommandKind::hold;
+};
+struct Quit {};
+/// monostate: an empty line.
+using Input = std::variant<std::monostate, View, Decision, Order, Quit>;
+
+/// Fails with what is wrong and what would be right.
+[[nodiscard]] Result<Input> parse_input(std::string_view line);
+
+/// The answer to "help".
+[[nodiscard]] std::string help_text();
+
+}  // namespace skein::groundstation

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/frames.hpp"
+#include "skein/base/time.hpp"
+#include "skein/mission/ground_agent.hpp"
+
+/// What the operator reads. Directions are compass degrees, distances metres and kilometres, times
+/// mission seconds.
+namespace skein::groundstation {
+
+/// One line a vehicle: number, activity, seconds since it was heard, range left, loads, health.
+[[nodiscard]] std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
+                                      const std::vector<VehicleId>& expected, Instant now);
+
+/// What, where, when, who, until when, and what to type.
+[[nodiscard]] std::string request_text(const mission::PendingAuthorisation& pending,
+                                       const MissionOrigin& origin, Instant now);
+
+/// The requests that still can be decided, newest last.
+[[nodiscard]] std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
+                                       const MissionOrigin& origin, Instant now);
+
+/// What is known of the sites, gathered from the events of the vehicles.
+class SiteBoard {
+ public:
+  void on_event(const mission::MissionEvent& event);
+  /// One line a site: who leads there, what was done, the latest news.
+  [[nodiscard]] std::string text() const;
+
+ private:
+  struct Entry {
+    std::optional<VehicleId> leader;
+    bool surveyed = false;
+    std::size_t delivered = 0;
+    std::size_t assessed = 0;
+    mission::MissionEvent latest;
+  };
+  std::map<SiteId, Entry> sites_;
+};
+
+}  // namespace skein::groundstation

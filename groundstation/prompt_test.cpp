@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/prompt.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class T>
+T parsed(std::string_view line) {
+  const auto input = parse_input(line);
+  if (!input.ok()) {
+    ADD_FAILURE() << line << ": " << input.error().message;
+    return {};
+  }
+  const auto* wanted = std::get_if<T>(&*input);
+  EXPECT_NE(wanted, nullptr) << line;
+  return wanted == nullptr ? T{} : *wanted;
+}
+
+std::string refusal_of(std::string_view line) {
+  const auto input = parse_input(line);
+  EXPECT_FALSE(input.ok()) << line;
+  return input.ok() ? std::string{} : input.error().message;
+}
+
+TEST(Prompt, UnderstandsEveryCommand) {
+  EXPECT_EQ(parsed<View>("help"), View::help);
+  EXPECT_EQ(parsed<View>(" status "), View::status);
+  EXPECT_EQ(parsed<View>("sites\r"), View::sites);
+  EXPECT_EQ(parsed<View>("pending"), View::pending);
+  EXPECT_TRUE(parsed<Decision>("authorise 3").grant);
+  EXPECT_EQ(parsed<Decision>("authorise   3").site, SiteId{3});
+  EXPECT_FALSE(parsed<Decision>("refuse 3").grant);
+  EXPECT_EQ(parsed<Order>("hold 12").vehicle, VehicleId{12});
+  EXPECT_EQ(parsed<Order>("hold 12").kind, mission::CommandKind::hold);
+  EXPECT_EQ(parsed<Order>("resume all").vehicle, kGroundStation);
+  EXPECT_EQ(parsed<Order>("resume all").kind, mission::CommandKind::resume);
+  EXPECT_EQ(parsed<Order>("return 2").kind, mission::CommandKind::return_home);
+  parsed<Quit>("quit");
+  parsed<std::monostate>("   ");
+  parsed<std::monostate>("");
+}
+
+TEST(Prompt, SaysWhatIsWrong) {
+  EXPECT_THAT(refusal_of("launch"), HasSubstr("no command 'launch'"));
+  EXPECT_THAT(refusal_of("Authorise 3"), HasSubstr("no command 'Authorise'"));
+  for (const auto* line : {"authorise", "authorise all", "authorise 3 4", "authorise -1",
+                           "authorise 0", "authorise 3x", "authorise 70000"}) {
+    EXPECT_THAT(refusal_of(line), HasSubstr("number of a site"));
+  }
+  for (const auto* line : {"hold", "hold 0", "hold 1 2", "hold everyone"}) {
+    EXPECT_THAT(refusal_of(line), HasSubstr("number of a vehicle or 'all'"));
+  }
+  EXPECT_THAT(refusal_of("status 3"), HasSubstr("stands alone"));
+  EXPECT_THAT(refusal_of("quit now"), HasSubstr("stands alone"));
+}
+
+TEST(Prompt, HelpNamesEveryCommand) {
+  for (const auto* word :
+       {"status", "sites", "pending", "authorise", "refuse", "hold", "resume", "return", "quit"}) {
+    EXPECT_THAT(help_text(), HasSubstr(word));
+  }
+}
+
+}  // namespace
+}  // namespace skein::groundstation

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/views.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "skein/base/angles.hpp"
+#include "skein/process/event_text.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+std::string health_of(const mission::FleetEntry& entry, bool expected) {
+  if (entry.duplicate) return "TWO VEHICLES WITH THIS ID";
+  if (!entry.telemetry) return "never heard";
+  std::string health;
+  const auto add = [&health](const std::string& text) {
+    health += (health.empty() ? "" : ", ") + text;
+  };
+  if (!expected) add("not in the fleet");
+  if (entry.silent) add("SILENT");
+  const auto& telemetry = *entry.telemetry;
+  if (telemetry.control_overruns > 0) {
+    add(fmt::format("{} control overruns", telemetry.control_overruns));
+  }
+  if (telemetry.messages_dropped > 0) {
+    add(fmt::format("{} messages dropped", telemetry.messages_dropped));
+  }
+  return health.empty() ? "good" : health;
+}
+
+/// "1234 m from the origin towards 045 deg, 31.530000 N 105.050000 E"
+std::string place_text(const Vec2& position, const MissionOrigin& origin) {
+  const Wgs84 geodetic = origin.to_wgs84(Position<MissionEnu>{position.x(), position.y(), 0.0});
+  return fmt::format("{:.0f} m from the origin towards {:03.0f} deg, {:.6f} {} {:.6f} {}",
+                     position.norm(),
+                     compass_deg_from_heading(std::atan2(position.y(), position.x())),
+                     std::abs(geodetic.latitude_deg), geodetic.latitude_deg < 0.0 ? "S" : "N",
+                     std::abs(geodetic.longitude_deg), geodetic.longitude_deg < 0.0 ? "W" : "E");
+}
+
+bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {
+  return !pending.decision && now < pending.request.decide_by;
+}
+
+}  // namespace
+
+std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
+                        const std::vector<VehicleId>& expected, Instant now) {
+  std::string text = fmt::format("{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", "vehicle", "activity",
+                                 "heard", "range left", "loads", "health");
+  for (const auto& [vehicle, entry] : fleet) {
+    const bool known = std::find(expected.begin(), expected.end(), vehicle) != expected.end();
+    auto line = std::back_inserter(text);
+    if (entry.telemetry) {
+      fmt::format_to(line, "{:>7}  {:<11}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
+                     to_string(entry.telemetry->activity), to_seconds(now - entry.heard_at),
+                     entry.telemetry->range_left_m / 1000.0, entry.telemetry->loads,
+                     health_of(entry, known));
+    } else {
+      fmt::format_to(line, "{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-", "-", "-",
+                     health_of(entry, known));
+    }
+  }
+  return text;
+}
+
+std::string request_text(const mission::PendingAuthorisation& pending, const MissionOrigin& origin,
+                         Instant now) {
+  const auto& request = pending.request;
+  std::string text = fmt::format(
+      "--- Authorisation wanted: {} deliveries at site {} ---\n"
+      "where   {}\n"
+      "leader  {}, coalition {} round {}\n",
+      request.deliveries.size(), request.site.value, place_text(request.site_position, origin),
+      process::text_of(request.round.coalition.leader), request.round.coalition.number,
+      request.round.number);
+  auto line = std::back_inserter(text);
+  for (const auto& delivery : request.deliveries) {
+    const auto& assignment = delivery.assignment;
+    fmt::format_to(line, "        vehicle {:>3} at {:.1f} s, flying towards {:03.0f} deg\n",
+                   assignment.vehicle.value, to_seconds(assignment.time),
+                   compass_deg_from_heading(delivery.bearing_rad));
+  }
+  fmt::format_to(line,
+                 "until   {:.1f} s, {:.0f} s from now; without a decision they hold and ask again\n"
+                 "type    authorise {}    or    refuse {}\n",
+                 to_seconds(request.decide_by), to_seconds(request.decide_by - now),
+                 request.site.value, request.site.value);
+  return text;
+}
+
+std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
+                         const MissionOrigin& origin, Instant now) {
+  std::string text;
+  for (const auto& pending : all) {
+    if (can_be_decided(pending, now)) text += request_text(pending, origin, now);
+  }
+  return text.empty() ? "nothing waits for a decision\n" : text;
+}
+
+void SiteBoard::on_event(const mission::MissionEvent& event) {
+  if (event.task.site == SiteId{}) return;
+  Entry& entry = sites_[event.task.site];
+  entry.latest = event;
+  switch (event.kind) {
+    case mission::EventKind::announced:
+    case mission::EventKind::monitoring:
+    case mission::EventKind::coalition_formed:
+      entry.leader = event.vehicle;
+      break;
+    case mission::EventKind::survey_done:
+      entry.surveyed = true;
+      break;
+    case mission::EventKind::task_done:
+      entry.delivered += event.task.kind == TaskKind::deliver ? 1U : 0U;
+      entry.assessed += event.task.kind == TaskKind::assess ? 1U : 0U;
+      break;
+    default:
+      break;
+  }
+}
+
+std::string SiteBoard::text() const {
+  std::string text;
+  for (const auto& [site, entry] : sites_) {
+    fmt::format_to(std::back_inserter(text),
+                   "site {}: {}, {}, {} delivered, {} assessed; {:.1f} s {}\n", site.value,
+                   entry.leader ? "led by " + process::text_of(*entry.leader) : "no leader yet",
+                   entry.surveyed ? "surveyed" : "not surveyed", entry.delivered, entry.assessed,
+                   to_seconds(entry.latest.time), process::text_of(entry.latest));
+  }
+  return text.empty() ? "no site is known yet\n" : text;
+}
+
+}  // namespace skein::groundstation

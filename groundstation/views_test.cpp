@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/views.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+MissionOrigin origin() {
+  return MissionOrigin::make({.latitude_deg = 31.522062, .longitude_deg = 105.044327}).value();
+}
+
+mission::FleetEntry heard(double at_s) {
+  mission::FleetEntry entry;
+  mission::Telemetry telemetry;
+  telemetry.activity = mission::Activity::executing;
+  telemetry.range_left_m = 12340.0;
+  telemetry.loads = 2;
+  entry.telemetry = telemetry;
+  entry.heard_at = at_seconds(at_s);
+  return entry;
+}
+
+std::string line_of(const std::string& text, const std::string& word) {
+  const auto at = text.find(word);
+  if (at == std::string::npos) return "";
+  const auto begin = text.rfind('\n', at) + 1;
+  return text.substr(begin, text.find('\n', at) - begin);
+}
+
+TEST(FleetTable, ShowsStateAndHealth) {
+  std::map<VehicleId, mission::FleetEntry> fleet;
+  fleet[{1}] = heard(9.5);
+  fleet[{2}] = {};
+  fleet[{3}] = heard(2.0);
+  fleet[{3}].silent = true;
+  fleet[{4}] = heard(9.5);
+  fleet[{4}].duplicate = true;
+  fleet[{9}] = heard(9.5);
+  fleet[{9}].telemetry->control_overruns = 7;
+  const auto table = fleet_table(fleet, {{1}, {2}, {3}, {4}}, at_seconds(10.0));
+  EXPECT_THAT(line_of(table, "good"),
+              AllOf(HasSubstr("1  executing"), HasSubstr("0.5 s"), HasSubstr("12.3 km")));
+  EXPECT_THAT(line_of(table, "never heard"), HasSubstr("2  -"));
+  EXPECT_THAT(line_of(table, "SILENT"), AllOf(HasSubstr("3  executing"), HasSubstr("8.0 s")));
+  EXPECT_THAT(line_of(table, "TWO VEHICLES"), HasSubstr("4  executing"));
+  EXPECT_THAT(line_of(table, "not in the fleet"),
+              AllOf(HasSubstr("9  executing"), HasSubstr("7 control overruns")));
+}
+
+mission::PendingAuthorisation request() {
+  mission::PendingAuthorisation pending;
+  pending.request.round.coalition = {{27}, {5}, 1};
+  pending.request.round.number = 2;
+  pending.request.site = {3};
+  pending.request.site_position = {0.0, -2000.0};
+  pending.request.deliveries.push_back(
+      {{{{3}, TaskKind::deliver, 0}, {11}, at_seconds(111.2)}, heading_from_compass_deg(45.0)});
+  pending.request.decide_by = at_seconds(100.0);
+  return pending;
+}
+
+TEST(RequestText, SaysWhatWhereWhenWhoUntilWhenAndWhatToType) {
+  const auto text = request_text(request(), origin(), at_seconds(88.0));
+  EXPECT_THAT(text, HasSubstr("1 deliveries at site 3"));
+  EXPECT_THAT(text, HasSubstr("2000 m from the origin towards 180 deg"));
+  EXPECT_THAT(text, HasSubstr("31.504"));  // 2 km south
+  EXPECT_THAT(text, HasSubstr("105.044327 E"));
+  EXPECT_THAT(text, HasSubstr("vehicle  11 at 111.2 s, flying towards 045 deg"));
+  EXPECT_THAT(text, HasSubstr("vehicle 27, coalition 1 round 2"));
+  EXPECT_THAT(text, HasSubstr("until   100.0 s, 12 s from now"));
+  EXPECT_THAT(text, HasSubstr("authorise 3"));
+  EXPECT_THAT(text, HasSubstr("refuse 3"));
+}
+
+TEST(PendingText, LeavesOutWhatIsDecidedOrTooLate) {
+  EXPECT_THAT(pending_text({request()}, origin(), at_seconds(88.0)), HasSubstr("site 3"));
+  EXPECT_THAT(pending_text({request()}, origin(), at_seconds(100.0)), HasSubstr("nothing waits"));
+  auto decided = request();
+  decided.decision = mission::Authorisation{};
+  EXPECT_THAT(pending_text({decided}, origin(), at_seconds(88.0)), HasSubstr("nothing waits"));
+}
+
+TEST(SiteBoard, GathersWhatTheVehiclesTell) {
+  SiteBoard board;
+  EXPECT_THAT(board.text(), HasSubstr("no site is known"));
+  const auto tell = [&](std::uint16_t vehicle, mission::EventKind kind, const TaskId& task) {
+    board.on_event({{vehicle}, at_seconds(5.0), kind, {}, task, 0.0, {}});
+  };
+  using enum mission::EventKind;
+  tell(1, survey_done, {{1}, TaskKind::survey, 0});
+  tell(1, coalition_formed, {{1}, TaskKind::survey, 0});
+  for (std::uint8_t i = 0; i < 8; ++i) tell(2, task_done, {{1}, TaskKind::deliver, i});
+  tell(7, task_done, {{1}, TaskKind::assess, 0});
+  tell(4, warning, {});  // concerns no site
+  EXPECT_THAT(board.text(),
+              HasSubstr("site 1: led by vehicle 1, surveyed, 8 delivered, 1 assessed; 5.0 s"));
+}
+
+}  // namespace
+}  // namespace skein::groundstation
