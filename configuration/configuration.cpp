@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include "loader.hpp"
+#include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/configuration/vehicle_config.hpp"
+#include "writer.hpp"
+
+namespace skein::configuration {
+namespace {
+
+constexpr std::size_t kFileSizeMax = 1U << 20U;
+
+Result<std::string> read_file(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) {
+    return Error{name + ": is a folder; name a YAML file"};
+  }
+  errno = 0;
+  std::ifstream in{file, std::ios::binary};
+  if (!in) {
+    return Error{name + ": cannot be opened: " + std::strerror(errno) + "; check the path"};
+  }
+  std::string text(kFileSizeMax + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (text.size() > kFileSizeMax) {
+    return Error{name + ": is larger than " + std::to_string(kFileSizeMax) +
+                 " bytes; name a configuration file"};
+  }
+  return text;
+}
+
+template <class T>
+Result<T> parse(std::string_view yaml, const std::string& name) {
+  T value;
+  Loader loader{name};
+  loader.read(std::string{yaml}, [&value](FieldVisitor& v) { fields(v, value); });
+  if (!loader.ok()) return Error{loader.message()};
+  return value;
+}
+
+template <class T>
+Result<T> load(const std::filesystem::path& file) {
+  const Result<std::string> text = read_file(file);
+  if (!text) return text.error();
+  return parse<T>(*text, file.string());
+}
+
+template <class T>
+std::string written(T value) {
+  return Writer{}.write([&value](FieldVisitor& v) { fields(v, value); });
+}
+
+}  // namespace
+
+Result<VehicleConfig> load_vehicle_config(const std::filesystem::path& file) {
+  return load<VehicleConfig>(file);
+}
+Result<VehicleConfig> parse_vehicle_config(std::string_view yaml, const std::string& name) {
+  return parse<VehicleConfig>(yaml, name);
+}
+std::string to_yaml(const VehicleConfig& config) { return written(config); }
+
+Result<GroundConfig> load_ground_config(const std::filesystem::path& file) {
+  return load<GroundConfig>(file);
+}
+Result<GroundConfig> parse_ground_config(std::string_view yaml, const std::string& name) {
+  return parse<GroundConfig>(yaml, name);
+}
+std::string to_yaml(const GroundConfig& config) { return written(config); }
+
+Result<Scenario> load_scenario(const std::filesystem::path& file) { return load<Scenario>(file); }
+Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name) {
+  return parse<Scenario>(yaml, name);
+}
+std::string to_yaml(const Scenario& scenario) { return written(scenario); }
+
+}  // namespace skein::configuration

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/configuration/deployment.hpp"
+
+#include "skein/base/assert.hpp"
+#include "skein/base/random.hpp"
+
+namespace skein::configuration {
+namespace {
+
+/// The network of every node, the ground station first.
+std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& deployment) {
+  SKEIN_ASSERT(deployment.port_base + 2 * scenario.vehicles.size() + 1 <= 65535);
+  std::vector<NetworkPeer> nodes;
+  const auto add = [&](VehicleId id) {
+    const auto port = static_cast<std::uint16_t>(deployment.port_base + 2 * nodes.size());
+    nodes.push_back({id, deployment.address, port});
+  };
+  add(kGroundStation);
+  for (const ScenarioVehicle& vehicle : scenario.vehicles) add(vehicle.spec.id);
+  return nodes;
+}
+
+NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes,
+                         const Deployment& deployment) {
+  NetworkConfig network{
+      deployment.domain_id, nodes[node].address, nodes[node].port, {}, deployment.transport_plugin};
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (i != node) network.peers.push_back(nodes[i]);
+  }
+  return network;
+}
+
+std::string folder_of(const Deployment& deployment, const std::string& name) {
+  return deployment.recording_folder.empty() ? "" : deployment.recording_folder + "/" + name;
+}
+
+}  // namespace
+
+std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deployment& deployment) {
+  const std::vector<NetworkPeer> nodes = nodes_of(scenario, deployment);
+  Random seeds{scenario.seed};
+  std::vector<VehicleConfig> configs;
+  for (const ScenarioVehicle& vehicle : scenario.vehicles) {
+    VehicleConfig config;
+    config.vehicle = vehicle.spec;
+    config.origin = scenario.origin;
+    config.start = vehicle.start;
+    config.search = vehicle.search;
+    config.flight_controller.wind = scenario.wind;
+    config.network = network_of(configs.size() + 1, nodes, deployment);
+    config.protocol = scenario.protocol;
+    for (const ScenarioHazard& hazard : scenario.hazards) {
+      if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
+    }
+    config.time = deployment.time;
+    config.recording_folder =
+        folder_of(deployment, "vehicle-" + std::to_string(vehicle.spec.id.value));
+    config.seed = seeds.next() >> 2U;  // the file holds numbers up to 9e18
+    configs.push_back(config);
+  }
+  return configs;
+}
+
+GroundConfig ground_config(const Scenario& scenario, const Deployment& deployment) {
+  GroundConfig config;
+  config.origin = scenario.origin;
+  config.network = network_of(0, nodes_of(scenario, deployment), deployment);
+  config.time = deployment.time;
+  for (const ScenarioVehicle& vehicle : scenario.vehicles) {
+    config.vehicles.push_back(vehicle.spec.id);
+  }
+  config.operator_decisions = scenario.operator_decisions;
+  config.recording_folder = folder_of(deployment, "ground");
+  return config;
+}
+
+}  // namespace skein::configuration

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/configuration/vehicle_config.hpp"
+
+namespace skein::configuration {
+
+/// How one run of a scenario is spread over processes of one machine. Node i (the ground station is
+/// node 0, the vehicles follow in the order of the file) has port port_base + 2 i.
+struct Deployment {
+  std::string address = "127.0.0.1";
+  std::uint16_t port_base = 17400;
+  std::uint16_t domain_id = 0;
+  std::string transport_plugin;
+  TimeConfig time;
+  std::string recording_folder;  ///< each process gets its own in it; empty: no recordings
+};
+
+/// The configuration of every vehicle process. Every node is a peer of every other. Vehicles know
+/// the hazards whose known_from is the epoch; the later ones must be reported to them. Each
+/// vehicle's seed is drawn from the scenario's. Precondition: the ports fit in 16 bits.
+[[nodiscard]] std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario,
+                                                         const Deployment& deployment);
+[[nodiscard]] GroundConfig ground_config(const Scenario& scenario, const Deployment& deployment);
+
+}  // namespace skein::configuration

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/frames.hpp"
+#include "skein/base/result.hpp"
+#include "skein/configuration/process_config.hpp"
+
+namespace skein::configuration {
+
+/// Everything that skein-ground needs to know (docs/configuration.md).
+struct GroundConfig {
+  Wgs84 origin;
+  NetworkConfig network;
+  TimeConfig time;
+  std::vector<VehicleId> vehicles;  ///< the fleet that is expected
+  /// Empty: the operator types at the prompt.
+  std::vector<OperatorDecision> operator_decisions;
+  std::string recording_folder;  ///< empty: nothing is recorded
+};
+
+/// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
+[[nodiscard]] Result<GroundConfig> load_ground_config(const std::filesystem::path& file);
+/// As above, from text; `name` stands for the file in messages.
+[[nodiscard]] Result<GroundConfig> parse_ground_config(std::string_view yaml,
+                                                       const std::string& name);
+/// What load_ground_config reads back as the same struct.
+[[nodiscard]] std::string to_yaml(const GroundConfig& config);
+
+}  // namespace skein::configuration

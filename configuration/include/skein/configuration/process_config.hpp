@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+
+/// What people configure, as plain structs: SI units, radians from east, durations. The YAML files
+/// say compass degrees, metres and seconds, with the unit in the key (docs/configuration.md).
+namespace skein::configuration {
+
+/// A node of the mission network that this one may hear. The ground station is vehicle 0.
+struct NetworkPeer {
+  VehicleId id;
+  std::string address = "127.0.0.1";  ///< IPv4
+  std::uint16_t port = 0;             ///< UDP
+  friend bool operator==(const NetworkPeer&, const NetworkPeer&) = default;
+};
+
+struct NetworkConfig {
+  std::uint16_t domain_id = 0;  ///< DDS domain
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 7400;  ///< UDP, for discovery; port + 1 is for data
+  std::vector<NetworkPeer> peers;
+  std::string transport_plugin;  ///< a shared library; empty: plain UDP
+  friend bool operator==(const NetworkConfig&, const NetworkConfig&) = default;
+};
+
+/// Mission time = (system time - epoch) * rate.
+struct TimeConfig {
+  std::int64_t epoch_unix_ns = 0;  ///< 0: the moment the process starts
+  double rate = 1.0;
+  friend bool operator==(const TimeConfig&, const TimeConfig&) = default;
+};
+
+/// A decision that a script takes in the operator's place, when a request for that site arrives.
+struct OperatorDecision {
+  SiteId site;
+  bool grant = true;
+  Duration reaction = std::chrono::seconds{2};  ///< from the request to the decision
+  Instant not_before{};
+  friend bool operator==(const OperatorDecision&, const OperatorDecision&) = default;
+};
+
+}  // namespace skein::configuration

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/frames.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/process_config.hpp"
+#include "skein/configuration/vehicle_config.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/vehicle.hpp"
+
+namespace skein::configuration {
+
+/// The radio between the nodes.
+struct RadioConfig {
+  double range_m = 1500.0;          ///< vehicle to vehicle; beyond it nothing arrives
+  double ground_range_m = 20000.0;  ///< ground station to vehicle
+  Duration delay_mean = std::chrono::milliseconds{60};
+  Duration delay_jitter = std::chrono::milliseconds{30};  ///< delays lie within mean +- jitter
+  double loss_ratio = 0.0;                                ///< of messages, independently
+};
+
+/// One vehicle of the fleet, the three levels of the file already merged.
+struct ScenarioVehicle {
+  std::string type;
+  VehicleSpec spec;
+  Pose2 start;
+  std::vector<Vec2> search;  ///< flown in order; the vehicle orbits the last point
+};
+
+struct ScenarioHazard {
+  Hazard hazard;
+  Instant known_from{};  ///< at the epoch: known before the mission
+};
+
+enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss };
+
+/// Something that goes wrong.
+struct Fault {
+  Instant at{};
+  FaultKind kind = FaultKind::kill_vehicle;
+  Duration duration{};                         ///< of a partition or of loss
+  VehicleId vehicle;                           ///< that is killed
+  std::vector<std::vector<VehicleId>> groups;  ///< that hear themselves only; 0 = ground station
+  double loss_ratio = 0.0;                     ///< in place of the radio's
+};
+
+/// Published values of one site, to be printed beside ours. Mission time.
+struct ReferenceSite {
+  SiteId site;
+  std::optional<VehicleId> found_by;
+  std::optional<double> survey_done_s;
+  std::optional<double> formed_s;
+  std::optional<int> coalition_size;
+  std::vector<double> delivery_times_s;
+  std::optional<double> assessment_done_s;
+  std::optional<double> allocation_time_s;
+};
+
+/// What the judges hold a run to.
+struct Expectations {
+  double delivery_spread_s = 1.0;  ///< between the first and the last of simultaneous deliveries
+  double slot_error_s = 1.0;       ///< of a sequential delivery
+  double bearing_error_rad = radians(5.0);
+  double miss_distance_m = 30.0;  ///< horizontal, passing over the site
+  double assess_start_error_s = 1.0;
+  double separation_horizontal_m = 20.0;    ///< two vehicles closer than this ...
+  double separation_vertical_m = 5.0;       ///< ... are at least that far apart in height
+  int coalitions = 0;                       ///< that form and finish
+  std::vector<SiteId> first_attempt_fails;  ///< sites whose leader has to monitor first
+  std::vector<VehicleId> vehicles_lost;     ///< by faults
+};
+
+/// A mission: the fleet, the sites, the world and what must come out (docs/scenarios.md).
+struct Scenario {
+  std::string title;
+  std::string notes;
+  std::uint64_t seed = 1;
+  Wgs84 origin;
+  Duration duration_max = std::chrono::seconds{300};
+  RadioConfig radio;
+  WindConfig wind;
+  coalition::ProtocolParams protocol;
+  std::vector<ScenarioVehicle> vehicles;
+  std::vector<Site> sites;
+  std::vector<ScenarioHazard> hazards;
+  std::vector<OperatorDecision> operator_decisions;
+  std::vector<Fault> faults;
+  std::vector<ReferenceSite> reference;
+  Expectations expect;
+};
+
+/// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
+/// Call check() too: it finds what is well written and cannot be flown.
+[[nodiscard]] Result<Scenario> load_scenario(const std::filesystem::path& file);
+/// As above, from text; `name` stands for the file in messages.
+[[nodiscard]] Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name);
+/// What load_scenario reads back as the same struct.
+[[nodiscard]] std::string to_yaml(const Scenario& scenario);
+
+/// Finds missions that no planner could fly: missing capabilities, loads or range, hazards on
+/// starts, sites and final approaches, vehicles of one height, a radio slower than the protocol
+/// allows, names of vehicles and sites that do not exist. Fails with one sentence a line.
+[[nodiscard]] Result<void> check(const Scenario& scenario);
+
+}  // namespace skein::configuration

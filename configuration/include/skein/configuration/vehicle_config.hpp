@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/frames.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/base/result.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/process_config.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/vehicle.hpp"
+
+namespace skein::configuration {
+
+/// A steady wind and its gusts, in the horizontal plane.
+struct WindConfig {
+  double speed_mps = 0.0;
+  double from_rad = kPi / 2.0;  ///< the direction that it comes from, radians from east
+  double gust_mps = 0.0;        ///< standard deviation of the turbulence
+};
+
+enum class FlightControllerKind : std::uint8_t { simulated, count };
+
+struct FlightControllerConfig {
+  FlightControllerKind kind = FlightControllerKind::simulated;
+  WindConfig wind;  ///< of the simulated flight controller
+};
+
+/// Everything that skein-onboard needs to know (docs/configuration.md).
+struct VehicleConfig {
+  VehicleSpec vehicle;
+  Wgs84 origin;
+  Pose2 start;
+  std::vector<Vec2> search;  ///< flown in order; the vehicle orbits the last point
+  FlightControllerConfig flight_controller;
+  NetworkConfig network;
+  coalition::ProtocolParams protocol;
+  std::vector<Hazard> hazards;  ///< known before the mission
+  TimeConfig time;
+  std::string recording_folder;  ///< empty: nothing is recorded
+  std::uint64_t seed = 1;
+};
+
+/// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
+[[nodiscard]] Result<VehicleConfig> load_vehicle_config(const std::filesystem::path& file);
+/// As above, from text; `name` stands for the file in messages.
+[[nodiscard]] Result<VehicleConfig> parse_vehicle_config(std::string_view yaml,
+                                                         const std::string& name);
+/// What load_vehicle_config reads back as the same struct.
+[[nodiscard]] std::string to_yaml(const VehicleConfig& config);
+
+}  // namespace skein::configuration

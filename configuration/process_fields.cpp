@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "process_fields.hpp"
+
+#include <array>
+
+namespace skein::configuration {
+namespace {
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(TaskKind::count)> kTaskKinds{
+    "survey", "deliver", "assess"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(FlightControllerKind::count)>
+    kFlightControllers{"simulated"};
+constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
+constexpr Range kPort{1.0, 65535.0};
+
+void capabilities(FieldVisitor& v, const Field& field, Capabilities& value) {
+  std::vector<std::size_t> kinds;
+  for (std::size_t k = 0; k < kTaskKinds.size(); ++k) {
+    if (value.has(static_cast<TaskKind>(k))) kinds.push_back(k);
+  }
+  v.list(field, list_of(kinds, kTaskKinds.size(), [](FieldVisitor& inner, std::size_t& kind) {
+           inner.choice({}, kTaskKinds, kind);
+         }));
+  value = {};
+  for (const std::size_t kind : kinds) value.add(static_cast<TaskKind>(kind));
+}
+
+void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config) {
+  auto kind = static_cast<std::size_t>(config.kind);
+  v.choice({"kind", "what flies the vehicle"}, kFlightControllers, kind);
+  config.kind = static_cast<FlightControllerKind>(kind);
+  wind_fields(v, config.wind, "wind_");
+}
+
+}  // namespace
+
+void version_field(FieldVisitor& v) {
+  std::int64_t version = kVersion;
+  v.integer({"version", "of this format; always 1", kRequired}, {0.0, 1e9}, version);
+  v.require(version == kVersion, "version",
+            "this program reads version 1 only; write 1 and compare the keys with the reference");
+}
+
+void origin_section(FieldVisitor& v, Wgs84& origin) {
+  v.section({"origin", "of the mission frame: WGS84", kRequired}, [&origin](FieldVisitor& inner) {
+    inner.number({"latitude_deg", "north positive", kRequired}, {-90.0, 90.0, "deg"},
+                 origin.latitude_deg);
+    inner.number({"longitude_deg", "east positive", kRequired}, {-180.0, 180.0, "deg"},
+                 origin.longitude_deg);
+    inner.number({"height_m", "above the ellipsoid"}, {-500.0, 9000.0, "m"}, origin.height_m);
+  });
+}
+
+void wind_fields(FieldVisitor& v, WindConfig& wind, const std::string& prefix) {
+  const std::string speed = prefix + "speed_mps";
+  const std::string from = prefix + "from_deg";
+  v.number({speed, "steady wind"}, {0.0, 60.0, "m/s"}, wind.speed_mps);
+  compass(v, {from, "compass direction that the wind comes from"}, wind.from_rad);
+  v.number({"gust_mps", "standard deviation of the gusts"}, {0.0, 20.0, "m/s"}, wind.gust_mps);
+}
+
+void pose_fields(FieldVisitor& v, Pose2& pose) {
+  v.number({"east_m", "start position, east of the origin", kRequired}, kMetres, pose.x_m);
+  v.number({"north_m", "start position, north of the origin", kRequired}, kMetres, pose.y_m);
+  compass(v, {"heading_deg", "compass heading at the start", kRequired}, pose.heading_rad);
+}
+
+void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
+  id(v, {"id", "number of the vehicle, its own in the fleet", kRequired}, spec.id);
+  v.number({"cruise_speed_mps", "speed that paths are planned at", kRequired}, {1.0, 200.0, "m/s"},
+           spec.cruise_speed_mps);
+  v.number({"speed_min_mps", "least airspeed", kRequired}, {0.5, 200.0, "m/s"}, spec.speed_min_mps);
+  v.number({"speed_max_mps", "greatest airspeed", kRequired}, {1.0, 300.0, "m/s"},
+           spec.speed_max_mps);
+  v.require(
+      spec.speed_min_mps <= spec.cruise_speed_mps && spec.cruise_speed_mps <= spec.speed_max_mps,
+      "cruise_speed_mps", "must lie between speed_min_mps and speed_max_mps; mend one of them");
+  v.number({"turn_radius_m", "least turn radius, at cruise speed", kRequired}, {1.0, 5000.0, "m"},
+           spec.turn_radius_m);
+  v.number({"turn_radius_margin", "paths are planned at this many times the turn radius"},
+           {1.0, 3.0}, spec.turn_radius_margin);
+  v.number({"heading_gain_per_s", "of the autopilot: turn rate per radian of heading error"},
+           {0.05, 20.0, "1/s"}, spec.heading_gain_per_s);
+  v.number({"range_m", "distance that the vehicle can fly", kRequired}, {100.0, 1e7, "m"},
+           spec.range_m);
+  capabilities(v, {"capabilities", "tasks that the vehicle can do", kRequired}, spec.capabilities);
+  v.number({"sensor_radius_m", "detects sites within it and surveys on a circle of it"},
+           {0.0, 20000.0, "m"}, spec.sensor_radius_m);
+  v.number({"assess_radius_m", "assesses on a circle of it"}, {0.0, 20000.0, "m"},
+           spec.assess_radius_m);
+  whole(v, {"loads", "deliveries on board"}, {0.0, 255.0}, spec.loads);
+  v.number({"final_approach_m", "straight run into a delivery"}, {0.0, 20000.0, "m"},
+           spec.final_approach_m);
+  v.number({"height_m", "the vehicle's layer, above the origin", kRequired}, {0.0, 10000.0, "m"},
+           spec.height_m);
+}
+
+void search_list(FieldVisitor& v, std::vector<Vec2>& search) {
+  v.list({"search", "points of the search route; the vehicle orbits the last one"},
+         list_of(search, kListMax,
+                 [](FieldVisitor& inner, Vec2& point) { inner.point({}, kMetres, point); }));
+}
+
+void hazard_fields(FieldVisitor& v, Hazard& hazard) {
+  id(v, {"id", "number of the hazard, its own", kRequired}, hazard.id);
+  v.number({"east_m", "centre", kRequired}, kMetres, hazard.centre.x());
+  v.number({"north_m", "centre", kRequired}, kMetres, hazard.centre.y());
+  v.number({"radius_m", "no path enters it", kRequired}, {1.0, 1e5, "m"}, hazard.radius_m);
+}
+
+void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
+  const Range short_time{0.001, 60.0, "s"};
+  const Range long_time{0.1, 600.0, "s"};
+  v.number({"radio_range_m", "a bidder stays within it of the leader until the coalition stands"},
+           {10.0, 1e6, "m"}, p.radio_range_m);
+  seconds(v, {"message_delay_s", "longest delay of a message"}, short_time, p.message_delay);
+  seconds(v, {"allocation_time_s", "time to allocate the tasks"}, short_time, p.allocation_time);
+  seconds(v, {"formation_margin_s", "margin in the time to form a coalition"}, {0.0, 60.0, "s"},
+          p.margin);
+  seconds(v, {"lease_s", "how far one renewal reaches"}, long_time, p.lease);
+  seconds(v, {"heartbeat_s", "of leader and members"}, long_time, p.heartbeat);
+  seconds(v, {"silence_s", "after it a member counts as lost"}, long_time, p.silence);
+  v.require(p.heartbeat < p.silence && p.silence < p.lease, "silence_s",
+            "must be longer than heartbeat_s and shorter than lease_s; mend one of them");
+  seconds(v, {"clock_guard_s", "largest difference of two clocks"}, {0.0, 60.0, "s"},
+          p.clock_guard);
+  seconds(v, {"monitoring_interval_s", "between two attempts of a leader to form a coalition"},
+          long_time, p.monitoring_interval);
+  seconds(v, {"authorisation_lead_s", "time that the operator has at least to decide"},
+          {0.0, 600.0, "s"}, p.authorisation_lead);
+}
+
+void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions) {
+  v.list({"operator_decisions",
+          "taken by the script in the operator's place; without any the operator types them"},
+         groups_of(decisions, kListMax, [](FieldVisitor& inner, OperatorDecision& decision) {
+           id(inner, {"site", "that the decision is for", kRequired}, decision.site);
+           std::size_t grant = decision.grant ? 1 : 0;
+           inner.choice({"decision", "on the request", kRequired}, kDecisions, grant);
+           decision.grant = grant == 1;
+           seconds(inner, {"reaction_s", "from the request to the decision"}, kSeconds,
+                   decision.reaction);
+           seconds(inner, {"not_before_s", "mission time before which nothing is decided"},
+                   kSeconds, decision.not_before);
+         }));
+}
+
+namespace {
+
+void network_fields(FieldVisitor& v, NetworkConfig& network) {
+  whole(v, {"domain_id", "DDS domain"}, {0.0, 230.0}, network.domain_id);
+  v.text({"address", "IPv4 address of this node"}, network.address);
+  whole(v, {"port", "UDP port of this node; the next one is used too", kRequired}, kPort,
+        network.port);
+  v.list({"peers", "the nodes that this one may hear"},
+         unique_groups_of(
+             network.peers, kListMax,
+             [](FieldVisitor& inner, NetworkPeer& peer) {
+               id(inner, {"id", "of the vehicle; 0 is the ground station", kRequired}, peer.id, 0);
+               inner.text({"address", "IPv4 address"}, peer.address);
+               whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
+             },
+             "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
+  v.text({"transport_plugin", "shared library that carries the messages; empty: plain UDP"},
+         network.transport_plugin);
+}
+
+void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
+                    std::string& recording_folder) {
+  v.section({"network", "the mission network", kRequired},
+            [&network](FieldVisitor& inner) { network_fields(inner, network); });
+  v.section({"time", "mission time"}, [&time](FieldVisitor& inner) {
+    inner.integer({"epoch_unix_ns", "mission time zero, Unix time; 0: when the process starts"},
+                  {0.0, 9e18, "ns"}, time.epoch_unix_ns);
+    inner.number({"rate", "mission seconds in a second"}, {0.01, 100.0}, time.rate);
+  });
+  v.text({"recording_folder", "where the process writes what happened; empty: nowhere"},
+         recording_folder);
+}
+
+}  // namespace
+
+void fields(FieldVisitor& v, VehicleConfig& config) {
+  version_field(v);
+  v.section({"vehicle", "what it is", kRequired},
+            [&config](FieldVisitor& inner) { spec_fields(inner, config.vehicle); });
+  origin_section(v, config.origin);
+  v.section({"start", "where it starts", kRequired},
+            [&config](FieldVisitor& inner) { pose_fields(inner, config.start); });
+  search_list(v, config.search);
+  v.section({"flight_controller", "what flies it"}, [&config](FieldVisitor& inner) {
+    flight_controller_fields(inner, config.flight_controller);
+  });
+  v.section({"protocol", "the contract net; the same for the whole fleet"},
+            [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });
+  v.list({"hazards", "known before the mission"},
+         unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
+                          [](const Hazard& hazard) { return hazard.id.value; }));
+  process_fields(v, config.network, config.time, config.recording_folder);
+  whole(v, {"seed", "of the vehicle's generators"}, {0.0, 9e18}, config.seed);
+}
+
+void fields(FieldVisitor& v, GroundConfig& config) {
+  version_field(v);
+  origin_section(v, config.origin);
+  ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
+  operator_decisions_list(v, config.operator_decisions);
+  process_fields(v, config.network, config.time, config.recording_folder);
+}
+
+}  // namespace skein::configuration

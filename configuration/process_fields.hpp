@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "field_types.hpp"
+#include "skein/base/frames.hpp"
+#include "skein/coalition/protocol_params.hpp"
+
+/// The parts that several tables share.
+namespace skein::configuration {
+
+inline constexpr int kVersion = 1;
+
+void version_field(FieldVisitor& v);
+void origin_section(FieldVisitor& v, Wgs84& origin);
+void wind_fields(FieldVisitor& v, WindConfig& wind, const std::string& prefix);
+void pose_fields(FieldVisitor& v, Pose2& pose);
+void spec_fields(FieldVisitor& v, VehicleSpec& spec);
+void search_list(FieldVisitor& v, std::vector<Vec2>& search);
+void hazard_fields(FieldVisitor& v, Hazard& hazard);
+void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);
+void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
+
+}  // namespace skein::configuration

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "number_text.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/configuration/scenario.hpp"
+
+namespace skein::configuration {
+namespace {
+
+std::string rounded(double value) { return number_text(std::round(value * 10.0) / 10.0); }
+std::string milliseconds(Duration d) { return rounded(static_cast<double>(d.count()) * 1e-6); }
+std::string name(const ScenarioVehicle& v) { return "vehicle " + std::to_string(v.spec.id.value); }
+std::string name(const Site& s) { return "site " + std::to_string(s.id.value); }
+std::string name(const ScenarioHazard& h) { return "hazard " + std::to_string(h.hazard.id.value); }
+std::string counted(std::size_t n, const std::string& one, const std::string& many) {
+  return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+/// Collects one sentence for each thing that no planner could mend.
+class Check {
+ public:
+  explicit Check(const Scenario& scenario) : s_{scenario} {}
+
+  Result<void> run() {
+    check_numbers();
+    for (const ScenarioVehicle& vehicle : s_.vehicles) check_vehicle(vehicle);
+    check_heights();
+    for (const Site& site : s_.sites) check_site(site);
+    check_names();
+    check_faults();
+    if (problems_.empty()) return {};
+    return Error{problems_};
+  }
+
+ private:
+  void problem(const std::string& sentence) {
+    if (!problems_.empty()) problems_ += '\n';
+    problems_ += sentence;
+  }
+
+  void check_numbers() {
+    if (s_.vehicles.empty()) problem("the fleet has no vehicle; add one under vehicles");
+    if (s_.sites.empty()) problem("the mission has no site; add one under sites");
+    const Duration slowest = s_.radio.delay_mean + s_.radio.delay_jitter;
+    if (slowest > s_.protocol.message_delay) {
+      problem("the radio delays messages by up to " + milliseconds(slowest) +
+              " ms, the protocol allows " + milliseconds(s_.protocol.message_delay) +
+              " ms; lower radio.delay_ms_mean or raise protocol.message_delay_s");
+    }
+    if (s_.expect.coalitions > static_cast<int>(s_.sites.size())) {
+      problem("expect.coalitions is " + std::to_string(s_.expect.coalitions) +
+              ", but there are only " + counted(s_.sites.size(), "site", "sites") + "; lower it");
+    }
+  }
+
+  void check_vehicle(const ScenarioVehicle& v) {
+    const VehicleSpec& spec = v.spec;
+    const auto needs_arc = [&](TaskKind kind, double radius_m, const std::string& key) {
+      if (!spec.capabilities.has(kind) || radius_m >= spec.planning_radius_m()) return;
+      problem(name(v) + " cannot fly circles of its " + key + " " + rounded(radius_m) +
+              " m: it turns on " + rounded(spec.planning_radius_m()) +
+              " m (turn_radius_m * turn_radius_margin); raise " + key);
+    };
+    needs_arc(TaskKind::survey, spec.sensor_radius_m, "sensor_radius_m");
+    needs_arc(TaskKind::assess, spec.assess_radius_m, "assess_radius_m");
+    if (spec.capabilities.has(TaskKind::deliver) && spec.loads == 0) {
+      problem(name(v) + " can deliver but has no loads; give it loads or take the capability away");
+    }
+    if (s_.wind.speed_mps + s_.wind.gust_mps >= spec.speed_min_mps) {
+      problem(name(v) + " cannot hold its course: the wind of " +
+              rounded(s_.wind.speed_mps + s_.wind.gust_mps) +
+              " m/s with gusts reaches its speed_min_mps " + rounded(spec.speed_min_mps) +
+              " m/s; lower the wind");
+    }
+    for (const ScenarioHazard& h : s_.hazards) {
+      if ((v.start.position() - h.hazard.centre).norm() < h.hazard.radius_m) {
+        problem(name(v) + " starts inside " + name(h) + "; move one of them");
+      }
+      for (const Vec2& point : v.search) {
+        if ((point - h.hazard.centre).norm() < h.hazard.radius_m) {
+          problem("the search route of " + name(v) + " has the point [" + rounded(point.x()) +
+                  ", " + rounded(point.y()) + "] inside " + name(h) + "; move one of them");
+        }
+      }
+    }
+  }
+
+  void check_heights() {
+    for (std::size_t i = 0; i < s_.vehicles.size(); ++i) {
+      for (std::size_t j = i + 1; j < s_.vehicles.size(); ++j) {
+        const double apart = std::abs(s_.vehicles[i].spec.height_m - s_.vehicles[j].spec.height_m);
+        if (apart >= s_.expect.separation_vertical_m) continue;
+        problem(name(s_.vehicles[i]) + " and " + name(s_.vehicles[j]) + " fly only " +
+                rounded(apart) + " m apart in height, expect.separation_vertical_m is " +
+                rounded(s_.expect.separation_vertical_m) + " m; give each its own height_m");
+      }
+    }
+  }
+
+  /// Can the vehicle get to the site at all, by the straight line?
+  [[nodiscard]] bool reaches(const ScenarioVehicle& v, const Site& site) const {
+    return (v.start.position() - site.position).norm() <= v.spec.range_m;
+  }
+
+  void check_site(const Site& site) {
+    std::size_t surveyors = 0;
+    std::size_t surveyors_in_range = 0;
+    std::size_t deliverers = 0;
+    std::size_t assessors = 0;
+    std::size_t either = 0;
+    for (const ScenarioVehicle& v : s_.vehicles) {
+      const bool survey = v.spec.capabilities.has(TaskKind::survey);
+      const double arc_m = v.spec.cruise_speed_mps * to_seconds(site.survey.dwell);
+      const double way_m = (v.start.position() - site.position).norm() - v.spec.sensor_radius_m;
+      surveyors += survey ? 1U : 0U;
+      surveyors_in_range += survey && way_m + arc_m <= v.spec.range_m ? 1U : 0U;
+      const bool deliver =
+          v.spec.capabilities.has(TaskKind::deliver) && v.spec.loads > 0 && reaches(v, site);
+      const bool assess = v.spec.capabilities.has(TaskKind::assess) && reaches(v, site);
+      deliverers += deliver ? 1U : 0U;
+      assessors += assess ? 1U : 0U;
+      either += deliver || assess ? 1U : 0U;
+    }
+    const std::size_t d = site.deliveries.size();
+    const std::size_t a = site.assessments.size();
+    if (surveyors == 0) {
+      problem(name(site) +
+              " cannot be surveyed: no vehicle has the capability survey; give it to one");
+    } else if (surveyors_in_range == 0) {
+      problem(
+          name(site) + " cannot be surveyed: none of the " +
+          counted(surveyors, "vehicle", "vehicles") +
+          " that can survey has the range to fly there and around it; raise range_m or move one");
+    }
+    if (deliverers < d) {
+      problem(name(site) + " needs " + counted(d, "delivery", "deliveries") +
+              ", but the whole fleet has only " + counted(deliverers, "vehicle", "vehicles") +
+              " with the capability deliver, a load and the range; add vehicles or take deliveries "
+              "away");
+    }
+    if (assessors < a) {
+      problem(name(site) + " needs " + counted(a, "assessment", "assessments") +
+              ", but the whole fleet has only " + counted(assessors, "vehicle", "vehicles") +
+              " with the capability assess and the range; add vehicles or take assessments away");
+    }
+    if (deliverers >= d && assessors >= a && either < d + a) {
+      problem(name(site) + " needs " + counted(d, "delivery", "deliveries") + " and " +
+              counted(a, "assessment", "assessments") + ", one task a vehicle, but only " +
+              counted(either, "vehicle", "vehicles") + " can do either; add vehicles");
+    }
+    check_hazards_of(site);
+  }
+
+  void check_hazards_of(const Site& site) {
+    double approach_m = 0.0;  // the least among those who can deliver
+    for (const ScenarioVehicle& v : s_.vehicles) {
+      if (!v.spec.capabilities.has(TaskKind::deliver)) continue;
+      approach_m = approach_m == 0.0 ? v.spec.final_approach_m
+                                     : std::min(approach_m, v.spec.final_approach_m);
+    }
+    for (const ScenarioHazard& h : s_.hazards) {
+      const Hazard& hazard = h.hazard;
+      if ((site.position - hazard.centre).norm() < hazard.radius_m) {
+        problem(name(site) + " lies inside " + name(h) + "; move one of them");
+        continue;
+      }
+      for (const DeliveryRequirement& delivery : site.deliveries) {
+        const Pose2 over{site.position.x(), site.position.y(), delivery.bearing_rad};
+        const Pose2 entry = advance(over, 0.0, -approach_m);
+        if (distance_to_piece(hazard.centre, entry, 0.0, approach_m) < hazard.radius_m) {
+          problem("the final approach to " + name(site) + " on bearing " +
+                  rounded(compass_deg_from_heading(delivery.bearing_rad)) + " deg crosses " +
+                  name(h) + "; move one of them or change the bearing");
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool has_vehicle(VehicleId id) const {
+    return std::any_of(s_.vehicles.begin(), s_.vehicles.end(),
+                       [id](const ScenarioVehicle& v) { return v.spec.id == id; });
+  }
+  void need_vehicle(VehicleId id, const std::string& where) {
+    if (!has_vehicle(id)) {
+      problem(where + " names vehicle " + std::to_string(id.value) + ", which is not in the fleet");
+    }
+  }
+  void need_site(SiteId id, const std::string& where) {
+    if (std::none_of(s_.sites.begin(), s_.sites.end(),
+                     [id](const Site& site) { return site.id == id; })) {
+      problem(where + " names site " + std::to_string(id.value) + ", which is not among the sites");
+    }
+  }
+
+  void check_names() {
+    for (const OperatorDecision& d : s_.operator_decisions) need_site(d.site, "operator_decisions");
+    for (const ReferenceSite& r : s_.reference) {
+      need_site(r.site, "reference");
+      if (r.found_by) need_vehicle(*r.found_by, "reference");
+    }
+    for (const SiteId id : s_.expect.first_attempt_fails)
+      need_site(id, "expect.first_attempt_fails");
+    for (const VehicleId id : s_.expect.vehicles_lost) need_vehicle(id, "expect.vehicles_lost");
+  }
+
+  void check_faults() {
+    for (const Fault& fault : s_.faults) {
+      const std::string at = "the fault at " + number_text(to_seconds(fault.at)) + " s";
+      if (to_seconds(fault.at) >= to_seconds(s_.duration_max)) {
+        problem(at + " comes after duration_max_s; move one of them");
+      }
+      if (fault.kind == FaultKind::kill_vehicle) need_vehicle(fault.vehicle, at);
+      std::set<VehicleId> seen;
+      for (const std::vector<VehicleId>& group : fault.groups) {
+        for (const VehicleId id : group) {
+          if (id != kGroundStation) need_vehicle(id, at);
+          if (!seen.insert(id).second) {
+            problem(at + " has vehicle " + std::to_string(id.value) +
+                    " in two groups; leave it in one");
+          }
+        }
+      }
+    }
+  }
+
+  const Scenario& s_;
+  std::string problems_;
+};
+
+}  // namespace
+
+Result<void> check(const Scenario& scenario) { return Check{scenario}.run(); }
+
+}  // namespace skein::configuration

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+
+#include "process_fields.hpp"
+
+namespace skein::configuration {
+namespace {
+
+constexpr std::array<std::string_view, 2> kDeliveryModes{"simultaneous", "sequential"};
+
+void radio_fields(FieldVisitor& v, RadioConfig& radio) {
+  v.number({"range_m", "vehicle to vehicle; beyond it nothing arrives"}, {10.0, 1e6, "m"},
+           radio.range_m);
+  v.number({"ground_range_m", "ground station to vehicle"}, {10.0, 1e6, "m"}, radio.ground_range_m);
+  milliseconds(v, {"delay_ms_mean", "of a message"}, {0.0, 60000.0, "ms"}, radio.delay_mean);
+  milliseconds(v, {"delay_ms_jitter", "delays lie within mean +- jitter"}, {0.0, 60000.0, "ms"},
+               radio.delay_jitter);
+  v.require(radio.delay_jitter <= radio.delay_mean, "delay_ms_jitter",
+            "must not exceed delay_ms_mean; mend one of them");
+  v.number({"loss_ratio", "share of the messages that are lost"}, {0.0, 1.0}, radio.loss_ratio);
+}
+
+void delivery_fields(FieldVisitor& v, std::vector<DeliveryRequirement>& deliveries) {
+  Duration interval{};
+  std::vector<double> bearings;
+  for (const DeliveryRequirement& d : deliveries) bearings.push_back(d.bearing_rad);
+  if (deliveries.size() > 1) interval = deliveries[1].offset;
+  std::size_t mode = interval == Duration{} ? 0 : 1;
+  v.choice({"mode", "all at one time, or one after the other", kRequired}, kDeliveryModes, mode);
+  v.list(
+      {"bearings_deg", "compass direction of travel on arrival, one for each delivery", kRequired},
+      list_of(bearings, kTasksPerKindMax,
+              [](FieldVisitor& inner, double& bearing) { compass(inner, {}, bearing); }));
+  seconds(v, {"interval_s", "from one delivery to the next, when sequential"}, {0.0, 3600.0, "s"},
+          interval);
+  v.require((mode == 1) == (interval > Duration{}), "interval_s",
+            "must be above 0 s when the mode is sequential, and is left out when simultaneous");
+  deliveries.clear();
+  for (const double bearing : bearings) {
+    deliveries.push_back({bearing, static_cast<Duration::rep>(deliveries.size()) * interval});
+  }
+}
+
+void assessment_fields(FieldVisitor& v, Site& site) {
+  std::int64_t count = static_cast<std::int64_t>(site.assessments.size());
+  Duration dwell = site.assessments.empty() ? from_seconds(1.0) : site.assessments.front().dwell;
+  std::vector<double> angles;
+  for (const ArcRequirement& arc : site.assessments) {
+    if (arc.start_angle_rad) angles.push_back(*arc.start_angle_rad);
+  }
+  v.integer({"count", "of assessments", kRequired}, {0.0, static_cast<double>(kTasksPerKindMax)},
+            count);
+  seconds(v, {"wait_s", "from the last delivery to their start"}, {0.0, 3600.0, "s"},
+          site.assess_wait);
+  seconds(v, {"dwell_s", "length of each", kRequired}, {1.0, 3600.0, "s"}, dwell);
+  v.list({"start_angles_deg",
+          "compass direction of the vehicle as seen from the site when it starts, one for each "
+          "assessment; without any the vehicles choose"},
+         list_of(angles, kTasksPerKindMax,
+                 [](FieldVisitor& inner, double& angle_rad) { compass(inner, {}, angle_rad); }));
+  v.require(angles.empty() || angles.size() == static_cast<std::size_t>(count), "start_angles_deg",
+            "must have one angle for each assessment, or none; compare with count");
+  site.assessments.assign(static_cast<std::size_t>(count), {std::nullopt, dwell});
+  for (std::size_t i = 0; i < std::min(angles.size(), site.assessments.size()); ++i) {
+    site.assessments[i].start_angle_rad = angles[i];
+  }
+}
+
+void site_fields(FieldVisitor& v, Site& site) {
+  id(v, {"id", "number of the site, its own", kRequired}, site.id);
+  v.number({"east_m", "position", kRequired}, kMetres, site.position.x());
+  v.number({"north_m", "position", kRequired}, kMetres, site.position.y());
+  v.section({"survey", "an arc of the sensor radius around the site", kRequired},
+            [&site](FieldVisitor& inner) {
+              compass(inner,
+                      {"start_angle_deg",
+                       "compass direction of the vehicle as seen from the site when it starts; "
+                       "without it the vehicle chooses"},
+                      site.survey.start_angle_rad);
+              seconds(inner, {"dwell_s", "length of the survey", kRequired}, {1.0, 3600.0, "s"},
+                      site.survey.dwell);
+            });
+  v.section({"deliveries", "overflights of the site; left out: none"},
+            [&site](FieldVisitor& inner) { delivery_fields(inner, site.deliveries); });
+  v.section({"assessments", "arcs of the assess radius, after the last delivery; left out: none"},
+            [&site](FieldVisitor& inner) { assessment_fields(inner, site); });
+  v.number({"reward", "of each task, when done at once"}, {0.0, 1e9}, site.reward);
+  v.number({"reward_decay_per_s", "exponential decay of the reward"}, {0.0, 10.0, "1/s"},
+           site.reward_decay_per_s);
+}
+
+void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {
+  hazard_fields(v, hazard.hazard);
+  seconds(v, {"known_from_s", "mission time when the vehicles are told; 0: known before"}, kSeconds,
+          hazard.known_from);
+}
+
+void partition_list(FieldVisitor& v, std::vector<std::vector<VehicleId>>& groups) {
+  v.list({"partition", "groups of ids that hear only each other; 0 is the ground station"},
+         list_of(groups, kListMax, [](FieldVisitor& inner, std::vector<VehicleId>& group) {
+           ids(inner, {}, group, "vehicle", 0);
+         }));
+}
+
+void fault_fields(FieldVisitor& v, Fault& fault) {
+  std::optional<std::uint16_t> killed;
+  std::optional<double> loss;
+  if (fault.kind == FaultKind::kill_vehicle && fault.vehicle.value != 0)
+    killed = fault.vehicle.value;
+  if (fault.kind == FaultKind::loss) loss = fault.loss_ratio;
+  seconds(v, {"at_s", "mission time", kRequired}, kSeconds, fault.at);
+  seconds(v, {"for_s", "how long a partition or loss lasts"}, kSeconds, fault.duration);
+  whole(v, {"kill_vehicle", "id of the vehicle whose process is killed"}, {1.0, 65535.0}, killed);
+  partition_list(v, fault.groups);
+  v.number({"loss_ratio", "share of the messages that are lost meanwhile"}, {0.0, 1.0}, loss);
+  const int kinds = (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0);
+  v.require(
+      kinds == 1, "at_s",
+      "a fault has exactly one of kill_vehicle, partition and loss_ratio; split it or add one");
+  v.require(killed.has_value() || fault.duration > Duration{}, "for_s",
+            "a partition or loss lasts for some time; add for_s above 0 s");
+  if (killed) fault.vehicle = VehicleId{*killed};
+  if (loss) fault.loss_ratio = *loss;
+  fault.kind = killed ? FaultKind::kill_vehicle : (loss ? FaultKind::loss : FaultKind::partition);
+}
+
+void reference_fields(FieldVisitor& v, ReferenceSite& site) {
+  id(v, {"site", "that the values are of", kRequired}, site.site);
+  std::optional<std::uint16_t> finder;
+  if (site.found_by) finder = site.found_by->value;
+  whole(v, {"found_by", "id of the vehicle that surveyed it"}, {1.0, 65535.0}, finder);
+  site.found_by = finder ? std::optional{VehicleId{*finder}} : std::nullopt;
+  v.number({"survey_done_s", "mission time"}, kSeconds, site.survey_done_s);
+  v.number({"formed_s", "mission time when the coalition stood"}, kSeconds, site.formed_s);
+  whole(v, {"coalition_size", "vehicles in it"}, {1.0, 65535.0}, site.coalition_size);
+  v.list({"delivery_times_s", "mission times, in order"},
+         list_of(site.delivery_times_s, kTasksPerKindMax,
+                 [](FieldVisitor& inner, double& t) { inner.number({}, kSeconds, t); }));
+  v.number({"assessment_done_s", "mission time when the last one ended"}, kSeconds,
+           site.assessment_done_s);
+  v.number({"allocation_time_s", "how long the allocation took"}, kSeconds, site.allocation_time_s);
+}
+
+void expect_fields(FieldVisitor& v, Expectations& e) {
+  const Range limit_m{0.0, 1e5, "m"};
+  v.number({"delivery_spread_s", "most between the first and last simultaneous delivery"}, kSeconds,
+           e.delivery_spread_s);
+  v.number({"slot_error_s", "most from a sequential delivery to its slot"}, kSeconds,
+           e.slot_error_s);
+  angle(v, {"bearing_error_deg", "most between flown and required bearing"}, {0.0, 180.0, "deg"},
+        e.bearing_error_rad);
+  v.number({"miss_distance_m", "most between the site and a delivery"}, limit_m, e.miss_distance_m);
+  v.number({"assess_start_error_s", "most from the start of an assessment to its time"}, kSeconds,
+           e.assess_start_error_s);
+  v.number({"separation_horizontal_m", "two vehicles closer than this ..."}, limit_m,
+           e.separation_horizontal_m);
+  v.number({"separation_vertical_m", "... are at least that far apart in height"}, limit_m,
+           e.separation_vertical_m);
+  whole(v, {"coalitions", "that form and finish"}, {0.0, 1000.0}, e.coalitions);
+  ids(v, {"first_attempt_fails", "ids of sites whose leader must monitor before it can form"},
+      e.first_attempt_fails, "site");
+  ids(v, {"vehicles_lost", "ids of vehicles that faults end"}, e.vehicles_lost, "vehicle");
+}
+
+void world_fields(FieldVisitor& v, Scenario& s) {
+  origin_section(v, s.origin);
+  seconds(v, {"duration_max_s", "the run is stopped, and fails, at this mission time", kRequired},
+          {1.0, 86400.0, "s"}, s.duration_max);
+  v.section({"radio", "what lies between the nodes"},
+            [&s](FieldVisitor& inner) { radio_fields(inner, s.radio); });
+  v.section({"wind", "in the whole area"},
+            [&s](FieldVisitor& inner) { wind_fields(inner, s.wind, ""); });
+  v.section({"protocol", "the contract net"},
+            [&s](FieldVisitor& inner) { protocol_fields(inner, s.protocol); });
+}
+
+}  // namespace
+
+void fields(FieldVisitor& v, ScenarioVehicle& vehicle) {
+  v.text({"type", "one of `types`"}, vehicle.type);
+  spec_fields(v, vehicle.spec);
+  pose_fields(v, vehicle.start);
+  search_list(v, vehicle.search);
+}
+
+void fields(FieldVisitor& v, Scenario& s) {
+  version_field(v);
+  v.text({"title", "one line, shown in every report", kRequired}, s.title);
+  v.text({"notes", "what the mission is about, and why its numbers are what they are"}, s.notes);
+  whole(v, {"seed", "of everything random in the run"}, {0.0, 9e18}, s.seed);
+  world_fields(v, s);
+  v.fleet(s.vehicles);
+  v.list({"sites", "places with tasks; a vehicle finds one within its sensor radius", kRequired},
+         unique_groups_of(s.sites, kListMax, site_fields, "site",
+                          [](const Site& site) { return site.id.value; }));
+  v.list({"hazards", "circles to keep out of"},
+         unique_groups_of(s.hazards, kListMax, scenario_hazard_fields, "hazard",
+                          [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));
+  operator_decisions_list(v, s.operator_decisions);
+  v.list({"faults", "things that go wrong, on the time line"},
+         groups_of(s.faults, kListMax, fault_fields));
+  v.list({"reference", "published values, printed beside the run's"},
+         unique_groups_of(s.reference, kListMax, reference_fields, "site",
+                          [](const ReferenceSite& site) { return site.site.value; }));
+  v.section({"expect", "what the run is judged by"},
+            [&s](FieldVisitor& inner) { expect_fields(inner, s.expect); });
+}
+
+}  // namespace skein::configuration
