@@ -102,6 +102,9 @@ constexpr std::array kLineRules{
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",
              "a topic's name, type and QoS are one entry of the list in network (topics.hpp)"},
+    LineRule{"topic-name", is_cpp_outside_topics, LineRule::View::code_and_literals,
+             R"x("(rt/)?skein/[a-z_]+")x",
+             "a topic's name, type and QoS are one entry of the list in network (topics.hpp)"},
     LineRule{"unfinished", is_text_of_ours, LineRule::View::everything,
              R"(\b(TODO|FIXME|XXX|HACK)\b)", "finish it, or open an issue and say what is missing"},
     LineRule{"machine-path", is_text_of_ours, LineRule::View::everything,

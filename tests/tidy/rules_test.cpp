@@ -70,6 +70,8 @@ INSTANTIATE_TEST_SUITE_P(
         Sample{"dds-outside", kCore, "eprosima::fastrtps::Time_t t;", "int eprosima = 0;"},
         Sample{"qos-outside", "network/participant.cpp",
                "q.reliability().kind = RELIABLE_RELIABILITY_QOS;", "q = topic.qos;"},
+        Sample{"topic-name", kOnboard, "subscribe(\"skein/telemetry\");",
+               "#include \"skein/network/node.hpp\"\nsubscribe(Topic::telemetry);"},
         Sample{"unfinished", "docs/a.md", "TODO: the rest", "what is left to do"},
         Sample{"unfinished", kOnboard, "// FIXME", "// fixme not"},
         Sample{"machine-path", "docs/a.md", "see /home/ann/skein/notes", "see docs/home/notes"},
