@@ -90,7 +90,8 @@ struct Cancel {
 struct LeaseRenewal {
   Round round;
   std::vector<VehicleId> members;
-  std::vector<TaskId> done;  ///< the tasks that the leader knows to be done: need not be reported again
+  std::vector<TaskId>
+      done;  ///< the tasks that the leader knows to be done: need not be reported again
   Instant lease_until{};
 };
 
