@@ -166,7 +166,7 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
     for (Eigen::Index j = 0; j < choice.cols(); ++j) {
       const double arrival = table.arrival_s(i, j);
       if (!std::isfinite(arrival) ||
-          (is_delivery(i) && cost(i, j) > to_seconds(first - problem.start))) {
+          (is_delivery(i) && cost(i, j) > to_seconds(first - problem.start) + 1e-6)) {
         choice(i, j) = kInfinity;
       } else if (!is_delivery(i)) {
         choice(i, j) +=

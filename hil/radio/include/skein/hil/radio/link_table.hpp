@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+
+namespace skein::hil::radio {
+
+/// How one node hears another at this moment.
+struct Link {
+  bool up = true;
+  double loss = 0.0;  ///< probability, of each packet by itself
+  Duration delay{};   ///< real time
+  Duration jitter{};  ///< the delay varies by up to this, either way
+};
+
+/// The radio links between all nodes, in shared memory: written by the bench while the vehicles
+/// move, read by the radio in every process. Ids 0 (ground station) to 254; others pass untouched.
+/// Each field of a link is atomic; a reader may see the fields of two updates mixed, which a radio
+/// does not mind. Wait-free both ways.
+class LinkTable {
+ public:
+  static constexpr std::size_t kNodes = 255;
+
+  /// Makes the table under a new name ("/skein-radio-PID-N"); all links are up and perfect. The
+  /// name goes with the object.
+  [[nodiscard]] static Result<LinkTable> create();
+  /// Opens an existing table, read-only in spirit. Fails with the name where there is none.
+  [[nodiscard]] static Result<LinkTable> open(const std::string& name);
+
+  ~LinkTable();
+  LinkTable(LinkTable&& other) noexcept;
+  LinkTable& operator=(LinkTable&&) = delete;
+  LinkTable(const LinkTable&) = delete;
+  LinkTable& operator=(const LinkTable&) = delete;
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  void set(VehicleId from, VehicleId to, const Link& link);
+  [[nodiscard]] Link get(VehicleId from, VehicleId to) const;
+
+ private:
+  struct Cell {
+    std::atomic<std::uint32_t> up;
+    std::atomic<float> loss;
+    std::atomic<std::int64_t> delay_ns;
+    std::atomic<std::int64_t> jitter_ns;
+  };
+  static_assert(std::atomic<std::int64_t>::is_always_lock_free);
+  static_assert(std::atomic<float>::is_always_lock_free);
+  struct Table {
+    std::array<std::array<Cell, kNodes>, kNodes> cells;
+  };
+
+  LinkTable(std::string name, Table* table, bool owner)
+      : name_{std::move(name)}, table_{table}, owner_{owner} {}
+  [[nodiscard]] static Result<LinkTable> map(const std::string& name, bool create);
+
+  std::string name_;
+  Table* table_;
+  bool owner_;
+};
+
+}  // namespace skein::hil::radio

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/radio/link_table.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace skein::hil::radio {
+
+Result<LinkTable> LinkTable::create() {
+  static std::atomic<unsigned> number{0};
+  return map("/skein-radio-" + std::to_string(::getpid()) + "-" + std::to_string(++number), true);
+}
+
+Result<LinkTable> LinkTable::open(const std::string& name) { return map(name, false); }
+
+Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
+  const int flags = create ? O_CREAT | O_EXCL | O_RDWR : O_RDWR;
+  const int descriptor = ::shm_open(name.c_str(), flags, 0600);
+  if (descriptor < 0) {
+    return Error{"radio table " + name + ": " + std::strerror(errno) +
+                 (create ? "" : "; it is made by skein-hil, which must be running")};
+  }
+  const bool sized = !create || ::ftruncate(descriptor, sizeof(Table)) == 0;
+  void* memory =
+      sized ? ::mmap(nullptr, sizeof(Table), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0)
+            : MAP_FAILED;
+  const int reason = errno;
+  ::close(descriptor);
+  if (memory == MAP_FAILED) {
+    if (create) ::shm_unlink(name.c_str());
+    return Error{"radio table " + name + ": " + std::strerror(reason)};
+  }
+  LinkTable table{name, static_cast<Table*>(memory), create};
+  if (create) {  // fresh pages are zero: every link down
+    for (auto& row : table.table_->cells) {
+      for (auto& cell : row) cell.up = 1;
+    }
+  }
+  return table;
+}
+
+LinkTable::~LinkTable() {
+  if (table_ == nullptr) return;
+  ::munmap(table_, sizeof(Table));
+  if (owner_) ::shm_unlink(name_.c_str());
+}
+
+LinkTable::LinkTable(LinkTable&& other) noexcept
+    : name_{std::move(other.name_)},
+      table_{std::exchange(other.table_, nullptr)},
+      owner_{other.owner_} {}
+
+void LinkTable::set(VehicleId from, VehicleId to, const Link& link) {
+  if (from.value >= kNodes || to.value >= kNodes) return;
+  auto& cell = table_->cells[from.value][to.value];
+  cell.up.store(link.up ? 1 : 0, std::memory_order_relaxed);
+  cell.loss.store(static_cast<float>(link.loss), std::memory_order_relaxed);
+  cell.delay_ns.store(link.delay.count(), std::memory_order_relaxed);
+  cell.jitter_ns.store(link.jitter.count(), std::memory_order_relaxed);
+}
+
+Link LinkTable::get(VehicleId from, VehicleId to) const {
+  if (from.value >= kNodes || to.value >= kNodes) return {};
+  const auto& cell = table_->cells[from.value][to.value];
+  return {cell.up.load(std::memory_order_relaxed) != 0, cell.loss.load(std::memory_order_relaxed),
+          Duration{cell.delay_ns.load(std::memory_order_relaxed)},
+          Duration{cell.jitter_ns.load(std::memory_order_relaxed)}};
+}
+
+}  // namespace skein::hil::radio

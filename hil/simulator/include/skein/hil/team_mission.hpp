@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "skein/configuration/scenario.hpp"
+#include "skein/hil/team_simulator.hpp"
+
+namespace skein::hil {
+
+/// The scenario as the simulator flies it. Faults of the scenario's time line are for the bench and
+/// are left out.
+[[nodiscard]] TeamMission team_mission(const configuration::Scenario& scenario);
+
+/// The scripted decisions as the ground agent takes them.
+[[nodiscard]] std::vector<mission::ScriptedDecision> scripted_decisions(
+    const std::vector<configuration::OperatorDecision>& decisions);
+
+/// The wind's velocity and gusts as the models take them.
+[[nodiscard]] models::WindParams wind_params(const configuration::WindConfig& wind,
+                                             std::uint64_t seed);
+
+}  // namespace skein::hil
