@@ -104,11 +104,15 @@ void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard
   std::vector<double> marks;
   Pose2 from = route.start;
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
-    // Each point is passed on the way to the next, the last one as it is reached.
-    const bool last = i + 1 == waypoints.size();
-    const Vec2 along =
-        last ? Vec2{waypoints[i] - from.position()} : Vec2{waypoints[i + 1] - waypoints[i]};
-    const double heading = along.norm() > 1.0 ? std::atan2(along.y(), along.x()) : from.heading_rad;
+    // Each point is passed in the direction between those of arriving and leaving.
+    const Vec2 in = waypoints[i] - from.position();
+    Vec2 along = in.norm() > 1.0 ? Vec2{in.normalized()} : unit_vector(from.heading_rad);
+    if (i + 1 < waypoints.size()) {
+      const Vec2 out = waypoints[i + 1] - waypoints[i];
+      if (out.norm() > 1.0) along += out.normalized();
+    }
+    const double heading =
+        along.norm() > 0.01 ? std::atan2(along.y(), along.x()) : from.heading_rad;
     const Pose2 to{waypoints[i].x(), waypoints[i].y(), heading};
     const auto leg =
         planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
