@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/agent_loop.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/onboard/threads.hpp"
+#include "skein/process/event_text.hpp"
+
+namespace skein::onboard {
+
+AgentLoop::AgentLoop(const mission::VehicleAgentConfig& config, AgentLink link,
+                     ControlPorts& control, Planner& planner, EventRing& events, Instant now)
+    : agent_{config, now},
+      link_{std::move(link)},
+      control_{&control},
+      planner_{&planner},
+      events_{&events},
+      stepped_at_{now},
+      next_telemetry_{now} {}
+
+void AgentLoop::step(Instant now) {
+  stepped_at_ = now;
+  const bool flying = now >= Instant{};
+  if (const auto* newer = control_->state.read()) {
+    state_ = *newer;
+    has_state_ = true;
+    if (flying && state_.time >= Instant{}) {
+      agent_.on_state(state_, now);
+      hand_out();
+    }
+  }
+  for (int i = 0; i < kMessagesPerStep; ++i) {
+    const auto received = link_.receive();
+    if (!received) break;
+    agent_.on_message(received->message, received->sender, now);
+    hand_out();
+  }
+  while (const auto result = planner_->result()) {
+    agent_.on_planning_result(*result, now);
+    hand_out();
+  }
+  if (flying) {
+    agent_.on_timeout(now);
+    hand_out();
+  }
+  send_telemetry(now);
+}
+
+void AgentLoop::hand_out() {
+  while (const auto plan = agent_.poll_plan()) control_->plan.write(*plan);
+  while (const auto message = agent_.poll_message()) link_.send(*message);
+  while (auto request = agent_.poll_planning_request()) planner_->request(std::move(*request));
+  while (auto event = agent_.poll_event()) {
+    const bool warning = event->kind == mission::EventKind::warning;
+    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(*event));
+    events_->push(std::move(*event));
+  }
+}
+
+void AgentLoop::send_telemetry(Instant now) {
+  if (now < next_telemetry_ || !has_state_) return;
+  next_telemetry_ = Instant{(now.time_since_epoch() / kTelemetryPeriod + 1) * kTelemetryPeriod};
+  mission::Telemetry telemetry = agent_.telemetry();
+  telemetry.state = state_;
+  telemetry.control_overruns = control_->overruns.load(std::memory_order_relaxed);
+  std::uint64_t dropped = link_.dropped() + events_->dropped() + planner_->dropped();
+  for (const auto& [name, count] : agent_.counters()) dropped += count;
+  telemetry.messages_dropped = static_cast<std::uint32_t>(dropped);
+  link_.send(mission::Message{telemetry});
+}
+
+Instant AgentLoop::next_step() const {
+  const Instant next = std::min(stepped_at_ + spec_of(ThreadRole::agent).period, next_telemetry_);
+  // A timeout may lie in the past while the agent waits for something else.
+  const Instant timeout =
+      std::max(agent_.next_timeout(), stepped_at_ + std::chrono::milliseconds{5});
+  return std::min(next, timeout);
+}
+
+}  // namespace skein::onboard

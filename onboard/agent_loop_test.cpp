@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/agent_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <semaphore>
+#include <thread>
+#include <vector>
+
+#include "skein/onboard/threads.hpp"
+
+namespace skein::onboard {
+namespace {
+
+mission::VehicleAgentConfig config() {
+  mission::VehicleAgentConfig c;
+  c.vehicle.id = {4};
+  c.vehicle.cruise_speed_mps = 50.0;
+  c.vehicle.speed_min_mps = 40.0;
+  c.vehicle.speed_max_mps = 60.0;
+  c.vehicle.turn_radius_m = 100.0;
+  c.vehicle.range_m = 50000.0;
+  c.vehicle.sensor_radius_m = 300.0;
+  c.vehicle.assess_radius_m = 300.0;
+  c.vehicle.capabilities.add(TaskKind::survey);
+  c.instance = {99};
+  c.search = {{3000.0, 0.0}};
+  return c;
+}
+
+struct Cabin {
+  AgentLink link() {
+    return {.receive = [this]() -> std::optional<AgentLink::Received> {
+              if (inbox.empty()) return std::nullopt;
+              auto first = std::move(inbox.front());
+              inbox.pop_front();
+              return first;
+            },
+            .send = [this](const mission::Message& message) { sent.push_back(message); },
+            .dropped = [] { return std::uint64_t{3}; }};
+  }
+  template <class T>
+  std::vector<T> sent_of() const {
+    std::vector<T> found;
+    for (const auto& message : sent) {
+      if (const auto* wanted = std::get_if<T>(&message)) found.push_back(*wanted);
+    }
+    return found;
+  }
+  void step(double seconds) {
+    control.state.write(
+        VehicleState{.time = at_seconds(seconds), .groundspeed_mps = 50.0, .airspeed_mps = 50.0});
+    loop.step(at_seconds(seconds));
+  }
+
+  std::deque<AgentLink::Received> inbox;
+  std::vector<mission::Message> sent;
+  ControlPorts control;
+  Planner planner{[] {}};
+  EventRing events;
+  AgentLoop loop{config(), link(), control, planner, events, at_seconds(-5.0)};
+};
+
+TEST(AgentLoop, IsOnTheNetworkBeforeTheMissionButDoesNotFly) {
+  Cabin cabin;
+  for (int i = 0; i < 98; ++i) cabin.step(-5.0 + 0.05 * i);
+  EXPECT_NEAR(static_cast<double>(cabin.sent_of<mission::Telemetry>().size()), 49.0, 2.0);
+  EXPECT_EQ(cabin.control.plan.read(), nullptr);
+  cabin.step(0.05);
+  EXPECT_NE(cabin.control.plan.read(), nullptr);  // the search begins
+}
+
+TEST(AgentLoop, TelemetryCarriesStateAndHealth) {
+  Cabin cabin;
+  cabin.control.overruns = 7;
+  cabin.step(1.0);
+  const auto telemetry = cabin.sent_of<mission::Telemetry>();
+  ASSERT_EQ(telemetry.size(), 1U);
+  EXPECT_EQ(telemetry[0].vehicle, VehicleId{4});
+  EXPECT_EQ(telemetry[0].instance, InstanceId{99});
+  EXPECT_EQ(telemetry[0].state.time, at_seconds(1.0));
+  EXPECT_EQ(telemetry[0].control_overruns, 7U);
+  EXPECT_EQ(telemetry[0].messages_dropped, 3U);
+}
+
+TEST(AgentLoop, NextStepIsSoonButNeverAtOnce) {
+  Cabin cabin;
+  for (int i = 0; i < 100; ++i) {
+    const double now = 0.013 * i;
+    cabin.step(now);
+    EXPECT_GT(cabin.loop.next_step(), at_seconds(now));
+    EXPECT_LE(cabin.loop.next_step(), at_seconds(now) + spec_of(ThreadRole::agent).period);
+  }
+}
+
+TEST(AgentLoop, AFloodOfMessagesIsTakenInPortions) {
+  Cabin cabin;
+  for (int i = 0; i < 1000; ++i) cabin.inbox.push_back({mission::HazardReport{}, {2}});
+  cabin.step(1.0);
+  EXPECT_EQ(cabin.inbox.size(), 1000U - AgentLoop::kMessagesPerStep);
+}
+
+TEST(Planner, AnswersRequestsUntilStopped) {
+  std::counting_semaphore<> ready{0};
+  Planner planner{[&] { ready.release(); }};
+  std::thread thread{[&] { planner.run(); }};
+  mission::PlanningRequest request;
+  request.round.number = 5;
+  ASSERT_TRUE(planner.request(request));
+  ready.acquire();
+  const auto result = planner.result();
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->round.number, 5U);
+  EXPECT_FALSE(planner.result());
+  planner.stop();
+  thread.join();
+}
+
+TEST(Planner, RefusesWhatItCannotHold) {
+  Planner planner{[] {}};
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(planner.request({}));
+  EXPECT_FALSE(planner.request({}));
+  EXPECT_EQ(planner.dropped(), 1U);
+}
+
+}  // namespace
+}  // namespace skein::onboard

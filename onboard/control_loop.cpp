@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/control_loop.hpp"
+
+namespace skein::onboard {
+
+std::uint32_t PeriodicSchedule::advance(Instant now) {
+  next_ += period_;
+  if (now < next_) return 0;
+  const auto missed = (now - next_) / period_;
+  next_ += missed * period_;
+  return static_cast<std::uint32_t>(missed);
+}
+
+ControlLoop::ControlLoop(const VehicleSpec& vehicle, hal::FlightController& flight_controller,
+                         ControlPorts& ports)
+    : vehicle_{vehicle}, flight_controller_{&flight_controller}, ports_{&ports} {}
+
+void ControlLoop::step(Instant now) {
+  ports_->periods.fetch_add(1, std::memory_order_relaxed);
+  if (const auto* newer = ports_->plan.read()) {
+    plan_ = *newer;
+    has_plan_ = true;
+    ports_->plans.push({plan_.number, now, plan_.timed});
+  }
+  const auto state = flight_controller_->state(now);
+  if (!state || now - state->time > kStateAgeMax) {
+    ports_->stale_states.fetch_add(1, std::memory_order_relaxed);
+    return;
+  }
+  ports_->state.write(*state);
+  if (has_plan_) {
+    flight_controller_->command(
+        planning::follow_path(follower_, vehicle_, plan_.timed, *state, now), now);
+  }
+  if (now >= next_track_) {
+    recording::TrackPoint point{.state = *state};
+    if (has_plan_) {
+      const auto error = planning::follow_error(plan_.timed, *state, now);
+      point.plan_number = plan_.number;
+      point.along_error_m = error.along_m;
+      point.cross_error_m = error.cross_m;
+    }
+    ports_->track.push(point);
+    // Aligned to the period, so that a late step does not shift those that follow.
+    next_track_ = Instant{(now.time_since_epoch() / kTrackPeriod + 1) * kTrackPeriod};
+  }
+}
+
+}  // namespace skein::onboard

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "skein/base/time.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+#include "skein/onboard/control_loop.hpp"
+#include "skein/onboard/planner.hpp"
+#include "skein/onboard/spsc_ring.hpp"
+
+namespace skein::onboard {
+
+using EventRing = SpscRing<mission::MissionEvent, 1024>;
+
+/// The mission network, as the agent's thread sees it. None of them blocks.
+struct AgentLink {
+  struct Received {
+    mission::Message message;
+    VehicleId sender;
+  };
+  std::function<std::optional<Received>()> receive;
+  std::function<void(const mission::Message&)> send;
+  std::function<std::uint64_t()> dropped;  ///< messages lost by full queues and bad packets so far
+};
+
+/// Carries inputs to the vehicle's agent and its outputs away: one step() takes in the newest
+/// state, all messages and planning results, and sends, logs, records and hands on what follows
+/// from them. A vehicle is on the network before the mission begins: its telemetry goes out at any
+/// time, but the agent sees neither a state nor a timeout before mission time 0.
+class AgentLoop {
+ public:
+  static constexpr Duration kTelemetryPeriod = std::chrono::milliseconds{100};
+  /// Of one step, so that a flood cannot keep the agent from its deadlines.
+  static constexpr int kMessagesPerStep = 256;
+
+  /// All references must outlive this object.
+  AgentLoop(const mission::VehicleAgentConfig& config, AgentLink link, ControlPorts& control,
+            Planner& planner, EventRing& events, Instant now);
+
+  void step(Instant now);
+  /// When step() wants to be called again, at the latest.
+  [[nodiscard]] Instant next_step() const;
+  [[nodiscard]] const mission::VehicleAgent& agent() const { return agent_; }
+
+ private:
+  void hand_out();
+  void send_telemetry(Instant now);
+
+  mission::VehicleAgent agent_;
+  AgentLink link_;
+  ControlPorts* control_;
+  Planner* planner_;
+  EventRing* events_;
+  VehicleState state_;
+  bool has_state_ = false;
+  Instant stepped_at_;
+  Instant next_telemetry_;
+};
+
+}  // namespace skein::onboard

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+
+#include "skein/mission/vehicle_agent.hpp"
+#include "skein/onboard/spsc_ring.hpp"
+#include "skein/process/wake.hpp"
+
+namespace skein::onboard {
+
+/// Runs planning::allocate for the agent, in a thread of its own: run() is that thread. The agent's
+/// thread calls request() and result().
+class Planner {
+ public:
+  /// `on_result` is called from the planner's thread when a result has been queued.
+  explicit Planner(std::function<void()> on_result) : on_result_{std::move(on_result)} {}
+
+  /// False, and counted in dropped(), when four requests are waiting already.
+  bool request(mission::PlanningRequest request);
+  [[nodiscard]] std::optional<mission::PlanningResult> result() { return results_.pop(); }
+
+  /// Works until stop(). A plan that is being made is finished first.
+  void run();
+  void stop();
+  [[nodiscard]] std::uint64_t dropped() const { return requests_.dropped() + results_.dropped(); }
+
+ private:
+  std::function<void()> on_result_;
+  SpscRing<mission::PlanningRequest, 4> requests_;
+  SpscRing<mission::PlanningResult, 8> results_;
+  process::Wake wake_;
+  std::atomic<bool> stopping_{false};
+};
+
+}  // namespace skein::onboard

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+#include <thread>
+
+#include "skein/base/time.hpp"
+
+namespace skein::onboard {
+
+enum class ThreadRole : std::uint8_t { control, agent, planner, recorder, count };
+enum class SchedulingPolicy : std::uint8_t { realtime, normal };
+
+/// One thread of skein-onboard. Periods and deadlines are mission time; a period of zero means that
+/// the thread waits for work.
+struct ThreadSpec {
+  ThreadRole role;
+  std::string_view name;
+  SchedulingPolicy policy;
+  int priority;  ///< SCHED_FIFO priority; 0 for normal threads
+  Duration period;
+  Duration deadline;  ///< from the start of the period to the end of its work
+};
+
+/// All threads of the process but main and DDS's own, which are normal.
+inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::count)> kThreads{{
+    {ThreadRole::control, "control", SchedulingPolicy::realtime, 50, std::chrono::milliseconds{20},
+     std::chrono::milliseconds{20}},
+    {ThreadRole::agent, "agent", SchedulingPolicy::normal, 0, std::chrono::milliseconds{50},
+     std::chrono::milliseconds{100}},
+    {ThreadRole::planner, "planner", SchedulingPolicy::normal, 0, Duration::zero(),
+     std::chrono::milliseconds{500}},
+    {ThreadRole::recorder, "recorder", SchedulingPolicy::normal, 0, std::chrono::milliseconds{200},
+     std::chrono::seconds{1}},
+}};
+
+[[nodiscard]] constexpr const ThreadSpec& spec_of(ThreadRole role) {
+  return kThreads[static_cast<std::size_t>(role)];
+}
+
+/// Starts the thread under its name and policy. Where SCHED_FIFO is not permitted it runs as a
+/// normal thread, with one warning in the log.
+[[nodiscard]] std::thread start_thread(ThreadRole role, std::function<void()> body);
+
+}  // namespace skein::onboard

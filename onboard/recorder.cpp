@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/recorder.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+#include "skein/onboard/threads.hpp"
+
+namespace skein::onboard {
+
+Recorder::Recorder(std::optional<recording::Writer> writer, ControlPorts& control,
+                   EventRing& events)
+    : writer_{std::move(writer)}, control_{&control}, events_{&events} {}
+
+void Recorder::run() {
+  const auto period = spec_of(ThreadRole::recorder).period;
+  auto next_flush = std::chrono::steady_clock::now();
+  while (!stopping_) {
+    const auto now = std::chrono::steady_clock::now();
+    empty_rings();
+    if (now >= next_flush) {
+      next_flush = now + std::chrono::seconds{1};
+      flush();
+    }
+    wake_.wait_until(now + period);
+  }
+  empty_rings();
+  flush();
+}
+
+void Recorder::stop() {
+  stopping_ = true;
+  wake_.notify();
+}
+
+void Recorder::empty_rings() {
+  const auto empty = [this](auto& ring) {
+    while (const auto item = ring.pop()) {
+      if (writer_) writer_->write(*item);
+    }
+  };
+  empty(control_->track);
+  empty(control_->plans);
+  empty(*events_);
+}
+
+void Recorder::flush() {
+  if (!writer_) return;
+  const auto flushed = writer_->flush();
+  if (flushed) return;
+  spdlog::error("recording stops: {}", flushed.error().message);
+  writer_.reset();
+}
+
+}  // namespace skein::onboard
