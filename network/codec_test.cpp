@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/network/codec.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include "random_messages.hpp"
+
+namespace skein::network {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+constexpr std::array<const char*, kMessageKinds> kKindNames{
+    "announcement",  "bid",           "award",       "confirmation",          "cancel",
+    "lease_renewal", "member_status", "telemetry",   "authorisation_request", "authorisation",
+    "mission_event", "command",       "site_report", "hazard_report"};
+
+std::string hex(const Bytes& bytes) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    text += kDigits[bytes[i] >> 4U];
+    text += kDigits[bytes[i] & 0xFU];
+    if (i % 32 == 31) text += '\n';
+  }
+  if (!text.empty() && text.back() != '\n') text += '\n';
+  return text;
+}
+
+std::string read(const std::string& path) {
+  std::ifstream file{path};
+  return {std::istreambuf_iterator<char>{file}, {}};
+}
+
+/// Compares with the file, or rewrites it where SKEIN_UPDATE_GOLDEN is set.
+void expect_golden(const std::string& path, const std::string& content) {
+  if (std::getenv("SKEIN_UPDATE_GOLDEN") != nullptr) std::ofstream{path} << content;
+  EXPECT_EQ(read(path), content) << path
+                                 << ": where the change is meant, give the wire types a new "
+                                 << "version and run this test with SKEIN_UPDATE_GOLDEN=1";
+}
+
+Fault fault_of(Topic topic, const Bytes& bytes) {
+  const auto decoded = decode(topic, bytes);
+  const Fault* fault = std::get_if<Fault>(&decoded);
+  EXPECT_NE(fault, nullptr) << "was accepted";
+  return fault != nullptr ? *fault : Fault{};
+}
+
+template <class T>
+void put(Bytes& bytes, std::size_t offset, T value) {
+  std::memcpy(bytes.data() + offset, &value, sizeof value);
+}
+
+// Equality of the bytes, and not of the messages, is enough: with the golden encodings it shows
+// that no field is lost, since every field of a random message moves the bytes.
+TEST(Codec, MessagesSurviveTheRoundTrip) {
+  Random random{1};
+  for (std::size_t i = 0; i < 200 * kMessageKinds; ++i) {
+    const mission::Message sent = random_message(i, random);
+    const Topic topic = topic_of(sent);
+    const auto bytes = encode(sent);
+    ASSERT_TRUE(bytes) << kKindNames[i % kMessageKinds];
+    EXPECT_LE(bytes->size(), encoded_size_max(topic));
+    auto decoded = decode(topic, *bytes);
+    const auto* received = std::get_if<mission::Message>(&decoded);
+    ASSERT_NE(received, nullptr) << kKindNames[i % kMessageKinds];
+    EXPECT_EQ(received->index(), sent.index());
+    const auto again = encode(*received);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(hex(*again), hex(*bytes));
+  }
+}
+
+TEST(Codec, FieldsArriveWhereTheyBelong) {
+  mission::Telemetry t;
+  t.vehicle = VehicleId{0x1234};
+  t.instance = InstanceId{0x0123456789ABCDEF};
+  t.state = {Instant{Duration{7}}, 1.0, 2.0, 3.0, 0.4, 0.5, 6.0, 7.0, 8.0};
+  t.activity = mission::Activity::executing;
+  t.range_left_m = -9.0;
+  t.loads = 10;
+  t.plan_number = 11;
+  t.control_overruns = 12;
+  t.messages_dropped = 13;
+  const auto decoded = decode(Topic::telemetry, encode(t).value());
+  const auto& r = std::get<mission::Telemetry>(std::get<mission::Message>(decoded));
+  EXPECT_EQ(r.vehicle, t.vehicle);
+  EXPECT_EQ(r.instance, t.instance);
+  EXPECT_EQ(r.state.time, t.state.time);
+  EXPECT_EQ(r.state.x_m, 1.0);
+  EXPECT_EQ(r.state.y_m, 2.0);
+  EXPECT_EQ(r.state.z_m, 3.0);
+  EXPECT_EQ(r.state.heading_rad, 0.4);
+  EXPECT_EQ(r.state.course_rad, 0.5);
+  EXPECT_EQ(r.state.groundspeed_mps, 6.0);
+  EXPECT_EQ(r.state.airspeed_mps, 7.0);
+  EXPECT_EQ(r.state.distance_flown_m, 8.0);
+  EXPECT_EQ(r.activity, mission::Activity::executing);
+  EXPECT_EQ(r.range_left_m, -9.0);
+  EXPECT_EQ(r.loads, 10);
+  EXPECT_EQ(r.plan_number, 11U);
+  EXPECT_EQ(r.control_overruns, 12U);
+  EXPECT_EQ(r.messages_dropped, 13U);
+}
+
+TEST(Codec, EncodingIsTheGoldenOne) {
+  Random random{20250101};
+  for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
+    std::string content;
+    for (int i = 0; i < 3; ++i) content += hex(encode(random_message(kind, random)).value()) + "\n";
+    expect_golden(std::string{SKEIN_SOURCE_DIR} + "/idl/golden/" + kKindNames[kind] + ".hex",
+                  content);
+  }
+}
+
+TEST(Topics, DocumentIsUpToDate) {
+  expect_golden(std::string{SKEIN_SOURCE_DIR} + "/docs/topics.md", topics_document());
+}
+
+TEST(Codec, CountsAnotherVersionAsSuch) {
+  Random random{2};
+  for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
+    const mission::Message message = random_message(kind, random);
+    Bytes bytes = encode(message).value();
+    put<std::uint16_t>(bytes, 4, 2);
+    EXPECT_EQ(fault_of(topic_of(message), bytes), Fault::bad_version);
+    bytes.resize(8);  // another version may be shorter
+    EXPECT_EQ(fault_of(topic_of(message), bytes), Fault::bad_version);
+  }
+}
+
+TEST(Codec, RefusesTruncatedAndOverlongSamples) {
+  Random random{3};
+  for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
+    const mission::Message message = random_message(kind, random);
+    const Bytes bytes = encode(message).value();
+    for (std::size_t size = 0; size < bytes.size(); ++size) {
+      const Bytes cut{bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
+      EXPECT_EQ(fault_of(topic_of(message), cut), Fault::malformed);
+    }
+    Bytes longer = bytes;
+    longer.resize(bytes.size() + 4);
+    EXPECT_EQ(fault_of(topic_of(message), longer), Fault::malformed);
+  }
+}
+
+TEST(Codec, RefusesEnumeratorsThatDoNotExist) {
+  Bytes command = encode(mission::Command{VehicleId{1}, 2, mission::CommandKind::resume}).value();
+  put<std::uint32_t>(command, command.size() - 4, 3);
+  EXPECT_EQ(fault_of(Topic::command, command), Fault::bad_value);
+  Bytes cancel = encode(coalition::Message{coalition::Cancel{}}).value();
+  put<std::uint32_t>(cancel, 8, 7);  // the union's discriminator
+  EXPECT_NE(fault_of(Topic::coalition, cancel), Fault::bad_version);
+}
+
+TEST(Codec, RefusesNumbersOutOfRange) {
+  const auto refused = [](auto change) {
+    mission::Telemetry t;
+    change(t);
+    return !encode(t).has_value();
+  };
+  EXPECT_FALSE(refused([](mission::Telemetry&) {}));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(refused([&](auto& t) { t.state.x_m = nan; }));
+  EXPECT_TRUE(refused([&](auto& t) { t.state.heading_rad = infinity; }));
+  EXPECT_TRUE(refused([&](auto& t) { t.range_left_m = -infinity; }));
+  EXPECT_TRUE(refused([](auto& t) { t.state.groundspeed_mps = -1.0; }));
+  EXPECT_TRUE(refused([](auto& t) { t.state.time = Instant::max(); }));
+  EXPECT_TRUE(refused([](auto& t) { t.activity = mission::Activity::count; }));
+
+  Bytes bytes = encode(mission::HazardReport{{HazardId{1}, {1.0, 2.0}, 3.0}}).value();
+  put(bytes, bytes.size() - 8, nan);
+  EXPECT_EQ(fault_of(Topic::hazard_report, bytes), Fault::bad_value);
+}
+
+TEST(Codec, RefusesSequencesBeyondTheirLimit) {
+  coalition::LeaseRenewal m;
+  m.members.resize(coalition::kMembersMax);
+  EXPECT_TRUE(encode(coalition::Message{m}));
+  m.members.resize(coalition::kMembersMax + 1);
+  EXPECT_FALSE(encode(coalition::Message{m}));
+}
+
+TEST(Codec, CutsLongTextsAtACharacter) {
+  coalition::Cancel m;
+  m.reason = std::string(coalition::kReasonMax - 1, 'x') + "ä" + "more";
+  const auto decoded = decode(Topic::coalition, encode(coalition::Message{m}).value());
+  const auto& received = std::get<coalition::Cancel>(
+      std::get<coalition::Message>(std::get<mission::Message>(decoded)));
+  EXPECT_EQ(received.reason, std::string(coalition::kReasonMax - 1, 'x'));
+}
+
+TEST(Codec, RefusesTextsThatAreNotText) {
+  coalition::Cancel m;
+  m.reason = "abc\xFF";
+  EXPECT_FALSE(encode(coalition::Message{m}));
+  m.reason = "abcdefg";
+  Bytes bytes = encode(coalition::Message{m}).value();
+  bytes[bytes.size() - 5] = 0;  // a zero inside would hide what follows
+  EXPECT_EQ(fault_of(Topic::coalition, bytes), Fault::bad_value);
+}
+
+TEST(Codec, AnyBytesAreSafe) {
+  Random random{4};
+  std::size_t accepted = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const mission::Message message = random_message(random.index(kMessageKinds), random);
+    const Topic topic = topic_of(message);
+    Bytes bytes;
+    if (random.chance(0.8)) {  // a true message with some bytes changed gets further than noise
+      bytes = encode(message).value();
+      for (std::uint64_t n = 1 + random.index(4); n > 0; --n) {
+        bytes[random.index(bytes.size())] = static_cast<std::uint8_t>(random.next());
+      }
+    } else {
+      bytes.resize(random.index(300));
+      for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random.next());
+      if (bytes.size() >= 6) {
+        put<std::uint32_t>(bytes, 0, 0x00000100);
+        put<std::uint16_t>(bytes, 4, 1);
+      }
+    }
+    auto decoded = decode(topic, bytes);
+    if (const auto* received = std::get_if<mission::Message>(&decoded)) {
+      ++accepted;
+      EXPECT_TRUE(encode(*received));  // what is accepted is within the limits
+    }
+  }
+  EXPECT_GT(accepted, 100U);
+}
+
+}  // namespace
+}  // namespace skein::network

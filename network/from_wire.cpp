@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "skein/network/codec.hpp"
+#include "wire.hpp"
+
+namespace skein::network {
+namespace {
+
+static_assert(wire::kTasksPerKindMax == kTasksPerKindMax);
+static_assert(wire::kTasksMax == coalition::kTasksMax);
+static_assert(wire::kMembersMax == coalition::kMembersMax);
+static_assert(wire::ASSESS + 1 == static_cast<int>(TaskKind::count));
+static_assert(wire::FAILED + 1 == static_cast<int>(coalition::TaskState::count));
+static_assert(wire::HOLDING + 1 == static_cast<int>(mission::Activity::count));
+static_assert(wire::SURVEYING == static_cast<int>(mission::Activity::surveying));
+static_assert(wire::EXECUTING == static_cast<int>(mission::Activity::executing));
+static_assert(wire::WARNING + 1 == static_cast<int>(mission::EventKind::count));
+static_assert(wire::AWARDED == static_cast<int>(mission::EventKind::awarded));
+static_assert(wire::AUTHORISED == static_cast<int>(mission::EventKind::authorised));
+static_assert(wire::TASK_DONE == static_cast<int>(mission::EventKind::task_done));
+static_assert(wire::RETURN_HOME + 1 == static_cast<int>(mission::CommandKind::count));
+
+bool is_utf8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i]);
+    std::size_t more = 0;
+    if (lead < 0x80U) {
+      more = 0;
+    } else if (lead >= 0xC2U && lead < 0xE0U) {
+      more = 1;
+    } else if (lead >= 0xE0U && lead < 0xF0U) {
+      more = 2;
+    } else if (lead >= 0xF0U && lead < 0xF5U) {
+      more = 3;
+    } else {
+      return false;
+    }
+    if (text.size() - i <= more) return false;
+    for (std::size_t k = 1; k <= more; ++k) {
+      if ((static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) return false;
+    }
+    i += more + 1;
+  }
+  return true;
+}
+
+/// Takes fields over and remembers whether one was out of range.
+class Check {
+ public:
+  explicit Check(bool& ok) : ok_{ok} {}
+
+  double within(double value, double low, double high) {
+    require(value >= low && value <= high);  // false for what is not a number
+    return value;
+  }
+  double distance(double m) { return within(m, 0.0, kDistanceMaxM); }
+  double coordinate(double m) { return within(m, -kDistanceMaxM, kDistanceMaxM); }
+  double speed(double mps) { return within(mps, 0.0, kSpeedMaxMps); }
+  double angle(double rad) { return within(rad, -kAngleMaxRad, kAngleMaxRad); }
+  double amount(double value) { return within(value, 0.0, kNumberMax); }
+  Instant instant(std::int64_t ns) {
+    require(ns >= -kTimeMax.count() && ns <= kTimeMax.count());
+    return Instant{Duration{ns}};
+  }
+  Duration duration(std::int64_t ns) {
+    require(ns >= 0 && ns <= kTimeMax.count());
+    return Duration{ns};
+  }
+  template <class To, class From>
+  To enumerator(From value) {
+    const auto number = static_cast<std::uint32_t>(value);
+    const bool known = number < static_cast<std::uint32_t>(To::count);
+    require(known);
+    return known ? static_cast<To>(number) : To{};
+  }
+  std::string text(const std::string& value) {
+    require(value.size() <= coalition::kReasonMax && is_utf8(value));
+    return value;
+  }
+  template <class In, class Convert>
+  auto each(const std::vector<In>& from, std::size_t limit, Convert convert) {
+    std::vector<decltype(convert(*this, from.front()))> to;
+    require(from.size() <= limit);
+    if (!ok_) return to;
+    to.reserve(from.size());
+    for (const In& item : from) to.push_back(convert(*this, item));
+    return to;
+  }
+  void require(bool condition) { ok_ = ok_ && condition; }
+
+ private:
+  bool& ok_;
+};
+
+Vec2 point(Check& c, const wire::Point& w) {
+  return {c.coordinate(w.x_m()), c.coordinate(w.y_m())};
+}
+
+TaskId task_id(Check& c, const wire::TaskId& w) {
+  c.require(w.index() < kTasksPerKindMax);
+  return {SiteId{w.site()}, c.enumerator<TaskKind>(w.kind()), w.index()};
+}
+
+TaskAssignment assignment(Check& c, const wire::TaskAssignment& w) {
+  return {task_id(c, w.task()), VehicleId{w.vehicle()}, c.instant(w.time_ns())};
+}
+
+ArcRequirement arc(Check& c, const wire::ArcRequirement& w) {
+  ArcRequirement a;
+  const double angle = c.angle(w.start_angle_rad());
+  if (w.has_start_angle()) a.start_angle_rad = angle;
+  a.dwell = c.duration(w.dwell_ns());
+  return a;
+}
+
+DeliveryRequirement delivery(Check& c, const wire::DeliveryRequirement& w) {
+  return {c.angle(w.bearing_rad()), c.duration(w.offset_ns())};
+}
+
+Site site(Check& c, const wire::Site& w) {
+  Site s;
+  s.id = SiteId{w.id()};
+  s.position = point(c, w.position());
+  s.survey = arc(c, w.survey());
+  s.deliveries = c.each(w.deliveries(), kTasksPerKindMax, delivery);
+  s.assess_wait = c.duration(w.assess_wait_ns());
+  s.assessments = c.each(w.assessments(), kTasksPerKindMax, arc);
+  s.reward = c.amount(w.reward());
+  s.reward_decay_per_s = c.amount(w.reward_decay_per_s());
+  return s;
+}
+
+coalition::Round round(const wire::Round& w) {
+  return {{VehicleId{w.leader()}, InstanceId{w.leader_instance()}, w.coalition()}, w.number()};
+}
+
+coalition::Message body(Check& c, const wire::Announcement& w) {
+  coalition::Announcement m;
+  m.round = round(w.round());
+  m.site = site(c, w.site());
+  m.tasks = c.each(w.tasks(), coalition::kTasksMax, task_id);
+  m.announced_at = c.instant(w.announced_at_ns());
+  m.bids_until = c.instant(w.bids_until_ns());
+  m.formed_at = c.instant(w.formed_at_ns());
+  m.reward = c.amount(w.reward());
+  m.leader_at_formation = point(c, w.leader_at_formation());
+  return m;
+}
+
+coalition::Message body(Check& c, const wire::Bid& w) {
+  coalition::Bid m;
+  m.round = round(w.round());
+  m.bidder = VehicleId{w.bidder()};
+  const Vec2 position = point(c, w.position_at_formation());
+  m.pose_at_formation = {position.x(), position.y(), c.angle(w.heading_at_formation_rad())};
+  m.speed_mps = c.speed(w.speed_mps());
+  m.planning_radius_m = c.distance(w.planning_radius_m());
+  m.range_left_m = c.coordinate(w.range_left_m());
+  m.final_approach_m = c.distance(w.final_approach_m());
+  m.assess_radius_m = c.distance(w.assess_radius_m());
+  m.capabilities = Capabilities::from_bits(w.capabilities());
+  c.require(m.capabilities.bits() == w.capabilities());
+  m.loads = w.loads();
+  m.eta = c.instant(w.eta_ns());
+  return m;
+}
+
+coalition::Message body(Check& c, const wire::Award& w) {
+  coalition::Award m;
+  m.round = round(w.round());
+  m.site = site(c, w.site());
+  m.formed_at = c.instant(w.formed_at_ns());
+  m.assignments = c.each(w.assignments(), coalition::kTasksMax, assignment);
+  m.lease_until = c.instant(w.lease_until_ns());
+  return m;
+}
+
+coalition::Message body(Check& c, const wire::Confirmation& w) {
+  return coalition::Confirmation{round(w.round()), VehicleId{w.member()}, w.accepted(),
+                                 c.text(w.reason().to_string())};
+}
+
+coalition::Message body(Check& c, const wire::Cancel& w) {
+  return coalition::Cancel{round(w.round()), c.text(w.reason().to_string())};
+}
+
+coalition::Message body(Check& c, const wire::LeaseRenewal& w) {
+  coalition::LeaseRenewal m;
+  m.round = round(w.round());
+  m.members = c.each(w.members(), coalition::kMembersMax,
+                     [](Check&, std::uint16_t id) { return VehicleId{id}; });
+  m.done = c.each(w.done(), coalition::kTasksMax, task_id);
+  m.lease_until = c.instant(w.lease_until_ns());
+  return m;
+}
+
+coalition::Message body(Check& c, const wire::MemberStatus& w) {
+  coalition::MemberStatus m;
+  m.round = round(w.round());
+  m.member = VehicleId{w.member()};
+  m.tasks = c.each(w.tasks(), coalition::kTasksMax, [](Check& check, const wire::TaskStatus& s) {
+    return coalition::MemberStatus::Entry{task_id(check, s.task()),
+                                          check.enumerator<coalition::TaskState>(s.state()),
+                                          check.instant(s.time_ns())};
+  });
+  return m;
+}
+
+coalition::Message body(Check& c, const wire::CoalitionBody& w) {
+  switch (w._d()) {
+    case wire::ANNOUNCEMENT:
+      return body(c, w.announcement());
+    case wire::BID:
+      return body(c, w.bid());
+    case wire::AWARD:
+      return body(c, w.award());
+    case wire::CONFIRMATION:
+      return body(c, w.confirmation());
+    case wire::CANCEL:
+      return body(c, w.cancel());
+    case wire::LEASE_RENEWAL:
+      return body(c, w.lease_renewal());
+    case wire::MEMBER_STATUS:
+      return body(c, w.member_status());
+  }
+  c.require(false);
+  return coalition::Cancel{};
+}
+
+}  // namespace
+
+mission::Message from_wire(const wire::CoalitionMessage& w, bool& ok) {
+  Check c{ok};
+  return body(c, w.body());
+}
+
+mission::Message from_wire(const wire::Telemetry& w, bool& ok) {
+  Check c{ok};
+  mission::Telemetry m;
+  m.vehicle = VehicleId{w.vehicle()};
+  m.instance = InstanceId{w.instance()};
+  m.state.time = c.instant(w.time_ns());
+  m.state.x_m = c.coordinate(w.x_m());
+  m.state.y_m = c.coordinate(w.y_m());
+  m.state.z_m = c.coordinate(w.z_m());
+  m.state.heading_rad = c.angle(w.heading_rad());
+  m.state.course_rad = c.angle(w.course_rad());
+  m.state.groundspeed_mps = c.speed(w.groundspeed_mps());
+  m.state.airspeed_mps = c.speed(w.airspeed_mps());
+  m.state.distance_flown_m = c.distance(w.distance_flown_m());
+  m.activity = c.enumerator<mission::Activity>(w.activity());
+  m.range_left_m = c.coordinate(w.range_left_m());
+  m.loads = w.loads();
+  m.plan_number = w.plan_number();
+  m.control_overruns = w.control_overruns();
+  m.messages_dropped = w.messages_dropped();
+  return m;
+}
+
+mission::Message from_wire(const wire::AuthorisationRequest& w, bool& ok) {
+  Check c{ok};
+  mission::AuthorisationRequest m;
+  m.round = round(w.round());
+  m.site = SiteId{w.site()};
+  m.site_position = point(c, w.site_position());
+  m.deliveries =
+      c.each(w.deliveries(), coalition::kTasksMax, [](Check& check, const wire::Delivery& d) {
+        return mission::AuthorisationRequest::Delivery{assignment(check, d.assignment()),
+                                                       check.angle(d.bearing_rad())};
+      });
+  m.decide_by = c.instant(w.decide_by_ns());
+  return m;
+}
+
+mission::Message from_wire(const wire::Authorisation& w, bool& ok) {
+  Check c{ok};
+  return mission::Authorisation{round(w.round()), SiteId{w.site()}, w.granted(),
+                                c.text(w.decided_by().to_string()), c.instant(w.decided_at_ns())};
+}
+
+mission::Message from_wire(const wire::MissionEvent& w, bool& ok) {
+  Check c{ok};
+  mission::MissionEvent m;
+  m.vehicle = VehicleId{w.vehicle()};
+  m.time = c.instant(w.time_ns());
+  m.kind = c.enumerator<mission::EventKind>(w.kind());
+  m.round = round(w.round());
+  m.task = task_id(c, w.task());
+  m.value = c.within(w.value(), -kNumberMax, kNumberMax);
+  m.text = c.text(w.text().to_string());
+  return m;
+}
+
+mission::Message from_wire(const wire::Command& w, bool& ok) {
+  Check c{ok};
+  return mission::Command{VehicleId{w.vehicle()}, w.number(),
+                          c.enumerator<mission::CommandKind>(w.kind())};
+}
+
+mission::Message from_wire(const wire::SiteReport& w, bool& ok) {
+  Check c{ok};
+  return mission::SiteReport{VehicleId{w.found_by()}, site(c, w.site())};
+}
+
+mission::Message from_wire(const wire::HazardReport& w, bool& ok) {
+  Check c{ok};
+  return mission::HazardReport{{HazardId{w.id()}, point(c, w.centre()), c.distance(w.radius_m())}};
+}
+
+}  // namespace skein::network

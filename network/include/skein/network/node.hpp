@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/mission/messages.hpp"
+#include "skein/network/topics.hpp"
+
+namespace skein::network {
+
+/// Where a node listens. It uses two UDP ports: `port` for discovery, `port + 1` for messages.
+struct Endpoint {
+  std::string address;  ///< IPv4, dotted
+  std::uint16_t port = 0;
+};
+
+/// Another node of the fleet.
+struct PeerConfig {
+  VehicleId id;
+  Endpoint endpoint;
+};
+
+struct NodeConfig {
+  std::uint32_t domain = 0;  ///< nodes of other domains are not heard; 0 to 232
+  VehicleId self;
+  InstanceId instance;  ///< random at each start
+  Role role = Role::vehicle;
+  Endpoint endpoint;
+  /// All whom this node may meet, without itself. Discovery is by unicast to these only; a node
+  /// that is not listed here still finds this one if it lists it.
+  std::vector<PeerConfig> peers;
+  std::size_t queue_limit = 1024;  ///< received messages waiting for poll()
+  /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
+  std::string transport_plugin;
+  /// Called on a thread of the network after messages became ready for poll(). Must be short, must
+  /// not call the node. Empty: none.
+  std::function<void()> on_received;
+};
+
+struct Received {
+  mission::Message message;
+  VehicleId sender;
+};
+
+/// A node that is matched on every topic that the two roles share.
+struct Peer {
+  VehicleId id;
+  InstanceId instance;  ///< two entries with one id: two processes claim it
+  Role role = Role::vehicle;
+};
+
+/// This process on the mission network. All functions may be called from any thread, but poll()
+/// from one at a time. Nothing here waits for another node: not even a silent or a hostile one can
+/// stop the caller.
+class Node {
+ public:
+  /// Fails where an address or a port cannot be used, a node is listed twice, or the plugin cannot
+  /// be loaded.
+  [[nodiscard]] static Result<std::unique_ptr<Node>> open(const NodeConfig& config);
+  ~Node();
+  Node(const Node&) = delete;
+  Node& operator=(const Node&) = delete;
+
+  /// Hands the message to the network's own thread. False, and counted, where this role does not
+  /// write the topic, a value is out of the limits of codec.hpp, or the network has no room.
+  bool publish(const mission::Message& message);
+
+  /// The next received message, decoded and checked; none when there is none. Own messages are not
+  /// received.
+  [[nodiscard]] std::optional<Received> poll();
+
+  [[nodiscard]] std::vector<Peer> peers() const;
+
+  /// What happened since open(): received, published, and by name whatever was dropped.
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const;
+
+ private:
+  class Impl;
+  explicit Node(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skein::network

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/network/node.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "free_ports.hpp"
+#include "random_messages.hpp"
+#include "skein/network/codec.hpp"
+
+namespace skein::network {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+using testing::HasSubstr;
+
+/// Waits for a condition that another thread or process brings about.
+bool eventually(const std::function<bool()>& condition, seconds limit = seconds{60}) {
+  const auto end = steady_clock::now() + limit;
+  while (!condition()) {
+    if (steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(milliseconds{2});
+  }
+  return true;
+}
+
+/// Configurations of a fleet on loopback that knows itself: ids 1 to n, node 0 is the ground.
+std::vector<NodeConfig> fleet(std::size_t vehicles) {
+  std::random_device device;
+  const auto ports = free_port_pairs(vehicles + 1);
+  std::vector<NodeConfig> all(vehicles + 1);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].self = VehicleId{static_cast<std::uint16_t>(i)};
+    all[i].instance = InstanceId{(std::uint64_t{device()} << 32U) | device()};
+    all[i].role = i == 0 ? Role::ground : Role::vehicle;
+    all[i].endpoint = {"127.0.0.1", ports[i]};
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (k != i) {
+        all[i].peers.push_back({VehicleId{static_cast<std::uint16_t>(k)}, {"127.0.0.1", ports[k]}});
+      }
+    }
+  }
+  return all;
+}
+
+std::unique_ptr<Node> open(const NodeConfig& config) {
+  auto node = Node::open(config);
+  EXPECT_TRUE(node.ok()) << node.error().message;
+  return std::move(node).value();
+}
+
+std::string bytes_of(const mission::Message& message) {
+  const auto bytes = encode(message).value();
+  return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::string> some_of_every_kind(Role writer, std::uint64_t seed,
+                                            std::vector<mission::Message>& messages) {
+  Random random{seed};
+  std::vector<std::string> encoded;
+  for (std::size_t i = 0; i < 2 * kMessageKinds; ++i) {
+    auto message = random_message(i, random);
+    const Topic topic = topic_of(message);
+    // Best effort promises nothing, and only the last of a burst is kept: one is enough.
+    if (!info(topic).writers.has(writer) || (topic == Topic::telemetry && i > kMessageKinds)) {
+      continue;
+    }
+    encoded.push_back(bytes_of(message));
+    messages.push_back(std::move(message));
+  }
+  std::sort(encoded.begin(), encoded.end());
+  return encoded;
+}
+
+/// The next `count` messages at the node, encoded and sorted, if they come from `sender`.
+std::vector<std::string> take(Node& node, std::size_t count, VehicleId sender) {
+  std::vector<std::string> encoded;
+  eventually([&] {
+    while (auto received = node.poll()) {
+      EXPECT_EQ(received->sender, sender);
+      encoded.push_back(bytes_of(received->message));
+    }
+    return encoded.size() >= count;
+  });
+  std::sort(encoded.begin(), encoded.end());
+  return encoded;
+}
+
+TEST(Node, VehicleAndGroundExchangeEveryMessage) {
+  const auto configs = fleet(1);
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(
+      eventually([&] { return ground->peers().size() == 1 && vehicle->peers().size() == 1; }));
+  EXPECT_EQ(ground->peers()[0].id, VehicleId{1});
+  EXPECT_EQ(ground->peers()[0].instance, configs[1].instance);
+  EXPECT_EQ(vehicle->peers()[0].role, Role::ground);
+
+  std::vector<mission::Message> messages;
+  const auto from_vehicle = some_of_every_kind(Role::vehicle, 1, messages);
+  for (const auto& m : messages) EXPECT_TRUE(vehicle->publish(m));
+  EXPECT_EQ(take(*ground, from_vehicle.size(), VehicleId{1}), from_vehicle);
+
+  messages.clear();
+  const auto from_ground = some_of_every_kind(Role::ground, 2, messages);
+  for (const auto& m : messages) EXPECT_TRUE(ground->publish(m));
+  EXPECT_EQ(take(*vehicle, from_ground.size(), VehicleId{0}), from_ground);
+  EXPECT_EQ(ground->counters().at("received"), from_vehicle.size());
+}
+
+TEST(Node, OneSendersProtocolMessagesKeepTheirOrder) {
+  const auto configs = fleet(2);
+  const auto a = open(configs[1]);
+  const auto b = open(configs[2]);
+  ASSERT_TRUE(eventually([&] { return a->peers().size() == 1 && b->peers().size() == 1; }));
+  std::uint32_t expected = 0;
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    coalition::Cancel m;
+    m.round.number = i;
+    ASSERT_TRUE(a->publish(coalition::Message{m}));
+    if (i % 32 != 31) continue;  // half of what the writer keeps
+    ASSERT_TRUE(eventually([&] {
+      while (auto r = b->poll()) {
+        const auto& c = std::get<coalition::Cancel>(std::get<coalition::Message>(r->message));
+        EXPECT_EQ(c.round.number, expected++);
+      }
+      return expected == i + 1;
+    }));
+  }
+  EXPECT_FALSE(a->poll());  // not its own
+}
+
+TEST(Node, ExchangesWithAnotherProcess) {
+  const auto configs = fleet(1);
+  std::fflush(nullptr);
+  const pid_t child = fork();  // before this process has a node, hence threads
+  if (child == 0) {
+    // The ground answers every hazard report with a command of the hazard's number.
+    auto node = Node::open(configs[0]);
+    if (!node) _exit(2);
+    const bool done = eventually([&] {
+      while (auto r = (*node)->poll()) {
+        const auto* report = std::get_if<mission::HazardReport>(&r->message);
+        if (report == nullptr) continue;
+        (*node)->publish(mission::Command{VehicleId{1}, report->hazard.id.value});
+        if (report->hazard.id == HazardId{99}) return true;
+      }
+      return false;
+    });
+    _exit(done ? 0 : 1);
+  }
+  const auto node = open(configs[1]);
+  ASSERT_TRUE(eventually([&] { return !node->peers().empty(); }));
+  // The other side may still be matching: what it does not hear now it is told again.
+  ASSERT_TRUE(eventually([&] {
+    node->publish(mission::HazardReport{{HazardId{7}, {1.0, 2.0}, 3.0}});
+    std::this_thread::sleep_for(milliseconds{20});
+    while (auto r = node->poll()) {
+      const auto* command = std::get_if<mission::Command>(&r->message);
+      if (command != nullptr && command->number == 7) return true;
+    }
+    return false;
+  }));
+  node->publish(mission::HazardReport{{HazardId{99}, {1.0, 2.0}, 3.0}});
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_EQ(status, 0);
+}
+
+TEST(Node, TwelveFindEachOther) {
+  const auto configs = fleet(11);
+  const auto start = steady_clock::now();
+  std::vector<std::unique_ptr<Node>> nodes;
+  for (const auto& c : configs) nodes.push_back(open(c));
+  EXPECT_TRUE(eventually([&] {
+    return std::all_of(nodes.begin(), nodes.end(),
+                       [&](const auto& n) { return n->peers().size() == nodes.size() - 1; });
+  }));
+  const auto took = std::chrono::duration_cast<milliseconds>(steady_clock::now() - start);
+  std::printf("12 nodes matched after %lld ms\n", static_cast<long long>(took.count()));
+}
+
+TEST(Node, TwoProcessesWithOneIdAreBothSeen) {
+  auto configs = fleet(2);
+  configs[2].self = VehicleId{1};
+  configs[1].peers.pop_back();  // the two do not know of each other
+  configs[2].peers.resize(1);
+  const auto ground = open(configs[0]);
+  const auto one = open(configs[1]);
+  const auto other = open(configs[2]);
+  ASSERT_TRUE(eventually([&] { return ground->peers().size() == 2; }));
+  const auto peers = ground->peers();
+  EXPECT_EQ(peers[0].id, VehicleId{1});
+  EXPECT_EQ(peers[1].id, VehicleId{1});
+  EXPECT_NE(peers[0].instance, peers[1].instance);
+}
+
+TEST(Node, FullQueueDropsAndCounts) {
+  auto configs = fleet(1);
+  configs[0].queue_limit = 3;
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(
+      eventually([&] { return ground->peers().size() == 1 && vehicle->peers().size() == 1; }));
+  for (std::uint16_t i = 0; i < 10; ++i) {
+    EXPECT_TRUE(vehicle->publish(mission::HazardReport{{HazardId{i}, {0.0, 0.0}, 1.0}}));
+  }
+  EXPECT_TRUE(eventually([&] { return ground->counters().at("dropped_full") == 7; }));
+  EXPECT_EQ(ground->counters().at("received"), 3U);
+}
+
+TEST(Node, RefusesToSendWhatItMustNot) {
+  const auto configs = fleet(1);
+  const auto vehicle = open(configs[1]);
+  EXPECT_FALSE(vehicle->publish(mission::Authorisation{}));
+  EXPECT_EQ(vehicle->counters().at("publish_refused_role"), 1U);
+  mission::Telemetry broken;
+  broken.state.x_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(vehicle->publish(broken));
+  EXPECT_EQ(vehicle->counters().at("publish_refused_value"), 1U);
+}
+
+TEST(Node, PublishingDoesNotWaitForASilentReader) {
+  const auto configs = fleet(2);
+  const auto a = open(configs[1]);
+  auto b = open(configs[2]);
+  ASSERT_TRUE(eventually([&] { return a->peers().size() == 1; }));
+  for (int i = 0; i < 2000; ++i) a->publish(coalition::Message{coalition::Cancel{}});
+  EXPECT_EQ(a->counters().at("published") + a->counters().at("publish_failed"), 2000U);
+  EXPECT_LT(a->counters().at("publish_failed"), 200U);
+}
+
+std::string refusal(const NodeConfig& config) {
+  auto node = Node::open(config);
+  EXPECT_FALSE(node.ok());
+  return node.ok() ? "" : node.error().message;
+}
+
+TEST(Node, SaysWhatIsWrongWithItsConfiguration) {
+  const auto configs = fleet(2);
+  const auto other = open(configs[2]);
+  auto c = configs[1];
+  c.endpoint = configs[2].endpoint;
+  c.peers.pop_back();
+  EXPECT_THAT(refusal(c), HasSubstr(std::to_string(c.endpoint.port) + " is already in use"));
+  c = configs[1];
+  c.endpoint.port = static_cast<std::uint16_t>(configs[2].endpoint.port + 1);
+  c.peers.pop_back();
+  EXPECT_THAT(refusal(c), HasSubstr(std::to_string(c.endpoint.port) + " is already in use"));
+  c = configs[1];
+  c.peers.push_back(c.peers[0]);
+  EXPECT_THAT(refusal(c), HasSubstr("peer 0 is listed twice"));
+  c = configs[1];
+  c.peers[0].id = c.self;
+  EXPECT_THAT(refusal(c), HasSubstr("is this node itself"));
+  c = configs[1];
+  c.peers[0].endpoint.port = static_cast<std::uint16_t>(c.endpoint.port + 1);
+  EXPECT_THAT(refusal(c), HasSubstr("shares a port"));
+  c = configs[1];
+  c.peers[1].endpoint.address = "localhost";
+  EXPECT_THAT(refusal(c), HasSubstr("'localhost' is no IPv4 address"));
+  c = configs[1];
+  c.endpoint.address = "192.0.2.1";  // reserved for documentation
+  EXPECT_THAT(refusal(c), HasSubstr("no network interface"));
+  c = configs[1];
+  c.transport_plugin = "/nonexistent/libradio.so";
+  EXPECT_THAT(refusal(c), HasSubstr("cannot load the transport"));
+}
+
+}  // namespace
+}  // namespace skein::network

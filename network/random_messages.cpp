@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "random_messages.hpp"
+
+#include <string>
+#include <vector>
+
+#include "skein/network/codec.hpp"
+
+namespace skein::network {
+namespace {
+
+/// Calls of `random` stand in separate statements: the order in which arguments are evaluated
+/// differs between compilers, and the golden encodings must not.
+template <class T>
+T integer(Random& random) {
+  return static_cast<T>(random.next());
+}
+
+double coordinate(Random& random) { return random.uniform(-kDistanceMaxM, kDistanceMaxM); }
+double distance(Random& random) { return random.uniform(0.0, kDistanceMaxM); }
+double speed(Random& random) { return random.uniform(0.0, kSpeedMaxMps); }
+double angle(Random& random) { return random.uniform(-kAngleMaxRad, kAngleMaxRad); }
+
+template <class E>
+E enumerator(Random& random) {
+  return static_cast<E>(random.index(static_cast<std::uint64_t>(E::count)));
+}
+
+Duration duration(Random& random) {
+  return Duration{
+      static_cast<Duration::rep>(random.index(static_cast<std::uint64_t>(kTimeMax.count()) + 1))};
+}
+
+Instant instant(Random& random) {
+  const Duration since = duration(random);
+  return random.chance(0.5) ? Instant{since} : Instant{-since};
+}
+
+std::string text(Random& random) {
+  static const std::vector<std::string> kCharacters{"a",  "Z", " ", "<",   "\"",
+                                                    "\n", "ä", "→", "🛩"};
+  std::string made;
+  const std::size_t wanted = random.index(coalition::kReasonMax + 1);
+  while (true) {
+    const std::string& next = kCharacters[random.index(kCharacters.size())];
+    if (made.size() + next.size() > wanted) return made;
+    made += next;
+  }
+}
+
+template <class F>
+auto several(Random& random, std::size_t limit, F make) {
+  std::vector<decltype(make(random))> all;
+  const std::size_t count = random.index(limit + 1);
+  for (std::size_t i = 0; i < count; ++i) all.push_back(make(random));
+  return all;
+}
+
+VehicleId vehicle(Random& random) { return VehicleId{integer<std::uint16_t>(random)}; }
+
+Vec2 point(Random& random) {
+  const double x = coordinate(random);
+  const double y = coordinate(random);
+  return {x, y};
+}
+
+TaskId task_id(Random& random) {
+  TaskId t;
+  t.site = SiteId{integer<std::uint16_t>(random)};
+  t.kind = enumerator<TaskKind>(random);
+  t.index = static_cast<std::uint8_t>(random.index(kTasksPerKindMax));
+  return t;
+}
+
+TaskAssignment assignment(Random& random) {
+  TaskAssignment a;
+  a.task = task_id(random);
+  a.vehicle = vehicle(random);
+  a.time = instant(random);
+  return a;
+}
+
+ArcRequirement arc(Random& random) {
+  ArcRequirement a;
+  if (random.chance(0.5)) a.start_angle_rad = angle(random);
+  a.dwell = duration(random);
+  return a;
+}
+
+DeliveryRequirement delivery(Random& random) {
+  DeliveryRequirement d;
+  d.bearing_rad = angle(random);
+  d.offset = duration(random);
+  return d;
+}
+
+Site site(Random& random) {
+  Site s;
+  s.id = SiteId{integer<std::uint16_t>(random)};
+  s.position = point(random);
+  s.survey = arc(random);
+  s.deliveries = several(random, kTasksPerKindMax, delivery);
+  s.assess_wait = duration(random);
+  s.assessments = several(random, kTasksPerKindMax, arc);
+  s.reward = random.uniform(0.0, kNumberMax);
+  s.reward_decay_per_s = random.uniform();
+  return s;
+}
+
+coalition::Round round(Random& random) {
+  coalition::Round r;
+  r.coalition.leader = vehicle(random);
+  r.coalition.instance = InstanceId{random.next()};
+  r.coalition.number = integer<std::uint32_t>(random);
+  r.number = integer<std::uint32_t>(random);
+  return r;
+}
+
+coalition::Message announcement(Random& random) {
+  coalition::Announcement m;
+  m.round = round(random);
+  m.site = site(random);
+  m.tasks = several(random, coalition::kTasksMax, task_id);
+  m.announced_at = instant(random);
+  m.bids_until = instant(random);
+  m.formed_at = instant(random);
+  m.reward = random.uniform(0.0, kNumberMax);
+  m.leader_at_formation = point(random);
+  return m;
+}
+
+coalition::Message bid(Random& random) {
+  coalition::Bid m;
+  m.round = round(random);
+  m.bidder = vehicle(random);
+  m.pose_at_formation.x_m = coordinate(random);
+  m.pose_at_formation.y_m = coordinate(random);
+  m.pose_at_formation.heading_rad = angle(random);
+  m.speed_mps = speed(random);
+  m.planning_radius_m = distance(random);
+  m.range_left_m = coordinate(random);
+  m.final_approach_m = distance(random);
+  m.assess_radius_m = distance(random);
+  m.capabilities = Capabilities::from_bits(integer<std::uint8_t>(random));
+  m.loads = integer<std::uint8_t>(random);
+  m.eta = instant(random);
+  return m;
+}
+
+coalition::Message award(Random& random) {
+  coalition::Award m;
+  m.round = round(random);
+  m.site = site(random);
+  m.formed_at = instant(random);
+  m.assignments = several(random, coalition::kTasksMax, assignment);
+  m.lease_until = instant(random);
+  return m;
+}
+
+coalition::Message confirmation(Random& random) {
+  coalition::Confirmation m;
+  m.round = round(random);
+  m.member = vehicle(random);
+  m.accepted = random.chance(0.5);
+  m.reason = text(random);
+  return m;
+}
+
+coalition::Message cancel(Random& random) {
+  coalition::Cancel m;
+  m.round = round(random);
+  m.reason = text(random);
+  return m;
+}
+
+coalition::Message lease_renewal(Random& random) {
+  coalition::LeaseRenewal m;
+  m.round = round(random);
+  m.members = several(random, coalition::kMembersMax, vehicle);
+  m.done = several(random, coalition::kTasksMax, task_id);
+  m.lease_until = instant(random);
+  return m;
+}
+
+coalition::Message member_status(Random& random) {
+  coalition::MemberStatus m;
+  m.round = round(random);
+  m.member = vehicle(random);
+  m.tasks = several(random, coalition::kTasksMax, [](Random& r) {
+    coalition::MemberStatus::Entry e;
+    e.task = task_id(r);
+    e.state = enumerator<coalition::TaskState>(r);
+    e.time = instant(r);
+    return e;
+  });
+  return m;
+}
+
+mission::Message telemetry(Random& random) {
+  mission::Telemetry m;
+  m.vehicle = vehicle(random);
+  m.instance = InstanceId{random.next()};
+  m.state.time = instant(random);
+  m.state.x_m = coordinate(random);
+  m.state.y_m = coordinate(random);
+  m.state.z_m = coordinate(random);
+  m.state.heading_rad = angle(random);
+  m.state.course_rad = angle(random);
+  m.state.groundspeed_mps = speed(random);
+  m.state.airspeed_mps = speed(random);
+  m.state.distance_flown_m = distance(random);
+  m.activity = enumerator<mission::Activity>(random);
+  m.range_left_m = coordinate(random);
+  m.loads = integer<std::uint8_t>(random);
+  m.plan_number = integer<std::uint32_t>(random);
+  m.control_overruns = integer<std::uint32_t>(random);
+  m.messages_dropped = integer<std::uint32_t>(random);
+  return m;
+}
+
+mission::Message authorisation_request(Random& random) {
+  mission::AuthorisationRequest m;
+  m.round = round(random);
+  m.site = SiteId{integer<std::uint16_t>(random)};
+  m.site_position = point(random);
+  m.deliveries = several(random, coalition::kTasksMax, [](Random& r) {
+    mission::AuthorisationRequest::Delivery d;
+    d.assignment = assignment(r);
+    d.bearing_rad = angle(r);
+    return d;
+  });
+  m.decide_by = instant(random);
+  return m;
+}
+
+mission::Message authorisation(Random& random) {
+  mission::Authorisation m;
+  m.round = round(random);
+  m.site = SiteId{integer<std::uint16_t>(random)};
+  m.granted = random.chance(0.5);
+  m.decided_by = text(random);
+  m.decided_at = instant(random);
+  return m;
+}
+
+mission::Message mission_event(Random& random) {
+  mission::MissionEvent m;
+  m.vehicle = vehicle(random);
+  m.time = instant(random);
+  m.kind = enumerator<mission::EventKind>(random);
+  m.round = round(random);
+  m.task = task_id(random);
+  m.value = random.uniform(-kNumberMax, kNumberMax);
+  m.text = text(random);
+  return m;
+}
+
+mission::Message command(Random& random) {
+  mission::Command m;
+  m.vehicle = vehicle(random);
+  m.number = integer<std::uint32_t>(random);
+  m.kind = enumerator<mission::CommandKind>(random);
+  return m;
+}
+
+mission::Message site_report(Random& random) {
+  mission::SiteReport m;
+  m.finder = vehicle(random);
+  m.site = site(random);
+  return m;
+}
+
+mission::Message hazard_report(Random& random) {
+  mission::HazardReport m;
+  m.hazard.id = HazardId{integer<std::uint16_t>(random)};
+  m.hazard.centre = point(random);
+  m.hazard.radius_m = distance(random);
+  return m;
+}
+
+}  // namespace
+
+mission::Message random_message(std::size_t kind, Random& random) {
+  switch (kind % kMessageKinds) {
+    case 0:
+      return announcement(random);
+    case 1:
+      return bid(random);
+    case 2:
+      return award(random);
+    case 3:
+      return confirmation(random);
+    case 4:
+      return cancel(random);
+    case 5:
+      return lease_renewal(random);
+    case 6:
+      return member_status(random);
+    case 7:
+      return telemetry(random);
+    case 8:
+      return authorisation_request(random);
+    case 9:
+      return authorisation(random);
+    case 10:
+      return mission_event(random);
+    case 11:
+      return command(random);
+    case 12:
+      return site_report(random);
+    default:
+      return hazard_report(random);
+  }
+}
+
+}  // namespace skein::network

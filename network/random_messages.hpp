@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+#include "skein/base/random.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::network {
+
+/// The seven of the coalition, then the others of mission::Message in their order.
+inline constexpr std::size_t kMessageKinds = 14;
+
+/// A message of that kind with every field random within its limits, for tests of the network.
+[[nodiscard]] mission::Message random_message(std::size_t kind, Random& random);
+
+}  // namespace skein::network
