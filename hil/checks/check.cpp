@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "motion.hpp"
+#include "skein/checks/checks.hpp"
+
+namespace skein::checks {
+
+CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
+  CheckResult result{"recordings",
+                     "every vehicle left a track without gaps above " +
+                         fixed(limits.track_gap_s, 1) + " s, and its plans",
+                     0,
+                     "vehicles",
+                     "",
+                     {}};
+  double worst = 0.0;
+  for (const VehicleSpec& vehicle : record.vehicles) {
+    ++result.judged;
+    const std::string who = vehicle_name(vehicle.id);
+    const auto* recorded = recording_of(record, vehicle.id);
+    const bool lost =
+        std::find(record.lost.begin(), record.lost.end(), vehicle.id) != record.lost.end();
+    if (recorded == nullptr || recorded->track.empty() || recorded->plans.empty()) {
+      const char* what = recorded == nullptr       ? " left no recording"
+                         : recorded->track.empty() ? " left no track"
+                                                   : " left no plan";
+      if (!lost) result.violations.push_back({vehicle.id, Instant{}, who + what});
+      continue;
+    }
+    if (!lost && recorded->truncated_lines > 0) {
+      result.violations.push_back({vehicle.id, recorded->track.back().state.time,
+                                   who + " left " + std::to_string(recorded->truncated_lines) +
+                                       " files that break off in a line: it did not end cleanly"});
+    }
+    for (std::size_t i = 1; i < recorded->track.size(); ++i) {
+      const Instant from = recorded->track[i - 1].state.time;
+      const double gap = to_seconds(recorded->track[i].state.time - from);
+      worst = std::max(worst, gap);
+      if (gap <= 0.0 || gap > limits.track_gap_s) {
+        result.violations.push_back(
+            {vehicle.id, from,
+             who + "'s track " + at(from) +
+                 (gap <= 0.0 ? " does not go forward in time"
+                             : " has a gap of " + fixed(gap, 2) + " s (limit " +
+                                   fixed(limits.track_gap_s, 2) + " s)")});
+      }
+    }
+  }
+  result.measured = "longest gap " + fixed(worst, 2) + " s";
+  return result;
+}
+
+std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
+  std::vector<CheckResult> results;
+  for (const auto check :
+       {check_recordings, check_turn_radius, check_continuity, check_range, check_hazards,
+        check_precedence, check_capabilities, check_loads, check_leases, check_authorisation,
+        check_single_delivery, check_completion, check_separation, check_deliveries, check_surveys,
+        check_assessments}) {
+    results.push_back(check(record, limits));
+  }
+  return results;
+}
+
+}  // namespace skein::checks

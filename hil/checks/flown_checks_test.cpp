@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/checks/flown.hpp"
+#include "test_record.hpp"
+
+namespace skein::checks {
+namespace {
+
+using namespace checks::testing;
+using mission::EventKind;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// The same positions, `seconds` later.
+void delay(recording::Recording& recorded, double seconds) {
+  for (auto& point : recorded.track) point.state.time += from_seconds(seconds);
+}
+void shift(recording::Recording& recorded, const Vec2& by) {
+  for (auto& point : recorded.track) {
+    point.state.x_m += by.x();
+    point.state.y_m += by.y();
+  }
+}
+
+TEST(FlownChecks, ThePassIsMeasuredBetweenPoints) {
+  RunRecord record = good_record();
+  auto& recorded = of(record, kFromWest);
+  delay(recorded, 0.333);
+  shift(recorded, {0.0, -7.0});
+  const auto flown = deliveries_flown(record, {});
+  ASSERT_EQ(flown.size(), 2U);
+  EXPECT_EQ(flown[0].run.vehicle, kFromWest);
+  EXPECT_NEAR(flown[0].time_error_s(), 0.333, 1e-6);
+  EXPECT_NEAR(flown[0].miss_m, 7.0, 1e-6);
+  EXPECT_NEAR(flown[0].bearing_error_rad, 0.0, 1e-6);
+}
+
+TEST(FlownChecks, ALatePassIsFound) {
+  RunRecord record = good_record();
+  delay(of(record, kFromWest), 1.2);
+  const CheckResult result = check_deliveries(record, {});
+  ASSERT_EQ(result.violations.size(), 2U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("1.20 s off (limit 1.0 s)"));
+  EXPECT_THAT(result.violations[1].sentence, HasSubstr("1.20 s after the simultaneous"));
+}
+
+TEST(FlownChecks, SimultaneousMeansOfEachOther) {
+  RunRecord record = good_record();
+  delay(of(record, kFromWest), 0.6);
+  delay(of(record, kFromSouth), -0.6);
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("1.20 s after"));
+}
+
+TEST(FlownChecks, AMissIsFound) {
+  RunRecord record = good_record();
+  shift(of(record, kFromSouth), {31.0, 0.0});
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})),
+              HasSubstr("31.0 m from the site (limit 30 m)"));
+}
+
+TEST(FlownChecks, AWrongBearingIsFound) {
+  RunRecord record = good_record();
+  record.sites.front().deliveries[0].bearing_rad = radians(-6.0);
+  EXPECT_THAT(failed(record), ElementsAre("deliveries"));
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("6.0 deg off its bearing"));
+}
+
+TEST(FlownChecks, ADeliveryThatTheTrackDoesNotShowIsFound) {
+  RunRecord record = good_record();
+  of(record, kFromSouth).track.resize(900);
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("the track does not show it"));
+}
+
+TEST(FlownChecks, ADeliveryWhoseEndWasNeverToldIsFound) {
+  RunRecord record = good_record();
+  erase_events(record, kFromSouth, EventKind::task_done);
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("its end was never told"));
+}
+
+TEST(FlownChecks, SlotsAreKept) {
+  RunRecord record = good_record();
+  record.sites.front().deliveries[1].offset = from_seconds(5.0);
+  record.sites.front().assess_wait = from_seconds(5.0);
+  auto& south = of(record, kFromSouth);
+  shift(south, {0.0, -250.0});  // 5 s behind
+  event_of(record, kFromSouth, EventKind::task_done).value = 65.0;
+  EXPECT_TRUE(check_deliveries(record, {}).held());
+  shift(south, {0.0, -60.0});
+  const CheckResult late = check_deliveries(record, {});
+  ASSERT_EQ(late.violations.size(), 2U);
+  EXPECT_THAT(late.violations[1].sentence, HasSubstr("1.20 s off its slot"));
+  event_of(record, kFromSouth, EventKind::task_done).value = 66.0;
+  EXPECT_THAT(check_deliveries(record, {}).violations.front().sentence,
+              HasSubstr("off its slot beside the others"));
+}
+
+TEST(FlownChecks, AnArcIsMeasured) {
+  const auto arcs = arcs_flown(good_record(), TaskKind::assess, {});
+  ASSERT_EQ(arcs.size(), 1U);
+  EXPECT_NEAR(arcs[0].time_error_s(), 0.0, 1e-6);
+  EXPECT_NEAR(arcs[0].radius_error_m, 0.0, 1e-6);
+  EXPECT_GT(arcs[0].dwell_s, 29.0);  // the hold goes on around the site
+}
+
+TEST(FlownChecks, ALateAssessmentIsFound) {
+  RunRecord record = good_record();
+  delay(of(record, kAssessor), 1.5);
+  EXPECT_THAT(only_sentence(check_assessments(record, {})), HasSubstr("1.50 s off"));
+}
+
+TEST(FlownChecks, AShortDwellIsFound) {
+  RunRecord record = good_record();
+  auto& recorded = of(record, kAssessor);
+  auto& path = recorded.plans.front().plan.path;
+  path.segments.back().length_m = 500.0;
+  ASSERT_TRUE(path.append(Segment{0.0, 3000.0}));
+  fly(recorded, 100.0, 450.0);
+  EXPECT_THAT(failed(record), ElementsAre("assessments"));
+  EXPECT_THAT(only_sentence(check_assessments(record, {})),
+              HasSubstr("(required 20.00 s within 10 %"));
+}
+
+TEST(FlownChecks, AWrongRadiusIsFound) {
+  RunRecord record = good_record();
+  spec(record, kAssessor).assess_radius_m = 230.0;
+  EXPECT_THAT(failed(record), ElementsAre("assessments"));
+  spec(record, kAssessor).assess_radius_m = 215.0;
+  EXPECT_TRUE(check_assessments(record, {}).held());
+}
+
+TEST(FlownChecks, AnArcFromAnotherAngleIsFound) {
+  RunRecord record = good_record();
+  record.sites.front().assessments.front().start_angle_rad = kPi;
+  EXPECT_THAT(only_sentence(check_assessments(record, {})),
+              HasSubstr("does not pass its start angle"));
+}
+
+TEST(FlownChecks, ASurveyWithoutItsArcIsFound) {
+  RunRecord record = good_record();
+  auto& recorded = of(record, kSurveyor);
+  recorded.plans.front().plan.path.segments.back().curvature_per_m = 0.0;
+  fly(recorded, 100.0, 300.0);
+  EXPECT_THAT(failed(record), Contains("surveys"));
+}
+
+}  // namespace
+}  // namespace skein::checks

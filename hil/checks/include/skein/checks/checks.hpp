@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/checks/run_record.hpp"
+
+/// Judges of a recorded mission. They share no code with the planners and agents that they judge:
+/// paths are integrated and distances taken here anew. Each is a pure function of the record.
+namespace skein::checks {
+
+struct Violation {
+  VehicleId vehicle;
+  Instant time{};
+  std::string sentence;  ///< who, when, by how much, against which limit
+};
+
+struct CheckResult {
+  std::string name;
+  std::string requirement;  ///< the rule with its limit
+  std::size_t judged = 0;   ///< how many things: a check that judged nothing proves nothing
+  std::string judged_what;  ///< "tracks", "deliveries"
+  std::string measured;     ///< the worst figure found, empty where there is none
+  std::vector<Violation> violations;
+  [[nodiscard]] bool held() const { return violations.empty(); }
+};
+
+/// Every vehicle left a track without gaps, its events and at least one plan.
+[[nodiscard]] CheckResult check_recordings(const RunRecord& record, const Limits& limits);
+
+/// Plans exactly: no segment and no hold turns tighter than the turn radius. Tracks: heading change
+/// over air distance, within Limits::turn_share.
+[[nodiscard]] CheckResult check_turn_radius(const RunRecord& record, const Limits& limits);
+/// A plan starts where the one that it replaces is at that time; the first where the vehicle is.
+[[nodiscard]] CheckResult check_continuity(const RunRecord& record, const Limits& limits);
+/// No vehicle flew, or planned to fly, further than its range.
+[[nodiscard]] CheckResult check_range(const RunRecord& record, const Limits& limits);
+/// No plan and no track enters a hazard that is known. Who is inside when it becomes known may
+/// leave.
+[[nodiscard]] CheckResult check_hazards(const RunRecord& record, const Limits& limits);
+
+/// Survey before deliveries before assessments, with the site's wait between the last two (eq. 14).
+[[nodiscard]] CheckResult check_precedence(const RunRecord& record, const Limits& limits);
+/// Tasks are leased and flown only by vehicles that can do their kind.
+[[nodiscard]] CheckResult check_capabilities(const RunRecord& record, const Limits& limits);
+/// No vehicle flew more deliveries than it carried loads.
+[[nodiscard]] CheckResult check_loads(const RunRecord& record, const Limits& limits);
+/// At most one unexpired lease a task, and no vehicle with unexpired leases from two leaders.
+[[nodiscard]] CheckResult check_leases(const RunRecord& record, const Limits& limits);
+/// A delivery starts only after the ground station authorised its round and site, and the vehicle
+/// heard of it.
+[[nodiscard]] CheckResult check_authorisation(const RunRecord& record, const Limits& limits);
+/// No delivery is flown twice.
+[[nodiscard]] CheckResult check_single_delivery(const RunRecord& record, const Limits& limits);
+/// Every task of every site is done; what the operator refused, and what waits for it, is excused.
+[[nodiscard]] CheckResult check_completion(const RunRecord& record, const Limits& limits);
+
+/// No two vehicles below the horizontal and the vertical limit at once, tracks interpolated.
+/// Cost: proportional to the length of the mission and to the pairs that come near each other.
+[[nodiscard]] CheckResult check_separation(const RunRecord& record, const Limits& limits);
+
+/// As flown: time, miss distance and bearing of every delivery; simultaneous ones within
+/// Limits::arrival_s of each other, spaced ones of their slots.
+[[nodiscard]] CheckResult check_deliveries(const RunRecord& record, const Limits& limits);
+/// As flown: start, dwell and radius of every arc.
+[[nodiscard]] CheckResult check_surveys(const RunRecord& record, const Limits& limits);
+[[nodiscard]] CheckResult check_assessments(const RunRecord& record, const Limits& limits);
+
+/// All of them, in the order above.
+[[nodiscard]] std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits);
+
+}  // namespace skein::checks

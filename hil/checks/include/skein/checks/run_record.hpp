@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mission/messages.hpp"
+#include "skein/recording/recording.hpp"
+
+namespace skein::checks {
+
+/// A hazard, and from when on the vehicles are held to it.
+struct KnownHazard {
+  Hazard hazard;
+  Instant known_from{};
+};
+
+/// A finished mission: what it was to be, and what was recorded of it.
+struct RunRecord {
+  std::vector<Site> sites;
+  std::vector<KnownHazard> hazards;
+  std::vector<VehicleSpec> vehicles;
+  std::vector<recording::Recording> recordings;  ///< of vehicles, in any order
+  std::vector<mission::MissionEvent> ground_events;
+  std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
+};
+
+/// What a mission is held to.
+struct Limits {
+  double turn_share = 0.03;    ///< flown tighter than the turn radius by at most this share
+  double turn_window_s = 1.0;  ///< over which a flown turn is measured
+  double plan_jump_m = 10.0;   ///< between two plans where one replaces the other
+  double plan_jump_rad = radians(15.0);
+  double hazard_reaction_s = 5.0;  ///< from learning of a hazard to a plan that avoids it
+  double planned_time_s = 0.05;    ///< to which planned times must keep the site's offsets
+  double arrival_s = 1.0;          ///< flown against planned or required times
+  double bearing_rad = radians(5.0);
+  double miss_m = 30.0;             ///< horizontal distance from the site at a delivery
+  double delivery_window_s = 10.0;  ///< around the planned time, where the pass is looked for
+  double arc_radius_share = 0.10;
+  double separation_horizontal_m = 30.0;  ///< below both of these at once is a breach
+  double separation_vertical_m = 20.0;
+  double track_gap_s = 1.0;  ///< a longer gap in a track cannot be judged
+};
+
+}  // namespace skein::checks

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "motion.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace skein::checks {
+namespace {
+
+// A piece of constant curvature by its chord: the chord of an arc turning by a points a/2 off the
+// initial heading and is s sin(a/2)/(a/2) long.
+Pose2 along_piece(const Pose2& from, double curvature_per_m, double s) {
+  const double half = 0.5 * curvature_per_m * s;
+  const double chord = std::abs(half) < 1e-9 ? s : s * std::sin(half) / half;
+  const double direction = from.heading_rad + half;
+  return {from.x_m + chord * std::cos(direction), from.y_m + chord * std::sin(direction),
+          from.heading_rad + 2.0 * half};
+}
+
+template <class Items, class Key>
+auto find_by_id(const Items& items, Key key) -> decltype(items.data()) {
+  const auto it = std::find_if(items.begin(), items.end(), key);
+  return it == items.end() ? nullptr : &*it;
+}
+
+}  // namespace
+
+double plan_distance_m(const TimedPath& plan, Instant time) {
+  return std::max(0.0, to_seconds(time - plan.start_time) * plan.speed_mps);
+}
+
+double plan_length_m(const TimedPath& plan) {
+  double length = 0.0;
+  for (const Segment& segment : plan.path.segments) length += segment.length_m;
+  return length;
+}
+
+Pose2 plan_pose(const TimedPath& plan, double distance_m) {
+  Pose2 pose = plan.path.start;
+  double left = distance_m;
+  for (const Segment& segment : plan.path.segments) {
+    const double step = std::min(left, segment.length_m);
+    pose = along_piece(pose, segment.curvature_per_m, step);
+    left -= step;
+    if (left <= 0.0) return pose;
+  }
+  return along_piece(pose, plan.tail_curvature_per_m, left);
+}
+
+void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
+               const std::function<void(double, const Vec2&)>& see) {
+  const auto steps = std::max(1.0, std::ceil((to_m - from_m) / step_m));
+  Pose2 pose = plan.path.start;
+  double begin = 0.0;
+  std::size_t piece = 0;
+  for (double i = 0.0; i <= steps; i += 1.0) {
+    const double distance = from_m + (to_m - from_m) * i / steps;
+    const auto& segments = plan.path.segments;
+    while (piece < segments.size() && distance > begin + segments[piece].length_m) {
+      pose = along_piece(pose, segments[piece].curvature_per_m, segments[piece].length_m);
+      begin += segments[piece].length_m;
+      ++piece;
+    }
+    const double curvature =
+        piece < segments.size() ? segments[piece].curvature_per_m : plan.tail_curvature_per_m;
+    see(distance, along_piece(pose, curvature, distance - begin).position());
+  }
+}
+
+std::size_t first_at(const std::vector<recording::TrackPoint>& track, Instant time) {
+  const auto it = std::partition_point(track.begin(), track.end(),
+                                       [&](const auto& p) { return p.state.time < time; });
+  return static_cast<std::size_t>(it - track.begin());
+}
+
+std::optional<TrackPosition> track_at(const std::vector<recording::TrackPoint>& track, Instant time,
+                                      double gap_s) {
+  const std::size_t after = first_at(track, time);
+  if (after == track.size()) return std::nullopt;
+  const VehicleState& b = track[after].state;
+  if (b.time == time) return TrackPosition{{b.x_m, b.y_m}, b.z_m, b.distance_flown_m};
+  if (after == 0) return std::nullopt;
+  const VehicleState& a = track[after - 1].state;
+  const double span = to_seconds(b.time - a.time);
+  if (span > gap_s) return std::nullopt;
+  const double share = to_seconds(time - a.time) / span;
+  const auto mix = [share](double from, double to) { return from + share * (to - from); };
+  return TrackPosition{{mix(a.x_m, b.x_m), mix(a.y_m, b.y_m)},
+                       mix(a.z_m, b.z_m),
+                       mix(a.distance_flown_m, b.distance_flown_m)};
+}
+
+const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle) {
+  return find_by_id(record.vehicles, [&](const VehicleSpec& v) { return v.id == vehicle; });
+}
+const Site* site_of(const RunRecord& record, SiteId site) {
+  return find_by_id(record.sites, [&](const Site& s) { return s.id == site; });
+}
+const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle) {
+  return find_by_id(record.recordings,
+                    [&](const recording::Recording& r) { return r.vehicle == vehicle; });
+}
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "%.*f", decimals, value);
+  return text.data();
+}
+std::string vehicle_name(VehicleId vehicle) {
+  return vehicle == kGroundStation ? "the ground station"
+                                   : "vehicle " + std::to_string(vehicle.value);
+}
+std::string at(Instant time) { return "at " + fixed(to_seconds(time), 2) + " s"; }
+
+}  // namespace skein::checks

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/geometry.hpp"
+#include "skein/base/time.hpp"
+#include "skein/checks/run_record.hpp"
+
+/// The judges' own kinematics, apart from those that made the plans.
+namespace skein::checks {
+
+/// Distance from plan.start_time at its constant speed; 0 before.
+[[nodiscard]] double plan_distance_m(const TimedPath& plan, Instant time);
+[[nodiscard]] double plan_length_m(const TimedPath& plan);
+/// Beyond the end along the hold.
+[[nodiscard]] Pose2 plan_pose(const TimedPath& plan, double distance_m);
+/// Calls `see` with points of the plan at most `step_m` apart, both ends included.
+void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
+               const std::function<void(double distance_m, const Vec2&)>& see);
+
+/// Position of a track at a time, linear between its points; none outside it and in a gap.
+struct TrackPosition {
+  Vec2 horizontal{0.0, 0.0};
+  double height_m = 0.0;
+  double distance_flown_m = 0.0;
+};
+[[nodiscard]] std::optional<TrackPosition> track_at(const std::vector<recording::TrackPoint>& track,
+                                                    Instant time, double gap_s);
+/// Index of the first point at or after `time`; size() when there is none.
+[[nodiscard]] std::size_t first_at(const std::vector<recording::TrackPoint>& track, Instant time);
+
+[[nodiscard]] const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle);
+[[nodiscard]] const Site* site_of(const RunRecord& record, SiteId site);
+[[nodiscard]] const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle);
+
+/// Words of the sentences.
+[[nodiscard]] std::string fixed(double value, int decimals);
+[[nodiscard]] std::string vehicle_name(VehicleId vehicle);
+[[nodiscard]] std::string at(Instant time);  ///< "at 12.34 s"
+
+}  // namespace skein::checks

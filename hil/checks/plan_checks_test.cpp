@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "test_record.hpp"
+
+namespace skein::checks {
+namespace {
+
+using namespace checks::testing;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(PlanChecks, AGoodMissionHolds) {
+  const auto results = judge(good_record(), {});
+  EXPECT_EQ(results.size(), 16U);
+  for (const CheckResult& result : results) {
+    EXPECT_TRUE(result.held()) << result.name << ": " << result.violations.front().sentence;
+    EXPECT_EQ(result.judged == 0U, result.name == "hazards") << result.name;  // it has none
+  }
+}
+
+TEST(PlanChecks, AnEmptyMissionIsNoPanic) { EXPECT_THAT(failed(RunRecord{}), IsEmpty()); }
+
+TEST(PlanChecks, AVehicleWithoutRecordingIsFoundUnlessItWasLost) {
+  RunRecord record = good_record();
+  VehicleSpec silent = record.vehicles.front();
+  silent.id = VehicleId{9};
+  record.vehicles.push_back(silent);
+  EXPECT_THAT(failed(record), ElementsAre("recordings"));
+  record.lost = {silent.id};
+  EXPECT_THAT(failed(record), IsEmpty());
+}
+
+TEST(PlanChecks, AGapInATrackIsFound) {
+  RunRecord record = good_record();
+  auto& track = of(record, kSurveyor).track;
+  track.erase(track.begin() + 1600, track.begin() + 1640);
+  EXPECT_THAT(only_sentence(check_recordings(record, {})), HasSubstr("a gap of 2.05 s"));
+}
+
+TEST(PlanChecks, ATightSegmentIsFoundHoweverShort) {
+  RunRecord record = good_record();
+  auto& plan = of(record, kSurveyor).plans.front().plan;
+  ASSERT_TRUE(plan.path.append(Segment{-1.0 / 149.9, 0.001}));
+  EXPECT_THAT(only_sentence(check_turn_radius(record, {})), HasSubstr("149.90 m (limit 150.00 m)"));
+  plan.path.segments.back().curvature_per_m = -1.0 / 150.0;
+  EXPECT_TRUE(check_turn_radius(record, {}).held());
+}
+
+TEST(PlanChecks, ATightHoldIsFound) {
+  RunRecord record = good_record();
+  of(record, kFromWest).plans.back().plan.tail_curvature_per_m = 1.0 / 100.0;
+  EXPECT_THAT(failed(record), ElementsAre("turn radius"));
+}
+
+TEST(PlanChecks, ATightFlownTurnIsFoundFromThreePerCent) {
+  for (const double share : {0.02, 0.04}) {
+    RunRecord record = good_record();
+    double heading = 0.0;
+    for (auto& point : of(record, kFromSouth).track) {
+      point.state.heading_rad = wrap_pi(heading);
+      heading += (1.0 + share) / 150.0 * kSpeed * 0.05;
+    }
+    EXPECT_EQ(check_turn_radius(record, {}).held(), share < 0.03) << share;
+  }
+}
+
+TEST(PlanChecks, AJumpBetweenPlansIsFound) {
+  RunRecord record = good_record();
+  auto& plan = of(record, kFromWest).plans.back();
+  plan.plan.path.start.y_m += 12.0;
+  EXPECT_THAT(failed(record), ElementsAre("continuity"));
+  EXPECT_THAT(only_sentence(check_continuity(record, {})),
+              HasSubstr("plan 2 of vehicle 2 starts at 40.00 s 12.0 m and 0.0 deg"));
+  plan.plan.path.start.y_m -= 12.0;
+  plan.plan.path.start.heading_rad += radians(20.0);
+  EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("20.0 deg"));
+}
+
+TEST(PlanChecks, AFirstPlanAwayFromTheVehicleIsFound) {
+  RunRecord record = good_record();
+  of(record, kFromSouth).plans.front().plan.path.start.y_m -= 100.0;
+  EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("100.0 m"));
+}
+
+TEST(PlanChecks, PlanNumbersMustGrow) {
+  RunRecord record = good_record();
+  of(record, kFromWest).plans.back().number = 1;
+  EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("must grow"));
+}
+
+TEST(PlanChecks, RangeIsJudgedByTrackAndByPlan) {
+  RunRecord record = good_record();
+  spec(record, kAssessor).range_m = 4990.0;  // the track is 5000 m, the plan 4550 m
+  EXPECT_THAT(only_sentence(check_range(record, {})), HasSubstr("flew 5000 m (range 4990 m)"));
+  record = good_record();
+  spec(record, kFromSouth).range_m = 5990.0;
+  EXPECT_THAT(only_sentence(check_range(record, {})),
+              HasSubstr("brings the distance flown to 6000 m"));
+}
+
+TEST(PlanChecks, RangeIsNotTakenOnTheVehiclesWord) {
+  RunRecord record = good_record();
+  spec(record, kAssessor).range_m = 4990.0;
+  for (auto& point : of(record, kAssessor).track) point.state.distance_flown_m = 0.0;
+  EXPECT_THAT(failed(record), ElementsAre("range"));
+}
+
+TEST(PlanChecks, AHazardOnTheWayIsFoundInPlanAndTrack) {
+  RunRecord record = good_record();
+  record.hazards = {{{HazardId{3}, {0.0, -1500.0}, 100.0}, Instant{}}};
+  const CheckResult result = check_hazards(record, {});
+  ASSERT_EQ(result.violations.size(), 2U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("plan 1 of vehicle 3"));
+  EXPECT_THAT(result.violations[1].sentence, HasSubstr("vehicle 3 flew at 30.00 s 100.0 m inside"));
+}
+
+TEST(PlanChecks, AHazardBesideTheWayIsNone) {
+  RunRecord record = good_record();
+  record.hazards = {{{HazardId{3}, {-101.0, -1500.0}, 100.0}, Instant{}}};
+  const CheckResult result = check_hazards(record, {});
+  EXPECT_TRUE(result.held());
+  EXPECT_EQ(result.measured, "least clearance flown 1.0 m");
+}
+
+TEST(PlanChecks, TheHoldIsJudgedToo) {
+  RunRecord record = good_record();
+  auto& plan = of(record, kSurveyor).plans.front().plan;
+  const Pose2 hold = plan.pose_at_distance(plan.path.length_m() + kPi * 200.0);
+  record.hazards = {{{HazardId{3}, {hold.x_m, hold.y_m}, 20.0}, Instant{}}};
+  of(record, kSurveyor).track.resize(700);  // it never came there
+  EXPECT_THAT(check_hazards(record, {}).violations.size(), 1U);
+}
+
+TEST(PlanChecks, AHazardCountsOnlyOnceKnown) {
+  RunRecord record = good_record();
+  // Vehicle 3 is in it from 28 s to 32 s.
+  KnownHazard known{{HazardId{3}, {0.0, -1500.0}, 100.0}, at_seconds(33.0)};
+  record.hazards = {known};
+  EXPECT_TRUE(check_hazards(record, {}).held());
+  record.hazards.front().known_from = at_seconds(20.0);
+  EXPECT_FALSE(check_hazards(record, {}).held());
+  // Who is inside when it becomes binding may leave.
+  record.hazards.front().known_from = at_seconds(25.0);
+  EXPECT_TRUE(check_hazards(record, {}).held());
+}
+
+}  // namespace
+}  // namespace skein::checks

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "motion.hpp"
+#include "skein/checks/checks.hpp"
+#include "skein/checks/task_runs.hpp"
+
+namespace skein::checks {
+namespace {
+
+using mission::EventKind;
+using mission::MissionEvent;
+
+std::string round_name(const coalition::Round& round) {
+  return "coalition " + std::to_string(round.coalition.number) + " of " +
+         vehicle_name(round.coalition.leader) + ", round " + std::to_string(round.number);
+}
+
+std::string run_name(const TaskRun& run) {
+  return to_string(run.task) + " by " + vehicle_name(run.vehicle);
+}
+
+/// What came first, and how late the second may not be early.
+struct Order {
+  const TaskRun& before;
+  const TaskRun& after;
+  Duration wait{};
+};
+
+void judge_order(const Order& order, const Limits& limits, CheckResult& result) {
+  const std::string rule =
+      order.wait > Duration{} ? " (wait " + fixed(to_seconds(order.wait), 1) + " s)" : "";
+  ++result.judged;
+  if (!order.before.done ||
+      order.after.begin() + from_seconds(limits.arrival_s) < *order.before.done + order.wait) {
+    result.violations.push_back(
+        {order.after.vehicle, order.after.begin(),
+         run_name(order.after) + " began " + at(order.after.begin()) + ", but " +
+             run_name(order.before) +
+             (order.before.done ? " ended only " + at(*order.before.done) : " never ended") +
+             rule});
+    return;
+  }
+  const bool both_planned = order.before.planned && order.after.planned;
+  if (both_planned && order.before.task.kind == TaskKind::deliver &&
+      *order.after.planned + from_seconds(limits.planned_time_s) <
+          *order.before.planned + order.wait) {
+    result.violations.push_back({order.after.vehicle, order.after.begin(),
+                                 run_name(order.after) + " was planned " +
+                                     at(*order.after.planned) + " and " + run_name(order.before) +
+                                     " " + at(*order.before.planned) + rule});
+  }
+}
+
+std::vector<const TaskRun*> of_kind(const std::vector<TaskRun>& runs, SiteId site, TaskKind kind) {
+  std::vector<const TaskRun*> found;
+  for (const TaskRun& run : runs) {
+    if (run.flown() && run.task.site == site && run.task.kind == kind) found.push_back(&run);
+  }
+  return found;
+}
+
+/// The operator's last word on a site was no.
+bool refused(const RunRecord& record, SiteId site) {
+  bool is_refused = false;
+  for (const MissionEvent& event : record.ground_events) {
+    if (event.task.site != site) continue;
+    if (event.kind == EventKind::authorisation_refused) is_refused = true;
+    if (event.kind == EventKind::authorised) is_refused = false;
+  }
+  return is_refused;
+}
+
+}  // namespace
+
+CheckResult check_precedence(const RunRecord& record, const Limits& limits) {
+  CheckResult result{"precedence",
+                     "survey before deliveries before assessments, with the wait",
+                     0,
+                     "pairs of tasks",
+                     "",
+                     {}};
+  const std::vector<TaskRun> runs = task_runs(record);
+  for (const Site& site : record.sites) {
+    const auto surveys = of_kind(runs, site.id, TaskKind::survey);
+    const auto deliveries = of_kind(runs, site.id, TaskKind::deliver);
+    const auto assessments = of_kind(runs, site.id, TaskKind::assess);
+    for (const auto& later : {deliveries, assessments}) {
+      for (const TaskRun* run : later) {
+        if (surveys.empty()) {
+          ++result.judged;
+          result.violations.push_back({run->vehicle, run->begin(),
+                                       run_name(*run) + " began " + at(run->begin()) +
+                                           " at a site that was never surveyed"});
+        } else {
+          judge_order({*surveys.front(), *run}, limits, result);
+        }
+      }
+    }
+    for (const TaskRun* delivery : deliveries) {
+      for (const TaskRun* assessment : assessments) {
+        judge_order({*delivery, *assessment, site.assess_wait}, limits, result);
+      }
+    }
+  }
+  return result;
+}
+
+CheckResult check_capabilities(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{"capabilities",
+                     "tasks go only to vehicles that can do their kind",
+                     0,
+                     "leases and tasks",
+                     "",
+                     {}};
+  const auto judge_one = [&](VehicleId vehicle, const TaskId& task, Instant when,
+                             const std::string& what) {
+    ++result.judged;
+    const VehicleSpec* spec = spec_of(record, vehicle);
+    if (spec != nullptr && spec->capabilities.has(task.kind)) return;
+    result.violations.push_back(
+        {vehicle, when,
+         vehicle_name(vehicle) + what + to_string(task) + " " + at(when) +
+             (spec == nullptr ? ", but is not of this mission"
+                              : ", but cannot " + std::string{to_string(task.kind)})});
+  };
+  for (const Lease& lease : leases(record)) {
+    judge_one(lease.vehicle, lease.task, lease.from, " took a lease on ");
+  }
+  for (const TaskRun& run : task_runs(record)) {
+    judge_one(run.vehicle, run.task, run.begin(), " began ");
+  }
+  return result;
+}
+
+CheckResult check_loads(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{"loads", "no vehicle delivers more than it carries", 0, "vehicles", "", {}};
+  std::map<VehicleId, std::size_t> flown;
+  std::size_t total = 0;
+  const std::vector<TaskRun> runs = task_runs(record);
+  for (const VehicleSpec& vehicle : record.vehicles) {
+    ++result.judged;
+    std::size_t used = 0;
+    for (const TaskRun& run : runs) {
+      if (run.vehicle != vehicle.id || run.task.kind != TaskKind::deliver || !run.flown()) continue;
+      ++total;
+      if (++used != vehicle.loads + std::size_t{1}) continue;
+      result.violations.push_back({vehicle.id, run.begin(),
+                                   vehicle_name(vehicle.id) + " began " + to_string(run.task) +
+                                       " " + at(run.begin()) + ", its delivery number " +
+                                       std::to_string(used) + " (carried " +
+                                       std::to_string(vehicle.loads) + ")"});
+    }
+  }
+  result.measured = std::to_string(total) + " loads used";
+  return result;
+}
+
+CheckResult check_leases(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{
+      "leases", "one unexpired lease a task; a vehicle under one leader", 0, "leases", "", {}};
+  const std::vector<Lease> all = leases(record);
+  result.judged = all.size();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      const Lease& a = all[i].from <= all[j].from ? all[i] : all[j];
+      const Lease& b = all[i].from <= all[j].from ? all[j] : all[i];
+      const Instant until = std::min(a.until, b.until);
+      if (b.from >= until) continue;
+      const std::string span =
+          " from " + fixed(to_seconds(b.from), 2) + " s to " + fixed(to_seconds(until), 2) + " s";
+      if (a.task == b.task && a.vehicle != b.vehicle) {
+        result.violations.push_back({b.vehicle, b.from,
+                                     to_string(a.task) + " was leased to " +
+                                         vehicle_name(a.vehicle) + " and " +
+                                         vehicle_name(b.vehicle) + " at once" + span});
+      }
+      const auto leader = [](const Lease& lease) {
+        return std::tuple{lease.coalition.leader, lease.coalition.instance};
+      };
+      if (a.vehicle == b.vehicle && leader(a) != leader(b)) {
+        result.violations.push_back(
+            {b.vehicle, b.from,
+             vehicle_name(a.vehicle) + " held leases from two leaders at once" + span + ": " +
+                 to_string(a.task) + " from " + vehicle_name(a.coalition.leader) + ", " +
+                 to_string(b.task) + " from " + vehicle_name(b.coalition.leader)});
+      }
+    }
+  }
+  return result;
+}
+
+CheckResult check_authorisation(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{
+      "authorisation", "every delivery is authorised before it starts", 0, "deliveries", "", {}};
+  // The first decision for a round and site, as one side told it.
+  const auto decided = [](const std::vector<MissionEvent>& events, VehicleId teller,
+                          const TaskRun& run, EventKind kind) {
+    std::optional<Instant> first;
+    for (const MissionEvent& event : events) {
+      if (event.vehicle == teller && event.kind == kind && event.round == run.round &&
+          event.task.site == run.task.site && (!first || event.time < *first)) {
+        first = event.time;
+      }
+    }
+    return first;
+  };
+  for (const TaskRun& run : task_runs(record)) {
+    if (run.task.kind != TaskKind::deliver) continue;
+    ++result.judged;
+    const auto granted = decided(record.ground_events, kGroundStation, run, EventKind::authorised);
+    const auto refusal =
+        decided(record.ground_events, kGroundStation, run, EventKind::authorisation_refused);
+    const auto* recorded = recording_of(record, run.vehicle);
+    const auto heard = decided(recorded->events, run.vehicle, run, EventKind::authorised);
+    std::string why;
+    if (refusal && *refusal <= run.begin()) {
+      why = "the operator had refused it " + at(*refusal);
+    } else if (!granted) {
+      why = "the operator never authorised it";
+    } else if (*granted > run.begin()) {
+      why = "it was authorised only " + at(*granted);
+    } else if (!heard) {
+      why = "the vehicle never heard of the authorisation";
+    } else if (*heard > run.begin()) {
+      why = "the vehicle heard of the authorisation only " + at(*heard);
+    }
+    if (!why.empty()) {
+      result.violations.push_back({run.vehicle, run.begin(),
+                                   run_name(run) + " (" + round_name(run.round) + ") began " +
+                                       at(run.begin()) + ", but " + why});
+    }
+  }
+  return result;
+}
+
+CheckResult check_single_delivery(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{"single delivery", "no delivery is flown twice", 0, "deliveries", "", {}};
+  std::map<TaskId, TaskRun> first;
+  for (const TaskRun& run : task_runs(record)) {
+    if (run.task.kind != TaskKind::deliver || !run.flown()) continue;
+    ++result.judged;
+    const auto [earlier, is_new] = first.emplace(run.task, run);
+    if (is_new) continue;
+    result.violations.push_back({run.vehicle, run.begin(),
+                                 to_string(run.task) + " was flown by " +
+                                     vehicle_name(earlier->second.vehicle) + " " +
+                                     at(earlier->second.begin()) + " and again by " +
+                                     vehicle_name(run.vehicle) + " " + at(run.begin())});
+  }
+  return result;
+}
+
+CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{"completion", "every task of every site is done", 0, "tasks", "", {}};
+  std::set<TaskId> done;
+  std::set<TaskId> begun;
+  for (const TaskRun& run : task_runs(record)) {
+    begun.insert(run.task);
+    if (run.done && !run.failed) done.insert(run.task);
+  }
+  std::size_t excused = 0;
+  for (const Site& site : record.sites) {
+    std::vector<TaskId> tasks = site.tasks_after_survey();
+    tasks.insert(tasks.begin(), TaskId{site.id, TaskKind::survey, 0});
+    const bool no = refused(record, site.id);
+    for (const TaskId& task : tasks) {
+      ++result.judged;
+      if (done.contains(task)) continue;
+      if (no && task.kind != TaskKind::survey) {
+        ++excused;
+        continue;
+      }
+      result.violations.push_back(
+          {VehicleId{}, Instant{},
+           to_string(task) +
+               (begun.contains(task) ? " was begun and never done" : " was never begun")});
+    }
+  }
+  result.measured =
+      std::to_string(done.size()) + " done" +
+      (excused > 0 ? ", " + std::to_string(excused) + " refused by the operator" : "");
+  return result;
+}
+
+}  // namespace skein::checks

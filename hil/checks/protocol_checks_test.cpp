@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/checks/task_runs.hpp"
+#include "test_record.hpp"
+
+namespace skein::checks {
+namespace {
+
+using namespace checks::testing;
+using mission::EventKind;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+TEST(ProtocolChecks, ASurveyThatIsToldTwiceIsOneRun) {
+  const auto runs = task_runs(good_record());
+  ASSERT_EQ(runs.size(), 4U);
+  EXPECT_EQ(runs[0].task, kSurvey);
+  EXPECT_EQ(runs[0].started, at_seconds(10.0));
+  EXPECT_EQ(runs[0].done, at_seconds(30.0));
+  EXPECT_EQ(runs[0].planned, at_seconds(10.0));
+}
+
+TEST(ProtocolChecks, ADeliveryBeforeTheSurveyIsDoneIsFound) {
+  RunRecord record = good_record();
+  for (auto& e : of(record, kSurveyor).events) {
+    if (e.kind != EventKind::survey_started) e.time = at_seconds(56.0);
+  }
+  EXPECT_THAT(failed(record), ElementsAre("precedence"));
+  EXPECT_EQ(check_precedence(record, {}).violations.size(), 2U);
+}
+
+TEST(ProtocolChecks, ATaskAtASiteNeverSurveyedIsFound) {
+  RunRecord record = good_record();
+  of(record, kSurveyor).events.clear();
+  EXPECT_THAT(failed(record), ElementsAre("precedence", "completion"));
+  EXPECT_THAT(check_precedence(record, {}).violations.front().sentence,
+              HasSubstr("never surveyed"));
+}
+
+TEST(ProtocolChecks, AnAssessmentBeforeItsWaitIsFound) {
+  RunRecord record = good_record();
+  event_of(record, kAssessor, EventKind::task_started).time = at_seconds(68.0);
+  EXPECT_THAT(failed(record), ElementsAre("precedence"));
+  EXPECT_THAT(check_precedence(record, {}).violations.front().sentence, HasSubstr("wait 10.0 s"));
+}
+
+TEST(ProtocolChecks, AnAssessmentPlannedBeforeItsWaitIsFound) {
+  RunRecord record = good_record();
+  event_of(record, kAssessor, EventKind::task_done).value = 69.9;
+  const CheckResult result = check_precedence(record, {});
+  ASSERT_EQ(result.violations.size(), 2U);
+  EXPECT_THAT(result.violations.front().sentence, HasSubstr("was planned at 69.90 s"));
+}
+
+TEST(ProtocolChecks, ATaskBeyondAVehiclesCapabilitiesIsFound) {
+  RunRecord record = good_record();
+  spec(record, kAssessor).capabilities = Capabilities{}.add(TaskKind::deliver);
+  EXPECT_THAT(failed(record), ElementsAre("capabilities"));
+  EXPECT_THAT(check_capabilities(record, {}).violations.back().sentence,
+              HasSubstr("cannot assess"));
+}
+
+TEST(ProtocolChecks, MoreDeliveriesThanLoadsAreFound) {
+  RunRecord record = good_record();
+  spec(record, kFromWest).loads = 0;
+  EXPECT_THAT(failed(record), ElementsAre("loads"));
+  EXPECT_THAT(only_sentence(check_loads(record, {})), HasSubstr("(carried 0)"));
+}
+
+TEST(ProtocolChecks, TwoLeasesOnOneTaskAreFound) {
+  RunRecord record = good_record();
+  auto& events = of(record, kAssessor).events;
+  events.push_back(event(kAssessor, 50.0, EventKind::lease_granted, kEastward, 55.0));
+  EXPECT_THAT(failed(record), ElementsAre("leases"));
+  EXPECT_THAT(only_sentence(check_leases(record, {})),
+              HasSubstr("vehicle 2 and vehicle 4 at once from 50.00 s to 55.00 s"));
+}
+
+TEST(ProtocolChecks, ALeaseThatFollowsAnExpiredOneIsFine) {
+  RunRecord record = good_record();
+  auto& events = of(record, kFromWest).events;
+  std::erase_if(events, [](const auto& e) {
+    return e.kind == EventKind::lease_granted && e.value > 100.0;  // the renewal
+  });
+  of(record, kAssessor)
+      .events.push_back(event(kAssessor, 45.0, EventKind::lease_granted, kEastward, 55.0));
+  EXPECT_TRUE(check_leases(record, {}).held());
+  of(record, kAssessor).events.back().time = at_seconds(44.9);
+  EXPECT_FALSE(check_leases(record, {}).held());
+}
+
+TEST(ProtocolChecks, ALeaseEndsWhenTheMemberSaysSo) {
+  RunRecord record = good_record();
+  of(record, kFromWest).events.push_back(event(kFromWest, 46.0, EventKind::lease_ended, kEastward));
+  of(record, kAssessor)
+      .events.push_back(event(kAssessor, 50.0, EventKind::lease_granted, kEastward, 55.0));
+  EXPECT_TRUE(check_leases(record, {}).held());
+}
+
+TEST(ProtocolChecks, LeasesFromTwoLeadersAreFound) {
+  RunRecord record = good_record();
+  auto grant =
+      event(kAssessor, 50.0, EventKind::lease_granted, {SiteId{2}, TaskKind::assess, 0}, 60.0);
+  grant.round.coalition.leader = VehicleId{8};
+  of(record, kAssessor).events.push_back(grant);
+  EXPECT_THAT(only_sentence(check_leases(record, {})), HasSubstr("two leaders at once"));
+  // From the leader's own second coalition it is none.
+  of(record, kAssessor).events.back().round.coalition = {kSurveyor, InstanceId{77}, 2};
+  EXPECT_TRUE(check_leases(record, {}).held());
+  // From an earlier life of the same leader it is.
+  of(record, kAssessor).events.back().round.coalition.instance = InstanceId{76};
+  EXPECT_FALSE(check_leases(record, {}).held());
+}
+
+TEST(ProtocolChecks, ADeliveryWithoutAuthorisationIsFound) {
+  RunRecord record = good_record();
+  record.ground_events.clear();
+  EXPECT_THAT(failed(record), ElementsAre("authorisation"));
+  EXPECT_THAT(check_authorisation(record, {}).violations.front().sentence,
+              HasSubstr("never authorised it"));
+}
+
+TEST(ProtocolChecks, AuthorisationIsForOneRoundAndOneSite) {
+  RunRecord record = good_record();
+  record.ground_events.front().round.number = 2;
+  EXPECT_FALSE(check_authorisation(record, {}).held());
+  record = good_record();
+  record.ground_events.front().task.site = SiteId{2};
+  EXPECT_FALSE(check_authorisation(record, {}).held());
+}
+
+TEST(ProtocolChecks, ADeliveryStartedBeforeItsAuthorisationIsFound) {
+  RunRecord record = good_record();
+  record.ground_events.front().time = at_seconds(54.1);
+  EXPECT_THAT(check_authorisation(record, {}).violations.front().sentence,
+              HasSubstr("authorised only at 54.10 s"));
+  record = good_record();
+  event_of(record, kFromSouth, EventKind::authorised).time = at_seconds(55.0);
+  EXPECT_THAT(only_sentence(check_authorisation(record, {})), HasSubstr("heard of"));
+  record = good_record();
+  erase_events(record, kFromSouth, EventKind::authorised);
+  EXPECT_THAT(only_sentence(check_authorisation(record, {})), HasSubstr("never heard"));
+}
+
+TEST(ProtocolChecks, ADeliveryAfterARefusalIsFound) {
+  RunRecord record = good_record();
+  record.ground_events.push_back(
+      event(kGroundStation, 40.0, EventKind::authorisation_refused, kEastward));
+  EXPECT_EQ(check_authorisation(record, {}).violations.size(), 2U);
+}
+
+TEST(ProtocolChecks, ADeliveryWithNoStartToldStillNeedsAuthorisation) {
+  RunRecord record = good_record();
+  record.ground_events.clear();
+  erase_events(record, kFromWest, EventKind::task_started);
+  EXPECT_EQ(check_authorisation(record, {}).violations.size(), 2U);
+}
+
+TEST(ProtocolChecks, ADeliveryFlownTwiceIsFound) {
+  RunRecord record = good_record();
+  auto& events = of(record, kAssessor).events;
+  events.push_back(event(kAssessor, 95.0, EventKind::task_started, kEastward));
+  EXPECT_THAT(only_sentence(check_single_delivery(record, {})),
+              HasSubstr("was flown by vehicle 2 at 54.00 s and again by vehicle 4 at 95.00 s"));
+  events.push_back(event(kAssessor, 96.0, EventKind::task_failed, kEastward));
+  EXPECT_TRUE(check_single_delivery(record, {}).held());
+}
+
+TEST(ProtocolChecks, AForgottenTaskIsFoundUnlessTheOperatorRefused) {
+  RunRecord record = good_record();
+  for (const VehicleId id : {kFromWest, kFromSouth, kAssessor}) {
+    erase_events(record, id, EventKind::task_started);
+    erase_events(record, id, EventKind::task_done);
+  }
+  EXPECT_THAT(failed(record), ElementsAre("completion"));
+  EXPECT_EQ(check_completion(record, {}).violations.size(), 3U);
+  record.ground_events = {event(kGroundStation, 36.0, EventKind::authorisation_refused, kEastward)};
+  EXPECT_THAT(failed(record), IsEmpty());
+  record.ground_events.push_back(event(kGroundStation, 40.0, EventKind::authorised, kEastward));
+  EXPECT_THAT(failed(record), ElementsAre("completion"));
+}
+
+TEST(ProtocolChecks, ATaskBegunAndNotDoneIsFound) {
+  RunRecord record = good_record();
+  erase_events(record, kAssessor, EventKind::task_done);
+  EXPECT_THAT(only_sentence(check_completion(record, {})), HasSubstr("begun and never done"));
+  EXPECT_THAT(failed(record), Contains("completion"));
+}
+
+}  // namespace
+}  // namespace skein::checks

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/checks/task_runs.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace skein::checks {
+namespace {
+
+using mission::EventKind;
+using mission::MissionEvent;
+
+bool is_start(EventKind kind) {
+  return kind == EventKind::task_started || kind == EventKind::survey_started;
+}
+bool is_done(EventKind kind) {
+  return kind == EventKind::task_done || kind == EventKind::survey_done;
+}
+
+TaskId task_of(const MissionEvent& event) {
+  const bool survey =
+      event.kind == EventKind::survey_started || event.kind == EventKind::survey_done;
+  return survey ? TaskId{event.task.site, TaskKind::survey, 0} : event.task;
+}
+
+/// One vehicle's events in order of time; others' that it may have noted are not its own.
+std::vector<MissionEvent> own_events(const recording::Recording& recorded) {
+  std::vector<MissionEvent> events;
+  std::copy_if(recorded.events.begin(), recorded.events.end(), std::back_inserter(events),
+               [&](const MissionEvent& e) { return e.vehicle == recorded.vehicle; });
+  std::stable_sort(events.begin(), events.end(),
+                   [](const MissionEvent& a, const MissionEvent& b) { return a.time < b.time; });
+  return events;
+}
+
+void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
+  const bool done = is_done(event.kind);
+  if (!is_start(event.kind) && !done && event.kind != EventKind::task_failed) return;
+  const TaskId task = task_of(event);
+  const auto last = std::find_if(runs.rbegin(), runs.rend(),
+                                 [&](const TaskRun& run) { return run.task == task; });
+  const bool open = last != runs.rend() && !last->done && !last->failed;
+  // A survey is told twice, as a survey and as a task: one run.
+  const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
+                          last->done && event.time - *last->done < std::chrono::seconds{1};
+  if (!open && !told_again) {
+    if (event.kind == EventKind::task_failed) return;  // given up before it began
+    runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}});
+  }
+  TaskRun& run = open || told_again ? *last : runs.back();
+  if (event.kind == EventKind::task_failed) run.failed = true;
+  if (is_start(event.kind) && !run.started) run.started = event.time;
+  if (done && !run.done) run.done = event.time;
+  if (done && event.value > 0.0) run.planned = at_seconds(event.value);
+}
+
+void add_to_leases(const MissionEvent& event, std::vector<Lease>& leases) {
+  const bool granted = event.kind == EventKind::lease_granted;
+  const bool over = event.kind == EventKind::lease_ended || event.kind == EventKind::task_done ||
+                    event.kind == EventKind::task_failed;
+  if (!granted && !over) return;
+  const auto running = [&](const Lease& lease) {
+    return lease.task == event.task && lease.until > event.time &&
+           lease.coalition == event.round.coalition;
+  };
+  if (over) {
+    for (Lease& lease : leases) {
+      if (running(lease)) lease.until = event.time;
+    }
+    return;
+  }
+  const Instant until = at_seconds(event.value);
+  const auto renewed = std::find_if(leases.begin(), leases.end(), running);
+  if (renewed != leases.end()) {
+    renewed->until = until;
+  } else {
+    leases.push_back({event.vehicle, event.task, event.round.coalition, event.time, until});
+  }
+}
+
+}  // namespace
+
+std::vector<TaskRun> task_runs(const RunRecord& record) {
+  std::vector<TaskRun> all;
+  for (const recording::Recording& recorded : record.recordings) {
+    std::vector<TaskRun> runs;
+    for (const MissionEvent& event : own_events(recorded)) add_to_runs(event, runs);
+    all.insert(all.end(), runs.begin(), runs.end());
+  }
+  std::stable_sort(all.begin(), all.end(), [](const TaskRun& a, const TaskRun& b) {
+    return std::tuple{a.begin(), a.vehicle} < std::tuple{b.begin(), b.vehicle};
+  });
+  return all;
+}
+
+std::vector<Lease> leases(const RunRecord& record) {
+  std::vector<Lease> all;
+  for (const recording::Recording& recorded : record.recordings) {
+    std::vector<Lease> own;
+    for (const MissionEvent& event : own_events(recorded)) add_to_leases(event, own);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
+}
+
+}  // namespace skein::checks
