@@ -88,8 +88,9 @@ TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
   EXPECT_TRUE(findings_in("network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
 }
 
-TEST(Rules, QosIsAllowedInTheListOfTopics) {
-  EXPECT_TRUE(findings_in("network/topics.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
+TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {
+  EXPECT_TRUE(findings_in("network/topics.cpp", "name = \"skein/command\";").empty());
+  EXPECT_TRUE(findings_in("network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 
 TEST(Rules, SourceMustBeginWithItsLicence) {
