@@ -148,7 +148,8 @@ constexpr const char* kScenario = R"(version: 1
 title: Test
 duration_max_s: 100
 origin: {latitude_deg: 31.5, longitude_deg: 105}
-all: {cruise_speed_mps: 50, speed_min_mps: 42, speed_max_mps: 58, turn_radius_m: 150, range_m: 18000}
+all: {cruise_speed_mps: 50, speed_min_mps: 42, speed_max_mps: 58, turn_radius_m: 150,
+  range_m: 18000}
 types:
   scout: {capabilities: [survey, assess], sensor_radius_m: 300, assess_radius_m: 300}
   carrier: {capabilities: [deliver], loads: 1, final_approach_m: 300, cruise_speed_mps: 55}
@@ -216,38 +217,38 @@ TEST(ScenarioFile, HoldsSitesAndFaults) {
 TEST(ScenarioFile, NamesEveryMistake) {
   const std::vector<Mistake> mistakes{
       {"{id: 3, type: carrier", "{id: 2, type: carrier",
-       "s.yaml:12: vehicles[3]: is vehicle 2 again; the first is on line 11, give each its own id"},
+       "s.yaml:13: vehicles[3]: is vehicle 2 again; the first is on line 12, give each its own id"},
       {"{id: 3, type: carrier", "{id: 3, type: carier",
-       "s.yaml:12: vehicles[3].type: is \"carier\", which is not among types; did you mean "
+       "s.yaml:13: vehicles[3].type: is \"carier\", which is not among types; did you mean "
        "carrier?\n"
-       "s.yaml:12: vehicles[3].capabilities: is missing; add it: a list"},
-      {"turn_radius_m: 150, ", "",
-       "s.yaml:10: vehicles[1].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
-       "s.yaml:11: vehicles[2].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
-       "s.yaml:12: vehicles[3].turn_radius_m: is missing; add it: a number from 1 to 5000 m"},
+       "s.yaml:13: vehicles[3].capabilities: is missing; add it: a list"},
+      {"turn_radius_m: 150,\n", "\n",
+       "s.yaml:11: vehicles[1].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
+       "s.yaml:12: vehicles[2].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
+       "s.yaml:13: vehicles[3].turn_radius_m: is missing; add it: a number from 1 to 5000 m"},
       {"final_approach_m: 300", "final_aproach_m: 300",
-       "s.yaml:8: types.carrier.final_aproach_m: is no key of this group; did you mean "
+       "s.yaml:9: types.carrier.final_aproach_m: is no key of this group; did you mean "
        "final_approach_m?"},
       {", interval_s: 5", "",
-       "s.yaml:18: sites[1].deliveries.interval_s: must be above 0 s when the mode is sequential, "
+       "s.yaml:19: sites[1].deliveries.interval_s: must be above 0 s when the mode is sequential, "
        "and is left out when simultaneous"},
       {"start_angles_deg: [90]", "start_angles_deg: [90, 0]",
-       "s.yaml:19: sites[1].assessments.start_angles_deg: must have one angle for each assessment, "
+       "s.yaml:20: sites[1].assessments.start_angles_deg: must have one angle for each assessment, "
        "or none; compare with count"},
       {"kill_vehicle: 3", "kill_vehicle: 3, for_s: 2, loss_ratio: 0.5",
-       "s.yaml:25: faults[1].at_s: a fault has exactly one of kill_vehicle, partition and "
+       "s.yaml:26: faults[1].at_s: a fault has exactly one of kill_vehicle, partition and "
        "loss_ratio; split it or add one"},
       {"for_s: 5, loss_ratio", "loss_ratio",
-       "s.yaml:27: faults[3].for_s: a partition or loss lasts for some time; add for_s above 0 s"},
+       "s.yaml:28: faults[3].for_s: a partition or loss lasts for some time; add for_s above 0 s"},
       {"[2, 3]]", "[2, 2]]",
-       "s.yaml:26: faults[2].partition[2][2]: is vehicle 2 again; the first is on line 26, give "
+       "s.yaml:27: faults[2].partition[2][2]: is vehicle 2 again; the first is on line 27, give "
        "each its own id"},
       {"decision: grant", "decision: yes",
-       "s.yaml:23: operator_decisions[1].decision: is \"yes\", not one of refuse, grant; choose "
+       "s.yaml:24: operator_decisions[1].decision: is \"yes\", not one of refuse, grant; choose "
        "one "
        "of these"},
       {"[101.44, 106.44]", "[101.44, -1]",
-       "s.yaml:29: reference[1].delivery_times_s[2]: is -1, outside 0 to 1000000 s; choose a "
+       "s.yaml:30: reference[1].delivery_times_s[2]: is -1, outside 0 to 1000000 s; choose a "
        "number "
        "inside"},
   };

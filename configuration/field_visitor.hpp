@@ -29,7 +29,7 @@ struct Field {
 struct Range {
   double low = 0.0;
   double high = 0.0;
-  std::string_view unit = "";
+  std::string_view unit{};
 };
 
 class FieldVisitor;
@@ -41,7 +41,7 @@ struct List {
   std::function<void(std::size_t)> resize;
   std::function<void(FieldVisitor&, std::size_t)> element;
   /// Where elements must differ: what they are ("vehicle"), and the id of one.
-  std::string_view noun = "";
+  std::string_view noun{};
   std::function<std::uint32_t(std::size_t)> id_of;
 };
 

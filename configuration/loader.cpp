@@ -75,8 +75,11 @@ std::string Loader::message() const {
 }
 
 void Loader::fail(int line, const std::string& path, const std::string& what) {
-  const std::string place = line > 0 ? ":" + std::to_string(line) : "";
-  errors_.push_back(file_ + place + ": " + (path.empty() ? "" : path + ": ") + what);
+  std::string text = file_;
+  if (line > 0) text.append(":").append(std::to_string(line));
+  text += ": ";
+  if (!path.empty()) text.append(path).append(": ");
+  errors_.push_back(text + what);
 }
 
 void Loader::fail(const YAML::Node& node, std::string_view key, const std::string& what) {

@@ -24,6 +24,7 @@ void radio_fields(FieldVisitor& v, RadioConfig& radio) {
 void delivery_fields(FieldVisitor& v, std::vector<DeliveryRequirement>& deliveries) {
   Duration interval{};
   std::vector<double> bearings;
+  bearings.reserve(kTasksPerKindMax);
   for (const DeliveryRequirement& d : deliveries) bearings.push_back(d.bearing_rad);
   if (deliveries.size() > 1) interval = deliveries[1].offset;
   std::size_t mode = interval == Duration{} ? 0 : 1;
