@@ -73,11 +73,9 @@ void AgentLoop::send_telemetry(Instant now) {
 }
 
 Instant AgentLoop::next_step() const {
-  const Instant next = std::min(stepped_at_ + spec_of(ThreadRole::agent).period, next_telemetry_);
-  // A timeout may lie in the past while the agent waits for something else.
-  const Instant timeout =
-      std::max(agent_.next_timeout(), stepped_at_ + std::chrono::milliseconds{5});
-  return std::min(next, timeout);
+  const Instant period = stepped_at_ + spec_of(ThreadRole::agent).period;
+  const Instant next = std::min({period, next_telemetry_, agent_.next_timeout()});
+  return std::max(next, stepped_at_ + kStepSpacing);
 }
 
 }  // namespace skein::onboard

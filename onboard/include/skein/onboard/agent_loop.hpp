@@ -33,6 +33,8 @@ struct AgentLink {
 class AgentLoop {
  public:
   static constexpr Duration kTelemetryPeriod = std::chrono::milliseconds{100};
+  /// Between two steps: other vehicles' telemetry comes all the time and can wait that long.
+  static constexpr Duration kStepSpacing = std::chrono::milliseconds{20};
   /// Of one step, so that a flood cannot keep the agent from its deadlines.
   static constexpr int kMessagesPerStep = 256;
 
@@ -41,7 +43,7 @@ class AgentLoop {
             Planner& planner, EventRing& events, Instant now);
 
   void step(Instant now);
-  /// When step() wants to be called again, at the latest.
+  /// When step() wants to be called again, at the latest; kStepSpacing from the last one or later.
   [[nodiscard]] Instant next_step() const;
   [[nodiscard]] const mission::VehicleAgent& agent() const { return agent_; }
 
