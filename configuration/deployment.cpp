@@ -30,6 +30,11 @@ NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes
   return network;
 }
 
+/// As recording::folder_name, which this module must not know.
+std::string vehicle_folder(VehicleId id) {
+  return (id.value < 10 ? "vehicle-0" : "vehicle-") + std::to_string(id.value);
+}
+
 std::string folder_of(const Deployment& deployment, const std::string& name) {
   return deployment.recording_folder.empty() ? "" : deployment.recording_folder + "/" + name;
 }
@@ -53,8 +58,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
       if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
     }
     config.time = deployment.time;
-    config.recording_folder =
-        folder_of(deployment, "vehicle-" + std::to_string(vehicle.spec.id.value));
+    config.recording_folder = folder_of(deployment, vehicle_folder(vehicle.spec.id));
     config.seed = seeds.next() >> 2U;  // the file holds numbers up to 9e18
     configs.push_back(config);
   }

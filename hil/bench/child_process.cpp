@@ -24,9 +24,12 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
     return Error{(argv.empty() ? std::string{"an empty command"} : argv[0]) +
                  ": not an executable program; build it with ./dev build"};
   }
-  const int output = ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (output < 0) return Error{log.string() + ": cannot be written: " + std::strerror(errno)};
-  const int input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const bool terminal = log.empty();
+  const int output =
+      terminal ? -1 : ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (!terminal && output < 0)
+    return Error{log.string() + ": cannot be written: " + std::strerror(errno)};
+  const int input = terminal ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC);
 
   // Everything is made ready before the fork: the child may only call async-signal-safe functions.
   std::vector<std::string> variables;
@@ -49,14 +52,16 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
   if (pid == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(127);  // the bench died before the line above
-    ::setpgid(0, 0);                          // Ctrl-C goes to the bench, which stops them in order
-    ::dup2(input, STDIN_FILENO);
-    ::dup2(output, STDOUT_FILENO);
-    ::dup2(output, STDERR_FILENO);
+    if (!terminal) {
+      ::setpgid(0, 0);  // Ctrl-C goes to the bench, which stops them in order
+      ::dup2(input, STDIN_FILENO);
+      ::dup2(output, STDOUT_FILENO);
+      ::dup2(output, STDERR_FILENO);
+    }
     ::execve(word_pointers[0], word_pointers.data(), environment_pointers.data());
     ::_exit(127);
   }
-  ::close(output);
+  if (output >= 0) ::close(output);
   if (input >= 0) ::close(input);
   if (pid < 0) return Error{argv[0] + ": cannot be started: " + std::strerror(errno)};
   return ChildProcess{pid};

@@ -18,7 +18,8 @@ namespace skein::hil {
 /// the kernel if the bench itself dies. Not copyable, movable.
 class ChildProcess {
  public:
-  /// Starts argv[0] (a path) with its output appended to `log`, with `environment` added to ours.
+  /// Starts argv[0] (a path) with `environment` added to ours, its output appended to `log`; an
+  /// empty `log` gives it our terminal, input and output.
   [[nodiscard]] static Result<ChildProcess> start(
       const std::vector<std::string>& argv, const std::filesystem::path& log,
       const std::map<std::string, std::string>& environment);

@@ -1,0 +1,412 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/bench.hpp"
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <set>
+#include <thread>
+#include <utility>
+
+#include "skein/base/random.hpp"
+#include "skein/configuration/deployment.hpp"
+#include "skein/hil/child_process.hpp"
+#include "skein/hil/radio/link_table.hpp"
+#include "skein/hil/radio/radio_model.hpp"
+#include "skein/hil/survey_sensors.hpp"
+#include "skein/network/node.hpp"
+
+namespace skein::hil {
+namespace {
+
+using std::chrono::steady_clock;
+using std::chrono::system_clock;
+
+/// The bench's own node: it hears everybody and is in no radio's table.
+constexpr VehicleId kBench{255};
+constexpr auto kPeriod = std::chrono::milliseconds{50};
+constexpr Duration kAfterwards = std::chrono::seconds{3};
+constexpr auto kStopWithin = std::chrono::seconds{8};
+
+volatile std::sig_atomic_t g_interrupted = 0;
+extern "C" void on_interrupt(int /*signal*/) { g_interrupted = 1; }
+
+/// Takes SIGINT and SIGTERM over while it lives.
+class InterruptWatch {
+ public:
+  InterruptWatch() {
+    g_interrupted = 0;
+    struct sigaction action {};
+    action.sa_handler = &on_interrupt;
+    ::sigaction(SIGINT, &action, &old_int_);
+    ::sigaction(SIGTERM, &action, &old_term_);
+  }
+  ~InterruptWatch() {
+    ::sigaction(SIGINT, &old_int_, nullptr);
+    ::sigaction(SIGTERM, &old_term_, nullptr);
+  }
+  InterruptWatch(const InterruptWatch&) = delete;
+  InterruptWatch& operator=(const InterruptWatch&) = delete;
+
+ private:
+  struct sigaction old_int_ {};
+  struct sigaction old_term_ {};
+};
+
+bool port_free(std::uint16_t port) {
+  const int s = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const bool free = ::bind(s, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(s);
+  return free;
+}
+
+/// The first port of a free block, or why there is none.
+Result<std::uint16_t> port_block(std::uint16_t wanted, std::size_t count) {
+  const auto taken = [count](std::uint16_t base) -> std::optional<std::uint16_t> {
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto port = static_cast<std::uint16_t>(base + i);
+      if (!port_free(port)) return port;
+    }
+    return std::nullopt;
+  };
+  if (wanted != 0) {
+    if (wanted + count > 65535)
+      return Error{"--port-base " + std::to_string(wanted) + " leaves no room for " +
+                   std::to_string(count) + " ports"};
+    if (const auto port = taken(wanted)) {
+      return Error{
+          "UDP port " + std::to_string(*port) +
+          " is in use; name another --port-base, leave it out to have free ports looked for, "
+          "or stop who uses it (ss -ulpn shows who)"};
+    }
+    return wanted;
+  }
+  Random random{static_cast<std::uint64_t>(::getpid())};
+  for (int i = 0; i < 200; ++i) {
+    const auto base = static_cast<std::uint16_t>(12'000 + 2 * random.index(10'000));
+    if (!taken(base)) return base;
+  }
+  return Error{"no free block of " + std::to_string(count) + " UDP ports was found on loopback"};
+}
+
+class Bench {
+ public:
+  Bench(const configuration::Scenario& scenario, const BenchOptions& options,
+        const std::function<void(const BenchProgress&)>& on_progress)
+      : scenario_{scenario},
+        options_{options},
+        on_progress_{on_progress},
+        sensors_{scenario.sites, specs(scenario)} {
+    progress_.now = Instant{Duration::min()};
+  }
+
+  Result<void> start() {
+    const std::size_t nodes = scenario_.vehicles.size() + 2;
+    const auto base = port_block(options_.port_base, 2 * nodes);
+    if (!base) return base.error();
+    auto table = radio::LinkTable::create();
+    if (!table) return table.error();
+    table_.emplace(std::move(table).value());
+
+    // Everybody has started and found each other before mission time 0.
+    const auto lead = std::chrono::milliseconds{3000 + 300 * scenario_.vehicles.size()};
+    started_ = steady_clock::now();
+    epoch_ = started_ + lead;
+    configuration::Deployment deployment;
+    deployment.port_base = *base;
+    deployment.domain_id = static_cast<std::uint16_t>(*base % 200);
+    deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
+    deployment.time.rate = options_.rate;
+    deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        (system_clock::now() + lead).time_since_epoch())
+                                        .count();
+    deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
+
+    const auto ground = configuration::ground_config(scenario_, deployment);
+    if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
+        !up)
+      return up;
+    network::NodeConfig bench;
+    bench.domain = deployment.domain_id;
+    bench.self = kBench;
+    bench.instance = InstanceId{static_cast<std::uint64_t>(deployment.time.epoch_unix_ns)};
+    bench.role = network::Role::ground;
+    bench.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(*base + 2 * (nodes - 1))};
+    bench.queue_limit = 16384;
+    bench.peers.push_back({kGroundStation, {ground.network.address, ground.network.port}});
+    for (const auto& config : configuration::vehicle_configs(scenario_, deployment)) {
+      bench.peers.push_back({config.vehicle.id, {config.network.address, config.network.port}});
+      const std::string name = "vehicle-" + std::to_string(config.vehicle.id.value);
+      if (auto up =
+              launch(config.vehicle.id, "skein-onboard", name, configuration::to_yaml(config));
+          !up)
+        return up;
+    }
+    auto node = network::Node::open(bench);
+    if (!node) return node.error();
+    node_ = std::move(node).value();
+    return {};
+  }
+
+  BenchOutcome run() {
+    for (auto next = steady_clock::now(); !finished(); next += kPeriod) {
+      std::this_thread::sleep_until(next);
+      const Instant now = mission_now();
+      hear();
+      watch(now);
+      if (now >= Instant{}) {
+        play_faults(now);
+        move_radio(now);
+        sense(now);
+      }
+      progress_.now = now;
+      say({});
+    }
+    outcome_.ended_at = progress_.now;
+    outcome_.sites_finished = sites_done_.size() == scenario_.sites.size();
+    outcome_.interrupted = g_interrupted != 0;
+    return stop();
+  }
+
+ private:
+  static std::vector<VehicleSpec> specs(const configuration::Scenario& scenario) {
+    std::vector<VehicleSpec> all;
+    for (const auto& v : scenario.vehicles) all.push_back(v.spec);
+    return all;
+  }
+
+  [[nodiscard]] Instant mission_now() const {
+    const auto since = std::chrono::duration<double>(steady_clock::now() - epoch_).count();
+    return at_seconds(since * options_.rate);
+  }
+
+  Result<void> launch(VehicleId id, const std::string& program, const std::string& name,
+                      const std::string& yaml) {
+    const auto file = options_.run_folder / (name + ".yaml");
+    std::ofstream{file} << yaml;
+    const bool terminal = options_.prompt && id == kGroundStation;
+    auto child = ChildProcess::start(
+        {(options_.programs / program).string(), "--config", file.string()},
+        terminal ? std::filesystem::path{} : options_.run_folder / (name + ".log"),
+        {{"SKEIN_RADIO_TABLE", table_->name()},
+         {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
+    if (!child) return child.error();
+    processes_.emplace(id, std::move(child).value());
+    return {};
+  }
+
+  void hear() {
+    while (const auto received = node_->poll()) {
+      if (const auto* telemetry = std::get_if<mission::Telemetry>(&received->message)) {
+        last_[telemetry->vehicle] = *telemetry;
+        progress_.vehicles_heard = last_.size();
+        if (!outcome_.all_heard_s && last_.size() == scenario_.vehicles.size()) {
+          outcome_.all_heard_s =
+              std::chrono::duration<double>(steady_clock::now() - started_).count();
+          say("all " + std::to_string(last_.size()) + " vehicles heard " +
+              seconds_text(*outcome_.all_heard_s) + " after the start; the mission begins at 0 s");
+        }
+      } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
+        if (event->kind == mission::EventKind::site_done &&
+            sites_done_.insert(event->task.site).second) {
+          progress_.sites_done = sites_done_.size();
+        }
+        news(*event);
+      }
+    }
+  }
+
+  /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
+  void watch(Instant now) {
+    for (auto& [id, process] : processes_) {
+      if (killed_.contains(id) || reported_.contains(id)) continue;
+      const auto how = process.ended();
+      if (!how) continue;
+      reported_.insert(id);
+      outcome_.deaths.push_back(name_of(id) + " ended by itself: " + *how + "; its log is " +
+                                (options_.run_folder / (log_name(id) + ".log")).string());
+      say(outcome_.deaths.back());
+    }
+    if (now >= Instant{} && !outcome_.all_heard_s && outcome_.deaths.empty()) {
+      std::string missing;
+      for (const auto& v : scenario_.vehicles) {
+        if (!last_.contains(v.spec.id)) missing += " " + std::to_string(v.spec.id.value);
+      }
+      outcome_.deaths.push_back("not heard before the mission began: vehicle" + missing);
+      say(outcome_.deaths.back());
+    }
+  }
+
+  [[nodiscard]] std::map<VehicleId, Vec2> positions() const {
+    std::map<VehicleId, Vec2> at;
+    for (const auto& [id, telemetry] : last_) {
+      if (!killed_.contains(id)) at.emplace(id, telemetry.state.position().horizontal());
+    }
+    return at;
+  }
+
+  void play_faults(Instant now) {
+    loss_ = scenario_.radio.loss_ratio;
+    groups_.clear();
+    for (const auto& fault : scenario_.faults) {
+      if (now < fault.at) continue;
+      const bool lasts = now < fault.at + fault.duration;
+      switch (fault.kind) {
+        case configuration::FaultKind::kill_vehicle:
+          if (const auto it = processes_.find(fault.vehicle);
+              it != processes_.end() && killed_.insert(fault.vehicle).second) {
+            it->second.signal(SIGKILL);
+            outcome_.killed.push_back(fault.vehicle);
+            say("fault: " + name_of(fault.vehicle) + " is killed");
+          }
+          break;
+        case configuration::FaultKind::partition:
+          if (lasts) groups_ = fault.groups;
+          break;
+        case configuration::FaultKind::loss:
+          if (lasts) loss_ = fault.loss_ratio;
+          break;
+      }
+    }
+  }
+
+  void move_radio(Instant /*now*/) {
+    radio::RadioParams params;
+    params.range_m = scenario_.radio.range_m;
+    params.ground_range_m = scenario_.radio.ground_range_m;
+    params.delay = from_seconds(to_seconds(scenario_.radio.delay_mean) / options_.rate);
+    params.jitter = from_seconds(to_seconds(scenario_.radio.delay_jitter) / options_.rate);
+    params.loss = loss_;
+    const auto at = positions();
+    for (const auto& [from, p] : processes_) {
+      for (const auto& [to, q] : processes_) {
+        if (from != to) table_->set(from, to, radio::link_between(params, from, to, at, groups_));
+      }
+    }
+  }
+
+  void sense(Instant now) {
+    for (const auto& report : sensors_.update(positions())) {
+      node_->publish(report);
+      ++progress_.sites_found;
+    }
+    for (const auto& h : scenario_.hazards) {
+      if (h.known_from <= Instant{} || now < h.known_from || !told_.insert(h.hazard.id).second)
+        continue;
+      node_->publish(mission::HazardReport{h.hazard});
+    }
+  }
+
+  [[nodiscard]] bool finished() {
+    if (g_interrupted != 0 || !outcome_.deaths.empty()) return true;
+    if (progress_.now >= Instant{} + scenario_.duration_max) return true;
+    if (sites_done_.size() < scenario_.sites.size()) return false;
+    if (!stop_at_) stop_at_ = progress_.now + kAfterwards;
+    return progress_.now >= *stop_at_;
+  }
+
+  BenchOutcome stop() {
+    hear();
+    for (const auto& [id, telemetry] : last_) {
+      outcome_.control_overruns += telemetry.control_overruns;
+      outcome_.messages_dropped += telemetry.messages_dropped;
+    }
+    // The vehicles first, so that the ground station hears their last words.
+    std::vector<ChildProcess*> vehicles;
+    for (auto& [id, process] : processes_) {
+      if (id != kGroundStation && !killed_.contains(id)) vehicles.push_back(&process);
+    }
+    const bool clean = stop_all(vehicles, kStopWithin);
+    outcome_.stopped_cleanly = stop_all({&processes_.at(kGroundStation)}, kStopWithin) && clean;
+    return outcome_;
+  }
+
+  void news(const mission::MissionEvent& event) {
+    using mission::EventKind;
+    switch (event.kind) {
+      case EventKind::site_detected:
+      case EventKind::survey_done:
+      case EventKind::coalition_formed:
+      case EventKind::monitoring:
+      case EventKind::authorisation_requested:
+      case EventKind::authorisation_late:
+      case EventKind::site_done:
+      case EventKind::task_failed:
+      case EventKind::warning:
+        break;
+      default:
+        return;
+    }
+    std::string line = seconds_text(to_seconds(event.time)) + "  " + name_of(event.vehicle) + "  " +
+                       std::string{to_string(event.kind)};
+    if (event.task.site != SiteId{}) line += ", site " + std::to_string(event.task.site.value);
+    if (event.kind == EventKind::coalition_formed)
+      line += ", " + std::to_string(std::lround(event.value)) + " vehicles";
+    if (!event.text.empty()) line += ": " + event.text;
+    say(line);
+  }
+
+  void say(const std::string& news) {
+    progress_.news = news;
+    if (on_progress_) on_progress_(progress_);
+  }
+
+  static std::string seconds_text(double s) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1f s", s);
+    return text;
+  }
+  static std::string name_of(VehicleId id) {
+    return id == kGroundStation ? "the ground station" : "vehicle " + std::to_string(id.value);
+  }
+  static std::string log_name(VehicleId id) {
+    return id == kGroundStation ? "ground" : "vehicle-" + std::to_string(id.value);
+  }
+
+  const configuration::Scenario& scenario_;
+  const BenchOptions& options_;
+  const std::function<void(const BenchProgress&)>& on_progress_;
+  InterruptWatch interrupts_;
+  std::optional<radio::LinkTable> table_;
+  std::map<VehicleId, ChildProcess> processes_;
+  std::unique_ptr<network::Node> node_;
+  SurveySensors sensors_;
+  steady_clock::time_point started_;
+  steady_clock::time_point epoch_;
+  std::map<VehicleId, mission::Telemetry> last_;
+  std::set<SiteId> sites_done_;
+  std::set<HazardId> told_;
+  std::set<VehicleId> killed_;
+  std::set<VehicleId> reported_;
+  std::vector<std::vector<VehicleId>> groups_;
+  double loss_ = 0.0;
+  std::optional<Instant> stop_at_;
+  BenchProgress progress_;
+  BenchOutcome outcome_;
+};
+
+}  // namespace
+
+Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOptions& options,
+                         const std::function<void(const BenchProgress&)>& on_progress) {
+  std::error_code failed;
+  std::filesystem::create_directories(options.run_folder, failed);
+  if (failed) return Error{options.run_folder.string() + ": cannot be made: " + failed.message()};
+  Bench bench{scenario, options, on_progress};
+  if (const auto started = bench.start(); !started) return started.error();
+  return bench.run();
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+#include "skein/configuration/scenario.hpp"
+
+namespace skein::hil {
+
+struct BenchOptions {
+  std::filesystem::path programs;      ///< folder of skein-onboard and skein-ground
+  std::filesystem::path radio_plugin;  ///< libskein_radio.so
+  std::filesystem::path run_folder;    ///< made; configurations, logs and recordings go there
+  double rate = 1.0;                   ///< mission seconds in a real second
+  std::uint16_t port_base = 0;         ///< UDP; 0 looks for free ports
+  bool prompt =
+      false;  ///< leave the decisions to skein-ground's prompt (its input is the terminal's)
+};
+
+/// How far a run is, several times a second.
+struct BenchProgress {
+  Instant now{};
+  std::size_t vehicles_heard = 0;
+  std::size_t sites_found = 0;
+  std::size_t sites_done = 0;
+  std::string news;  ///< a line worth printing, or empty
+};
+
+/// What happened on the bench besides what the processes recorded.
+struct BenchOutcome {
+  bool sites_finished = false;
+  Instant ended_at{};                  ///< mission time
+  std::optional<double> all_heard_s;   ///< real seconds from the first start until all were heard
+  std::vector<VehicleId> killed;       ///< on purpose, by the scenario's faults
+  std::vector<std::string> deaths;     ///< processes that ended by themselves, and how
+  bool stopped_cleanly = false;        ///< all ended with status 0 when asked to
+  bool interrupted = false;            ///< by Ctrl-C
+  std::uint64_t control_overruns = 0;  ///< missed control periods, all vehicles together
+  std::uint64_t messages_dropped = 0;  ///< by full queues or as damaged, all vehicles together
+};
+
+/// Starts one skein-onboard for each vehicle, one skein-ground and the radio between them, plays
+/// the sensors and the faults, and stops everything when all sites are done, at the scenario's
+/// duration_max, when a process dies unasked, or on SIGINT or SIGTERM. Nothing is left running or
+/// in /dev/shm, whatever happens. Fails, with what to do, when it cannot start.
+[[nodiscard]] Result<BenchOutcome> fly(
+    const configuration::Scenario& scenario, const BenchOptions& options,
+    const std::function<void(const BenchProgress&)>& on_progress);
+
+}  // namespace skein::hil

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "skein/checks/flown.hpp"
+#include "skein/recording/reader.hpp"
+
+namespace skein::hil {
+
+using checks::CheckResult;
+using mission::EventKind;
+using mission::MissionEvent;
+
+Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
+                                      const std::filesystem::path& run_folder,
+                                      const std::vector<VehicleId>& killed) {
+  checks::RunRecord record;
+  record.sites = scenario.sites;
+  for (const auto& h : scenario.hazards) record.hazards.push_back({h.hazard, h.known_from});
+  for (const auto& v : scenario.vehicles) record.vehicles.push_back(v.spec);
+  record.lost = killed;
+  auto recordings = recording::read_run(run_folder);
+  if (!recordings) return recordings.error();
+  for (auto& r : *recordings) {
+    if (r.vehicle == kGroundStation) {
+      record.ground_events = std::move(r.events);
+    } else {
+      record.recordings.push_back(std::move(r));
+    }
+  }
+  return record;
+}
+
+checks::Limits limits_of(const configuration::Expectations& expect) {
+  checks::Limits limits;
+  limits.arrival_s =
+      std::max({expect.delivery_spread_s, expect.slot_error_s, expect.assess_start_error_s});
+  limits.bearing_rad = expect.bearing_error_rad;
+  limits.miss_m = expect.miss_distance_m;
+  limits.separation_horizontal_m = expect.separation_horizontal_m;
+  limits.separation_vertical_m = expect.separation_vertical_m;
+  return limits;
+}
+
+namespace {
+
+/// The events of all vehicles, in the order of time.
+std::vector<MissionEvent> events_of(const checks::RunRecord& record) {
+  std::vector<MissionEvent> all;
+  for (const auto& r : record.recordings) all.insert(all.end(), r.events.begin(), r.events.end());
+  std::stable_sort(all.begin(), all.end(),
+                   [](const MissionEvent& a, const MissionEvent& b) { return a.time < b.time; });
+  return all;
+}
+
+CheckResult bench_check(std::string name, std::string requirement, std::size_t judged,
+                        std::string judged_what, std::string measured, bool held,
+                        std::string sentence) {
+  CheckResult result{std::move(name),        std::move(requirement), judged,
+                     std::move(judged_what), std::move(measured),    {}};
+  if (!held) result.violations.push_back({kGroundStation, Instant{}, std::move(sentence)});
+  return result;
+}
+
+}  // namespace
+
+std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
+                                   const checks::RunRecord& record, const BenchOutcome& outcome) {
+  auto results = checks::judge(record, limits_of(scenario.expect));
+
+  const std::size_t vehicles = scenario.vehicles.size();
+  const double found = outcome.all_heard_s.value_or(0.0);
+  results.push_back(bench_check(
+      "discovery", "every vehicle is heard within 15 s of the start", vehicles, "vehicles",
+      outcome.all_heard_s ? fmt::format("{:.1f} s", found) : "not all",
+      outcome.all_heard_s && found <= 15.0,
+      outcome.all_heard_s ? fmt::format("the last vehicle was heard only after {:.1f} s", found)
+                          : "not every vehicle was heard"));
+  results.push_back(bench_check(
+      "messages", "no message is dropped for want of time or room", vehicles, "vehicles",
+      fmt::format("{} dropped", outcome.messages_dropped), outcome.messages_dropped == 0,
+      fmt::format("{} messages were dropped", outcome.messages_dropped)));
+  std::string deaths;
+  for (const auto& death : outcome.deaths) deaths += (deaths.empty() ? "" : "; ") + death;
+  results.push_back(
+      bench_check("processes", "none ends unasked, all end cleanly when asked", vehicles + 1,
+                  "processes", "", outcome.deaths.empty() && outcome.stopped_cleanly,
+                  deaths.empty() ? "a process did not end cleanly when it was asked to" : deaths));
+
+  std::set<SiteId> formed;
+  std::set<SiteId> waited;
+  for (const auto& event : events_of(record)) {
+    if (event.kind == EventKind::coalition_formed) formed.insert(event.task.site);
+    if (event.kind == EventKind::monitoring && !formed.contains(event.task.site))
+      waited.insert(event.task.site);
+  }
+  const auto expected = static_cast<std::size_t>(scenario.expect.coalitions);
+  results.push_back(
+      bench_check("coalitions", fmt::format("{} coalitions form", expected), formed.size(),
+                  "coalitions", "", formed.size() == expected,
+                  fmt::format("{} coalitions formed instead of {}", formed.size(), expected)));
+  for (const SiteId site : scenario.expect.first_attempt_fails) {
+    results.push_back(
+        bench_check(fmt::format("site {} waits", site.value),
+                    "its first attempt fails, and its leader monitors until one succeeds", 1,
+                    "sites", "", waited.contains(site) && formed.contains(site),
+                    fmt::format("site {}: {}", site.value,
+                                formed.contains(site) ? "the first attempt succeeded"
+                                                      : "no coalition formed")));
+  }
+  return results;
+}
+
+std::vector<SiteFigures> site_figures(const checks::RunRecord& record,
+                                      const checks::Limits& limits) {
+  std::vector<SiteFigures> all;
+  const auto events = events_of(record);
+  const auto deliveries = checks::deliveries_flown(record, limits);
+  for (const auto& site : record.sites) {
+    SiteFigures f;
+    f.site = site.id;
+    for (const auto& e : events) {
+      if (e.task.site != site.id) continue;
+      const double t = to_seconds(e.time);
+      switch (e.kind) {
+        case EventKind::site_detected:
+          if (!f.found_by) f.found_by = e.vehicle;
+          break;
+        case EventKind::survey_done:
+          f.survey_done_s = t;
+          break;
+        case EventKind::monitoring:
+          if (!f.formed_s) ++f.attempts_failed;
+          break;
+        case EventKind::coalition_formed:
+          f.formed_s = t;
+          f.coalition_size = static_cast<int>(std::lround(e.value));
+          break;
+        case EventKind::allocation_done:
+          f.allocation_time_s = e.value;
+          break;
+        case EventKind::task_done:
+          if (e.task.kind == TaskKind::assess)
+            f.assessment_done_s = std::max(f.assessment_done_s.value_or(t), t);
+          break;
+        default:
+          break;
+      }
+    }
+    for (const auto& d : deliveries) {
+      if (d.run.task.site == site.id && d.seen) f.delivery_times_s.push_back(to_seconds(d.time));
+    }
+    std::sort(f.delivery_times_s.begin(), f.delivery_times_s.end());
+    all.push_back(f);
+  }
+  return all;
+}
+
+std::vector<ComparisonRow> compare(const std::vector<SiteFigures>& figures,
+                                   const std::vector<configuration::ReferenceSite>& reference) {
+  const auto seconds = [](const std::optional<double>& s, int digits = 2) {
+    return s ? fmt::format("{:.{}f} s", *s, digits) : std::string{"-"};
+  };
+  const auto number = [](const std::optional<int>& n) {
+    return n ? std::to_string(*n) : std::string{"-"};
+  };
+  const auto vehicle = [](const std::optional<VehicleId>& v) {
+    return v ? fmt::format("U{}", v->value) : std::string{"-"};
+  };
+  const auto times = [](const std::vector<double>& t) {
+    if (t.empty()) return std::string{"-"};
+    const bool one = t.back() - t.front() < 1.0;
+    return one ? fmt::format("{} at {:.2f} s", t.size(), t.front())
+               : fmt::format("{} from {:.2f} to {:.2f} s", t.size(), t.front(), t.back());
+  };
+  std::vector<ComparisonRow> rows;
+  for (const auto& f : figures) {
+    const auto published = std::find_if(reference.begin(), reference.end(),
+                                        [&](const auto& r) { return r.site == f.site; });
+    const configuration::ReferenceSite r =
+        published != reference.end() ? *published : configuration::ReferenceSite{};
+    rows.push_back({f.site, "found by", vehicle(f.found_by), vehicle(r.found_by)});
+    rows.push_back({f.site, "survey done", seconds(f.survey_done_s), seconds(r.survey_done_s)});
+    rows.push_back({f.site, "failed attempts", std::to_string(f.attempts_failed), "-"});
+    rows.push_back({f.site, "coalition formed", seconds(f.formed_s), seconds(r.formed_s)});
+    rows.push_back({f.site, "vehicles in it", number(f.coalition_size), number(r.coalition_size)});
+    rows.push_back(
+        {f.site, "allocation took", seconds(f.allocation_time_s, 4), seconds(r.allocation_time_s)});
+    rows.push_back({f.site, "deliveries", times(f.delivery_times_s), times(r.delivery_times_s)});
+    rows.push_back(
+        {f.site, "assessments done", seconds(f.assessment_done_s), seconds(r.assessment_done_s)});
+  }
+  return rows;
+}
+
+std::string comparison_table(const std::vector<ComparisonRow>& rows) {
+  std::string text = fmt::format("{:<8} {:<18} {:<26} {:<26}\n", "", "", "ours", "published");
+  SiteId last{};
+  for (const auto& row : rows) {
+    text += fmt::format("{:<8} {:<18} {:<26} {:<26}\n",
+                        row.site != last ? fmt::format("site {}", row.site.value) : "", row.what,
+                        row.ours, row.published);
+    last = row.site;
+  }
+  return text;
+}
+
+std::string check_table(const std::vector<CheckResult>& results) {
+  constexpr std::size_t kSentencesMax = 5;
+  std::string text;
+  for (const auto& r : results) {
+    text += fmt::format("{}  {:<22} {:>5} {:<12} {}\n", r.held() ? "ok  " : "FAIL", r.name,
+                        r.judged, r.judged_what, r.measured);
+    for (std::size_t i = 0; i < std::min(kSentencesMax, r.violations.size()); ++i) {
+      text += "        " + r.violations[i].sentence + "\n";
+    }
+    if (r.violations.size() > kSentencesMax) {
+      text += fmt::format("        and {} more\n", r.violations.size() - kSentencesMax);
+    }
+  }
+  return text;
+}
+
+}  // namespace skein::hil

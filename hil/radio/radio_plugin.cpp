@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// libskein_radio.so: a radio between a process and its sockets. The bench names it in the network
+// configuration of every process; nothing else knows of it. What a process receives from another is
+// lost, delayed or let through as the bench's link table says for the pair at that moment. Own
+// traffic passes, and so does that of senders that are not in the table (the bench itself).
+//
+// Environment: SKEIN_RADIO_TABLE, name of the link table; SKEIN_RADIO_SEED, number.
+
+#include <fastdds/rtps/transport/ChainingTransport.h>
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <queue>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "skein/base/random.hpp"
+#include "skein/hil/radio/link_table.hpp"
+#include "skein/network/transport_plugin.hpp"
+
+namespace skein::hil::radio {
+namespace {
+
+namespace rtps = eprosima::fastdds::rtps;
+using eprosima::fastrtps::rtps::Locator_t;
+using eprosima::fastrtps::rtps::octet;
+using SteadyTime = std::chrono::steady_clock::time_point;
+
+constexpr std::size_t kWaitingMax = 8192;  ///< packets on their way; more are lost, as on the air
+
+/// Whose RTPS message this is, where it comes from a node of ours.
+std::optional<VehicleId> sender_of(const octet* message, std::uint32_t size) {
+  if (size < network::kRtpsHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return std::nullopt;
+  const octet* prefix = message + network::kRtpsGuidPrefixOffset;
+  if (std::memcmp(prefix, network::kGuidMark, sizeof network::kGuidMark) != 0) return std::nullopt;
+  return VehicleId{static_cast<std::uint16_t>(prefix[4] << 8 | prefix[5])};
+}
+
+class RadioTransport : public rtps::ChainingTransport {
+ public:
+  RadioTransport(const rtps::ChainingTransportDescriptor& descriptor, VehicleId self,
+                 std::shared_ptr<const LinkTable> table, std::uint64_t seed)
+      : ChainingTransport{descriptor},
+        descriptor_{descriptor},
+        self_{self},
+        table_{std::move(table)},
+        random_{seed + self.value},
+        air_{[this] { carry(); }} {}
+
+  ~RadioTransport() override {
+    {
+      const std::lock_guard lock{mutex_};
+      stopping_ = true;
+    }
+    changed_.notify_one();
+    air_.join();
+  }
+
+  rtps::TransportDescriptorInterface* get_configuration() override { return &descriptor_; }
+
+  bool send(eprosima::fastrtps::rtps::SenderResource* sender, const octet* buffer,
+            std::uint32_t size, eprosima::fastrtps::rtps::LocatorsIterator* begin,
+            eprosima::fastrtps::rtps::LocatorsIterator* end, const SteadyTime& timeout) override {
+    return sender->send(buffer, size, begin, end, timeout);
+  }
+
+  void receive(rtps::TransportReceiverInterface* next, const octet* buffer, std::uint32_t size,
+               const Locator_t& local, const Locator_t& remote) override {
+    const auto sender = sender_of(buffer, size);
+    const Link link = sender && *sender != self_ ? table_->get(*sender, self_) : Link{};
+    if (!link.up) return;
+    Duration delay{};
+    {
+      const std::lock_guard lock{mutex_};
+      if (link.loss > 0.0 && random_.chance(link.loss)) return;
+      if (link.delay + link.jitter > Duration{}) {
+        const double share = random_.uniform(-1.0, 1.0);
+        delay = std::max(Duration{1}, link.delay + from_seconds(share * to_seconds(link.jitter)));
+        if (waiting_.size() >= kWaitingMax) return;
+        waiting_.push({std::chrono::steady_clock::now() + delay, order_++, next,
+                       std::vector<octet>(buffer, buffer + size), local, remote});
+      }
+    }
+    if (delay > Duration{}) {
+      changed_.notify_one();
+    } else {
+      hand_over(next, buffer, size, local, remote);
+    }
+  }
+
+  bool OpenInputChannel(const Locator_t& locator, rtps::TransportReceiverInterface* receiver,
+                        std::uint32_t max_size) override {
+    {
+      const std::lock_guard lock{hand_over_mutex_};
+      closed_.erase(locator.port);
+    }
+    return ChainingTransport::OpenInputChannel(locator, receiver, max_size);
+  }
+
+  bool CloseInputChannel(const Locator_t& locator) override {
+    {
+      // Waits for a packet that is being handed over; no later one reaches the receiver.
+      const std::lock_guard lock{hand_over_mutex_};
+      closed_.insert(locator.port);
+    }
+    return ChainingTransport::CloseInputChannel(locator);
+  }
+
+ private:
+  struct Packet {
+    SteadyTime due;
+    std::uint64_t order;
+    rtps::TransportReceiverInterface* next;
+    std::vector<octet> bytes;
+    Locator_t local;
+    Locator_t remote;
+    friend bool operator<(const Packet& a, const Packet& b) {  // the earliest is the greatest
+      return std::tie(a.due, a.order) > std::tie(b.due, b.order);
+    }
+  };
+
+  void hand_over(rtps::TransportReceiverInterface* next, const octet* bytes, std::uint32_t size,
+                 const Locator_t& local, const Locator_t& remote) {
+    const std::lock_guard lock{hand_over_mutex_};
+    if (!closed_.contains(local.port)) next->OnDataReceived(bytes, size, local, remote);
+  }
+
+  void carry() {
+    std::unique_lock lock{mutex_};
+    while (!stopping_) {
+      if (waiting_.empty()) {
+        changed_.wait(lock);
+      } else if (const auto due = waiting_.top().due; due > std::chrono::steady_clock::now()) {
+        changed_.wait_until(lock, due);
+      } else {
+        const Packet packet = waiting_.top();
+        waiting_.pop();
+        lock.unlock();
+        hand_over(packet.next, packet.bytes.data(), static_cast<std::uint32_t>(packet.bytes.size()),
+                  packet.local, packet.remote);
+        lock.lock();
+      }
+    }
+  }
+
+  struct Configuration : rtps::ChainingTransportDescriptor {
+    using ChainingTransportDescriptor::ChainingTransportDescriptor;
+    explicit Configuration(const rtps::ChainingTransportDescriptor& d)
+        : ChainingTransportDescriptor{d} {}
+    rtps::TransportInterface* create_transport() const override { return nullptr; }
+  };
+
+  Configuration descriptor_;
+  VehicleId self_;
+  std::shared_ptr<const LinkTable> table_;
+  std::mutex mutex_;  ///< of the generator and the packets on their way
+  Random random_;
+  std::priority_queue<Packet> waiting_;
+  std::uint64_t order_ = 0;
+  bool stopping_ = false;
+  std::condition_variable changed_;
+  std::mutex hand_over_mutex_;  ///< one packet at a time, and none to a closed channel
+  std::set<std::uint32_t> closed_;
+  std::thread air_;  ///< last: it uses all of the above
+};
+
+struct RadioDescriptor : rtps::ChainingTransportDescriptor {
+  RadioDescriptor(std::shared_ptr<rtps::TransportDescriptorInterface> low, VehicleId id,
+                  std::shared_ptr<const LinkTable> links, std::uint64_t number)
+      : ChainingTransportDescriptor{std::move(low)},
+        self{id},
+        table{std::move(links)},
+        seed{number} {}
+  rtps::TransportInterface* create_transport() const override {
+    return new RadioTransport{*this, self, table, seed};  // Fast DDS owns it
+  }
+  VehicleId self;
+  std::shared_ptr<const LinkTable> table;
+  std::uint64_t seed;
+};
+
+}  // namespace
+}  // namespace skein::hil::radio
+
+extern "C" __attribute__((visibility("default"))) const char* skein_wrap_transport(
+    std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>& transport,
+    std::uint16_t self) {
+  using skein::hil::radio::LinkTable;
+  const char* name = std::getenv("SKEIN_RADIO_TABLE");
+  if (name == nullptr) return "the radio needs SKEIN_RADIO_TABLE, the name of a link table";
+  auto table = LinkTable::open(name);
+  if (!table) {
+    static std::string reason;
+    reason = table.error().message;
+    return reason.c_str();
+  }
+  const char* seed = std::getenv("SKEIN_RADIO_SEED");
+  transport = std::make_shared<skein::hil::radio::RadioDescriptor>(
+      transport, skein::VehicleId{self},
+      std::make_shared<const LinkTable>(std::move(table).value()),
+      seed != nullptr ? std::strtoull(seed, nullptr, 10) : 1);
+  return nullptr;
+}
+static_assert(std::is_same_v<decltype(&skein_wrap_transport), skein::network::WrapTransport>);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+namespace skein::hil {
+
+inline constexpr int kExitHeld = 0;      ///< every check held
+inline constexpr int kExitViolated = 1;  ///< one did not
+inline constexpr int kExitBadInput = 2;  ///< nothing was flown
+
+struct RunArguments {
+  std::filesystem::path scenario;
+  std::filesystem::path programs;
+  std::filesystem::path folder;
+  double rate = 1.0;
+  std::optional<std::uint64_t> seed;
+  std::uint16_t port_base = 0;
+  bool headless = false;
+  bool prompt = false;
+};
+int run(const RunArguments& arguments);
+
+struct SimulateArguments {
+  std::filesystem::path scenario;
+  std::optional<std::uint64_t> seed;
+  bool trace = false;
+};
+int simulate(const SimulateArguments& arguments);
+
+}  // namespace skein::hil

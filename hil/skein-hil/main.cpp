@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "commands.hpp"
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "The bench of Skein: flies a scenario with one process for each vehicle, a ground station "
+      "and a\n"
+      "radio between them, judges what was flown, and compares it with published results."};
+  app.footer(
+      "Examples:\n"
+      "  skein-hil run scenarios/coalition-6.yaml          six vehicles, a minute\n"
+      "  skein-hil run scenarios/coalition-32.yaml         the mission of 32 vehicles\n"
+      "  skein-hil simulate scenarios/coalition-32.yaml    the same in virtual time, in a second\n"
+      "Scenario files are explained in docs/scenarios.md.");
+  app.require_subcommand(1);
+
+  skein::hil::RunArguments run;
+  run.programs = std::filesystem::canonical("/proc/self/exe").parent_path();
+  auto* run_command =
+      app.add_subcommand("run", "Fly a scenario with real processes, judge it, write a report");
+  run_command->add_option("scenario", run.scenario, "Scenario file (YAML)")->required();
+  run_command->add_option("--rate", run.rate, "Mission seconds in a real second")
+      ->check(CLI::Range(0.1, 20.0))
+      ->capture_default_str();
+  run_command->add_option("--seed", run.seed, "In place of the scenario's");
+  run_command->add_option("--out", run.folder, "Folder of the run (default: runs/NAME-TIME)");
+  run_command
+      ->add_option("--port-base", run.port_base,
+                   "First UDP port (default: free ports are looked for)")
+      ->check(CLI::Range(1024, 65000));
+  run_command->add_flag("--headless", run.headless, "No progress line; news only");
+  run_command->add_flag("--prompt", run.prompt,
+                        "Decide about deliveries yourself, at the ground station's prompt, in "
+                        "place of the scenario's script");
+  run_command->footer(
+      "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
+      "Example: skein-hil run scenarios/coalition-6.yaml --rate 2");
+
+  skein::hil::SimulateArguments simulate;
+  auto* simulate_command =
+      app.add_subcommand("simulate", "Fly a scenario in virtual time with the same agents");
+  simulate_command->add_option("scenario", simulate.scenario, "Scenario file (YAML)")->required();
+  simulate_command->add_option("--seed", simulate.seed, "In place of the scenario's");
+  simulate_command->add_flag("--trace", simulate.trace, "Print every event");
+  simulate_command->footer(
+      "The same file and seed print the same bytes.\n"
+      "Example: skein-hil simulate scenarios/coalition-32.yaml --seed 7 --trace");
+
+  CLI11_PARSE(app, argc, argv);
+  return run_command->parsed() ? skein::hil::run(run) : skein::hil::simulate(simulate);
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <string>
+
+#include "commands.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/hil/bench.hpp"
+#include "skein/hil/judgement.hpp"
+
+namespace skein::hil {
+namespace {
+
+int complain(const std::string& sentence) {
+  fmt::print(stderr, "{}\n", sentence);
+  return kExitBadInput;
+}
+
+/// One line that is written over, and news above it.
+class ProgressLine {
+ public:
+  ProgressLine(bool shown, std::size_t vehicles, std::size_t sites)
+      : shown_{shown && ::isatty(STDOUT_FILENO) != 0}, vehicles_{vehicles}, sites_{sites} {}
+  void update(const BenchProgress& p) {
+    if (!p.news.empty()) {
+      clear();
+      fmt::print("{}\n", p.news);
+    }
+    if (shown_) {
+      const double t = std::max(-1e4, to_seconds(p.now));
+      fmt::print("\r{:7.1f} s   vehicles heard {}/{}   sites found {}/{}, done {}/{} ", t,
+                 p.vehicles_heard, vehicles_, p.sites_found, sites_, p.sites_done, sites_);
+    }
+    std::fflush(stdout);
+  }
+  void clear() const {
+    if (shown_) fmt::print("\r{:78}\r", "");
+  }
+
+ private:
+  bool shown_;
+  std::size_t vehicles_;
+  std::size_t sites_;
+};
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  auto scenario = configuration::load_scenario(arguments.scenario);
+  if (!scenario) return complain(scenario.error().message);
+  if (const auto flyable = configuration::check(*scenario); !flyable)
+    return complain(flyable.error().message);
+  if (arguments.seed) scenario->seed = *arguments.seed;
+  if (arguments.prompt) scenario->operator_decisions.clear();
+
+  BenchOptions options;
+  options.programs = arguments.programs;
+  options.radio_plugin = arguments.programs.parent_path() / "lib" / "libskein_radio.so";
+  options.rate = arguments.rate;
+  options.port_base = arguments.port_base;
+  options.prompt = arguments.prompt;
+  options.run_folder =
+      !arguments.folder.empty()
+          ? arguments.folder
+          : std::filesystem::path{"runs"} / fmt::format("{}-{:%Y%m%d-%H%M%S}",
+                                                        arguments.scenario.stem().string(),
+                                                        fmt::localtime(std::time(nullptr)));
+  if (!std::filesystem::exists(options.radio_plugin)) {
+    return complain(options.radio_plugin.string() + ": not there; build it with ./dev build");
+  }
+
+  fmt::print("{}: {} vehicles, {} sites, seed {}; into {}\n", scenario->title,
+             scenario->vehicles.size(), scenario->sites.size(), scenario->seed,
+             options.run_folder.string());
+  ProgressLine line{!arguments.headless && !arguments.prompt, scenario->vehicles.size(),
+                    scenario->sites.size()};
+  const auto outcome = fly(*scenario, options, [&](const BenchProgress& p) { line.update(p); });
+  line.clear();
+  if (!outcome) return complain(outcome.error().message);
+  if (outcome->interrupted) fmt::print("interrupted; everything is stopped\n");
+
+  const auto record = read_record(*scenario, options.run_folder, outcome->killed);
+  if (!record) {
+    for (const auto& death : outcome->deaths) fmt::print(stderr, "{}\n", death);
+    return complain(record.error().message);
+  }
+  const auto checks = judge_run(*scenario, *record, *outcome);
+  const auto rows =
+      compare(site_figures(*record, limits_of(scenario->expect)), scenario->reference);
+  fmt::print("\n{}\n{}\n", comparison_table(rows), check_table(checks));
+
+  const auto failed =
+      std::count_if(checks.begin(), checks.end(), [](const auto& c) { return !c.held(); });
+  if (failed == 0 && !outcome->interrupted) {
+    fmt::print("PASS: {} checks held; all sites done at {:.1f} s\n", checks.size(),
+               to_seconds(outcome->ended_at));
+    return kExitHeld;
+  }
+  fmt::print("FAIL: {} of {} checks failed{}\n", failed, checks.size(),
+             outcome->interrupted ? ", and the run was interrupted" : "");
+  return kExitViolated;
+}
+
+}  // namespace skein::hil
