@@ -42,7 +42,8 @@ constexpr std::size_t kWaitingMax = 8192;  ///< packets on their way; more are l
 std::optional<VehicleId> sender_of(const octet* message, std::uint32_t size) {
   if (size < network::kRtpsHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return std::nullopt;
   const octet* prefix = message + network::kRtpsGuidPrefixOffset;
-  if (std::memcmp(prefix, network::kGuidMark, sizeof network::kGuidMark) != 0) return std::nullopt;
+  if (!std::equal(network::kGuidMark.begin(), network::kGuidMark.end(), prefix))
+    return std::nullopt;
   return VehicleId{static_cast<std::uint16_t>(prefix[4] << 8 | prefix[5])};
 }
 
