@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <random>
+
+#include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/vehicle_config.hpp"
+#include "skein/hil/child_process.hpp"
+#include "skein/network/node.hpp"
+#include "skein/process/mission_network.hpp"
+#include "skein/process/wake.hpp"
+
+namespace skein {
+namespace {
+
+using std::chrono::steady_clock;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+
+constexpr auto kPatience = std::chrono::seconds{60};  // a loaded machine, under a sanitizer
+constexpr VehicleId kVehicle{7};
+
+/// Holds a UDP port of loopback.
+class HeldPort {
+ public:
+  explicit HeldPort(std::uint16_t port) : socket_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    held_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~HeldPort() { ::close(socket_); }
+  HeldPort(const HeldPort&) = delete;
+  HeldPort& operator=(const HeldPort&) = delete;
+  [[nodiscard]] bool held() const { return held_; }
+
+ private:
+  int socket_;
+  bool held_ = false;
+};
+
+/// p so that p and p + 1 are free, below those that the kernel hands out by itself.
+std::uint16_t free_port_pair() {
+  std::random_device device;
+  std::uniform_int_distribution<int> half{5000, 15999};
+  while (true) {
+    const auto port = static_cast<std::uint16_t>(2 * half(device));
+    if (HeldPort{port}.held() && HeldPort{static_cast<std::uint16_t>(port + 1)}.held()) return port;
+  }
+}
+
+/// A mission network of two, the folder for their files, and this test as one of the two nodes.
+class Programs : public ::testing::Test {
+ protected:
+  Programs() {
+    std::random_device device;
+    folder_ =
+        std::filesystem::temp_directory_path() / ("skein-programs-" + std::to_string(device()));
+    std::filesystem::create_directories(folder_);
+  }
+  ~Programs() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] configuration::NetworkConfig network_of(VehicleId self) const {
+    const bool ground = self == kGroundStation;
+    configuration::NetworkConfig network;
+    network.port = ground ? ground_port_ : vehicle_port_;
+    network.peers.push_back(
+        {.id = ground ? kVehicle : kGroundStation, .port = ground ? vehicle_port_ : ground_port_});
+    return network;
+  }
+
+  [[nodiscard]] configuration::VehicleConfig vehicle() const {
+    configuration::VehicleConfig config;
+    config.vehicle.id = kVehicle;
+    config.vehicle.cruise_speed_mps = 50.0;
+    config.vehicle.speed_min_mps = 40.0;
+    config.vehicle.speed_max_mps = 60.0;
+    config.vehicle.turn_radius_m = 100.0;
+    config.vehicle.range_m = 40000.0;
+    config.vehicle.capabilities.add(TaskKind::survey);
+    config.vehicle.sensor_radius_m = 300.0;
+    config.vehicle.height_m = 100.0;
+    config.search = {{2000.0, 0.0}};
+    config.network = network_of(kVehicle);
+    config.recording_folder = folder_ / "vehicle";
+    return config;
+  }
+  [[nodiscard]] configuration::GroundConfig ground() const {
+    configuration::GroundConfig config;
+    config.network = network_of(kGroundStation);
+    config.vehicles = {kVehicle};
+    config.recording_folder = folder_ / "ground";
+    return config;
+  }
+
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream{folder_ / name} << text;
+    return folder_ / name;
+  }
+  [[nodiscard]] hil::ChildProcess start(std::vector<std::string> words) const {
+    auto started = hil::ChildProcess::start(words, folder_ / "log", {});
+    EXPECT_TRUE(started.ok());
+    return std::move(started).value();
+  }
+  [[nodiscard]] std::string text_of(const std::string& name) const {
+    std::ifstream file{folder_ / name};
+    return {std::istreambuf_iterator<char>{file}, {}};
+  }
+
+  void open_node(VehicleId self) {
+    auto opened = network::Node::open(process::node_config(
+        network_of(self), self, process::new_instance(), [this] { wake_.notify(); }));
+    ASSERT_TRUE(opened.ok()) << opened.error().message;
+    node_ = std::move(opened).value();
+  }
+
+  /// The first message of that type that the node hears, within kPatience.
+  template <class T>
+  std::optional<T> hear(const std::function<void()>& meanwhile = [] {}) {
+    const auto until = steady_clock::now() + kPatience;
+    while (steady_clock::now() < until) {
+      while (const auto received = node_->poll()) {
+        if (const auto* wanted = std::get_if<T>(&received->message)) return *wanted;
+      }
+      meanwhile();
+      wake_.wait_until(steady_clock::now() + std::chrono::milliseconds{200});
+    }
+    return std::nullopt;
+  }
+
+  std::filesystem::path folder_;
+  std::uint16_t vehicle_port_ = free_port_pair();
+  std::uint16_t ground_port_ = free_port_pair();
+  process::Wake wake_;
+  std::unique_ptr<network::Node> node_;
+};
+
+TEST_F(Programs, AVehicleJoinsFliesAndStops) {
+  open_node(kGroundStation);
+  auto child = start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(vehicle()))});
+  const auto first = hear<mission::Telemetry>();
+  ASSERT_TRUE(first) << text_of("log");
+  EXPECT_EQ(first->vehicle, kVehicle);
+  std::optional<mission::Telemetry> later = first;
+  while (later && later->state.distance_flown_m <= first->state.distance_flown_m) {
+    later = hear<mission::Telemetry>();
+  }
+  EXPECT_TRUE(later) << "it does not fly";
+  child.signal(SIGTERM);
+  ASSERT_TRUE(child.wait(kPatience));
+  EXPECT_EQ(child.ended(), "exit status 0");
+  EXPECT_THAT(text_of("log"), ContainsRegex("SIGTERM: stopping"));
+  EXPECT_THAT(text_of("log"), ContainsRegex("ended: [0-9]+ control periods, [0-9]+ overruns"));
+  EXPECT_THAT(text_of("vehicle/track.csv"), HasSubstr("\n"));
+  EXPECT_THAT(text_of("vehicle/plans.csv"), ContainsRegex("\n[0-9]+,"));
+}
+
+TEST_F(Programs, AVehicleWaitsForItsEpochOnTheNetwork) {
+  open_node(kGroundStation);
+  auto config = vehicle();
+  config.time.epoch_unix_ns =
+      std::chrono::duration_cast<Duration>(
+          (std::chrono::system_clock::now() + std::chrono::hours{1}).time_since_epoch())
+          .count();
+  auto child = start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(config))});
+  const auto telemetry = hear<mission::Telemetry>();
+  ASSERT_TRUE(telemetry) << text_of("log");
+  EXPECT_LT(telemetry->state.time, Instant{});
+  EXPECT_EQ(telemetry->state.distance_flown_m, 0.0);
+  EXPECT_EQ(telemetry->plan_number, 0U);
+  child.signal(SIGINT);
+  ASSERT_TRUE(child.wait(kPatience));
+  EXPECT_EQ(child.ended(), "exit status 0");
+}
+
+TEST_F(Programs, TheGroundStationDecidesAsScripted) {
+  open_node(kVehicle);
+  auto config = ground();
+  config.operator_decisions = {{.site = {3}, .grant = true, .reaction = Duration{}}};
+  auto child = start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(config))});
+  mission::AuthorisationRequest request;
+  request.round = {{kVehicle, {1}, 4}, 2};
+  request.site = {3};
+  request.deliveries.push_back({{{{3}, TaskKind::deliver, 0}, kVehicle, at_seconds(3000.0)}, 0.0});
+  request.decide_by = at_seconds(2000.0);
+  const auto authorisation =
+      hear<mission::Authorisation>([&] { node_->publish(mission::Message{request}); });
+  ASSERT_TRUE(authorisation) << text_of("log");
+  EXPECT_TRUE(authorisation->granted);
+  EXPECT_EQ(authorisation->round, request.round);
+  // Its input was at its end from the start: it runs without a terminal.
+  EXPECT_FALSE(child.ended()) << text_of("log");
+  child.signal(SIGTERM);
+  ASSERT_TRUE(child.wait(kPatience));
+  EXPECT_EQ(child.ended(), "exit status 0");
+  EXPECT_THAT(text_of("log"), HasSubstr("ground station: authorised, site 3: by scenario"));
+  EXPECT_THAT(text_of("ground/events.csv"), HasSubstr("authorised"));
+}
+
+TEST_F(Programs, WithoutAScriptTheGroundStationAsksAndNothingIsAuthorised) {
+  open_node(kVehicle);
+  auto child = start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(ground()))});
+  mission::AuthorisationRequest request;
+  request.round = {{kVehicle, {1}, 4}, 2};
+  request.site = {3};
+  request.deliveries.push_back({{{{3}, TaskKind::deliver, 0}, kVehicle, at_seconds(3000.0)}, 0.0});
+  request.decide_by = at_seconds(2000.0);
+  const auto until = steady_clock::now() + kPatience;
+  while (text_of("log").find("authorise 3") == std::string::npos && steady_clock::now() < until) {
+    node_->publish(mission::Message{request});
+    wake_.wait_until(steady_clock::now() + std::chrono::milliseconds{200});
+  }
+  EXPECT_THAT(text_of("log"), HasSubstr("Authorisation wanted"));
+  child.signal(SIGTERM);
+  ASSERT_TRUE(child.wait(kPatience));
+  while (const auto received = node_->poll()) {
+    EXPECT_FALSE(std::holds_alternative<mission::Authorisation>(received->message));
+  }
+}
+
+struct BadStart {
+  const char* name;
+  std::vector<std::string> words;
+  int status;
+  const char* says;
+};
+
+class BadStarts : public Programs, public ::testing::WithParamInterface<BadStart> {};
+
+TEST_P(BadStarts, EndWithASentence) {
+  (void)write("bad.yaml", "version: 1\nvehicles: [1]\nspede_mps: 3\n");
+  auto config = vehicle();
+  config.recording_folder = "/dev/null/nowhere";
+  (void)write("no-recording.yaml", to_yaml(config));
+  std::vector<std::string> words = GetParam().words;
+  for (auto& word : words) {
+    if (word.ends_with(".yaml")) word = folder_ / word;
+  }
+  auto child = start(words);
+  ASSERT_TRUE(child.wait(kPatience));
+  EXPECT_EQ(child.ended(), "exit status " + std::to_string(GetParam().status));
+  EXPECT_THAT(text_of("log"), HasSubstr(GetParam().says));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Programs, BadStarts,
+    ::testing::Values(
+        BadStart{"onboard_no_arguments", {SKEIN_ONBOARD}, 2, "--config is required"},
+        BadStart{"onboard_no_file", {SKEIN_ONBOARD, "--config", "x.yaml"}, 2, "cannot be opened"},
+        BadStart{"onboard_bad_key", {SKEIN_ONBOARD, "--config", "bad.yaml"}, 2, "spede_mps"},
+        BadStart{"onboard_no_recording",
+                 {SKEIN_ONBOARD, "--config", "no-recording.yaml"},
+                 3,
+                 "cannot record"},
+        BadStart{"ground_no_file", {SKEIN_GROUND, "--config", "x.yaml"}, 2, "cannot be opened"},
+        BadStart{"ground_bad_key", {SKEIN_GROUND, "--config", "bad.yaml"}, 2, "spede_mps"}),
+    [](const auto& param_info) { return param_info.param.name; });
+
+TEST_F(Programs, APortInUseIsNamed) {
+  const HeldPort held{vehicle_port_};
+  ASSERT_TRUE(held.held());
+  auto child = start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(vehicle()))});
+  ASSERT_TRUE(child.wait(kPatience));
+  EXPECT_EQ(child.ended(), "exit status 3");
+  EXPECT_THAT(text_of("log"), HasSubstr("cannot join the mission network"));
+  EXPECT_THAT(text_of("log"), HasSubstr(std::to_string(vehicle_port_)));
+}
+
+}  // namespace
+}  // namespace skein
