@@ -37,7 +37,7 @@ TEST(TimedPath, APieceOfItIsFlownTheSame) {
   ASSERT_TRUE(piece);
   EXPECT_EQ(piece->segments.size(), 3U);
   EXPECT_NEAR(piece->length_m(), 240.0, 1e-9);
-  for (double d = 0.0; d <= 240.0; d += 7.0) {
+  for (int d = 0; d <= 240; d += 7) {
     const Pose2 a = piece->pose_at(d);
     const Pose2 b = plan.pose_at_distance(60.0 + d);
     EXPECT_NEAR(a.x_m, b.x_m, 1e-9);
