@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "charts.hpp"
+#include "drawing.hpp"
+#include "story.hpp"
+#include "style.hpp"
+
+namespace skein::report {
+namespace {
+
+using checks::CheckResult;
+
+constexpr std::size_t kSentencesMax = 25;
+
+std::string verdict(const std::vector<CheckResult>& checks) {
+  const auto failed =
+      std::count_if(checks.begin(), checks.end(), [](const CheckResult& c) { return !c.held(); });
+  if (failed == 0) {
+    return fmt::format(R"~(<div class="verdict pass-word"><b>PASS</b>all {} checks held</div>)~",
+                       checks.size());
+  }
+  return fmt::format(
+      R"~(<div class="verdict fail-word"><b>FAIL</b>{} of {} checks did not hold</div>)~", failed,
+      checks.size());
+}
+
+std::string comparison_table(const Contents& contents) {
+  std::string html =
+      "<table><thead><tr><th></th><th>ours</th><th>published</th></tr></thead><tbody>";
+  SiteId last{};
+  bool first = true;
+  for (const ComparisonRow& row : contents.comparison) {
+    if (first || row.site != last) {
+      html += fmt::format(
+          R"~(<tr class="site"><td colspan="3"><span class="dot" style="background:var(--s{})"></span>site {}</td></tr>)~",
+          colour_of(contents.record, row.site), row.site.value);
+    }
+    first = false;
+    last = row.site;
+    html += fmt::format(R"~(<tr><td class="soft">{}</td><td>{}</td><td>{}</td></tr>)~",
+                        escaped(row.what), escaped(row.ours), escaped(row.published));
+  }
+  return html + "</tbody></table>";
+}
+
+std::string sentences(const CheckResult& check) {
+  std::string html = R"~(<tr class="sentences"><td colspan="6"><ul>)~";
+  for (std::size_t i = 0; i < std::min(kSentencesMax, check.violations.size()); ++i) {
+    html += "<li>" + escaped(check.violations[i].sentence) + "</li>";
+  }
+  if (check.violations.size() > kSentencesMax) {
+    html += fmt::format("<li>and {} more</li>", check.violations.size() - kSentencesMax);
+  }
+  return html + "</ul></td></tr>";
+}
+
+std::string check_table(const std::vector<CheckResult>& checks) {
+  std::string html =
+      "<table><thead><tr><th></th><th>check</th><th>rule</th><th class=\"number\">judged</th>"
+      "<th>measured</th><th class=\"number\">violations</th></tr></thead><tbody>";
+  for (const CheckResult& check : checks) {
+    html += fmt::format(
+        R"~(<tr><td class="{}">{}</td><td>{}</td><td class="soft">{}</td><td class="number">{} {}</td><td>{}</td><td class="number">{}</td></tr>)~",
+        check.held() ? "pass-word" : "fail-word", check.held() ? "held" : "FAILED",
+        escaped(check.name), escaped(check.requirement), check.judged, escaped(check.judged_what),
+        escaped(check.measured), check.violations.size());
+    if (!check.held()) html += sentences(check);
+  }
+  return html + "</tbody></table>";
+}
+
+}  // namespace
+
+std::string html(const Contents& contents) {
+  const std::vector<Story> told = stories(contents.record);
+  std::string page =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
+      "<meta name=\"color-scheme\" content=\"light dark\">";
+  page += fmt::format("<title>{}</title><style>{}{}{}</style></head><body>\n",
+                      escaped(contents.title), kColours, kDrawing, kPage);
+  page += fmt::format("<header><div><h1>{}</h1><p>{}</p></div>{}</header>\n",
+                      escaped(contents.title), escaped(contents.summary), verdict(contents.checks));
+  page += "<div class=\"two\"><section><h2>Flown tracks</h2>\n";
+  page += map(contents.record, told, "", "");
+  page += "</section><section><h2>Ours beside the published mission</h2>\n" +
+          comparison_table(contents) + "</section></div>\n";
+  page += "<h2>Checks</h2><div class=\"wide\">" + check_table(contents.checks) + "</div>\n";
+
+  std::string curves;
+  for (const Site& site : contents.record.sites) {
+    const std::string chart = distance_curves(contents.record, contents.limits, told, site);
+    if (chart.empty()) continue;
+    curves += fmt::format("<section><h3>Site {}</h3>\n{}</section>\n", site.id.value, chart);
+  }
+  if (!curves.empty()) {
+    page +=
+        "<h2>Distance of every member from its site</h2><p>From its award to the end of its task. "
+        "Solid: delivers. Dashed: assesses. Ring: pass over the site.</p><div class=\"many\">" +
+        curves + "</div>\n";
+  }
+  if (!told.empty()) {
+    page +=
+        "<h2>Time line</h2><p>The number at the start of a flight is that of the site.</p>"
+        "<div class=\"wide\">" +
+        time_line(contents.record, told) + "</div>\n";
+  }
+  const std::string flown = errors(contents.record, contents.limits);
+  if (!flown.empty()) {
+    page +=
+        "<h2>Flown against planned</h2><p>The band is what is allowed.</p><div class=\"wide\">" +
+        flown + "</div>\n";
+  }
+  return page + "</body></html>\n";
+}
+
+std::string mission_svg(const checks::RunRecord& record) {
+  const std::string style = fmt::format("<style>{}{}</style>", kColours, kDrawing);
+  return map(record, stories(record), R"~(xmlns="http://www.w3.org/2000/svg" width="900")~", style);
+}
+
+}  // namespace skein::report

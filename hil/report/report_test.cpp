@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/report/report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "drawing.hpp"
+#include "story.hpp"
+
+namespace skein::report {
+namespace {
+
+using mission::EventKind;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+mission::MissionEvent event(VehicleId vehicle, double time_s, EventKind kind, const TaskId& task,
+                            double value = 0.0) {
+  return {vehicle, at_seconds(time_s), kind, {{VehicleId{1}, InstanceId{5}, 1}, 1}, task, value,
+          ""};
+}
+
+/// Vehicle 1 surveys and leads; vehicle 12 delivers eastward over the site at the origin at 60 s.
+Contents small_contents() {
+  Contents contents;
+  contents.title = "Two & a <site>";
+  contents.summary = "seed 1";
+  Site site;
+  site.id = SiteId{3};
+  site.deliveries = {{0.0, Duration{}}};
+  contents.record.sites = {site};
+  contents.record.hazards = {{{HazardId{4}, {500.0, 900.0}, 120.0}, Instant{}}};
+  for (const unsigned number : {1U, 12U}) {
+    VehicleSpec vehicle;
+    vehicle.id = VehicleId{static_cast<std::uint16_t>(number)};
+    contents.record.vehicles.push_back(vehicle);
+    recording::Recording recorded;
+    recorded.vehicle = vehicle.id;
+    for (int i = 0; i <= 2000; ++i) {
+      const double t = 0.05 * i;
+      recording::TrackPoint point;
+      point.state.time = at_seconds(t);
+      point.state.x_m = number == 1U ? 300.0 * std::cos(t / 6.0) : 50.0 * (t - 60.2);
+      point.state.y_m = number == 1U ? 300.0 * std::sin(t / 6.0) : 4.0;
+      recorded.track.push_back(point);
+    }
+    contents.record.recordings.push_back(recorded);
+  }
+  const TaskId survey{site.id, TaskKind::survey, 0};
+  const TaskId delivery{site.id, TaskKind::deliver, 0};
+  const VehicleId leader{1};
+  const VehicleId member{12};
+  contents.record.recordings[0].events = {event(leader, 5.0, EventKind::survey_started, survey),
+                                          event(leader, 25.0, EventKind::survey_done, survey, 5.0),
+                                          event(leader, 27.0, EventKind::coalition_formed, survey)};
+  contents.record.recordings[1].events = {
+      event(member, 25.2, EventKind::bid_sent, delivery),
+      event(member, 27.0, EventKind::lease_granted, delivery, 90.0),
+      event(member, 54.0, EventKind::task_started, delivery),
+      event(member, 60.2, EventKind::task_done, delivery, 60.0)};
+  contents.checks = {{"turn radius", "none tighter", 4, "plans", "101 %", {}}};
+  contents.comparison = {{site.id, "survey done", "25.00 s", "43.92 s"}};
+  return contents;
+}
+
+/// The first fault in the nesting of tags; empty when there is none.
+std::string fault_of_tags(const std::string& text) {
+  static const std::set<std::string> kNeverClosed{"meta", "br", "hr", "!DOCTYPE", "?xml"};
+  std::vector<std::string> open;
+  for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
+    const std::size_t end = text.find('>', at);
+    if (end == std::string::npos) return "a tag without end";
+    const bool closing = text[at + 1] == '/';
+    const std::size_t name_at = at + (closing ? 2 : 1);
+    const std::string name = text.substr(name_at, text.find_first_of(" />\n", name_at) - name_at);
+    if (kNeverClosed.contains(name) || text[end - 1] == '/') continue;
+    if (!closing) {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return "</" + name + "> closes " + (open.empty() ? "nothing" : "<" + open.back() + ">");
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : "<" + open.back() + "> is never closed";
+}
+
+TEST(Report, ThePageIsWellFormedAndNeedsNothingElse) {
+  const std::string page = html(small_contents());
+  EXPECT_EQ(fault_of_tags(page), "");
+  for (const char* outside : {"http", "src=", "href=", "@import", "<script", "url(h"}) {
+    EXPECT_THAT(page, Not(HasSubstr(outside)));
+  }
+  EXPECT_THAT(page, HasSubstr("Two &amp; a &lt;site&gt;"));
+  EXPECT_THAT(page, HasSubstr("43.92 s"));
+}
+
+TEST(Report, ThePageShowsEveryVehicleSiteAndHazard) {
+  const std::string page = html(small_contents());
+  for (const char* shown :
+       {"vehicle 1, working for site 3", "vehicle 12, working for site 3", "vehicle 12, searching",
+        "vehicle 12: delivering, site 3, 54.0 s to 60.2 s", "hazard 4, radius 120 m",
+        "vehicle 12 passes at 60.20 s, planned 60.00 s", ">site 3</text>"}) {
+    EXPECT_THAT(page, HasSubstr(shown));
+  }
+}
+
+TEST(Report, TheVerdictFollowsTheChecks) {
+  Contents contents = small_contents();
+  EXPECT_THAT(html(contents), HasSubstr("<b>PASS</b>all 1 checks held"));
+  EXPECT_THAT(text_table(contents.checks, contents.comparison),
+              EndsWith("PASS: all 1 checks held\n"));
+  contents.checks.front().violations = {{VehicleId{1}, Instant{}, "vehicle 1 turned < 150 m"}};
+  const std::string page = html(contents);
+  EXPECT_EQ(fault_of_tags(page), "");
+  EXPECT_THAT(page, HasSubstr("<b>FAIL</b>1 of 1 checks did not hold"));
+  EXPECT_THAT(page, HasSubstr("vehicle 1 turned &lt; 150 m"));
+  const std::string text = text_table(contents.checks, contents.comparison);
+  EXPECT_THAT(text, HasSubstr("vehicle 1 turned < 150 m"));
+  EXPECT_THAT(text, EndsWith("FAIL: 1 of 1 checks did not hold\n"));
+}
+
+TEST(Report, AMissionThatLeftNothingStillGivesAPage) {
+  Contents contents;
+  contents.title = "nothing";
+  EXPECT_EQ(fault_of_tags(html(contents)), "");
+  EXPECT_EQ(fault_of_tags(mission_svg(contents.record)), "");
+}
+
+TEST(Report, TheMapStandsAlone) {
+  const std::string svg = mission_svg(small_contents().record);
+  EXPECT_EQ(fault_of_tags(svg), "");
+  EXPECT_THAT(svg, HasSubstr("xmlns=\"http://www.w3.org/2000/svg\""));
+  EXPECT_THAT(svg, HasSubstr("prefers-color-scheme:dark"));
+}
+
+TEST(Report, LongTracksAreThinned) {
+  Contents contents = small_contents();
+  EXPECT_LT(html(contents).size(), 60'000U);  // 4000 track points
+}
+
+TEST(Story, TellsWhoWorkedForWhomWhen) {
+  const auto told = stories(small_contents().record);
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(site_at(told[0], at_seconds(2.0)), std::nullopt);
+  EXPECT_EQ(site_at(told[0], at_seconds(10.0)), SiteId{3});
+  EXPECT_EQ(site_at(told[0], at_seconds(26.0)), SiteId{3});
+  EXPECT_EQ(site_at(told[0], at_seconds(30.0)), std::nullopt);
+  EXPECT_EQ(site_at(told[1], at_seconds(26.0)), std::nullopt);  // a bid is no work yet
+  EXPECT_EQ(site_at(told[1], at_seconds(40.0)), SiteId{3});
+  EXPECT_EQ(site_at(told[1], at_seconds(61.0)), std::nullopt);
+}
+
+TEST(Drawing, ThinningKeepsCornersAndEnds) {
+  std::vector<Vec2> line;
+  for (int i = 0; i <= 100; ++i) line.emplace_back(i, 0.0);
+  for (int i = 1; i <= 100; ++i) line.emplace_back(100.0, i);
+  const auto thin = thinned(line, 0.1);
+  ASSERT_EQ(thin.size(), 3U);
+  EXPECT_EQ(thin[1], (Vec2{100.0, 0.0}));
+}
+
+TEST(Drawing, ThinningStaysWithinItsTolerance) {
+  std::vector<Vec2> circle;
+  for (int i = 0; i <= 360; ++i) circle.push_back(100.0 * unit_vector(radians(i)));
+  const auto thin = thinned(circle, 0.5);
+  EXPECT_LT(thin.size(), 60U);
+  for (std::size_t i = 1; i < thin.size(); ++i) {
+    EXPECT_GT((0.5 * (thin[i] + thin[i - 1])).norm(), 99.5 - 1e-9);
+  }
+}
+
+TEST(Drawing, TicksAreRoundAndWithin) {
+  const Axis axis{3.0, 222.0, 0.0, 100.0};
+  const auto ticks = axis.ticks(8);
+  EXPECT_EQ(ticks.front(), 20.0);
+  EXPECT_EQ(ticks.back(), 220.0);
+}
+
+}  // namespace
+}  // namespace skein::report

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string_view>
+
+namespace skein::report {
+
+/// Colours of sites and of what vehicles do: after Okabe and Ito (2008), who chose them so that
+/// people with any colour vision tell them apart.
+inline constexpr std::string_view kColours = R"(
+:root{--paper:#fff;--ground:#f7f8fa;--ink:#1c2530;--soft:#5b6774;--rule:#dfe3e8;
+--s0:#a3abb5;--s1:#0072b2;--s2:#d55e00;--s3:#00875f;--s4:#b8578f;--s5:#c98500;--s6:#3a9fd6;
+--d0:#dde1e6;--d1:#cc79a7;--d2:#f0e442;--d3:#a9cbe8;--d4:#56b4e9;--d5:#d55e00;--d6:#009e73;
+--good:#00734f;--bad:#b3261e}
+@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ground:#1b2027;--ink:#e6eaef;--soft:#98a3af;--rule:#2f3741;
+--s0:#69737f;--s1:#5ab4f0;--s2:#ff8f4a;--s3:#35c99a;--s4:#e79fc8;--s5:#f0b73c;--s6:#8fd3fa;
+--d0:#323a44;--d1:#b8699a;--d2:#d3c63a;--d3:#33597a;--d4:#56b4e9;--d5:#ef7a2a;--d6:#16b385;
+--good:#3ecf9c;--bad:#ff8a80}}
+)";
+
+inline constexpr std::string_view kDrawing = R"(
+svg text{font:11px system-ui,sans-serif;fill:var(--soft)}
+svg .ground{fill:var(--ground)}svg .grid{stroke:var(--rule);fill:none}
+svg .hatch{stroke:var(--bad);stroke-width:1.6;opacity:.5}
+svg .hazard{fill:url(#hatch);stroke:var(--bad);stroke-width:1.2}
+svg .s0{--c:var(--s0)}svg .s1{--c:var(--s1)}svg .s2{--c:var(--s2)}svg .s3{--c:var(--s3)}
+svg .s4{--c:var(--s4)}svg .s5{--c:var(--s5)}svg .s6{--c:var(--s6)}
+svg .f0{fill:var(--s0)}svg .f1{fill:var(--s1)}svg .f2{fill:var(--s2)}svg .f3{fill:var(--s3)}
+svg .f4{fill:var(--s4)}svg .f5{fill:var(--s5)}svg .f6{fill:var(--s6)}
+svg .d0{fill:var(--d0)}svg .d1{fill:var(--d1)}svg .d2{fill:var(--d2)}svg .d3{fill:var(--d3)}
+svg .d4{fill:var(--d4)}svg .d5{fill:var(--d5)}svg .d6{fill:var(--d6)}
+svg .track,svg .curve{fill:none;stroke:var(--c);stroke-width:1.4;stroke-linejoin:round}
+svg .free{stroke-width:.9;opacity:.75}svg .assessor{stroke-dasharray:5 3}
+svg .track:hover,svg .curve:hover{stroke-width:3.5;opacity:1}
+svg .start{fill:var(--paper);stroke:var(--ink);stroke-width:1.2}svg .end:not(text){fill:var(--ink)}
+svg .site{fill:var(--c);stroke:var(--paper);stroke-width:2}
+svg .bearing{stroke:var(--c);stroke-width:2.2}svg .tip{fill:var(--c)}
+svg .name{font-weight:650;font-size:14px;fill:var(--ink);text-anchor:middle;paint-order:stroke;stroke:var(--ground);stroke-width:4px}
+svg .id{font-size:10px;fill:var(--ink);paint-order:stroke;stroke:var(--ground);stroke-width:2.5px}
+svg .mid{text-anchor:middle}svg text.end{text-anchor:end}
+svg .badge{text-anchor:middle;font-size:10px;font-weight:650;fill:var(--paper)}
+svg .scale{stroke:var(--ink);fill:none;stroke-width:1.3}
+svg .pass{fill:var(--paper);stroke:var(--c);stroke-width:2}
+svg .allowed{fill:var(--good);opacity:.1}svg .axis{stroke:var(--soft)}
+svg .stem{stroke:var(--c);stroke-width:1.5}svg .label{fill:var(--ink);font-size:12px}
+)";
+
+inline constexpr std::string_view kPage = R"(
+*{box-sizing:border-box}
+body{margin:0 auto;max-width:1320px;padding:22px 28px 48px;background:var(--paper);color:var(--ink);font:14px/1.45 system-ui,sans-serif}
+h1{font-size:24px;margin:0}h2{font-size:16px;margin:34px 0 10px}h3{font-size:13px;margin:0 0 4px;font-weight:600}
+p{margin:4px 0;color:var(--soft)}
+header{display:flex;justify-content:space-between;gap:24px;align-items:flex-start;flex-wrap:wrap}
+.verdict{padding:9px 16px;border-radius:8px;border:2px solid;text-align:right;font-size:13px}
+.verdict b{display:block;font-size:20px;letter-spacing:.04em}
+.pass-word{color:var(--good)}.fail-word{color:var(--bad)}
+.two{display:grid;grid-template-columns:minmax(0,1.75fr) minmax(0,1fr);gap:26px;align-items:start}
+.many{display:grid;grid-template-columns:repeat(auto-fit,minmax(390px,1fr));gap:22px}
+@media(max-width:900px){.two{grid-template-columns:minmax(0,1fr)}}
+svg{display:block;width:100%;height:auto}
+.wide{overflow-x:auto}
+table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
+th,td{text-align:left;padding:4px 10px 4px 0;border-bottom:1px solid var(--rule);vertical-align:top}
+th{font-weight:600;color:var(--soft);font-size:12px}
+td.number{text-align:right;padding-right:18px}td:nth-child(-n+2){white-space:nowrap}.sentences td{white-space:normal}th.number{text-align:right}tr.site td{padding-top:12px;font-weight:650}
+.dot{display:inline-block;width:11px;height:11px;border-radius:50%;margin-right:7px}
+.sentences td{color:var(--bad);padding-left:26px}.sentences ul{margin:0;padding-left:16px}
+.soft{color:var(--soft)}
+)";
+
+}  // namespace skein::report
