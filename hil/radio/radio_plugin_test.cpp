@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+// The radio between two true nodes of the mission network, on loopback.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <functional>
+#include <memory>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "skein/hil/radio/link_table.hpp"
+#include "skein/network/node.hpp"
+
+namespace skein::hil::radio {
+namespace {
+
+using network::Node;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+constexpr VehicleId kAnna{1};
+constexpr VehicleId kBert{2};
+
+bool eventually(const std::function<bool()>& condition) {
+  const auto end = steady_clock::now() + seconds{60};
+  while (!condition()) {
+    if (steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(milliseconds{2});
+  }
+  return true;
+}
+
+bool is_free(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool free = ::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  ::close(fd);
+  return free;
+}
+
+/// Two vehicles that hear each other through the radio only.
+class Radio : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto made = LinkTable::create();
+    ASSERT_TRUE(made) << made.error().message;
+    table_ = std::make_unique<LinkTable>(std::move(made).value());
+    ASSERT_EQ(::setenv("SKEIN_RADIO_TABLE", table_->name().c_str(), 1), 0);
+    ASSERT_EQ(::setenv("SKEIN_RADIO_SEED", "7", 1), 0);
+
+    std::random_device device;
+    std::uniform_int_distribution<int> quarter{2500, 7999};
+    int port = 0;
+    do {
+      port = 4 * quarter(device);
+    } while (!is_free(port) || !is_free(port + 1) || !is_free(port + 2) || !is_free(port + 3));
+    const network::Endpoint anna{"127.0.0.1", static_cast<std::uint16_t>(port)};
+    const network::Endpoint bert{"127.0.0.1", static_cast<std::uint16_t>(port + 2)};
+    anna_ = open(kAnna, anna, {kBert, bert}, device());
+    bert_ = open(kBert, bert, {kAnna, anna}, device());
+  }
+
+  static std::unique_ptr<Node> open(VehicleId self, const network::Endpoint& endpoint,
+                                    const network::PeerConfig& peer, std::uint64_t instance) {
+    network::NodeConfig config;
+    config.self = self;
+    config.instance = InstanceId{instance};
+    config.endpoint = endpoint;
+    config.peers = {peer};
+    config.transport_plugin = SKEIN_RADIO_PLUGIN;
+    auto node = Node::open(config);
+    EXPECT_TRUE(node) << node.error().message;
+    return std::move(node).value();
+  }
+
+  void both_ways(const Link& link) {
+    table_->set(kAnna, kBert, link);
+    table_->set(kBert, kAnna, link);
+  }
+  [[nodiscard]] bool matched() const {
+    return anna_->peers().size() == 1 && bert_->peers().size() == 1;
+  }
+  /// A reliable message, and a best-effort one.
+  bool send_cancel(std::uint32_t number) {
+    coalition::Cancel m;
+    m.round.number = number;
+    return anna_->publish(coalition::Message{m});
+  }
+  bool send_telemetry(std::uint32_t number) {
+    mission::Telemetry m;
+    m.vehicle = kAnna;
+    m.plan_number = number;
+    return anna_->publish(m);
+  }
+
+  std::unique_ptr<LinkTable> table_;
+  std::unique_ptr<Node> anna_;
+  std::unique_ptr<Node> bert_;
+};
+
+TEST_F(Radio, NothingPassesALinkThatIsDownAndWhatIsReliableIsRepaired) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  both_ways({false, 0.0, Duration{}, Duration{}});
+  for (std::uint32_t i = 0; i < 5; ++i) ASSERT_TRUE(send_cancel(i));
+  // Not an event to wait for but its absence: some heartbeats long, so that repair is tried.
+  std::this_thread::sleep_for(milliseconds{400});
+  EXPECT_FALSE(bert_->poll());
+  EXPECT_TRUE(matched()) << "an outage does not end the match";
+
+  both_ways({});
+  std::vector<std::uint32_t> numbers;
+  EXPECT_TRUE(eventually([&] {
+    while (const auto received = bert_->poll()) {
+      const auto& m = std::get<coalition::Message>(received->message);
+      numbers.push_back(std::get<coalition::Cancel>(m).round.number);
+    }
+    return numbers.size() >= 5;
+  }));
+  EXPECT_EQ(numbers, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
+}
+
+TEST_F(Radio, TheDelayIsThatOfTheLink) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  both_ways({true, 0.0, milliseconds{150}, milliseconds{50}});
+  for (std::uint32_t i = 0; i < 5; ++i) {
+    const auto sent = steady_clock::now();
+    ASSERT_TRUE(send_telemetry(i));
+    ASSERT_TRUE(eventually([&] { return bert_->poll().has_value(); }));
+    const auto took = steady_clock::now() - sent;
+    EXPECT_GE(took, milliseconds{99});
+    EXPECT_LT(took, seconds{20}) << "generous: the machine may be busy";
+  }
+}
+
+TEST_F(Radio, BestEffortMessagesAreLostInTheGivenShare) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  table_->set(kAnna, kBert, {true, 0.5, Duration{}, Duration{}});
+  int received = 0;
+  constexpr int kSent = 300;
+  for (std::uint32_t i = 0; i < kSent; ++i) {
+    ASSERT_TRUE(send_telemetry(i));
+    std::this_thread::sleep_for(milliseconds{2});  // the writer keeps the last one only
+    while (bert_->poll()) ++received;
+  }
+  EXPECT_GT(received, 0);
+  EXPECT_LT(received, kSent * 7 / 10);
+}
+
+TEST_F(Radio, WhatIsReliableGetsThroughLoss) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  both_ways({true, 0.3, milliseconds{5}, milliseconds{5}});
+  for (std::uint32_t i = 0; i < 40; ++i) ASSERT_TRUE(send_cancel(i));
+  std::uint32_t next = 0;
+  EXPECT_TRUE(eventually([&] {
+    while (const auto received = bert_->poll()) {
+      const auto& m = std::get<coalition::Message>(received->message);
+      EXPECT_EQ(std::get<coalition::Cancel>(m).round.number, next++);
+    }
+    return next == 40;
+  }));
+}
+
+TEST_F(Radio, ClosesWithPacketsOnTheirWay) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  both_ways({true, 0.0, milliseconds{300}, Duration{}});
+  for (std::uint32_t i = 0; i < 50; ++i) ASSERT_TRUE(send_cancel(i));
+  bert_.reset();
+  anna_.reset();
+}
+
+TEST(RadioPlugin, RefusesWithoutItsTable) {
+  network::NodeConfig config;
+  config.self = kAnna;
+  config.instance = InstanceId{1};
+  config.transport_plugin = SKEIN_RADIO_PLUGIN;
+  std::random_device device;
+  std::uniform_int_distribution<int> half{5000, 15999};
+  int port = 0;
+  do {
+    port = 2 * half(device);
+  } while (!is_free(port) || !is_free(port + 1));
+  config.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(port)};
+  ASSERT_EQ(::unsetenv("SKEIN_RADIO_TABLE"), 0);
+  const auto unnamed = Node::open(config);
+  ASSERT_FALSE(unnamed);
+  EXPECT_NE(unnamed.error().message.find("SKEIN_RADIO_TABLE"), std::string::npos);
+  ASSERT_EQ(::setenv("SKEIN_RADIO_TABLE", "/skein-radio-of-nobody", 1), 0);
+  const auto missing = Node::open(config);
+  ASSERT_FALSE(missing);
+  EXPECT_NE(missing.error().message.find("/skein-radio-of-nobody"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skein::hil::radio
