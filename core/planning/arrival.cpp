@@ -2,128 +2,410 @@
 #include "skein/planning/arrival.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
 #include "skein/planning/dubins.hpp"
 
 namespace skein::planning {
 namespace {
 
-constexpr double kExact = 1e-6;  ///< metres
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kExact_m = 5e-7;
+constexpr double kGapStep_m = 1e-3;  ///< to which the end of a gap is found
+constexpr int kSamples = 24;         ///< of a family of paths, between which roots are sought
+constexpr int kBisections = 60;
 
-/// A family of paths over one parameter; nothing where a member does not exist.
-using Family = std::function<std::optional<Path>(double)>;
+constexpr std::array<DubinsWord, 4> kCscWords = {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL,
+                                                 DubinsWord::RSR};
+constexpr std::array<DubinsWord, 2> kCccWords = {DubinsWord::RLR, DubinsWord::LRL};
 
-/// The member of the family with that length: the first change of side among samples, by bisection.
-/// A jump of the length is found as well and thrown away.
-std::optional<Path> member_of_length(const Family& family, double low, double high, int samples,
-                                     double length, const std::function<bool(const Path&)>& good) {
-  double before = low;
-  auto at_before = family(before);
-  for (int i = 1; i <= samples; ++i) {
-    const double here = low + (high - low) * i / samples;
-    auto at_here = family(here);
-    if (at_before && at_here &&
-        (at_before->length_m() - length) * (at_here->length_m() - length) <= 0.0) {
-      double a = before;
-      double b = here;
-      const bool rising = at_here->length_m() >= at_before->length_m();
-      std::optional<Path> middle;
-      for (int k = 0; k < 60; ++k) {
-        const double m = (a + b) / 2.0;
-        middle = family(m);
-        if (!middle || std::abs(middle->length_m() - length) < kExact / 10.0) break;
-        ((middle->length_m() < length) == rising ? a : b) = m;
-      }
-      if (middle && std::abs(middle->length_m() - length) < kExact && good(*middle)) return middle;
+/// How unpleasant a path is to fly, in radians of turning: what it turns, and how far it strays
+/// from the line between its ends, a turn radius counting as a radian.
+double discomfort(const Path& path, const Pose2& to, double radius_m) {
+  const double chord = (to.position() - path.start.position()).norm();
+  double turned = 0.0;
+  double strays = 0.0;
+  Pose2 pose = path.start;
+  for (const Segment& piece : path.segments) {
+    turned += std::abs(piece.curvature_per_m) * piece.length_m;
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      pose = advance(pose, piece.curvature_per_m, piece.length_m / 4.0);
+      const double farther = std::max((pose.position() - path.start.position()).norm(),
+                                      (pose.position() - to.position()).norm());
+      strays = std::max(strays, farther - chord);
     }
-    before = here;
-    at_before = std::move(at_here);
   }
-  return std::nullopt;
+  return turned + strays / radius_m;
 }
 
-std::optional<Path> with_loops(const Path& base, double radius, double extra,
-                               const std::function<bool(const Path&)>& good) {
-  const double loops = std::floor(extra / (kTwoPi * radius) + 1e-12);
-  if (loops < 1.0) return std::nullopt;
-  const double loop_radius = extra / (kTwoPi * loops);
-  const double total = base.length_m();
-  for (const double share : {0.0, 1.0, 0.5, 0.25, 0.75}) {
-    for (const double sense : {1.0, -1.0}) {
-      TimedPath timed;
-      timed.path = base;
-      const auto head = timed.piece(0.0, share * total);
-      const auto tail = timed.piece(share * total, total);
-      if (!head || !tail) continue;
-      Path path = *head;
-      if (path.append(Segment{sense / loop_radius, extra}) && path.append(*tail) && good(path))
-        return path;
+/// One request: the shortest clear path, and the search for longer ones.
+class Search {
+ public:
+  Search(const Transit& transit, const Path& shortest)
+      : transit_{transit}, shortest_{shortest}, shortest_m_{shortest.length_m()} {
+    find_bases();
+  }
+
+  [[nodiscard]] double shortest_m() const { return shortest_m_; }
+  /// Independent of length_max_m.
+  [[nodiscard]] std::optional<Path> find(double length_m);
+  /// The least reachable length above one that is not, up to `limit_m`.
+  [[nodiscard]] std::optional<double> next_after(double length_m, double limit_m);
+
+ private:
+  void find_bases();
+  void consider(const Path& path);
+  void larger_radii();
+  void unequal_radii();
+  void bends();
+  void loops();
+  void leads();
+  void lead(double curvature_per_m, bool at_start);
+  template <class Family>
+  void solve(double low, double high, bool geometric, const Family& family);
+
+  Transit transit_;
+  Path shortest_;
+  double shortest_m_;
+  std::vector<Path> bases_;  ///< clear paths of the least radius, to be lengthened
+
+  double wanted_m_ = 0.0;
+  std::optional<Path> best_;
+  double best_discomfort_ = kInfinity;
+};
+
+void Search::find_bases() {
+  bases_.push_back(shortest_);
+  const auto add = [&](const std::optional<DubinsPath>& word) {
+    if (!word || word->length_m() <= shortest_m_ + kExact_m) return;
+    const Path path = word->to_path();
+    if (is_clear(path, transit_.hazards)) bases_.push_back(path);
+  };
+  for (const DubinsWord word : kCscWords) {
+    add(dubins_word(word, transit_.from, transit_.to, transit_.radius_m, transit_.radius_m));
+  }
+  for (const DubinsWord word : kCccWords) {
+    add(dubins_ccc(word, transit_.from, transit_.to, transit_.radius_m, false));
+    add(dubins_ccc(word, transit_.from, transit_.to, transit_.radius_m, true));
+  }
+}
+
+void Search::consider(const Path& path) {
+  if (std::abs(path.length_m() - wanted_m_) > kExact_m) return;
+  const double value = discomfort(path, transit_.to, transit_.radius_m);
+  if (value >= best_discomfort_) return;
+  if (!is_clear(path, transit_.hazards)) return;
+  best_ = path;
+  best_discomfort_ = value;
+}
+
+/// Every member of a one-parameter family of Dubins paths that has the wanted length: sign changes
+/// between samples, then bisection. A jump of the length has a sign change too, and is refused by
+/// consider().
+template <class Family>
+void Search::solve(double low, double high, bool geometric, const Family& family) {
+  const auto parameter = [&](double i) {
+    const double part = i / kSamples;
+    return geometric ? low * std::pow(high / low, part) : low + (high - low) * part;
+  };
+  const auto excess = [&](const std::optional<DubinsPath>& p, double extra) {
+    return p->length_m() + extra - wanted_m_;
+  };
+  std::optional<double> before;
+  for (int i = 0; i <= kSamples; ++i) {
+    const auto [path, extra] = family.at(parameter(i));
+    const std::optional<double> value = path ? std::optional{excess(path, extra)} : std::nullopt;
+    if (before && value && (*before <= 0.0) != (*value <= 0.0)) {
+      double below = i - 1;
+      double above = i;
+      double at = below;
+      double miss = *before;
+      for (int k = 0; k < kBisections && std::abs(miss) > 1e-9; ++k) {
+        at = (below + above) / 2.0;
+        const auto [middle, middle_extra] = family.at(parameter(at));
+        if (!middle) break;
+        miss = excess(middle, middle_extra);
+        ((miss <= 0.0) == (*before <= 0.0) ? below : above) = at;
+      }
+      if (std::abs(miss) <= kExact_m) {
+        if (const auto whole = family.path(parameter(at))) consider(*whole);
+      }
+    }
+    before = value;
+  }
+}
+
+struct Sample {
+  std::optional<DubinsPath> path;
+  double extra_m = 0.0;
+};
+
+/// One word flown with a larger radius.
+struct WiderWord {
+  DubinsWord word = DubinsWord::LSL;
+  bool major = false;
+  const Transit& transit;
+  bool widen_start = true;
+  bool widen_end = true;
+
+  [[nodiscard]] Sample at(double radius_m) const {
+    if (word == DubinsWord::RLR || word == DubinsWord::LRL) {
+      return {dubins_ccc(word, transit.from, transit.to, radius_m, major)};
+    }
+    return {dubins_word(word, transit.from, transit.to, widen_start ? radius_m : transit.radius_m,
+                        widen_end ? radius_m : transit.radius_m)};
+  }
+  [[nodiscard]] std::optional<Path> path(double radius_m) const {
+    const auto dubins = at(radius_m).path;
+    return dubins ? std::optional{dubins->to_path()} : std::nullopt;
+  }
+};
+
+void Search::larger_radii() {
+  // Beyond this radius an arc is too flat to add what consider() could tell from the shortest.
+  const double widest_m = std::max(20.0 * wanted_m_, 4.0 * transit_.radius_m);
+  for (const DubinsWord word : kCscWords) {
+    solve(transit_.radius_m, widest_m, true, WiderWord{word, false, transit_});
+  }
+  for (const DubinsWord word : kCccWords) {
+    solve(transit_.radius_m, widest_m, true, WiderWord{word, false, transit_});
+    solve(transit_.radius_m, widest_m, true, WiderWord{word, true, transit_});
+  }
+}
+
+void Search::unequal_radii() {
+  const double widest_m = std::max(2.0 * wanted_m_, 4.0 * transit_.radius_m);
+  for (const DubinsWord word : kCscWords) {
+    solve(transit_.radius_m, widest_m, true, WiderWord{word, false, transit_, true, false});
+    solve(transit_.radius_m, widest_m, true, WiderWord{word, false, transit_, false, true});
+  }
+}
+
+/// In place of a straight line of length s: turn away by `angle`, back through twice that, and
+/// away again, with two lines between. Its length grows steadily with the angle.
+struct Bend {
+  double angle_rad;
+  double line_m;
+};
+
+std::optional<Bend> bend_of_length(double straight_m, double radius_m, double length_m) {
+  const auto line = [&](double angle) {
+    return std::max(0.0, (straight_m - 4.0 * radius_m * std::sin(angle)) / (2.0 * std::cos(angle)));
+  };
+  const auto length = [&](double angle) { return 4.0 * radius_m * angle + 2.0 * line(angle); };
+  double low = 0.0;
+  double high =
+      straight_m >= 4.0 * radius_m ? radians(85.0) : std::asin(straight_m / (4.0 * radius_m));
+  high = std::min(high, radians(85.0));
+  if (length(high) < length_m) return std::nullopt;
+  for (int k = 0; k < kBisections; ++k) {
+    const double middle = (low + high) / 2.0;
+    (length(middle) < length_m ? low : high) = middle;
+  }
+  return Bend{high, (length_m - 4.0 * radius_m * high) / 2.0};
+}
+
+/// The path with its piece `index` replaced.
+std::optional<Path> with_piece(const Path& base, std::size_t index,
+                               std::span<const Segment> pieces) {
+  Path path{.start = base.start, .segments = {}};
+  bool fits = true;
+  for (std::size_t i = 0; i < base.segments.size(); ++i) {
+    if (i != index) {
+      fits = fits && path.append(base.segments[i]);
+      continue;
+    }
+    for (const Segment& piece : pieces) fits = fits && path.append(piece);
+  }
+  return fits ? std::optional{path} : std::nullopt;
+}
+
+void Search::bends() {
+  const double r = transit_.radius_m;
+  for (const Path& base : bases_) {
+    const double extra = wanted_m_ - base.length_m();
+    if (extra < 0.0) continue;
+    for (std::size_t i = 0; i < base.segments.size(); ++i) {
+      const Segment& piece = base.segments[i];
+      if (piece.curvature_per_m != 0.0) continue;
+      const auto bend = bend_of_length(piece.length_m, r, piece.length_m + extra);
+      if (!bend) continue;
+      for (const double side : {1.0, -1.0}) {
+        const Segment away{side / r, r * bend->angle_rad};
+        const Segment back{-side / r, 2.0 * r * bend->angle_rad};
+        const Segment line{0.0, bend->line_m};
+        const std::array<Segment, 5> pieces = {away, line, back, line, away};
+        if (const auto path = with_piece(base, i, pieces)) consider(*path);
+      }
     }
   }
-  return std::nullopt;
+}
+
+void Search::loops() {
+  const double r = transit_.radius_m;
+  for (const Path& base : bases_) {
+    const double extra = wanted_m_ - base.length_m();
+    const int most = static_cast<int>(std::min(64.0, std::floor(extra / (kTwoPi * r) + 1e-12)));
+    for (int count = 1; count <= most; ++count) {
+      const double circle_m = extra / count;
+      const double radius_m = std::max(r, circle_m / kTwoPi);
+      for (const double side : {1.0, -1.0}) {
+        const Segment loop{side / radius_m, circle_m * count};
+        // Before each piece, and at the end.
+        for (std::size_t i = 0; i <= base.segments.size(); ++i) {
+          Path path{.start = base.start, .segments = {}};
+          bool fits = true;
+          for (std::size_t k = 0; k < base.segments.size(); ++k) {
+            if (k == i) fits = fits && path.append(loop);
+            fits = fits && path.append(base.segments[k]);
+          }
+          if (i == base.segments.size()) fits = fits && path.append(loop);
+          if (fits) consider(path);
+        }
+      }
+    }
+  }
+}
+
+/// A piece of constant curvature before or after a word.
+struct LedWord {
+  DubinsWord word = DubinsWord::LSL;
+  bool major = false;
+  const Transit& transit;
+  double curvature_per_m = 0.0;
+  bool at_start = true;
+
+  [[nodiscard]] Sample at(double lead_m) const {
+    const Pose2 from = at_start ? advance(transit.from, curvature_per_m, lead_m) : transit.from;
+    const Pose2 to = at_start ? transit.to : advance(transit.to, curvature_per_m, -lead_m);
+    if (word == DubinsWord::RLR || word == DubinsWord::LRL) {
+      return {dubins_ccc(word, from, to, transit.radius_m, major), lead_m};
+    }
+    return {dubins_word(word, from, to, transit.radius_m, transit.radius_m), lead_m};
+  }
+  [[nodiscard]] std::optional<Path> path(double lead_m) const {
+    const auto dubins = at(lead_m).path;
+    if (!dubins) return std::nullopt;
+    const Segment piece{curvature_per_m, lead_m};
+    Path whole{.start = transit.from, .segments = {}};
+    const bool fits = at_start ? whole.append(piece) && whole.append(dubins->to_path())
+                               : whole.append(dubins->to_path()) && whole.append(piece);
+    return fits ? std::optional{whole} : std::nullopt;
+  }
+};
+
+void Search::lead(double curvature_per_m, bool at_start) {
+  const double longest_m =
+      curvature_per_m == 0.0 ? wanted_m_ : std::min(wanted_m_, kTwoPi * transit_.radius_m);
+  for (const DubinsWord word : kCscWords) {
+    solve(0.0, longest_m, false, LedWord{word, false, transit_, curvature_per_m, at_start});
+  }
+  for (const DubinsWord word : kCccWords) {
+    solve(0.0, longest_m, false, LedWord{word, false, transit_, curvature_per_m, at_start});
+    solve(0.0, longest_m, false, LedWord{word, true, transit_, curvature_per_m, at_start});
+  }
+}
+
+void Search::leads() {
+  const double tightest = 1.0 / transit_.radius_m;
+  for (const bool at_start : {true, false}) {
+    for (const double curvature : {0.0, tightest, -tightest}) lead(curvature, at_start);
+  }
+}
+
+std::optional<Path> Search::find(double length_m) {
+  if (length_m < shortest_m_ - kExact_m) return std::nullopt;
+  if (length_m <= shortest_m_ + kExact_m) return shortest_;
+  wanted_m_ = length_m;
+  best_.reset();
+  best_discomfort_ = kInfinity;
+  larger_radii();
+  bends();
+  loops();
+  if (!best_) unequal_radii();
+  if (!best_) leads();
+  return best_;
+}
+
+std::optional<double> Search::next_after(double length_m, double limit_m) {
+  // A gap is no longer than one loop, but for hazards.
+  const double step_m = kTwoPi * transit_.radius_m / 24.0;
+  double below = length_m;
+  double above = length_m;
+  bool found = false;
+  for (int i = 0; i < 96 && !found && below < limit_m; ++i) {
+    below = above;
+    above = std::min(above + step_m, limit_m);
+    found = find(above).has_value();
+  }
+  if (!found) return std::nullopt;
+  // The end of a gap is often the length of a word itself; hit it exactly.
+  for (const Path& base : bases_) {
+    const double exact = base.length_m();
+    if (exact > below && exact < above && find(exact)) above = exact;
+  }
+  while (above - below > kGapStep_m) {
+    const double middle = (below + above) / 2.0;
+    (find(middle) ? above : below) = middle;
+  }
+  return above;
+}
+
+std::string metres(double m) {
+  const auto tenths = std::llround(m * 10.0);
+  return std::to_string(tenths / 10) + "." + std::to_string(std::abs(tenths % 10)) + " m";
+}
+
+Error out_of_range(double length_m, double length_max_m) {
+  return Error{"A path of " + metres(length_m) + " exceeds the range left of " +
+               metres(length_max_m)};
 }
 
 }  // namespace
 
 Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
                             double length_m) {
-  if (length_m > transit.length_max_m) return Error{"the path would be longer than the range left"};
-  const auto base =
+  SKEIN_ASSERT(transit.radius_m > 0.0);
+  if (!std::isfinite(length_m)) return Error{"The wanted length is not a number"};
+  if (length_m > transit.length_max_m + kExact_m) {
+    return out_of_range(length_m, transit.length_max_m);
+  }
+  const auto shortest =
       shortest_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
-  if (!base) return base.error();
-  const double extra = length_m - base->length_m();
-  if (std::abs(extra) < kExact) return *base;
-  if (extra < 0.0) {
-    return Error{"the shortest path is " + std::to_string(-extra) +
-                 " m too long to be there in time"};
+  if (!shortest) return shortest.error();
+  Search search{transit, *shortest};
+  if (auto path = search.find(length_m)) return *path;
+  if (length_m < search.shortest_m()) {
+    return Error{"No path of " + metres(length_m) + ": the shortest is " +
+                 metres(search.shortest_m())};
   }
-  const double r = transit.radius_m;
-  const auto good = [&](const Path& p) { return is_clear(p, transit.hazards); };
-  // Larger turn radii.
-  for (std::size_t i = 0; i < static_cast<std::size_t>(DubinsWord::count); ++i) {
-    const auto family = [&](double radius) -> std::optional<Path> {
-      const auto word =
-          dubins_word(static_cast<DubinsWord>(i), transit.from, transit.to, radius, radius);
-      return word ? std::optional{word->to_path()} : std::nullopt;
-    };
-    if (const auto path = member_of_length(family, r, 5.0 * r, 24, length_m, good)) return *path;
-  }
-  // A detour by a point beside the path.
-  for (const double share : {0.5, 0.3, 0.7, 0.15, 0.85}) {
-    const Pose2 middle = base->pose_at(share * base->length_m());
-    for (const double side : {1.0, -1.0}) {
-      const auto family = [&](double offset) -> std::optional<Path> {
-        const Vec2 point =
-            middle.position() + side * offset * left_of(unit_vector(middle.heading_rad));
-        const Pose2 via{point.x(), point.y(), middle.heading_rad};
-        Path path = shortest_dubins(transit.from, via, r).to_path();
-        return path.append(shortest_dubins(via, transit.to, r).to_path()) ? std::optional{path}
-                                                                          : std::nullopt;
-      };
-      if (const auto path = member_of_length(family, 0.0, 6.0 * r, 24, length_m, good))
-        return *path;
-    }
-  }
-  if (const auto path = with_loops(*base, r, extra, good)) return *path;
-  return Error{"no clear path is " + std::to_string(extra) + " m longer than the shortest"};
+  const auto next = search.next_after(length_m, transit.length_max_m);
+  return Error{"No path of " + metres(length_m) + " was found; " +
+               (next ? "the next longer one is " + metres(*next)
+                     : "nor a longer one within " + metres(transit.length_max_m))};
 }
 
 Result<double> least_length_from(const AvoidanceParams& params, const Transit& transit,
                                  double length_m) {
-  const auto base =
+  SKEIN_ASSERT(transit.radius_m > 0.0);
+  if (!std::isfinite(length_m)) return Error{"The wanted length is not a number"};
+  const auto shortest =
       shortest_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
-  if (!base) return base.error();
-  double length = std::max(length_m, base->length_m());
-  const double step = kTwoPi * transit.radius_m / 16.0;
-  for (; length <= transit.length_max_m; length += step) {
-    if (path_of_length(params, transit, length)) return length;
-  }
-  return Error{"no path of that length or more is within the range left"};
+  if (!shortest) return shortest.error();
+  Search search{transit, *shortest};
+  const double least = std::max(length_m, search.shortest_m());
+  if (least > transit.length_max_m + kExact_m) return out_of_range(least, transit.length_max_m);
+  if (search.find(least)) return least;
+  if (const auto next = search.next_after(least, transit.length_max_m)) return *next;
+  return Error{"No path of " + metres(length_m) + " or longer was found within " +
+               metres(transit.length_max_m)};
 }
 
 }  // namespace skein::planning

@@ -11,142 +11,227 @@
 namespace skein::planning {
 namespace {
 
-constexpr std::size_t kWords = static_cast<std::size_t>(DubinsWord::count);
+/// Ends may differ from what was asked by this much, so that rounding of the input never turns a
+/// path of no length into a full circle.
+constexpr double kSlack_m = 2e-10;
 
-/// Senses of the first and last arc (+1 left), and whether the middle is a line.
-struct Shape {
+constexpr std::array<DubinsWord, 6> kWords = {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL,
+                                              DubinsWord::RSR, DubinsWord::RLR, DubinsWord::LRL};
+
+/// +1 for left, -1 for right.
+struct Senses {
   double first;
   double last;
-  bool straight;
+  bool csc;
 };
-Shape shape_of(DubinsWord word) {
+
+constexpr Senses senses_of(DubinsWord word) {
   switch (word) {
     case DubinsWord::LSL:
-      return {1, 1, true};
+      return {1.0, 1.0, true};
     case DubinsWord::LSR:
-      return {1, -1, true};
+      return {1.0, -1.0, true};
     case DubinsWord::RSL:
-      return {-1, 1, true};
+      return {-1.0, 1.0, true};
     case DubinsWord::RSR:
-      return {-1, -1, true};
+      return {-1.0, -1.0, true};
     case DubinsWord::RLR:
-      return {-1, -1, false};
+      return {-1.0, -1.0, false};
     case DubinsWord::LRL:
-      return {1, 1, false};
     case DubinsWord::count:
       break;
   }
-  SKEIN_ASSERT(false);
-  return {};
+  return {1.0, 1.0, false};
 }
 
-/// The angle turned from one heading to another in one sense, in [0, 2 pi). Rounding must not make
-/// a whole turn of none.
-double turn(double sense, double from_rad, double to_rad) {
-  const double angle = wrap_two_pi(sense * (to_rad - from_rad));
-  return angle > kTwoPi - 1e-9 ? 0.0 : angle;
+/// Both poses as seen from the first: the goal's position in its frame, and how much it turns.
+struct Relative {
+  double x_m;
+  double y_m;
+  double turn_rad;
+  double sin_turn;
+  double cos_turn;
+};
+
+Relative relative(const Pose2& from, const Pose2& to) {
+  const double c = std::cos(from.heading_rad);
+  const double s = std::sin(from.heading_rad);
+  const double dx = to.x_m - from.x_m;
+  const double dy = to.y_m - from.y_m;
+  const double turn = wrap_pi(to.heading_rad - from.heading_rad);
+  return {c * dx + s * dy, c * dy - s * dx, turn, std::sin(turn), std::cos(turn)};
 }
 
-Vec2 centre(const Pose2& pose, double sense, double radius) {
-  return pose.position() + sense * radius * left_of(unit_vector(pose.heading_rad));
+/// The turn in [0, 2 pi), where a full circle less what moves the end by no more than the slack
+/// is none at all.
+double turn_of(double rad, double reach_m) {
+  const double turn = wrap_two_pi(rad);
+  return (kTwoPi - turn) * reach_m < kSlack_m ? 0.0 : turn;
 }
 
-/// The heading at a point of a circle that is flown in the given sense.
-double heading_on(const Vec2& circle_centre, const Vec2& point, double sense) {
-  const Vec2 spoke = point - circle_centre;
-  const Vec2 along = sense * left_of(spoke);
-  return std::atan2(along.y(), along.x());
-}
+struct Turns {
+  double first_rad;
+  double middle;  ///< metres for a line, radians for an arc
+  double last_rad;
+};
 
-std::optional<DubinsPath> line_word(DubinsWord word, const Shape& shape, const Pose2& from,
-                                    const Pose2& to, double r1, double r2) {
-  // Between the circles' centres: D = s u + (last r2 - first r1) left(u), u along the line.
-  const Vec2 between = centre(to, shape.last, r2) - centre(from, shape.first, r1);
-  const double across = shape.last * r2 - shape.first * r1;
-  const double squared = between.squaredNorm() - across * across;
-  if (squared < 0.0) return std::nullopt;
-  const double line = std::sqrt(squared);
-  // One circle for both arcs: the line has no direction, and the first arc goes all the way.
-  const double heading = between.norm() < 1e-9
-                             ? to.heading_rad
-                             : std::atan2(between.y(), between.x()) - std::atan2(across, line);
-  return DubinsPath{word,
-                    from,
-                    r1,
-                    r2,
-                    {turn(shape.first, from.heading_rad, heading) * r1, line,
-                     turn(shape.last, heading, to.heading_rad) * r2}};
-}
-
-std::optional<DubinsPath> arc_word(DubinsWord word, const Shape& shape, const Pose2& from,
-                                   const Pose2& to, double r) {
-  const Vec2 c1 = centre(from, shape.first, r);
-  const Vec2 c2 = centre(to, shape.last, r);
-  const Vec2 between = c2 - c1;
-  const double d = between.norm();
-  if (d > 4.0 * r || d < 1e-12) return std::nullopt;
-  const double height = std::sqrt(std::max(0.0, 4.0 * r * r - d * d / 4.0));
-  std::optional<DubinsPath> best;
-  for (const double side : {1.0, -1.0}) {
-    const Vec2 middle = c1 + between / 2.0 + side * height * left_of(between / d);
-    const double h1 = heading_on(c1, (c1 + middle) / 2.0, shape.first);
-    const double h2 = heading_on(c2, (middle + c2) / 2.0, shape.last);
-    const DubinsPath path{
-        word,
-        from,
-        r,
-        r,
-        {turn(shape.first, from.heading_rad, h1) * r, turn(-shape.first, h1, h2) * r,
-         turn(shape.last, h2, to.heading_rad) * r}};
-    if (!best || path.length_m() < best->length_m()) best = path;
+/// Circle centres c1, c2 and senses s: a line of heading t leaves the first circle at
+/// c1 - s1 r1 n(t) and enters the last at c2 - s2 r2 n(t), n the left normal. So c2 - c1 =
+/// line u(t) + (s2 r2 - s1 r1) n(t), which has one solution with line >= 0.
+std::optional<Turns> csc(const Relative& g, const Senses& s, double r1, double r2) {
+  const double wx = -s.last * r2 * g.sin_turn;
+  const double wy = s.last * r2 * g.cos_turn - s.first * r1;
+  const double dx = g.x_m + wx;
+  const double dy = g.y_m + wy;
+  const double offset = s.last * r2 - s.first * r1;
+  // |d|^2 - offset^2, arranged so that near poses do not cancel.
+  const double half = std::sin(g.turn_rad / 2.0);
+  const double line_sq = g.x_m * g.x_m + g.y_m * g.y_m + 2.0 * (g.x_m * wx + g.y_m * wy) +
+                         4.0 * s.first * s.last * r1 * r2 * half * half;
+  if (line_sq < -kSlack_m * std::abs(offset)) return std::nullopt;
+  double heading = 0.0;
+  double line = 0.0;
+  if (offset != 0.0 || std::hypot(dx, dy) > kSlack_m) {
+    line = std::sqrt(std::max(line_sq, 0.0));
+    heading = std::atan2(dy * line - dx * offset, dx * line + dy * offset);
   }
-  return best;
+  const double first = turn_of(s.first * heading, r1 + line);
+  const double last = turn_of(s.last * (g.turn_rad - heading), r2);
+  return Turns{first, line, last};
 }
 
-Path two_pieces(const Pose2& from, const Segment& a, const Segment& b) {
-  Path path;
-  path.start = from;
-  const bool fits = path.append(a) && path.append(b);
-  SKEIN_ASSERT(fits);
-  return path;
+/// With middle turn m: c2 - c1 = 4 r sin(m / 2) u(t), t the heading halfway round the middle arc.
+std::optional<Turns> ccc(const Relative& g, const Senses& s, double r, bool major) {
+  const double dx = g.x_m - s.last * r * g.sin_turn;
+  const double dy = g.y_m + s.last * r * g.cos_turn - s.first * r;
+  const double distance = std::hypot(dx, dy);
+  if (distance > 4.0 * r + kSlack_m) return std::nullopt;
+  const double minor = 2.0 * std::asin(std::min(1.0, distance / (4.0 * r)));
+  const double middle = major ? kTwoPi - minor : minor;
+  const double halfway = distance > kSlack_m ? std::atan2(dy, dx) : 0.0;
+  const double leave = halfway + s.first * middle / 2.0;
+  const double enter = halfway - s.first * middle / 2.0;
+  return Turns{turn_of(s.first * leave, 4.0 * r), middle,
+               turn_of(s.first * (g.turn_rad - enter), r)};
+}
+
+std::optional<Turns> word_turns(DubinsWord word, const Relative& g, double r1, double r2) {
+  const Senses s = senses_of(word);
+  if (s.csc) return csc(g, s, r1, r2);
+  if (r1 != r2) return std::nullopt;
+  const auto minor = ccc(g, s, r1, false);
+  const auto major = ccc(g, s, r1, true);
+  if (!minor || !major) return std::nullopt;
+  const auto sum = [](const Turns& t) { return t.first_rad + t.middle + t.last_rad; };
+  return sum(*minor) <= sum(*major) ? minor : major;
+}
+
+DubinsPath make_path(DubinsWord word, const Pose2& from, const Turns& t, double r1, double r2) {
+  const double middle_m = senses_of(word).csc ? t.middle : t.middle * r1;
+  return {word, from, r1, r2, {t.first_rad * r1, middle_m, t.last_rad * r2}};
+}
+
+bool same_pose(const Relative& g, double radius_m) {
+  return std::hypot(g.x_m, g.y_m) < kSlack_m && std::abs(g.turn_rad) * radius_m < kSlack_m;
+}
+
+/// The point in the frame of the start pose, reached by one arc and a line, or by two arcs.
+struct ToPoint {
+  double length_m = std::numeric_limits<double>::infinity();
+  std::array<Segment, 2> pieces{};
+};
+
+void consider(ToPoint& best, double sense, double first_rad, Segment second, double radius_m) {
+  const double length = first_rad * radius_m + second.length_m;
+  if (length < best.length_m) {
+    best = {length, {Segment{sense / radius_m, first_rad * radius_m}, second}};
+  }
+}
+
+void consider_arc_and_line(ToPoint& best, const Vec2& goal, double sense, double r) {
+  const Vec2 d = goal - Vec2{0.0, sense * r};
+  // |d|^2 - r^2, arranged so that a goal near the start does not cancel.
+  const double line_sq = goal.squaredNorm() - 2.0 * sense * r * goal.y();
+  if (line_sq < -kSlack_m * r) return;
+  const double line = std::sqrt(std::max(line_sq, 0.0));
+  const double heading =
+      std::atan2(d.y() * line + sense * r * d.x(), d.x() * line - sense * r * d.y());
+  consider(best, sense, turn_of(sense * heading, r + line), {0.0, line}, r);
+}
+
+/// The second circle touches the first and runs through the goal.
+void consider_two_arcs(ToPoint& best, const Vec2& goal, double sense, double r) {
+  const Vec2 centre{0.0, sense * r};
+  const Vec2 d = goal - centre;
+  const double distance = d.norm();
+  if (distance < r || distance > 3.0 * r) return;
+  const double between =
+      std::acos(std::clamp((3.0 * r * r + distance * distance) / (4.0 * r * distance), -1.0, 1.0));
+  for (const double side : {1.0, -1.0}) {
+    const double direction = std::atan2(d.y(), d.x()) + side * between;
+    const Vec2 second = centre + 2.0 * r * unit_vector(direction);
+    // Heading on a circle: a quarter turn from the spoke, in the sense of flight.
+    const double heading = direction + sense * kPi / 2.0;
+    const Vec2 out = goal - second;
+    const double spoke_turn = -sense * (std::atan2(out.y(), out.x()) - (direction + kPi));
+    const double turn = turn_of(spoke_turn, r);
+    consider(best, sense, turn_of(sense * heading, 3.0 * r), {-sense / r, turn * r}, r);
+  }
 }
 
 }  // namespace
 
 std::string_view to_string(DubinsWord word) {
-  static constexpr std::array<std::string_view, kWords> kNames{"LSL", "LSR", "RSL",
-                                                               "RSR", "RLR", "LRL"};
-  return kNames.at(static_cast<std::size_t>(word));
+  switch (word) {
+    case DubinsWord::LSL:
+      return "LSL";
+    case DubinsWord::LSR:
+      return "LSR";
+    case DubinsWord::RSL:
+      return "RSL";
+    case DubinsWord::RSR:
+      return "RSR";
+    case DubinsWord::RLR:
+      return "RLR";
+    case DubinsWord::LRL:
+      return "LRL";
+    case DubinsWord::count:
+      break;
+  }
+  return "unknown";
 }
 
 Path DubinsPath::to_path() const {
-  const Shape shape = shape_of(word);
-  const double middle = shape.straight ? 0.0 : -shape.first / start_radius_m;
-  Path path;
-  path.start = start;
-  const bool fits = path.append(Segment{shape.first / start_radius_m, lengths_m[0]}) &&
-                    path.append(Segment{middle, lengths_m[1]}) &&
-                    path.append(Segment{shape.last / end_radius_m, lengths_m[2]});
-  SKEIN_ASSERT(fits);
+  const Senses s = senses_of(word);
+  const double middle = s.csc ? 0.0 : -s.first / start_radius_m;
+  Path path{.start = start, .segments = {}};
+  SKEIN_ASSERT(path.append(Segment{s.first / start_radius_m, lengths_m[0]}) &&
+               path.append(Segment{middle, lengths_m[1]}) &&
+               path.append(Segment{s.last / end_radius_m, lengths_m[2]}));
   return path;
 }
 
 std::optional<DubinsPath> dubins_word(DubinsWord word, const Pose2& from, const Pose2& to,
                                       double start_radius_m, double end_radius_m) {
   SKEIN_ASSERT(start_radius_m > 0.0 && end_radius_m > 0.0);
-  const Shape shape = shape_of(word);
-  if (shape.straight) return line_word(word, shape, from, to, start_radius_m, end_radius_m);
-  SKEIN_ASSERT(start_radius_m == end_radius_m);
-  return arc_word(word, shape, from, to, start_radius_m);
+  const auto turns = word_turns(word, relative(from, to), start_radius_m, end_radius_m);
+  if (!turns) return std::nullopt;
+  return make_path(word, from, *turns, start_radius_m, end_radius_m);
+}
+
+std::optional<DubinsPath> dubins_ccc(DubinsWord word, const Pose2& from, const Pose2& to,
+                                     double radius_m, bool major) {
+  SKEIN_ASSERT(radius_m > 0.0);
+  const Senses s = senses_of(word);
+  SKEIN_ASSERT(!s.csc);
+  const auto turns = ccc(relative(from, to), s, radius_m, major);
+  if (!turns) return std::nullopt;
+  return make_path(word, from, *turns, radius_m, radius_m);
 }
 
 DubinsPath shortest_dubins(const Pose2& from, const Pose2& to, double radius_m) {
-  std::optional<DubinsPath> best;
-  for (std::size_t i = 0; i < kWords; ++i) {
-    const auto path = dubins_word(static_cast<DubinsWord>(i), from, to, radius_m, radius_m);
-    if (path && (!best || path->length_m() < best->length_m())) best = path;
-  }
-  SKEIN_ASSERT(best.has_value());  // LSL and RSR join any two poses
+  const auto best = shortest_dubins(from, to, radius_m, radius_m);
+  SKEIN_ASSERT(best.has_value());
   return *best;
 }
 
@@ -156,47 +241,34 @@ double shortest_dubins_length(const Pose2& from, const Pose2& to, double radius_
 
 std::optional<DubinsPath> shortest_dubins(const Pose2& from, const Pose2& to, double start_radius_m,
                                           double end_radius_m) {
+  SKEIN_ASSERT(start_radius_m > 0.0 && end_radius_m > 0.0);
+  const Relative g = relative(from, to);
+  if (same_pose(g, std::max(start_radius_m, end_radius_m))) {
+    return DubinsPath{DubinsWord::LSL, from, start_radius_m, end_radius_m, {}};
+  }
   std::optional<DubinsPath> best;
-  for (const DubinsWord word :
-       {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL, DubinsWord::RSR}) {
-    const auto path = dubins_word(word, from, to, start_radius_m, end_radius_m);
-    if (path && (!best || path->length_m() < best->length_m())) best = path;
+  for (const DubinsWord word : kWords) {
+    const auto turns = word_turns(word, g, start_radius_m, end_radius_m);
+    if (!turns) continue;
+    const DubinsPath path = make_path(word, from, *turns, start_radius_m, end_radius_m);
+    if (!best || path.length_m() < best->length_m()) best = path;
   }
   return best;
 }
 
 Path shortest_to_point(const Pose2& from, const Vec2& to, double radius_m) {
   SKEIN_ASSERT(radius_m > 0.0);
-  std::optional<Path> best;
-  const auto offer = [&best](const Path& path) {
-    if (!best || path.length_m() < best->length_m()) best = path;
-  };
+  Path path{.start = from, .segments = {}};
+  const Relative g = relative(from, {to.x(), to.y(), from.heading_rad});
+  const Vec2 goal{g.x_m, g.y_m};
+  if (goal.norm() < kSlack_m) return path;
+  ToPoint best;
   for (const double sense : {1.0, -1.0}) {
-    const Vec2 c = centre(from, sense, radius_m);
-    const Vec2 d = to - c;
-    if (d.norm() >= radius_m) {  // an arc, then the tangent to the point
-      const double line = std::sqrt(std::max(0.0, d.squaredNorm() - radius_m * radius_m));
-      const double heading = std::atan2(d.y(), d.x()) - std::atan2(-sense * radius_m, line);
-      offer(two_pieces(from, {sense / radius_m, turn(sense, from.heading_rad, heading) * radius_m},
-                       {0.0, line}));
-      continue;
-    }
-    // Inside the circle: away from it first, and back on an arc of the same sense.
-    const Vec2 away = centre(from, -sense, radius_m);
-    const Vec2 between = to - away;
-    const double distance = between.norm();
-    const double along = (distance * distance + 3.0 * radius_m * radius_m) / (2.0 * distance);
-    const double height = std::sqrt(std::max(0.0, 4.0 * radius_m * radius_m - along * along));
-    for (const double side : {1.0, -1.0}) {
-      const Vec2 second =
-          away + along * between / distance + side * height * left_of(between / distance);
-      const double h1 = heading_on(away, (away + second) / 2.0, -sense);
-      const double h2 = heading_on(second, to, sense);
-      offer(two_pieces(from, {-sense / radius_m, turn(-sense, from.heading_rad, h1) * radius_m},
-                       {sense / radius_m, turn(sense, h1, h2) * radius_m}));
-    }
+    consider_arc_and_line(best, goal, sense, radius_m);
+    consider_two_arcs(best, goal, sense, radius_m);
   }
-  return *best;
+  for (const Segment& piece : best.pieces) SKEIN_ASSERT(path.append(piece));
+  return path;
 }
 
 }  // namespace skein::planning

@@ -7,43 +7,83 @@
 #include "skein/base/angles.hpp"
 
 namespace skein::planning {
+namespace {
 
-FollowError follow_error(const TimedPath& plan, const VehicleState& state, Instant now) {
-  const Pose2 reference = plan.pose_at(now);
-  const Vec2 along = unit_vector(reference.heading_rad);
-  const Vec2 offset = Vec2{state.x_m, state.y_m} - reference.position();
-  return {along.dot(offset), cross(along, offset)};
+constexpr double kAirspeedTime_s = 1.0;  ///< of the autopilot's airspeed loop, to be inverted
+constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the vehicle is sought
+constexpr int kNearestSteps = 4;
+
+/// Where the vehicle is on its path.
+struct Nearest {
+  double ahead_m = 0.0;  ///< of its time
+  double left_m = 0.0;
+  double heading_rad = 0.0;  ///< of the path there
+  double curvature_per_m = 0.0;
+};
+
+Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
+  const double on_time_m = plan.distance_at(now);
+  double distance_m = on_time_m;
+  Nearest result;
+  for (int step = 0; step <= kNearestSteps; ++step) {
+    const Pose2 pose = plan.pose_at_distance(distance_m);
+    const Vec2 forward = unit_vector(pose.heading_rad);
+    const Vec2 offset = position - pose.position();
+    result = {distance_m - on_time_m, left_of(forward).dot(offset), pose.heading_rad,
+              plan.curvature_at_distance(distance_m)};
+    // Along an arc the same angle is a shorter way for who flies inside it.
+    const double scale = std::max(0.5, 1.0 - result.curvature_per_m * result.left_m);
+    const double moved_m = distance_m + forward.dot(offset) / scale;
+    const double low_m = std::max(0.0, on_time_m - kNearestMax_m);
+    distance_m = std::clamp(moved_m, low_m, on_time_m + kNearestMax_m);
+  }
+  return result;
 }
+
+}  // namespace
 
 Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicle,
                      const TimedPath& plan, const VehicleState& state, Instant now) {
-  const double distance = plan.distance_at(now);
-  const Pose2 reference = plan.pose_at_distance(distance);
-  const FollowError error = follow_error(plan, state, now);
+  const Nearest at = nearest(plan, {state.x_m, state.y_m}, now);
+  const Vec2 over_ground = state.groundspeed_mps * unit_vector(state.course_rad);
+  const Vec2 wind = over_ground - state.airspeed_mps * unit_vector(state.heading_rad);
 
-  // Over the ground: back to the path at a rate proportional to the distance from it, and faster or
-  // slower in proportion to the metres that time is ahead or behind.
-  const double course =
-      reference.heading_rad - std::atan(params.cross_track_gain_per_m * error.cross_m);
-  const double groundspeed = std::max(
-      0.5 * plan.speed_mps, plan.speed_mps - params.along_track_gain_per_s * error.along_m);
+  // Course: towards the path, the steeper the farther.
+  const double lean = params.cross_track_gain_per_m * at.left_m;
+  const double course = at.heading_rad - std::atan(lean);
+  const double closing_mps = over_ground.dot(left_of(unit_vector(at.heading_rad)));
+  const double along_mps = over_ground.dot(unit_vector(at.heading_rad)) /
+                           std::max(0.5, 1.0 - at.curvature_per_m * at.left_m);
+  const double course_rate = at.curvature_per_m * along_mps -
+                             params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean);
 
-  // Through the air: less the wind, which is what ground and air velocity differ by.
-  const Vec2 wind = state.groundspeed_mps * unit_vector(state.course_rad) -
-                    state.airspeed_mps * unit_vector(state.heading_rad);
-  const Vec2 through_air = groundspeed * unit_vector(course) - wind;
-  const double airspeed =
-      std::clamp(through_air.norm(), vehicle.speed_min_mps, vehicle.speed_max_mps);
-  const double heading = std::atan2(through_air.y(), through_air.x());
+  // Velocity over the ground, and the velocity through the air that gives it.
+  const double ground_mps =
+      std::max(0.0, plan.speed_mps - params.along_track_gain_per_s * at.ahead_m);
+  const Vec2 wanted = ground_mps * unit_vector(course);
+  const Vec2 wanted_rate = course_rate * left_of(wanted);
+  const Vec2 through_air = wanted - wind;
+  const double air_mps = through_air.norm();
+  Setpoint setpoint{state.heading_rad, vehicle.speed_min_mps, vehicle.height_m};
+  if (air_mps < 1.0) return setpoint;
 
-  // The autopilot turns at W (commanded - heading): the turn that the path needs is commanded
-  // ahead.
-  const double rate_limit = state.airspeed_mps / vehicle.turn_radius_m;
-  const double wanted_rate = plan.curvature_at_distance(distance) * groundspeed +
-                             vehicle.heading_gain_per_s * wrap_pi(heading - state.heading_rad);
-  const double rate = std::clamp(wanted_rate, -rate_limit, rate_limit);
-  return {wrap_pi(state.heading_rad + rate / vehicle.heading_gain_per_s), airspeed,
-          vehicle.height_m};
+  const double air_rate = through_air.dot(wanted_rate) / air_mps;
+  setpoint.airspeed_mps = std::clamp(air_mps + kAirspeedTime_s * air_rate, vehicle.speed_min_mps,
+                                     vehicle.speed_max_mps);
+  // The heading loop d heading/dt = W (commanded - heading) is inverted; its rate keeps within
+  // what the turn radius allows.
+  const double heading_rate = cross(through_air, wanted_rate) / (air_mps * air_mps);
+  const double error = wrap_pi(std::atan2(through_air.y(), through_air.x()) - state.heading_rad);
+  const double rate_max = state.airspeed_mps / vehicle.turn_radius_m;
+  const double rate =
+      std::clamp(vehicle.heading_gain_per_s * error + heading_rate, -rate_max, rate_max);
+  setpoint.heading_rad = wrap_pi(state.heading_rad + rate / vehicle.heading_gain_per_s);
+  return setpoint;
+}
+
+FollowError follow_error(const TimedPath& plan, const VehicleState& state, Instant now) {
+  const Nearest at = nearest(plan, {state.x_m, state.y_m}, now);
+  return {at.ahead_m, at.left_m};
 }
 
 }  // namespace skein::planning

@@ -7,7 +7,8 @@
 
 namespace skein::planning {
 
-/// column_of[row], each column used at most once. Rows <= columns.
+/// column_of[row], each column used at most once; `cost` is the sum of the entries used.
+/// Precondition of both: rows <= columns.
 struct Assignment {
   std::vector<int> column_of;
   double cost = 0.0;

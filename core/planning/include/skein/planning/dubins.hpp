@@ -34,6 +34,11 @@ struct DubinsPath {
                                                     const Pose2& to, double start_radius_m,
                                                     double end_radius_m);
 
+/// A CCC word has two paths: the middle arc below a half turn, or above it (`major`). dubins_word
+/// gives the shorter. Precondition: the word is RLR or LRL.
+[[nodiscard]] std::optional<DubinsPath> dubins_ccc(DubinsWord word, const Pose2& from,
+                                                   const Pose2& to, double radius_m, bool major);
+
 /// The shortest path between two poses. Always exists for equal radii.
 [[nodiscard]] DubinsPath shortest_dubins(const Pose2& from, const Pose2& to, double radius_m);
 [[nodiscard]] double shortest_dubins_length(const Pose2& from, const Pose2& to, double radius_m);

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/planning/arrival.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+#include "skein/planning/dubins.hpp"
+
+namespace skein::planning {
+namespace {
+
+constexpr double kRadius_m = 165.0;
+
+void expect_flies(const Path& path, const Transit& transit, double length_m) {
+  EXPECT_NEAR(path.length_m(), length_m, 1e-6);
+  EXPECT_NEAR((path.start.position() - transit.from.position()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((path.end().position() - transit.to.position()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR(wrap_pi(path.end().heading_rad - transit.to.heading_rad), 0.0, 1e-8);
+  EXPECT_LE(path.curvature_max_per_m(), 1.0 / transit.radius_m + 1e-12);
+  EXPECT_TRUE(is_clear(path, transit.hazards));
+}
+
+Pose2 random_pose(Random& random, double size_m) {
+  return {random.uniform(0.0, size_m), random.uniform(0.0, size_m), random.uniform(-kPi, kPi)};
+}
+
+TEST(PathOfLength, RandomRequestsAreMetExactly) {
+  Random random{11};
+  int gaps = 0;
+  for (int i = 0; i < 1500; ++i) {
+    const Pose2 from = random_pose(random, i % 2 == 0 ? 800.0 : 5000.0);
+    const Pose2 to = random_pose(random, i % 2 == 0 ? 800.0 : 5000.0);
+    const Transit transit{from, to, kRadius_m, 1e5, {}};
+    const double shortest_m = shortest_dubins_length(from, to, kRadius_m);
+    const double wanted_m = shortest_m + random.uniform() * (i % 3 == 0 ? 100.0 : 3000.0);
+    const auto path = path_of_length({}, transit, wanted_m);
+    if (path) {
+      expect_flies(*path, transit, wanted_m);
+      continue;
+    }
+    // A refusal names a gap: no longer than one loop, in the neighbourhood of 4 radii.
+    ++gaps;
+    EXPECT_LT(wanted_m, shortest_m + kTwoPi * kRadius_m) << path.error().message;
+    const auto next = least_length_from({}, transit, wanted_m);
+    ASSERT_TRUE(next.ok());
+    EXPECT_GT(*next, wanted_m);
+    EXPECT_LE(*next, shortest_m + kTwoPi * kRadius_m + 1e-2);
+    const auto there = path_of_length({}, transit, *next);
+    ASSERT_TRUE(there.ok()) << there.error().message;
+    expect_flies(*there, transit, *next);
+  }
+  EXPECT_LT(gaps, 150);
+}
+
+TEST(PathOfLength, FarPosesHaveNoGap) {
+  Random random{12};
+  for (int i = 0; i < 500; ++i) {
+    const Pose2 from = random_pose(random, 1000.0);
+    Pose2 to = random_pose(random, 1000.0);
+    to.x_m += 2500.0;
+    const Transit transit{from, to, kRadius_m, 1e5, {}};
+    const double wanted_m =
+        shortest_dubins_length(from, to, kRadius_m) + random.uniform() * random.uniform() * 2000.0;
+    const auto path = path_of_length({}, transit, wanted_m);
+    ASSERT_TRUE(path.ok()) << path.error().message;
+    expect_flies(*path, transit, wanted_m);
+  }
+}
+
+TEST(PathOfLength, RefusesWithAReason) {
+  const Transit transit{{0, 0, 0}, {3000, 0, 0}, kRadius_m, 4000.0, {}};
+  const auto low = path_of_length({}, transit, 2999.0);
+  ASSERT_FALSE(low.ok());
+  EXPECT_NE(low.error().message.find("3000.0 m"), std::string::npos) << low.error().message;
+  const auto high = path_of_length({}, transit, 4001.0);
+  ASSERT_FALSE(high.ok());
+  EXPECT_NE(high.error().message.find("range"), std::string::npos) << high.error().message;
+  EXPECT_FALSE(path_of_length({}, transit, NAN).ok());
+  EXPECT_FALSE(least_length_from({}, transit, 4000.1).ok());
+}
+
+TEST(PathOfLength, TheShortestItself) {
+  const Transit transit{{0, 0, 0}, {3000, 0, 0}, kRadius_m, 4000.0, {}};
+  const auto least = least_length_from({}, transit, 10.0);
+  ASSERT_TRUE(least.ok());
+  EXPECT_NEAR(*least, 3000.0, 1e-9);
+  const auto path = path_of_length({}, transit, *least);
+  ASSERT_TRUE(path.ok());
+  EXPECT_EQ(path->segments.size(), 1U);
+}
+
+TEST(PathOfLength, AGapOfTheStraightAheadGoal) {
+  // Straight on for less than 4 radii: a path a little longer exists (a gentle wave), but
+  // between the longest wave and the first loop there is a gap.
+  const Transit transit{{0, 0, 0}, {100, 0, 0}, kRadius_m, 1e5, {}};
+  const auto path = path_of_length({}, transit, 600.0);
+  ASSERT_FALSE(path.ok());
+  const auto next = least_length_from({}, transit, 600.0);
+  ASSERT_TRUE(next.ok());
+  EXPECT_GT(*next, 600.0);
+  EXPECT_LE(*next, 100.0 + kTwoPi * kRadius_m + 1e-2);
+}
+
+TEST(PathOfLength, ALongWaitLoops) {
+  const Transit transit{{0, 0, 0}, {1000, 300, 2.0}, kRadius_m, 1e5, {}};
+  for (const double wanted_m : {5000.0, 10000.0, 30000.0}) {
+    const auto path = path_of_length({}, transit, wanted_m);
+    ASSERT_TRUE(path.ok()) << path.error().message;
+    expect_flies(*path, transit, wanted_m);
+  }
+}
+
+TEST(PathOfLength, AmongHazards) {
+  Random random{13};
+  int met = 0;
+  int asked = 0;
+  for (int i = 0; i < 150; ++i) {
+    const Pose2 from = random_pose(random, 1000.0);
+    Pose2 to = random_pose(random, 1000.0);
+    to.x_m += 3000.0;
+    std::vector<Hazard> hazards;
+    for (int h = 0; h < 4; ++h) {
+      hazards.push_back({HazardId{static_cast<std::uint16_t>(h)},
+                         {random.uniform(1500.0, 2500.0), random.uniform(-500.0, 1500.0)},
+                         random.uniform(50.0, 300.0)});
+    }
+    const Transit transit{from, to, kRadius_m, 1e5, hazards};
+    const auto shortest = shortest_clear_path({}, from, to, kRadius_m, hazards);
+    if (!shortest) continue;
+    ++asked;
+    const double wanted_m = shortest->length_m() + random.uniform(0.0, 2000.0);
+    const auto path = path_of_length({}, transit, wanted_m);
+    if (!path) continue;
+    ++met;
+    expect_flies(*path, transit, wanted_m);
+  }
+  EXPECT_GT(asked, 145);
+  EXPECT_GT(met, asked * 95 / 100);
+}
+
+}  // namespace
+}  // namespace skein::planning

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/planning/avoidance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+#include "skein/planning/dubins.hpp"
+
+namespace skein::planning {
+namespace {
+
+constexpr double kRadius_m = 165.0;
+
+Hazard circle(double x_m, double y_m, double radius_m, std::uint16_t id = 1) {
+  return {HazardId{id}, {x_m, y_m}, radius_m};
+}
+
+/// By walking the path in small steps.
+double clearance(const Path& path, std::span<const Hazard> hazards) {
+  double least = INFINITY;
+  const double length = path.length_m();
+  for (double s = 0.0; s <= length; s += 0.5) {
+    for (const Hazard& h : hazards) {
+      least = std::min(least, (path.pose_at(s).position() - h.centre).norm() - h.radius_m);
+    }
+  }
+  return least;
+}
+
+void expect_flies(const Path& path, const Pose2& from, const Pose2& to,
+                  std::span<const Hazard> hazards) {
+  EXPECT_NEAR((path.start.position() - from.position()).norm(), 0.0, 1e-12);
+  EXPECT_NEAR((path.end().position() - to.position()).norm(), 0.0, 1e-6);
+  EXPECT_NEAR(wrap_pi(path.end().heading_rad - to.heading_rad), 0.0, 1e-8);
+  EXPECT_LE(path.curvature_max_per_m(), 1.0 / kRadius_m + 1e-12);
+  EXPECT_TRUE(is_clear(path, hazards));
+  EXPECT_GE(clearance(path, hazards), -1e-6);
+}
+
+TEST(IsClear, IsExactAndTouchingIsOutside) {
+  Path line{.start = {0, 0, 0}, .segments = {}};
+  ASSERT_TRUE(line.append(Segment{0.0, 1000.0}));
+  EXPECT_TRUE(is_clear(line, std::vector{circle(500, 100, 100)}));
+  EXPECT_FALSE(is_clear(line, std::vector{circle(500, 100, 100.001)}));
+  EXPECT_TRUE(is_clear(line, std::vector{circle(1100, 0, 99.9)}));
+  EXPECT_FALSE(is_clear(line, std::vector{circle(-100, 0, 100.1)}));
+  Path half{.start = {0, 0, 0}, .segments = {}};  // to the left, around (0, 200)
+  ASSERT_TRUE(half.append(Segment{1.0 / 200.0, 200.0 * kPi}));
+  EXPECT_TRUE(is_clear(half, std::vector{circle(0, 200, 200)}));
+  EXPECT_TRUE(is_clear(half, std::vector{circle(-200, 200, 199)}));
+  EXPECT_FALSE(is_clear(half, std::vector{circle(250, 200, 50.001)}));
+  EXPECT_FALSE(is_clear(Path{.start = {0, 0, 0}, .segments = {}}, std::vector{circle(0, 0, 1)}));
+}
+
+TEST(ClearPath, IsTheDubinsPathWhereNothingIsInTheWay) {
+  const Pose2 from{0, 0, 0.3};
+  const Pose2 to{2000, 500, 1.0};
+  const std::vector<Hazard> hazards{circle(1000, 3000, 300)};
+  const auto path = shortest_clear_path({}, from, to, kRadius_m, hazards);
+  ASSERT_TRUE(path.ok());
+  EXPECT_DOUBLE_EQ(path->length_m(), shortest_dubins_length(from, to, kRadius_m));
+}
+
+TEST(ClearPath, AroundOneHazardIsTheTautString) {
+  // From afar, symmetric: two tangents to the safety circle and the arc between them.
+  const double safety_m = 1.1 * 400.0;
+  const double far_m = 4000.0;
+  const double tangent_m = std::sqrt(far_m * far_m - safety_m * safety_m);
+  const double angle = std::asin(safety_m / far_m);
+  const std::vector<Hazard> hazards{circle(0, 0, 400)};
+  const auto path =
+      shortest_clear_path({}, {-far_m, 0, angle}, {far_m, 0, -angle}, kRadius_m, hazards);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  EXPECT_NEAR(path->length_m(), 2.0 * tangent_m + 2.0 * angle * safety_m, 1e-6);
+}
+
+TEST(ClearPath, PassesASmallHazardClosely) {
+  const std::vector<Hazard> hazards{circle(1500, 0, 40)};
+  const Pose2 from{0, 0, 0};
+  const Pose2 to{3000, 0, 0};
+  const auto path = shortest_clear_path({}, from, to, kRadius_m, hazards);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  expect_flies(*path, from, to, hazards);
+  EXPECT_LT(path->length_m(), 3010.0);
+}
+
+TEST(ClearPath, OverlappingHazardsAndChains) {
+  const Pose2 from{0, 0, 0};
+  const Pose2 to{4000, 0, 0};
+  const std::vector<Hazard> wall{circle(1500, -300, 250, 1), circle(1500, 0, 250, 2),
+                                 circle(1500, 300, 250, 3), circle(2600, 500, 300, 4),
+                                 circle(2600, -600, 300, 5)};
+  const auto path = shortest_clear_path({}, from, to, kRadius_m, wall);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  expect_flies(*path, from, to, wall);
+  EXPECT_LT(path->length_m(), 4600.0);
+}
+
+TEST(ClearPath, StartAndGoalInsideASafetyCircle) {
+  const std::vector<Hazard> hazards{circle(0, 0, 500)};
+  const Pose2 from{-520, 0, kPi / 2.0};
+  const Pose2 to{520, 0, -kPi / 2.0};
+  const auto path = shortest_clear_path({}, from, to, kRadius_m, hazards);
+  ASSERT_TRUE(path.ok()) << path.error().message;
+  expect_flies(*path, from, to, hazards);
+}
+
+TEST(ClearPath, RefusesAStartOrGoalInsideAHazard) {
+  const std::vector<Hazard> hazards{circle(0, 0, 500, 7)};
+  const auto start = shortest_clear_path({}, {100, 0, 0}, {3000, 0, 0}, kRadius_m, hazards);
+  ASSERT_FALSE(start.ok());
+  EXPECT_NE(start.error().message.find("hazard 7"), std::string::npos) << start.error().message;
+  EXPECT_FALSE(shortest_clear_path({}, {3000, 0, 0}, {100, 0, 0}, kRadius_m, hazards).ok());
+  // 10 m in front of it, heading for it: no turn is tight enough.
+  EXPECT_FALSE(shortest_clear_path({}, {-510, 0, 0}, {3000, 0, 0}, kRadius_m, hazards).ok());
+}
+
+TEST(ClearPath, RandomWorlds) {
+  Random random{31};
+  int asked = 0;
+  int found = 0;
+  int direct = 0;
+  for (int i = 0; i < 400; ++i) {
+    std::vector<Hazard> hazards;
+    for (std::uint16_t h = 0; h < 6; ++h) {
+      hazards.push_back(
+          circle(random.uniform(0, 5000), random.uniform(0, 5000), random.uniform(30.0, 500.0), h));
+    }
+    const auto pose = [&] {
+      return Pose2{random.uniform(0, 5000), random.uniform(0, 5000), random.uniform(-kPi, kPi)};
+    };
+    const auto away = [&](const Pose2& p) {  // room for a turn
+      return clearance(Path{.start = p, .segments = {}}, hazards) > 2.0 * kRadius_m;
+    };
+    const Pose2 from = pose();
+    const Pose2 to = pose();
+    if (!away(from) || !away(to)) continue;
+    ++asked;
+    const auto path = shortest_clear_path({}, from, to, kRadius_m, hazards);
+    if (!path) continue;
+    ++found;
+    expect_flies(*path, from, to, hazards);
+    const double least_m = shortest_dubins_length(from, to, kRadius_m);
+    EXPECT_GE(path->length_m(), least_m - 1e-6);
+    direct += path->length_m() < least_m + 1e-6 ? 1 : 0;
+  }
+  EXPECT_GT(asked, 80);
+  EXPECT_EQ(found, asked);
+  EXPECT_LT(direct, found);
+}
+
+}  // namespace
+}  // namespace skein::planning
