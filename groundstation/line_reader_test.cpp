@@ -17,6 +17,8 @@ struct Pipe {
     close_input();
     close(ends[0]);
   }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
   void type(std::string_view text) const {
     EXPECT_EQ(write(ends[1], text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }

@@ -37,6 +37,7 @@ void reset() {
 }  // namespace counted_calls
 
 #if SKEIN_COUNTS_CALLS
+// NOLINTBEGIN(cppcoreguidelines-no-malloc): operator new is made of it
 void* operator new(std::size_t size) {
   ++counted_calls::g_allocations;
   if (void* memory = std::malloc(size)) return memory;
@@ -44,6 +45,7 @@ void* operator new(std::size_t size) {
 }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+// NOLINTEND(cppcoreguidelines-no-malloc)
 
 extern "C" int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {
   using Lock = int (*)(pthread_mutex_t*);

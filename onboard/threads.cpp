@@ -5,8 +5,8 @@
 #include <sched.h>
 #include <spdlog/spdlog.h>
 
-#include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 
 namespace skein::onboard {
@@ -21,7 +21,7 @@ std::thread start_thread(ThreadRole role, std::function<void()> body) {
     const int failure = pthread_setschedparam(thread.native_handle(), SCHED_FIFO, &parameters);
     if (failure != 0) {
       spdlog::warn("thread {} runs without real-time priority ({}); give the process CAP_SYS_NICE",
-                   spec.name, std::strerror(failure));
+                   spec.name, std::generic_category().message(failure));
     }
   }
   return thread;

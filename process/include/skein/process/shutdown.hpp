@@ -8,6 +8,7 @@ namespace skein::process {
 class Shutdown {
  public:
   Shutdown();
+  ~Shutdown() = default;
   Shutdown(const Shutdown&) = delete;
   Shutdown& operator=(const Shutdown&) = delete;
 
