@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The programs as a person starts them: real processes, Fast DDS, the radio between them.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "skein/hil/child_process.hpp"
+
+namespace skein::hil {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class EndToEnd : public testing::Test {
+ protected:
+  EndToEnd() { fs::create_directories(folder); }
+  ~EndToEnd() override {
+    if (!HasFailure()) fs::remove_all(folder);
+  }
+
+  ChildProcess start(const std::vector<std::string>& arguments) {
+    std::vector<std::string> argv{SKEIN_PROGRAMS "/skein-hil"};
+    argv.insert(argv.end(), arguments.begin(), arguments.end());
+    auto child = ChildProcess::start(argv, log, {});
+    EXPECT_TRUE(child);
+    return std::move(child).value();
+  }
+  /// Runs to the end; its output is in output().
+  std::string run(const std::vector<std::string>& arguments) {
+    auto child = start(arguments);
+    return child.wait(240s) ? *child.ended() : "still running";
+  }
+  [[nodiscard]] std::string output() const {
+    std::stringstream text;
+    text << std::ifstream{log}.rdbuf();
+    return text.str();
+  }
+  bool wait_for_output(const std::string& words) const {
+    for (int i = 0; i < 3000; ++i) {
+      if (output().find(words) != std::string::npos) return true;
+      ::usleep(20'000);
+    }
+    return false;
+  }
+  /// A copy of the small scenario with one piece of text replaced.
+  [[nodiscard]] std::string scenario_with(const std::string& from, const std::string& to) const {
+    std::stringstream text;
+    text << std::ifstream{kSmall}.rdbuf();
+    std::string yaml = text.str();
+    const auto at = yaml.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    yaml.replace(at, from.size(), to);
+    const auto file = folder / "changed.yaml";
+    std::ofstream{file} << yaml;
+    return file.string();
+  }
+  /// Processes that a process has started and that still run.
+  static std::vector<pid_t> children_of(pid_t parent) {
+    std::vector<pid_t> children;
+    for (const auto& entry : fs::directory_iterator{"/proc"}) {
+      std::ifstream file{entry.path() / "stat"};
+      std::string line;
+      if (!std::getline(file, line)) continue;
+      std::stringstream fields{line.substr(line.rfind(')') + 2)};
+      char state = 0;
+      pid_t its_parent = 0;
+      if (fields >> state >> its_parent && its_parent == parent && state != 'Z') {
+        children.push_back(std::stoi(line));
+      }
+    }
+    return children;
+  }
+  static std::string radio_tables_of(pid_t pid) {
+    std::string found;
+    for (const auto& entry : fs::directory_iterator{"/dev/shm"}) {
+      const auto name = entry.path().filename().string();
+      if (name.starts_with("skein-radio-" + std::to_string(pid) + "-")) found += name;
+    }
+    return found;
+  }
+
+  const std::string kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
+  const fs::path folder =
+      fs::temp_directory_path() / ("skein-end-to-end-" + std::to_string(::getpid()));
+  const fs::path log = folder / "log";
+};
+
+TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
+  EXPECT_EQ(run({"run", kSmall, "--headless", "--out", (folder / "run").string()}), "exit status 0")
+      << output();
+  const auto text = output();
+  const auto last = text.rfind('\n', text.size() - 2);
+  EXPECT_TRUE(text.substr(last + 1).starts_with("PASS")) << text;
+  EXPECT_TRUE(fs::exists(folder / "run" / "vehicle-01" / "track.csv"));
+  EXPECT_TRUE(fs::exists(folder / "run" / "ground" / "events.csv"));
+}
+
+TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
+  auto bench = start({"run", kSmall, "--headless", "--out", (folder / "run").string()});
+  ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
+  const auto children = children_of(bench.pid());
+  ASSERT_EQ(children.size(), 7U);
+  ::kill(children.back(), SIGKILL);
+  ASSERT_TRUE(bench.wait(60s));
+  EXPECT_EQ(bench.ended(), "exit status 1") << output();
+  EXPECT_NE(output().find("ended by itself: signal 9 (Killed)"), std::string::npos) << output();
+  for (const pid_t child : children) EXPECT_NE(::kill(child, 0), 0) << child << " still runs";
+  EXPECT_EQ(radio_tables_of(bench.pid()), "");
+}
+
+TEST_F(EndToEnd, CtrlCStopsEverything) {
+  auto bench = start({"run", kSmall, "--headless", "--out", (folder / "run").string()});
+  ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
+  const auto children = children_of(bench.pid());
+  bench.signal(SIGINT);
+  ASSERT_TRUE(bench.wait(60s));
+  EXPECT_EQ(bench.ended(), "exit status 1");
+  EXPECT_NE(output().find("interrupted"), std::string::npos) << output();
+  for (const pid_t child : children) EXPECT_NE(::kill(child, 0), 0) << child << " still runs";
+  EXPECT_EQ(radio_tables_of(bench.pid()), "");
+}
+
+TEST_F(EndToEnd, TheSameSeedIsSimulatedByteForByte) {
+  const std::string mission = SKEIN_SOURCE_DIR "/scenarios/coalition-32.yaml";
+  EXPECT_EQ(run({"simulate", mission, "--trace"}), "exit status 0") << output();
+  const std::string once = output();
+  fs::remove(log);
+  EXPECT_EQ(run({"simulate", mission, "--trace"}), "exit status 0");
+  EXPECT_EQ(once, output());
+  fs::remove(log);
+  EXPECT_EQ(run({"simulate", mission, "--trace", "--seed", "99"}), "exit status 0");
+  EXPECT_NE(once, output());
+}
+
+struct BadInput {
+  const char* name;
+  const char* from;
+  const char* to;
+  const char* sentence;
+};
+
+class BadScenario : public EndToEnd, public testing::WithParamInterface<BadInput> {};
+
+TEST_P(BadScenario, IsRefusedInASentence) {
+  EXPECT_EQ(run({"run", scenario_with(GetParam().from, GetParam().to), "--headless"}),
+            "exit status 2")
+      << output();
+  EXPECT_NE(output().find(GetParam().sentence), std::string::npos) << output();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    EndToEnd, BadScenario,
+    testing::Values(
+        BadInput{"UnknownKey", "range_m: 6000", "rnage_m: 6000", "did you mean"},
+        BadInput{"UnitRange", "cruise_speed_mps: 28", "cruise_speed_mps: -28", "cruise_speed_mps"},
+        BadInput{"DuplicateVehicle", "id: 3, type: carrier", "id: 2, type: carrier", "2"},
+        BadInput{"ImpossibleMission", "bearings_deg: [0, 120, 240]",
+                 "bearings_deg: [0, 60, 120, 180, 240, 300]", "deliver"}),
+    [](const auto& info) { return std::string{info.param.name}; });
+
+TEST_F(EndToEnd, AMissingFileIsNamed) {
+  EXPECT_EQ(run({"run", "scenarios/no-such.yaml"}), "exit status 2");
+  EXPECT_NE(output().find("scenarios/no-such.yaml"), std::string::npos) << output();
+}
+
+TEST_F(EndToEnd, APortInUseIsNamedWithItsRemedy) {
+  const int s = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  ASSERT_EQ(::bind(s, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ASSERT_EQ(::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size), 0);
+  const auto port = std::to_string(ntohs(address.sin_port));
+  EXPECT_EQ(
+      run({"run", kSmall, "--headless", "--port-base", port, "--out", (folder / "run").string()}),
+      "exit status 2");
+  EXPECT_NE(output().find("UDP port " + port + " is in use"), std::string::npos) << output();
+  ::close(s);
+}
+
+}  // namespace
+}  // namespace skein::hil
