@@ -22,20 +22,22 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeft = 1.0;
 constexpr int kArcStarts = 24;   ///< tried where the requirement leaves the start angle free
 constexpr int kTrialsMax = 400;  ///< assignments tried before the allocation is given up
-/// Every arc of a site is flown in the same sense, so that vehicles on one circle keep their
+constexpr int kCounterClockwise = 1;
+constexpr int kClockwise = -1;
+/// Every assessment of a site is flown in the same sense, so that vehicles on one circle keep their
 /// spacing.
-constexpr int kArcSense = 1;
+constexpr int kAssessmentSense = kCounterClockwise;
 
 std::string name(const Site& site) { return "site " + std::to_string(site.id.value); }
 
 Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell, double arc_radius_m,
-                           double planning_radius_m, double speed_mps) {
+                           double planning_radius_m, double speed_mps, int turn) {
   if (arc_radius_m < planning_radius_m) {
     return Error{"The arc around " + name(site) + " has a radius of " +
                  std::to_string(std::lround(arc_radius_m)) + " m, less than the turn radius of " +
                  std::to_string(std::lround(planning_radius_m)) + " m"};
   }
-  return arc_path(site, start_rad, dwell, arc_radius_m, speed_mps, kArcSense);
+  return arc_path(site, start_rad, dwell, arc_radius_m, speed_mps, turn);
 }
 
 struct Leg {
@@ -56,10 +58,10 @@ Result<Leg> leg_to(const AvoidanceParams& params, const Pose2& from, double radi
 /// The arc that starts soonest where the start angle is free.
 Result<Leg> leg_to_arc(const AvoidanceParams& params, const Pose2& from, double planning_radius_m,
                        double arc_radius_m, double speed_mps, const Site& site,
-                       const ArcRequirement& arc, std::span<const Hazard> hazards) {
+                       const ArcRequirement& arc, int turn, std::span<const Hazard> hazards) {
   const auto from_angle = [&](double start_rad) -> Result<Leg> {
     const auto task =
-        fixed_arc(site, start_rad, arc.dwell, arc_radius_m, planning_radius_m, speed_mps);
+        fixed_arc(site, start_rad, arc.dwell, arc_radius_m, planning_radius_m, speed_mps, turn);
     if (!task) return task.error();
     return leg_to(params, from, planning_radius_m, *task, hazards);
   };
@@ -86,7 +88,7 @@ Result<Leg> leg_of(const AllocationParams& params, const Candidate& vehicle, con
   if (task.kind == TaskKind::assess && task.index < site.assessments.size()) {
     return leg_to_arc(params.avoidance, vehicle.pose, vehicle.planning_radius_m,
                       vehicle.assess_radius_m, vehicle.speed_mps, site,
-                      site.assessments[task.index], hazards);
+                      site.assessments[task.index], kAssessmentSense, hazards);
   }
   return Error{name(site) + " has no task '" + to_string(task) + "' to plan"};
 }
@@ -406,12 +408,21 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
                              const Pose2& from, Instant start, const Site& site,
                              std::span<const Hazard> hazards) {
   const double radius_m = vehicle.planning_radius_m();
-  const auto leg = leg_to_arc(params.avoidance, from, radius_m, vehicle.sensor_radius_m,
-                              vehicle.cruise_speed_mps, site, site.survey, hazards);
+  // A survey is flown alone: in the sense that gets there sooner.
+  const auto leg_in = [&](int turn) {
+    return leg_to_arc(params.avoidance, from, radius_m, vehicle.sensor_radius_m,
+                      vehicle.cruise_speed_mps, site, site.survey, turn, hazards);
+  };
+  Result<Leg> leg = leg_in(kCounterClockwise);
+  if (auto other = leg_in(kClockwise); other && (!leg || other->shortest_m < leg->shortest_m)) {
+    leg = std::move(other);
+  }
   if (!leg) return leg.error();
   const auto path = shortest_clear_path(params.avoidance, from, leg->task.entry, radius_m, hazards);
   if (!path) return path.error();
-  return assemble(*path, leg->task, start, vehicle.cruise_speed_mps, radius_m);
+  TaskPlan plan = assemble(*path, leg->task, start, vehicle.cruise_speed_mps, radius_m);
+  plan.timed.tail_curvature_per_m = leg->task.run.curvature_per_m;  // it stays around the site
+  return plan;
 }
 
 }  // namespace skein::planning

@@ -329,10 +329,12 @@ TEST(PlanSurvey, FliesTheRequiredArcAtOnce) {
   const Pose2 from{1000, 1000, 0.0};
   const auto plan = plan_survey({}, v, from, at_seconds(5.0), site, {});
   ASSERT_TRUE(plan.ok()) << plan.error().message;
-  const Pose2 entry{3000, 3300, kPi};
+  // It comes from the west: clockwise, heading east at the north point, is the shorter way.
+  const Pose2 entry{3000, 3300, 0.0};
   EXPECT_NEAR(plan->gate_m, shortest_dubins_length(from, entry, 165.0), 1e-6);
+  EXPECT_LT(plan->gate_m, shortest_dubins_length(from, {3000, 3300, kPi}, 165.0));
   EXPECT_GE(plan->timed.path.length_m() - plan->gate_m, 20.0 * 50.0);
-  EXPECT_NEAR(plan->timed.tail_curvature_per_m, 1.0 / 165.0, 1e-12);
+  EXPECT_NEAR(plan->timed.tail_curvature_per_m, -1.0 / 300.0, 1e-12) << "and circles on";
   for (double s = plan->gate_m; s <= plan->timed.path.length_m(); s += 10.0) {
     EXPECT_NEAR((plan->timed.path.pose_at(s).position() - site.position).norm(), 300.0, 1e-6);
   }

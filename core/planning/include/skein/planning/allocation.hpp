@@ -68,7 +68,8 @@ struct TaskPlan {
                                          const TaskAssignment& assignment,
                                          std::span<const Hazard> hazards);
 
-/// The path that surveys the site soonest; its start angle is the required one, or the best.
+/// The path that surveys the site soonest, in either sense; its start angle is the required one, or
+/// the best. After the arc it goes on around the site.
 [[nodiscard]] Result<TaskPlan> plan_survey(const AllocationParams& params,
                                            const VehicleSpec& vehicle, const Pose2& from,
                                            Instant start, const Site& site,
