@@ -160,8 +160,9 @@ std::vector<SiteFigures> site_figures(const checks::RunRecord& record,
   return all;
 }
 
-std::vector<ComparisonRow> compare(const std::vector<SiteFigures>& figures,
-                                   const std::vector<configuration::ReferenceSite>& reference) {
+std::vector<report::ComparisonRow> compare(
+    const std::vector<SiteFigures>& figures,
+    const std::vector<configuration::ReferenceSite>& reference) {
   const auto seconds = [](const std::optional<double>& s, int digits = 2) {
     return s ? fmt::format("{:.{}f} s", *s, digits) : std::string{"-"};
   };
@@ -177,7 +178,7 @@ std::vector<ComparisonRow> compare(const std::vector<SiteFigures>& figures,
     return one ? fmt::format("{} at {:.2f} s", t.size(), t.front())
                : fmt::format("{} from {:.2f} to {:.2f} s", t.size(), t.front(), t.back());
   };
-  std::vector<ComparisonRow> rows;
+  std::vector<report::ComparisonRow> rows;
   for (const auto& f : figures) {
     const auto published = std::find_if(reference.begin(), reference.end(),
                                         [&](const auto& r) { return r.site == f.site; });
@@ -195,34 +196,6 @@ std::vector<ComparisonRow> compare(const std::vector<SiteFigures>& figures,
         {f.site, "assessments done", seconds(f.assessment_done_s), seconds(r.assessment_done_s)});
   }
   return rows;
-}
-
-std::string comparison_table(const std::vector<ComparisonRow>& rows) {
-  std::string text = fmt::format("{:<8} {:<18} {:<26} {:<26}\n", "", "", "ours", "published");
-  SiteId last{};
-  for (const auto& row : rows) {
-    text += fmt::format("{:<8} {:<18} {:<26} {:<26}\n",
-                        row.site != last ? fmt::format("site {}", row.site.value) : "", row.what,
-                        row.ours, row.published);
-    last = row.site;
-  }
-  return text;
-}
-
-std::string check_table(const std::vector<CheckResult>& results) {
-  constexpr std::size_t kSentencesMax = 5;
-  std::string text;
-  for (const auto& r : results) {
-    text += fmt::format("{}  {:<22} {:>5} {:<12} {}\n", r.held() ? "ok  " : "FAIL", r.name,
-                        r.judged, r.judged_what, r.measured);
-    for (std::size_t i = 0; i < std::min(kSentencesMax, r.violations.size()); ++i) {
-      text += "        " + r.violations[i].sentence + "\n";
-    }
-    if (r.violations.size() > kSentencesMax) {
-      text += fmt::format("        and {} more\n", r.violations.size() - kSentencesMax);
-    }
-  }
-  return text;
 }
 
 }  // namespace skein::hil

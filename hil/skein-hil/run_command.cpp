@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
+#include <fstream>
 #include <string>
 
 #include "commands.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
+#include "skein/report/report.hpp"
 
 namespace skein::hil {
 namespace {
@@ -89,21 +91,26 @@ int run(const RunArguments& arguments) {
     for (const auto& death : outcome->deaths) fmt::print(stderr, "{}\n", death);
     return complain(record.error().message);
   }
-  const auto checks = judge_run(*scenario, *record, *outcome);
-  const auto rows =
-      compare(site_figures(*record, limits_of(scenario->expect)), scenario->reference);
-  fmt::print("\n{}\n{}\n", comparison_table(rows), check_table(checks));
+  report::Contents contents;
+  contents.title = scenario->title;
+  contents.summary =
+      fmt::format("{}, seed {}, {:%Y-%m-%d %H:%M}, mission time at {} times real time",
+                  arguments.scenario.filename().string(), scenario->seed,
+                  fmt::localtime(std::time(nullptr)), options.rate);
+  contents.limits = limits_of(scenario->expect);
+  contents.checks = judge_run(*scenario, *record, *outcome);
+  contents.comparison = compare(site_figures(*record, contents.limits), scenario->reference);
+  contents.record = *record;
+  const auto page = options.run_folder / "report.html";
+  std::ofstream{page} << report::html(contents);
+  std::ofstream{options.run_folder / "map.svg"} << report::mission_svg(*record);
+  fmt::print("\nreport: {}\ndata:   {} (tracks, events and plans of every node as CSV)\n\n{}",
+             page.string(), options.run_folder.string(),
+             report::text_table(contents.checks, contents.comparison));
 
-  const auto failed =
-      std::count_if(checks.begin(), checks.end(), [](const auto& c) { return !c.held(); });
-  if (failed == 0 && !outcome->interrupted) {
-    fmt::print("PASS: {} checks held; all sites done at {:.1f} s\n", checks.size(),
-               to_seconds(outcome->ended_at));
-    return kExitHeld;
-  }
-  fmt::print("FAIL: {} of {} checks failed{}\n", failed, checks.size(),
-             outcome->interrupted ? ", and the run was interrupted" : "");
-  return kExitViolated;
+  const bool held = std::all_of(contents.checks.begin(), contents.checks.end(),
+                                [](const auto& check) { return check.held(); });
+  return held && !outcome->interrupted ? kExitHeld : kExitViolated;
 }
 
 }  // namespace skein::hil

@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"DuplicateVehicle", "id: 3, type: carrier", "id: 2, type: carrier", "2"},
         BadInput{"ImpossibleMission", "bearings_deg: [0, 120, 240]",
                  "bearings_deg: [0, 60, 120, 180, 240, 300]", "deliver"}),
-    [](const auto& info) { return std::string{info.param.name}; });
+    [](const auto& bad) { return std::string{bad.param.name}; });
 
 TEST_F(EndToEnd, AMissingFileIsNamed) {
   EXPECT_EQ(run({"run", "scenarios/no-such.yaml"}), "exit status 2");

@@ -10,6 +10,7 @@
 #include "skein/checks/checks.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/bench.hpp"
+#include "skein/report/report.hpp"
 
 namespace skein::hil {
 
@@ -43,17 +44,9 @@ struct SiteFigures {
 [[nodiscard]] std::vector<SiteFigures> site_figures(const checks::RunRecord& record,
                                                     const checks::Limits& limits);
 
-/// One line of the comparison with the published values; "-" where there is none.
-struct ComparisonRow {
-  SiteId site;
-  std::string what;
-  std::string ours;
-  std::string published;
-};
-[[nodiscard]] std::vector<ComparisonRow> compare(
+/// Ours beside the published values, by site.
+[[nodiscard]] std::vector<report::ComparisonRow> compare(
     const std::vector<SiteFigures>& figures,
     const std::vector<configuration::ReferenceSite>& reference);
-[[nodiscard]] std::string comparison_table(const std::vector<ComparisonRow>& rows);
-[[nodiscard]] std::string check_table(const std::vector<checks::CheckResult>& results);
 
 }  // namespace skein::hil
