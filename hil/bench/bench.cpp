@@ -330,6 +330,11 @@ class Bench {
     }
     const bool clean = stop_all(vehicles, kStopWithin);
     outcome_.stopped_cleanly = stop_all({&processes_.at(kGroundStation)}, kStopWithin) && clean;
+    for (auto& [id, process] : processes_) {
+      const auto how = process.ended();
+      if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
+      outcome_.deaths.push_back(name_of(id) + " did not end cleanly when asked: " + *how);
+    }
     return outcome_;
   }
 

@@ -95,14 +95,15 @@ class RadioTransport : public rtps::ChainingTransport {
     if (delay > Duration{}) {
       changed_.notify_one();
     } else {
-      hand_over(next, buffer, size, local, remote);
+      next->OnDataReceived(buffer, size, local,
+                           remote);  // on the channel's own thread, as without us
     }
   }
 
   bool OpenInputChannel(const Locator_t& locator, rtps::TransportReceiverInterface* receiver,
                         std::uint32_t max_size) override {
     {
-      const std::lock_guard lock{hand_over_mutex_};
+      const std::lock_guard lock{mutex_};
       closed_.erase(locator.port);
     }
     return ChainingTransport::OpenInputChannel(locator, receiver, max_size);
@@ -110,9 +111,11 @@ class RadioTransport : public rtps::ChainingTransport {
 
   bool CloseInputChannel(const Locator_t& locator) override {
     {
-      // Waits for a packet that is being handed over; no later one reaches the receiver.
-      const std::lock_guard lock{hand_over_mutex_};
+      // No later packet reaches this channel's receiver; one that is being handed over is waited
+      // for. Packets for other channels are not: their receivers may wait for the closing thread.
+      std::unique_lock lock{mutex_};
       closed_.insert(locator.port);
+      handed_over_.wait(lock, [&] { return in_hand_ != locator.port; });
     }
     return ChainingTransport::CloseInputChannel(locator);
   }
@@ -130,12 +133,6 @@ class RadioTransport : public rtps::ChainingTransport {
     }
   };
 
-  void hand_over(rtps::TransportReceiverInterface* next, const octet* bytes, std::uint32_t size,
-                 const Locator_t& local, const Locator_t& remote) {
-    const std::lock_guard lock{hand_over_mutex_};
-    if (!closed_.contains(local.port)) next->OnDataReceived(bytes, size, local, remote);
-  }
-
   void carry() {
     std::unique_lock lock{mutex_};
     while (!stopping_) {
@@ -146,10 +143,15 @@ class RadioTransport : public rtps::ChainingTransport {
       } else {
         const Packet packet = waiting_.top();
         waiting_.pop();
+        if (closed_.contains(packet.local.port)) continue;
+        in_hand_ = packet.local.port;
         lock.unlock();
-        hand_over(packet.next, packet.bytes.data(), static_cast<std::uint32_t>(packet.bytes.size()),
-                  packet.local, packet.remote);
+        packet.next->OnDataReceived(packet.bytes.data(),
+                                    static_cast<std::uint32_t>(packet.bytes.size()), packet.local,
+                                    packet.remote);
         lock.lock();
+        in_hand_.reset();
+        handed_over_.notify_all();
       }
     }
   }
@@ -164,14 +166,15 @@ class RadioTransport : public rtps::ChainingTransport {
   Configuration descriptor_;
   VehicleId self_;
   std::shared_ptr<const LinkTable> table_;
-  std::mutex mutex_;  ///< of the generator and the packets on their way
+  std::mutex mutex_;  ///< of everything below
   Random random_;
   std::priority_queue<Packet> waiting_;
   std::uint64_t order_ = 0;
   bool stopping_ = false;
   std::condition_variable changed_;
-  std::mutex hand_over_mutex_;  ///< one packet at a time, and none to a closed channel
-  std::set<std::uint32_t> closed_;
+  std::set<std::uint32_t> closed_;        ///< ports
+  std::optional<std::uint32_t> in_hand_;  ///< port of the packet that is being handed over
+  std::condition_variable handed_over_;
   std::thread air_;  ///< last: it uses all of the above
 };
 
