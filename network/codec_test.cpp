@@ -41,6 +41,7 @@ std::string read(const std::string& path) {
 
 /// Compares with the file, or rewrites it where SKEIN_UPDATE_GOLDEN is set.
 void expect_golden(const std::string& path, const std::string& content) {
+  // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
   if (std::getenv("SKEIN_UPDATE_GOLDEN") != nullptr) std::ofstream{path} << content;
   EXPECT_EQ(read(path), content) << path
                                  << ": where the change is meant, give the wire types a new "

@@ -183,6 +183,7 @@ TEST(Node, TwelveFindEachOther) {
   const auto configs = fleet(11);
   const auto start = steady_clock::now();
   std::vector<std::unique_ptr<Node>> nodes;
+  nodes.reserve(configs.size());
   for (const auto& c : configs) nodes.push_back(open(c));
   EXPECT_TRUE(eventually([&] {
     return std::all_of(nodes.begin(), nodes.end(),

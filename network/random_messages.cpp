@@ -37,12 +37,12 @@ Instant instant(Random& random) {
 }
 
 std::string text(Random& random) {
-  static const std::vector<std::string> kCharacters{"a",  "Z", " ", "<",   "\"",
-                                                    "\n", "ä", "→", "🛩"};
+  static const std::vector<std::string> characters{"a",  "Z", " ", "<",   "\"",
+                                                   "\n", "ä", "→", "🛩"};
   std::string made;
   const std::size_t wanted = random.index(coalition::kReasonMax + 1);
   while (true) {
-    const std::string& next = kCharacters[random.index(kCharacters.size())];
+    const std::string& next = characters[random.index(characters.size())];
     if (made.size() + next.size() > wanted) return made;
     made += next;
   }
