@@ -58,6 +58,8 @@ class RadioTransport : public rtps::ChainingTransport {
         random_{seed + self.value},
         air_{[this] { carry(); }} {}
 
+  RadioTransport(const RadioTransport&) = delete;
+  RadioTransport& operator=(const RadioTransport&) = delete;
   ~RadioTransport() override {
     {
       const std::lock_guard lock{mutex_};
@@ -200,6 +202,8 @@ extern "C" __attribute__((visibility("default"))) const char* skein_wrap_transpo
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>& transport,
     std::uint16_t self) {
   using skein::hil::radio::LinkTable;
+  // Nobody changes the environment while a node opens.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* name = std::getenv("SKEIN_RADIO_TABLE");
   if (name == nullptr) return "the radio needs SKEIN_RADIO_TABLE, the name of a link table";
   auto table = LinkTable::open(name);
@@ -208,6 +212,7 @@ extern "C" __attribute__((visibility("default"))) const char* skein_wrap_transpo
     reason = table.error().message;
     return reason.c_str();
   }
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* seed = std::getenv("SKEIN_RADIO_SEED");
   transport = std::make_shared<skein::hil::radio::RadioDescriptor>(
       transport, skein::VehicleId{self},

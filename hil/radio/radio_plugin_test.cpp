@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -48,6 +49,18 @@ bool is_free(int port) {
   return free;
 }
 
+/// Tells the plugin which table; none where the name is empty. No node is open when it is called.
+void name_table(const std::string& name) {
+  // NOLINTBEGIN(concurrency-mt-unsafe)
+  if (name.empty()) {
+    ASSERT_EQ(::unsetenv("SKEIN_RADIO_TABLE"), 0);
+  } else {
+    ASSERT_EQ(::setenv("SKEIN_RADIO_TABLE", name.c_str(), 1), 0);
+    ASSERT_EQ(::setenv("SKEIN_RADIO_SEED", "7", 1), 0);
+  }
+  // NOLINTEND(concurrency-mt-unsafe)
+}
+
 /// Two vehicles that hear each other through the radio only.
 class Radio : public testing::Test {
  protected:
@@ -55,8 +68,7 @@ class Radio : public testing::Test {
     auto made = LinkTable::create();
     ASSERT_TRUE(made) << made.error().message;
     table_ = std::make_unique<LinkTable>(std::move(made).value());
-    ASSERT_EQ(::setenv("SKEIN_RADIO_TABLE", table_->name().c_str(), 1), 0);
-    ASSERT_EQ(::setenv("SKEIN_RADIO_SEED", "7", 1), 0);
+    name_table(table_->name());
 
     std::random_device device;
     std::uniform_int_distribution<int> quarter{2500, 7999};
@@ -190,11 +202,11 @@ TEST(RadioPlugin, RefusesWithoutItsTable) {
     port = 2 * half(device);
   } while (!is_free(port) || !is_free(port + 1));
   config.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(port)};
-  ASSERT_EQ(::unsetenv("SKEIN_RADIO_TABLE"), 0);
+  name_table("");
   const auto unnamed = Node::open(config);
   ASSERT_FALSE(unnamed);
   EXPECT_NE(unnamed.error().message.find("SKEIN_RADIO_TABLE"), std::string::npos);
-  ASSERT_EQ(::setenv("SKEIN_RADIO_TABLE", "/skein-radio-of-nobody", 1), 0);
+  name_table("/skein-radio-of-nobody");
   const auto missing = Node::open(config);
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().message.find("/skein-radio-of-nobody"), std::string::npos);
