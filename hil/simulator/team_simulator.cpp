@@ -2,6 +2,7 @@
 #include "skein/hil/team_simulator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -240,15 +241,15 @@ TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observe
 }
 
 std::string trace_line(const mission::MissionEvent& event) {
-  char head[160];
-  std::snprintf(head, sizeof head, "%12.6f  %3u  %-23.*s  %u.%u/%u  ", to_seconds(event.time),
-                static_cast<unsigned>(event.vehicle.value),
+  std::array<char, 160> head{};
+  std::snprintf(head.data(), head.size(), "%12.6f  %3u  %-23.*s  %u.%u/%u  ",
+                to_seconds(event.time), static_cast<unsigned>(event.vehicle.value),
                 static_cast<int>(to_string(event.kind).size()), to_string(event.kind).data(),
                 static_cast<unsigned>(event.round.coalition.leader.value),
                 event.round.coalition.number, event.round.number);
-  char value[48];
-  std::snprintf(value, sizeof value, "  %.6f  ", event.value);
-  return head + to_string(event.task) + value + event.text;
+  std::array<char, 48> value{};
+  std::snprintf(value.data(), value.size(), "  %.6f  ", event.value);
+  return head.data() + to_string(event.task) + value.data() + event.text;
 }
 
 }  // namespace skein::hil
