@@ -22,8 +22,9 @@ Hazard circle(double x_m, double y_m, double radius_m, std::uint16_t id = 1) {
 /// By walking the path in small steps.
 double clearance(const Path& path, std::span<const Hazard> hazards) {
   double least = INFINITY;
-  const double length = path.length_m();
-  for (double s = 0.0; s <= length; s += 0.5) {
+  const int steps = static_cast<int>(path.length_m() / 0.5);
+  for (int i = 0; i <= steps; ++i) {
+    const double s = 0.5 * i;
     for (const Hazard& h : hazards) {
       least = std::min(least, (path.pose_at(s).position() - h.centre).norm() - h.radius_m);
     }

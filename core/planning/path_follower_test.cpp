@@ -120,7 +120,9 @@ Flown fly(const VehicleSpec& vehicle, const TimedPath& plan, const Vec2& wind, c
   Flown flown;
   const double seconds = to_seconds(plan.end_time() - plan.start_time);
   constexpr double kPeriod_s = 0.02;
-  for (double t = 0.0; t < seconds; t += kPeriod_s) {
+  const int periods = static_cast<int>(std::ceil(seconds / kPeriod_s));
+  for (int i = 0; i < periods; ++i) {
+    const double t = i * kPeriod_s;
     const Instant now = plan.start_time + from_seconds(t);
     const VehicleState state = s.state(now);
     const FollowError error = follow_error(plan, state, now);
