@@ -7,6 +7,7 @@
 #include <set>
 
 #include "skein/checks/flown.hpp"
+#include "skein/hil/team_mission.hpp"
 #include "skein/recording/reader.hpp"
 
 namespace skein::hil {
@@ -33,17 +34,6 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
     }
   }
   return record;
-}
-
-checks::Limits limits_of(const configuration::Expectations& expect) {
-  checks::Limits limits;
-  limits.arrival_s =
-      std::max({expect.delivery_spread_s, expect.slot_error_s, expect.assess_start_error_s});
-  limits.bearing_rad = expect.bearing_error_rad;
-  limits.miss_m = expect.miss_distance_m;
-  limits.separation_horizontal_m = expect.separation_horizontal_m;
-  limits.separation_vertical_m = expect.separation_vertical_m;
-  return limits;
 }
 
 namespace {

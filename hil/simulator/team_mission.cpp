@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/hil/team_mission.hpp"
 
+#include <algorithm>
+
 namespace skein::hil {
 
 std::vector<mission::ScriptedDecision> scripted_decisions(
@@ -31,6 +33,17 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   team.duration_max = scenario.duration_max;
   team.seed = scenario.seed;
   return team;
+}
+
+checks::Limits limits_of(const configuration::Expectations& expect) {
+  checks::Limits limits;
+  limits.arrival_s =
+      std::max({expect.delivery_spread_s, expect.slot_error_s, expect.assess_start_error_s});
+  limits.bearing_rad = expect.bearing_error_rad;
+  limits.miss_m = expect.miss_distance_m;
+  limits.separation_horizontal_m = expect.separation_horizontal_m;
+  limits.separation_vertical_m = expect.separation_vertical_m;
+  return limits;
 }
 
 }  // namespace skein::hil

@@ -65,10 +65,9 @@ class Team {
       for (const auto& h : mission.hazards) {
         if (h.known_from <= Instant{}) config.hazards.push_back(h.hazard);
       }
-      vehicles_.push_back({v.spec,
-                           std::make_unique<mission::VehicleAgent>(config, Instant{}),
-                           models::HeadingDynamics{v.spec, wind, v.start, Instant{}},
-                           {}});
+      auto agent = std::make_unique<mission::VehicleAgent>(config, Instant{});
+      models::HeadingDynamics dynamics{v.spec, wind, v.start, Instant{}};
+      vehicles_.push_back(Vehicle{v.spec, std::move(agent), dynamics, {}});
     }
   }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 namespace skein::hil {
 
@@ -24,9 +26,12 @@ struct RunArguments {
 int run(const RunArguments& arguments);
 
 struct SimulateArguments {
+  std::string program;  ///< as it was called, for the line that flies a seed again
   std::filesystem::path scenario;
   std::optional<std::uint64_t> seed;
   bool trace = false;
+  std::optional<std::size_t> runs;  ///< without: one, with its events
+  std::size_t jobs = 0;             ///< 0: one for each core
 };
 int simulate(const SimulateArguments& arguments);
 

@@ -13,6 +13,7 @@
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
+#include "skein/hil/team_mission.hpp"
 #include "skein/report/report.hpp"
 
 namespace skein::hil {

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "commands.hpp"
 #include "skein/configuration/scenario.hpp"
-#include "skein/hil/team_mission.hpp"
+#include "skein/hil/judged_runs.hpp"
 
 namespace skein::hil {
 namespace {
+
+/// Failing seeds that are told of in full.
+constexpr std::size_t kFailuresShown = 20;
 
 /// What a reader of a mission wants to see first.
 bool of_interest(mission::EventKind kind) {
@@ -29,6 +37,105 @@ bool of_interest(mission::EventKind kind) {
   return std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 
+/// One line on a terminal that is written over: how far, and how long still.
+class ProgressLine {
+ public:
+  explicit ProgressLine(std::size_t runs) : runs_{runs}, shown_{::isatty(STDERR_FILENO) != 0} {}
+
+  void count(bool held) {
+    ++done_;
+    if (!held) ++broken_;
+    const auto now = Clock::now();
+    if (!shown_ || (now < next_ && done_ < runs_)) return;
+    next_ = now + std::chrono::milliseconds{200};
+    const double passed = std::chrono::duration<double>(now - start_).count();
+    const double left = passed * static_cast<double>(runs_ - done_) / static_cast<double>(done_);
+    fmt::print(stderr, "\r{}/{} runs, {} violated, {:.0f} s left   ", done_, runs_, broken_, left);
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::size_t runs_;
+  bool shown_;
+  std::size_t done_ = 0;
+  std::size_t broken_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_ = start_;
+};
+
+std::string who(VehicleId vehicle) {
+  return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
+}
+
+/// What was broken: the first violation of each check.
+void print_broken(const JudgedRun& run) {
+  for (const auto& check : run.broken) {
+    const auto& first = check.violations.front();
+    fmt::print("  {}: {:.2f} s, {}: {}", check.name, to_seconds(first.time), who(first.vehicle),
+               first.sentence);
+    if (check.violations.size() > 1) fmt::print(" (and {} more)", check.violations.size() - 1);
+    fmt::print("\n");
+  }
+}
+
+int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+  TeamObserver watcher;
+  watcher.event = [&](const mission::MissionEvent& event) {
+    if (arguments.trace || of_interest(event.kind)) fmt::print("{}\n", trace_line(event));
+  };
+  const auto run = fly_judged(scenario, scenario.seed, watcher);
+  fmt::print(
+      "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
+      run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
+      to_seconds(run.result.ended_at), run.result.messages, run.result.protocol_errors);
+  if (!run.held()) fmt::print("VIOLATED:\n");
+  print_broken(run);
+  return run.held() ? kExitHeld : kExitViolated;
+}
+
+void print_failures(const std::vector<JudgedRun>& runs, const SimulateArguments& arguments) {
+  std::size_t shown = 0;
+  for (const auto& run : runs) {
+    if (run.held()) continue;
+    if (++shown > kFailuresShown) continue;
+    fmt::print("seed {} VIOLATED\n", run.seed);
+    print_broken(run);
+    fmt::print("  again: {} simulate {} --seed {} --trace\n", arguments.program,
+               arguments.scenario.string(), run.seed);
+  }
+  if (shown > kFailuresShown) fmt::print("... and {} seeds more\n", shown - kFailuresShown);
+}
+
+int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+  RunSeries series;
+  series.first_seed = scenario.seed;
+  series.runs = *arguments.runs;
+  series.jobs = arguments.jobs > 0 ? arguments.jobs
+                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  ProgressLine line{series.runs};
+  const auto runs =
+      fly_series(scenario, series, [&](const JudgedRun& run) { line.count(run.held()); });
+  line.clear();
+  print_failures(runs, arguments);
+
+  const auto summary = summarise(runs);
+  fmt::print("runs       {}, seeds {} to {}\n", summary.runs, runs.front().seed, runs.back().seed);
+  fmt::print("violated   {}", summary.runs - summary.held);
+  for (const auto& broken : summary.broken) fmt::print("; {} {}", broken.check, broken.runs);
+  fmt::print("\nall sites  done in {} runs", summary.finished);
+  if (summary.finished > 0) {
+    fmt::print(", after {:.1f} s at least, {:.1f} s on average, {:.1f} s at most",
+               summary.time_min_s, summary.time_mean_s, summary.time_max_s);
+  }
+  const bool held = summary.held == summary.runs;
+  fmt::print("\n{}\n", held ? "PASS" : "FAIL");
+  return held ? kExitHeld : kExitViolated;
+}
+
 }  // namespace
 
 int simulate(const SimulateArguments& arguments) {
@@ -42,17 +149,7 @@ int simulate(const SimulateArguments& arguments) {
     return kExitBadInput;
   }
   if (arguments.seed) scenario->seed = *arguments.seed;
-  TeamObserver observer;
-  observer.event = [&](const mission::MissionEvent& event) {
-    if (arguments.trace || of_interest(event.kind)) fmt::print("{}\n", trace_line(event));
-  };
-  const auto result = simulate_team(team_mission(*scenario), observer);
-  const bool done = result.sites_done == scenario->sites.size();
-  fmt::print(
-      "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
-      done ? "DONE" : "NOT DONE", result.sites_done, scenario->sites.size(),
-      to_seconds(result.ended_at), result.messages, result.protocol_errors);
-  return done && result.protocol_errors == 0 ? kExitHeld : kExitViolated;
+  return arguments.runs ? fly_many(*scenario, arguments) : fly_one(*scenario, arguments);
 }
 
 }  // namespace skein::hil

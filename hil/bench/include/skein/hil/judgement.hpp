@@ -19,9 +19,6 @@ namespace skein::hil {
                                                     const std::filesystem::path& run_folder,
                                                     const std::vector<VehicleId>& killed);
 
-/// The scenario's expectations as the judges' limits.
-[[nodiscard]] checks::Limits limits_of(const configuration::Expectations& expect);
-
 /// All checks of the record, and those that only the bench can make: that everybody found
 /// everybody, kept up and stopped cleanly, that as many coalitions formed as the scenario expects,
 /// and that the sites whose first attempt must fail had to wait.

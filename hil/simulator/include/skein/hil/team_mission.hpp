@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "skein/checks/run_record.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/team_simulator.hpp"
 
@@ -17,5 +18,8 @@ namespace skein::hil {
 /// The wind's velocity and gusts as the models take them.
 [[nodiscard]] models::WindParams wind_params(const configuration::WindConfig& wind,
                                              std::uint64_t seed);
+
+/// The scenario's expectations as the judges' limits.
+[[nodiscard]] checks::Limits limits_of(const configuration::Expectations& expect);
 
 }  // namespace skein::hil

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "skein/checks/checks.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/hil/team_simulator.hpp"
+
+namespace skein::hil {
+
+/// A simulated mission and what the independent judges say about it.
+struct JudgedRun {
+  std::uint64_t seed = 0;
+  TeamResult result;
+  bool sites_done = false;                  ///< all of them
+  std::vector<checks::CheckResult> broken;  ///< the checks that did not hold, all violations
+  [[nodiscard]] bool held() const { return broken.empty(); }
+};
+
+/// Flies the scenario once with this seed in place of its own, in the calling thread, and judges
+/// it. `watcher` sees the run.
+[[nodiscard]] JudgedRun fly_judged(const configuration::Scenario& scenario, std::uint64_t seed,
+                                   const TeamObserver& watcher = {});
+
+struct RunSeries {
+  std::uint64_t first_seed = 1;
+  std::size_t runs = 1;
+  std::size_t jobs = 1;  ///< threads, each flying one mission at a time; >= 1
+};
+
+/// Flies the seeds first_seed .. first_seed + runs - 1. The result is in the order of seeds and
+/// does not depend on `jobs`. `on_done` is called after every run, from one thread at a time.
+[[nodiscard]] std::vector<JudgedRun> fly_series(
+    const configuration::Scenario& scenario, const RunSeries& series,
+    const std::function<void(const JudgedRun&)>& on_done = {});
+
+/// Mission times of the runs that finished all their sites, and what was broken how often.
+struct SeriesSummary {
+  std::size_t runs = 0;
+  std::size_t held = 0;
+  std::size_t finished = 0;  ///< all sites done
+  double time_min_s = 0.0;   ///< of those that finished; 0 when none did
+  double time_mean_s = 0.0;
+  double time_max_s = 0.0;
+  struct Broken {
+    std::string check;
+    std::size_t runs = 0;
+  };
+  std::vector<Broken> broken;  ///< by name
+};
+[[nodiscard]] SeriesSummary summarise(const std::vector<JudgedRun>& runs);
+
+}  // namespace skein::hil

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/judged_runs.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "skein/hil/team_mission.hpp"
+#include "skein/hil/team_record.hpp"
+
+namespace skein::hil {
+namespace {
+
+checks::CheckResult protocol_errors(const TeamResult& result) {
+  checks::CheckResult check{"protocol errors",
+                            "no input without an entry in a state machine's table",
+                            1,
+                            "mission",
+                            "",
+                            {}};
+  if (result.protocol_errors > 0) {
+    check.violations.push_back({kGroundStation, result.ended_at,
+                                std::to_string(result.protocol_errors) +
+                                    " inputs met a state that has no entry for them"});
+  }
+  return check;
+}
+
+}  // namespace
+
+JudgedRun fly_judged(const configuration::Scenario& scenario, std::uint64_t seed,
+                     const TeamObserver& watcher) {
+  configuration::Scenario seeded = scenario;
+  seeded.seed = seed;
+  const TeamMission mission = team_mission(seeded);
+  TeamRecorder recorder{mission, watcher};
+  const TeamObserver observer = recorder.observer();
+
+  JudgedRun run;
+  run.seed = seed;
+  run.result = simulate_team(mission, observer);
+  run.sites_done = run.result.sites_done == mission.sites.size();
+  run.broken = checks::judge(recorder.record(), limits_of(scenario.expect));
+  run.broken.push_back(protocol_errors(run.result));
+  std::erase_if(run.broken, [](const auto& check) { return check.held(); });
+  return run;
+}
+
+std::vector<JudgedRun> fly_series(const configuration::Scenario& scenario, const RunSeries& series,
+                                  const std::function<void(const JudgedRun&)>& on_done) {
+  std::vector<JudgedRun> runs(series.runs);
+  std::atomic<std::size_t> next{0};
+  std::mutex telling;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < runs.size(); i = next++) {
+      runs[i] = fly_judged(scenario, series.first_seed + i);
+      if (!on_done) continue;
+      const std::lock_guard lock{telling};
+      on_done(runs[i]);
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < std::min(series.jobs, series.runs); ++i) others.emplace_back(work);
+  work();
+  others.clear();  // joins them
+  return runs;
+}
+
+SeriesSummary summarise(const std::vector<JudgedRun>& runs) {
+  SeriesSummary summary;
+  std::map<std::string, std::size_t> broken;
+  for (const JudgedRun& run : runs) {
+    ++summary.runs;
+    if (run.held()) ++summary.held;
+    for (const auto& check : run.broken) ++broken[check.name];
+    if (!run.sites_done) continue;
+    const double t = to_seconds(run.result.ended_at);
+    summary.time_min_s = summary.finished == 0 ? t : std::min(summary.time_min_s, t);
+    summary.time_max_s = std::max(summary.time_max_s, t);
+    summary.time_mean_s += t;
+    ++summary.finished;
+  }
+  if (summary.finished > 0) summary.time_mean_s /= static_cast<double>(summary.finished);
+  for (const auto& [check, count] : broken) summary.broken.push_back({check, count});
+  return summary;
+}
+
+}  // namespace skein::hil

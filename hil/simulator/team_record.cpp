@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/team_record.hpp"
+
+namespace skein::hil {
+
+TeamRecorder::TeamRecorder(const TeamMission& mission, const TeamObserver& watcher)
+    : watcher_{watcher} {
+  record_.sites = mission.sites;
+  for (const auto& h : mission.hazards) record_.hazards.push_back({h.hazard, h.known_from});
+  for (const auto& v : mission.vehicles) {
+    record_.vehicles.push_back(v.spec);
+    index_.emplace(v.spec.id, record_.recordings.size());
+    record_.recordings.push_back({v.spec.id, {}, {}, {}, 0});
+  }
+}
+
+recording::Recording& TeamRecorder::of(VehicleId vehicle) {
+  return record_.recordings.at(index_.at(vehicle));
+}
+
+TeamObserver TeamRecorder::observer() {
+  TeamObserver observer;
+  observer.event = [this](const mission::MissionEvent& event) {
+    auto& events =
+        event.vehicle == kGroundStation ? record_.ground_events : of(event.vehicle).events;
+    events.push_back(event);
+    if (watcher_.event) watcher_.event(event);
+  };
+  observer.plan = [this](VehicleId vehicle, const mission::FlightPlan& plan, Instant since) {
+    of(vehicle).plans.push_back({plan.number, since, plan.timed});
+    if (watcher_.plan) watcher_.plan(vehicle, plan, since);
+  };
+  observer.track = [this](VehicleId vehicle, const VehicleState& state,
+                          const mission::FlightPlan& plan) {
+    of(vehicle).track.push_back({state, plan.number, 0.0, 0.0});
+    if (watcher_.track) watcher_.track(vehicle, state, plan);
+  };
+  return observer;
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// skein-hil simulate as a person starts it: virtual time, no other process.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "skein/hil/child_process.hpp"
+
+namespace skein::hil {
+namespace {
+
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+class Simulate : public testing::Test {
+ protected:
+  Simulate() { fs::create_directories(folder); }
+  ~Simulate() override {
+    if (!HasFailure()) fs::remove_all(folder);
+  }
+  std::string run(const std::vector<std::string>& arguments) {
+    std::vector<std::string> argv{SKEIN_PROGRAMS "/skein-hil", "simulate"};
+    argv.insert(argv.end(), arguments.begin(), arguments.end());
+    fs::remove(log);
+    auto child = ChildProcess::start(argv, log, {});
+    EXPECT_TRUE(child);
+    return child->wait(240s) ? *child->ended() : "still running";
+  }
+  [[nodiscard]] std::string output() const {
+    std::stringstream text;
+    text << std::ifstream{log}.rdbuf();
+    return text.str();
+  }
+  /// The small scenario with one piece of text replaced.
+  [[nodiscard]] std::string scenario_with(const std::string& from, const std::string& to) const {
+    std::stringstream text;
+    text << std::ifstream{kSmall}.rdbuf();
+    std::string yaml = text.str();
+    const auto at = yaml.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    yaml.replace(at, from.size(), to);
+    const auto file = folder / "changed.yaml";
+    std::ofstream{file} << yaml;
+    return file.string();
+  }
+
+  const std::string kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
+  const fs::path folder =
+      fs::temp_directory_path() / ("skein-simulate-" + std::to_string(::getpid()));
+  const fs::path log = folder / "log";
+};
+
+TEST_F(Simulate, ManySeedsAreFlownAndSummedUp) {
+  EXPECT_EQ(run({kSmall, "--runs", "8", "--seed", "5", "--jobs", "2"}), "exit status 0");
+  const auto text = output();
+  EXPECT_NE(text.find("8, seeds 5 to 12"), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with("\nPASS\n")) << text;
+  EXPECT_EQ(text.find('\r'), std::string::npos) << "progress is for terminals";
+  EXPECT_EQ(run({kSmall, "--runs", "8", "--seed", "5", "--jobs", "1"}), "exit status 0");
+  EXPECT_EQ(text, output()) << "the number of threads changes nothing";
+}
+
+TEST_F(Simulate, AFailingSeedIsTracedByTheLineThatIsPrinted) {
+  // No vehicle can pass over its site to the nanometre.
+  const auto strict = scenario_with("miss_distance_m: 30", "miss_distance_m: 0.000000001");
+  EXPECT_EQ(run({strict, "--runs", "2", "--seed", "3"}), "exit status 1");
+  const auto text = output();
+  EXPECT_NE(text.find("seed 4 VIOLATED\n  deliveries: "), std::string::npos) << text;
+  EXPECT_TRUE(text.ends_with("\nFAIL\n")) << text;
+  const auto again = "  again: " SKEIN_PROGRAMS "/skein-hil simulate " + strict;
+  ASSERT_NE(text.find(again + " --seed 4 --trace\n"), std::string::npos) << text;
+
+  EXPECT_EQ(run({strict, "--seed", "4", "--trace"}), "exit status 1");
+  EXPECT_NE(output().find("VIOLATED:\n  deliveries: "), std::string::npos) << output();
+  EXPECT_NE(output().find("lease_granted"), std::string::npos) << "the full trace";
+}
+
+TEST_F(Simulate, BadInputIsNoViolation) {
+  EXPECT_EQ(run({"scenarios/no-such.yaml", "--runs", "2"}), "exit status 2");
+  EXPECT_NE(output().find("scenarios/no-such.yaml"), std::string::npos) << output();
+}
+
+}  // namespace
+}  // namespace skein::hil
