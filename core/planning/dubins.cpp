@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dubins_lanes.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 
@@ -14,6 +15,8 @@ namespace {
 /// Ends may differ from what was asked by this much, so that rounding of the input never turns a
 /// path of no length into a full circle.
 constexpr double kSlack_m = 2e-10;
+/// Two ways to compute one length differ by less, but where one of them goes full circle.
+constexpr double kAgree_m = 1e-6;
 
 constexpr std::array<DubinsWord, 6> kWords = {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL,
                                               DubinsWord::RSR, DubinsWord::RLR, DubinsWord::LRL};
@@ -88,7 +91,7 @@ std::optional<Turns> csc(const Relative& g, const Senses& s, double r1, double r
   const double half = std::sin(g.turn_rad / 2.0);
   const double line_sq = g.x_m * g.x_m + g.y_m * g.y_m + 2.0 * (g.x_m * wx + g.y_m * wy) +
                          4.0 * s.first * s.last * r1 * r2 * half * half;
-  if (line_sq < -kSlack_m * std::abs(offset)) return std::nullopt;
+  if (line_sq < -2.0 * kSlack_m * std::abs(offset)) return std::nullopt;
   double heading = 0.0;
   double line = 0.0;
   if (offset != 0.0 || std::hypot(dx, dy) > kSlack_m) {
@@ -133,6 +136,40 @@ DubinsPath make_path(DubinsWord word, const Pose2& from, const Turns& t, double 
 
 bool same_pose(const Relative& g, double radius_m) {
   return std::hypot(g.x_m, g.y_m) < kSlack_m && std::abs(g.turn_rad) * radius_m < kSlack_m;
+}
+
+/// Lengths of all words: the left-first ones in one lane, the right-first ones in the other.
+using Pair = DubinsLanes<2>;
+struct WordLengths {
+  Pair::Real same = Pair::infinity();   ///< LSL, RSR
+  Pair::Real other = Pair::infinity();  ///< LSR, RSL
+  Pair::Real ccc = Pair::infinity();    ///< LRL, RLR; infinite where it is not the shortest
+  double shortest_m = 0.0;
+};
+
+double least_of(const Pair::Real& pair) { return pair[1] < pair[0] ? pair[1] : pair[0]; }
+
+WordLengths word_lengths(const Pose2& from, const Pose2& to, double radius_m) {
+  const Pair::Real headings = Pair::tame(Pair::Real{from.heading_rad, to.heading_rad});
+  const Pair::SinCos both = Pair::sin_cos(headings);
+  Pair::Goal goal = Pair::goal_of(Pair::splat(to.x_m - from.x_m), Pair::splat(to.y_m - from.y_m),
+                                  Pair::splat(headings[1] - headings[0]),
+                                  {Pair::splat(both.sin[0]), Pair::splat(both.cos[0])},
+                                  {Pair::splat(both.sin[1]), Pair::splat(both.cos[1])});
+  WordLengths result;
+  if (Pair::any(Pair::is_here(goal, radius_m))) return result;
+  const Pair::Real side{1.0, -1.0};
+  goal = {goal.x, goal.y * side, goal.sin * side, goal.cos, goal.versine, goal.turn * side};
+  const Pair::Csc csc = Pair::csc(goal, radius_m);
+  result.same = csc.same;
+  result.other = csc.other;
+  result.shortest_m = least_of(Pair::least(csc.same, csc.other));
+  const auto may_win = Pair::ccc_may_win(csc, radius_m, Pair::splat(result.shortest_m));
+  if (Pair::any(may_win)) {
+    result.ccc = Pair::select(may_win, Pair::ccc(goal, csc, radius_m), Pair::infinity());
+    result.shortest_m = std::min(result.shortest_m, least_of(result.ccc));
+  }
+  return result;
 }
 
 /// The point in the frame of the start pose, reached by one arc and a line, or by two arcs.
@@ -230,13 +267,23 @@ std::optional<DubinsPath> dubins_ccc(DubinsWord word, const Pose2& from, const P
 }
 
 DubinsPath shortest_dubins(const Pose2& from, const Pose2& to, double radius_m) {
+  SKEIN_ASSERT(radius_m > 0.0);
+  const WordLengths lengths = word_lengths(from, to, radius_m);
+  const std::array<double, 6> by_word = {lengths.same[0], lengths.other[0], lengths.other[1],
+                                         lengths.same[1], lengths.ccc[1],   lengths.ccc[0]};
+  const auto least = std::min_element(by_word.begin(), by_word.end()) - by_word.begin();
+  const auto word =
+      dubins_word(kWords[static_cast<std::size_t>(least)], from, to, radius_m, radius_m);
+  if (word && std::abs(word->length_m() - lengths.shortest_m) < kAgree_m) return *word;
+  // The same pose, or on the edge where a word begins to exist.
   const auto best = shortest_dubins(from, to, radius_m, radius_m);
   SKEIN_ASSERT(best.has_value());
   return *best;
 }
 
 double shortest_dubins_length(const Pose2& from, const Pose2& to, double radius_m) {
-  return shortest_dubins(from, to, radius_m).length_m();
+  SKEIN_ASSERT(radius_m > 0.0);
+  return word_lengths(from, to, radius_m).shortest_m;
 }
 
 std::optional<DubinsPath> shortest_dubins(const Pose2& from, const Pose2& to, double start_radius_m,

@@ -10,6 +10,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
+#include "skein/planning/dubins_batch.hpp"
 
 namespace {
 
@@ -48,6 +49,26 @@ void scalar(benchmark::State& state, double radii) {
   }
 }
 
+/// All queries in one call. With the trigonometry of the headings at hand, or without.
+void batch(benchmark::State& state, double radii, bool cached, std::size_t level) {
+  using skein::planning::simd_levels;
+  if (level >= simd_levels().size()) return state.SkipWithError("not on this processor");
+  const Queries queries = random_queries(radii);
+  skein::planning::PoseBatch from;
+  skein::planning::PoseBatch to;
+  for (const Pose2& pose : queries.from) from.push_back(pose);
+  for (const Pose2& pose : queries.to) to.push_back(pose);
+  auto a = from.columns();
+  auto b = to.columns();
+  if (!cached) a.cos = a.sin = b.cos = b.sin = {};
+  std::vector<double> lengths(kQueries);
+  while (state.KeepRunning()) {
+    skein::planning::shortest_dubins_lengths(a, b, kRadius_m, lengths, simd_levels()[level]);
+    benchmark::DoNotOptimize(lengths.data());
+  }
+  state.SetItemsProcessed(static_cast<std::int64_t>(kQueries) * state.iterations());
+}
+
 void ompl_distance(benchmark::State& state, double radii) {
   const Queries queries = random_queries(radii);
   const auto space = std::make_shared<ompl::base::DubinsStateSpace>(kRadius_m);
@@ -74,5 +95,17 @@ BENCHMARK_CAPTURE(scalar, near, 6.0)->Name("dubins_length/skein/near");
 BENCHMARK_CAPTURE(ompl_distance, near, 6.0)->Name("dubins_length/ompl/near");
 BENCHMARK_CAPTURE(scalar, far, 60.0)->Name("dubins_length/skein/far");
 BENCHMARK_CAPTURE(ompl_distance, far, 60.0)->Name("dubins_length/ompl/far");
+
+// The batch against the peer's one by one; it has no batch.
+BENCHMARK_CAPTURE(batch, avx2_near, 6.0, false, 1)->Name("dubins_batch/skein/near");
+BENCHMARK_CAPTURE(ompl_distance, batch_near, 6.0)->Name("dubins_batch/ompl/near");
+BENCHMARK_CAPTURE(batch, avx2_far, 60.0, false, 1)->Name("dubins_batch/skein/far");
+BENCHMARK_CAPTURE(ompl_distance, batch_far, 60.0)->Name("dubins_batch/ompl/far");
+BENCHMARK_CAPTURE(batch, cached_near, 6.0, true, 1)->Name("dubins_batch_cached/skein/near");
+BENCHMARK_CAPTURE(batch, cached_far, 60.0, true, 1)->Name("dubins_batch_cached/skein/far");
+BENCHMARK_CAPTURE(batch, baseline_near, 6.0, false, 0)->Name("dubins_batch_baseline/skein/near");
+BENCHMARK_CAPTURE(batch, baseline_far, 60.0, false, 0)->Name("dubins_batch_baseline/skein/far");
+BENCHMARK_CAPTURE(batch, avx512_near, 6.0, false, 2)->Name("dubins_batch_avx512/skein/near");
+BENCHMARK_CAPTURE(batch, avx512_far, 60.0, false, 2)->Name("dubins_batch_avx512/skein/far");
 
 }  // namespace

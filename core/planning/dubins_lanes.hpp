@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#elif defined(__aarch64__)
+#include <arm_neon.h>
+#endif
+
+namespace skein::planning {
+
+/// Poses as columns; `step` is 1, or 0 where one pose stands for all. cos and sin may be null.
+struct DubinsColumns {
+  const double* x_m;
+  const double* y_m;
+  const double* heading_rad;
+  const double* cos;
+  const double* sin;
+  std::size_t step;
+};
+
+/// Vectors of the compiler (GCC, Clang): numbers, and what their comparison gives.
+template <int Lanes>
+struct Vectors;
+template <>
+struct Vectors<2> {
+  using Real = double __attribute__((vector_size(16)));
+  using Bits = decltype(Real{} < Real{});
+};
+template <>
+struct Vectors<4> {
+  using Real = double __attribute__((vector_size(32)));
+  using Bits = decltype(Real{} < Real{});
+};
+template <>
+struct Vectors<8> {
+  using Real = double __attribute__((vector_size(64)));
+  using Bits = decltype(Real{} < Real{});
+};
+
+/// Shortest Dubins lengths of so many pose pairs at once.
+/// Additions, multiplications, divisions and square roots only, in one order for every width and
+/// without fused operations: the same bits on every processor. Each width is instantiated in one
+/// source only, which is compiled for processors that have it; hence no other header is included.
+///
+/// In the frame of the start pose, the left-first words (LSL, LSR, LRL) only: the right-first words
+/// are those to the mirrored goal. Centres c1 = (0, r) and c2 (Shkel and Lumelsky 2001, without
+/// their rotation of both poses).
+template <int Lanes>
+struct DubinsLanes {
+  static constexpr int kLanes = Lanes;
+  using Real = typename Vectors<Lanes>::Real;
+  using Bits = typename Vectors<Lanes>::Bits;
+
+  static constexpr double kPi = 0x1.921fb54442d18p+1;
+  static constexpr double kTwoPi = 2.0 * kPi;
+  /// As in dubins.cpp: what the end may miss the goal by.
+  static constexpr double kSlack_m = 2e-10;
+  /// Below this the reduction of a heading is exact to the last bits.
+  static constexpr double kHeadingMax_rad = 1e5;
+
+  struct SinCos {
+    Real sin;
+    Real cos;
+  };
+  /// The goal's position in the frame of the start, and how much it turns, in [-pi, pi].
+  struct Goal {
+    Real x;
+    Real y;
+    Real sin;
+    Real cos;
+    Real versine;  ///< 1 - cos, without cancellation
+    Real turn;
+  };
+  /// Lengths of LSL and LSR (infinite where it does not exist), and c2 - c1 of LSL and LRL.
+  struct Csc {
+    Real same;
+    Real other;
+    Real dx;
+    Real dy;
+    Real distance;
+  };
+
+  static Real splat(double value) { return Real{} + value; }
+  static Real infinity() { return splat(__builtin_inf()); }
+  static Real select(Bits mask, Real yes, Real no) { return mask ? yes : no; }
+  static Real least(Real a, Real b) { return select(b < a, b, a); }
+  static Real magnitude(Real a) { return Real(Bits(a) & INT64_MAX); }
+  /// a with its sign changed where b is negative.
+  static Real sign_by(Real a, Real b) { return Real(Bits(a) ^ (Bits(b) & INT64_MIN)); }
+
+  static Real root(Real a) {
+#if defined(__AVX512F__)
+    if constexpr (kLanes == 8) return Real(_mm512_maskz_sqrt_pd(0xff, __m512d(a)));
+#endif
+#if defined(__AVX2__)
+    if constexpr (kLanes == 4) return Real(_mm256_sqrt_pd(__m256d(a)));
+#endif
+#if defined(__x86_64__)
+    if constexpr (kLanes == 2) return Real(_mm_sqrt_pd(__m128d(a)));
+#elif defined(__aarch64__)
+    if constexpr (kLanes == 2) return Real(vsqrtq_f64(float64x2_t(a)));
+#endif
+    for (int i = 0; i < kLanes; ++i) a[i] = __builtin_sqrt(a[i]);
+    return a;
+  }
+
+  static bool any(Bits mask) {
+#if defined(__AVX2__)
+    if constexpr (kLanes == 4) return _mm256_movemask_pd(__m256d(mask)) != 0;
+#endif
+#if defined(__x86_64__)
+    if constexpr (kLanes == 2) return _mm_movemask_pd(__m128d(mask)) != 0;
+#endif
+    std::int64_t all = 0;
+    for (int i = 0; i < kLanes; ++i) all |= mask[i];
+    return all != 0;
+  }
+
+  /// Multiples of pi / 2 taken off in three parts whose products are exact (Cody and Waite 1980),
+  /// then the Taylor series, whose next terms are below 5e-17 up to pi / 4.
+  static SinCos sin_cos(Real rad) {
+    constexpr double kToInteger = 0x1.8p+52;
+    const Real shifted = rad * (2.0 / kPi) + kToInteger;
+    const Bits quadrant = Bits(shifted);
+    const Real n = shifted - kToInteger;
+    const Real a = ((rad - n * 0x1.921fb544p+0) - n * 0x1.0b4611a6p-34) - n * 0x1.3198a2e037073p-69;
+    const Real z = a * a;
+    const Real zz = z * z;
+    const Real s_even = ((zz * (1.0 / 6227020800.0) + 1.0 / 362880.0) * zz + 1.0 / 120.0) * zz;
+    const Real s_odd =
+        ((zz * (-1.0 / 1307674368000.0) - 1.0 / 39916800.0) * zz - 1.0 / 5040.0) * zz - 1.0 / 6.0;
+    const Real s = a + a * (s_even + s_odd * z);
+    const Real c_even =
+        (((zz * (1.0 / 20922789888000.0) + 1.0 / 479001600.0) * zz + 1.0 / 40320.0) * zz +
+         1.0 / 24.0) *
+        zz;
+    const Real c_odd =
+        ((zz * (-1.0 / 87178291200.0) - 1.0 / 3628800.0) * zz - 1.0 / 720.0) * zz - 0.5;
+    const Real c = 1.0 + (c_even + c_odd * z);
+    const Bits odd = (quadrant & 1) != 0;
+    const Bits minus_sin = (quadrant & 2) << 62;
+    const Bits minus_cos = ((quadrant + 1) & 2) << 62;
+    return {Real(Bits(select(odd, c, s)) ^ minus_sin), Real(Bits(select(odd, s, c)) ^ minus_cos)};
+  }
+
+  /// In [-pi, pi], within 4e-16; not for the origin. Reduced to |t| <= tan(pi / 8) with one
+  /// division; atan(t) / t by interpolation in t^2 at the Chebyshev nodes, within 4e-18.
+  static Real angle(Real y, Real x) {
+    constexpr double kC1 = -0.3333333333333312;
+    constexpr double kC2 = 0.19999999999940893;
+    constexpr double kC3 = -0.14285714279250245;
+    constexpr double kC4 = 0.11111110744919658;
+    constexpr double kC5 = -0.09090896809064027;
+    constexpr double kC6 = 0.07692045330902225;
+    constexpr double kC7 = -0.06662951813629191;
+    constexpr double kC8 = 0.05846878297330872;
+    constexpr double kC9 = -0.05035102456601552;
+    constexpr double kC10 = 0.03796525745386593;
+    constexpr double kC11 = -0.017805397205419446;
+    constexpr double kTanEighth = 0.41421356237309503;
+    const Real ax = magnitude(x);
+    const Real ay = magnitude(y);
+    const Bits steep = ay > ax;
+    const Real low = select(steep, ax, ay);
+    const Real high = select(steep, ay, ax);
+    const Bits wide = low > kTanEighth * high;
+    const Real t = select(wide, low - high, low) / select(wide, low + high, high);
+    const Real z = t * t;
+    const Real zz = z * z;
+    const Real even = ((((zz * kC10 + kC8) * zz + kC6) * zz + kC4) * zz + kC2) * zz;
+    const Real odd = ((((zz * kC11 + kC9) * zz + kC7) * zz + kC5) * zz + kC3) * zz + kC1;
+    Real turn = t + t * (even + odd * z);
+    turn = turn + select(wide, splat(kPi / 4.0), Real{});
+    turn = select(steep, kPi / 2.0 - turn, turn);
+    turn = select(x < 0.0, kPi - turn, turn);
+    return sign_by(turn, y);
+  }
+
+  /// From (-4 pi, 4 pi) to [0, 2 pi); a full circle less what moves the end by no more than the
+  /// slack is none at all.
+  static Real turn_of(Real rad, Real reach_m) {
+    Real turn = select(rad < 0.0, rad + kTwoPi, rad);
+    turn = select(turn >= kTwoPi, turn - kTwoPi, turn);
+    return select((kTwoPi - turn) * reach_m < kSlack_m, Real{}, turn);
+  }
+
+  static Real wrap(Real rad) {
+    constexpr double kToInteger = 0x1.8p+52;
+    const Real n = (rad * (1.0 / kTwoPi) + kToInteger) - kToInteger;
+    return ((rad - n * 0x1.921fb544p+2) - n * 0x1.0b4611a6p-32) - n * 0x1.3198a2e037073p-67;
+  }
+
+  static Goal goal_of(Real dx, Real dy, Real turn, const SinCos& from, const SinCos& to) {
+    const Real s = to.sin * from.cos - to.cos * from.sin;
+    const Real c = to.cos * from.cos + to.sin * from.sin;
+    const Real versine = select(c > 0.0, s * s / (1.0 + c), 1.0 - c);
+    return {
+        from.cos * dx + from.sin * dy, from.cos * dy - from.sin * dx, s, c, versine, wrap(turn)};
+  }
+  static Goal mirrored(const Goal& g) { return {g.x, -g.y, -g.sin, g.cos, g.versine, -g.turn}; }
+
+  static Bits is_here(const Goal& g, double r) {
+    return ((g.x * g.x + g.y * g.y) < kSlack_m * kSlack_m) & (magnitude(g.turn) * r < kSlack_m);
+  }
+
+  /// The turns of LSL sum to the goal's turn, and a full circle more where the line's direction is
+  /// not passed on the way: signs of products tell, no angle is needed.
+  static void lsl(const Goal& g, double r, Csc& result) {
+    const Real dx = g.x - r * g.sin;
+    const Real dy = g.y - r * g.versine;
+    const Real line = root(dx * dx + dy * dy);
+    const Real from_last = dx * g.sin - dy * g.cos;
+    const Real along_last = dx * g.cos + dy * g.sin;
+    const Real reach = r + line;
+    const Real none = kSlack_m * line;
+    const Bits no_first = (magnitude(dy) * reach <= none) & (dx > 0.0);
+    const Bits no_last = (magnitude(from_last) * reach <= none) & (along_last > 0.0);
+    const Bits ahead = (dx + along_last) > -line;  // not on the other side of both
+    const Bits left = g.turn >= 0.0;
+    const Bits between = (dy >= 0.0) & (from_last >= 0.0) & ahead;
+    const Bits beyond = (dy < 0.0) & (from_last < 0.0) & ahead;
+    const Bits passed =
+        (left & between) | ~(left | beyond) | no_first | no_last | (line <= kSlack_m);
+    Real turns = select(left, g.turn, g.turn + kTwoPi);
+    turns = select(passed, turns, turns + kTwoPi);
+    turns = select(no_first & no_last, Real{}, turns);
+    result.same = line + r * turns;
+    result.dx = dx;
+    result.dy = dy;
+    result.distance = line;
+  }
+
+  static void lsr(const Goal& g, double r, Csc& result) {
+    const Real dx = g.x + r * g.sin;
+    const Real dy = (g.y - 2.0 * r) + r * g.versine;
+    // |c2 - c1|^2 - 4 r^2, arranged so that near poses do not cancel.
+    const Real line_sq = (g.x * g.x + g.y * g.y) +
+                         2.0 * r * ((g.x * g.sin - g.y * (2.0 - g.versine)) - r * g.versine);
+    const Real line = root(select(line_sq > 0.0, line_sq, Real{}));
+    const Real heading = angle(dy * line + 2.0 * r * dx, dx * line - 2.0 * r * dy);
+    const Real first = turn_of(heading, r + line);
+    const Real last = turn_of(heading - g.turn, splat(r));
+    const Real length = line + r * (first + last);
+    result.other = select(line_sq >= -4.0 * r * kSlack_m, length, infinity());
+  }
+
+  static Csc csc(const Goal& g, double r) {
+    Csc result{};
+    lsl(g, r, result);
+    lsr(g, r, result);
+    return result;
+  }
+
+  /// Where a CCC word with the middle arc above a half turn could be shorter than `best`: it is
+  /// never shorter than 2 pi r - 2 r asin(distance / 4 r), and asin(q) <= q pi / 2.
+  static Bits ccc_may_win(const Csc& c, double r, Real best) {
+    return (c.distance <= 4.0 * r + kSlack_m) & (kTwoPi * r - (kPi / 4.0) * c.distance < best);
+  }
+
+  /// LRL. Halfway round the middle arc the heading is that of c2 - c1.
+  static Real ccc(const Goal& g, const Csc& c, double r) {
+    const Bits apart = c.distance > kSlack_m;
+    const Real dx = select(apart, c.dx, splat(1.0));
+    const Real dy = select(apart, c.dy, Real{});
+    const Real rest_sq = 16.0 * r * r - c.distance * c.distance;
+    const Real rest = root(select(rest_sq > 0.0, rest_sq, Real{}));
+    const Real middle = kTwoPi - 2.0 * angle(c.distance, rest);
+    const Real leave = angle(dx * c.distance - dy * rest, -(dx * rest) - dy * c.distance);
+    const Real first = turn_of(leave, splat(4.0 * r));
+    const Real last = turn_of((g.turn - leave) + middle, splat(r));
+    return r * (first + middle + last);
+  }
+
+  static Real shortest(const Goal& g, double r) {
+    const Goal m = mirrored(g);
+    const Csc left = csc(g, r);
+    const Csc right = csc(m, r);
+    Real best = least(least(left.same, left.other), least(right.same, right.other));
+    const Bits lrl = ccc_may_win(left, r, best);
+    const Bits rlr = ccc_may_win(right, r, best);
+    if (any(lrl | rlr)) {
+      const Real a = select(lrl, ccc(g, left, r), infinity());
+      const Real b = select(rlr, ccc(m, right, r), infinity());
+      best = least(best, least(a, b));
+    }
+    return select(is_here(g, r), Real{}, best);
+  }
+
+  static Real load(const double* column, std::size_t step, std::size_t i, std::size_t count) {
+    if (step == 0) return splat(*column);
+    Real result{};
+    if (i + kLanes <= count) {
+      __builtin_memcpy(&result, column + i, sizeof result);
+    } else {
+      for (std::size_t k = 0; k < kLanes; ++k) result[k] = column[i + k < count ? i + k : i];
+    }
+    return result;
+  }
+
+  static Real tame(Real heading) {
+    if (any(magnitude(heading) > kHeadingMax_rad)) {
+      for (int k = 0; k < kLanes; ++k) heading[k] = __builtin_remainder(heading[k], kTwoPi);
+    }
+    return heading;
+  }
+
+  static SinCos trigonometry(const DubinsColumns& poses, Real heading, std::size_t i,
+                             std::size_t count) {
+    if (poses.cos == nullptr) return sin_cos(heading);
+    return {load(poses.sin, poses.step, i, count), load(poses.cos, poses.step, i, count)};
+  }
+
+  static void lengths(const DubinsColumns& from, const DubinsColumns& to, std::size_t count,
+                      double radius_m, double* lengths_m) {
+    for (std::size_t i = 0; i < count; i += kLanes) {
+      const Real a = tame(load(from.heading_rad, from.step, i, count));
+      const Real b = tame(load(to.heading_rad, to.step, i, count));
+      const Goal goal =
+          goal_of(load(to.x_m, to.step, i, count) - load(from.x_m, from.step, i, count),
+                  load(to.y_m, to.step, i, count) - load(from.y_m, from.step, i, count), b - a,
+                  trigonometry(from, a, i, count), trigonometry(to, b, i, count));
+      const Real length = shortest(goal, radius_m);
+      const std::size_t left = count - i;
+      __builtin_memcpy(lengths_m + i, &length, sizeof(double) * (left < kLanes ? left : kLanes));
+    }
+  }
+};
+
+#if defined(__x86_64__)
+void dubins_lengths_avx2(const DubinsColumns& from, const DubinsColumns& to, std::size_t count,
+                         double radius_m, double* lengths_m);
+void dubins_lengths_avx512(const DubinsColumns& from, const DubinsColumns& to, std::size_t count,
+                           double radius_m, double* lengths_m);
+#endif
+
+}  // namespace skein::planning
