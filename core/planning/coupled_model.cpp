@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "coupled_model.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
+#include "skein/planning/dubins.hpp"
+
+namespace skein::planning::coupled {
+namespace {
+
+constexpr int kCounterClockwise = 1;
+constexpr int kClockwise = -1;
+
+/// A way of flying a task, before it is known by which vehicle.
+struct Way {
+  Index task = 0;
+  double start_rad = 0.0;  ///< of an arc
+  int turn = kCounterClockwise;
+};
+
+std::vector<Way> ways_of(const CoupledProblem& problem, const Site& site, const TaskId& id,
+                         Index task) {
+  if (id.kind == TaskKind::deliver) return {{task}};
+  const bool survey = id.kind == TaskKind::survey;
+  const ArcRequirement& arc = survey ? site.survey : site.assessments[id.index];
+  const bool both = survey && (problem.survey_in_both_senses || !arc.start_angle_rad);
+  const int starts = arc.start_angle_rad ? 1 : problem.free_starts;
+  std::vector<Way> ways;
+  for (int i = 0; i < starts; ++i) {
+    const double start = arc.start_angle_rad.value_or(0.0) + i * kTwoPi / starts;
+    ways.push_back({task, wrap_pi(start), kCounterClockwise});
+    if (both) ways.push_back({task, wrap_pi(start), kClockwise});
+  }
+  return ways;
+}
+
+bool alike(const CoupledVehicle& a, const CoupledVehicle& b) {
+  return a.speed_mps == b.speed_mps && a.planning_radius_m == b.planning_radius_m &&
+         a.final_approach_m == b.final_approach_m && a.sensor_radius_m == b.sensor_radius_m &&
+         a.assess_radius_m == b.assess_radius_m && a.capabilities == b.capabilities &&
+         (a.loads == 0) == (b.loads == 0);
+}
+
+bool equal(const CoupledVehicle& a, const CoupledVehicle& b) {
+  return alike(a, b) && a.loads == b.loads && a.range_left_m == b.range_left_m &&
+         a.pose.x_m == b.pose.x_m && a.pose.y_m == b.pose.y_m &&
+         a.pose.heading_rad == b.pose.heading_rad;
+}
+
+bool can(const CoupledVehicle& vehicle, TaskKind kind) {
+  return vehicle.capabilities.has(kind) && (kind != TaskKind::deliver || vehicle.loads > 0);
+}
+
+double arc_radius_m(const CoupledVehicle& vehicle, TaskKind kind) {
+  return kind == TaskKind::survey ? vehicle.sensor_radius_m : vehicle.assess_radius_m;
+}
+
+/// The lengths of one problem, by what it is given.
+class Lengths {
+ public:
+  explicit Lengths(const CoupledProblem& problem) : problem_{problem} {}
+
+  [[nodiscard]] double transit_m(const Pose2& from, const Pose2& to, double radius_m) const {
+    if (problem_.transit_length_m) return problem_.transit_length_m(from, to, radius_m);
+    if (problem_.hazards.empty()) return shortest_dubins_length(from, to, radius_m);
+    const auto path = shortest_clear_path(problem_.avoidance, from, to, radius_m, problem_.hazards);
+    return path ? path->length_m() : kInfinity;
+  }
+  [[nodiscard]] bool run_is_clear(const TaskPath& task) const {
+    if (problem_.hazards.empty()) return true;
+    Path run{.start = task.entry, .segments = {}};
+    return run.append(task.run) && is_clear(run, problem_.hazards);
+  }
+
+ private:
+  const CoupledProblem& problem_;
+};
+
+struct Compiler {
+  const CoupledProblem& problem;
+  Model& model;
+  std::vector<Way> ways;
+
+  void add_vehicles();
+  VehicleClass make_class(const CoupledVehicle& vehicle) const;
+  void least(VehicleClass& kind) const;
+};
+
+VehicleClass Compiler::make_class(const CoupledVehicle& vehicle) const {
+  const Lengths lengths{problem};
+  const std::size_t visits = ways.size();
+  VehicleClass kind;
+  kind.reach_s.assign(visits * visits, kInfinity);
+  std::vector<bool> possible(visits, false);
+  std::vector<Pose2> exits;
+  for (std::size_t v = 0; v < visits; ++v) {
+    const Way& way = ways[v];
+    const Task& task = model.tasks[at(way.task)];
+    const Site& site = problem.sites[at(task.site)];
+    TaskPath path;
+    double before_m = 0.0;
+    if (task.id.kind == TaskKind::deliver) {
+      path = delivery_path(site, site.deliveries[task.id.index], vehicle.final_approach_m);
+      before_m = path.run.length_m;
+      possible[v] = can(vehicle, task.id.kind);
+    } else {
+      const double radius_m = arc_radius_m(vehicle, task.id.kind);
+      possible[v] = can(vehicle, task.id.kind) && radius_m >= vehicle.planning_radius_m;
+      if (possible[v]) {
+        const ArcRequirement& arc =
+            task.id.kind == TaskKind::survey ? site.survey : site.assessments[task.id.index];
+        path = arc_path(site, way.start_rad, arc.dwell, radius_m, vehicle.speed_mps, way.turn);
+      }
+    }
+    possible[v] = possible[v] && lengths.run_is_clear(path);
+    kind.paths.push_back(path);
+    kind.before_s.push_back(before_m / vehicle.speed_mps);
+    kind.after_s.push_back((path.run.length_m - before_m) / vehicle.speed_mps);
+    exits.push_back(advance(path.entry, path.run.curvature_per_m, path.run.length_m));
+  }
+  for (std::size_t a = 0; a < visits; ++a) {
+    for (std::size_t b = 0; b < visits; ++b) {
+      if (ways[a].task == ways[b].task || !possible[a] || !possible[b]) continue;
+      const double transit_m =
+          lengths.transit_m(exits[a], kind.paths[b].entry, vehicle.planning_radius_m);
+      kind.reach_s[a * visits + b] = transit_m / vehicle.speed_mps + kind.before_s[b];
+    }
+  }
+  for (std::size_t v = 0; v < visits; ++v) {
+    if (!possible[v]) kind.after_s[v] = kInfinity;
+  }
+  least(kind);
+  return kind;
+}
+
+/// With exact lengths a detour by another task is never shorter; with others it may be, and a bound
+/// must not trust them.
+void Compiler::least(VehicleClass& kind) const {
+  const std::size_t visits = ways.size();
+  const std::size_t tasks = model.tasks.size();
+  std::vector<double> closed = kind.reach_s;
+  for (std::size_t m = 0; m < visits; ++m) {
+    for (std::size_t a = 0; a < visits; ++a) {
+      const double half = closed[a * visits + m] + kind.after_s[m];
+      if (half == kInfinity) continue;
+      for (std::size_t b = 0; b < visits; ++b) {
+        closed[a * visits + b] = std::min(closed[a * visits + b], half + closed[m * visits + b]);
+      }
+    }
+  }
+  kind.least_s.assign(visits * tasks, kInfinity);
+  kind.least_between_s.assign(tasks * tasks, kInfinity);
+  kind.least_after_s.assign(tasks, kInfinity);
+  for (std::size_t b = 0; b < visits; ++b) {
+    const std::size_t to = at(ways[b].task);
+    kind.least_after_s[to] = std::min(kind.least_after_s[to], kind.after_s[b]);
+    for (std::size_t a = 0; a < visits; ++a) {
+      const double reach = closed[a * visits + b];
+      double& single = kind.least_s[a * tasks + to];
+      single = std::min(single, reach);
+      double& between = kind.least_between_s[at(ways[a].task) * tasks + to];
+      between = std::min(between, reach);
+    }
+  }
+}
+
+void Compiler::add_vehicles() {
+  const Lengths lengths{problem};
+  double range_sum_m = 0.0;
+  for (const CoupledVehicle& v : problem.vehicles) range_sum_m += v.range_left_m;
+  std::vector<const CoupledVehicle*> first_of_class;
+  for (std::size_t i = 0; i < problem.vehicles.size(); ++i) {
+    const CoupledVehicle& given = problem.vehicles[i];
+    const auto found = std::find_if(first_of_class.begin(), first_of_class.end(),
+                                    [&](const auto* other) { return alike(*other, given); });
+    Vehicle vehicle;
+    vehicle.kind = static_cast<Index>(found - first_of_class.begin());
+    if (found == first_of_class.end()) {
+      first_of_class.push_back(&given);
+      model.classes.push_back(make_class(given));
+    }
+    const VehicleClass& kind = model.classes[at(vehicle.kind)];
+    vehicle.reach_s.assign(ways.size(), kInfinity);
+    vehicle.least_s.assign(model.tasks.size(), kInfinity);
+    for (std::size_t v = 0; v < ways.size(); ++v) {
+      if (kind.after_s[v] == kInfinity) continue;
+      vehicle.reach_s[v] =
+          lengths.transit_m(given.pose, kind.paths[v].entry, given.planning_radius_m) /
+              given.speed_mps +
+          kind.before_s[v];
+    }
+    for (std::size_t v = 0; v < ways.size(); ++v) {
+      double& direct = vehicle.least_s[at(ways[v].task)];
+      direct = std::min(direct, vehicle.reach_s[v]);
+      if (vehicle.reach_s[v] == kInfinity) continue;
+      for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+        vehicle.least_s[t] =
+            std::min(vehicle.least_s[t], vehicle.reach_s[v] + kind.after_s[v] +
+                                             kind.least_s[v * model.tasks.size() + t]);
+      }
+    }
+    vehicle.deadline_s = given.range_left_m / given.speed_mps;
+    vehicle.loads = given.loads;
+    if (problem.criterion == Criterion::value && range_sum_m > 0.0) {
+      vehicle.range_weight_per_s = problem.weights.range * given.speed_mps / range_sum_m;
+    }
+    for (std::size_t j = i; j-- > 0;) {
+      if (!equal(problem.vehicles[j], given)) continue;
+      vehicle.twin = static_cast<Index>(j);
+      break;
+    }
+    model.vehicles.push_back(std::move(vehicle));
+  }
+}
+
+std::optional<Error> refusal(const CoupledProblem& problem) {
+  if (problem.vehicles.empty() || problem.vehicles.size() > kCoupledVehiclesMax) {
+    return Error{"A coupled problem has 1 to " + std::to_string(kCoupledVehiclesMax) +
+                 " vehicles, not " + std::to_string(problem.vehicles.size())};
+  }
+  if (problem.open_tasks.empty() || problem.open_tasks.size() > kCoupledTasksMax) {
+    return Error{"A coupled problem has 1 to " + std::to_string(kCoupledTasksMax) +
+                 " open tasks, not " + std::to_string(problem.open_tasks.size())};
+  }
+  for (const CoupledVehicle& v : problem.vehicles) {
+    if (v.speed_mps > 0.0 && v.planning_radius_m > 0.0) continue;
+    return Error{"Vehicle " + std::to_string(v.id.value) +
+                 " needs a speed and a turn radius above 0"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Result<Model> Model::make(const CoupledProblem& problem) {
+  if (auto error = refusal(problem)) return *error;
+  Model model;
+  model.criterion = problem.criterion;
+  model.decide_wait_s = to_seconds(problem.decide_wait);
+  model.sites.resize(problem.sites.size());
+  std::vector<TaskId> open = problem.open_tasks;
+  std::sort(open.begin(), open.end());
+  open.erase(std::unique(open.begin(), open.end()), open.end());
+  std::vector<Way> ways;
+  double reward_sum = 0.0;
+  for (const TaskId& id : open) {
+    const auto site = std::find_if(problem.sites.begin(), problem.sites.end(),
+                                   [&](const Site& s) { return s.id == id.site; });
+    if (site == problem.sites.end() || id.index >= site->task_count(id.kind)) {
+      return Error{"There is no task '" + to_string(id) + "' among the sites of the problem"};
+    }
+    const auto task = static_cast<Index>(model.tasks.size());
+    Task made;
+    made.id = id;
+    made.site = static_cast<Index>(site - problem.sites.begin());
+    made.weight = site->reward;
+    made.decay_per_s = site->reward_decay_per_s;
+    reward_sum += site->reward;
+    made.first_visit = static_cast<Index>(ways.size());
+    const auto its_ways = ways_of(problem, *site, id, task);
+    made.visits = static_cast<Index>(its_ways.size());
+    ways.insert(ways.end(), its_ways.begin(), its_ways.end());
+    SiteTasks& tasks = model.sites[at(made.site)];
+    tasks.assess_wait_s = to_seconds(site->assess_wait);
+    if (id.kind == TaskKind::survey) tasks.survey = task;
+    if (id.kind == TaskKind::assess) tasks.assessments.push_back(task);
+    if (id.kind == TaskKind::deliver) {
+      made.offset_s = to_seconds(site->deliveries[id.index].offset);
+      tasks.deliveries.push_back(task);
+    }
+    model.tasks.push_back(made);
+  }
+  for (const SiteTasks& site : model.sites) {
+    double least_s = kInfinity;
+    for (const Index d : site.deliveries) least_s = std::min(least_s, model.tasks[at(d)].offset_s);
+    for (const Index d : site.deliveries) {
+      model.tasks[at(d)].offset_s -= least_s;
+      model.offsets = model.offsets || model.tasks[at(d)].offset_s > 0.0;
+    }
+  }
+  const double reward_weight = problem.criterion == Criterion::value ? problem.weights.reward : 1.0;
+  for (Task& task : model.tasks) {
+    task.weight = reward_sum > 0.0 ? reward_weight * task.weight / reward_sum : 0.0;
+  }
+  for (const Way& way : ways) model.task_of.push_back(way.task);
+  model.best_value_ = (reward_sum > 0.0 ? problem.weights.reward : 0.0) + problem.weights.range;
+  Compiler{problem, model, std::move(ways)}.add_vehicles();
+  return model;
+}
+
+double Model::cost_of(Index task, double end_s) const {
+  const Task& t = tasks[at(task)];
+  switch (criterion) {
+    case Criterion::value:
+      return t.weight * -std::expm1(-t.decay_per_s * end_s);
+    case Criterion::completion:
+      return t.weight * end_s;
+    case Criterion::makespan:
+      break;
+  }
+  return end_s;
+}
+
+Timing::Timing(const Model& model)
+    : model_{model},
+      sites_(model.sites.size()),
+      vehicles_(model.vehicles.size()),
+      time_s_(model.tasks.size()),
+      end_s_(model.tasks.size()) {}
+
+double Timing::evaluate(const Orders& orders, double limit) {
+  std::fill(sites_.begin(), sites_.end(), SiteState{});
+  ready_ = 0;
+  left_ = 0;
+  cost_ = 0.0;
+  end_sum_s_ = 0.0;
+  limit_ = limit;
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const std::vector<Index>& order = orders[i];
+    if (order.empty()) continue;
+    vehicles_[i] = {order.data(), order.data() + order.size(), model_.vehicles[i].reach_s.data(),
+                    0.0};
+    ready_ |= bit(static_cast<Index>(i));
+    left_ += static_cast<int>(order.size());
+    for (const Index visit : order) {
+      const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
+      SiteState& site = sites_[at(task.site)];
+      if (task.id.kind == TaskKind::survey) site.survey_open = true;
+      if (task.id.kind == TaskKind::deliver) ++site.deliveries_open;
+    }
+  }
+  while (ready_ != 0) {
+    const auto vehicle = static_cast<Index>(std::countr_zero(ready_));
+    ready_ &= ready_ - 1;
+    advance(vehicle);
+    if (cost_ > limit_) return kInfinity;
+  }
+  return left_ == 0 ? cost_ : kInfinity;
+}
+
+void Timing::advance(Index vehicle) {
+  VehicleState& state = vehicles_[at(vehicle)];
+  while (state.next != state.last) {
+    const Index visit = *state.next;
+    const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
+    SiteState& site = sites_[at(task.site)];
+    double time_s = state.free_s + state.reach_s[visit];
+    if (task.id.kind != TaskKind::survey) {
+      if (site.survey_open) {
+        site.for_survey |= bit(vehicle);
+        return;
+      }
+      if (task.id.kind == TaskKind::deliver) {
+        site.common_s = std::max(site.common_s, time_s - task.offset_s);
+        // Who comes twice waits for itself: the second never arrives.
+        site.at_delivery |= bit(vehicle);
+        if (++site.arrived == site.deliveries_open) release(site);
+        return;
+      }
+      if (site.deliveries_open > 0) {
+        site.for_deliveries |= bit(vehicle);
+        return;
+      }
+      const double after_s = site.last_delivery_s;
+      time_s = std::max(time_s, after_s);
+    }
+    if (!finish(vehicle, visit, time_s)) return;
+    if (task.id.kind == TaskKind::survey) {
+      site.survey_open = false;
+      site.survey_end_s = state.free_s;
+      site.common_s = state.free_s + model_.decide_wait_s;
+      site.last_delivery_s = state.free_s;
+      wake(std::exchange(site.for_survey, 0));
+    }
+  }
+}
+
+/// False, and the cost infinite, where the vehicle's range does not suffice.
+bool Timing::finish(Index vehicle, Index visit, double time_s) {
+  VehicleState& state = vehicles_[at(vehicle)];
+  const Vehicle& its = model_.vehicles[at(vehicle)];
+  const Index task = model_.task_of[at(visit)];
+  const double end_s = time_s + model_.classes[at(its.kind)].after_s[at(visit)];
+  if (!(end_s <= its.deadline_s)) {
+    cost_ = kInfinity;
+    ready_ = 0;
+    return false;
+  }
+  time_s_[at(task)] = time_s;
+  end_s_[at(task)] = end_s;
+  end_sum_s_ += end_s;
+  cost_ = model_.add(cost_, model_.cost_of(task, end_s));
+  if (its.range_weight_per_s > 0.0) cost_ += its.range_weight_per_s * (end_s - state.free_s);
+  state.free_s = end_s;
+  state.reach_s = model_.reach_from(vehicle, visit);
+  ++state.next;
+  --left_;
+  return true;
+}
+
+void Timing::release(SiteState& site) {
+  for (Mask there = site.at_delivery; there != 0; there &= there - 1) {
+    const auto vehicle = static_cast<Index>(std::countr_zero(there));
+    const Index visit = *vehicles_[at(vehicle)].next;
+    const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
+    const double time_s = site.common_s + task.offset_s;
+    if (!finish(vehicle, visit, time_s)) return;
+    site.last_delivery_s =
+        std::max(site.last_delivery_s, time_s + model_.sites[at(task.site)].assess_wait_s);
+  }
+  site.deliveries_open = 0;
+  wake(site.at_delivery | site.for_deliveries);
+}
+
+CoupledPlan make_plan(const Model& model, const CoupledProblem& problem, const Orders& orders) {
+  Timing timing{model};
+  const double cost = timing.evaluate(orders);
+  SKEIN_ASSERT(cost < kInfinity);
+  CoupledPlan plan;
+  plan.objective = model.objective(cost);
+  double weight_sum = 0.0;
+  for (std::size_t i = 0; i < orders.size(); ++i) {
+    const CoupledVehicle& vehicle = problem.vehicles[i];
+    const VehicleClass& kind = model.class_of(static_cast<Index>(i));
+    const double* reach_s = model.vehicles[i].reach_s.data();
+    double free_s = 0.0;
+    for (const Index visit : orders[i]) {
+      const Index index = model.task_of[at(visit)];
+      const Task& task = model.tasks[at(index)];
+      const TaskPath& path = kind.paths[at(visit)];
+      const double before_s = kind.before_s[at(visit)];
+      const double time_s = timing.times_s()[at(index)];
+      const double end_s = timing.ends_s()[at(index)];
+      plan.tasks.push_back({task.id, vehicle.id, time_s, end_s, path.entry, path.run,
+                            (time_s - before_s - free_s) * vehicle.speed_mps,
+                            (reach_s[visit] - before_s) * vehicle.speed_mps});
+      const double reward = problem.sites[at(task.site)].reward;
+      plan.reward += reward * std::exp(-task.decay_per_s * end_s);
+      plan.completion_s += reward * end_s;
+      weight_sum += reward;
+      plan.makespan_s = std::max(plan.makespan_s, end_s);
+      free_s = end_s;
+      reach_s = model.reach_from(static_cast<Index>(i), visit);
+    }
+    plan.range_left_m += vehicle.range_left_m - free_s * vehicle.speed_mps;
+  }
+  if (weight_sum > 0.0) plan.completion_s /= weight_sum;
+  return plan;
+}
+
+Error no_plan(const Model& model) {
+  for (Index t = 0; t < model.task_count(); ++t) {
+    bool any = false;
+    for (Index i = 0; i < model.vehicle_count(); ++i) {
+      const Vehicle& vehicle = model.vehicles[at(i)];
+      const double end_s = vehicle.least_s[at(t)] + model.class_of(i).least_after_s[at(t)];
+      any = any || end_s <= vehicle.deadline_s;
+    }
+    if (!any) {
+      return Error{"No vehicle is able to do '" + to_string(model.tasks[at(t)].id) +
+                   "' within its range"};
+    }
+  }
+  return Error{"No plan was found that does all " + std::to_string(model.tasks.size()) +
+               " tasks within the loads and ranges of " + std::to_string(model.vehicles.size()) +
+               " vehicles"};
+}
+
+}  // namespace skein::planning::coupled
+
+namespace skein::planning {
+
+double CoupledPlan::gap() const {
+  if (!bound) return 1.0;
+  return std::abs(objective - *bound) / std::max(std::abs(objective), 1e-12);
+}
+
+}  // namespace skein::planning

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "skein/base/result.hpp"
+#include "skein/planning/coupled.hpp"
+#include "skein/planning/task_path.hpp"
+
+/// What greedy_awards, branch_and_bound and ruin_and_recreate share: the problem in numbers, and
+/// the times that follow from orders. Times are seconds after the problem's start.
+namespace skein::planning::coupled {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr int kNone = -1;
+
+/// A set of tasks, or of vehicles.
+using Mask = std::uint64_t;
+[[nodiscard]] constexpr Mask bit(int index) { return Mask{1} << static_cast<unsigned>(index); }
+
+/// An index of the problem in hand. Plain integers, because they count in flat arrays.
+using Index = int;
+[[nodiscard]] constexpr std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct Task {
+  TaskId id;
+  Index site = 0;
+  double offset_s = 0.0;  ///< of a delivery, from the site's common moment; least 0
+  double weight = 0.0;    ///< of its reward: F over the sum of F, times the weight of J1
+  double decay_per_s = 0.0;
+  Index first_visit = 0;  ///< its ways of being flown follow each other
+  Index visits = 0;
+};
+
+/// The open tasks of a site.
+struct SiteTasks {
+  Index survey = kNone;
+  std::vector<Index> deliveries;
+  std::vector<Index> assessments;
+  double assess_wait_s = 0.0;
+};
+
+/// Vehicles that fly alike. A visit is a task flown in one way.
+struct VehicleClass {
+  /// reach_s[from * visits + to]: from the end of a visit to the time of the next; infinite where
+  /// it cannot be flown.
+  std::vector<double> reach_s;
+  std::vector<double> after_s;   ///< by visit: from its time to its end
+  std::vector<TaskPath> paths;   ///< by visit
+  std::vector<double> before_s;  ///< by visit: from the entry to its time
+  /// Bounds of reach_s, by [from visit][task]: the best way, by way of other tasks too.
+  std::vector<double> least_s;
+  /// By [task][task]: the least over the ways of both.
+  std::vector<double> least_between_s;
+  std::vector<double> least_after_s;  ///< by task
+};
+
+struct Vehicle {
+  Index kind = 0;               ///< of Model::classes
+  std::vector<double> reach_s;  ///< by visit: from its pose at the start
+  std::vector<double> least_s;  ///< by task, as VehicleClass::least_s
+  double deadline_s = 0.0;      ///< its range
+  int loads = 0;
+  double range_weight_per_s = 0.0;  ///< cost of a second in flight
+  Index twin = kNone;               ///< the vehicle before it that equals it in everything
+};
+
+class Model {
+ public:
+  [[nodiscard]] static Result<Model> make(const CoupledProblem& problem);
+
+  std::vector<Task> tasks;
+  std::vector<Index> task_of;  ///< by visit
+  std::vector<SiteTasks> sites;
+  std::vector<VehicleClass> classes;
+  std::vector<Vehicle> vehicles;
+  double decide_wait_s = 0.0;
+  Criterion criterion = Criterion::value;
+  bool offsets = false;  ///< is any offset not 0?
+
+  [[nodiscard]] Index task_count() const { return static_cast<Index>(tasks.size()); }
+  [[nodiscard]] Index visit_count() const { return static_cast<Index>(task_of.size()); }
+  [[nodiscard]] Index vehicle_count() const { return static_cast<Index>(vehicles.size()); }
+  [[nodiscard]] const VehicleClass& class_of(Index vehicle) const {
+    return classes[at(vehicles[at(vehicle)].kind)];
+  }
+  /// From where the vehicle is after `visit` (kNone: at the start), by visit.
+  [[nodiscard]] const double* reach_from(Index vehicle, Index visit) const {
+    const Vehicle& v = vehicles[at(vehicle)];
+    if (visit == kNone) return v.reach_s.data();
+    return classes[at(v.kind)].reach_s.data() + at(visit) * task_of.size();
+  }
+  [[nodiscard]] const double* least_from(Index vehicle, Index visit) const {
+    const Vehicle& v = vehicles[at(vehicle)];
+    if (visit == kNone) return v.least_s.data();
+    return classes[at(v.kind)].least_s.data() + at(visit) * tasks.size();
+  }
+
+  /// What is minimised: the sum over the tasks (makespan: the largest) and, for `value`, the range
+  /// used. It never falls when an end is later.
+  [[nodiscard]] double cost_of(Index task, double end_s) const;
+  [[nodiscard]] double add(double cost, double more) const {
+    return criterion == Criterion::makespan ? std::max(cost, more) : cost + more;
+  }
+  /// The criterion as people see it.
+  [[nodiscard]] double objective(double cost) const {
+    return criterion == Criterion::value ? best_value_ - cost : cost;
+  }
+
+ private:
+  double best_value_ = 0.0;  ///< J if everything were done at once, without a metre flown
+};
+
+/// The visits of every vehicle, in order.
+using Orders = std::vector<std::vector<Index>>;
+
+/// The earliest times for given orders. Tasks that are in no order are as if they did not exist.
+class Timing {
+ public:
+  explicit Timing(const Model& model);
+
+  /// The cost; infinite where the orders wait for each other in a circle, where a range does not
+  /// suffice, or where the cost is more than `limit` (then it may stop early).
+  double evaluate(const Orders& orders, double limit = kInfinity);
+
+  /// Of the last evaluate, when finite; by task.
+  [[nodiscard]] const std::vector<double>& times_s() const { return time_s_; }
+  [[nodiscard]] const std::vector<double>& ends_s() const { return end_s_; }
+  /// Of the tasks in the orders, over the number of all.
+  [[nodiscard]] double mean_end_s() const {
+    return end_sum_s_ / static_cast<double>(model_.tasks.size());
+  }
+
+ private:
+  struct SiteState {
+    bool survey_open = false;
+    int deliveries_open = 0;
+    int arrived = 0;
+    double survey_end_s = 0.0;
+    double common_s = 0.0;  ///< the moment of the deliveries
+    double last_delivery_s = 0.0;
+    Mask at_delivery = 0;  ///< vehicles that are there
+    Mask for_survey = 0;   ///< vehicles that wait for its end
+    Mask for_deliveries = 0;
+  };
+  struct VehicleState {
+    const Index* next = nullptr;
+    const Index* last = nullptr;
+    const double* reach_s = nullptr;
+    double free_s = 0.0;
+  };
+  void advance(Index vehicle);
+  bool finish(Index vehicle, Index visit, double time_s);
+  void release(SiteState& site);
+  void wake(Mask vehicles) { ready_ |= vehicles; }
+
+  const Model& model_;
+  std::vector<SiteState> sites_;
+  std::vector<VehicleState> vehicles_;
+  std::vector<double> time_s_;
+  std::vector<double> end_s_;
+  Mask ready_ = 0;
+  int left_ = 0;
+  double cost_ = 0.0;
+  double end_sum_s_ = 0.0;
+  double limit_ = kInfinity;
+};
+
+/// The plan of orders that Timing finds feasible.
+[[nodiscard]] CoupledPlan make_plan(const Model& model, const CoupledProblem& problem,
+                                    const Orders& orders);
+
+/// Why a problem has no plan, as far as is easily said.
+[[nodiscard]] Error no_plan(const Model& model);
+
+/// The orders of greedy_awards; nothing where a task is left.
+[[nodiscard]] std::optional<Orders> greedy_orders(const Model& model);
+
+/// A search by ruin and recreate that can be asked for more.
+struct SearchResult {
+  Orders orders;
+  double cost = kInfinity;
+  std::uint64_t steps = 0;
+};
+[[nodiscard]] SearchResult search(const Model& model, Random& random, const PlanningBudget& budget);
+
+}  // namespace skein::planning::coupled

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/planning/coupled.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "coupled_instances.hpp"
+#include "coupled_judge.hpp"
+#include "skein/planning/dubins.hpp"
+#include "skein/planning/task_path.hpp"
+
+namespace skein::planning {
+namespace {
+
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::array kCriteria{Criterion::value, Criterion::completion, Criterion::makespan};
+
+/// Is `a` better than `b` by more than rounding?
+bool better(const CoupledProblem& problem, double a, double b) {
+  const double slack = 1e-8 * std::abs(b);
+  return problem.criterion == Criterion::value ? a > b + slack : a < b - slack;
+}
+
+/// Every permutation of the tasks, cut into one piece a vehicle in every way, timed by repeated
+/// relaxation.
+class Exhaustive {
+ public:
+  explicit Exhaustive(const CoupledProblem& problem) : problem_{problem} {}
+
+  [[nodiscard]] std::optional<double> best() {
+    std::vector<TaskId> order = problem_.open_tasks;
+    std::sort(order.begin(), order.end());
+    do {
+      cut(order, 0, 0);
+    } while (std::next_permutation(order.begin(), order.end()));
+    return best_;
+  }
+
+ private:
+  struct Step {
+    TaskId task;
+    std::size_t vehicle = 0;
+  };
+
+  void cut(const std::vector<TaskId>& order, std::size_t first, std::size_t vehicle) {
+    if (vehicle == problem_.vehicles.size()) {
+      if (first == order.size()) time();
+      return;
+    }
+    const std::size_t before = steps_.size();
+    int loads = problem_.vehicles[vehicle].loads;
+    cut(order, first, vehicle + 1);
+    for (std::size_t i = first; i < order.size(); ++i) {
+      if (!problem_.vehicles[vehicle].capabilities.has(order[i].kind)) break;
+      if (order[i].kind == TaskKind::deliver && loads-- == 0) break;
+      steps_.push_back({order[i], vehicle});
+      cut(order, i + 1, vehicle + 1);
+    }
+    steps_.resize(before);
+  }
+
+  [[nodiscard]] TaskPath path_of(const Step& step) const {
+    const CoupledVehicle& v = problem_.vehicles[step.vehicle];
+    const Site& site = *site_of(problem_, step.task.site);
+    switch (step.task.kind) {
+      case TaskKind::deliver:
+        return delivery_path(site, site.deliveries[step.task.index], v.final_approach_m);
+      case TaskKind::survey:
+        return arc_path(site, *site.survey.start_angle_rad, site.survey.dwell, v.sensor_radius_m,
+                        v.speed_mps, 1);
+      default:
+        break;
+    }
+    const ArcRequirement& arc = site.assessments[step.task.index];
+    return arc_path(site, *arc.start_angle_rad, arc.dwell, v.assess_radius_m, v.speed_mps, 1);
+  }
+
+  void time() {
+    std::vector<double> time_s(steps_.size(), 0.0);
+    std::vector<double> end_s(steps_.size(), 0.0);
+    std::vector<double> reach_s(steps_.size());
+    std::vector<double> after_s(steps_.size());
+    CoupledPlan plan;
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const CoupledVehicle& v = problem_.vehicles[steps_[k].vehicle];
+      const TaskPath path = path_of(steps_[k]);
+      Pose2 from = v.pose;
+      if (k > 0 && steps_[k - 1].vehicle == steps_[k].vehicle) {
+        const TaskPath last = path_of(steps_[k - 1]);
+        from = advance(last.entry, last.run.curvature_per_m, last.run.length_m);
+      }
+      const bool deliver = steps_[k].task.kind == TaskKind::deliver;
+      const double run_s = path.run.length_m / v.speed_mps;
+      reach_s[k] = shortest_dubins_length(from, path.entry, v.planning_radius_m) / v.speed_mps +
+                   (deliver ? run_s : 0.0);
+      after_s[k] = deliver ? 0.0 : run_s;
+    }
+    for (std::size_t pass = 0; pass <= 2 * steps_.size() + 2; ++pass) {
+      bool changed = false;
+      const auto raise = [&](std::size_t k, double to_s) {
+        if (to_s <= time_s[k] + 1e-12) return;
+        time_s[k] = to_s;
+        changed = true;
+      };
+      for (std::size_t k = 0; k < steps_.size(); ++k) {
+        const bool first = k == 0 || steps_[k - 1].vehicle != steps_[k].vehicle;
+        raise(k, (first ? 0.0 : end_s[k - 1]) + reach_s[k]);
+        for (std::size_t j = 0; j < steps_.size(); ++j) raise(k, after(j, k, time_s[j], end_s[j]));
+        end_s[k] = time_s[k] + after_s[k];
+      }
+      if (!changed) {
+        keep(plan, time_s, end_s);
+        return;
+      }
+    }
+  }
+
+  /// The earliest time of step k as step j demands it.
+  [[nodiscard]] double after(std::size_t j, std::size_t k, double time_s, double end_s) const {
+    const TaskId& a = steps_[j].task;
+    const TaskId& b = steps_[k].task;
+    if (a.site != b.site) return 0.0;
+    const Site& site = *site_of(problem_, a.site);
+    if (a.kind == TaskKind::survey && b.kind == TaskKind::deliver) {
+      return end_s + to_seconds(problem_.decide_wait);
+    }
+    if (a.kind == TaskKind::survey && b.kind == TaskKind::assess) return end_s;
+    if (a.kind == TaskKind::deliver && b.kind == TaskKind::assess) {
+      return time_s + to_seconds(site.assess_wait);
+    }
+    if (a.kind == TaskKind::deliver && b.kind == TaskKind::deliver) {
+      return time_s - to_seconds(site.deliveries[a.index].offset) +
+             to_seconds(site.deliveries[b.index].offset);
+    }
+    return 0.0;
+  }
+
+  void keep(CoupledPlan& plan, const std::vector<double>& time_s,
+            const std::vector<double>& end_s) {
+    for (std::size_t k = 0; k < steps_.size(); ++k) {
+      const CoupledVehicle& v = problem_.vehicles[steps_[k].vehicle];
+      if (end_s[k] * v.speed_mps > v.range_left_m) return;
+      plan.tasks.push_back({steps_[k].task, v.id, time_s[k], end_s[k], {}, {}, 0.0, 0.0});
+    }
+    const double objective = objective_of(problem_, plan);
+    const bool first = !best_.has_value();
+    if (first ||
+        (problem_.criterion == Criterion::value ? objective > *best_ : objective < *best_)) {
+      best_ = objective;
+    }
+  }
+
+  const CoupledProblem& problem_;
+  std::vector<Step> steps_;
+  std::optional<double> best_;
+};
+
+void expect_optimal(const CoupledProblem& problem) {
+  const auto best = Exhaustive{problem}.best();
+  const auto plan = branch_and_bound(problem, {});
+  ASSERT_EQ(best.has_value(), plan.ok());
+  if (!best) return;
+  EXPECT_THAT(faults_of(problem, *plan), IsEmpty());
+  EXPECT_TRUE(plan->proven);
+  EXPECT_NEAR(plan->objective, *best, 1e-9 * std::abs(*best));
+  EXPECT_EQ(plan->gap(), 0.0);
+}
+
+TEST(BranchAndBound, EqualsExhaustiveSearchOnTwoSites) {
+  for (const Criterion criterion : kCriteria) {
+    for (std::uint64_t seed = 0; seed < 8; ++seed) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(criterion) << " seed " << seed);
+      Random random{seed};
+      CoupledDraw draw;
+      draw.sites = 2;
+      draw.vehicles = 2 + seed % 2;
+      draw.side_m = seed % 4 < 2 ? 6000.0 : 2500.0;
+      CoupledProblem problem = draw_problem(random, draw);
+      problem.criterion = criterion;
+      problem.decide_wait = seconds{seed % 3 == 0 ? 8 : 0};
+      // A load short, so that who delivers matters; a range short, so that orders are refused.
+      problem.vehicles[0].loads = static_cast<std::uint8_t>(1 + seed % 2);
+      if (seed % 4 == 3) problem.vehicles[0].range_left_m = 9000.0;
+      expect_optimal(problem);
+    }
+  }
+}
+
+TEST(BranchAndBound, EqualsExhaustiveSearchWithDeliveriesTogether) {
+  for (const double interval_s : {0.0, 5.0}) {
+    for (std::uint64_t seed = 20; seed < 23; ++seed) {
+      SCOPED_TRACE(testing::Message() << interval_s << " s, seed " << seed);
+      Random random{seed};
+      CoupledDraw draw;
+      draw.sites = 2;
+      draw.vehicles = 3;
+      draw.deliveries = 2;
+      draw.assessments = 1;
+      draw.interval_s = interval_s;
+      CoupledProblem problem = draw_problem(random, draw);
+      problem.criterion = kCriteria[seed % 3];
+      problem.open_tasks.erase(problem.open_tasks.begin());  // site 1 was surveyed before
+      expect_optimal(problem);
+    }
+  }
+}
+
+TEST(BranchAndBound, TwinsAreInterchangeable) {
+  Random random{5};
+  CoupledDraw draw;
+  draw.sites = 2;
+  draw.vehicles = 1;
+  CoupledProblem problem = draw_problem(random, draw);
+  for (std::uint16_t id = 2; id <= 3; ++id) {
+    problem.vehicles.push_back(problem.vehicles.front());
+    problem.vehicles.back().id = VehicleId{id};
+  }
+  for (const Criterion criterion : kCriteria) {
+    problem.criterion = criterion;
+    expect_optimal(problem);
+  }
+}
+
+TEST(CoupledPlans, AreSoundForEveryMethod) {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    for (const Criterion criterion : kCriteria) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(criterion) << " seed " << seed);
+      Random random{seed};
+      CoupledDraw draw;
+      draw.vehicles = 6;
+      draw.deliveries = 1 + seed % 3;
+      draw.assessments = 1 + seed % 2;
+      draw.interval_s = seed % 2 == 0 ? 0.0 : 5.0;
+      CoupledProblem problem = draw_problem(random, draw);
+      problem.criterion = criterion;
+      problem.decide_wait = seconds{5};
+      if (const auto plan = greedy_awards(problem)) {
+        EXPECT_THAT(faults_of(problem, *plan), IsEmpty());
+      }
+      PlanningBudget budget;
+      budget.steps_max = 2000;
+      const auto exact = branch_and_bound(problem, budget);
+      ASSERT_TRUE(exact.ok()) << exact.error().message;
+      EXPECT_THAT(faults_of(problem, *exact), IsEmpty());
+      ASSERT_TRUE(exact->bound.has_value());
+      EXPECT_FALSE(better(problem, exact->objective, *exact->bound));
+      Random generator{3};
+      budget.steps_max = 100;
+      const auto found = ruin_and_recreate(problem, generator, budget);
+      ASSERT_TRUE(found.ok()) << found.error().message;
+      EXPECT_THAT(faults_of(problem, *found), IsEmpty());
+    }
+  }
+}
+
+TEST(RuinAndRecreate, MoreStepsAreNeverWorseAndASeedIsAPlan) {
+  for (const Criterion criterion : kCriteria) {
+    Random draw{11};
+    CoupledProblem problem = draw_problem(draw, {.sites = 4, .vehicles = 6});
+    problem.criterion = criterion;
+    const auto proven = branch_and_bound(problem, {});
+    ASSERT_TRUE(proven.ok() && proven->proven);
+    std::optional<double> before;
+    for (const std::uint64_t steps : {0U, 10U, 100U, 400U}) {
+      Random one{2};
+      Random same{2};
+      PlanningBudget budget;
+      budget.steps_max = steps;
+      const auto plan = ruin_and_recreate(problem, one, budget);
+      const auto again = ruin_and_recreate(problem, same, budget);
+      ASSERT_TRUE(plan.ok() && again.ok());
+      EXPECT_EQ(plan->objective, again->objective);
+      EXPECT_FALSE(better(problem, plan->objective, proven->objective));
+      if (before) {
+        EXPECT_FALSE(better(problem, *before, plan->objective));
+      }
+      before = plan->objective;
+    }
+    EXPECT_NEAR(*before, proven->objective, 0.02 * proven->objective);
+  }
+}
+
+TEST(CoupledPlans, SayWhatIsMissing) {
+  Random random{1};
+  CoupledProblem problem = draw_problem(random, {});
+  problem.vehicles.resize(2);
+  problem.vehicles[0].loads = 0;
+  problem.vehicles[1].loads = 0;
+  const auto plan = branch_and_bound(problem, {});
+  ASSERT_FALSE(plan.ok());
+  EXPECT_THAT(plan.error().message, HasSubstr("site 1 deliver 1"));
+  problem.open_tasks.push_back({SiteId{9}, TaskKind::survey, 0});
+  EXPECT_THAT(greedy_awards(problem).error().message, HasSubstr("site 9"));
+}
+
+}  // namespace
+}  // namespace skein::planning
