@@ -21,6 +21,11 @@ constexpr double kExact_m = 5e-7;
 constexpr double kGapStep_m = 1e-3;  ///< to which the end of a gap is found
 constexpr int kSamples = 24;         ///< of a family of paths, between which roots are sought
 constexpr int kBisections = 60;
+constexpr double kBendMax_rad = radians(85.0);
+/// Farther apart than so many radii, the shortest path has a line of at least 4.4 radii, which
+/// bends up to kBendMax_rad lengthen by more than a loop: 4 (angle - tan) + line (1 / cos - 1) > 2
+/// pi. The line of LSR is sqrt(d^2 - 4), d >= 6.84 - 2 between the centres.
+constexpr double kNoGap_radii = 6.84;
 
 constexpr std::array<DubinsWord, 4> kCscWords = {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL,
                                                  DubinsWord::RSR};
@@ -202,8 +207,8 @@ std::optional<Bend> bend_of_length(double straight_m, double radius_m, double le
   const auto length = [&](double angle) { return 4.0 * radius_m * angle + 2.0 * line(angle); };
   double low = 0.0;
   double high =
-      straight_m >= 4.0 * radius_m ? radians(85.0) : std::asin(straight_m / (4.0 * radius_m));
-  high = std::min(high, radians(85.0));
+      straight_m >= 4.0 * radius_m ? kBendMax_rad : std::asin(straight_m / (4.0 * radius_m));
+  high = std::min(high, kBendMax_rad);
   if (length(high) < length_m) return std::nullopt;
   for (int k = 0; k < kBisections; ++k) {
     const double middle = (low + high) / 2.0;
@@ -392,10 +397,24 @@ Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transi
                      : "nor a longer one within " + metres(transit.length_max_m))};
 }
 
+bool surely_flyable(const AvoidanceParams& params, const Transit& transit, double shortest_m,
+                    double length_m) {
+  if (!(length_m >= shortest_m) || length_m > transit.length_max_m + kExact_m) return false;
+  const double dx = transit.to.x_m - transit.from.x_m;
+  const double dy = transit.to.y_m - transit.from.y_m;
+  const double apart_m = kNoGap_radii * transit.radius_m;
+  const bool gapless =
+      length_m >= shortest_m + kTwoPi * transit.radius_m || dx * dx + dy * dy >= apart_m * apart_m;
+  return gapless && out_of_reach(params, transit.from, transit.to, length_m, transit.hazards);
+}
+
 Result<double> least_length_from(const AvoidanceParams& params, const Transit& transit,
                                  double length_m) {
   SKEIN_ASSERT(transit.radius_m > 0.0);
   if (!std::isfinite(length_m)) return Error{"The wanted length is not a number"};
+  const double direct_m = shortest_dubins_length(transit.from, transit.to, transit.radius_m);
+  const double wanted_m = std::max(length_m, direct_m);
+  if (surely_flyable(params, transit, direct_m, wanted_m)) return wanted_m;
   const auto shortest =
       shortest_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
   if (!shortest) return shortest.error();

@@ -71,6 +71,31 @@ TEST(PathOfLength, FarPosesHaveNoGap) {
   }
 }
 
+TEST(SurelyFlyable, KeepsItsPromise) {
+  Random random{14};
+  int promised = 0;
+  int promised_longer = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Pose2 from = random_pose(random, 3000.0);
+    const Pose2 to = random_pose(random, 3000.0);
+    const std::vector<Hazard> hazards{{HazardId{1}, random_pose(random, 3000.0).position(), 100.0}};
+    const Transit transit{from, to, kRadius_m, 20000.0, hazards};
+    const double shortest_m = shortest_dubins_length(from, to, kRadius_m);
+    const double wanted_m = shortest_m + random.uniform() * random.uniform() * 2000.0;
+    EXPECT_FALSE(surely_flyable({}, transit, shortest_m, shortest_m - 1.0));
+    EXPECT_FALSE(surely_flyable({}, transit, shortest_m, 20001.0));
+    for (const double length_m : {shortest_m, wanted_m}) {
+      if (!surely_flyable({}, transit, shortest_m, length_m)) continue;
+      ++(length_m == wanted_m ? promised_longer : promised);
+      const auto path = path_of_length({}, transit, length_m);
+      ASSERT_TRUE(path.ok()) << path.error().message;
+      expect_flies(*path, transit, length_m);
+    }
+  }
+  EXPECT_GT(promised, 1200);
+  EXPECT_GT(promised_longer, 1000);
+}
+
 TEST(PathOfLength, RefusesWithAReason) {
   const Transit transit{{0, 0, 0}, {3000, 0, 0}, kRadius_m, 4000.0, {}};
   const auto low = path_of_length({}, transit, 2999.0);

@@ -297,10 +297,29 @@ bool is_clear(const Path& path, std::span<const Hazard> hazards) {
   return true;
 }
 
+bool out_of_reach(const AvoidanceParams& params, const Pose2& from, const Pose2& to,
+                  double length_m, std::span<const Hazard> hazards) {
+  return std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
+    return (h.centre - from.position()).norm() + (h.centre - to.position()).norm() >
+           length_m + 2.0 * params.kappa * h.radius_m;
+  });
+}
+
+Result<double> shortest_clear_length(const AvoidanceParams& params, const Pose2& from,
+                                     const Pose2& to, double radius_m,
+                                     std::span<const Hazard> hazards) {
+  const double direct_m = shortest_dubins_length(from, to, radius_m);
+  if (out_of_reach(params, from, to, direct_m, hazards)) return direct_m;
+  const auto path = shortest_clear_path(params, from, to, radius_m, hazards);
+  if (!path) return path.error();
+  return path->length_m();
+}
+
 Result<Path> shortest_clear_path(const AvoidanceParams& params, const Pose2& from, const Pose2& to,
                                  double radius_m, std::span<const Hazard> hazards) {
   SKEIN_ASSERT(radius_m > 0.0 && params.kappa > 1.0);
   const Path direct = shortest_dubins(from, to, radius_m).to_path();
+  if (out_of_reach(params, from, to, direct.length_m(), hazards)) return direct;
   if (is_clear(direct, hazards)) return direct;
   if (auto error = inside_hazard("The start", from, hazards)) return *error;
   if (auto error = inside_hazard("The goal", to, hazards)) return *error;

@@ -10,6 +10,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
+#include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins_batch.hpp"
 
 namespace {
@@ -69,6 +70,24 @@ void batch(benchmark::State& state, double radii, bool cached, std::size_t level
   state.SetItemsProcessed(static_cast<std::int64_t>(kQueries) * state.iterations());
 }
 
+/// A time to be promised: poses 3 to 6 km apart, hazards about, none of them in the way.
+void arrival(benchmark::State& state) {
+  using namespace skein::planning;  // NOLINT(google-build-using-namespace)
+  const Queries queries = random_queries(20.0);
+  std::vector<skein::Hazard> hazards;
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    hazards.push_back({skein::HazardId{i}, {-9000.0, 3000.0 * i}, 300.0});
+  }
+  std::size_t i = 0;
+  while (state.KeepRunning()) {
+    Transit transit{queries.from[i], queries.to[i], kRadius_m, 1e5, hazards};
+    transit.to.x_m += 25.0 * kRadius_m;
+    const double length_m = (transit.to.position() - transit.from.position()).norm() + 500.0;
+    benchmark::DoNotOptimize(least_length_from({}, transit, length_m));
+    i = i + 1 == kQueries ? 0 : i + 1;
+  }
+}
+
 void ompl_distance(benchmark::State& state, double radii) {
   const Queries queries = random_queries(radii);
   const auto space = std::make_shared<ompl::base::DubinsStateSpace>(kRadius_m);
@@ -96,6 +115,7 @@ BENCHMARK_CAPTURE(ompl_distance, near, 6.0)->Name("dubins_length/ompl/near");
 BENCHMARK_CAPTURE(scalar, far, 60.0)->Name("dubins_length/skein/far");
 BENCHMARK_CAPTURE(ompl_distance, far, 60.0)->Name("dubins_length/ompl/far");
 
+BENCHMARK(arrival)->Name("least_length_from/skein");
 // The batch against the peer's one by one; it has no batch.
 BENCHMARK_CAPTURE(batch, avx2_near, 6.0, false, 1)->Name("dubins_batch/skein/near");
 BENCHMARK_CAPTURE(ompl_distance, batch_near, 6.0)->Name("dubins_batch/ompl/near");

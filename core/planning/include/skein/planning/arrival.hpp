@@ -26,6 +26,13 @@ struct Transit {
 [[nodiscard]] Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
                                           double length_m);
 
+/// Can path_of_length surely fly this length? A test of a few products for each hazard: the poses
+/// lie so far apart, or the length so far above the shortest, that there is no gap, and no hazard
+/// is in reach of such a path. Where it says no, only path_of_length knows. Precondition:
+/// shortest_m = shortest_dubins_length(from, to, radius_m).
+[[nodiscard]] bool surely_flyable(const AvoidanceParams& params, const Transit& transit,
+                                  double shortest_m, double length_m);
+
 /// The least length >= `length_m` for which path_of_length succeeds.
 [[nodiscard]] Result<double> least_length_from(const AvoidanceParams& params,
                                                const Transit& transit, double length_m);
