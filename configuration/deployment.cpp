@@ -54,6 +54,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     config.flight_controller.wind = scenario.wind;
     config.network = network_of(configs.size() + 1, nodes, deployment);
     config.protocol = scenario.protocol;
+    config.planning = scenario.planning;
     for (const ScenarioHazard& hazard : scenario.hazards) {
       if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
     }

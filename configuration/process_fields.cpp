@@ -130,6 +130,27 @@ void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
           {0.0, 600.0, "s"}, p.authorisation_lead);
 }
 
+void planning_fields(FieldVisitor& v, planning::AllocationParams& p) {
+  const Range weight{0.0, 1000.0};
+  std::array<std::string_view, static_cast<std::size_t>(planning::AllocationMethod::count)> methods;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    methods[i] = planning::to_string(static_cast<planning::AllocationMethod>(i));
+  }
+  auto method = static_cast<std::size_t>(p.method);
+  v.choice({"allocation", "method by which a leader gives its site's tasks to the bidders"},
+           methods, method);
+  p.method = static_cast<planning::AllocationMethod>(method);
+  v.number(
+      {"reward_weight", "of the reward, as a share of what could be had, in the value of a plan"},
+      weight, p.weights.reward);
+  v.number({"range_weight", "of the range that the bidders have left, as a share of what they had"},
+           weight, p.weights.range);
+  v.number({"timing_weight", "of the timing errors, as a share of timing_reference_s a task"},
+           weight, p.weights.timing);
+  seconds(v, {"timing_reference_s", "timing error of a task that counts as 1"},
+          {0.001, 3600.0, "s"}, p.weights.timing_reference);
+}
+
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions) {
   v.list({"operator_decisions",
           "taken by the script in the operator's place; without any the operator types them"},
@@ -193,6 +214,8 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   });
   v.section({"protocol", "the contract net; the same for the whole fleet"},
             [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });
+  v.section({"planning", "how tasks are given to vehicles; the same for the whole fleet"},
+            [&config](FieldVisitor& inner) { planning_fields(inner, config.planning); });
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));

@@ -7,6 +7,7 @@
 #include "field_types.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/planning/allocation.hpp"
 
 /// The parts that several tables share.
 namespace skein::configuration {
@@ -21,6 +22,7 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);
+void planning_fields(FieldVisitor& v, planning::AllocationParams& planning);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 
 }  // namespace skein::configuration

@@ -174,6 +174,8 @@ void world_fields(FieldVisitor& v, Scenario& s) {
             [&s](FieldVisitor& inner) { wind_fields(inner, s.wind, ""); });
   v.section({"protocol", "the contract net"},
             [&s](FieldVisitor& inner) { protocol_fields(inner, s.protocol); });
+  v.section({"planning", "how tasks are given to vehicles"},
+            [&s](FieldVisitor& inner) { planning_fields(inner, s.planning); });
 }
 
 }  // namespace

@@ -20,7 +20,11 @@ void Planner::run() {
       continue;
     }
     const auto begun = std::chrono::steady_clock::now();
-    auto allocation = planning::allocate(request->params, request->problem);
+    planning::PlanningBudget budget;
+    if (now_) {
+      budget.expired = [this, end = request->answer_by - kAnswerMargin] { return now_() >= end; };
+    }
+    auto allocation = planning::allocate(request->params, request->problem, budget);
     results_.push(
         {request->round, std::move(allocation), std::chrono::steady_clock::now() - begun});
     on_result_();

@@ -46,6 +46,7 @@ mission::VehicleAgentConfig agent_config(const configuration::VehicleConfig& con
   agent.vehicle = config.vehicle;
   agent.instance = instance;
   agent.protocol = config.protocol;
+  agent.planning = config.planning;
   agent.search = config.search;
   agent.hazards = config.hazards;
   return agent;
@@ -128,7 +129,7 @@ class Threads {
   process::Wake& wake_agent_;
   ControlPorts ports_;
   EventRing events_;
-  Planner planner_{[this] { wake_agent_.notify(); }};
+  Planner planner_{[this] { wake_agent_.notify(); }, [this] { return clock_.now(); }};
   std::unique_ptr<hal::FlightController> flight_controller_;
   ControlLoop control_;
   AgentLoop agent_;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "vehicle_agent_impl.hpp"
@@ -12,6 +16,26 @@ constexpr Duration kDecisionMargin = std::chrono::seconds{2};
 constexpr Duration kRequestPeriod = std::chrono::seconds{1};
 constexpr Duration kSurveyLead = std::chrono::milliseconds{200};
 constexpr std::size_t kSitesWaitingMax = 16;
+
+/// "exact: J 1.7312, proven" or "colony: J 1.7312, at most 0.0040 below the optimum".
+std::string summary_of(const planning::Allocation& allocation) {
+  std::array<char, 96> text{};
+  const std::string_view method = planning::to_string(allocation.method);
+  const int length =
+      std::snprintf(text.data(), text.size(), "%.*s: J %.4f, ", static_cast<int>(method.size()),
+                    method.data(), allocation.value.total);
+  if (allocation.proven) return std::string{text.data()} + "proven";
+  std::snprintf(text.data() + length, text.size() - static_cast<std::size_t>(length),
+                "at most %.4f below the optimum", allocation.gap());
+  return text.data();
+}
+
+/// Of the lots that a plan may need: another for every round, the same in every replay.
+std::uint64_t seed_of(const coalition::Round& round) {
+  const std::uint64_t coalition =
+      (std::uint64_t{round.coalition.leader.value} << 32U) | round.coalition.number;
+  return (coalition << 8U) ^ round.number;
+}
 
 Duration final_approach_time(const coalition::Bid& bid) {
   return from_seconds(bid.final_approach_m / bid.speed_mps);
@@ -114,10 +138,12 @@ void VehicleAgent::Impl::answer(const Initiator::Output& output, Instant now) {
 void VehicleAgent::Impl::request_allocation(const Initiator::AllocationWanted& wanted) {
   PlanningRequest request;
   request.round = wanted.round;
+  request.answer_by = wanted.answer_by;
   request.params = config_.planning;
   auto& problem = request.problem;
   problem.site = initiator_->site();
   problem.open_tasks = wanted.tasks;
+  problem.seed = seed_of(wanted.round);
   problem.hazards = hazards_;
   problem.start = wanted.formed_at;
   Duration approach{};
@@ -142,7 +168,7 @@ void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instan
   if (result.allocation) {
     const auto& assignments = result.allocation->assignments;
     report(EventKind::allocation_done, result.round, about, to_seconds(result.took),
-           std::to_string(bids_.size()) + " bids", now);
+           std::to_string(bids_.size()) + " bids; " + summary_of(*result.allocation), now);
     report(EventKind::awarded, result.round, about, static_cast<double>(assignments.size()), {},
            now);
     initiator_->allocated(result.round, assignments, now);

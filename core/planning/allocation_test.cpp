@@ -335,7 +335,9 @@ TEST(PlanSurvey, FliesTheRequiredArcAtOnce) {
   EXPECT_LT(plan->gate_m, shortest_dubins_length(from, {3000, 3300, kPi}, 165.0));
   EXPECT_GE(plan->timed.path.length_m() - plan->gate_m, 20.0 * 50.0);
   EXPECT_NEAR(plan->timed.tail_curvature_per_m, -1.0 / 300.0, 1e-12) << "and circles on";
-  for (double s = plan->gate_m; s <= plan->timed.path.length_m(); s += 10.0) {
+  const double arc_m = plan->timed.path.length_m() - plan->gate_m;
+  for (int i = 0; i <= 100; ++i) {
+    const double s = plan->gate_m + arc_m * i / 100.0;
     EXPECT_NEAR((plan->timed.path.pose_at(s).position() - site.position).norm(), 300.0, 1e-6);
   }
   site.survey.start_angle_rad.reset();

@@ -11,117 +11,171 @@ namespace skein::planning {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-using Index = Eigen::Index;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// Gives `row` a column by an alternating path of allowed entries; false where there is none.
-bool augment(const Eigen::MatrixXd& cost, double threshold, Index row, std::vector<char>& seen,
-             std::vector<int>& row_of) {
-  for (Index column = 0; column < cost.cols(); ++column) {
-    if (!(cost(row, column) <= threshold) || seen[at(column)] != 0) continue;
-    seen[at(column)] = 1;
-    int& owner = row_of[at(column)];
-    if (owner < 0 || augment(cost, threshold, owner, seen, row_of)) {
-      owner = static_cast<int>(row);
-      return true;
+std::vector<double> by_rows(const Eigen::MatrixXd& cost) {
+  std::vector<double> entries;
+  entries.reserve(static_cast<std::size_t>(cost.size()));
+  for (Eigen::Index row = 0; row < cost.rows(); ++row) {
+    for (Eigen::Index column = 0; column < cost.cols(); ++column) {
+      entries.push_back(cost(row, column));
     }
   }
-  return false;
+  return entries;
 }
 
-bool complete_below(const Eigen::MatrixXd& cost, double threshold) {
-  std::vector<int> row_of(at(cost.cols()), -1);
-  for (Index row = 0; row < cost.rows(); ++row) {
-    std::vector<char> seen(at(cost.cols()), 0);
-    if (!augment(cost, threshold, row, seen, row_of)) return false;
+std::optional<Assignment> least_sum_of(AssignmentSolver& solver, std::span<const double> cost,
+                                       std::size_t rows, std::size_t columns) {
+  Assignment result{std::vector<int>(rows), 0.0};
+  if (!solver.least_sum(cost, columns, result.column_of)) return std::nullopt;
+  for (std::size_t row = 0; row < rows; ++row) {
+    result.cost += cost[row * columns + static_cast<std::size_t>(result.column_of[row])];
   }
-  return true;
+  return result;
 }
 
 }  // namespace
 
-std::optional<Assignment> least_sum_assignment(const Eigen::MatrixXd& cost) {
-  SKEIN_ASSERT(cost.rows() <= cost.cols());
-  const Index rows = cost.rows();
-  const Index columns = cost.cols();
-  std::vector<double> row_price(at(rows), 0.0);
-  std::vector<double> column_price(at(columns), 0.0);
-  std::vector<int> column_of(at(rows), -1);
-  std::vector<int> row_of(at(columns), -1);
+void AssignmentSolver::start(std::size_t rows, std::size_t columns, std::span<int> column_of) {
+  SKEIN_ASSERT(rows <= columns);
+  row_price_.assign(rows, 0.0);
+  column_price_.assign(columns, 0.0);
+  row_of_.assign(columns, -1);
+  std::fill(column_of.begin(), column_of.end(), -1);
+}
 
-  for (Index current = 0; current < rows; ++current) {
+void AssignmentSolver::start_row() {
+  distance_.assign(row_of_.size(), kInfinity);
+  predecessor_.assign(row_of_.size(), -1);
+  done_.assign(row_of_.size(), 0);
+}
+
+/// Swaps the owners along the alternating path from `row` to the free column `sink`.
+void AssignmentSolver::take_path(std::size_t row, std::size_t sink, std::span<int> column_of) {
+  auto column = static_cast<int>(sink);
+  while (true) {
+    const int from = predecessor_[static_cast<std::size_t>(column)];
+    row_of_[static_cast<std::size_t>(column)] = from;
+    std::swap(column, column_of[static_cast<std::size_t>(from)]);
+    if (static_cast<std::size_t>(from) == row) return;
+  }
+}
+
+bool AssignmentSolver::least_sum(std::span<const double> cost, std::size_t columns,
+                                 std::span<int> column_of) {
+  const std::size_t rows = column_of.size();
+  SKEIN_ASSERT(cost.size() == rows * columns);
+  start(rows, columns, column_of);
+  for (std::size_t current = 0; current < rows; ++current) {
     // Dijkstra over reduced costs from the row `current` to the nearest free column.
-    std::vector<double> distance(at(columns), kInfinity);
-    std::vector<Index> predecessor(at(columns), -1);
-    std::vector<char> done(at(columns), 0);
-    Index row = current;
-    Index sink = -1;
+    start_row();
+    std::size_t row = current;
+    std::size_t sink = kNone;
     double least = 0.0;
-    while (sink < 0) {
-      Index nearest = -1;
-      for (Index column = 0; column < columns; ++column) {
-        if (done[at(column)] != 0) continue;
-        const double through =
-            least + cost(row, column) - row_price[at(row)] - column_price[at(column)];
-        if (through < distance[at(column)]) {
-          distance[at(column)] = through;
-          predecessor[at(column)] = row;
+    while (sink == kNone) {
+      const std::span<const double> entries = cost.subspan(row * columns, columns);
+      const double base = least - row_price_[row];
+      std::size_t nearest = kNone;
+      double nearest_distance = kInfinity;
+      for (std::size_t column = 0; column < columns; ++column) {
+        if (done_[column] != 0) continue;
+        const double through = base + entries[column] - column_price_[column];
+        if (through < distance_[column]) {
+          distance_[column] = through;
+          predecessor_[column] = static_cast<int>(row);
         }
-        const bool nearer = nearest < 0 || distance[at(column)] < distance[at(nearest)];
-        const bool free_at_tie = nearest >= 0 && distance[at(column)] == distance[at(nearest)] &&
-                                 row_of[at(nearest)] >= 0 && row_of[at(column)] < 0;
-        if (nearer || free_at_tie) nearest = column;
+        const double distance = distance_[column];
+        const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
+                                 row_of_[nearest] >= 0 && row_of_[column] < 0;
+        if (distance < nearest_distance || free_at_tie) {
+          nearest = column;
+          nearest_distance = distance;
+        }
       }
-      if (nearest < 0 || !std::isfinite(distance[at(nearest)])) return std::nullopt;
-      least = distance[at(nearest)];
-      done[at(nearest)] = 1;
-      if (row_of[at(nearest)] < 0) {
+      if (nearest == kNone) return false;
+      least = nearest_distance;
+      done_[nearest] = 1;
+      if (row_of_[nearest] < 0) {
         sink = nearest;
       } else {
-        row = row_of[at(nearest)];
+        row = static_cast<std::size_t>(row_of_[nearest]);
       }
     }
-    row_price[at(current)] += least;
-    for (Index column = 0; column < columns; ++column) {
-      if (done[at(column)] == 0 || column == sink) continue;
-      const double slack = least - distance[at(column)];
-      row_price[at(row_of[at(column)])] += slack;
-      column_price[at(column)] -= slack;
+    row_price_[current] += least;
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (done_[column] == 0 || column == sink) continue;
+      const double slack = least - distance_[column];
+      row_price_[static_cast<std::size_t>(row_of_[column])] += slack;
+      column_price_[column] -= slack;
     }
-    Index column = sink;
-    while (true) {
-      const Index from = predecessor[at(column)];
-      row_of[at(column)] = static_cast<int>(from);
-      const Index next = column_of[at(from)];
-      column_of[at(from)] = static_cast<int>(column);
-      if (from == current) break;
-      column = next;
-    }
+    take_path(current, sink, column_of);
   }
+  return true;
+}
 
-  Assignment result{std::move(column_of), 0.0};
-  for (Index row = 0; row < rows; ++row) result.cost += cost(row, result.column_of[at(row)]);
-  return result;
+/// The assignment of the rows so far stays within the threshold; by Berge's theorem one more row
+/// fits within the least threshold at which an alternating path leads from it to a free column.
+std::optional<double> AssignmentSolver::bottleneck(std::span<const double> cost,
+                                                   std::size_t columns, std::span<int> column_of) {
+  const std::size_t rows = column_of.size();
+  SKEIN_ASSERT(cost.size() == rows * columns);
+  start(rows, columns, column_of);
+  double threshold = -kInfinity;
+  for (std::size_t current = 0; current < rows; ++current) {
+    start_row();
+    std::size_t row = current;
+    std::size_t sink = kNone;
+    while (sink == kNone) {
+      const std::span<const double> entries = cost.subspan(row * columns, columns);
+      std::size_t nearest = kNone;
+      double nearest_distance = kInfinity;
+      for (std::size_t column = 0; column < columns; ++column) {
+        if (done_[column] != 0) continue;
+        const double through = std::max(threshold, entries[column]);
+        if (through < distance_[column]) {
+          distance_[column] = through;
+          predecessor_[column] = static_cast<int>(row);
+        }
+        const double distance = distance_[column];
+        const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
+                                 row_of_[nearest] >= 0 && row_of_[column] < 0;
+        if (distance < nearest_distance || free_at_tie) {
+          nearest = column;
+          nearest_distance = distance;
+        }
+      }
+      if (nearest == kNone) return std::nullopt;
+      threshold = std::max(threshold, nearest_distance);
+      done_[nearest] = 1;
+      if (row_of_[nearest] < 0) {
+        sink = nearest;
+      } else {
+        row = static_cast<std::size_t>(row_of_[nearest]);
+      }
+    }
+    take_path(current, sink, column_of);
+  }
+  return threshold;
+}
+
+std::optional<Assignment> least_sum_assignment(const Eigen::MatrixXd& cost) {
+  AssignmentSolver solver;
+  return least_sum_of(solver, by_rows(cost), static_cast<std::size_t>(cost.rows()),
+                      static_cast<std::size_t>(cost.cols()));
 }
 
 std::optional<Assignment> bottleneck_assignment(const Eigen::MatrixXd& cost) {
-  SKEIN_ASSERT(cost.rows() <= cost.cols());
-  if (cost.rows() == 0) return Assignment{};
-  std::vector<double> values;
-  for (const double value : cost.reshaped()) {
-    if (std::isfinite(value)) values.push_back(value);
+  AssignmentSolver solver;
+  const auto rows = static_cast<std::size_t>(cost.rows());
+  const auto columns = static_cast<std::size_t>(cost.cols());
+  std::vector<double> entries = by_rows(cost);
+  std::vector<int> column_of(rows);
+  const auto threshold = solver.bottleneck(entries, columns, column_of);
+  if (!threshold) return std::nullopt;
+  for (double& entry : entries) {
+    if (entry > *threshold) entry = kInfinity;
   }
-  std::sort(values.begin(), values.end());
-  const auto threshold = std::partition_point(
-      values.begin(), values.end(), [&](double value) { return !complete_below(cost, value); });
-  if (threshold == values.end()) return std::nullopt;
-  const Eigen::MatrixXd allowed = cost.unaryExpr(
-      [limit = *threshold](double value) { return value <= limit ? value : kInfinity; });
-  auto result = least_sum_assignment(allowed);
-  SKEIN_ASSERT(result.has_value());
-  return result;
+  return least_sum_of(solver, entries, rows, columns);
 }
 
 }  // namespace skein::planning

@@ -26,6 +26,7 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.protocol = scenario.protocol;
+  team.planning = scenario.planning;
   team.decisions = scripted_decisions(scenario.operator_decisions);
   team.radio = {scenario.radio.range_m, scenario.radio.delay_mean, scenario.radio.delay_jitter,
                 scenario.radio.loss_ratio};

@@ -19,6 +19,7 @@
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/planning/allocation.hpp"
 
 namespace skein::configuration {
 
@@ -92,6 +93,7 @@ struct Scenario {
   RadioConfig radio;
   WindConfig wind;
   coalition::ProtocolParams protocol;
+  planning::AllocationParams planning;
   std::vector<ScenarioVehicle> vehicles;
   std::vector<Site> sites;
   std::vector<ScenarioHazard> hazards;

@@ -15,6 +15,7 @@
 #include "skein/configuration/process_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/planning/allocation.hpp"
 
 namespace skein::configuration {
 
@@ -41,6 +42,7 @@ struct VehicleConfig {
   FlightControllerConfig flight_controller;
   NetworkConfig network;
   coalition::ProtocolParams protocol;
+  planning::AllocationParams planning;
   std::vector<Hazard> hazards;  ///< known before the mission
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <optional>
 
@@ -15,8 +16,13 @@ namespace skein::onboard {
 /// thread calls request() and result().
 class Planner {
  public:
-  /// `on_result` is called from the planner's thread when a result has been queued.
-  explicit Planner(std::function<void()> on_result) : on_result_{std::move(on_result)} {}
+  /// A plan is given up improving this long before its request wants the answer.
+  static constexpr Duration kAnswerMargin = std::chrono::milliseconds{100};
+
+  /// `on_result` is called from the planner's thread when a result has been queued. `now` is the
+  /// mission clock; without one a plan is improved for as long as there is something to improve.
+  explicit Planner(std::function<void()> on_result, std::function<Instant()> now = {})
+      : on_result_{std::move(on_result)}, now_{std::move(now)} {}
 
   /// False, and counted in dropped(), when four requests are waiting already.
   bool request(mission::PlanningRequest request);
@@ -29,6 +35,7 @@ class Planner {
 
  private:
   std::function<void()> on_result_;
+  std::function<Instant()> now_;
   SpscRing<mission::PlanningRequest, 4> requests_;
   SpscRing<mission::PlanningResult, 8> results_;
   process::Wake wake_;

@@ -33,10 +33,11 @@ struct FlightPlan {
   TimedPath timed;
 };
 
-/// Long work for the planner thread: call planning::allocate(params, problem), hand the outcome
-/// back.
+/// Long work for the planner thread: call planning::allocate(params, problem), with a budget that
+/// ends before `answer_by` where time is real, and hand the outcome back.
 struct PlanningRequest {
   coalition::Round round;
+  Instant answer_by = Instant::max();
   planning::AllocationParams params;
   planning::AllocationProblem problem;
 };

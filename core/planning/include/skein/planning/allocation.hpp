@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "skein/base/result.hpp"
@@ -10,6 +13,8 @@
 #include "skein/domain/task.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/avoidance.hpp"
+#include "skein/planning/budget.hpp"
+#include "skein/planning/plan_value.hpp"
 
 namespace skein::planning {
 
@@ -36,26 +41,69 @@ struct AllocationProblem {
   /// When the last delivery of the site was or will be flown by somebody outside this problem;
   /// assessments wait for it too.
   Instant deliveries_done{};
+  std::uint64_t seed = 1;  ///< of the methods that draw lots
+};
+
+/// How the tasks of one coalition are given to its candidates (docs/methods.md). All of them work
+/// on one table of lengths and are judged by value_of.
+enum class AllocationMethod : std::uint8_t {
+  best,        ///< exact; where that could not finish, the best of all that the budget allowed
+  exact,       ///< the greatest J, proven
+  earliest,    ///< the earliest deliveries, then the earliest assessments, then the least lengths
+  colony,      ///< division-of-labour ant colony (Wang 2022, eq. 26-32)
+  polynomial,  ///< earliest completion, then the smallest coalition (Sujit, Manathara, Ghose 2014)
+  greedy,      ///< contract net: task after task, each to whoever is there first
+  count
+};
+[[nodiscard]] std::string_view to_string(AllocationMethod method);
+[[nodiscard]] std::optional<AllocationMethod> allocation_method(std::string_view name);
+
+/// Of the colony. The paper gives none of them; these are tuned (docs/methods.md).
+struct ColonyParams {
+  int generations = 60;             ///< at most
+  int ants = 16;                    ///< m: ants of a subgroup, and plans of a generation
+  double alpha = 1.0;               ///< weight of the pheromone tau
+  double beta = 1.0;                ///< weight of the visibility eta
+  double q0 = 0.5;                  ///< how often the best move is taken without drawing
+  double tau0 = 0.1;                ///< pheromone at first
+  double tau_least = 0.1;           ///< pheromone at least, as a share of the first
+  double local_evaporation = 0.05;  ///< of a move that was taken, back to tau0
+  double global_evaporation = 0.1;  ///< rho: of every move, and what the best plan's moves get
+  double distance_weight = 0.3;     ///< w1 of a move's cost
+  double time_weight = 1.0;         ///< w2 of a move's cost
 };
 
 struct AllocationParams {
   AvoidanceParams avoidance;
   /// Lengths are raised by this factor before a time is promised, so that the wind can be paid for.
   double time_margin = 1.01;
+  AllocationMethod method = AllocationMethod::best;
+  ValueWeights weights;
+  ColonyParams colony;
 };
 
 struct Allocation {
   std::vector<TaskAssignment> assignments;  ///< by task, each open task once
   double first_delivery_s = 0.0;            ///< after the problem's start; 0 without deliveries
-};
+  AllocationMethod method = AllocationMethod::best;  ///< whose plan it is; never best
+  PlanValue value;
+  double value_bound = 0.0;  ///< no plan has a greater J
+  bool proven = false;       ///< no plan has a J greater by more than kValueTolerance
 
-/// Vehicles to tasks, one task each: deliveries by bottleneck assignment (the earliest common time,
-/// then the least sum of lengths), then assessments among the rest. Every time is one that the
-/// vehicle can fly exactly (path_of_length succeeds), within its range. Deterministic: ties by id.
-/// Fails with what is missing ("site 2 needs 6 deliveries: 4 of 9 candidates can deliver").
-/// Cost: O(tasks * candidates) paths and O(n^3) per assignment.
+  [[nodiscard]] double gap() const { return value_bound - value.total; }
+};
+/// Between plans of one J to within this, the one with the least sum of shortest lengths is taken.
+inline constexpr double kValueTolerance = 1e-6;
+
+/// Vehicles to tasks, one task each: all deliveries at one common time plus their offsets, all
+/// assessments together, after the wait. Every time is one that the vehicle can fly exactly
+/// (path_of_length succeeds), within its range. Deterministic but for budget.expired: ties by id.
+/// The first plan is always made; more budget never gives one of a smaller J. A step is an
+/// assignment problem that exact solves, or a plan that the colony builds. Fails with what is
+/// missing ("site 2 needs 6 deliveries: 4 of 9 candidates can deliver").
 [[nodiscard]] Result<Allocation> allocate(const AllocationParams& params,
-                                          const AllocationProblem& problem);
+                                          const AllocationProblem& problem,
+                                          const PlanningBudget& budget = {});
 
 /// The path of one assignment, from where the vehicle is at `start`: to the task's entry, timed,
 /// and the task's run. `gate_m` is where the run begins: a delivery does not pass it unauthorised.

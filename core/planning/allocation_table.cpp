@@ -1,0 +1,443 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "allocation_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
+#include "skein/planning/arrival.hpp"
+#include "skein/planning/dubins.hpp"
+#include "task_leg.hpp"
+
+namespace skein::planning {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding_s = 2e-9;  ///< more than what times are rounded up by
+constexpr int kTimingsMax = 64;       ///< moments tried for one choice of vehicles
+
+Instant later(Instant start, double seconds) {
+  return start + Duration{static_cast<Duration::rep>(std::ceil(seconds * 1e9))};
+}
+
+/// Bending a straight line of `straight_m` aside adds any length up to this: path_of_length turns
+/// away, back by twice that and away again, by up to this angle.
+constexpr double kBendMax_rad = radians(85.0);
+double bend_room_m(double straight_m, double radius_m) {
+  const double angle =
+      std::min(std::asin(std::min(1.0, straight_m / (4.0 * radius_m))), kBendMax_rad);
+  const double line_m =
+      std::max(0.0, straight_m - 4.0 * radius_m * std::sin(angle)) / std::cos(angle);
+  return 4.0 * radius_m * angle + line_m - straight_m;
+}
+
+/// A cheap certificate that path_of_length succeeds, where the shortest path has no hazard to go
+/// around: far poses have no gap, a straight line can be bent, and whole loops fit in anywhere.
+/// Every path of a length lies in the ellipse with the poses as its foci and that length as its
+/// axis, so hazards outside of it do not matter.
+bool has_no_gap(const Transit& transit, double shortest_m, double wanted_m) {
+  const Vec2 from = transit.from.position();
+  const Vec2 to = transit.to.position();
+  for (const Hazard& hazard : transit.hazards) {
+    const double around = (hazard.centre - from).norm() + (hazard.centre - to).norm();
+    if (around - 2.0 * hazard.radius_m <= wanted_m + 1e-3) return false;
+  }
+  const double extra_m = wanted_m - shortest_m;
+  if (extra_m < 0.0) return false;
+  const double r = transit.radius_m;
+  if (extra_m >= kTwoPi * r * (1.0 + 1e-9)) return true;
+  // The straight line of the shortest path is then longer than 4.4 r, and bends of up to 85 degrees
+  // reach one loop.
+  if ((to - from).norm() >= 7.0 * r) return true;
+  const DubinsPath word = shortest_dubins(transit.from, transit.to, r);
+  if (word.word == DubinsWord::RLR || word.word == DubinsWord::LRL) return false;
+  return extra_m <= bend_room_m(word.lengths_m[1], r) - 1e-6 * r;
+}
+
+}  // namespace
+
+AllocationTable::AllocationTable(const AllocationParams& params, const AllocationProblem& problem)
+    : params_{&params}, problem_{&problem}, candidates_{problem.candidates} {
+  std::sort(candidates_.begin(), candidates_.end(),
+            [](const Candidate& a, const Candidate& b) { return a.id < b.id; });
+}
+
+Result<AllocationTable> AllocationTable::make(const AllocationParams& params,
+                                              const AllocationProblem& problem) {
+  SKEIN_ASSERT(params.time_margin >= 1.0);
+  AllocationTable table{params, problem};
+  if (auto error = table.make_rows()) return *error;
+  table.make_pairs();
+  table.make_bounds();
+  return table;
+}
+
+std::string AllocationTable::name() const {
+  return "site " + std::to_string(problem_->site.id.value);
+}
+
+std::optional<Error> AllocationTable::make_rows() {
+  const Site& site = problem_->site;
+  std::vector<TaskId> tasks = problem_->open_tasks;
+  std::sort(tasks.begin(), tasks.end());
+  rows_.reserve(tasks.size());
+  for (const TaskId& task : tasks) {
+    const bool known = task.site == site.id && task.kind != TaskKind::survey &&
+                       task.index < site.task_count(task.kind);
+    if (!known) return Error{name() + " has no open task '" + to_string(task) + "'"};
+  }
+  double first_offset_s = kInfinity;
+  for (const TaskId& task : tasks) {
+    if (task.kind != TaskKind::deliver) continue;
+    const double offset_s = to_seconds(site.deliveries[task.index].offset);
+    rows_.push_back({task, offset_s, offset_s});
+    first_offset_s = std::min(first_offset_s, offset_s);
+  }
+  deliveries_ = rows_.size();
+  for (Row& row : rows_) {
+    row.offset_s -= first_offset_s;
+    row.complete_s = row.offset_s;
+    last_offset_s_ = std::max(last_offset_s_, row.offset_s);
+  }
+  for (const TaskId& task : tasks) {
+    if (task.kind != TaskKind::assess) continue;
+    // The arc takes as long at any speed and radius.
+    const TaskPath arc = arc_path(site, 0.0, site.assessments[task.index].dwell, 1.0, 1.0, 1);
+    rows_.push_back({task, 0.0, arc.run.length_m});
+  }
+  return std::nullopt;
+}
+
+void AllocationTable::set_pair(std::size_t row, std::size_t column, const TaskPath& task,
+                               double shortest_m) {
+  const Candidate& vehicle = candidates_[column];
+  const TaskKind kind = rows_[row].task.kind;
+  const std::size_t i = index(row, column);
+  const double timed_m = timed_run_m(kind, task);
+  const double offset_s = rows_[row].offset_s;
+  const double least_s =
+      (shortest_m + timed_m) * params_->time_margin / vehicle.speed_mps - offset_s;
+  const double greatest_s =
+      (vehicle.range_left_m - (task.run.length_m - timed_m)) / vehicle.speed_mps - offset_s;
+  pairs_[i].entry = task.entry;
+  pairs_[i].run_m = task.run.length_m;
+  pairs_[i].shortest_m = shortest_m;
+  least_s_[i] = least_s <= greatest_s ? least_s : kInfinity;
+  greatest_s_[i] = greatest_s;
+}
+
+void AllocationTable::make_delivery_row(std::size_t row) {
+  const Site& site = problem_->site;
+  const DeliveryRequirement& delivery = site.deliveries[rows_[row].task.index];
+  std::optional<TaskPath> task;  // of the candidate before, mostly the same
+  for (std::size_t c = 0; c < columns(); ++c) {
+    const Candidate& vehicle = candidates_[c];
+    if (!vehicle.capabilities.has(TaskKind::deliver) || vehicle.loads == 0) continue;
+    if (!task || task->run.length_m != vehicle.final_approach_m) {
+      task = delivery_path(site, delivery, vehicle.final_approach_m);
+    }
+    set_pair(row, c, *task,
+             shortest_dubins_length(vehicle.pose, task->entry, vehicle.planning_radius_m));
+  }
+}
+
+void AllocationTable::make_assessment_row(std::size_t row) {
+  const Site& site = problem_->site;
+  const ArcRequirement& arc = site.assessments[rows_[row].task.index];
+  for (std::size_t c = 0; c < columns(); ++c) {
+    const Candidate& vehicle = candidates_[c];
+    if (!vehicle.capabilities.has(TaskKind::assess)) continue;
+    if (vehicle.assess_radius_m < vehicle.planning_radius_m) continue;
+    double shortest_m = kInfinity;
+    TaskPath task;
+    for (int i = 0; i < (arc.start_angle_rad ? 1 : kArcStarts); ++i) {
+      const double start_rad =
+          arc.start_angle_rad ? *arc.start_angle_rad : arc_start_rad(site, vehicle.pose, i);
+      const TaskPath tried = arc_path(site, start_rad, arc.dwell, vehicle.assess_radius_m,
+                                      vehicle.speed_mps, kAssessmentSense);
+      const double length_m =
+          shortest_dubins_length(vehicle.pose, tried.entry, vehicle.planning_radius_m);
+      if (length_m >= shortest_m) continue;
+      shortest_m = length_m;
+      task = tried;
+    }
+    set_pair(row, c, task, shortest_m);
+  }
+}
+
+void AllocationTable::make_pairs() {
+  Pair pair;
+  pair.measured = problem_->hazards.empty();
+  pairs_.assign(rows() * columns(), pair);
+  least_s_.assign(pairs_.size(), kInfinity);
+  greatest_s_.assign(pairs_.size(), -kInfinity);
+  for (std::size_t row = 0; row < rows(); ++row) {
+    is_delivery(row) ? make_delivery_row(row) : make_assessment_row(row);
+  }
+}
+
+void AllocationTable::make_bounds() {
+  const Site& site = problem_->site;
+  const ValueWeights& w = params_->weights;
+  const auto tasks = static_cast<double>(rows());
+  first_moment_s_ = std::max(0.0, to_seconds(problem_->earliest_delivery - problem_->start));
+  if (site.reward > 0.0 && !rows_.empty()) reward_scale_ = w.reward / tasks;
+  for (std::size_t row = 0; row < rows(); ++row) {
+    (is_delivery(row) ? deliver_rewards_ : assess_rewards_) +=
+        std::exp(-site.reward_decay_per_s * rows_[row].complete_s);
+  }
+  for (const Candidate& c : candidates_) range_m_ += c.range_left_m;
+  if (range_m_ > 0.0) range_scale_ = w.range / range_m_;
+  const double reference_s = to_seconds(w.timing_reference) * tasks;
+  if (reference_s > 0.0) timing_scale_ = w.timing / reference_s;
+
+  by_speed_.resize(columns());
+  std::iota(by_speed_.begin(), by_speed_.end(), std::size_t{0});
+  std::stable_sort(by_speed_.begin(), by_speed_.end(), [this](std::size_t a, std::size_t b) {
+    return candidates_[a].speed_mps < candidates_[b].speed_mps;
+  });
+  complete_latest_s_.reserve(rows());
+  for (const Row& row : rows_) complete_latest_s_.push_back(row.complete_s);
+  const auto middle = complete_latest_s_.begin() + static_cast<std::ptrdiff_t>(deliveries_);
+  std::sort(complete_latest_s_.begin(), middle, std::greater<>{});
+  std::sort(middle, complete_latest_s_.end(), std::greater<>{});
+  deliver_from_s_.assign(columns(), kInfinity);
+  assess_from_s_.assign(columns(), kInfinity);
+  for (std::size_t row = 0; row < rows(); ++row) {
+    std::vector<double>& from = is_delivery(row) ? deliver_from_s_ : assess_from_s_;
+    for (std::size_t c = 0; c < columns(); ++c) from[c] = std::min(from[c], least_s(row, c));
+  }
+}
+
+bool AllocationTable::open(std::size_t row, std::size_t column, double common_s) const {
+  const std::size_t i = index(row, column);
+  if (common_s < least_s_[i] || common_s > greatest_s_[i]) return false;
+  return common_s < pairs_[i].refused_from_s || common_s >= pairs_[i].resumes_s;
+}
+
+/// Replaces the lower bound by the length around the hazards.
+void AllocationTable::measure(std::size_t row, std::size_t column) {
+  Pair& pair = pairs_[index(row, column)];
+  if (std::exchange(pair.measured, true) || !possible(row, column)) return;
+  const auto leg = leg_of(params_->avoidance, candidates_[column], problem_->site, rows_[row].task,
+                          problem_->hazards);
+  if (leg) {
+    set_pair(row, column, leg->task, leg->shortest_m);
+  } else {
+    least_s_[index(row, column)] = kInfinity;
+  }
+}
+
+void AllocationTable::measure_all() {
+  for (std::size_t row = 0; row < rows(); ++row) {
+    for (std::size_t c = 0; c < columns(); ++c) measure(row, c);
+  }
+}
+
+bool AllocationTable::verify(std::size_t row, std::size_t column, double common_s) {
+  measure(row, column);
+  if (!open(row, column, common_s)) return false;
+  Pair& pair = pairs_[index(row, column)];
+  if (pair.verified_s == common_s) return true;
+  const Candidate& vehicle = candidates_[column];
+  const TaskKind kind = rows_[row].task.kind;
+  const TaskPath task{pair.entry, {0.0, pair.run_m}};
+  const Transit transit = transit_of(vehicle, task, problem_->hazards);
+  const double wanted_m =
+      transit_length_m(vehicle, kind, task, problem_->start, time_of(row, common_s));
+  if (!has_no_gap(transit, pair.shortest_m, wanted_m)) {
+    const auto reachable = least_length_from(params_->avoidance, transit, wanted_m);
+    if (!reachable || *reachable > wanted_m) {
+      const double resumes_s =
+          reachable
+              ? (*reachable + timed_run_m(kind, task)) / vehicle.speed_mps - rows_[row].offset_s
+              : kInfinity;
+      // A gap that is met twice is one gap.
+      const double until_s = std::max(resumes_s, std::nextafter(common_s, kInfinity));
+      pair.refused_from_s =
+          pair.resumes_s == until_s ? std::min(pair.refused_from_s, common_s) : common_s;
+      pair.resumes_s = until_s;
+      return false;
+    }
+  }
+  pair.verified_s = common_s;
+  return true;
+}
+
+bool AllocationTable::verify(const std::vector<int>& column_of, const Moments& at) {
+  bool all = true;
+  for (std::size_t row = 0; row < rows(); ++row) {
+    const auto column = static_cast<std::size_t>(column_of[row]);
+    all = verify(row, column, moment_of(row, at)) && all;
+  }
+  return all;
+}
+
+Instant AllocationTable::time_of(std::size_t row, double common_s) const {
+  return later(problem_->start, common_s + rows_[row].offset_s);
+}
+
+double AllocationTable::assess_after_s(double delivery_s) const {
+  double last_s = to_seconds(problem_->deliveries_done - problem_->start);
+  if (deliveries_ > 0) {
+    const Instant last = later(problem_->start, delivery_s + last_offset_s_);
+    last_s = std::max(last_s, to_seconds(last - problem_->start));
+  }
+  return std::max(0.0, last_s + to_seconds(problem_->site.assess_wait));
+}
+
+double AllocationTable::delivery_before_s(double assess_s) const {
+  return assess_s - to_seconds(problem_->site.assess_wait) - last_offset_s_ - kRounding_s;
+}
+
+std::optional<double> AllocationTable::next_moment(std::size_t first, std::size_t last,
+                                                   double after_s) const {
+  double next_s = kInfinity;
+  const auto consider = [&](double moment_s) {
+    if (moment_s > after_s) next_s = std::min(next_s, moment_s);
+  };
+  for (std::size_t i = first * columns(); i < last * columns(); ++i) {
+    if (least_s_[i] == kInfinity) continue;
+    consider(least_s_[i]);
+    consider(greatest_s_[i]);
+    consider(pairs_[i].resumes_s);
+  }
+  return std::isfinite(next_s) ? std::optional{next_s} : std::nullopt;
+}
+
+double AllocationTable::value(const std::vector<int>& column_of, const Moments& at) const {
+  double metres_flown = 0.0;
+  for (std::size_t row = 0; row < rows(); ++row) {
+    metres_flown += metres(row, static_cast<std::size_t>(column_of[row]), at);
+  }
+  const double beta = problem_->site.reward_decay_per_s;
+  const double late_s = at.assess_s - assess_after_s(at.delivery_s);
+  return reward_scale_ * (deliver_rewards_ * std::exp(-beta * at.delivery_s) +
+                          assess_rewards_ * std::exp(-beta * at.assess_s)) +
+         range_scale_ * (range_m_ - metres_flown) -
+         timing_scale_ * std::max(0.0, late_s) * static_cast<double>(assessments());
+}
+
+double AllocationTable::least_metres(bool deliveries, double common_s, double open_s) const {
+  const std::vector<double>& from = deliveries ? deliver_from_s_ : assess_from_s_;
+  std::size_t task = deliveries ? 0 : deliveries_;
+  const std::size_t last = deliveries ? deliveries_ : rows();
+  double metres_flown = 0.0;
+  for (const std::size_t c : by_speed_) {
+    if (task == last) break;
+    if (from[c] > open_s || from[c] == kInfinity) continue;
+    metres_flown += candidates_[c].speed_mps * (common_s + complete_latest_s_[task]);
+    ++task;
+  }
+  return task == last ? metres_flown : kInfinity;
+}
+
+double AllocationTable::bound(const Moments& at, const Moments& open) const {
+  const double metres_flown = least_metres(true, at.delivery_s, open.delivery_s) +
+                              least_metres(false, at.assess_s, open.assess_s);
+  if (metres_flown == kInfinity) return -kInfinity;
+  const double beta = problem_->site.reward_decay_per_s;
+  const double late_s = assessments() > 0 ? at.assess_s - assess_after_s(at.delivery_s) : 0.0;
+  return reward_scale_ * (deliver_rewards_ * std::exp(-beta * at.delivery_s) +
+                          assess_rewards_ * std::exp(-beta * at.assess_s)) +
+         range_scale_ * (range_m_ - metres_flown) -
+         timing_scale_ * std::max(0.0, late_s) * static_cast<double>(assessments());
+}
+
+double AllocationTable::bound_from(const Moments& at) const {
+  const double on_time_s = assess_after_s(at.delivery_s);
+  if (at.assess_s <= on_time_s) {
+    return bound({at.delivery_s, on_time_s}, {kInfinity, kInfinity});
+  }
+  // Later deliveries would make these assessments less late: as if they were not.
+  const double late = timing_scale_ * (at.assess_s - on_time_s);
+  return bound(at, {kInfinity, kInfinity}) + late * static_cast<double>(assessments());
+}
+
+std::optional<double> AllocationTable::soonest(const std::vector<int>& column_of, std::size_t first,
+                                               std::size_t last, double from_s) {
+  double moment_s = from_s;
+  for (std::size_t row = first; row < last; ++row) {
+    moment_s = std::max(moment_s, least_s(row, static_cast<std::size_t>(column_of[row])));
+  }
+  for (int i = 0; i < kTimingsMax && std::isfinite(moment_s); ++i) {
+    double next_s = moment_s;
+    for (std::size_t row = first; row < last; ++row) {
+      const auto column = static_cast<std::size_t>(column_of[row]);
+      if (verify(row, column, moment_s)) continue;
+      const std::size_t pair = index(row, column);
+      if (moment_s > greatest_s_[pair]) return std::nullopt;
+      next_s =
+          std::max(next_s, least_s_[pair] > moment_s ? least_s_[pair] : pairs_[pair].resumes_s);
+    }
+    if (next_s == moment_s) return moment_s;
+    moment_s = next_s;
+  }
+  return std::nullopt;
+}
+
+std::optional<CoalitionPlan> AllocationTable::timed(const std::vector<int>& column_of,
+                                                    bool soonest_only) {
+  const auto delivery_s = soonest(column_of, 0, deliveries_, first_moment_s_);
+  if (!delivery_s) return std::nullopt;
+  const auto assess_s = soonest(column_of, deliveries_, rows(), assess_after_s(*delivery_s));
+  if (!assess_s) return std::nullopt;
+  CoalitionPlan plan{column_of, {*delivery_s, *assess_s}, 0.0};
+  plan.value = value(column_of, plan.at);
+  if (soonest_only || deliveries_ == 0 || assessments() == 0) return plan;
+  // The required moment of late assessments can be moved to them.
+  const Moments on_time{delivery_before_s(*assess_s), *assess_s};
+  if (on_time.delivery_s <= *delivery_s || assess_after_s(on_time.delivery_s) > *assess_s) {
+    return plan;
+  }
+  const double on_time_value = value(column_of, on_time);
+  if (on_time_value > plan.value && verify(column_of, on_time)) {
+    plan.at = on_time;
+    plan.value = on_time_value;
+  }
+  return plan;
+}
+
+Allocation AllocationTable::allocation(const CoalitionPlan& plan) const {
+  Allocation result;
+  result.assignments.reserve(rows());
+  for (std::size_t row = 0; row < rows(); ++row) {
+    const auto column = static_cast<std::size_t>(plan.column_of[row]);
+    result.assignments.push_back(
+        {rows_[row].task, candidates_[column].id, time_of(row, moment_of(row, plan.at))});
+  }
+  if (deliveries_ > 0) result.first_delivery_s = plan.at.delivery_s;
+  result.value = value_of(params_->weights, *problem_, result.assignments);
+  return result;
+}
+
+std::optional<Error> AllocationTable::missing(TaskKind kind, std::size_t first,
+                                              std::size_t last) const {
+  std::size_t able = 0;
+  for (std::size_t c = 0; c < columns(); ++c) {
+    bool any = false;
+    for (std::size_t row = first; row < last; ++row) any = any || possible(row, c);
+    able += any ? 1U : 0U;
+  }
+  if (able >= last - first) return std::nullopt;
+  const bool deliver = kind == TaskKind::deliver;
+  return Error{name() + " needs " + std::to_string(last - first) +
+               (deliver ? " deliveries: " : " assessments: ") + std::to_string(able) + " of " +
+               std::to_string(columns()) + " candidates can " + (deliver ? "deliver" : "assess")};
+}
+
+std::optional<Error> AllocationTable::missing() const {
+  if (auto error = missing(TaskKind::deliver, 0, deliveries_)) return error;
+  if (auto error = missing(TaskKind::assess, deliveries_, rows())) return error;
+  if (rows() > columns()) {
+    return Error{name() + " has " + std::to_string(rows()) + " open tasks for " +
+                 std::to_string(columns()) + " candidates, and each takes one"};
+  }
+  return std::nullopt;
+}
+
+}  // namespace skein::planning

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <span>
+
+#include "skein/base/result.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/task.hpp"
+#include "skein/planning/allocation.hpp"
+#include "skein/planning/arrival.hpp"
+#include "skein/planning/task_path.hpp"
+
+/// How a vehicle gets to a task: what allocate and plan_task share, so that what was promised is
+/// what is flown.
+namespace skein::planning {
+
+inline constexpr int kCounterClockwise = 1;
+inline constexpr int kClockwise = -1;
+/// Every assessment of a site is flown in the same sense, so that vehicles on one circle keep their
+/// spacing.
+inline constexpr int kAssessmentSense = kCounterClockwise;
+inline constexpr int kArcStarts = 24;  ///< tried where the requirement leaves the start angle free
+
+/// The start angle of an arc that is tried as number `index`: the nearest point first, then round.
+[[nodiscard]] double arc_start_rad(const Site& site, const Pose2& from, int index);
+
+[[nodiscard]] Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell,
+                                         double arc_radius_m, double planning_radius_m,
+                                         double speed_mps, int turn);
+
+struct Leg {
+  TaskPath task;
+  double shortest_m = std::numeric_limits<double>::infinity();  ///< to the task's entry
+};
+
+/// To the arc's start; the one that is reached soonest where the start angle is free.
+[[nodiscard]] Result<Leg> leg_to_arc(const AvoidanceParams& params, const Pose2& from,
+                                     double planning_radius_m, double arc_radius_m,
+                                     double speed_mps, const Site& site, const ArcRequirement& arc,
+                                     int turn, std::span<const Hazard> hazards);
+
+/// How the candidate flies the task, and the least that it takes, around every hazard.
+[[nodiscard]] Result<Leg> leg_of(const AvoidanceParams& params, const Candidate& vehicle,
+                                 const Site& site, const TaskId& task,
+                                 std::span<const Hazard> hazards);
+
+/// What of the run lies before the moment that the task's time refers to.
+[[nodiscard]] double timed_run_m(TaskKind kind, const TaskPath& task);
+
+[[nodiscard]] Transit transit_of(const Candidate& vehicle, const TaskPath& task,
+                                 std::span<const Hazard> hazards);
+
+/// Length of the transit that brings the vehicle to the task at `time`.
+[[nodiscard]] double transit_length_m(const Candidate& vehicle, TaskKind kind, const TaskPath& task,
+                                      Instant start, Instant time);
+
+}  // namespace skein::planning
