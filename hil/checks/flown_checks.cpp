@@ -274,7 +274,7 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
                      "",
                      {}};
   for (const TaskRun& run : task_runs(record)) {
-    const bool delivered = run.task.kind == TaskKind::deliver && run.flown();
+    const bool delivered = run.task.kind == TaskKind::deliver && run.flown() && !run.cut_off;
     const Site* site = site_of(record, run.task.site);
     if (delivered &&
         (!run.planned || site == nullptr || run.task.index >= site->deliveries.size())) {

@@ -50,12 +50,13 @@ Pose2 plan_pose(const TimedPath& plan, double distance_m) {
 }
 
 void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
-               const std::function<void(double, const Vec2&)>& see) {
+               const std::function<double(double, const Vec2&)>& see) {
   const auto steps = std::max(1.0, std::ceil((to_m - from_m) / step_m));
   Pose2 pose = plan.path.start;
   double begin = 0.0;
   std::size_t piece = 0;
-  for (double i = 0.0; i <= steps; i += 1.0) {
+  double skipped = 0.0;
+  for (double i = 0.0; i <= steps; i += 1.0 + skipped) {
     const double distance = from_m + (to_m - from_m) * i / steps;
     const auto& segments = plan.path.segments;
     while (piece < segments.size() && distance > begin + segments[piece].length_m) {
@@ -65,7 +66,8 @@ void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
     }
     const double curvature =
         piece < segments.size() ? segments[piece].curvature_per_m : plan.tail_curvature_per_m;
-    see(distance, along_piece(pose, curvature, distance - begin).position());
+    const double idle = see(distance, along_piece(pose, curvature, distance - begin).position());
+    skipped = to_m > from_m ? std::floor(std::max(0.0, idle) * steps / (to_m - from_m)) : 0.0;
   }
 }
 

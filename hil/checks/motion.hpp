@@ -18,9 +18,11 @@ namespace skein::checks {
 [[nodiscard]] double plan_length_m(const TimedPath& plan);
 /// Beyond the end along the hold.
 [[nodiscard]] Pose2 plan_pose(const TimedPath& plan, double distance_m);
-/// Calls `see` with points of the plan at most `step_m` apart, both ends included.
+/// Calls `see` with points of the plan at most `step_m` apart, both ends included. It answers how
+/// far along the plan nothing of interest can follow (0: look at the next point); points within
+/// that are left out.
 void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
-               const std::function<void(double distance_m, const Vec2&)>& see);
+               const std::function<double(double distance_m, const Vec2&)>& see);
 
 /// Position of a track at a time, linear between its points; none outside it and in a gap.
 struct TrackPosition {

@@ -117,6 +117,8 @@ void judge_plan_hazard(const Recording& recorded, std::size_t index, const Known
       nearest = away;
       where = distance;
     }
+    // The straight way back to the edge is the shortest; the margin is for rounding.
+    return away - known.hazard.radius_m - kEdge;
   });
   if (where) {
     const Instant when = plan.plan.start_time + from_seconds(*where / plan.plan.speed_mps);

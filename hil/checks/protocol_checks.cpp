@@ -34,6 +34,7 @@ void judge_order(const Order& order, const Limits& limits, CheckResult& result) 
   const std::string rule =
       order.wait > Duration{} ? " (wait " + fixed(to_seconds(order.wait), 1) + " s)" : "";
   ++result.judged;
+  if (order.before.cut_off) return;  // nobody can know when it ended, or whether
   if (!order.before.done ||
       order.after.begin() + from_seconds(limits.arrival_s) < *order.before.done + order.wait) {
     result.violations.push_back(
@@ -61,6 +62,13 @@ std::vector<const TaskRun*> of_kind(const std::vector<TaskRun>& runs, SiteId sit
     if (run.flown() && run.task.site == site && run.task.kind == kind) found.push_back(&run);
   }
   return found;
+}
+
+/// The one that ended first; where none did, the one that began first.
+const TaskRun& first_done(const std::vector<const TaskRun*>& runs) {
+  return **std::min_element(runs.begin(), runs.end(), [](const TaskRun* a, const TaskRun* b) {
+    return a->done.value_or(Instant::max()) < b->done.value_or(Instant::max());
+  });
 }
 
 /// The operator's last word on a site was no.
@@ -96,7 +104,7 @@ CheckResult check_precedence(const RunRecord& record, const Limits& limits) {
                                        run_name(*run) + " began " + at(run->begin()) +
                                            " at a site that was never surveyed"});
         } else {
-          judge_order({*surveys.front(), *run}, limits, result);
+          judge_order({first_done(surveys), *run}, limits, result);
         }
       }
     }
@@ -262,7 +270,8 @@ CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) 
     begun.insert(run.task);
     if (run.done && !run.failed) done.insert(run.task);
   }
-  std::size_t excused = 0;
+  std::size_t refusals = 0;
+  std::map<std::string, std::size_t> excuses;
   for (const Site& site : record.sites) {
     std::vector<TaskId> tasks = site.tasks_after_survey();
     tasks.insert(tasks.begin(), TaskId{site.id, TaskKind::survey, 0});
@@ -271,7 +280,13 @@ CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) 
       ++result.judged;
       if (done.contains(task)) continue;
       if (no && task.kind != TaskKind::survey) {
-        ++excused;
+        ++refusals;
+        continue;
+      }
+      const auto excuse = std::find_if(record.excused.begin(), record.excused.end(),
+                                       [&](const Excuse& e) { return e.task == task; });
+      if (excuse != record.excused.end()) {
+        ++excuses[excuse->why];
         continue;
       }
       result.violations.push_back(
@@ -282,7 +297,10 @@ CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) 
   }
   result.measured =
       std::to_string(done.size()) + " done" +
-      (excused > 0 ? ", " + std::to_string(excused) + " refused by the operator" : "");
+      (refusals > 0 ? ", " + std::to_string(refusals) + " refused by the operator" : "");
+  for (const auto& [why, count] : excuses) {
+    result.measured += ", " + std::to_string(count) + " " + why;
+  }
   return result;
 }
 

@@ -39,19 +39,34 @@ void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
   const TaskId task = task_of(event);
   const auto last = std::find_if(runs.rbegin(), runs.rend(),
                                  [&](const TaskRun& run) { return run.task == task; });
-  const bool open = last != runs.rend() && !last->done && !last->failed;
+  const bool open = last != runs.rend() && !last->done && !last->failed && !last->cut_off;
   // A survey is told twice, as a survey and as a task: one run.
   const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
                           last->done && event.time - *last->done < std::chrono::seconds{1};
   if (!open && !told_again) {
     if (event.kind == EventKind::task_failed) return;  // given up before it began
-    runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}});
+    runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false});
   }
   TaskRun& run = open || told_again ? *last : runs.back();
   if (event.kind == EventKind::task_failed) run.failed = true;
   if (is_start(event.kind) && !run.started) run.started = event.time;
   if (done && !run.done) run.done = event.time;
   if (done && event.value > 0.0) run.planned = at_seconds(event.value);
+}
+
+void cut_off(std::vector<TaskRun>& runs) {
+  for (TaskRun& run : runs) run.cut_off = run.cut_off || (!run.done && !run.failed);
+}
+
+void clip(std::vector<Lease>& leases, Instant end) {
+  for (Lease& lease : leases) lease.until = std::min(lease.until, end);
+}
+
+std::vector<AgentEnd> ends_of(const RunRecord& record, VehicleId vehicle) {
+  std::vector<AgentEnd> ends;
+  std::copy_if(record.agent_ends.begin(), record.agent_ends.end(), std::back_inserter(ends),
+               [vehicle](const AgentEnd& e) { return e.vehicle == vehicle; });
+  return ends;
 }
 
 void add_to_leases(const MissionEvent& event, std::vector<Lease>& leases) {
@@ -84,7 +99,13 @@ std::vector<TaskRun> task_runs(const RunRecord& record) {
   std::vector<TaskRun> all;
   for (const recording::Recording& recorded : record.recordings) {
     std::vector<TaskRun> runs;
-    for (const MissionEvent& event : own_events(recorded)) add_to_runs(event, runs);
+    const auto ends = ends_of(record, recorded.vehicle);
+    auto end = ends.begin();
+    for (const MissionEvent& event : own_events(recorded)) {
+      for (; end != ends.end() && event.time > end->at; ++end) cut_off(runs);
+      add_to_runs(event, runs);
+    }
+    if (end != ends.end()) cut_off(runs);
     all.insert(all.end(), runs.begin(), runs.end());
   }
   std::stable_sort(all.begin(), all.end(), [](const TaskRun& a, const TaskRun& b) {
@@ -97,7 +118,18 @@ std::vector<Lease> leases(const RunRecord& record) {
   std::vector<Lease> all;
   for (const recording::Recording& recorded : record.recordings) {
     std::vector<Lease> own;
-    for (const MissionEvent& event : own_events(recorded)) add_to_leases(event, own);
+    const auto ends = ends_of(record, recorded.vehicle);
+    auto end = ends.begin();
+    const auto clip_until = [&](Instant time) {
+      for (; end != ends.end() && time > end->at; ++end) {
+        if (end->restarted_at) clip(own, *end->restarted_at);
+      }
+    };
+    for (const MissionEvent& event : own_events(recorded)) {
+      clip_until(event.time);
+      add_to_leases(event, own);
+    }
+    clip_until(Instant::max());
     all.insert(all.end(), own.begin(), own.end());
   }
   return all;

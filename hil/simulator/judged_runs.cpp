@@ -8,6 +8,7 @@
 #include <thread>
 #include <utility>
 
+#include "skein/base/assert.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hil/team_record.hpp"
 
@@ -31,19 +32,34 @@ checks::CheckResult protocol_errors(const TeamResult& result) {
 
 }  // namespace
 
-JudgedRun fly_judged(const configuration::Scenario& scenario, std::uint64_t seed,
-                     const TeamObserver& watcher) {
+Result<TeamMission> seeded_mission(const configuration::Scenario& scenario, std::uint64_t seed,
+                                   const std::string& faults) {
+  const auto params = fault_params(faults, seed);
+  if (!params) return params.error();
   configuration::Scenario seeded = scenario;
   seeded.seed = seed;
-  const TeamMission mission = team_mission(seeded);
+  TeamMission mission = team_mission(seeded);
+  add_faults(mission, *params);
+  return mission;
+}
+
+JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
+                     const TeamObserver& watcher) {
   TeamRecorder recorder{mission, watcher};
   const TeamObserver observer = recorder.observer();
-
   JudgedRun run;
-  run.seed = seed;
+  run.seed = mission.seed;
   run.result = simulate_team(mission, observer);
   run.sites_done = run.result.sites_done == mission.sites.size();
-  run.broken = checks::judge(recorder.record(), limits_of(scenario.expect));
+
+  checks::Limits held_to = limits;
+  if (!mission.faults.clocks.empty()) {
+    // Times are agreed by clocks that differ, and judged by the true one.
+    const double differ = to_seconds(mission.protocol.clock_guard);
+    held_to.planned_time_s += differ;
+    held_to.arrival_s += differ;
+  }
+  run.broken = checks::judge(recorder.finish(run.result), held_to);
   run.broken.push_back(protocol_errors(run.result));
   std::erase_if(run.broken, [](const auto& check) { return check.held(); });
   return run;
@@ -54,9 +70,12 @@ std::vector<JudgedRun> fly_series(const configuration::Scenario& scenario, const
   std::vector<JudgedRun> runs(series.runs);
   std::atomic<std::size_t> next{0};
   std::mutex telling;
+  const checks::Limits limits = limits_of(scenario.expect);
   const auto work = [&] {
     for (std::size_t i = next++; i < runs.size(); i = next++) {
-      runs[i] = fly_judged(scenario, series.first_seed + i);
+      const auto mission = seeded_mission(scenario, series.first_seed + i, series.faults);
+      SKEIN_ASSERT(mission.ok());
+      runs[i] = fly_judged(*mission, limits);
       if (!on_done) continue;
       const std::lock_guard lock{telling};
       on_done(runs[i]);

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "skein/hil/team_mission.hpp"
+
 namespace skein::hil {
 namespace {
 
@@ -20,6 +22,13 @@ configuration::Scenario small() {
   return *scenario;
 }
 
+JudgedRun fly(const configuration::Scenario& scenario, std::uint64_t seed,
+              const std::string& faults = "none") {
+  const auto mission = seeded_mission(scenario, seed, faults);
+  EXPECT_TRUE(mission) << mission.error().message;
+  return fly_judged(*mission, limits_of(scenario.expect));
+}
+
 std::vector<std::string> names(const JudgedRun& run) {
   std::vector<std::string> names;
   for (const auto& check : run.broken) names.push_back(check.name);
@@ -27,7 +36,7 @@ std::vector<std::string> names(const JudgedRun& run) {
 }
 
 TEST(JudgedRuns, TheSmallMissionHolds) {
-  const auto run = fly_judged(small(), 1);
+  const auto run = fly(small(), 1);
   EXPECT_THAT(names(run), IsEmpty());
   EXPECT_TRUE(run.sites_done);
 }
@@ -35,7 +44,7 @@ TEST(JudgedRuns, TheSmallMissionHolds) {
 TEST(JudgedRuns, AMissionThatIsNotFinishedIsFound) {
   auto scenario = small();
   scenario.duration_max = std::chrono::seconds{20};
-  const auto run = fly_judged(scenario, 1);
+  const auto run = fly(scenario, 1);
   EXPECT_FALSE(run.sites_done);
   EXPECT_THAT(names(run), ElementsAre("completion"));
 }
@@ -43,7 +52,7 @@ TEST(JudgedRuns, AMissionThatIsNotFinishedIsFound) {
 TEST(JudgedRuns, TheJudgesHoldAMissionToTheScenariosLimits) {
   auto scenario = small();
   scenario.expect.miss_distance_m = 0.0;
-  EXPECT_THAT(names(fly_judged(scenario, 1)), ElementsAre("deliveries"));
+  EXPECT_THAT(names(fly(scenario, 1)), ElementsAre("deliveries"));
 }
 
 TEST(JudgedRuns, ASeriesIsTheSameForAnyNumberOfThreads) {
@@ -51,8 +60,8 @@ TEST(JudgedRuns, ASeriesIsTheSameForAnyNumberOfThreads) {
   scenario.wind.gust_mps = 1.0;
   scenario.radio.loss_ratio = 0.2;
   std::size_t told = 0;
-  const auto alone = fly_series(scenario, {5, 6, 1}, [&](const JudgedRun&) { ++told; });
-  const auto shared = fly_series(scenario, {5, 6, 3});
+  const auto alone = fly_series(scenario, {"none", 5, 6, 1}, [&](const JudgedRun&) { ++told; });
+  const auto shared = fly_series(scenario, {"none", 5, 6, 3});
   EXPECT_EQ(told, 6U);
   ASSERT_EQ(alone.size(), 6U);
   ASSERT_EQ(shared.size(), 6U);

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/hil/team_record.hpp"
 
+#include <algorithm>
+
+#include "excuses.hpp"
+
 namespace skein::hil {
 
 TeamRecorder::TeamRecorder(const TeamMission& mission, const TeamObserver& watcher)
-    : watcher_{watcher} {
+    : watcher_{watcher}, faults_{mission.faults.any()} {
   record_.sites = mission.sites;
   for (const auto& h : mission.hazards) record_.hazards.push_back({h.hazard, h.known_from});
   for (const auto& v : mission.vehicles) {
@@ -35,7 +39,24 @@ TeamObserver TeamRecorder::observer() {
     of(vehicle).track.push_back({state, plan.number, 0.0, 0.0});
     if (watcher_.track) watcher_.track(vehicle, state, plan);
   };
+  observer.fault = [this](const FaultEvent& event) {
+    if (event.kind == FaultEvent::Kind::gone) record_.lost.push_back(event.vehicle);
+    if (event.kind == FaultEvent::Kind::gone || event.kind == FaultEvent::Kind::ended)
+      record_.agent_ends.push_back({event.vehicle, event.time, {}});
+    if (event.kind == FaultEvent::Kind::restarted) {
+      const auto end = std::find_if(record_.agent_ends.rbegin(), record_.agent_ends.rend(),
+                                    [&](const auto& e) { return e.vehicle == event.vehicle; });
+      end->restarted_at = event.time;
+    }
+    if (watcher_.fault) watcher_.fault(event);
+  };
   return observer;
+}
+
+const checks::RunRecord& TeamRecorder::finish(const TeamResult& result) {
+  // Without faults there is no excuse.
+  if (faults_) record_.excused = excuses(record_, result.vehicles);
+  return record_;
 }
 
 }  // namespace skein::hil

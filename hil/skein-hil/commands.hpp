@@ -30,6 +30,7 @@ struct SimulateArguments {
   std::filesystem::path scenario;
   std::optional<std::uint64_t> seed;
   bool trace = false;
+  std::string faults = "none";
   std::optional<std::size_t> runs;  ///< without: one, with its events
   std::size_t jobs = 0;             ///< 0: one for each core
 };

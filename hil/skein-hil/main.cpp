@@ -50,6 +50,11 @@ int main(int argc, char** argv) {
   simulate_command->add_option("--seed", simulate.seed, "In place of the scenario's");
   auto* trace = simulate_command->add_flag("--trace", simulate.trace, "Print every event");
   simulate_command
+      ->add_option("--faults", simulate.faults,
+                   "What goes wrong, drawn from the seed: none, lossy, partition, crash, clocks,\n"
+                   "hazards, operator, joining, several of them with commas, or mixed")
+      ->capture_default_str();
+  simulate_command
       ->add_option("--runs", simulate.runs,
                    "Fly it so often, with the seeds SEED, SEED + 1, ..., and print a summary")
       ->check(CLI::Range(1, 10'000'000))
@@ -61,7 +66,7 @@ int main(int argc, char** argv) {
       "The same file and seed print the same bytes. Every mission is judged; ends with status 0\n"
       "only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil simulate scenarios/coalition-32.yaml --seed 7 --trace\n"
-      "          skein-hil simulate scenarios/coalition-6.yaml --runs 1000");
+      "          skein-hil simulate scenarios/faults-8.yaml --runs 1000 --faults mixed");
 
   CLI11_PARSE(app, argc, argv);
   return run_command->parsed() ? skein::hil::run(run) : skein::hil::simulate(simulate);

@@ -12,7 +12,9 @@
 
 #include "commands.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/hil/faults.hpp"
 #include "skein/hil/judged_runs.hpp"
+#include "skein/hil/team_mission.hpp"
 
 namespace skein::hil {
 namespace {
@@ -83,11 +85,14 @@ void print_broken(const JudgedRun& run) {
 }
 
 int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+  const auto mission = seeded_mission(scenario, scenario.seed, arguments.faults);
+  if (arguments.trace) fmt::print("{}", describe(*mission));
   TeamObserver watcher;
   watcher.event = [&](const mission::MissionEvent& event) {
     if (arguments.trace || of_interest(event.kind)) fmt::print("{}\n", trace_line(event));
   };
-  const auto run = fly_judged(scenario, scenario.seed, watcher);
+  watcher.fault = [](const FaultEvent& event) { fmt::print("{}\n", trace_line(event)); };
+  const auto run = fly_judged(*mission, limits_of(scenario.expect), watcher);
   fmt::print(
       "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
       run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
@@ -104,14 +109,16 @@ void print_failures(const std::vector<JudgedRun>& runs, const SimulateArguments&
     if (++shown > kFailuresShown) continue;
     fmt::print("seed {} VIOLATED\n", run.seed);
     print_broken(run);
-    fmt::print("  again: {} simulate {} --seed {} --trace\n", arguments.program,
-               arguments.scenario.string(), run.seed);
+    fmt::print("  again: {} simulate {} --seed {}{} --trace\n", arguments.program,
+               arguments.scenario.string(), run.seed,
+               arguments.faults == "none" ? "" : " --faults " + arguments.faults);
   }
   if (shown > kFailuresShown) fmt::print("... and {} seeds more\n", shown - kFailuresShown);
 }
 
 int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
   RunSeries series;
+  series.faults = arguments.faults;
   series.first_seed = scenario.seed;
   series.runs = *arguments.runs;
   series.jobs = arguments.jobs > 0 ? arguments.jobs
@@ -146,6 +153,10 @@ int simulate(const SimulateArguments& arguments) {
   }
   if (const auto flyable = configuration::check(*scenario); !flyable) {
     fmt::print(stderr, "{}\n", flyable.error().message);
+    return kExitBadInput;
+  }
+  if (const auto faults = fault_params(arguments.faults, scenario->seed); !faults) {
+    fmt::print(stderr, "{}\n", faults.error().message);
     return kExitBadInput;
   }
   if (arguments.seed) scenario->seed = *arguments.seed;

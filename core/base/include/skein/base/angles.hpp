@@ -11,6 +11,7 @@ inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 /// The same angle in (-pi, pi].
 [[nodiscard]] inline double wrap_pi(double rad) {
+  if (rad > -kPi && rad <= kPi) return rad;  // as remainder would, and much faster
   const double r = std::remainder(rad, kTwoPi);
   return r <= -kPi ? r + kTwoPi : r;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "skein/base/angles.hpp"
@@ -8,6 +10,7 @@
 #include "skein/base/time.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
+#include "skein/domain/task.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/recording/recording.hpp"
@@ -20,6 +23,19 @@ struct KnownHazard {
   Instant known_from{};
 };
 
+/// A vehicle's program ended during the mission, on purpose; what the vehicle did then is unknown.
+struct AgentEnd {
+  VehicleId vehicle;
+  Instant at{};
+  std::optional<Instant> restarted_at;  ///< with a new agent that remembers nothing
+};
+
+/// A task that need not be done.
+struct Excuse {
+  TaskId task;
+  std::string why;
+};
+
 /// A finished mission: what it was to be, and what was recorded of it.
 struct RunRecord {
   std::vector<Site> sites;
@@ -28,6 +44,8 @@ struct RunRecord {
   std::vector<recording::Recording> recordings;  ///< of vehicles, in any order
   std::vector<mission::MissionEvent> ground_events;
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
+  std::vector<AgentEnd> agent_ends;  ///< in the order of time
+  std::vector<Excuse> excused;
 };
 
 /// What a mission is held to.

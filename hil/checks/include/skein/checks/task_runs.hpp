@@ -21,6 +21,7 @@ struct TaskRun {
   std::optional<Instant> done;
   bool failed = false;
   std::optional<Instant> planned;  ///< over the site (delivery) or start of the arc
+  bool cut_off = false;            ///< its agent ended before it did
 
   /// Begun and not given up. A delivery of which no end was recorded counts as flown.
   [[nodiscard]] bool flown() const { return !failed; }
@@ -39,8 +40,8 @@ struct Lease {
   Instant from{};
   Instant until{};
 };
-/// Renewals joined. A lease ends early when the member says so, and when its task is done or given
-/// up.
+/// Renewals joined. A lease ends early when the member says so, when its task is done or given up,
+/// and when a new agent without memory starts on the vehicle.
 [[nodiscard]] std::vector<Lease> leases(const RunRecord& record);
 
 }  // namespace skein::checks

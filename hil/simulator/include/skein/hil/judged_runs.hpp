@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/base/result.hpp"
 #include "skein/checks/checks.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/team_simulator.hpp"
@@ -22,12 +23,17 @@ struct JudgedRun {
   [[nodiscard]] bool held() const { return broken.empty(); }
 };
 
-/// Flies the scenario once with this seed in place of its own, in the calling thread, and judges
-/// it. `watcher` sees the run.
-[[nodiscard]] JudgedRun fly_judged(const configuration::Scenario& scenario, std::uint64_t seed,
+/// The scenario with this seed in place of its own, and the faults that the profiles draw with it
+/// ("none": none). Fails for a profile that there is not.
+[[nodiscard]] Result<TeamMission> seeded_mission(const configuration::Scenario& scenario,
+                                                 std::uint64_t seed, const std::string& faults);
+
+/// Flies the mission once, in the calling thread, and judges it. `watcher` sees the run.
+[[nodiscard]] JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
                                    const TeamObserver& watcher = {});
 
 struct RunSeries {
+  std::string faults = "none";
   std::uint64_t first_seed = 1;
   std::size_t runs = 1;
   std::size_t jobs = 1;  ///< threads, each flying one mission at a time; >= 1
@@ -35,6 +41,7 @@ struct RunSeries {
 
 /// Flies the seeds first_seed .. first_seed + runs - 1. The result is in the order of seeds and
 /// does not depend on `jobs`. `on_done` is called after every run, from one thread at a time.
+/// Precondition: the fault profiles exist.
 [[nodiscard]] std::vector<JudgedRun> fly_series(
     const configuration::Scenario& scenario, const RunSeries& series,
     const std::function<void(const JudgedRun&)>& on_done = {});

@@ -20,12 +20,14 @@ class TeamRecorder {
 
   /// For simulate_team(); refers to this recorder.
   [[nodiscard]] TeamObserver observer();
-  [[nodiscard]] const checks::RunRecord& record() const { return record_; }
+  /// After simulate_team(), with its result.
+  [[nodiscard]] const checks::RunRecord& finish(const TeamResult& result);
 
  private:
   [[nodiscard]] recording::Recording& of(VehicleId vehicle);
 
   const TeamObserver& watcher_;
+  bool faults_;
   checks::RunRecord record_;
   std::map<VehicleId, std::size_t> index_;  ///< into record_.recordings
 };

@@ -13,6 +13,7 @@
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/hil/faults.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/vehicle_agent.hpp"
@@ -56,14 +57,35 @@ struct TeamMission {
   Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
   Duration duration_max = std::chrono::seconds{300};
   std::uint64_t seed = 1;
+  FaultSchedule faults;  ///< none unless drawn by add_faults()
 };
 
-/// What is observed while it runs; called in the order of time.
+/// A fault, or a part of its mending, that took place.
+struct FaultEvent {
+  enum class Kind : std::uint8_t { ended, gone, restarted, joined, reported, appeared, healed };
+  Instant time{};
+  Kind kind = Kind::healed;
+  VehicleId vehicle;  ///< where it applies
+  std::string text;
+};
+
+/// What is observed while it runs; called in the order of time, and all times are true mission
+/// time, whatever a vehicle's clock says.
 struct TeamObserver {
   std::function<void(const mission::MissionEvent&)>
       event;  ///< of vehicles and of the ground (id 0)
   std::function<void(VehicleId, const mission::FlightPlan&, Instant)> plan;
   std::function<void(VehicleId, const VehicleState&, const mission::FlightPlan&)> track;
+  std::function<void(const FaultEvent&)> fault;
+};
+
+/// A vehicle when the mission ended.
+struct VehicleEnd {
+  VehicleId vehicle;
+  bool gone = false;  ///< its agent ended for good
+  std::uint8_t loads = 0;
+  double range_left_m = 0.0;
+  Vec2 position{0.0, 0.0};
 };
 
 struct TeamResult {
@@ -71,14 +93,18 @@ struct TeamResult {
   std::size_t sites_done = 0;
   std::uint64_t messages = 0;         ///< sent, counted once for each sender
   std::uint64_t protocol_errors = 0;  ///< sum over the vehicles
+  std::uint64_t dropped = 0;  ///< messages and events that an agent's queues had no room for
+  std::vector<VehicleEnd> vehicles;
 };
 
 /// Flies the mission with the production agents, guidance and vehicle model, in one thread and in
-/// virtual time, until all sites are done (and 5 s more) or duration_max. Nothing in it reads a
-/// clock or an unseeded generator: the same mission gives the same calls, byte for byte.
+/// virtual time, until all sites are done or refused by the operator (and 5 s more, and not before
+/// the radio has healed) or duration_max. Nothing in it reads a clock or an unseeded generator: the
+/// same mission gives the same calls, byte for byte.
 TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer);
 
 /// One line an event, for traces and their comparison.
 [[nodiscard]] std::string trace_line(const mission::MissionEvent& event);
+[[nodiscard]] std::string trace_line(const FaultEvent& event);
 
 }  // namespace skein::hil

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/faults.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "skein/hil/judged_runs.hpp"
+#include "skein/hil/team_mission.hpp"
+
+namespace skein::hil {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+configuration::Scenario scenario(const std::string& name) {
+  auto loaded =
+      configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/" + name + ".yaml");
+  EXPECT_TRUE(loaded) << loaded.error().message;
+  EXPECT_TRUE(configuration::check(*loaded));
+  return *loaded;
+}
+
+TeamMission drawn(const std::string& faults, std::uint64_t seed) {
+  auto mission = seeded_mission(scenario("faults-8"), seed, faults);
+  EXPECT_TRUE(mission) << mission.error().message;
+  return std::move(mission).value();
+}
+
+struct Flown {
+  JudgedRun run;
+  std::string trace;
+  std::vector<mission::MissionEvent> events;
+  std::vector<FaultEvent> faults;
+};
+
+Flown fly(const TeamMission& mission) {
+  Flown flown;
+  TeamObserver watcher;
+  watcher.event = [&](const mission::MissionEvent& e) {
+    flown.events.push_back(e);
+    flown.trace += trace_line(e) + "\n";
+  };
+  watcher.fault = [&](const FaultEvent& e) {
+    flown.faults.push_back(e);
+    flown.trace += trace_line(e) + "\n";
+  };
+  flown.run = fly_judged(mission, limits_of(scenario("faults-8").expect), watcher);
+  return flown;
+}
+
+TEST(Faults, AProfileThatThereIsNotIsRefusedWithThoseThatThereAre) {
+  const auto params = fault_params("lossy,croash", 1);
+  ASSERT_FALSE(params);
+  EXPECT_THAT(params.error().message, HasSubstr("'croash'"));
+  EXPECT_THAT(params.error().message, HasSubstr("crash, clocks"));
+}
+
+TEST(Faults, ProfilesAreComposed) {
+  const auto params = fault_params("lossy,crash", 1);
+  ASSERT_TRUE(params);
+  EXPECT_EQ(params->loss, 0.6);
+  EXPECT_EQ(params->crashes, 2U);
+  EXPECT_EQ(params->partitions, 0U);
+  const auto none = fault_params("none", 1);
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->phase, Duration{});
+}
+
+TEST(Faults, MixedDrawsOtherProfilesForOtherSeeds) {
+  std::set<std::string> mixes;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto p = fault_params("mixed", seed);
+    ASSERT_TRUE(p);
+    mixes.insert({p->loss > 0 ? 'l' : '-', p->partitions > 0 ? 'p' : '-',
+                  p->crashes > 0 ? 'c' : '-', p->slow_operator ? 'o' : '-',
+                  p->joiners > 0 ? 'j' : '-'});
+  }
+  EXPECT_GT(mixes.size(), 10U);
+}
+
+TEST(Faults, TheScheduleIsTheSeedsAndOnlyTheSeeds) {
+  EXPECT_EQ(describe(drawn("mixed", 7)), describe(drawn("mixed", 7)));
+  EXPECT_NE(describe(drawn("mixed", 7)), describe(drawn("mixed", 8)));
+  EXPECT_THAT(describe(drawn("none", 7)), IsEmpty());
+}
+
+TEST(Faults, HalvesHearThemselves) {
+  Partition p;
+  p.apart = {VehicleId{1}, VehicleId{2}};
+  EXPECT_TRUE(p.lets_through(VehicleId{1}, VehicleId{2}));
+  EXPECT_TRUE(p.lets_through(VehicleId{3}, kGroundStation));
+  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
+  EXPECT_FALSE(p.lets_through(VehicleId{3}, VehicleId{1}));
+}
+
+TEST(Faults, OneWayIsHeardInOneDirectionOnly) {
+  Partition p;
+  p.kind = Partition::Kind::one_way;
+  p.apart = {VehicleId{1}};
+  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
+  EXPECT_TRUE(p.lets_through(VehicleId{3}, VehicleId{1}));
+}
+
+TEST(Faults, ABridgeHearsAndIsHeardByBothHalves) {
+  Partition p;
+  p.kind = Partition::Kind::bridge;
+  p.apart = {VehicleId{1}, VehicleId{2}};
+  p.bridge = VehicleId{2};
+  EXPECT_TRUE(p.lets_through(VehicleId{2}, VehicleId{3}));
+  EXPECT_TRUE(p.lets_through(VehicleId{3}, VehicleId{2}));
+  EXPECT_TRUE(p.lets_through(VehicleId{1}, VehicleId{2}));
+  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
+}
+
+TEST(Faults, APartitionLastsForItsTimeOnly) {
+  FaultSchedule faults;
+  Partition p;
+  p.apart = {VehicleId{1}};
+  p.from = at_seconds(10);
+  p.until = at_seconds(20);
+  faults.partitions = {p};
+  EXPECT_TRUE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(9.9)));
+  EXPECT_FALSE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(10)));
+  EXPECT_TRUE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(20)));
+}
+
+TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
+  auto mission = drawn("crash", 1);
+  Crash crash;
+  crash.role = Crash::Role::leader;
+  crash.not_before = at_seconds(1);
+  crash.after = std::chrono::seconds{3};
+  crash.down_for = std::chrono::seconds{8};
+  mission.faults.crashes = {crash};
+  const auto flown = fly(mission);
+  ASSERT_GE(flown.faults.size(), 2U) << flown.trace;
+  EXPECT_EQ(flown.faults[0].kind, FaultEvent::Kind::ended);
+  EXPECT_EQ(flown.faults[1].kind, FaultEvent::Kind::restarted);
+  EXPECT_EQ(flown.faults[1].time - flown.faults[0].time, std::chrono::seconds{8});
+  const VehicleId victim = flown.faults[0].vehicle;
+  bool spoke_after = false;
+  for (const auto& e : flown.events) {
+    if (e.vehicle != victim) continue;
+    EXPECT_FALSE(e.time > flown.faults[0].time && e.time < flown.faults[1].time) << trace_line(e);
+    spoke_after = spoke_after || e.time > flown.faults[1].time;
+  }
+  EXPECT_TRUE(spoke_after);
+}
+
+TEST(Faults, AJoinerIsNotThereBefore) {
+  auto mission = drawn("joining", 1);
+  mission.faults.joining = {{VehicleId{5}, at_seconds(30)}};
+  const auto flown = fly(mission);
+  ASSERT_FALSE(flown.faults.empty());
+  for (const auto& e : flown.events) {
+    EXPECT_FALSE(e.vehicle == VehicleId{5} && e.time < at_seconds(30)) << trace_line(e);
+  }
+}
+
+TEST(Faults, ClocksThatDifferAreSeenByTheAgentsOnly) {
+  auto mission = drawn("none", 1);
+  mission.faults.healed_at = at_seconds(1);
+  const auto straight = fly(mission);
+  for (const auto& v : mission.vehicles) {
+    mission.faults.clocks[v.spec.id] = std::chrono::milliseconds{200};
+  }
+  const auto shifted = fly(mission);
+  // All clocks are fast by the same: what is flown at which true time stays nearly the same.
+  EXPECT_THAT(shifted.run.broken, IsEmpty());
+  EXPECT_TRUE(shifted.run.sites_done);
+  EXPECT_NEAR(to_seconds(shifted.run.result.ended_at), to_seconds(straight.run.result.ended_at),
+              3.0);
+  const auto first = [](const Flown& f) {
+    for (const auto& e : f.events) {
+      if (e.kind == mission::EventKind::survey_done) return e;
+    }
+    return mission::MissionEvent{};
+  };
+  EXPECT_NEAR(to_seconds(first(shifted).time), to_seconds(first(straight).time), 0.25);
+  EXPECT_NEAR(first(shifted).value, first(straight).value, 0.25) << "a moment, in true time too";
+}
+
+TEST(Faults, TheSameSeedIsFlownByteForByte) {
+  for (const std::uint64_t seed : {3U, 4U}) {
+    const auto once = fly(drawn("mixed", seed));
+    EXPECT_EQ(once.trace, fly(drawn("mixed", seed)).trace);
+    EXPECT_THAT(once.trace, HasSubstr("FAULT"));
+  }
+}
+
+class Series : public testing::TestWithParam<const char*> {};
+
+TEST_P(Series, HoldsAndIsFinished) {
+  RunSeries series;
+  series.faults = GetParam();
+  series.runs = 20;
+  series.jobs = 2;
+  for (const auto& run : fly_series(scenario("faults-8"), series)) {
+    for (const auto& check : run.broken) {
+      ADD_FAILURE() << "seed " << run.seed << ", " << check.name << ": "
+                    << check.violations.front().sentence;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Faults, Series, testing::Values("clocks", "operator"));
+
+}  // namespace
+}  // namespace skein::hil

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "site_finder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace skein::hil {
+namespace {
+
+std::vector<VehicleSpec> specs(const TeamMission& mission) {
+  std::vector<VehicleSpec> all;
+  for (const auto& v : mission.vehicles) all.push_back(v.spec);
+  return all;
+}
+
+}  // namespace
+
+SiteFinder::SiteFinder(const TeamMission& mission)
+    : mission_{mission}, specs_{specs(mission)}, sensors_{mission.sites, specs_} {}
+
+SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
+  finder_[site.id] = vehicle;
+  return {vehicle, {specs_[vehicle].id, site}};
+}
+
+std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<FlyingVehicle>& vehicles) {
+  std::vector<Found> all;
+  if (sensors_.hidden().empty()) return all;
+  std::map<VehicleId, Vec2> positions;
+  for (const auto& v : vehicles) {
+    if (v.agent() != nullptr) positions[v.spec().id] = v.state().position().horizontal();
+  }
+  for (const auto& report : sensors_.update(positions)) {
+    const auto finder = std::find_if(specs_.begin(), specs_.end(),
+                                     [&](const auto& spec) { return spec.id == report.finder; });
+    all.push_back(found(static_cast<std::size_t>(finder - specs_.begin()), report.site));
+  }
+  return all;
+}
+
+std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<FlyingVehicle>& vehicles) {
+  std::vector<Found> all;
+  std::vector<Site> nobody;
+  std::set<std::size_t> busy;
+  for (const Site& site : sensors_.hidden()) {
+    std::optional<std::size_t> nearest;
+    const auto distance = [&](std::size_t i) {
+      return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
+    };
+    const auto consider = [&](bool also_busy) {
+      for (std::size_t i = 0; i < vehicles.size(); ++i) {
+        const bool can = vehicles[i].agent() != nullptr &&
+                         specs_[i].capabilities.has(TaskKind::survey) &&
+                         (also_busy || !busy.contains(i));
+        if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
+      }
+    };
+    consider(false);
+    if (!nearest) consider(true);
+    if (nearest) {
+      busy.insert(*nearest);
+      all.push_back(found(*nearest, site));
+    } else {
+      nobody.push_back(site);
+    }
+  }
+  sensors_ = SurveySensors{nobody, specs_};
+  return all;
+}
+
+void SiteFinder::on_event(const mission::MissionEvent& event) {
+  if (event.kind == mission::EventKind::lease_granted ||
+      event.kind == mission::EventKind::site_done)
+    taken_up_.insert(event.task.site);
+}
+
+void SiteFinder::on_agent_end(std::size_t vehicle) {
+  std::vector<Site> hidden = sensors_.hidden();
+  for (const Site& site : mission_.sites) {
+    const auto finder = finder_.find(site.id);
+    if (finder == finder_.end() || finder->second != vehicle || taken_up_.contains(site.id))
+      continue;
+    finder_.erase(finder);
+    hidden.push_back(site);
+  }
+  sensors_ = SurveySensors{hidden, specs_};
+}
+
+}  // namespace skein::hil

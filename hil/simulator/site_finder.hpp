@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "flying_vehicle.hpp"
+#include "skein/hil/survey_sensors.hpp"
+#include "skein/hil/team_simulator.hpp"
+
+namespace skein::hil {
+
+/// Who finds which site. What only one agent knew is hidden again when that agent ends: as long as
+/// no task of a site was ever leased, nobody else has taken anything up there.
+class SiteFinder {
+ public:
+  explicit SiteFinder(const TeamMission& mission);
+
+  struct Found {
+    std::size_t vehicle = 0;  ///< index
+    mission::SiteReport report;
+  };
+  /// What the sensors see now.
+  [[nodiscard]] std::vector<Found> look(const std::vector<FlyingVehicle>& vehicles);
+  /// Every site that is hidden still is reported, each to the nearest vehicle that can survey it;
+  /// to different ones as long as there are some.
+  [[nodiscard]] std::vector<Found> report_all(const std::vector<FlyingVehicle>& vehicles);
+
+  void on_event(const mission::MissionEvent& event);
+  void on_agent_end(std::size_t vehicle);
+
+ private:
+  Found found(std::size_t vehicle, const Site& site);
+
+  const TeamMission& mission_;
+  std::vector<VehicleSpec> specs_;
+  SurveySensors sensors_;
+  std::map<SiteId, std::size_t> finder_;
+  std::set<SiteId> taken_up_;
+};
+
+}  // namespace skein::hil
