@@ -88,6 +88,7 @@ struct Compiler {
   std::vector<Way> ways;
 
   void add_vehicles();
+  void add_chords() const;
   VehicleClass make_class(const CoupledVehicle& vehicle) const;
   void least(VehicleClass& kind) const;
 };
@@ -207,6 +208,7 @@ void Compiler::add_vehicles() {
     }
     vehicle.deadline_s = given.range_left_m / given.speed_mps;
     vehicle.loads = given.loads;
+    vehicle.capabilities = given.capabilities;
     if (problem.criterion == Criterion::value && range_sum_m > 0.0) {
       vehicle.range_weight_per_s = problem.weights.range * given.speed_mps / range_sum_m;
     }
@@ -216,6 +218,27 @@ void Compiler::add_vehicles() {
       break;
     }
     model.vehicles.push_back(std::move(vehicle));
+  }
+}
+
+void Compiler::add_chords() const {
+  if (model.criterion != Criterion::value) return;
+  double longest_s = 0.0;
+  for (const Vehicle& v : model.vehicles) longest_s = std::max(longest_s, v.deadline_s);
+  if (!(longest_s > 0.0)) return;
+  model.chords_per_s = static_cast<double>(Model::kChords) / longest_s;
+  for (std::size_t t = 0; t < model.tasks.size(); ++t) {
+    Task& task = model.tasks[t];
+    const auto same =
+        std::find_if(model.tasks.begin(), model.tasks.begin() + static_cast<std::ptrdiff_t>(t),
+                     [&](const Task& other) { return other.decay_per_s == task.decay_per_s; });
+    task.chords = same->chords;
+    if (&*same != &task) continue;
+    task.chords = static_cast<Index>(model.chords.size());
+    for (std::size_t c = 0; c <= Model::kChords; ++c) {
+      const double end_s = static_cast<double>(c) / model.chords_per_s;
+      model.chords.push_back(-std::expm1(-task.decay_per_s * end_s));
+    }
   }
 }
 
@@ -290,11 +313,14 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   }
   for (const Way& way : ways) model.task_of.push_back(way.task);
   model.best_value_ = (reward_sum > 0.0 ? problem.weights.reward : 0.0) + problem.weights.range;
-  Compiler{problem, model, std::move(ways)}.add_vehicles();
+  Compiler compiler{problem, model, std::move(ways)};
+  compiler.add_vehicles();
+  compiler.add_chords();
   return model;
 }
 
 double Model::cost_of(Index task, double end_s) const {
+  if (end_s == kInfinity) return kInfinity;
   const Task& t = tasks[at(task)];
   switch (criterion) {
     case Criterion::value:
@@ -307,8 +333,9 @@ double Model::cost_of(Index task, double end_s) const {
   return end_s;
 }
 
-Timing::Timing(const Model& model)
+Timing::Timing(const Model& model, Costs costs)
     : model_{model},
+      costs_{costs},
       sites_(model.sites.size()),
       vehicles_(model.vehicles.size()),
       time_s_(model.tasks.size()),
@@ -395,7 +422,8 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
   time_s_[at(task)] = time_s;
   end_s_[at(task)] = end_s;
   end_sum_s_ += end_s;
-  cost_ = model_.add(cost_, model_.cost_of(task, end_s));
+  cost_ = model_.add(cost_, costs_ == Costs::exact ? model_.cost_of(task, end_s)
+                                                   : model_.least_cost_of(task, end_s));
   if (its.range_weight_per_s > 0.0) cost_ += its.range_weight_per_s * (end_s - state.free_s);
   state.free_s = end_s;
   state.reach_s = model_.reach_from(vehicle, visit);

@@ -35,6 +35,7 @@ struct Task {
   double decay_per_s = 0.0;
   Index first_visit = 0;  ///< its ways of being flown follow each other
   Index visits = 0;
+  Index chords = 0;  ///< where those of its decay begin
 };
 
 /// The open tasks of a site.
@@ -66,6 +67,7 @@ struct Vehicle {
   std::vector<double> least_s;  ///< by task, as VehicleClass::least_s
   double deadline_s = 0.0;      ///< its range
   int loads = 0;
+  Capabilities capabilities;
   double range_weight_per_s = 0.0;  ///< cost of a second in flight
   Index twin = kNone;               ///< the vehicle before it that equals it in everything
 };
@@ -82,6 +84,9 @@ class Model {
   double decide_wait_s = 0.0;
   Criterion criterion = Criterion::value;
   bool offsets = false;  ///< is any offset not 0?
+  static constexpr std::size_t kChords = 256;
+  std::vector<double> chords;  ///< by decay and cell: the part of the reward that is lost
+  double chords_per_s = 0.0;
 
   [[nodiscard]] Index task_count() const { return static_cast<Index>(tasks.size()); }
   [[nodiscard]] Index visit_count() const { return static_cast<Index>(task_of.size()); }
@@ -104,6 +109,16 @@ class Model {
   /// What is minimised: the sum over the tasks (makespan: the largest) and, for `value`, the range
   /// used. It never falls when an end is later.
   [[nodiscard]] double cost_of(Index task, double end_s) const;
+  /// A little less, and fast: chords of the decay, which is concave.
+  [[nodiscard]] double least_cost_of(Index task, double end_s) const {
+    if (criterion != Criterion::value) return cost_of(task, end_s);
+    const Task& t = tasks[at(task)];
+    const double cell = end_s * chords_per_s;
+    if (!(cell < static_cast<double>(kChords))) return cost_of(task, end_s);
+    const auto c = static_cast<std::size_t>(cell);
+    const double* values = chords.data() + at(t.chords) + c;
+    return t.weight * (values[0] + (values[1] - values[0]) * (cell - static_cast<double>(c)));
+  }
   [[nodiscard]] double add(double cost, double more) const {
     return criterion == Criterion::makespan ? std::max(cost, more) : cost + more;
   }
@@ -122,7 +137,8 @@ using Orders = std::vector<std::vector<Index>>;
 /// The earliest times for given orders. Tasks that are in no order are as if they did not exist.
 class Timing {
  public:
-  explicit Timing(const Model& model);
+  enum class Costs : std::uint8_t { exact, approximate };  ///< as Model::cost_of or least_cost_of
+  explicit Timing(const Model& model, Costs costs = Costs::exact);
 
   /// The cost; infinite where the orders wait for each other in a circle, where a range does not
   /// suffice, or where the cost is more than `limit` (then it may stop early).
@@ -160,6 +176,7 @@ class Timing {
   void wake(Mask vehicles) { ready_ |= vehicles; }
 
   const Model& model_;
+  Costs costs_;
   std::vector<SiteState> sites_;
   std::vector<VehicleState> vehicles_;
   std::vector<double> time_s_;
@@ -180,13 +197,5 @@ class Timing {
 
 /// The orders of greedy_awards; nothing where a task is left.
 [[nodiscard]] std::optional<Orders> greedy_orders(const Model& model);
-
-/// A search by ruin and recreate that can be asked for more.
-struct SearchResult {
-  Orders orders;
-  double cost = kInfinity;
-  std::uint64_t steps = 0;
-};
-[[nodiscard]] SearchResult search(const Model& model, Random& random, const PlanningBudget& budget);
 
 }  // namespace skein::planning::coupled

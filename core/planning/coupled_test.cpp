@@ -230,6 +230,32 @@ TEST(BranchAndBound, TwinsAreInterchangeable) {
   }
 }
 
+TEST(BranchAndBound, MoreStepsAreNeverWorseAndTheBoundHolds) {
+  for (const Criterion criterion : kCriteria) {
+    SCOPED_TRACE(static_cast<int>(criterion));
+    Random random{31};
+    CoupledProblem problem = draw_problem(random, {.sites = 5, .vehicles = 6});
+    problem.criterion = criterion;
+    const auto proven = branch_and_bound(problem, {});
+    ASSERT_TRUE(proven.ok() && proven->proven);
+    std::optional<CoupledPlan> before;
+    for (std::uint64_t steps = 1; steps < proven->steps; steps *= 4) {
+      PlanningBudget budget;
+      budget.steps_max = steps;
+      const auto plan = branch_and_bound(problem, budget);
+      ASSERT_TRUE(plan.ok() && plan->bound.has_value());
+      EXPECT_FALSE(better(problem, plan->objective, proven->objective));
+      EXPECT_FALSE(better(problem, proven->objective, *plan->bound));
+      if (before) {
+        EXPECT_FALSE(better(problem, before->objective, plan->objective));
+        EXPECT_FALSE(better(problem, *plan->bound, *before->bound));
+      }
+      before = *plan;
+    }
+    ASSERT_TRUE(before.has_value());  // or it was proven at once, and nothing is shown
+  }
+}
+
 TEST(CoupledPlans, AreSoundForEveryMethod) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     for (const Criterion criterion : kCriteria) {

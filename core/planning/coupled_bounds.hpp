@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "coupled_model.hpp"
+#include "coupled_partial.hpp"
+
+namespace skein::planning::coupled {
+
+/// What no plan that completes a partial plan can do better than.
+class Bounds {
+ public:
+  explicit Bounds(const Model& model);
+
+  /// By chains: every site alone with all vehicles where they are, as if no other site needed them.
+  /// Its survey by one vehicle, its delivery by the same or another, its assessment by the same or
+  /// another. O(open tasks x vehicles).
+  [[nodiscard]] double chains(const PartialPlan& plan);
+
+  /// By places: could the open tasks have a place each, as the first, second, third ... of what a
+  /// vehicle has still to do, for less than `limit`? `false` is certain. A task's time at a place
+  /// is at least that of the shortest walk of so many open tasks that ends with it, and at least
+  /// that of its chain; the places are given out by the assignment of the least sum (makespan: by
+  /// any that is in time). Between groups only. O(vehicles x depth x tasks^2 + tasks^2 x places).
+  [[nodiscard]] bool places_suffice(const PartialPlan& plan, double limit);
+
+ private:
+  /// The two least of a list, to know the least without one of them.
+  struct TwoLeast {
+    double least = kInfinity;
+    double second = kInfinity;
+    Index who = kNone;
+    void take(double value, Index index);
+    [[nodiscard]] double without(Index index) const { return index == who ? second : least; }
+  };
+  struct Open {
+    Index task = 0;
+    double cost = 0.0;  ///< by its chain
+  };
+
+  void make_tails();
+  void make_least_range_costs();
+  double add_survey(const PartialPlan& plan, double cost, Index site);
+  double add_deliveries(const PartialPlan& plan, double cost, Index site, double ready_s);
+  double add_assessments(const PartialPlan& plan, double cost, Index site, double ready_s);
+  [[nodiscard]] double arrival_s(const PartialPlan& plan, Index vehicle, Index task) const;
+  [[nodiscard]] double between_s(Index vehicle, Index from, Index to) const;
+  [[nodiscard]] bool in_time(Index vehicle, double end_s) const {
+    return end_s <= model_.vehicles[at(vehicle)].deadline_s;
+  }
+  void make_places(const PartialPlan& plan, double room, double limit);
+  [[nodiscard]] double penalty(const PartialPlan& plan, const Open& open, Index vehicle,
+                               double end_s, std::size_t position) const;
+  void walk(const VehicleClass& kind, const std::array<double, kCoupledTasksMax>& end_s,
+            std::array<double, kCoupledTasksMax>& reach_s) const;
+  [[nodiscard]] bool give_places();
+  [[nodiscard]] bool match(std::size_t row, Mask& tried);
+
+  const Model& model_;
+  std::vector<double> tail_s_;        ///< by task: from its end to the end of what waits for it
+  std::vector<double> range_cost_;    ///< by task: the least that it adds, of the range used
+  std::vector<double> least_into_s_;  ///< by class and task: the least leg from another task
+  // Of the last chains(), by task.
+  std::vector<double> head_s_;  ///< no plan has the task before
+  double chains_cost_ = 0.0;
+  // While a site is added, by vehicle.
+  std::vector<double> survey_end_s_;
+  std::vector<double> delivery_s_;
+  TwoLeast surveyed_;
+  TwoLeast delivered_;
+  bool one_delivery_open_ = false;
+  // Of the last places_suffice.
+  std::array<Open, kCoupledTasksMax> open_{};
+  std::size_t open_count_ = 0;
+  static constexpr int kPlacesMax = 64;
+  int places_ = 0;
+  bool too_many_ = false;
+  double row_sum_ = 0.0;  ///< of the least penalty of every task
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor> penalty_;
+  std::array<Mask, kCoupledTasksMax> allowed_{};
+  std::array<int, kPlacesMax> holder_{};
+};
+
+}  // namespace skein::planning::coupled

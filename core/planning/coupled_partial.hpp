@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "coupled_model.hpp"
+
+namespace skein::planning::coupled {
+
+/// A plan that is being built, one task after the other: every task has its final time, but for the
+/// deliveries of one site (the group) while some of them are still to be given away; those have the
+/// earliest common moment so far.
+///
+/// Without offsets the tasks are added in the order of their times, so that every plan is built in
+/// one way only. With offsets that order need not fit the waits, and any order is taken.
+class PartialPlan {
+ public:
+  struct Step {
+    Index vehicle = kNone;
+    Index visit = kNone;
+  };
+  struct Site {
+    bool survey_open = false;
+    int deliveries_open = 0;
+    Mask assessments_open = 0;
+    double ready_s = 0.0;  ///< when what comes next may be done
+
+    [[nodiscard]] bool is_open() const {
+      return survey_open || deliveries_open > 0 || assessments_open != 0;
+    }
+  };
+  struct Vehicle {
+    double free_s = 0.0;
+    Index last = kNone;  ///< visit
+    int loads = 0;
+  };
+  /// What undo needs.
+  struct Before {
+    Vehicle vehicle;
+    double cost;
+    double floor_s;
+    double time_sum_s;
+    double common_s;
+    double ready_s;
+    Index group_site;
+    std::size_t group_begin;
+  };
+
+  explicit PartialPlan(const Model& model);
+
+  [[nodiscard]] double time_of(const Step& step) const;
+  /// Within range, with a load where it needs one, in the order above? The last delivery of a group
+  /// may still turn out to be too late, see cost().
+  [[nodiscard]] bool allows(const Step& step) const;
+  [[nodiscard]] Before apply(const Step& step);
+  void undo(const Step& step, const Before& before);
+
+  [[nodiscard]] const std::vector<Site>& sites() const { return sites_; }
+  [[nodiscard]] const std::vector<Vehicle>& vehicles() const { return vehicles_; }
+  [[nodiscard]] const Orders& orders() const { return orders_; }
+  [[nodiscard]] Mask done() const { return done_; }
+  [[nodiscard]] bool is_complete() const { return left_ == 0; }
+  [[nodiscard]] Index left() const { return left_; }
+  /// Of what has its final time; infinite when the plan came to nothing.
+  [[nodiscard]] double cost() const { return cost_; }
+  [[nodiscard]] double floor_s() const { return floor_s_; }  ///< nothing to come is before it
+  [[nodiscard]] double time_sum_s() const { return time_sum_s_; }
+  /// The site of the group, and how many of its deliveries are given away; kNone between groups.
+  [[nodiscard]] Index group_site() const { return group_site_; }
+  [[nodiscard]] std::size_t group_size() const { return members_.size() - group_begin_; }
+  [[nodiscard]] double common_s() const { return common_s_; }
+
+ private:
+  /// A delivery given away.
+  struct Member {
+    Index vehicle;
+    Index task;
+    double free_s;  ///< when the vehicle was free before
+  };
+
+  [[nodiscard]] std::span<const Member> group() const {
+    return std::span{members_}.subspan(group_begin_);
+  }
+  void set_common(double common_s);
+  void close_group();
+
+  const Model& model_;
+  std::vector<Site> sites_;
+  std::vector<Vehicle> vehicles_;
+  Orders orders_;
+  Mask done_ = 0;
+  Index left_ = 0;
+  double cost_ = 0.0;
+  double floor_s_ = 0.0;
+  double time_sum_s_ = 0.0;
+  Index group_site_ = kNone;
+  double common_s_ = 0.0;
+  std::vector<Member> members_;  ///< of all sites, as they were given away
+  std::size_t group_begin_ = 0;  ///< the first of the group
+};
+
+}  // namespace skein::planning::coupled

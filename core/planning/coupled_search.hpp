@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "coupled_model.hpp"
+
+namespace skein::planning::coupled {
+
+/// Ruin and recreate, one step at a time.
+class Search {
+ public:
+  /// From the greedy plan, or what can be made where it has none.
+  Search(const Model& model, Random& random);
+
+  void step();
+
+  /// Infinite, and no orders of use, while no plan with all tasks was found.
+  [[nodiscard]] double best_cost() const { return best_cost_; }
+  [[nodiscard]] const Orders& best() const { return best_.orders; }
+  [[nodiscard]] std::uint64_t steps() const { return steps_; }
+
+ private:
+  struct Solution {
+    Orders orders;
+    std::vector<Index> missing;  ///< tasks
+    double score = kInfinity;
+  };
+  struct Place {
+    Index vehicle = kNone;
+    std::size_t position = 0;
+    Index visit = kNone;
+    double score = kInfinity;
+  };
+  /// One of several ways to do something, the more often the more it has helped.
+  class Choice {
+   public:
+    explicit Choice(std::size_t count) : merits_(count, 1.0) {}
+    std::size_t draw(Random& random);
+    void learn(double merit);
+
+   private:
+    std::vector<double> merits_;
+    std::size_t last_ = 0;
+  };
+
+  [[nodiscard]] double score_of(const Orders& orders, double limit = kInfinity);
+  void accept_best();
+
+  void ruin(Solution& plan);
+  void take_out(Solution& plan);
+  void choose_any(int count);
+  void choose_near(int count);
+  void choose_vehicles(const Solution& plan, int count);
+  void choose_site();
+  void choose_late(int count);
+  [[nodiscard]] Index any_task() { return static_cast<Index>(random_.index(model_.tasks.size())); }
+
+  void recreate(Solution& plan, double limit);
+  [[nodiscard]] Place best_place(Solution& plan, Index task);
+
+  const Model& model_;
+  Random& random_;
+  Timing timing_;
+  Solution current_;
+  Solution best_;
+  Solution next_;
+  double best_cost_ = kInfinity;
+  std::uint64_t steps_ = 0;
+  Choice ruins_;
+  Choice sorts_;
+  // While a step is made, by task.
+  std::vector<Index> vehicle_of_;
+  std::vector<double> time_s_;
+  std::vector<double> end_s_;
+  std::vector<char> chosen_;
+  std::vector<std::pair<double, Index>> sorted_;
+};
+
+}  // namespace skein::planning::coupled
