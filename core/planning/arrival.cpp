@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "avoidance_margin.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/dubins.hpp"
@@ -363,6 +364,13 @@ std::optional<double> Search::next_after(double length_m, double limit_m) {
   return above;
 }
 
+/// For what follows the way out of the hazards around the start. `shortest` must outlive it.
+Search search_for(const Transit& transit, const ClearPath& shortest) {
+  return {Transit{shortest.path.start, transit.to, transit.radius_m, transit.length_max_m,
+                  shortest.circles},
+          shortest.path};
+}
+
 std::string metres(double m) {
   const auto tenths = std::llround(m * 10.0);
   return std::to_string(tenths / 10) + "." + std::to_string(std::abs(tenths % 10)) + " m";
@@ -383,17 +391,21 @@ Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transi
     return out_of_range(length_m, transit.length_max_m);
   }
   const auto shortest =
-      shortest_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
+      find_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
   if (!shortest) return shortest.error();
-  Search search{transit, *shortest};
-  if (auto path = search.find(length_m)) return *path;
-  if (length_m < search.shortest_m()) {
-    return Error{"No path of " + metres(length_m) + ": the shortest is " +
-                 metres(search.shortest_m())};
+  const double out_m = shortest->way_out.length_m();
+  Search search = search_for(transit, *shortest);
+  if (const auto path = search.find(length_m - out_m)) {
+    Path whole = shortest->way_out;
+    if (whole.append(*path)) return whole;
   }
-  const auto next = search.next_after(length_m, transit.length_max_m);
+  if (length_m < out_m + search.shortest_m()) {
+    return Error{"No path of " + metres(length_m) + ": the shortest is " +
+                 metres(out_m + search.shortest_m())};
+  }
+  const auto next = search.next_after(length_m - out_m, transit.length_max_m - out_m);
   return Error{"No path of " + metres(length_m) + " was found; " +
-               (next ? "the next longer one is " + metres(*next)
+               (next ? "the next longer one is " + metres(out_m + *next)
                      : "nor a longer one within " + metres(transit.length_max_m))};
 }
 
@@ -416,13 +428,16 @@ Result<double> least_length_from(const AvoidanceParams& params, const Transit& t
   const double wanted_m = std::max(length_m, direct_m);
   if (surely_flyable(params, transit, direct_m, wanted_m)) return wanted_m;
   const auto shortest =
-      shortest_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
+      find_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
   if (!shortest) return shortest.error();
-  Search search{transit, *shortest};
-  const double least = std::max(length_m, search.shortest_m());
+  const double out_m = shortest->way_out.length_m();
+  Search search = search_for(transit, *shortest);
+  const double least = std::max(length_m, out_m + search.shortest_m());
   if (least > transit.length_max_m + kExact_m) return out_of_range(least, transit.length_max_m);
-  if (search.find(least)) return least;
-  if (const auto next = search.next_after(least, transit.length_max_m)) return *next;
+  if (search.find(least - out_m)) return least;
+  if (const auto next = search.next_after(least - out_m, transit.length_max_m - out_m)) {
+    return out_m + *next;
+  }
   return Error{"No path of " + metres(length_m) + " or longer was found within " +
                metres(transit.length_max_m)};
 }

@@ -15,15 +15,22 @@ struct AvoidanceParams {
 
 /// Does the path stay outside every hazard? Exact for lines and arcs; touching counts as outside.
 [[nodiscard]] bool is_clear(const Path& path, std::span<const Hazard> hazards);
+/// The hazard of those that the path enters first, for a message; null where it is clear.
+[[nodiscard]] const Hazard* first_entered(const Path& path, std::span<const Hazard> hazards);
 
 /// No path of at most that length between the two poses meets a safety circle: all of them lie
 /// outside the ellipse with the poses as its foci. Two distances a hazard.
 [[nodiscard]] bool out_of_reach(const AvoidanceParams& params, const Pose2& from, const Pose2& to,
                                 double length_m, std::span<const Hazard> hazards);
 
-/// A short path between two poses that enters no hazard and turns no tighter than `radius_m`
-/// (Wang 2022, fig. 5): the shortest Dubins path, or two Dubins pieces by a tangent point on the
-/// safety circle of the hazard that it meets. Fails, with the reason, where that finds nothing.
+/// The shortest path between two poses outside the safety circle of every hazard that turns no
+/// tighter than `radius_m` (Wang 2022, fig. 5): a Dubins path, or arcs and lines over the tangents
+/// of the circles, on either side and in any order. Where an end lies within a safety circle, or is
+/// headed so that it must enter it, the path keeps the largest distance that this end allows; where
+/// hazards leave no room for all margins, it keeps a part of them; it never enters a hazard.
+/// A start inside a hazard that has just become known is left by the shortest way first.
+/// Fails, with the reason, for a goal inside a hazard or too close behind one to be approached, a
+/// start that no turn keeps from a hazard, and where nothing is found.
 [[nodiscard]] Result<Path> shortest_clear_path(const AvoidanceParams& params, const Pose2& from,
                                                const Pose2& to, double radius_m,
                                                std::span<const Hazard> hazards);
