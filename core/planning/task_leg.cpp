@@ -17,7 +17,9 @@ Result<Leg> leg_to(const AvoidanceParams& params, const Pose2& from, double radi
                    const TaskPath& task, std::span<const Hazard> hazards) {
   Path run{.start = task.entry, .segments = {}};
   SKEIN_ASSERT(run.append(task.run));
-  if (!is_clear(run, hazards)) return Error{"The run itself enters a hazard"};
+  if (const Hazard* entered = first_entered(run, hazards)) {
+    return Error{"The run itself enters hazard " + std::to_string(entered->id.value)};
+  }
   const auto path = shortest_clear_path(params, from, task.entry, radius_m, hazards);
   if (!path) return path.error();
   return Leg{task, path->length_m()};
