@@ -55,14 +55,17 @@ void HeadingDynamics::command(const Setpoint& setpoint) {
 
 void HeadingDynamics::advance_to(Instant t) {
   SKEIN_ASSERT(t >= state_.time);
+  Vec2 over_ground{0.0, 0.0};
+  const bool moves = state_.time < t;
   while (state_.time < t) {
     const Duration dt = std::min(kStepMax, t - state_.time);
-    step(to_seconds(dt));
+    over_ground = step(to_seconds(dt));
     state_.time += dt;
   }
+  if (moves) report_velocity(over_ground);
 }
 
-void HeadingDynamics::step(double seconds) {
+Vec2 HeadingDynamics::step(double seconds) {
   const double target_mps =
       std::clamp(setpoint_.airspeed_mps, vehicle_.speed_min_mps, vehicle_.speed_max_mps);
   const double lag_mps = state_.airspeed_mps - target_mps;
@@ -94,7 +97,7 @@ void HeadingDynamics::step(double seconds) {
   state_.airspeed_mps = end_mps;
   state_.z_m =
       setpoint_.height_m + (state_.z_m - setpoint_.height_m) * std::exp(-seconds / kHeightTime_s);
-  report_velocity(last);
+  return last;
 }
 
 void HeadingDynamics::report_velocity(const Vec2& over_ground) {

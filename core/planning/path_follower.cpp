@@ -2,7 +2,6 @@
 #include "skein/planning/path_follower.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "skein/base/angles.hpp"
@@ -22,43 +21,42 @@ struct Nearest {
   double curvature_per_m = 0.0;
 };
 
-/// The plan's poses, as TimedPath::pose_at_distance() and with the same roundings, but each piece is
-/// integrated once for all distances that are asked for.
+/// The plan's poses, as TimedPath::pose_at_distance() and with the same roundings, but pieces that
+/// lie before all that is asked for are integrated once.
 class PlanPoses {
  public:
-  explicit PlanPoses(const TimedPath& plan) : plan_{plan}, length_m_{plan.path.length_m()} {
-    starts_[0] = plan.path.start;
-  }
-  struct At {
-    Pose2 pose;
-    double curvature_per_m = 0.0;
-  };
-  At at(double distance_m) {
+  explicit PlanPoses(const TimedPath& plan)
+      : plan_{plan}, length_m_{plan.path.length_m()}, start_{plan.path.start} {}
+  [[nodiscard]] Pose2 at(double distance_m) {
     const auto& segments = plan_.path.segments;
     double left = std::max(distance_m, 0.0);
-    std::size_t i = 0;
-    while (i < segments.size() && left > segments[i].length_m) left -= segments[i++].length_m;
-    Pose2 pose = start_of(i);
-    if (i < segments.size()) pose = advance(pose, segments[i].curvature_per_m, left);
-    if (distance_m > length_m_) {
-      pose = advance(pose, plan_.tail_curvature_per_m, distance_m - length_m_);
-    }
-    return {pose, plan_.curvature_at_distance(distance_m)};
+    std::size_t piece = 0;
+    while (piece < segments.size() && left > segments[piece].length_m)
+      left -= segments[piece++].length_m;
+    go_to(piece);
+    const Pose2 pose =
+        piece < segments.size() ? advance(start_, segments[piece].curvature_per_m, left) : start_;
+    return distance_m <= length_m_
+               ? pose
+               : advance(pose, plan_.tail_curvature_per_m, distance_m - length_m_);
   }
 
  private:
-  const Pose2& start_of(std::size_t piece) {
-    for (; known_ <= piece; ++known_) {
-      const Segment& before = plan_.path.segments[known_ - 1];
-      starts_[known_] = advance(starts_[known_ - 1], before.curvature_per_m, before.length_m);
+  void go_to(std::size_t piece) {
+    if (piece < piece_) {
+      piece_ = 0;
+      start_ = plan_.path.start;
     }
-    return starts_[piece];
+    for (; piece_ < piece; ++piece_) {
+      const Segment& passed = plan_.path.segments[piece_];
+      start_ = advance(start_, passed.curvature_per_m, passed.length_m);
+    }
   }
 
   const TimedPath& plan_;
   double length_m_;
-  std::array<Pose2, kPathSegmentsMax + 1> starts_;
-  std::size_t known_ = 1;
+  std::size_t piece_ = 0;
+  Pose2 start_;  ///< of that piece
 };
 
 Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
@@ -67,11 +65,11 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
   double distance_m = on_time_m;
   Nearest result;
   for (int step = 0; step <= kNearestSteps; ++step) {
-    const auto at = poses.at(distance_m);
-    const Vec2 forward = unit_vector(at.pose.heading_rad);
-    const Vec2 offset = position - at.pose.position();
-    result = {distance_m - on_time_m, left_of(forward).dot(offset), at.pose.heading_rad,
-              at.curvature_per_m};
+    const Pose2 pose = poses.at(distance_m);
+    const Vec2 forward = unit_vector(pose.heading_rad);
+    const Vec2 offset = position - pose.position();
+    result = {distance_m - on_time_m, left_of(forward).dot(offset), pose.heading_rad,
+              plan.curvature_at_distance(distance_m)};
     // Along an arc the same angle is a shorter way for who flies inside it.
     const double scale = std::max(0.5, 1.0 - result.curvature_per_m * result.left_m);
     const double moved_m = distance_m + forward.dot(offset) / scale;

@@ -188,5 +188,50 @@ TEST(ProtocolChecks, ATaskBegunAndNotDoneIsFound) {
   EXPECT_THAT(failed(record), Contains("completion"));
 }
 
+TEST(ProtocolChecks, AnArcThatIsLeftForWantOfALeaseAndFlownAgainAreTwoRuns) {
+  RunRecord record = good_record();
+  auto& events = of(record, kAssessor).events;
+  events.insert(events.begin(), {event(kAssessor, 61.0, EventKind::task_started, kAssessment),
+                                 event(kAssessor, 62.0, EventKind::lease_ended, kAssessment)});
+  const auto runs = task_runs(record);
+  ASSERT_EQ(runs.size(), 5U);
+  EXPECT_TRUE(runs[3].failed);
+  EXPECT_EQ(runs[4].started, at_seconds(70.0));
+}
+
+TEST(ProtocolChecks, WhatEndsWithItsAgentIsCutOffAndCountsAsFlown) {
+  RunRecord record = good_record();
+  erase_events(record, kFromWest, EventKind::task_done);
+  EXPECT_THAT(failed(record), ElementsAre("precedence", "completion", "deliveries"));
+  record.agent_ends = {{kFromWest, at_seconds(56.0), {}}};
+  const auto runs = task_runs(record);
+  const auto cut =
+      std::find_if(runs.begin(), runs.end(), [](const TaskRun& r) { return r.cut_off; });
+  ASSERT_NE(cut, runs.end());
+  EXPECT_EQ(cut->task, kEastward);
+  EXPECT_THAT(failed(record), ElementsAre("completion"));
+  record.excused = {{kEastward, "may have been flown"}};
+  EXPECT_THAT(failed(record), IsEmpty());
+  EXPECT_THAT(check_completion(record, {}).measured, HasSubstr("1 may have been flown"));
+  // It is not to be flown again for that.
+  of(record, kAssessor)
+      .events.push_back(event(kAssessor, 95.0, EventKind::task_started, kEastward));
+  EXPECT_FALSE(check_single_delivery(record, {}).held());
+}
+
+TEST(ProtocolChecks, ANewAgentHoldsNoLeaseOfTheOldOne) {
+  RunRecord record = good_record();
+  auto grant =
+      event(kAssessor, 60.0, EventKind::lease_granted, {SiteId{2}, TaskKind::assess, 0}, 110.0);
+  grant.round.coalition.leader = VehicleId{8};
+  record.agent_ends = {{kAssessor, at_seconds(50.0), at_seconds(58.0)}};
+  auto& events = of(record, kAssessor).events;
+  std::erase_if(events, [](const auto& e) { return e.time > at_seconds(45.0); });
+  events.push_back(grant);
+  EXPECT_TRUE(check_leases(record, {}).held());
+  record.agent_ends.clear();
+  EXPECT_FALSE(check_leases(record, {}).held());
+}
+
 }  // namespace
 }  // namespace skein::checks

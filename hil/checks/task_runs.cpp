@@ -35,7 +35,9 @@ std::vector<MissionEvent> own_events(const recording::Recording& recorded) {
 
 void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
   const bool done = is_done(event.kind);
-  if (!is_start(event.kind) && !done && event.kind != EventKind::task_failed) return;
+  // Who loses the lease within an arc leaves it. A delivery that was begun counts as flown.
+  const bool left = event.kind == EventKind::lease_ended && event.task.kind == TaskKind::assess;
+  if (!is_start(event.kind) && !done && !left && event.kind != EventKind::task_failed) return;
   const TaskId task = task_of(event);
   const auto last = std::find_if(runs.rbegin(), runs.rend(),
                                  [&](const TaskRun& run) { return run.task == task; });
@@ -44,11 +46,11 @@ void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
   const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
                           last->done && event.time - *last->done < std::chrono::seconds{1};
   if (!open && !told_again) {
-    if (event.kind == EventKind::task_failed) return;  // given up before it began
+    if (left || event.kind == EventKind::task_failed) return;  // given up before it began
     runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false});
   }
   TaskRun& run = open || told_again ? *last : runs.back();
-  if (event.kind == EventKind::task_failed) run.failed = true;
+  if (left || event.kind == EventKind::task_failed) run.failed = true;
   if (is_start(event.kind) && !run.started) run.started = event.time;
   if (done && !run.done) run.done = event.time;
   if (done && event.value > 0.0) run.planned = at_seconds(event.value);

@@ -30,7 +30,8 @@ class HeadingDynamics {
   [[nodiscard]] const VehicleState& state() const { return state_; }
 
  private:
-  void step(double seconds);
+  /// Returns the velocity over the ground at its end.
+  Vec2 step(double seconds);
   void report_velocity(const Vec2& over_ground);
 
   VehicleSpec vehicle_;
