@@ -15,12 +15,16 @@ constexpr double kAirspeedTime_s = 1.0;
 constexpr double kHeightTime_s = 3.0;
 
 /// The heading error after `seconds` of d error/dt = -gain * error with |rate| <= rate_max.
-double error_after(double error_rad, double gain_per_s, double rate_max, double seconds) {
+/// `linear_decay` is what is left of it where the rate is never at its limit.
+double error_after(double error_rad, double gain_per_s, double rate_max, double seconds,
+                   double linear_decay) {
   const double linear_below = rate_max / gain_per_s;
   const double saturated_s = std::max(0.0, (std::abs(error_rad) - linear_below) / rate_max);
   if (saturated_s >= seconds) return error_rad - std::copysign(rate_max * seconds, error_rad);
   const double at_bend = std::min(std::abs(error_rad), linear_below);
-  return std::copysign(at_bend * std::exp(-gain_per_s * (seconds - saturated_s)), error_rad);
+  const double decay =
+      saturated_s > 0.0 ? std::exp(-gain_per_s * (seconds - saturated_s)) : linear_decay;
+  return std::copysign(at_bend * decay, error_rad);
 }
 
 }  // namespace
@@ -65,38 +69,50 @@ void HeadingDynamics::advance_to(Instant t) {
   if (moves) report_velocity(over_ground);
 }
 
+void HeadingDynamics::decay_over(double seconds) {
+  if (decays_.seconds == seconds) return;
+  const auto at = [&](double s) {
+    return Decay{s, std::exp(-s / kAirspeedTime_s), std::exp(-vehicle_.heading_gain_per_s * s)};
+  };
+  decays_ = {seconds,
+             at(0.0),
+             at(seconds / 2.0),
+             at(seconds),
+             -std::expm1(-seconds / kAirspeedTime_s),
+             std::exp(-seconds / kHeightTime_s)};
+}
+
 Vec2 HeadingDynamics::step(double seconds) {
+  decay_over(seconds);
   const double target_mps =
       std::clamp(setpoint_.airspeed_mps, vehicle_.speed_min_mps, vehicle_.speed_max_mps);
   const double lag_mps = state_.airspeed_mps - target_mps;
-  const auto airspeed_after = [&](double s) {
-    return target_mps + lag_mps * std::exp(-s / kAirspeedTime_s);
-  };
-  const double end_mps = airspeed_after(seconds);
+  const auto airspeed_after = [&](const Decay& d) { return target_mps + lag_mps * d.airspeed; };
+  const double end_mps = airspeed_after(decays_.end);
   // The mean over the step, so that a turn at the limit is exact while the airspeed changes.
   const double mean_mps =
-      target_mps + lag_mps * -std::expm1(-seconds / kAirspeedTime_s) * (kAirspeedTime_s / seconds);
+      target_mps + lag_mps * decays_.airspeed_made * (kAirspeedTime_s / seconds);
   const double rate_max = mean_mps / vehicle_.turn_radius_m;
   const double error = wrap_pi(setpoint_.heading_rad - state_.heading_rad);
-  const auto heading_after = [&](double s) {
+  const auto heading_after = [&](const Decay& d) {
     return state_.heading_rad + error -
-           error_after(error, vehicle_.heading_gain_per_s, rate_max, s);
+           error_after(error, vehicle_.heading_gain_per_s, rate_max, d.seconds, d.heading);
   };
-  const auto velocity_after = [&](double s) -> Vec2 {
-    return airspeed_after(s) * unit_vector(heading_after(s)) +
-           wind_.velocity_at(state_.time + from_seconds(s));
+  const double end_heading = heading_after(decays_.end);
+  const auto velocity_after = [&](const Decay& d, double heading) -> Vec2 {
+    return airspeed_after(d) * unit_vector(heading) +
+           wind_.velocity_at(state_.time + from_seconds(d.seconds));
   };
-  const Vec2 first = velocity_after(0.0);
-  const Vec2 middle = velocity_after(seconds / 2.0);
-  const Vec2 last = velocity_after(seconds);
+  const Vec2 first = velocity_after(decays_.begin, heading_after(decays_.begin));
+  const Vec2 middle = velocity_after(decays_.middle, heading_after(decays_.middle));
+  const Vec2 last = velocity_after(decays_.end, end_heading);
   const Vec2 moved = (first + 4.0 * middle + last) * (seconds / 6.0);
   state_.x_m += moved.x();
   state_.y_m += moved.y();
   state_.distance_flown_m += (first.norm() + 4.0 * middle.norm() + last.norm()) * (seconds / 6.0);
-  state_.heading_rad = wrap_pi(heading_after(seconds));
+  state_.heading_rad = wrap_pi(end_heading);
   state_.airspeed_mps = end_mps;
-  state_.z_m =
-      setpoint_.height_m + (state_.z_m - setpoint_.height_m) * std::exp(-seconds / kHeightTime_s);
+  state_.z_m = setpoint_.height_m + (state_.z_m - setpoint_.height_m) * decays_.height;
   return last;
 }
 

@@ -30,6 +30,22 @@ class HeadingDynamics {
   [[nodiscard]] const VehicleState& state() const { return state_; }
 
  private:
+  /// What is left of a first-order lag after a part of a step; 1 at its begin.
+  struct Decay {
+    double seconds = 0.0;
+    double airspeed = 1.0;
+    double heading = 1.0;
+  };
+  /// Of a step of some length. Nearly all have the same.
+  struct Decays {
+    double seconds = 0.0;
+    Decay begin;
+    Decay middle;
+    Decay end;
+    double airspeed_made = 0.0;  ///< share of the lag that the step makes good
+    double height = 1.0;
+  };
+  void decay_over(double seconds);
   /// Returns the velocity over the ground at its end.
   Vec2 step(double seconds);
   void report_velocity(const Vec2& over_ground);
@@ -38,6 +54,7 @@ class HeadingDynamics {
   Wind wind_;
   Setpoint setpoint_;
   VehicleState state_;
+  Decays decays_;
 };
 
 }  // namespace skein::models
