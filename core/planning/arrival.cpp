@@ -23,10 +23,8 @@ constexpr double kGapStep_m = 1e-3;  ///< to which the end of a gap is found
 constexpr int kSamples = 24;         ///< of a family of paths, between which roots are sought
 constexpr int kBisections = 60;
 constexpr double kBendMax_rad = radians(85.0);
-/// Farther apart than so many radii, the shortest path has a line of at least 4.4 radii, which
-/// bends up to kBendMax_rad lengthen by more than a loop: 4 (angle - tan) + line (1 / cos - 1) > 2
-/// pi. The line of LSR is sqrt(d^2 - 4), d >= 6.84 - 2 between the centres.
-constexpr double kNoGap_radii = 6.84;
+/// Farther apart than so many radii, no turning circles at both ends are within 4 radii.
+constexpr double kNoGap_radii = 6.0;
 
 constexpr std::array<DubinsWord, 4> kCscWords = {DubinsWord::LSL, DubinsWord::LSR, DubinsWord::RSL,
                                                  DubinsWord::RSR};
@@ -201,19 +199,26 @@ struct Bend {
   double line_m;
 };
 
+/// The largest angle of a bend in place of a line of that length.
+double bend_angle_max_rad(double straight_m, double radius_m) {
+  return straight_m >= 4.0 * radius_m * std::sin(kBendMax_rad)
+             ? kBendMax_rad
+             : std::asin(straight_m / (4.0 * radius_m));
+}
+
+double bend_length_m(double straight_m, double radius_m, double angle_rad) {
+  const double line_m = std::max(
+      0.0, (straight_m - 4.0 * radius_m * std::sin(angle_rad)) / (2.0 * std::cos(angle_rad)));
+  return 4.0 * radius_m * angle_rad + 2.0 * line_m;
+}
+
 std::optional<Bend> bend_of_length(double straight_m, double radius_m, double length_m) {
-  const auto line = [&](double angle) {
-    return std::max(0.0, (straight_m - 4.0 * radius_m * std::sin(angle)) / (2.0 * std::cos(angle)));
-  };
-  const auto length = [&](double angle) { return 4.0 * radius_m * angle + 2.0 * line(angle); };
   double low = 0.0;
-  double high =
-      straight_m >= 4.0 * radius_m ? kBendMax_rad : std::asin(straight_m / (4.0 * radius_m));
-  high = std::min(high, kBendMax_rad);
-  if (length(high) < length_m) return std::nullopt;
+  double high = bend_angle_max_rad(straight_m, radius_m);
+  if (bend_length_m(straight_m, radius_m, high) < length_m) return std::nullopt;
   for (int k = 0; k < kBisections; ++k) {
     const double middle = (low + high) / 2.0;
-    (length(middle) < length_m ? low : high) = middle;
+    (bend_length_m(straight_m, radius_m, middle) < length_m ? low : high) = middle;
   }
   return Bend{high, (length_m - 4.0 * radius_m * high) / 2.0};
 }
@@ -332,6 +337,7 @@ std::optional<Path> Search::find(double length_m) {
   wanted_m_ = length_m;
   best_.reset();
   best_discomfort_ = kInfinity;
+  for (const Path& base : bases_) consider(base);
   larger_radii();
   bends();
   loops();
@@ -381,6 +387,28 @@ Error out_of_range(double length_m, double length_max_m) {
                metres(length_max_m)};
 }
 
+/// The least length from `length_m` on that can be flown, if no hazard is in reach of it.
+std::optional<double> least_without_hazards(const AvoidanceParams& params, const Transit& transit,
+                                            double shortest_m, double length_m) {
+  const double least_m = std::max(length_m, shortest_m);
+  if (!out_of_reach(params, transit.from, transit.to, least_m, transit.hazards)) {
+    return std::nullopt;
+  }
+  const double r = transit.radius_m;
+  if (least_m <= shortest_m + kExact_m || least_m >= shortest_m + kTwoPi * r) return least_m;
+  // The turning circles of no side can be within 4 radii.
+  const double apart_m = kNoGap_radii * r;
+  if ((transit.to.position() - transit.from.position()).squaredNorm() > apart_m * apart_m) {
+    return least_m;
+  }
+  const auto gap = length_gap(transit.from, transit.to, r);
+  if (!gap || least_m <= gap->low_m || least_m >= gap->high_m) return least_m;
+  if (!out_of_reach(params, transit.from, transit.to, gap->high_m, transit.hazards)) {
+    return std::nullopt;
+  }
+  return gap->high_m;
+}
+
 }  // namespace
 
 Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
@@ -403,21 +431,39 @@ Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transi
     return Error{"No path of " + metres(length_m) + ": the shortest is " +
                  metres(out_m + search.shortest_m())};
   }
-  const auto next = search.next_after(length_m - out_m, transit.length_max_m - out_m);
+  const auto next = least_length_from(params, transit, length_m + kGapStep_m);
   return Error{"No path of " + metres(length_m) + " was found; " +
-               (next ? "the next longer one is " + metres(out_m + *next)
+               (next ? "the next longer one is " + metres(*next)
                      : "nor a longer one within " + metres(transit.length_max_m))};
+}
+
+std::optional<LengthGap> length_gap(const Pose2& from, const Pose2& to, double radius_m) {
+  const DubinsPath shortest = shortest_dubins(from, to, radius_m);
+  if (shortest.word == DubinsWord::RLR || shortest.word == DubinsWord::LRL) return std::nullopt;
+  double low_m = 0.0;
+  for (const DubinsWord word : kCccWords) {
+    const auto wave = dubins_ccc(word, from, to, radius_m, false);
+    if (!wave) return std::nullopt;
+    low_m = std::max(low_m, wave->length_m());
+  }
+  const double shortest_m = shortest.length_m();
+  double high_m = shortest_m + kTwoPi * radius_m;
+  const auto take = [&](const std::optional<DubinsPath>& word) {
+    if (word && word->length_m() > shortest_m + kExact_m) {
+      high_m = std::min(high_m, word->length_m());
+    }
+  };
+  for (const DubinsWord word : kCscWords) take(dubins_word(word, from, to, radius_m, radius_m));
+  for (const DubinsWord word : kCccWords) take(dubins_ccc(word, from, to, radius_m, true));
+  if (high_m <= low_m + kExact_m) return std::nullopt;
+  return LengthGap{low_m, high_m};
 }
 
 bool surely_flyable(const AvoidanceParams& params, const Transit& transit, double shortest_m,
                     double length_m) {
   if (!(length_m >= shortest_m) || length_m > transit.length_max_m + kExact_m) return false;
-  const double dx = transit.to.x_m - transit.from.x_m;
-  const double dy = transit.to.y_m - transit.from.y_m;
-  const double apart_m = kNoGap_radii * transit.radius_m;
-  const bool gapless =
-      length_m >= shortest_m + kTwoPi * transit.radius_m || dx * dx + dy * dy >= apart_m * apart_m;
-  return gapless && out_of_reach(params, transit.from, transit.to, length_m, transit.hazards);
+  const auto least_m = least_without_hazards(params, transit, shortest_m, length_m);
+  return least_m && *least_m <= length_m;
 }
 
 Result<double> least_length_from(const AvoidanceParams& params, const Transit& transit,
@@ -425,8 +471,10 @@ Result<double> least_length_from(const AvoidanceParams& params, const Transit& t
   SKEIN_ASSERT(transit.radius_m > 0.0);
   if (!std::isfinite(length_m)) return Error{"The wanted length is not a number"};
   const double direct_m = shortest_dubins_length(transit.from, transit.to, transit.radius_m);
-  const double wanted_m = std::max(length_m, direct_m);
-  if (surely_flyable(params, transit, direct_m, wanted_m)) return wanted_m;
+  if (const auto least_m = least_without_hazards(params, transit, direct_m, length_m)) {
+    if (*least_m <= transit.length_max_m + kExact_m) return *least_m;
+    return out_of_range(*least_m, transit.length_max_m);
+  }
   const auto shortest =
       find_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
   if (!shortest) return shortest.error();

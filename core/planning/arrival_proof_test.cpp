@@ -118,7 +118,6 @@ struct Count {
   int below = 0;
   int beyond = 0;  ///< the range
   int gaps = 0;
-  int wrong = 0;  ///< gaps that are none
   int barred = 0;
 };
 
@@ -140,10 +139,10 @@ Count prove(std::uint64_t seed, int requests, int tries) {
     const double shortest_m = shortest_dubins_length(from, to, kRadius_m);
     const double range_m = shortest_m + random.uniform(0.0, 20000.0);
     const Transit transit{from, to, kRadius_m, range_m, hazards};
-    const double wanted_m = i % 16 == 0 ? shortest_m
-                            : i % 2 == 0
-                                ? shortest_m + random.uniform(0.0, 1.2 * kTwoPi * kRadius_m)
-                                : shortest_m * random.uniform(0.5, 4.0);
+    const double loop_m = kTwoPi * kRadius_m;
+    const double wanted_m = i % 16 == 0  ? shortest_m
+                            : i % 2 == 0 ? shortest_m + random.uniform(0.0, 1.2 * loop_m)
+                                         : shortest_m * random.uniform(0.5, 4.0);
     const auto path = path_of_length({}, transit, wanted_m);
     if (path) {
       ++count.accepted;
@@ -167,13 +166,7 @@ Count prove(std::uint64_t seed, int requests, int tries) {
         if (there) expect_true(*there, transit, *next);
       }
       if (any_between(random, transit, wanted_m + 0.01, next_m - 0.01, tries)) {
-        ++count.wrong;
-        std::printf(
-            "wrong: from %.17g,%.17g,%.17g to %.17g,%.17g,%.17g  shortest %.3f (%s) wanted %.3f "
-            "next %.3f\n",
-            from.x_m, from.y_m, from.heading_rad, to.x_m, to.y_m, to.heading_rad, shortest_m,
-            std::string(to_string(shortest_dubins(from, to, kRadius_m).word)).c_str(), wanted_m,
-            next_m);
+        ADD_FAILURE() << "between " << wanted_m << " and " << next_m << " m";
       }
     }
     if (testing::Test::HasFailure()) {
@@ -181,21 +174,19 @@ Count prove(std::uint64_t seed, int requests, int tries) {
       break;
     }
   }
-  std::printf("accepted %d, below %d, beyond the range %d, gaps %d, barred %d, wrong %d\n",
-              count.accepted, count.below, count.beyond, count.gaps, count.barred, count.wrong);
   return count;
 }
 
 TEST(ArrivalProof, WhatIsAcceptedIsFlownAndWhatIsRefusedIsNot) {
   const Count count = prove(61, 2000, 300);
   EXPECT_GT(count.accepted, 1200);
-  EXPECT_EQ(count.wrong, 0);
 }
 
 TEST(ArrivalProof, DISABLED_ManyRequests) {
   const Count count = prove(62, 100'000, 2000);
+  std::printf("accepted %d, below the shortest %d, beyond the range %d, gaps %d, barred %d\n",
+              count.accepted, count.below, count.beyond, count.gaps, count.barred);
   EXPECT_GT(count.accepted, 60'000);
-  EXPECT_EQ(count.wrong, 0);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/planning/arrival.hpp"
+#include "skein/planning/avoidance.hpp"
 #include "skein/planning/dubins_batch.hpp"
 
 namespace {
@@ -70,10 +71,11 @@ void batch(benchmark::State& state, double radii, bool cached, std::size_t level
   state.SetItemsProcessed(static_cast<std::int64_t>(kQueries) * state.iterations());
 }
 
-/// A time to be promised: poses 3 to 6 km apart, hazards about, none of them in the way.
-void arrival(benchmark::State& state) {
+/// A time to be promised; hazards are about, none of them in the way.
+/// Near ones may have a gap, so that a search decides.
+void arrival(benchmark::State& state, double apart_radii, double size_radii) {
   using namespace skein::planning;  // NOLINT(google-build-using-namespace)
-  const Queries queries = random_queries(20.0);
+  const Queries queries = random_queries(size_radii);
   std::vector<skein::Hazard> hazards;
   for (std::uint16_t i = 0; i < 4; ++i) {
     hazards.push_back({skein::HazardId{i}, {-9000.0, 3000.0 * i}, 300.0});
@@ -81,9 +83,50 @@ void arrival(benchmark::State& state) {
   std::size_t i = 0;
   while (state.KeepRunning()) {
     Transit transit{queries.from[i], queries.to[i], kRadius_m, 1e5, hazards};
-    transit.to.x_m += 25.0 * kRadius_m;
-    const double length_m = (transit.to.position() - transit.from.position()).norm() + 500.0;
+    transit.to.x_m += apart_radii * kRadius_m;
+    const double chord_m = (transit.to.position() - transit.from.position()).norm();
+    const double length_m = chord_m + 500.0;
     benchmark::DoNotOptimize(least_length_from({}, transit, length_m));
+    i = i + 1 == kQueries ? 0 : i + 1;
+  }
+}
+
+/// The path past so many hazards between the ends; four more are about, out of reach.
+std::vector<skein::Hazard> hazards_between(std::uint16_t count) {
+  std::vector<skein::Hazard> hazards;
+  for (std::uint16_t i = 0; i < 4; ++i) {
+    hazards.push_back({skein::HazardId{i}, {-9000.0, 3000.0 * i}, 300.0});
+  }
+  for (std::uint16_t i = 0; i < count; ++i) {
+    const double x_m = 22.5 * kRadius_m + 500.0 * (i % 2 == 0 ? 1.0 : -1.0);
+    const double y_m = (i + 1.0) * 20.0 * kRadius_m / (count + 1.0);
+    hazards.push_back({skein::HazardId{static_cast<std::uint16_t>(4 + i)}, {x_m, y_m}, 250.0});
+  }
+  return hazards;
+}
+
+void clear_path(benchmark::State& state, std::uint16_t between) {
+  using skein::planning::shortest_clear_path;
+  const Queries queries = random_queries(20.0);
+  const auto hazards = hazards_between(between);
+  std::size_t i = 0;
+  while (state.KeepRunning()) {
+    Pose2 to = queries.to[i];
+    to.x_m += 25.0 * kRadius_m;
+    benchmark::DoNotOptimize(shortest_clear_path({}, queries.from[i], to, kRadius_m, hazards));
+    i = i + 1 == kQueries ? 0 : i + 1;
+  }
+}
+
+void clear_length(benchmark::State& state) {
+  using skein::planning::shortest_clear_length;
+  const Queries queries = random_queries(20.0);
+  const auto hazards = hazards_between(0);
+  std::size_t i = 0;
+  while (state.KeepRunning()) {
+    Pose2 to = queries.to[i];
+    to.x_m += 25.0 * kRadius_m;
+    benchmark::DoNotOptimize(shortest_clear_length({}, queries.from[i], to, kRadius_m, hazards));
     i = i + 1 == kQueries ? 0 : i + 1;
   }
 }
@@ -115,7 +158,12 @@ BENCHMARK_CAPTURE(ompl_distance, near, 6.0)->Name("dubins_length/ompl/near");
 BENCHMARK_CAPTURE(scalar, far, 60.0)->Name("dubins_length/skein/far");
 BENCHMARK_CAPTURE(ompl_distance, far, 60.0)->Name("dubins_length/ompl/far");
 
-BENCHMARK(arrival)->Name("least_length_from/skein");
+BENCHMARK_CAPTURE(arrival, far, 25.0, 20.0)->Name("least_length_from/skein/far");
+BENCHMARK_CAPTURE(arrival, near, 0.0, 6.0)->Name("least_length_from/skein/near");
+BENCHMARK_CAPTURE(clear_path, free, 0)->Name("shortest_clear_path/skein/free");
+BENCHMARK_CAPTURE(clear_path, one, 1)->Name("shortest_clear_path/skein/one");
+BENCHMARK_CAPTURE(clear_path, four, 4)->Name("shortest_clear_path/skein/four");
+BENCHMARK(clear_length)->Name("shortest_clear_length/skein/free");
 // The batch against the peer's one by one; it has no batch.
 BENCHMARK_CAPTURE(batch, avx2_near, 6.0, false, 1)->Name("dubins_batch/skein/near");
 BENCHMARK_CAPTURE(ompl_distance, batch_near, 6.0)->Name("dubins_batch/ompl/near");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "skein/base/result.hpp"
@@ -26,10 +27,23 @@ struct Transit {
 [[nodiscard]] Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
                                           double length_m);
 
-/// Can path_of_length surely fly this length? A test of a few products for each hazard: the poses
-/// lie so far apart, or the length so far above the shortest, that there is no gap, and no hazard
-/// is in reach of such a path. Where it says no, only path_of_length knows. Precondition:
-/// shortest_m = shortest_dubins_length(from, to, radius_m).
+/// The lengths that no path without hazards has: those between these two, which both can be flown.
+struct LengthGap {
+  double low_m = 0.0;
+  double high_m = 0.0;
+};
+
+/// The one gap above the shortest length, where there is one (Chen et al., arXiv 2109.02125). Only
+/// where the shortest is a CSC word and both CCC words with the middle arc below a half turn exist:
+/// they are the longest waves within the turning circles. The gap ends with the next longer word,
+/// or a loop. About a microsecond. In arrival_proof_test no path was found in any of the gaps.
+[[nodiscard]] std::optional<LengthGap> length_gap(const Pose2& from, const Pose2& to,
+                                                  double radius_m);
+
+/// Can path_of_length surely fly this length: it lies in no gap, and no hazard is in reach of such
+/// a path? A few products for each hazard, and a microsecond where the poses are near. Without
+/// hazards it is exact; with hazards in reach it says no, and only path_of_length knows.
+/// Precondition: shortest_m is shortest_dubins_length(from, to, radius_m).
 [[nodiscard]] bool surely_flyable(const AvoidanceParams& params, const Transit& transit,
                                   double shortest_m, double length_m);
 
