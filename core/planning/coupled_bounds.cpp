@@ -216,6 +216,21 @@ bool Bounds::places_suffice(const PartialPlan& plan, double limit) {
   return least && least->cost < room;
 }
 
+/// What comes second or later comes from another open task.
+void Bounds::make_legs_into_open() {
+  if (model_.criterion != Criterion::value) return;
+  const std::size_t tasks = model_.tasks.size();
+  std::fill(least_into_s_.begin(), least_into_s_.end(), kInfinity);
+  for (std::size_t k = 0; k < model_.classes.size(); ++k) {
+    double* into_s = least_into_s_.data() + k * tasks;
+    for (std::size_t row = 0; row < open_count_; ++row) {
+      const double* leg_s =
+          model_.classes[k].least_between_s.data() + at(open_[row].task) * tasks;
+      for (std::size_t t = 0; t < tasks; ++t) into_s[t] = std::min(into_s[t], leg_s[t]);
+    }
+  }
+}
+
 /// One leg more: from the ends of open tasks to the times of all.
 void Bounds::walk(const VehicleClass& kind, const std::array<double, kCoupledTasksMax>& end_s,
                   std::array<double, kCoupledTasksMax>& reach_s) const {
@@ -231,6 +246,7 @@ void Bounds::walk(const VehicleClass& kind, const std::array<double, kCoupledTas
 
 void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
   const double most = model_.criterion == Criterion::makespan ? limit : room;
+  make_legs_into_open();
   std::array<double, kCoupledTasksMax> end_s{};
   std::array<double, kCoupledTasksMax> next_s{};
   std::array<double, kCoupledTasksMax> reach_s{};

@@ -54,6 +54,7 @@ class Bounds {
   void make_places(const PartialPlan& plan, double room, double limit);
   [[nodiscard]] double penalty(const PartialPlan& plan, const Open& open, Index vehicle,
                                double end_s, std::size_t position) const;
+  void make_legs_into_open();
   void walk(const VehicleClass& kind, const std::array<double, kCoupledTasksMax>& end_s,
             std::array<double, kCoupledTasksMax>& reach_s) const;
   [[nodiscard]] bool give_places();

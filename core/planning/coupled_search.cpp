@@ -241,39 +241,70 @@ void Search::recreate(Solution& plan, double limit) {
                    : plan.score + kMissing * static_cast<double>(plan.missing.size());
 }
 
+/// Places in the order of what they cost at least, until no better one can follow.
 Search::Place Search::best_place(Solution& plan, Index task) {
   const Task& its = model_.tasks[at(task)];
   Place best;
-  // What is there keeps its times or is later, so that this much is certain of every place.
   timing_.evaluate(plan.orders);
   end_s_ = timing_.ends_s();
-  const double base = plan.score;
+  places_.clear();
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
-    const Vehicle& vehicle = model_.vehicles[at(i)];
-    auto& order = plan.orders[at(i)];
+    const auto& order = plan.orders[at(i)];
     if (its.id.kind == TaskKind::deliver) {
       const auto used = std::count_if(order.begin(), order.end(), [&](Index v) {
         return model_.tasks[at(model_.task_of[at(v)])].id.kind == TaskKind::deliver;
       });
-      if (used >= vehicle.loads) continue;
+      if (used >= model_.vehicles[at(i)].loads) continue;
     }
     for (std::size_t p = 0; p <= order.size(); ++p) {
-      const Index before = p == 0 ? kNone : order[p - 1];
-      const double free_s = p == 0 ? 0.0 : end_s_[at(model_.task_of[at(before)])];
-      const double* reach_s = model_.reach_from(i, before);
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
-        const double end_s = free_s + reach_s[v] + model_.class_of(i).after_s[at(v)];
-        if (!(end_s <= vehicle.deadline_s)) continue;
-        if (model_.add(base, model_.cost_of(task, end_s)) >= best.score) continue;
-        if (random_.chance(kBlink)) continue;
-        order.insert(order.begin() + static_cast<std::ptrdiff_t>(p), v);
-        const double score = score_of(plan.orders, best.score);
-        order.erase(order.begin() + static_cast<std::ptrdiff_t>(p));
-        if (score < best.score) best = {i, p, v, score};
+        const double least = least_score_at(plan, i, p, v);
+        if (least < kInfinity) places_.push_back({i, p, v, least});
       }
     }
   }
+  std::sort(places_.begin(), places_.end(),
+            [](const Place& a, const Place& b) { return a.score < b.score; });
+  for (const Place& place : places_) {
+    if (place.score >= best.score) break;
+    if (random_.chance(kBlink)) continue;
+    auto& order = plan.orders[at(place.vehicle)];
+    const auto position = static_cast<std::ptrdiff_t>(place.position);
+    order.insert(order.begin() + position, place.visit);
+    const double score = score_of(plan.orders, best.score);
+    order.erase(order.begin() + position);
+    if (score < best.score) best = {place.vehicle, place.position, place.visit, score};
+  }
   return best;
+}
+
+/// What is in the plan keeps its times or is later: so what the task and those after it on the same
+/// vehicle cost, as if they waited for nobody else, is certain.
+double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t position,
+                              Index visit) const {
+  const Vehicle& its = model_.vehicles[at(vehicle)];
+  const std::vector<double>& after_s = model_.class_of(vehicle).after_s;
+  const auto& order = plan.orders[at(vehicle)];
+  const Index before = position == 0 ? kNone : order[position - 1];
+  const double free_s = position == 0 ? 0.0 : end_s_[at(model_.task_of[at(before)])];
+  double end_s = free_s + model_.reach_from(vehicle, before)[visit] + after_s[at(visit)];
+  if (!(end_s <= its.deadline_s)) return kInfinity;
+  double score = model_.add(plan.score, model_.least_cost_of(model_.task_of[at(visit)], end_s));
+  Index last = visit;
+  double last_end_s = free_s;
+  for (std::size_t p = position; p < order.size(); ++p) {
+    const Index next = model_.task_of[at(order[p])];
+    last_end_s = end_s_[at(next)];
+    end_s += model_.reach_from(vehicle, last)[order[p]] + after_s[at(order[p])];
+    if (end_s <= last_end_s) return score;
+    if (!(end_s <= its.deadline_s)) return kInfinity;
+    score = model_.criterion == Criterion::makespan
+                ? std::max(score, end_s)
+                : score + model_.least_cost_of(next, end_s) -
+                      model_.least_cost_of(next, last_end_s);
+    last = order[p];
+  }
+  return score + its.range_weight_per_s * (end_s - last_end_s);
 }
 
 }  // namespace skein::planning::coupled

@@ -61,6 +61,8 @@ class Search {
 
   void recreate(Solution& plan, double limit);
   [[nodiscard]] Place best_place(Solution& plan, Index task);
+  [[nodiscard]] double least_score_at(const Solution& plan, Index vehicle, std::size_t position,
+                                      Index visit) const;
 
   const Model& model_;
   Random& random_;
@@ -78,6 +80,7 @@ class Search {
   std::vector<double> end_s_;
   std::vector<char> chosen_;
   std::vector<std::pair<double, Index>> sorted_;
+  std::vector<Place> places_;  ///< each with the least that it could score
 };
 
 }  // namespace skein::planning::coupled

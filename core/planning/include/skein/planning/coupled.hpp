@@ -63,7 +63,7 @@ enum class Criterion : std::uint8_t {
 
 struct CoupledWeights {
   double reward = 1.0;
-  double range = 0.1;
+  double range = 1.0;
 };
 
 /// The length in metres of the shortest path between two poses with a least turn radius; infinite
