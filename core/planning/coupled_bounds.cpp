@@ -224,8 +224,7 @@ void Bounds::make_legs_into_open() {
   for (std::size_t k = 0; k < model_.classes.size(); ++k) {
     double* into_s = least_into_s_.data() + k * tasks;
     for (std::size_t row = 0; row < open_count_; ++row) {
-      const double* leg_s =
-          model_.classes[k].least_between_s.data() + at(open_[row].task) * tasks;
+      const double* leg_s = model_.classes[k].least_between_s.data() + at(open_[row].task) * tasks;
       for (std::size_t t = 0; t < tasks; ++t) into_s[t] = std::min(into_s[t], leg_s[t]);
     }
   }

@@ -213,10 +213,13 @@ Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem, const Planni
   coupled::Tree tree{*model, budget};
   tree.run();
   if (tree.best_cost() == coupled::kInfinity) return coupled::no_plan(*model);
-  CoupledPlan plan = coupled::make_plan(*model, problem, tree.best());
-  plan.proven = tree.is_proven();
-  plan.bound = plan.proven ? plan.objective : model->objective(tree.bound());
-  plan.steps = tree.nodes();
+  auto plan = coupled::make_plan(*model, problem, tree.best());
+  if (!plan) return plan;
+  plan->bound = model->objective(tree.is_proven() ? tree.best_cost() : tree.bound());
+  // A wait that had to be lengthened may cost more than the bound, which knows of none.
+  plan->proven = tree.is_proven() && plan->gap() <= kCoupledTolerance;
+  if (plan->proven) plan->bound = plan->objective;
+  plan->steps = tree.nodes();
   return plan;
 }
 

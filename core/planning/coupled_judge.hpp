@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/planning/arrival.hpp"
 #include "skein/planning/coupled.hpp"
 #include "skein/planning/dubins.hpp"
 #include "skein/planning/task_path.hpp"
@@ -116,6 +117,12 @@ inline std::vector<std::string> faults_of(const CoupledProblem& problem, const C
         say(t, "the transit does not fill its time");
       }
       if (t.transit_m < least_m - kLength_m) say(t, "cannot be there in time");
+      if (problem.flyable_waits &&
+          (t.transit_m > least_m + kLength_m || !problem.hazards.empty())) {
+        const Transit transit{pose, t.entry, v.planning_radius_m, v.range_left_m, problem.hazards};
+        const auto path = path_of_length(problem.avoidance, transit, t.transit_m);
+        if (!path) say(t, path.error().message);
+      }
       pose = exit;
       free_s = t.end_s;
     }

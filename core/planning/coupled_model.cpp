@@ -9,6 +9,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins.hpp"
 
 namespace skein::planning::coupled {
@@ -16,6 +17,8 @@ namespace {
 
 constexpr int kCounterClockwise = 1;
 constexpr int kClockwise = -1;
+constexpr double kWaitless_m = 1e-5;  ///< a transit this little above the least has no wait
+constexpr int kHoldPassesMax = 50;
 
 /// A way of flying a task, before it is known by which vehicle.
 struct Way {
@@ -371,6 +374,11 @@ double Timing::evaluate(const Orders& orders, double limit) {
   return left_ == 0 ? cost_ : kInfinity;
 }
 
+void Timing::hold(Index task, double time_s) {
+  held_s_.resize(model_.tasks.size(), 0.0);
+  held_s_[at(task)] = time_s;
+}
+
 void Timing::advance(Index vehicle) {
   VehicleState& state = vehicles_[at(vehicle)];
   while (state.next != state.last) {
@@ -378,6 +386,7 @@ void Timing::advance(Index vehicle) {
     const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
     SiteState& site = sites_[at(task.site)];
     double time_s = state.free_s + state.reach_s[visit];
+    if (!held_s_.empty()) time_s = std::max(time_s, held_s_[at(model_.task_of[at(visit)])]);
     if (task.id.kind != TaskKind::survey) {
       if (site.survey_open) {
         site.for_survey |= bit(vehicle);
@@ -446,35 +455,109 @@ void Timing::release(SiteState& site) {
   wake(site.at_delivery | site.for_deliveries);
 }
 
-CoupledPlan make_plan(const Model& model, const CoupledProblem& problem, const Orders& orders) {
+namespace {
+
+/// The length of the transit of every task in the orders: what it is, and the least.
+CoupledTask task_of(const Model& model, const CoupledProblem& problem, const Timing& timing,
+                    Index vehicle, Index before, Index visit) {
+  const CoupledVehicle& its = problem.vehicles[at(vehicle)];
+  const VehicleClass& kind = model.class_of(vehicle);
+  const Index index = model.task_of[at(visit)];
+  const double free_s = before == kNone ? 0.0 : timing.ends_s()[at(model.task_of[at(before)])];
+  const double before_s = kind.before_s[at(visit)];
+  const TaskPath& path = kind.paths[at(visit)];
+  CoupledTask task;
+  task.task = model.tasks[at(index)].id;
+  task.vehicle = its.id;
+  task.time_s = timing.times_s()[at(index)];
+  task.end_s = timing.ends_s()[at(index)];
+  task.entry = path.entry;
+  task.run = path.run;
+  task.transit_m = (task.time_s - before_s - free_s) * its.speed_mps;
+  task.least_transit_m = (model.reach_from(vehicle, before)[visit] - before_s) * its.speed_mps;
+  return task;
+}
+
+Pose2 end_of(const CoupledTask& task) {
+  return advance(task.entry, task.run.curvature_per_m, task.run.length_m);
+}
+
+/// The least length from the one asked for that can be flown; nothing where none can.
+std::optional<double> flyable_m(const CoupledProblem& problem, const CoupledVehicle& vehicle,
+                                const Pose2& from, const CoupledTask& task) {
+  const bool any = !problem.flyable_waits || problem.transit_length_m;
+  if (any || task.transit_m <= task.least_transit_m + kWaitless_m) {
+    return task.transit_m;
+  }
+  const Transit transit{from, task.entry, vehicle.planning_radius_m, vehicle.range_left_m,
+                        problem.hazards};
+  if (surely_flyable(problem.avoidance, transit,
+                     shortest_dubins_length(from, task.entry, vehicle.planning_radius_m),
+                     task.transit_m)) {
+    return task.transit_m;
+  }
+  const auto length_m = least_length_from(problem.avoidance, transit, task.transit_m);
+  return length_m ? std::optional{*length_m} : std::nullopt;
+}
+
+/// One pass over all waits; true when nothing had to be held. Nothing where a wait cannot be flown.
+std::optional<bool> hold_waits(const Model& model, const CoupledProblem& problem,
+                               const Orders& orders, Timing& timing) {
+  bool all = true;
+  const Timing now = timing;
+  for (Index i = 0; i < model.vehicle_count(); ++i) {
+    const CoupledVehicle& vehicle = problem.vehicles[at(i)];
+    Pose2 from = vehicle.pose;
+    Index before = kNone;
+    for (const Index visit : orders[at(i)]) {
+      const CoupledTask task = task_of(model, problem, now, i, before, visit);
+      const auto length_m = flyable_m(problem, vehicle, from, task);
+      if (!length_m) return std::nullopt;
+      if (*length_m > task.transit_m + kWaitless_m) {
+        timing.hold(model.task_of[at(visit)],
+                    task.time_s + (*length_m - task.transit_m) / vehicle.speed_mps);
+        all = false;
+      }
+      before = visit;
+      from = end_of(task);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
+                              const Orders& orders) {
   Timing timing{model};
-  const double cost = timing.evaluate(orders);
+  double cost = timing.evaluate(orders);
   SKEIN_ASSERT(cost < kInfinity);
+  std::optional<bool> settled = false;
+  for (int pass = 0; pass < kHoldPassesMax && settled == false && cost < kInfinity; ++pass) {
+    settled = hold_waits(model, problem, orders, timing);
+    if (settled == false) cost = timing.evaluate(orders);
+  }
+  if (settled != true) {
+    return Error{"The plan that was found has a wait for which no path was found within the range"};
+  }
   CoupledPlan plan;
   plan.objective = model.objective(cost);
   double weight_sum = 0.0;
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    const CoupledVehicle& vehicle = problem.vehicles[i];
-    const VehicleClass& kind = model.class_of(static_cast<Index>(i));
-    const double* reach_s = model.vehicles[i].reach_s.data();
+  for (Index i = 0; i < model.vehicle_count(); ++i) {
+    const CoupledVehicle& vehicle = problem.vehicles[at(i)];
+    Index before = kNone;
     double free_s = 0.0;
-    for (const Index visit : orders[i]) {
-      const Index index = model.task_of[at(visit)];
-      const Task& task = model.tasks[at(index)];
-      const TaskPath& path = kind.paths[at(visit)];
-      const double before_s = kind.before_s[at(visit)];
-      const double time_s = timing.times_s()[at(index)];
-      const double end_s = timing.ends_s()[at(index)];
-      plan.tasks.push_back({task.id, vehicle.id, time_s, end_s, path.entry, path.run,
-                            (time_s - before_s - free_s) * vehicle.speed_mps,
-                            (reach_s[visit] - before_s) * vehicle.speed_mps});
+    for (const Index visit : orders[at(i)]) {
+      plan.tasks.push_back(task_of(model, problem, timing, i, before, visit));
+      const double end_s = plan.tasks.back().end_s;
+      const Task& task = model.tasks[at(model.task_of[at(visit)])];
       const double reward = problem.sites[at(task.site)].reward;
       plan.reward += reward * std::exp(-task.decay_per_s * end_s);
       plan.completion_s += reward * end_s;
       weight_sum += reward;
       plan.makespan_s = std::max(plan.makespan_s, end_s);
       free_s = end_s;
-      reach_s = model.reach_from(static_cast<Index>(i), visit);
+      before = visit;
     }
     plan.range_left_m += vehicle.range_left_m - free_s * vehicle.speed_mps;
   }

@@ -143,6 +143,8 @@ class Timing {
   /// The cost; infinite where the orders wait for each other in a circle, where a range does not
   /// suffice, or where the cost is more than `limit` (then it may stop early).
   double evaluate(const Orders& orders, double limit = kInfinity);
+  /// From now on the task has no earlier time than this.
+  void hold(Index task, double time_s);
 
   /// Of the last evaluate, when finite; by task.
   [[nodiscard]] const std::vector<double>& times_s() const { return time_s_; }
@@ -181,6 +183,7 @@ class Timing {
   std::vector<VehicleState> vehicles_;
   std::vector<double> time_s_;
   std::vector<double> end_s_;
+  std::vector<double> held_s_;  ///< by task; empty where none is held
   Mask ready_ = 0;
   int left_ = 0;
   double cost_ = 0.0;
@@ -188,9 +191,11 @@ class Timing {
   double limit_ = kInfinity;
 };
 
-/// The plan of orders that Timing finds feasible.
-[[nodiscard]] CoupledPlan make_plan(const Model& model, const CoupledProblem& problem,
-                                    const Orders& orders);
+/// The plan of orders that Timing finds feasible. Where no path has the length of a transit that
+/// waits, its task is held until one has, and what waits for that task too. Fails where the ranges
+/// do not suffice for it.
+[[nodiscard]] Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
+                                            const Orders& orders);
 
 /// Why a problem has no plan, as far as is easily said.
 [[nodiscard]] Error no_plan(const Model& model);

@@ -13,9 +13,9 @@ namespace {
 // Tuned on the instances of tests/benchmarks/coupled_benchmark.cpp.
 constexpr double kBlink = 0.02;        ///< chance that a place is overlooked, for variety
 constexpr int kRuinMost = 12;          ///< tasks taken out at once
-constexpr double kRuinPart = 0.5;      ///< and the part of all
+constexpr double kRuinPart = 0.7;      ///< and the part of all
 constexpr std::uint64_t kCycle = 400;  ///< steps from hot to cold, then hot again from the best
-constexpr double kHot = 0.02;          ///< of the best score: what a worse plan may cost
+constexpr double kHot = 0.2;           ///< of the best score: what a worse plan may cost
 constexpr double kCold = 0.0005;
 constexpr double kMissing = 1e9;  ///< score of a task that nobody does
 constexpr double kForget = 0.95;  ///< of the operators' merits, a step
@@ -298,10 +298,9 @@ double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t p
     end_s += model_.reach_from(vehicle, last)[order[p]] + after_s[at(order[p])];
     if (end_s <= last_end_s) return score;
     if (!(end_s <= its.deadline_s)) return kInfinity;
-    score = model_.criterion == Criterion::makespan
-                ? std::max(score, end_s)
-                : score + model_.least_cost_of(next, end_s) -
-                      model_.least_cost_of(next, last_end_s);
+    score = model_.criterion == Criterion::makespan ? std::max(score, end_s)
+                                                    : score + model_.least_cost_of(next, end_s) -
+                                                          model_.least_cost_of(next, last_end_s);
     last = order[p];
   }
   return score + its.range_weight_per_s * (end_s - last_end_s);
@@ -318,8 +317,8 @@ Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& ran
   coupled::Search search{*model, random};
   while (!budget.is_spent(search.steps())) search.step();
   if (search.best_cost() == coupled::kInfinity) return coupled::no_plan(*model);
-  CoupledPlan plan = coupled::make_plan(*model, problem, search.best());
-  plan.steps = search.steps();
+  auto plan = coupled::make_plan(*model, problem, search.best());
+  if (plan) plan->steps = search.steps();
   return plan;
 }
 

@@ -187,6 +187,7 @@ TEST(BranchAndBound, EqualsExhaustiveSearchOnTwoSites) {
       CoupledProblem problem = draw_problem(random, draw);
       problem.criterion = criterion;
       problem.decide_wait = seconds{seed % 3 == 0 ? 8 : 0};
+      problem.flyable_waits = false;
       // A load short, so that who delivers matters; a range short, so that orders are refused.
       problem.vehicles[0].loads = static_cast<std::uint8_t>(1 + seed % 2);
       if (seed % 4 == 3) problem.vehicles[0].range_left_m = 9000.0;
@@ -208,6 +209,7 @@ TEST(BranchAndBound, EqualsExhaustiveSearchWithDeliveriesTogether) {
       draw.interval_s = interval_s;
       CoupledProblem problem = draw_problem(random, draw);
       problem.criterion = kCriteria[seed % 3];
+      problem.flyable_waits = false;
       problem.open_tasks.erase(problem.open_tasks.begin());  // site 1 was surveyed before
       expect_optimal(problem);
     }
@@ -220,6 +222,7 @@ TEST(BranchAndBound, TwinsAreInterchangeable) {
   draw.sites = 2;
   draw.vehicles = 1;
   CoupledProblem problem = draw_problem(random, draw);
+  problem.flyable_waits = false;
   for (std::uint16_t id = 2; id <= 3; ++id) {
     problem.vehicles.push_back(problem.vehicles.front());
     problem.vehicles.back().id = VehicleId{id};
@@ -236,6 +239,7 @@ TEST(BranchAndBound, MoreStepsAreNeverWorseAndTheBoundHolds) {
     Random random{31};
     CoupledProblem problem = draw_problem(random, {.sites = 5, .vehicles = 6});
     problem.criterion = criterion;
+    problem.flyable_waits = false;
     const auto proven = branch_and_bound(problem, {});
     ASSERT_TRUE(proven.ok() && proven->proven);
     std::optional<CoupledPlan> before;
@@ -293,6 +297,7 @@ TEST(RuinAndRecreate, MoreStepsAreNeverWorseAndASeedIsAPlan) {
     Random draw{11};
     CoupledProblem problem = draw_problem(draw, {.sites = 4, .vehicles = 6});
     problem.criterion = criterion;
+    problem.flyable_waits = false;
     const auto proven = branch_and_bound(problem, {});
     ASSERT_TRUE(proven.ok() && proven->proven);
     std::optional<double> before;
@@ -313,6 +318,55 @@ TEST(RuinAndRecreate, MoreStepsAreNeverWorseAndASeedIsAPlan) {
     }
     EXPECT_NEAR(*before, proven->objective, 0.02 * proven->objective);
   }
+}
+
+TEST(CoupledPlans, HoldATaskUntilItsWaitCanBeFlown) {
+  // A delivery and the assessment of the site by one vehicle: near poses and a wait.
+  bool held = false;
+  for (std::uint64_t seed = 106; seed <= 111; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random{seed};
+    CoupledProblem problem = draw_problem(random, {});
+    problem.criterion = Criterion::completion;
+    problem.flyable_waits = false;
+    const auto ideal = branch_and_bound(problem, {});
+    problem.flyable_waits = true;
+    const auto plan = branch_and_bound(problem, {});
+    ASSERT_TRUE(ideal.ok() && plan.ok());
+    EXPECT_THAT(faults_of(problem, *plan), IsEmpty());
+    EXPECT_FALSE(better(problem, plan->objective, ideal->objective));
+    EXPECT_NEAR(*plan->bound, ideal->objective, 1e-9 * ideal->objective);
+    EXPECT_EQ(plan->proven, plan->gap() == 0.0);
+    held = held || !plan->proven;
+  }
+  EXPECT_TRUE(held);
+}
+
+TEST(CoupledPlans, GoRoundHazards) {
+  Random random{4};
+  CoupledProblem problem = draw_problem(random, {.sites = 2, .vehicles = 3});
+  const auto free = branch_and_bound(problem, {});
+  problem.hazards = {{HazardId{1}, {4000.0, 4000.0}, 500.0},
+                     {HazardId{2}, {2500.0, 5000.0}, 300.0}};
+  const auto plan = branch_and_bound(problem, {});
+  ASSERT_TRUE(free.ok() && plan.ok());
+  EXPECT_THAT(faults_of(problem, *plan), IsEmpty());
+  EXPECT_FALSE(better(problem, plan->objective, *free->bound));
+}
+
+TEST(CoupledPlans, TakeTheLengthsThatTheyAreGiven) {
+  Random random{6};
+  CoupledProblem problem = draw_problem(random, {.sites = 2, .vehicles = 3});
+  problem.criterion = Criterion::makespan;
+  const auto plain = branch_and_bound(problem, {});
+  problem.transit_length_m = [](const Pose2& from, const Pose2& to, double radius_m) {
+    return 1.5 * shortest_dubins_length(from, to, radius_m);
+  };
+  const auto longer = branch_and_bound(problem, {});
+  ASSERT_TRUE(plain.ok() && longer.ok());
+  EXPECT_TRUE(longer->proven);
+  EXPECT_GT(longer->objective, *plain->bound);
+  EXPECT_LE(longer->objective, 1.5 * *plain->bound);
 }
 
 TEST(CoupledPlans, SayWhatIsMissing) {

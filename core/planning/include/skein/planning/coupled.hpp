@@ -33,8 +33,14 @@ namespace skein::planning {
 /// vehicles,
 ///   and nothing is fitted in between (no task both after one of them and before another);
 /// - an assessment starts after the last delivery, by Site::assess_wait at least.
-/// A vehicle that is early lengthens its path to the task. What it flies from the start to the end
-/// of its last task, waiting included, is at most its range.
+/// A vehicle that is early lengthens its path to the task. What a vehicle flies from the start to
+/// the end of its last task, waiting included, is at most its range.
+///
+/// Waits: the solvers take any path longer than the shortest to exist. Nearly all do; but between
+/// near poses there can be a gap of lengths that cannot be flown (arrival.hpp). So what they find
+/// is mended (CoupledProblem::flyable_waits): a task whose transit no path can fly is held until
+/// one can. The bound knows nothing of gaps: a plan that had to be mended is not proven, and its
+/// gap says what mending cost at most.
 
 /// What plans for and what bids: a vehicle where it is at CoupledProblem::start.
 struct CoupledVehicle {
@@ -61,13 +67,14 @@ enum class Criterion : std::uint8_t {
   makespan,    ///< seconds, minimised: the end of the last task
 };
 
+/// As ValueWeights (plan_value.hpp).
 struct CoupledWeights {
   double reward = 1.0;
   double range = 1.0;
 };
 
 /// The length in metres of the shortest path between two poses with a least turn radius; infinite
-/// where there is none. Any longer path is taken to exist.
+/// where there is none.
 using TransitLength = std::function<double(const Pose2& from, const Pose2& to, double radius_m)>;
 
 struct CoupledProblem {
@@ -78,9 +85,10 @@ struct CoupledProblem {
   Instant start{};
   Duration decide_wait{};  ///< from the end of a survey to the first delivery: the operator decides
   std::vector<Hazard> hazards;  ///< no run of a task enters one
-  /// Without one: the shortest Dubins path, or shortest_clear_path where there are hazards.
+  /// Where there is none: the shortest Dubins path, or shortest_clear_path if there are hazards.
   TransitLength transit_length_m;
   AvoidanceParams avoidance;
+  bool flyable_waits = true;  ///< see above; never with a transit_length_m of one's own
   /// Start angles tried, each in both senses, where a survey or assessment leaves it free.
   int free_starts = 8;
   /// A survey with a given start angle may be flown in either sense. Assessments are always flown
