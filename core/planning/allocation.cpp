@@ -116,7 +116,8 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
   if (!chosen.result.plan) return no_plan(chosen.method, table);
   Allocation allocation = table.allocation(*chosen.result.plan);
   allocation.method = chosen.method;
-  allocation.value_bound = std::min(chosen.result.bound, quick_bound(table));
+  const bool bounded = chosen.result.bound < std::numeric_limits<double>::infinity();
+  allocation.value_bound = bounded ? chosen.result.bound : quick_bound(table);
   allocation.value_bound = std::max(allocation.value_bound, allocation.value.total);
   allocation.proven = allocation.gap() <= kValueTolerance;
   return allocation;

@@ -2,6 +2,7 @@
 #include "allocation_table.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -11,6 +12,7 @@
 #include "skein/base/assert.hpp"
 #include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins.hpp"
+#include "skein/planning/dubins_batch.hpp"
 #include "task_leg.hpp"
 
 namespace skein::planning {
@@ -18,14 +20,16 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding_s = 2e-9;  ///< more than what times are rounded up by
+constexpr double kNear_radii = 7.0;   ///< beyond it lengths have no gap
+constexpr double kNear_m = 1e4;       ///< what being near counts for
 constexpr int kTimingsMax = 64;       ///< moments tried for one choice of vehicles
 
 Instant later(Instant start, double seconds) {
   return start + Duration{static_cast<Duration::rep>(std::ceil(seconds * 1e9))};
 }
 
-/// Bending a straight line of `straight_m` aside adds any length up to this: path_of_length turns
-/// away, back by twice that and away again, by up to this angle.
+/// What bending a straight line aside can add to it: away, back by twice that and away again, by up
+/// to this angle, as path_of_length does.
 constexpr double kBendMax_rad = radians(85.0);
 double bend_room_m(double straight_m, double radius_m) {
   const double angle =
@@ -35,27 +39,56 @@ double bend_room_m(double straight_m, double radius_m) {
   return 4.0 * radius_m * angle + line_m - straight_m;
 }
 
-/// A cheap certificate that path_of_length succeeds, where the shortest path has no hazard to go
-/// around: far poses have no gap, a straight line can be bent, and whole loops fit in anywhere.
-/// Every path of a length lies in the ellipse with the poses as its foci and that length as its
-/// axis, so hazards outside of it do not matter.
-bool has_no_gap(const Transit& transit, double shortest_m, double wanted_m) {
-  const Vec2 from = transit.from.position();
-  const Vec2 to = transit.to.position();
-  for (const Hazard& hazard : transit.hazards) {
-    const double around = (hazard.centre - from).norm() + (hazard.centre - to).norm();
-    if (around - 2.0 * hazard.radius_m <= wanted_m + 1e-3) return false;
-  }
-  const double extra_m = wanted_m - shortest_m;
-  if (extra_m < 0.0) return false;
+/// As surely_flyable for poses that are near each other: is there a word whose straight line can be
+/// bent as far, or that leaves room for a loop?
+bool bends_far_enough(const AvoidanceParams& params, const Transit& transit, double length_m) {
+  if (length_m > transit.length_max_m) return false;
+  if (!out_of_reach(params, transit.from, transit.to, length_m, transit.hazards)) return false;
   const double r = transit.radius_m;
-  if (extra_m >= kTwoPi * r * (1.0 + 1e-9)) return true;
-  // The straight line of the shortest path is then longer than 4.4 r, and bends of up to 85 degrees
-  // reach one loop.
-  if ((to - from).norm() >= 7.0 * r) return true;
-  const DubinsPath word = shortest_dubins(transit.from, transit.to, r);
-  if (word.word == DubinsWord::RLR || word.word == DubinsWord::LRL) return false;
-  return extra_m <= bend_room_m(word.lengths_m[1], r) - 1e-6 * r;
+  for (const auto word : {DubinsWord::LSL, DubinsWord::RSR, DubinsWord::LSR, DubinsWord::RSL}) {
+    const auto path = dubins_word(word, transit.from, transit.to, r, r);
+    if (!path) continue;
+    const double extra_m = length_m - path->length_m();
+    if (extra_m < 0.0) continue;
+    if (extra_m >= kTwoPi * r * (1.0 + 1e-9)) return true;
+    if (extra_m <= bend_room_m(path->lengths_m[1], r) - 1e-6 * r) return true;
+  }
+  return false;
+}
+
+/// Candidates that turn on one radius and fly one kind of task to one and the same pose.
+struct Alike {
+  double radius_m = 0.0;
+  double extent_m = 0.0;  ///< of the final approach, or of the arc
+  std::vector<std::size_t> columns;
+  PoseBatch from;
+
+  void lengths_to(const Pose2& entry, std::span<double> lengths_m) const {
+    const PoseColumns to{{&entry.x_m, 1}, {&entry.y_m, 1}, {&entry.heading_rad, 1}, {}, {}};
+    shortest_dubins_lengths(from.columns(), to, radius_m, lengths_m.first(columns.size()));
+  }
+};
+
+/// `extent_of` gives nothing for who cannot do the kind of task.
+template <class ExtentOf>
+std::vector<Alike> alike(const std::vector<Candidate>& candidates, const ExtentOf& extent_of) {
+  std::vector<Alike> groups;
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const std::optional<double> extent_m = extent_of(candidates[c]);
+    if (!extent_m) continue;
+    const double radius_m = candidates[c].planning_radius_m;
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const Alike& g) {
+      return g.radius_m == radius_m && g.extent_m == *extent_m;
+    });
+    if (group == groups.end()) {
+      group = groups.insert(groups.end(), Alike{radius_m, *extent_m, {}, {}});
+      group->columns.reserve(candidates.size());
+      group->from.reserve(candidates.size());
+    }
+    group->columns.push_back(c);
+    group->from.push_back(candidates[c].pose);
+  }
+  return groups;
 }
 
 }  // namespace
@@ -126,47 +159,79 @@ void AllocationTable::set_pair(std::size_t row, std::size_t column, const TaskPa
   pairs_[i].entry = task.entry;
   pairs_[i].run_m = task.run.length_m;
   pairs_[i].shortest_m = shortest_m;
+  const bool near =
+      (task.entry.position() - vehicle.pose.position()).squaredNorm() <
+      kNear_radii * kNear_radii * vehicle.planning_radius_m * vehicle.planning_radius_m;
+  pairs_[i].unease_m = near ? shortest_m + kNear_m : shortest_m;
   least_s_[i] = least_s <= greatest_s ? least_s : kInfinity;
   greatest_s_[i] = greatest_s;
 }
 
-void AllocationTable::make_delivery_row(std::size_t row) {
-  const Site& site = problem_->site;
-  const DeliveryRequirement& delivery = site.deliveries[rows_[row].task.index];
-  std::optional<TaskPath> task;  // of the candidate before, mostly the same
-  for (std::size_t c = 0; c < columns(); ++c) {
-    const Candidate& vehicle = candidates_[c];
-    if (!vehicle.capabilities.has(TaskKind::deliver) || vehicle.loads == 0) continue;
-    if (!task || task->run.length_m != vehicle.final_approach_m) {
-      task = delivery_path(site, delivery, vehicle.final_approach_m);
+void AllocationTable::make_deliveries() {
+  if (deliveries_ == 0) return;
+  const auto groups = alike(candidates_, [](const Candidate& c) -> std::optional<double> {
+    if (!c.capabilities.has(TaskKind::deliver) || c.loads == 0) return std::nullopt;
+    return c.final_approach_m;
+  });
+  std::vector<double> lengths_m(columns());
+  for (std::size_t row = 0; row < deliveries_; ++row) {
+    const DeliveryRequirement& delivery = problem_->site.deliveries[rows_[row].task.index];
+    for (const Alike& group : groups) {
+      const TaskPath task = delivery_path(problem_->site, delivery, group.extent_m);
+      group.lengths_to(task.entry, lengths_m);
+      for (std::size_t i = 0; i < group.columns.size(); ++i) {
+        set_pair(row, group.columns[i], task, lengths_m[i]);
+      }
     }
-    set_pair(row, c, *task,
-             shortest_dubins_length(vehicle.pose, task->entry, vehicle.planning_radius_m));
   }
 }
 
-void AllocationTable::make_assessment_row(std::size_t row) {
-  const Site& site = problem_->site;
-  const ArcRequirement& arc = site.assessments[rows_[row].task.index];
-  for (std::size_t c = 0; c < columns(); ++c) {
-    const Candidate& vehicle = candidates_[c];
-    if (!vehicle.capabilities.has(TaskKind::assess)) continue;
-    if (vehicle.assess_radius_m < vehicle.planning_radius_m) continue;
-    double shortest_m = kInfinity;
-    TaskPath task;
-    for (int i = 0; i < (arc.start_angle_rad ? 1 : kArcStarts); ++i) {
-      const double start_rad =
-          arc.start_angle_rad ? *arc.start_angle_rad : arc_start_rad(site, vehicle.pose, i);
-      const TaskPath tried = arc_path(site, start_rad, arc.dwell, vehicle.assess_radius_m,
-                                      vehicle.speed_mps, kAssessmentSense);
-      const double length_m =
-          shortest_dubins_length(vehicle.pose, tried.entry, vehicle.planning_radius_m);
-      if (length_m >= shortest_m) continue;
-      shortest_m = length_m;
-      task = tried;
+void AllocationTable::make_assessments() {
+  if (assessments() == 0) return;
+  const auto groups = alike(candidates_, [](const Candidate& c) -> std::optional<double> {
+    const bool can = c.capabilities.has(TaskKind::assess);
+    if (!can || c.assess_radius_m < c.planning_radius_m) return std::nullopt;
+    return c.assess_radius_m;
+  });
+  std::vector<double> lengths_m(columns());
+  for (std::size_t row = deliveries_; row < rows(); ++row) {
+    const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
+    for (const Alike& group : groups) {
+      if (!arc.start_angle_rad) {
+        for (const std::size_t column : group.columns) make_free_arc(row, column);
+        continue;
+      }
+      TaskPath task = arc_path(problem_->site, *arc.start_angle_rad, arc.dwell, group.extent_m, 1.0,
+                               kAssessmentSense);
+      group.lengths_to(task.entry, lengths_m);
+      const double arc_s = task.run.length_m;
+      for (std::size_t i = 0; i < group.columns.size(); ++i) {
+        task.run.length_m = arc_s * candidates_[group.columns[i]].speed_mps;
+        set_pair(row, group.columns[i], task, lengths_m[i]);
+      }
     }
-    set_pair(row, c, task, shortest_m);
   }
+}
+
+/// As leg_to_arc, without hazards.
+void AllocationTable::make_free_arc(std::size_t row, std::size_t column) {
+  const Candidate& vehicle = candidates_[column];
+  const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
+  std::array<TaskPath, kArcStarts> tasks;
+  std::array<double, kArcStarts> lengths_m{};
+  PoseBatch from;
+  PoseBatch to;
+  from.push_back(vehicle.pose);
+  to.reserve(tasks.size());
+  for (int i = 0; i < kArcStarts; ++i) {
+    TaskPath& task = tasks[static_cast<std::size_t>(i)];
+    task = arc_path(problem_->site, arc_start_rad(problem_->site, vehicle.pose, i), arc.dwell,
+                    vehicle.assess_radius_m, vehicle.speed_mps, kAssessmentSense);
+    to.push_back(task.entry);
+  }
+  shortest_dubins_lengths(from.columns(), to.columns(), vehicle.planning_radius_m, lengths_m);
+  const auto least = std::min_element(lengths_m.begin(), lengths_m.end());
+  set_pair(row, column, tasks[static_cast<std::size_t>(least - lengths_m.begin())], *least);
 }
 
 void AllocationTable::make_pairs() {
@@ -175,9 +240,8 @@ void AllocationTable::make_pairs() {
   pairs_.assign(rows() * columns(), pair);
   least_s_.assign(pairs_.size(), kInfinity);
   greatest_s_.assign(pairs_.size(), -kInfinity);
-  for (std::size_t row = 0; row < rows(); ++row) {
-    is_delivery(row) ? make_delivery_row(row) : make_assessment_row(row);
-  }
+  make_deliveries();
+  make_assessments();
 }
 
 void AllocationTable::make_bounds() {
@@ -249,7 +313,10 @@ bool AllocationTable::verify(std::size_t row, std::size_t column, double common_
   const Transit transit = transit_of(vehicle, task, problem_->hazards);
   const double wanted_m =
       transit_length_m(vehicle, kind, task, problem_->start, time_of(row, common_s));
-  if (!has_no_gap(transit, pair.shortest_m, wanted_m)) {
+  const bool sure = (problem_->hazards.empty() &&
+                     surely_flyable(params_->avoidance, transit, pair.shortest_m, wanted_m)) ||
+                    bends_far_enough(params_->avoidance, transit, wanted_m);
+  if (!sure) {
     const auto reachable = least_length_from(params_->avoidance, transit, wanted_m);
     if (!reachable || *reachable > wanted_m) {
       const double resumes_s =

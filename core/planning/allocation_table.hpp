@@ -66,6 +66,11 @@ class AllocationTable {
   [[nodiscard]] double shortest_m(std::size_t row, std::size_t column) const {
     return pairs_[index(row, column)].shortest_m;
   }
+  /// What decides between plans of one value: metres to the task, and more for vehicles so near
+  /// that the lengths of their paths may have a gap.
+  [[nodiscard]] double unease_m(std::size_t row, std::size_t column) const {
+    return pairs_[index(row, column)].unease_m;
+  }
   [[nodiscard]] bool possible(std::size_t row, std::size_t column) const {
     return least_s(row, column) < std::numeric_limits<double>::infinity();
   }
@@ -126,6 +131,7 @@ class AllocationTable {
     Pose2 entry;
     double run_m = 0.0;
     double shortest_m = std::numeric_limits<double>::infinity();  ///< to the entry
+    double unease_m = 0.0;
     bool measured = false;     ///< shortest_m is no lower bound any more
     double verified_s = -1.0;  ///< the moment last found possible
     double refused_from_s = std::numeric_limits<double>::infinity();  ///< no path has the length
@@ -135,8 +141,9 @@ class AllocationTable {
   AllocationTable(const AllocationParams& params, const AllocationProblem& problem);
   [[nodiscard]] std::optional<Error> make_rows();
   void make_pairs();
-  void make_delivery_row(std::size_t row);
-  void make_assessment_row(std::size_t row);
+  void make_deliveries();
+  void make_assessments();
+  void make_free_arc(std::size_t row, std::size_t column);
   void make_bounds();
   void set_pair(std::size_t row, std::size_t column, const TaskPath& task, double shortest_m);
   void measure(std::size_t row, std::size_t column);

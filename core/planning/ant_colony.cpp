@@ -10,14 +10,7 @@
 namespace skein::planning {
 namespace {
 
-constexpr double kLeastVisibleCost = 0.02;  ///< so that eta = 1/V stays finite
-
-/// How many vehicles are left that can deliver, that can assess, that can do either; and tasks.
-struct Supply {
-  int deliver = 0;
-  int assess = 0;
-  int either = 0;
-};
+constexpr double kLeastCost = 0.02;  ///< added to V, so that eta = 1/V stays finite
 
 class Colony {
  public:
@@ -30,10 +23,26 @@ class Colony {
   [[nodiscard]] MethodResult run();
 
  private:
+  /// Tasks of one kind: the rows [first, last).
+  struct Kind {
+    std::size_t first = 0;
+    std::size_t last = 0;
+    std::vector<char> can;  ///< by column
+    int vehicles = 0;       ///< that can
+    // Of the plan that is being built.
+    int vehicles_left = 0;
+    int tasks_left = 0;
+    std::vector<std::size_t> strongest;  ///< by column: the row of its strongest move
+  };
+
   void make_moves();
+  void find_able(Kind& kind) const;
+  void look_at(const Moments& required);
+  [[nodiscard]] double soonest_s(const Kind& kind, double from_s) const;
   void begin_plan();
   [[nodiscard]] bool build_plan();
-  [[nodiscard]] bool allowed(std::size_t row, std::size_t column) const;
+  void find_strongest(Kind& kind, std::size_t column);
+  [[nodiscard]] bool may(const Kind& kind, const Kind& other, std::size_t column) const;
   [[nodiscard]] std::size_t choose_vehicle();
   [[nodiscard]] std::size_t choose_task(std::size_t column);
   void take(std::size_t row, std::size_t column);
@@ -42,110 +51,134 @@ class Colony {
   [[nodiscard]] std::size_t index(std::size_t row, std::size_t column) const {
     return column * table_.rows() + row;
   }
-  [[nodiscard]] bool can(std::size_t column, bool deliver) const {
-    return deliver ? can_deliver_[column] != 0 : can_assess_[column] != 0;
-  }
 
   const ColonyParams& params_;
   AllocationTable& table_;
   const PlanningBudget& budget_;
   Random random_;
 
-  std::vector<double> visibility_;  ///< eta^beta, by column then row; 0 where impossible
+  std::vector<double> visibility_;  ///< eta^beta, by column, then row; 0 where impossible
   std::vector<double> pheromone_;
-  std::vector<double> initial_pheromone_;
+  std::vector<double> first_pheromone_;
   std::vector<double> range_share_;  ///< by column
-  std::vector<char> can_deliver_;
-  std::vector<char> can_assess_;
-  Supply supply_;  ///< of all candidates
+  Kind deliver_;
+  Kind assess_;
 
   // Of the plan that is being built.
   std::vector<int> column_of_;
   std::vector<char> free_;
   std::vector<double> capability_;  ///< by column
   std::vector<double> attraction_;  ///< by row
-  Supply left_;
-  int deliveries_left_ = 0;
-  int assessments_left_ = 0;
 
   std::optional<CoalitionPlan> best_;
 };
 
-/// V = w1 Cd + w2 Ct (eq. 29): the length of the move and how much later than necessary it is, both
-/// scaled to [0, 1] over the moves of its kind (eq. 30-31).
-void Colony::make_moves() {
-  const std::size_t rows = table_.rows();
-  const std::size_t columns = table_.columns();
-  visibility_.assign(rows * columns, 0.0);
-  can_deliver_.assign(columns, 0);
-  can_assess_.assign(columns, 0);
-  const auto needed = least_moments(table_);
-  double range_max_m = 0.0;
-  for (std::size_t c = 0; c < columns; ++c) {
-    range_max_m = std::max(range_max_m, table_.candidate(c).range_left_m);
+/// When each task of the kind had the vehicle that is there first, all of them could be flown.
+double Colony::soonest_s(const Kind& kind, double from_s) const {
+  double needed_s = from_s;
+  for (std::size_t row = kind.first; row < kind.last; ++row) {
+    double first_s = table_.least_s(row, 0);
+    for (std::size_t c = 1; c < table_.columns(); ++c) {
+      first_s = std::min(first_s, table_.least_s(row, c));
+    }
+    needed_s = std::max(needed_s, first_s);
   }
-  for (std::size_t c = 0; c < columns; ++c) {
-    range_share_.push_back(table_.candidate(c).range_left_m / range_max_m);
+  return needed_s;
+}
+
+void Colony::find_able(Kind& kind) const {
+  kind.can.assign(table_.columns(), 0);
+  kind.strongest.assign(table_.columns(), kind.first);
+  for (std::size_t row = kind.first; row < kind.last; ++row) {
+    for (std::size_t c = 0; c < table_.columns(); ++c) {
+      if (table_.possible(row, c)) kind.can[c] = 1;
+    }
   }
-  for (const bool deliver : {true, false}) {
-    const std::size_t first = deliver ? 0 : table_.deliveries();
-    const std::size_t last = deliver ? table_.deliveries() : rows;
-    const double needed_s = !needed ? 0.0 : deliver ? needed->delivery_s : needed->assess_s;
+  for (const char can : kind.can) kind.vehicles += can;
+}
+
+/// V = w1 Cd + w2 Ct (eq. 29): the length of the move, and how much later it is than its required
+/// moment, both scaled to [0, 1] over the moves of its kind (eq. 30-31).
+void Colony::look_at(const Moments& required) {
+  for (const Kind* const one : {&deliver_, &assess_}) {
+    const Kind& kind = *one;
     double length_max_m = 1e-9;
     double late_max_s = 1e-9;
     const auto late_s = [&](std::size_t row, std::size_t c) {
-      return std::max(0.0, table_.least_s(row, c) - needed_s);
+      return std::max(0.0, table_.least_s(row, c) - table_.moment_of(row, required));
     };
-    for (std::size_t row = first; row < last; ++row) {
-      for (std::size_t c = 0; c < columns; ++c) {
-        if (!table_.possible(row, c)) continue;
-        (deliver ? can_deliver_ : can_assess_)[c] = 1;
-        length_max_m = std::max(length_max_m, table_.shortest_m(row, c));
-        late_max_s = std::max(late_max_s, late_s(row, c));
+    const auto for_moves = [&](const auto& visit) {
+      for (std::size_t row = kind.first; row < kind.last; ++row) {
+        for (std::size_t c = 0; c < table_.columns(); ++c) {
+          if (table_.possible(row, c)) visit(row, c);
+        }
       }
-    }
-    for (std::size_t row = first; row < last; ++row) {
-      for (std::size_t c = 0; c < columns; ++c) {
-        if (!table_.possible(row, c)) continue;
-        const double cost = params_.distance_weight * table_.shortest_m(row, c) / length_max_m +
-                            params_.time_weight * late_s(row, c) / late_max_s;
-        visibility_[index(row, c)] =
-            std::pow(kLeastVisibleCost / (kLeastVisibleCost + cost), params_.beta);
-      }
-    }
+    };
+    for_moves([&](std::size_t row, std::size_t c) {
+      length_max_m = std::max(length_max_m, table_.shortest_m(row, c));
+      late_max_s = std::max(late_max_s, late_s(row, c));
+    });
+    for_moves([&](std::size_t row, std::size_t c) {
+      const double cost = params_.distance_weight * table_.shortest_m(row, c) / length_max_m +
+                          params_.time_weight * late_s(row, c) / late_max_s;
+      visibility_[index(row, c)] = std::pow(kLeastCost / (kLeastCost + cost), params_.beta);
+    });
   }
-  for (std::size_t c = 0; c < columns; ++c) {
-    supply_.deliver += can_deliver_[c];
-    supply_.assess += can_assess_[c];
-    supply_.either += can_deliver_[c] | can_assess_[c];
+}
+
+void Colony::make_moves() {
+  visibility_.assign(table_.rows() * table_.columns(), 0.0);
+  first_pheromone_ = visibility_;
+  deliver_.last = assess_.first = table_.deliveries();
+  assess_.last = table_.rows();
+  find_able(deliver_);
+  find_able(assess_);
+  const double delivery_s = soonest_s(deliver_, table_.first_moment_s());
+  look_at({delivery_s, soonest_s(assess_, table_.assess_after_s(delivery_s))});
+  for (std::size_t i = 0; i < visibility_.size(); ++i) {
+    first_pheromone_[i] = params_.tau0 * visibility_[i];
   }
-  initial_pheromone_.reserve(visibility_.size());
-  for (const double v : visibility_) initial_pheromone_.push_back(v > 0.0 ? params_.tau0 : 0.0);
-  pheromone_ = initial_pheromone_;
+  pheromone_ = first_pheromone_;
+  double range_max_m = 0.0;
+  for (std::size_t c = 0; c < table_.columns(); ++c) {
+    range_max_m = std::max(range_max_m, table_.candidate(c).range_left_m);
+  }
+  for (std::size_t c = 0; c < table_.columns(); ++c) {
+    range_share_.push_back(table_.candidate(c).range_left_m / range_max_m);
+  }
+  capability_.assign(table_.columns(), 0.0);
+  attraction_.assign(table_.rows(), 0.0);
+}
+
+void Colony::find_strongest(Kind& kind, std::size_t column) {
+  double strongest = -1.0;
+  for (std::size_t row = kind.first; row < kind.last; ++row) {
+    const double tau = pheromone_[index(row, column)];
+    if (column_of_[row] >= 0 || tau <= strongest) continue;
+    strongest = tau;
+    kind.strongest[column] = row;
+  }
 }
 
 void Colony::begin_plan() {
   column_of_.assign(table_.rows(), -1);
   free_.assign(table_.columns(), 1);
-  left_ = supply_;
-  deliveries_left_ = static_cast<int>(table_.deliveries());
-  assessments_left_ = static_cast<int>(table_.assessments());
+  for (Kind* kind : {&deliver_, &assess_}) {
+    kind->vehicles_left = kind->vehicles;
+    kind->tasks_left = static_cast<int>(kind->last - kind->first);
+    for (std::size_t c = 0; c < table_.columns(); ++c) {
+      if (kind->can[c] != 0) find_strongest(*kind, c);
+    }
+  }
 }
 
-/// The vehicles that stay must be enough for the tasks that stay.
-bool Colony::allowed(std::size_t row, std::size_t column) const {
-  if (column_of_[row] >= 0 || visibility_[index(row, column)] == 0.0) return false;
-  const bool deliver = table_.is_delivery(row);
-  const int deliveries = deliveries_left_ - (deliver ? 1 : 0);
-  const int assessments = assessments_left_ - (deliver ? 0 : 1);
-  return left_.deliver - can_deliver_[column] >= deliveries &&
-         left_.assess - can_assess_[column] >= assessments &&
-         left_.either - 1 >= deliveries + assessments;
+/// Who can do both must be left to the other kind where that has no vehicle to spare.
+bool Colony::may(const Kind& kind, const Kind& other, std::size_t column) const {
+  if (kind.tasks_left == 0 || kind.can[column] == 0) return false;
+  return other.can[column] == 0 || other.vehicles_left > other.tasks_left;
 }
 
-std::size_t draw(Random& random, const std::vector<double>& weights) {
-  double sum = 0.0;
-  for (const double w : weights) sum += w;
+std::size_t draw(Random& random, const std::vector<double>& weights, double sum) {
   double lot = random.uniform() * sum;
   std::size_t last = weights.size();
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -157,46 +190,62 @@ std::size_t draw(Random& random, const std::vector<double>& weights) {
   return last;
 }
 
-/// In proportion to capability (eq. 26-27); columns() where nobody can act any more.
+/// In proportion to capability (eq. 26-27): the share of the range that is left, the strongest
+/// pheromone of the next moves, the share of tasks that are allowed. Nobody acts twice, so the
+/// count of tasks that remain to a vehicle is one. columns() where nobody can act.
 std::size_t Colony::choose_vehicle() {
-  const auto rows = static_cast<double>(table_.rows());
+  double sum = 0.0;
   for (std::size_t c = 0; c < table_.columns(); ++c) {
-    capability_[c] = 0.0;
-    if (free_[c] == 0) continue;
     double strongest = 0.0;
-    int count = 0;
-    for (std::size_t row = 0; row < table_.rows(); ++row) {
-      if (!allowed(row, c)) continue;
-      ++count;
-      strongest = std::max(strongest, pheromone_[index(row, c)]);
+    int allowed = 0;
+    if (free_[c] != 0) {
+      if (may(deliver_, assess_, c)) {
+        strongest = pheromone_[index(deliver_.strongest[c], c)];
+        allowed += deliver_.tasks_left;
+      }
+      if (may(assess_, deliver_, c)) {
+        strongest = std::max(strongest, pheromone_[index(assess_.strongest[c], c)]);
+        allowed += assess_.tasks_left;
+      }
     }
-    capability_[c] = range_share_[c] * strongest * static_cast<double>(count) / rows;
+    capability_[c] = range_share_[c] * strongest * allowed;
+    sum += capability_[c];
   }
-  return draw(random_, capability_);
+  return draw(random_, capability_, sum);
 }
 
 /// The best with probability q0, else in proportion to tau^alpha eta^beta (eq. 28).
 std::size_t Colony::choose_task(std::size_t column) {
+  const bool deliver = may(deliver_, assess_, column);
+  const bool assess = may(assess_, deliver_, column);
   std::size_t best = 0;
+  double sum = 0.0;
   for (std::size_t row = 0; row < table_.rows(); ++row) {
     const std::size_t i = index(row, column);
     attraction_[row] = 0.0;
-    if (!allowed(row, column)) continue;
-    attraction_[row] = std::pow(pheromone_[i], params_.alpha) * visibility_[i];
+    if (column_of_[row] >= 0 || !(table_.is_delivery(row) ? deliver : assess)) continue;
+    const double tau =
+        params_.alpha == 1.0 ? pheromone_[i] : std::pow(pheromone_[i], params_.alpha);
+    attraction_[row] = tau * visibility_[i];
+    sum += attraction_[row];
     if (attraction_[row] > attraction_[best]) best = row;
   }
-  return random_.chance(params_.q0) ? best : draw(random_, attraction_);
+  if (sum <= 0.0) return table_.rows();
+  return random_.chance(params_.q0) ? best : draw(random_, attraction_, sum);
 }
 
 void Colony::take(std::size_t row, std::size_t column) {
   column_of_[row] = static_cast<int>(column);
   free_[column] = 0;
-  --(table_.is_delivery(row) ? deliveries_left_ : assessments_left_);
-  left_.deliver -= can_deliver_[column];
-  left_.assess -= can_assess_[column];
-  left_.either -= 1;
+  deliver_.vehicles_left -= deliver_.can[column];
+  assess_.vehicles_left -= assess_.can[column];
+  Kind& kind = table_.is_delivery(row) ? deliver_ : assess_;
+  --kind.tasks_left;
   const std::size_t i = index(row, column);
-  pheromone_[i] += params_.local_evaporation * (initial_pheromone_[i] - pheromone_[i]);
+  pheromone_[i] += params_.local_evaporation * (first_pheromone_[i] - pheromone_[i]);
+  for (std::size_t c = 0; c < table_.columns(); ++c) {
+    if (free_[c] != 0 && kind.can[c] != 0 && kind.strongest[c] == row) find_strongest(kind, c);
+  }
 }
 
 bool Colony::build_plan() {
@@ -205,7 +254,7 @@ bool Colony::build_plan() {
     const std::size_t column = choose_vehicle();
     if (column == table_.columns()) return false;
     const std::size_t row = choose_task(column);
-    if (!allowed(row, column)) return false;
+    if (row == table_.rows()) return false;
     take(row, column);
   }
   return true;
@@ -234,8 +283,8 @@ double Colony::expected_value() const {
 
 void Colony::reward_best() {
   for (std::size_t i = 0; i < pheromone_.size(); ++i) {
-    pheromone_[i] = std::max(params_.tau_least * initial_pheromone_[i],
-                             (1.0 - params_.global_evaporation) * pheromone_[i]);
+    pheromone_[i] =
+        std::max(first_pheromone_[i], (1.0 - params_.global_evaporation) * pheromone_[i]);
   }
   for (std::size_t row = 0; row < table_.rows(); ++row) {
     pheromone_[index(row, static_cast<std::size_t>(best_->column_of[row]))] +=
@@ -245,8 +294,6 @@ void Colony::reward_best() {
 
 MethodResult Colony::run() {
   MethodResult result;
-  capability_.assign(table_.columns(), 0.0);
-  attraction_.assign(table_.rows(), 0.0);
   std::uint64_t built = 0;
   const auto spent = [&] { return best_ && budget_.is_spent(built); };
   for (int generation = 0; generation < params_.generations && !spent(); ++generation) {
@@ -255,7 +302,9 @@ MethodResult Colony::run() {
       if (!build_plan()) continue;
       if (best_ && expected_value() <= best_->value) continue;
       auto plan = table_.timed(column_of_, false);
-      if (plan && (!best_ || plan->value > best_->value)) best_ = std::move(plan);
+      if (!plan || (best_ && plan->value <= best_->value)) continue;
+      best_ = std::move(plan);
+      look_at(best_->at);
     }
     if (best_) reward_best();
   }

@@ -46,6 +46,10 @@ void PoseBatch::push_back(const Pose2& pose) {
   sin_.push_back(both.sin[0]);
 }
 
+void PoseBatch::reserve(std::size_t poses) {
+  for (auto* column : {&x_m_, &y_m_, &heading_rad_, &cos_, &sin_}) column->reserve(poses);
+}
+
 void PoseBatch::clear() {
   for (auto* column : {&x_m_, &y_m_, &heading_rad_, &cos_, &sin_}) column->clear();
 }

@@ -95,9 +95,9 @@ bool Sweep::solve(const Moments& at) {
       const double common_s = table_.moment_of(row, at);
       for (std::size_t c = 0; c < table_.columns(); ++c, ++i) {
         if (!table_.open(row, c, common_s)) continue;
-        const double shortest_m = table_.shortest_m(row, c);
-        cost_[i] = goal_ == Goal::earliest ? shortest_m
-                                           : table_.metres(row, c, at) + kTieBreak * shortest_m;
+        cost_[i] = goal_ == Goal::earliest
+                       ? table_.shortest_m(row, c)
+                       : table_.metres(row, c, at) + kTieBreak * table_.unease_m(row, c);
       }
     }
     if (!solver_.least_sum(cost_, table_.columns(), column_of_)) return false;

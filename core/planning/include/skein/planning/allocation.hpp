@@ -60,17 +60,16 @@ enum class AllocationMethod : std::uint8_t {
 
 /// Of the colony. The paper gives none of them; these are tuned (docs/methods.md).
 struct ColonyParams {
-  int generations = 60;             ///< at most
-  int ants = 16;                    ///< m: ants of a subgroup, and plans of a generation
-  double alpha = 1.0;               ///< weight of the pheromone tau
-  double beta = 1.0;                ///< weight of the visibility eta
-  double q0 = 0.5;                  ///< how often the best move is taken without drawing
-  double tau0 = 0.1;                ///< pheromone at first
-  double tau_least = 0.1;           ///< pheromone at least, as a share of the first
-  double local_evaporation = 0.05;  ///< of a move that was taken, back to tau0
-  double global_evaporation = 0.1;  ///< rho: of every move, and what the best plan's moves get
-  double distance_weight = 0.3;     ///< w1 of a move's cost
-  double time_weight = 1.0;         ///< w2 of a move's cost
+  int generations = 60;              ///< at most
+  int ants = 32;                     ///< m: ants of a subgroup, and plans of a generation
+  double alpha = 1.0;                ///< weight of the pheromone tau
+  double beta = 2.0;                 ///< weight of the visibility eta
+  double q0 = 0.3;                   ///< how often the best move is taken without drawing
+  double tau0 = 0.02;                ///< first and least pheromone of a move, times eta^beta
+  double local_evaporation = 0.3;    ///< of a move that was taken, back to its first pheromone
+  double global_evaporation = 0.02;  ///< rho: of every move, and what the best plan's moves get
+  double distance_weight = 1.0;      ///< w1 of a move's cost
+  double time_weight = 3.0;          ///< w2 of a move's cost
 };
 
 struct AllocationParams {
@@ -92,7 +91,8 @@ struct Allocation {
 
   [[nodiscard]] double gap() const { return value_bound - value.total; }
 };
-/// Between plans of one J to within this, the one with the least sum of shortest lengths is taken.
+/// Plans whose J differs by less are of one value to exact; it takes vehicles that have a long way
+/// before those that are near the site, and then the least sum of shortest lengths.
 inline constexpr double kValueTolerance = 1e-6;
 
 /// Vehicles to tasks, one task each: all deliveries at one common time plus their offsets, all

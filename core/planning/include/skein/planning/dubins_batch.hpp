@@ -24,6 +24,7 @@ class PoseBatch {
  public:
   void push_back(const Pose2& pose);
   void clear();
+  void reserve(std::size_t poses);
   [[nodiscard]] std::size_t size() const { return x_m_.size(); }
   [[nodiscard]] PoseColumns columns() const { return {x_m_, y_m_, heading_rad_, cos_, sin_}; }
 
