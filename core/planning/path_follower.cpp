@@ -12,6 +12,7 @@ namespace {
 constexpr double kAirspeedTime_s = 1.0;  ///< of the autopilot's airspeed loop, to be inverted
 constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the vehicle is sought
 constexpr int kNearestSteps = 4;
+constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the search
 
 /// Where the vehicle is on its path.
 struct Nearest {
@@ -75,7 +76,7 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
     const double moved_m = distance_m + forward.dot(offset) / scale;
     const double low_m = std::max(0.0, on_time_m - kNearestMax_m);
     const double next_m = std::clamp(moved_m, low_m, on_time_m + kNearestMax_m);
-    if (next_m == distance_m) break;
+    if (std::abs(next_m - distance_m) < kSettled_m) break;
     distance_m = next_m;
   }
   return result;

@@ -21,6 +21,7 @@ constexpr std::uint64_t kFaultStream = 0x6661756c74730001;
 constexpr std::uint64_t kMixStream = 0x6661756c74730002;
 /// A hazard that appears leaves this much room around a site's final approaches.
 constexpr double kSiteRoom_m = 60.0;
+constexpr double kEverywhere_m = 1e6;
 
 FaultParams phase_only() {
   FaultParams p;
@@ -148,21 +149,26 @@ bool is_free(const Hazard& hazard, const TeamMission& mission) {
   return true;
 }
 
+/// A place on some vehicle's way.
+Vec2 draw_place(Random& random, const TeamMission& mission) {
+  const SimulatedVehicle& v = mission.vehicles[random.index(mission.vehicles.size())];
+  Vec2 from{v.start.x_m, v.start.y_m};
+  const std::size_t leg = v.search.empty() ? 0 : random.index(v.search.size());
+  if (leg > 0) from = v.search[leg - 1];
+  const Vec2 to = v.search.empty() ? from : v.search[leg];
+  const double share = random.uniform(0.2, 0.8);
+  const double east = random.uniform(-60.0, 60.0);
+  const double north = random.uniform(-60.0, 60.0);
+  return from + share * (to - from) + Vec2{east, north};
+}
+
 void draw_hazards(Random& random, TeamMission& mission, const FaultParams& params) {
-  Vec2 low{1e12, 1e12};
-  Vec2 high{-1e12, -1e12};
-  for (const auto& v : mission.vehicles) {
-    low = low.cwiseMin(Vec2{v.start.x_m, v.start.y_m});
-    high = high.cwiseMax(Vec2{v.start.x_m, v.start.y_m});
-  }
   std::uint16_t id = 1000;
   const std::size_t wanted = count(random, params.hazards);
   for (std::size_t drawn = 0, tries = 0; drawn < wanted && tries < 200; ++tries) {
     Hazard hazard;
     hazard.radius_m = random.uniform(20.0, 60.0);
-    const double x = random.uniform(low.x(), high.x());
-    const double y = random.uniform(low.y(), high.y());
-    hazard.centre = {x, y};
+    hazard.centre = draw_place(random, mission);
     const Instant known_from = Instant{} + between(random, seconds{3}, params.phase);
     if (!is_free(hazard, mission)) continue;
     hazard.id = HazardId{++id};
@@ -263,6 +269,11 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   FaultSchedule& faults = mission.faults;
   faults.healed_at = Instant{} + params.phase;
   mission.duration_max = params.phase + params.bound;
+  // Who waits flies on, and hears everybody in the end: neither range is what is tried here.
+  for (auto& v : mission.vehicles) {
+    v.spec.range_m += v.spec.speed_max_mps * to_seconds(mission.duration_max);
+  }
+  mission.protocol.radio_range_m = std::max(mission.protocol.radio_range_m, kEverywhere_m);
 
   faults.radio.loss = random.uniform(0.0, params.loss);
   faults.radio.delay = between(random, Duration{}, params.delay);

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "skein/hil/judged_runs.hpp"
@@ -194,21 +196,40 @@ TEST(Faults, TheSameSeedIsFlownByteForByte) {
   }
 }
 
-class Series : public testing::TestWithParam<const char*> {};
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::size_t kShare = 25;  ///< sanitizers are slow
+#else
+constexpr std::size_t kShare = 1;
+#endif
 
-TEST_P(Series, HoldsAndIsFinished) {
+/// Broken checks of seeds 1 to `runs`, but for those that are let pass.
+std::string broken(const std::string& faults, std::size_t runs,
+                   const std::set<std::string>& let_pass) {
   RunSeries series;
-  series.faults = GetParam();
-  series.runs = 20;
-  series.jobs = 2;
+  series.faults = faults;
+  series.runs = runs / kShare;
+  series.jobs = std::max(1U, std::thread::hardware_concurrency());
+  std::string text;
   for (const auto& run : fly_series(scenario("faults-8"), series)) {
     for (const auto& check : run.broken) {
-      ADD_FAILURE() << "seed " << run.seed << ", " << check.name << ": "
-                    << check.violations.front().sentence;
+      if (let_pass.contains(check.name)) continue;
+      text += "seed " + std::to_string(run.seed) + ", " + check.name + ": " +
+              check.violations.front().sentence + "\n";
     }
   }
+  return text;
 }
-INSTANTIATE_TEST_SUITE_P(Faults, Series, testing::Values("clocks", "operator"));
+
+class Series : public testing::TestWithParam<const char*> {};
+
+TEST_P(Series, HoldsAndIsFinished) { EXPECT_EQ(broken(GetParam(), 30, {}), ""); }
+INSTANTIATE_TEST_SUITE_P(Faults, Series,
+                         testing::Values("clocks", "hazards", "joining", "operator"));
+
+TEST(Faults, FiveHundredMixedMissionsAreSafe) {
+  // What does not hold yet, and why: docs/simulation.md.
+  EXPECT_EQ(broken("mixed", 500, {"completion", "precedence", "hazards"}), "");
+}
 
 }  // namespace
 }  // namespace skein::hil
