@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "coupled_bounds.hpp"
-#include "coupled_memo.hpp"
 #include "coupled_model.hpp"
 #include "coupled_partial.hpp"
 #include "coupled_search.hpp"
@@ -14,7 +13,6 @@ namespace skein::planning::coupled {
 namespace {
 
 constexpr std::uint64_t kSeed = 1;
-constexpr std::size_t kMemoEntries = 1U << 18U;
 // The search gives the first plan, and goes on in between while the tree grows.
 constexpr std::uint64_t kFirstSearchStepsPerTask = 5;
 constexpr std::uint64_t kFirstSearchNodes = 500;
@@ -49,7 +47,6 @@ class Tree {
   void explore(double bound);
   void make_children(std::vector<Child>& children);
   void try_task(std::vector<Child>& children, Index task);
-  [[nodiscard]] bool is_dominated();
 
   const Model& model_;
   const PlanningBudget& budget_;
@@ -58,9 +55,6 @@ class Tree {
   std::uint64_t next_search_ = kFirstSearchNodes;
   PartialPlan plan_;
   Bounds bounds_;
-  Memo memo_;
-  std::vector<std::uint64_t> key_;
-  std::vector<double> values_;
   std::vector<std::vector<Child>> children_;  ///< by tasks left
   Orders best_;
   double best_cost_ = kInfinity;
@@ -75,8 +69,6 @@ Tree::Tree(const Model& model, const PlanningBudget& budget)
       search_{model, random_},
       plan_{model},
       bounds_{model},
-      memo_{model.vehicles.size() + 1, 2 * model.vehicles.size() + model.sites.size() + 3,
-            kMemoEntries},
       children_(model.tasks.size() + 1) {}
 
 void Tree::run() {
@@ -111,9 +103,9 @@ void Tree::explore(double bound) {
     if (plan_.cost() < best_cost_) take(plan_.orders(), plan_.cost());
     return;
   }
-  if (plan_.group_site() == kNone) {
-    if (is_dominated()) return;
-    if (best_cost_ < kInfinity && !bounds_.places_suffice(plan_, threshold())) return;
+  const bool between_groups = plan_.group_site() == kNone;
+  if (between_groups && best_cost_ < kInfinity && !bounds_.places_suffice(plan_, threshold())) {
+    return;
   }
   std::vector<Child>& children = children_[at(plan_.left())];
   children.clear();
@@ -167,39 +159,6 @@ void Tree::try_task(std::vector<Child>& children, Index task) {
       if (child.bound < threshold()) children.push_back(child);
     }
   }
-}
-
-/// Whatever is still to be done can be done as soon after the partial plan that dominates. The sum
-/// of the times and the floor are compared so that of equally good plans one is always left: a plan
-/// is dropped only for one with a lower sum, or with the same times and explored before.
-bool Tree::is_dominated() {
-  key_.clear();
-  values_.clear();
-  key_.push_back(plan_.done());
-  bool surveys = false;
-  bool deliveries = false;
-  bool assessments = false;
-  for (const PartialPlan::Site& site : plan_.sites()) {
-    surveys = surveys || site.survey_open;
-    deliveries = deliveries || site.deliveries_open > 0;
-    assessments = assessments || site.assessments_open != 0;
-    values_.push_back(site.is_open() ? site.ready_s : 0.0);
-  }
-  for (std::size_t i = 0; i < model_.vehicles.size(); ++i) {
-    const PartialPlan::Vehicle& vehicle = plan_.vehicles()[i];
-    const Capabilities able = model_.vehicles[i].capabilities;
-    const bool delivers = deliveries && vehicle.loads > 0 && able.has(TaskKind::deliver);
-    // Where a vehicle is that has nothing left to do does not matter.
-    const bool matters = delivers || (surveys && able.has(TaskKind::survey)) ||
-                         (assessments && able.has(TaskKind::assess));
-    key_.push_back(matters ? static_cast<std::uint64_t>(vehicle.last + 2) : 0);
-    values_.push_back(matters ? vehicle.free_s : 0.0);
-    values_.push_back(delivers ? -vehicle.loads : 0.0);
-  }
-  values_.push_back(plan_.cost());
-  values_.push_back(plan_.floor_s());
-  values_.push_back(model_.offsets ? 0.0 : plan_.time_sum_s());
-  return memo_.dominates(key_, values_);
 }
 
 }  // namespace

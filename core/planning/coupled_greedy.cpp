@@ -41,6 +41,8 @@ class Tender {
         if (task.id.kind == TaskKind::survey) ready_s = best.end_s;
       }
     }
+    // The times of the bids are those of a vehicle alone: together they may be a little later.
+    if (Timing{model_}.evaluate(orders_) == kInfinity) return std::nullopt;
     return orders_;
   }
 
@@ -80,18 +82,19 @@ class Tender {
       const Vehicle& vehicle = model_.vehicles[at(i)];
       if ((excluded & bit(i)) != 0) continue;
       if (its.id.kind == TaskKind::deliver && deliveries_[at(i)] >= vehicle.loads) continue;
-      const double* reach_s = reach_from_end(i);
+      const double* reach_s = model_.reach_from(i, last_of(i));
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
-        const double time_s = std::max(free_s_[at(i)] + reach_s[v], from_s);
+        const double time_s = model_.flyable_s(i, last_of(i), v, free_s_[at(i)],
+                                               std::max(free_s_[at(i)] + reach_s[v], from_s));
         const double end_s = time_s + model_.class_of(i).after_s[at(v)];
         if (end_s < best.end_s && end_s <= vehicle.deadline_s) best = {i, v, time_s, end_s};
       }
     }
   }
 
-  [[nodiscard]] const double* reach_from_end(Index vehicle) const {
+  [[nodiscard]] Index last_of(Index vehicle) const {
     const auto& order = orders_[at(vehicle)];
-    return model_.reach_from(vehicle, order.empty() ? kNone : order.back());
+    return order.empty() ? kNone : order.back();
   }
 
   void award(const Bid& bid) {

@@ -19,6 +19,7 @@ constexpr int kCounterClockwise = 1;
 constexpr int kClockwise = -1;
 constexpr double kWaitless_m = 1e-5;  ///< a transit this little above the least has no wait
 constexpr int kHoldPassesMax = 50;
+constexpr double kNoGap_radii = 6.0;  ///< poses farther apart have none, see length_gap
 
 /// A way of flying a task, before it is known by which vehicle.
 struct Way {
@@ -75,6 +76,19 @@ class Lengths {
     const auto path = shortest_clear_path(problem_.avoidance, from, to, radius_m, problem_.hazards);
     return path ? path->length_m() : kInfinity;
   }
+  /// Of a transit of a vehicle, with what of the run is flown before the task's time.
+  [[nodiscard]] Gap gap(const Pose2& from, const Pose2& to, const CoupledVehicle& vehicle,
+                        double reach_s, double before_s) const {
+    if (!problem_.flyable_waits || problem_.transit_length_m || reach_s == kInfinity) return {};
+    const double apart_m = kNoGap_radii * vehicle.planning_radius_m;
+    if ((to.position() - from.position()).squaredNorm() > apart_m * apart_m) return {};
+    const auto lengths = length_gap(from, to, vehicle.planning_radius_m);
+    if (!lengths) return {};
+    // The ends of a gap can be flown: what is rounded must lie on their outer side.
+    const double low_s = (lengths->low_m - kWaitless_m) / vehicle.speed_mps + before_s;
+    const double high_s = (lengths->high_m + kWaitless_m) / vehicle.speed_mps + before_s;
+    return reach_s < high_s ? Gap{std::max(reach_s, low_s), high_s} : Gap{};
+  }
   [[nodiscard]] bool run_is_clear(const TaskPath& task) const {
     if (problem_.hazards.empty()) return true;
     Path run{.start = task.entry, .segments = {}};
@@ -101,6 +115,7 @@ VehicleClass Compiler::make_class(const CoupledVehicle& vehicle) const {
   const std::size_t visits = ways.size();
   VehicleClass kind;
   kind.reach_s.assign(visits * visits, kInfinity);
+  kind.gaps.assign(visits * visits, {});
   std::vector<bool> possible(visits, false);
   std::vector<Pose2> exits;
   for (std::size_t v = 0; v < visits; ++v) {
@@ -133,7 +148,10 @@ VehicleClass Compiler::make_class(const CoupledVehicle& vehicle) const {
       if (ways[a].task == ways[b].task || !possible[a] || !possible[b]) continue;
       const double transit_m =
           lengths.transit_m(exits[a], kind.paths[b].entry, vehicle.planning_radius_m);
-      kind.reach_s[a * visits + b] = transit_m / vehicle.speed_mps + kind.before_s[b];
+      const double reach_s = transit_m / vehicle.speed_mps + kind.before_s[b];
+      kind.reach_s[a * visits + b] = reach_s;
+      kind.gaps[a * visits + b] =
+          lengths.gap(exits[a], kind.paths[b].entry, vehicle, reach_s, kind.before_s[b]);
     }
   }
   for (std::size_t v = 0; v < visits; ++v) {
@@ -191,6 +209,7 @@ void Compiler::add_vehicles() {
     }
     const VehicleClass& kind = model.classes[at(vehicle.kind)];
     vehicle.reach_s.assign(ways.size(), kInfinity);
+    vehicle.gaps.assign(ways.size(), {});
     vehicle.least_s.assign(model.tasks.size(), kInfinity);
     for (std::size_t v = 0; v < ways.size(); ++v) {
       if (kind.after_s[v] == kInfinity) continue;
@@ -198,6 +217,8 @@ void Compiler::add_vehicles() {
           lengths.transit_m(given.pose, kind.paths[v].entry, given.planning_radius_m) /
               given.speed_mps +
           kind.before_s[v];
+      vehicle.gaps[v] =
+          lengths.gap(given.pose, kind.paths[v].entry, given, vehicle.reach_s[v], kind.before_s[v]);
     }
     for (std::size_t v = 0; v < ways.size(); ++v) {
       double& direct = vehicle.least_s[at(ways[v].task)];
@@ -354,8 +375,7 @@ double Timing::evaluate(const Orders& orders, double limit) {
   for (std::size_t i = 0; i < orders.size(); ++i) {
     const std::vector<Index>& order = orders[i];
     if (order.empty()) continue;
-    vehicles_[i] = {order.data(), order.data() + order.size(), model_.vehicles[i].reach_s.data(),
-                    0.0};
+    vehicles_[i] = {order.data(), order.data() + order.size(), kNone, 0.0};
     ready_ |= bit(static_cast<Index>(i));
     left_ += static_cast<int>(order.size());
     for (const Index visit : order) {
@@ -385,7 +405,7 @@ void Timing::advance(Index vehicle) {
     const Index visit = *state.next;
     const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
     SiteState& site = sites_[at(task.site)];
-    double time_s = state.free_s + state.reach_s[visit];
+    double time_s = state.free_s + model_.reach_from(vehicle, state.before)[visit];
     if (!held_s_.empty()) time_s = std::max(time_s, held_s_[at(model_.task_of[at(visit)])]);
     if (task.id.kind != TaskKind::survey) {
       if (site.survey_open) {
@@ -403,9 +423,9 @@ void Timing::advance(Index vehicle) {
         site.for_deliveries |= bit(vehicle);
         return;
       }
-      const double after_s = site.last_delivery_s;
-      time_s = std::max(time_s, after_s);
+      time_s = std::max(time_s, site.last_delivery_s);
     }
+    time_s = model_.flyable_s(vehicle, state.before, visit, state.free_s, time_s);
     if (!finish(vehicle, visit, time_s)) return;
     if (task.id.kind == TaskKind::survey) {
       site.survey_open = false;
@@ -435,13 +455,34 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
                                                    : model_.least_cost_of(task, end_s));
   if (its.range_weight_per_s > 0.0) cost_ += its.range_weight_per_s * (end_s - state.free_s);
   state.free_s = end_s;
-  state.reach_s = model_.reach_from(vehicle, visit);
+  state.before = visit;
   ++state.next;
   --left_;
   return true;
 }
 
+/// The first moment from site.common_s on that every vehicle there can keep.
+double Timing::common_of(const SiteState& site) const {
+  double common_s = site.common_s;
+  for (bool raised = true; raised;) {
+    raised = false;
+    for (Mask there = site.at_delivery; there != 0; there &= there - 1) {
+      const auto vehicle = static_cast<Index>(std::countr_zero(there));
+      const VehicleState& state = vehicles_[at(vehicle)];
+      const double offset_s = model_.tasks[at(model_.task_of[at(*state.next)])].offset_s;
+      const double wanted_s = common_s + offset_s;
+      const double time_s =
+          model_.flyable_s(vehicle, state.before, *state.next, state.free_s, wanted_s);
+      if (time_s <= wanted_s) continue;
+      common_s = time_s - offset_s;
+      raised = true;
+    }
+  }
+  return common_s;
+}
+
 void Timing::release(SiteState& site) {
+  site.common_s = common_of(site);
   for (Mask there = site.at_delivery; there != 0; there &= there - 1) {
     const auto vehicle = static_cast<Index>(std::countr_zero(there));
     const Index visit = *vehicles_[at(vehicle)].next;

@@ -46,11 +46,19 @@ struct SiteTasks {
   double assess_wait_s = 0.0;
 };
 
+/// From the end of a visit to the time of the next, the seconds between these two cannot be flown;
+/// none where both are 0.
+struct Gap {
+  double low_s = 0.0;
+  double high_s = 0.0;
+};
+
 /// Vehicles that fly alike. A visit is a task flown in one way.
 struct VehicleClass {
   /// reach_s[from * visits + to]: from the end of a visit to the time of the next; infinite where
   /// it cannot be flown.
   std::vector<double> reach_s;
+  std::vector<Gap> gaps;         ///< as reach_s
   std::vector<double> after_s;   ///< by visit: from its time to its end
   std::vector<TaskPath> paths;   ///< by visit
   std::vector<double> before_s;  ///< by visit: from the entry to its time
@@ -64,6 +72,7 @@ struct VehicleClass {
 struct Vehicle {
   Index kind = 0;               ///< of Model::classes
   std::vector<double> reach_s;  ///< by visit: from its pose at the start
+  std::vector<Gap> gaps;        ///< as reach_s
   std::vector<double> least_s;  ///< by task, as VehicleClass::least_s
   double deadline_s = 0.0;      ///< its range
   int loads = 0;
@@ -99,6 +108,18 @@ class Model {
     const Vehicle& v = vehicles[at(vehicle)];
     if (visit == kNone) return v.reach_s.data();
     return classes[at(v.kind)].reach_s.data() + at(visit) * task_of.size();
+  }
+  [[nodiscard]] const Gap& gap_from(Index vehicle, Index visit, Index next) const {
+    const Vehicle& v = vehicles[at(vehicle)];
+    if (visit == kNone) return v.gaps[at(next)];
+    return classes[at(v.kind)].gaps[at(visit) * task_of.size() + at(next)];
+  }
+  /// The earliest time from `time_s` on at which a vehicle that was free after `visit` can be at
+  /// `next`, given that it can be there at some time until `time_s`.
+  [[nodiscard]] double flyable_s(Index vehicle, Index visit, Index next, double free_s,
+                                 double time_s) const {
+    const Gap& gap = gap_from(vehicle, visit, next);
+    return time_s > free_s + gap.low_s ? std::max(time_s, free_s + gap.high_s) : time_s;
   }
   [[nodiscard]] const double* least_from(Index vehicle, Index visit) const {
     const Vehicle& v = vehicles[at(vehicle)];
@@ -169,12 +190,13 @@ class Timing {
   struct VehicleState {
     const Index* next = nullptr;
     const Index* last = nullptr;
-    const double* reach_s = nullptr;
+    Index before = kNone;  ///< the visit that it comes from
     double free_s = 0.0;
   };
   void advance(Index vehicle);
   bool finish(Index vehicle, Index visit, double time_s);
   void release(SiteState& site);
+  [[nodiscard]] double common_of(const SiteState& site) const;
   void wake(Mask vehicles) { ready_ |= vehicles; }
 
   const Model& model_;

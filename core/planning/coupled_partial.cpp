@@ -24,8 +24,9 @@ double PartialPlan::time_of(const Step& step) const {
   const Vehicle& vehicle = vehicles_[at(step.vehicle)];
   const double arrival_s =
       vehicle.free_s + model_.reach_from(step.vehicle, vehicle.last)[step.visit];
-  return task.id.kind == TaskKind::survey ? arrival_s
-                                          : std::max(arrival_s, sites_[at(task.site)].ready_s);
+  if (task.id.kind == TaskKind::survey) return arrival_s;
+  return model_.flyable_s(step.vehicle, vehicle.last, step.visit, vehicle.free_s,
+                          std::max(arrival_s, sites_[at(task.site)].ready_s));
 }
 
 bool PartialPlan::allows(const Step& step) const {
@@ -34,11 +35,27 @@ bool PartialPlan::allows(const Step& step) const {
   const double time_s = time_of(step);
   const double end_s = time_s + model_.class_of(step.vehicle).after_s[at(step.visit)];
   if (!(end_s <= its.deadline_s)) return false;
-  if (task.id.kind != TaskKind::deliver) return time_s >= floor_s_;
+  if (task.id.kind != TaskKind::deliver) {
+    return comes_after_all({time_s, bit(step.vehicle), task.site});
+  }
   if (vehicles_[at(step.vehicle)].loads == 0) return false;
   const auto members = group();
   return std::none_of(members.begin(), members.end(),
                       [&](const Member& m) { return m.vehicle == step.vehicle; });
+}
+
+bool PartialPlan::comes_after_all(const Job& job) const {
+  for (std::size_t k = jobs_.size(); k-- > 0;) {
+    const Job& other = jobs_[k];
+    if (other.site == job.site || (other.vehicles & job.vehicles) != 0) return true;
+    if (other.time_s > job.time_s) return false;
+  }
+  return true;
+}
+
+void PartialPlan::add_job(const Job& job) {
+  jobs_.push_back(job);
+  if (!model_.offsets) floor_s_ = job.time_s;
 }
 
 void PartialPlan::set_common(double common_s) {
@@ -53,8 +70,8 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
   const Task& task = model_.tasks[at(index)];
   Site& site = sites_[at(task.site)];
   Vehicle& vehicle = vehicles_[at(step.vehicle)];
-  const Before before{vehicle,   cost_,        floor_s_,    time_sum_s_,
-                      common_s_, site.ready_s, group_site_, group_begin_};
+  const Before before{vehicle,      cost_,       floor_s_,     common_s_,
+                      site.ready_s, group_site_, group_begin_, jobs_.size()};
   const double time_s = time_of(step);
   orders_[at(step.vehicle)].push_back(step.visit);
   vehicle.last = step.visit;
@@ -65,7 +82,7 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
     --site.deliveries_open;
     if (group_site_ == kNone) common_s_ = 0.0;
     group_site_ = task.site;
-    members_.push_back({step.vehicle, index, before.vehicle.free_s});
+    members_.push_back({step.vehicle, index, before.vehicle.last, before.vehicle.free_s});
     set_common(std::max(common_s_, time_s - task.offset_s));
     if (site.deliveries_open == 0) close_group();
     return before;
@@ -74,8 +91,7 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
   cost_ = model_.add(cost_, model_.cost_of(index, end_s)) +
           model_.vehicles[at(step.vehicle)].range_weight_per_s * (end_s - vehicle.free_s);
   vehicle.free_s = end_s;
-  time_sum_s_ += time_s;
-  if (!model_.offsets) floor_s_ = time_s;
+  add_job({time_s, bit(step.vehicle), task.site});
   if (task.id.kind == TaskKind::survey) {
     site.survey_open = false;
     site.ready_s = site.deliveries_open > 0 ? end_s + model_.decide_wait_s : end_s;
@@ -87,20 +103,30 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
 
 /// All deliveries are given away: their times are final.
 void PartialPlan::close_group() {
+  for (double raised_s = -kInfinity; raised_s < common_s_;) {
+    raised_s = common_s_;
+    for (const Member& m : group()) {
+      const double offset_s = model_.tasks[at(m.task)].offset_s;
+      const double wanted_s = common_s_ + offset_s;
+      const double time_s =
+          model_.flyable_s(m.vehicle, m.last, vehicles_[at(m.vehicle)].last, m.free_s, wanted_s);
+      if (time_s > wanted_s) set_common(time_s - offset_s);
+    }
+  }
   double last_s = 0.0;
+  Mask vehicles = 0;
   for (const Member& m : group()) {
     const double end_s = vehicles_[at(m.vehicle)].free_s;
     const coupled::Vehicle& its = model_.vehicles[at(m.vehicle)];
     last_s = std::max(last_s, end_s);
-    time_sum_s_ += end_s;
+    vehicles |= bit(m.vehicle);
     cost_ = end_s <= its.deadline_s ? model_.add(cost_, model_.cost_of(m.task, end_s)) +
                                           its.range_weight_per_s * (end_s - m.free_s)
                                     : kInfinity;
   }
-  if (!model_.offsets) {
-    if (common_s_ < floor_s_) cost_ = kInfinity;  // this plan is built in another way
-    floor_s_ = common_s_;
-  }
+  const Job job{common_s_, vehicles, group_site_};
+  if (!comes_after_all(job)) cost_ = kInfinity;  // this plan is built in another way
+  add_job(job);
   sites_[at(group_site_)].ready_s = last_s + model_.sites[at(group_site_)].assess_wait_s;
   group_site_ = kNone;
   group_begin_ = members_.size();
@@ -115,7 +141,7 @@ void PartialPlan::undo(const Step& step, const Before& before) {
   done_ &= ~bit(index);
   cost_ = before.cost;
   floor_s_ = before.floor_s;
-  time_sum_s_ = before.time_sum_s;
+  jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(before.jobs), jobs_.end());
   site.ready_s = before.ready_s;
   if (task.id.kind == TaskKind::deliver) {
     ++site.deliveries_open;

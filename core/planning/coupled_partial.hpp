@@ -13,8 +13,9 @@ namespace skein::planning::coupled {
 /// deliveries of one site (the group) while some of them are still to be given away; those have the
 /// earliest common moment so far.
 ///
-/// Without offsets the tasks are added in the order of their times, so that every plan is built in
-/// one way only. With offsets that order need not fit the waits, and any order is taken.
+/// So that a plan is not built in many ways, what is added (a task, or a group as one) must not be
+/// earlier than anything that it could have come before: what was added since the last that shares
+/// its site or a vehicle. Without offsets this is the order of the times.
 class PartialPlan {
  public:
   struct Step {
@@ -41,11 +42,11 @@ class PartialPlan {
     Vehicle vehicle;
     double cost;
     double floor_s;
-    double time_sum_s;
     double common_s;
     double ready_s;
     Index group_site;
     std::size_t group_begin;
+    std::size_t jobs;
   };
 
   explicit PartialPlan(const Model& model);
@@ -66,7 +67,6 @@ class PartialPlan {
   /// Of what has its final time; infinite when the plan came to nothing.
   [[nodiscard]] double cost() const { return cost_; }
   [[nodiscard]] double floor_s() const { return floor_s_; }  ///< nothing to come is before it
-  [[nodiscard]] double time_sum_s() const { return time_sum_s_; }
   /// The site of the group, and how many of its deliveries are given away; kNone between groups.
   [[nodiscard]] Index group_site() const { return group_site_; }
   [[nodiscard]] std::size_t group_size() const { return members_.size() - group_begin_; }
@@ -77,12 +77,21 @@ class PartialPlan {
   struct Member {
     Index vehicle;
     Index task;
-    double free_s;  ///< when the vehicle was free before
+    Index last;     ///< the visit that the vehicle came from
+    double free_s;  ///< when it was free there
   };
 
   [[nodiscard]] std::span<const Member> group() const {
     return std::span{members_}.subspan(group_begin_);
   }
+  /// Something added.
+  struct Job {
+    double time_s;
+    Mask vehicles;
+    Index site;
+  };
+  [[nodiscard]] bool comes_after_all(const Job& job) const;
+  void add_job(const Job& job);
   void set_common(double common_s);
   void close_group();
 
@@ -94,9 +103,9 @@ class PartialPlan {
   Index left_ = 0;
   double cost_ = 0.0;
   double floor_s_ = 0.0;
-  double time_sum_s_ = 0.0;
   Index group_site_ = kNone;
   double common_s_ = 0.0;
+  std::vector<Job> jobs_;
   std::vector<Member> members_;  ///< of all sites, as they were given away
   std::size_t group_begin_ = 0;  ///< the first of the group
 };

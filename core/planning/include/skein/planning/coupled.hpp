@@ -36,11 +36,12 @@ namespace skein::planning {
 /// A vehicle that is early lengthens its path to the task. What a vehicle flies from the start to
 /// the end of its last task, waiting included, is at most its range.
 ///
-/// Waits: the solvers take any path longer than the shortest to exist. Nearly all do; but between
-/// near poses there can be a gap of lengths that cannot be flown (arrival.hpp). So what they find
-/// is mended (CoupledProblem::flyable_waits): a task whose transit no path can fly is held until
-/// one can. The bound knows nothing of gaps: a plan that had to be mended is not proven, and its
-/// gap says what mending cost at most.
+/// Waits: between near poses some lengths cannot be flown (length_gap, arrival.hpp). Every task has
+/// the earliest time that can be flown after the task before it; none is delayed for the sake of a
+/// later wait. With hazards more lengths than those of the gap may be missing: then the plan that
+/// was found is mended, a task whose transit no path can fly is held until one can. The bound knows
+/// nothing of that: a plan that had to be mended is not proven, and its gap says what it cost at
+/// most.
 
 /// What plans for and what bids: a vehicle where it is at CoupledProblem::start.
 struct CoupledVehicle {
@@ -88,7 +89,7 @@ struct CoupledProblem {
   /// Where there is none: the shortest Dubins path, or shortest_clear_path if there are hazards.
   TransitLength transit_length_m;
   AvoidanceParams avoidance;
-  bool flyable_waits = true;  ///< see above; never with a transit_length_m of one's own
+  bool flyable_waits = true;  ///< see above; false, or a transit_length_m: any wait can be flown
   /// Start angles tried, each in both senses, where a survey or assessment leaves it free.
   int free_starts = 8;
   /// A survey with a given start angle may be flown in either sense. Assessments are always flown
