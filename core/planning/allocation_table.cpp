@@ -8,10 +8,8 @@
 #include <numeric>
 #include <utility>
 
-#include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/arrival.hpp"
-#include "skein/planning/dubins.hpp"
 #include "skein/planning/dubins_batch.hpp"
 #include "task_leg.hpp"
 
@@ -20,40 +18,26 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding_s = 2e-9;  ///< more than what times are rounded up by
-constexpr double kNear_radii = 7.0;   ///< beyond it lengths have no gap
-constexpr double kNear_m = 1e4;       ///< what being near counts for
+constexpr double kRounding_m = 1e-7;  ///< of lengths, well within what path_of_length allows
 constexpr int kTimingsMax = 64;       ///< moments tried for one choice of vehicles
 
 Instant later(Instant start, double seconds) {
   return start + Duration{static_cast<Duration::rep>(std::ceil(seconds * 1e9))};
 }
 
-/// What bending a straight line aside can add to it: away, back by twice that and away again, by up
-/// to this angle, as path_of_length does.
-constexpr double kBendMax_rad = radians(85.0);
-double bend_room_m(double straight_m, double radius_m) {
-  const double angle =
-      std::min(std::asin(std::min(1.0, straight_m / (4.0 * radius_m))), kBendMax_rad);
-  const double line_m =
-      std::max(0.0, straight_m - 4.0 * radius_m * std::sin(angle)) / std::cos(angle);
-  return 4.0 * radius_m * angle + line_m - straight_m;
-}
-
-/// As surely_flyable for poses that are near each other: is there a word whose straight line can be
-/// bent as far, or that leaves room for a loop?
-bool bends_far_enough(const AvoidanceParams& params, const Transit& transit, double length_m) {
-  if (length_m > transit.length_max_m) return false;
-  if (!out_of_reach(params, transit.from, transit.to, length_m, transit.hazards)) return false;
-  const double r = transit.radius_m;
-  for (const auto word : {DubinsWord::LSL, DubinsWord::RSR, DubinsWord::LSR, DubinsWord::RSL}) {
-    const auto path = dubins_word(word, transit.from, transit.to, r, r);
-    if (!path) continue;
-    const double extra_m = length_m - path->length_m();
-    if (extra_m < 0.0) continue;
-    if (extra_m >= kTwoPi * r * (1.0 + 1e-9)) return true;
-    if (extra_m <= bend_room_m(path->lengths_m[1], r) - 1e-6 * r) return true;
+/// The least length >= `wanted_m` that can be flown; none within the range.
+std::optional<double> flyable_from(const AvoidanceParams& params, const Transit& transit,
+                                   double shortest_m, double wanted_m) {
+  if (transit.hazards.empty()) {
+    if (surely_flyable(params, transit, shortest_m, wanted_m)) return wanted_m;
+    const auto gap = length_gap(transit.from, transit.to, transit.radius_m);
+    if (gap && wanted_m > gap->low_m && wanted_m < gap->high_m) {
+      if (wanted_m > gap->high_m - kRounding_m) return wanted_m;
+      return gap->high_m <= transit.length_max_m ? std::optional{gap->high_m} : std::nullopt;
+    }
   }
-  return false;
+  const auto least_m = least_length_from(params, transit, wanted_m);
+  return least_m ? std::optional{*least_m} : std::nullopt;
 }
 
 /// Candidates that turn on one radius and fly one kind of task to one and the same pose.
@@ -159,10 +143,6 @@ void AllocationTable::set_pair(std::size_t row, std::size_t column, const TaskPa
   pairs_[i].entry = task.entry;
   pairs_[i].run_m = task.run.length_m;
   pairs_[i].shortest_m = shortest_m;
-  const bool near =
-      (task.entry.position() - vehicle.pose.position()).squaredNorm() <
-      kNear_radii * kNear_radii * vehicle.planning_radius_m * vehicle.planning_radius_m;
-  pairs_[i].unease_m = near ? shortest_m + kNear_m : shortest_m;
   least_s_[i] = least_s <= greatest_s ? least_s : kInfinity;
   greatest_s_[i] = greatest_s;
 }
@@ -313,23 +293,18 @@ bool AllocationTable::verify(std::size_t row, std::size_t column, double common_
   const Transit transit = transit_of(vehicle, task, problem_->hazards);
   const double wanted_m =
       transit_length_m(vehicle, kind, task, problem_->start, time_of(row, common_s));
-  const bool sure = (problem_->hazards.empty() &&
-                     surely_flyable(params_->avoidance, transit, pair.shortest_m, wanted_m)) ||
-                    bends_far_enough(params_->avoidance, transit, wanted_m);
-  if (!sure) {
-    const auto reachable = least_length_from(params_->avoidance, transit, wanted_m);
-    if (!reachable || *reachable > wanted_m) {
-      const double resumes_s =
-          reachable
-              ? (*reachable + timed_run_m(kind, task)) / vehicle.speed_mps - rows_[row].offset_s
-              : kInfinity;
-      // A gap that is met twice is one gap.
-      const double until_s = std::max(resumes_s, std::nextafter(common_s, kInfinity));
-      pair.refused_from_s =
-          pair.resumes_s == until_s ? std::min(pair.refused_from_s, common_s) : common_s;
-      pair.resumes_s = until_s;
-      return false;
-    }
+  const auto reachable_m = flyable_from(params_->avoidance, transit, pair.shortest_m, wanted_m);
+  if (!reachable_m || *reachable_m > wanted_m) {
+    const double resumes_s =
+        reachable_m
+            ? (*reachable_m + timed_run_m(kind, task)) / vehicle.speed_mps - rows_[row].offset_s
+            : kInfinity;
+    // A gap that is met twice is one gap.
+    const double until_s = std::max(resumes_s, std::nextafter(common_s, kInfinity));
+    pair.refused_from_s =
+        pair.resumes_s == until_s ? std::min(pair.refused_from_s, common_s) : common_s;
+    pair.resumes_s = until_s;
+    return false;
   }
   pair.verified_s = common_s;
   return true;

@@ -66,11 +66,6 @@ class AllocationTable {
   [[nodiscard]] double shortest_m(std::size_t row, std::size_t column) const {
     return pairs_[index(row, column)].shortest_m;
   }
-  /// What decides between plans of one value: metres to the task, and more for vehicles so near
-  /// that the lengths of their paths may have a gap.
-  [[nodiscard]] double unease_m(std::size_t row, std::size_t column) const {
-    return pairs_[index(row, column)].unease_m;
-  }
   [[nodiscard]] bool possible(std::size_t row, std::size_t column) const {
     return least_s(row, column) < std::numeric_limits<double>::infinity();
   }
@@ -131,7 +126,6 @@ class AllocationTable {
     Pose2 entry;
     double run_m = 0.0;
     double shortest_m = std::numeric_limits<double>::infinity();  ///< to the entry
-    double unease_m = 0.0;
     bool measured = false;     ///< shortest_m is no lower bound any more
     double verified_s = -1.0;  ///< the moment last found possible
     double refused_from_s = std::numeric_limits<double>::infinity();  ///< no path has the length

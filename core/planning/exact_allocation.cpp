@@ -97,7 +97,7 @@ bool Sweep::solve(const Moments& at) {
         if (!table_.open(row, c, common_s)) continue;
         cost_[i] = goal_ == Goal::earliest
                        ? table_.shortest_m(row, c)
-                       : table_.metres(row, c, at) + kTieBreak * table_.unease_m(row, c);
+                       : table_.metres(row, c, at) + kTieBreak * table_.shortest_m(row, c);
       }
     }
     if (!solver_.least_sum(cost_, table_.columns(), column_of_)) return false;

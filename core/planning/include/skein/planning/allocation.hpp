@@ -91,8 +91,8 @@ struct Allocation {
 
   [[nodiscard]] double gap() const { return value_bound - value.total; }
 };
-/// Plans whose J differs by less are of one value to exact; it takes vehicles that have a long way
-/// before those that are near the site, and then the least sum of shortest lengths.
+/// Plans whose J differs by less are of one value to exact; it takes the least sum of shortest
+/// lengths.
 inline constexpr double kValueTolerance = 1e-6;
 
 /// Vehicles to tasks, one task each: all deliveries at one common time plus their offsets, all
