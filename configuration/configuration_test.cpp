@@ -67,6 +67,23 @@ TEST(VehicleConfigFile, HoldsCompassDegreesAndSecondsAndTheStructHeadingsAndDura
   EXPECT_EQ(config->network.peers[1], (NetworkPeer{VehicleId{8}, "127.0.0.1", 17404}));
 }
 
+TEST(VehicleConfigFile, NamesTheMethodOfAllocation) {
+  const std::string keys = "planning: {allocation: colony, timing_weight: 0.5}\n";
+  const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
+  ASSERT_TRUE(config.ok()) << config.error().message;
+  EXPECT_EQ(config->planning.method, planning::AllocationMethod::colony);
+  EXPECT_EQ(config->planning.weights.timing, 0.5);
+  EXPECT_EQ(config->planning.weights.reward, 1.0);
+  const auto again = parse_vehicle_config(to_yaml(*config), "again.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(again->planning.method, planning::AllocationMethod::colony);
+  EXPECT_EQ(parse_vehicle_config(kVehicle, "v.yaml").value().planning.method,
+            planning::AllocationMethod::best);
+  EXPECT_FALSE(
+      parse_vehicle_config(kVehicle + std::string{"planning: {allocation: count}\n"}, "v.yaml")
+          .ok());
+}
+
 struct Mistake {
   const char* from;
   const char* to;

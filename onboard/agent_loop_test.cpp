@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <limits>
 #include <semaphore>
 #include <thread>
 #include <vector>
@@ -115,6 +116,40 @@ TEST(Planner, AnswersRequestsUntilStopped) {
   EXPECT_FALSE(planner.result());
   planner.stop();
   thread.join();
+}
+
+/// A colony that would go on for ever, one vehicle, and a clock that moves when it is asked.
+TEST(Planner, EndsAPlanInTimeForItsAnswer) {
+  std::counting_semaphore<> ready{0};
+  Instant now{};
+  Planner planner{[&] { ready.release(); }, [&now] { return now += std::chrono::milliseconds{1}; }};
+  mission::PlanningRequest request;
+  request.answer_by = at_seconds(0.5);
+  request.params.method = planning::AllocationMethod::colony;
+  request.params.colony.generations = std::numeric_limits<int>::max();
+  auto& problem = request.problem;
+  problem.site.deliveries = {{0.0, {}}};
+  problem.open_tasks = problem.site.tasks_after_survey();
+  planning::Candidate candidate;
+  candidate.id = VehicleId{1};
+  candidate.pose = {-3000.0, 0.0, 0.0};
+  candidate.speed_mps = 50.0;
+  candidate.planning_radius_m = 165.0;
+  candidate.range_left_m = 18000.0;
+  candidate.final_approach_m = 300.0;
+  candidate.capabilities.add(TaskKind::deliver);
+  candidate.loads = 1;
+  problem.candidates = {candidate};
+  std::thread thread{[&] { planner.run(); }};
+  ASSERT_TRUE(planner.request(request));
+  ready.acquire();
+  const auto result = planner.result();
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->allocation.ok());
+  planner.stop();
+  thread.join();
+  EXPECT_GE(now, request.answer_by - Planner::kAnswerMargin);
+  EXPECT_LT(now, request.answer_by);
 }
 
 TEST(Planner, RefusesWhatItCannotHold) {
