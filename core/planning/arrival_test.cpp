@@ -173,6 +173,7 @@ TEST(PathOfLength, AmongHazards) {
     Pose2 to = random_pose(random, 1000.0);
     to.x_m += 3000.0;
     std::vector<Hazard> hazards;
+    hazards.reserve(4);
     for (int h = 0; h < 4; ++h) {
       hazards.push_back({HazardId{static_cast<std::uint16_t>(h)},
                          {random.uniform(1500.0, 2500.0), random.uniform(-500.0, 1500.0)},

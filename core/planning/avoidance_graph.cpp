@@ -280,7 +280,7 @@ std::optional<Path> TangentGraph::fly(const Chain& chain) const {
 /// A small circle is best touched halfway round the arc by which it is passed.
 TangentGraph::Chain TangentGraph::relaxed(Chain chain) {
   for (int k = 0; k < kRelaxations; ++k) {
-    const Chain before = chain;
+    Chain before = chain;
     double moved = 0.0;
     for (std::size_t i = 1; i + 1 < chain.size(); ++i) {
       if (chain[i].inside == nullptr) continue;
