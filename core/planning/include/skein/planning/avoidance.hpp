@@ -28,6 +28,8 @@ struct AvoidanceParams {
 /// of the circles, on either side and in any order. Where an end lies within a safety circle, or is
 /// headed so that it must enter it, the path keeps the largest distance that this end allows; where
 /// hazards leave no room for all margins, it keeps a part of them; it never enters a hazard.
+/// A fine search without tangents finds a shorter one in fewer than 1 of 100 random worlds, and
+/// none where this fails (avoidance_search_test).
 /// A start inside a hazard that has just become known is left by the shortest way first.
 /// Fails, with the reason, for a goal inside a hazard or too close behind one to be approached, a
 /// start that no turn keeps from a hazard, and where nothing is found.
