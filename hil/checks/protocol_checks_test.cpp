@@ -199,6 +199,17 @@ TEST(ProtocolChecks, AnArcThatIsLeftForWantOfALeaseAndFlownAgainAreTwoRuns) {
   EXPECT_EQ(runs[4].started, at_seconds(70.0));
 }
 
+TEST(ProtocolChecks, AnArcThatIsFlownToItsEndWithoutALeaseIsOneRun) {
+  RunRecord record = good_record();
+  auto& events = of(record, kAssessor).events;
+  events.push_back(event(kAssessor, 80.0, EventKind::lease_ended, kAssessment));
+  const auto runs = task_runs(record);
+  ASSERT_EQ(runs.size(), 4U);
+  EXPECT_EQ(runs[3].started, at_seconds(70.0));
+  EXPECT_FALSE(runs[3].failed);
+  EXPECT_TRUE(check_assessments(record, {}).held());
+}
+
 TEST(ProtocolChecks, WhatEndsWithItsAgentIsCutOffAndCountsAsFlown) {
   RunRecord record = good_record();
   erase_events(record, kFromWest, EventKind::task_done);

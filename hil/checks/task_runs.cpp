@@ -35,22 +35,25 @@ std::vector<MissionEvent> own_events(const recording::Recording& recorded) {
 
 void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
   const bool done = is_done(event.kind);
-  // Who loses the lease within an arc leaves it. A delivery that was begun counts as flown.
-  const bool left = event.kind == EventKind::lease_ended && event.task.kind == TaskKind::assess;
-  if (!is_start(event.kind) && !done && !left && event.kind != EventKind::task_failed) return;
+  const bool unleased = event.kind == EventKind::lease_ended && event.task.kind == TaskKind::assess;
+  if (!is_start(event.kind) && !done && !unleased && event.kind != EventKind::task_failed) return;
   const TaskId task = task_of(event);
   const auto last = std::find_if(runs.rbegin(), runs.rend(),
                                  [&](const TaskRun& run) { return run.task == task; });
+  // Who loses the lease within an arc may fly it to its end or leave it; a new start tells.
+  if (is_start(event.kind) && last != runs.rend() && last->lease_lost && !last->done)
+    last->failed = true;
   const bool open = last != runs.rend() && !last->done && !last->failed && !last->cut_off;
   // A survey is told twice, as a survey and as a task: one run.
   const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
                           last->done && event.time - *last->done < std::chrono::seconds{1};
   if (!open && !told_again) {
-    if (left || event.kind == EventKind::task_failed) return;  // given up before it began
-    runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false});
+    if (unleased || event.kind == EventKind::task_failed) return;  // given up before it began
+    runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false, false});
   }
   TaskRun& run = open || told_again ? *last : runs.back();
-  if (left || event.kind == EventKind::task_failed) run.failed = true;
+  if (event.kind == EventKind::task_failed) run.failed = true;
+  if (unleased) run.lease_lost = !run.done;
   if (is_start(event.kind) && !run.started) run.started = event.time;
   if (done && !run.done) run.done = event.time;
   if (done && event.value > 0.0) run.planned = at_seconds(event.value);

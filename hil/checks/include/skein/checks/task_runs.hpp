@@ -22,6 +22,7 @@ struct TaskRun {
   bool failed = false;
   std::optional<Instant> planned;  ///< over the site (delivery) or start of the arc
   bool cut_off = false;            ///< its agent ended before it did
+  bool lease_lost = false;         ///< an assessment's lease ended while it was flown
 
   /// Begun and not given up. A delivery of which no end was recorded counts as flown.
   [[nodiscard]] bool flown() const { return !failed; }
