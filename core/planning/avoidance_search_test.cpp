@@ -126,15 +126,15 @@ Comparison compare(std::uint64_t seed, int worlds, std::size_t hazard_count, dou
 }
 
 TEST(AvoidanceSearch, NothingIsShorterThanTheTangentsOfLargeHazards) {
-  const Comparison result = compare(1, 25, 4, 170.0, 400.0);
-  EXPECT_GE(result.found, 20);
+  const Comparison result = compare(1, 12, 4, 170.0, 400.0);
+  EXPECT_GE(result.found, 8);
   EXPECT_EQ(result.longer, 0);
   EXPECT_EQ(result.missed, 0);
 }
 
 TEST(AvoidanceSearch, HardlyAnythingIsShorterAmongSmallHazards) {
-  const Comparison result = compare(2, 25, 8, 30.0, 160.0);
-  EXPECT_GE(result.found, 20);
+  const Comparison result = compare(2, 12, 8, 30.0, 160.0);
+  EXPECT_GE(result.found, 8);
   EXPECT_LE(result.longer, 1);
   EXPECT_EQ(result.missed, 0);
 }

@@ -105,6 +105,7 @@ void expect_same_bits(const Queries& queries) {
   const PoseBatch from = batch_of(queries.from);
   const PoseBatch to = batch_of(queries.to);
   const std::size_t count = queries.from.size();
+  if (count == 0) return;
   std::vector<double> scalar(count);
   for (std::size_t i = 0; i < count; ++i) {
     scalar[i] = shortest_dubins_length(queries.from[i], queries.to[i], kRadius_m);
