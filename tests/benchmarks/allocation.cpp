@@ -72,6 +72,7 @@ AllocationProblem random_problem(Random& random, std::size_t vehicles, std::size
 std::vector<AllocationProblem> random_problems(std::size_t vehicles, std::size_t hazards) {
   Random random{1};
   std::vector<AllocationProblem> problems;
+  problems.reserve(kProblems);
   for (int i = 0; i < kProblems; ++i) problems.push_back(random_problem(random, vehicles, hazards));
   return problems;
 }
@@ -129,6 +130,7 @@ void colony_in_time(benchmark::State& state) {
   colony.method = AllocationMethod::colony;
   colony.colony.generations = 1'000'000;
   std::vector<double> best;
+  best.reserve(problems.size());
   for (const auto& problem : problems) {
     best.push_back(skein::planning::allocate(exact, problem).value().value.total);
   }
