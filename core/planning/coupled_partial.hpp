@@ -40,13 +40,13 @@ class PartialPlan {
   /// What undo needs.
   struct Before {
     Vehicle vehicle;
-    double cost;
-    double floor_s;
-    double common_s;
-    double ready_s;
-    Index group_site;
-    std::size_t group_begin;
-    std::size_t jobs;
+    double cost = 0.0;
+    double floor_s = 0.0;
+    double common_s = 0.0;
+    double ready_s = 0.0;
+    Index group_site = kNone;
+    std::size_t group_begin = 0;
+    std::size_t jobs = 0;
   };
 
   explicit PartialPlan(const Model& model);

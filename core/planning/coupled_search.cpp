@@ -278,8 +278,9 @@ Search::Place Search::best_place(Solution& plan, Index task) {
   return best;
 }
 
-/// What is in the plan keeps its times or is later: so what the task and those after it on the same
-/// vehicle cost, as if they waited for nobody else, is certain.
+/// What is in the plan keeps its times or is later (but where a gap opens or closes, which is
+/// rare): so what the task and those after it on the same vehicle cost, as if they waited for
+/// nobody else.
 double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t position,
                               Index visit) const {
   const Vehicle& its = model_.vehicles[at(vehicle)];
