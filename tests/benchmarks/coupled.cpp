@@ -164,8 +164,8 @@ constexpr std::array kCriteria{NamedCriterion{"value", Criterion::value},
                                NamedCriterion{"makespan", Criterion::makespan}};
 
 [[maybe_unused]] const bool kRegistered = [] {
-  const auto add = [](const std::string& name, auto body) {
-    benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond);
+  const auto add = [](const std::string& name, auto body, const auto&... arguments) {
+    benchmark::RegisterBenchmark(name.data(), body, arguments...)->Unit(benchmark::kMillisecond);
   };
   for (const auto& [name, criterion] : kCriteria) {
     const Criterion by = criterion;
@@ -175,17 +175,17 @@ constexpr std::array kCriteria{NamedCriterion{"value", Criterion::value},
       draw.vehicles = static_cast<std::size_t>(vehicles);
       const std::string size = std::to_string(sites) + "x" + std::to_string(vehicles);
       const std::string end = std::string{"/"} + name + "_" + size;
-      add("prove/skein" + end, [=](benchmark::State& s) { prove(s, draw, by, false); });
-      add("prove_flyable/skein" + end, [=](benchmark::State& s) { prove(s, draw, by, true); });
-      add("search_10ms/skein" + end, [=](benchmark::State& s) { search(s, draw, by, 0.010); });
+      add("prove/skein" + end, prove, draw, by, false);
+      add("prove_flyable/skein" + end, prove, draw, by, true);
+      add("search_10ms/skein" + end, search, draw, by, 0.010);
     }
     CoupledDraw draw;
     draw.vehicles = 56;
     draw.deliveries = 6;
     draw.assessments = 6;
     for (const int ms : {10, 100, 1000}) {
-      add("search_" + std::to_string(ms) + "ms/skein/" + name + "_3x13_tasks_56",
-          [=](benchmark::State& s) { large(s, draw, by, 1e-3 * ms); });
+      add("search_" + std::to_string(ms) + "ms/skein/" + name + "_3x13_tasks_56", large, draw, by,
+          1e-3 * ms);
     }
   }
   return true;
