@@ -105,7 +105,7 @@ Vec2 HeadingDynamics::step(double seconds) {
   };
   const Vec2 first = velocity_after(decays_.begin, heading_after(decays_.begin));
   const Vec2 middle = velocity_after(decays_.middle, heading_after(decays_.middle));
-  const Vec2 last = velocity_after(decays_.end, end_heading);
+  Vec2 last = velocity_after(decays_.end, end_heading);
   const Vec2 moved = (first + 4.0 * middle + last) * (seconds / 6.0);
   state_.x_m += moved.x();
   state_.y_m += moved.y();

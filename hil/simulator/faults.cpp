@@ -239,7 +239,8 @@ Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed
     } else if (name != "none") {
       std::string names;
       for (const auto& known : fault_profiles()) {
-        names += (names.empty() ? "" : ", ") + std::string{known};
+        names += names.empty() ? "" : ", ";
+        names += known;
       }
       return Error{"there is no fault profile '" + name + "'; write one of " + names +
                    ", or several with commas"};

@@ -10,9 +10,8 @@
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
 
+namespace skein {
 namespace {
-
-using namespace skein;
 
 /// Every event, plan and state, numbers exact.
 hil::TeamObserver exact_printer() {
@@ -42,26 +41,28 @@ constexpr std::array<Trace, 3> kTraces{
     {{"coalition-32", "none", 1, 1}, {"coalition-6", "lossy", 1, 3}, {"faults-8", "mixed", 1, 12}}};
 
 }  // namespace
+}  // namespace skein
 
 int main(int argc, char** argv) {
   if (argc != 2) {
     std::fputs("usage: traces FOLDER-OF-SCENARIOS\n", stderr);
     return 2;
   }
-  for (const Trace& trace : kTraces) {
+  for (const auto& trace : skein::kTraces) {
     auto scenario =
-        configuration::load_scenario(std::string{argv[1]} + "/" + trace.scenario + ".yaml");
+        skein::configuration::load_scenario(std::string{argv[1]} + "/" + trace.scenario + ".yaml");
     if (!scenario) {
       std::fprintf(stderr, "%s\n", scenario.error().message.c_str());
       return 2;
     }
     scenario->wind.gust_mps = 0.5;
     for (std::uint64_t seed = trace.first_seed; seed <= trace.last_seed; ++seed) {
-      const auto mission = hil::seeded_mission(*scenario, seed, trace.faults);
+      const auto mission = skein::hil::seeded_mission(*scenario, seed, trace.faults);
       if (!mission) return 2;
       std::printf("%s, seed %u\n%s", trace.scenario, static_cast<unsigned>(seed),
-                  hil::describe(*mission).c_str());
-      const auto run = hil::fly_judged(*mission, hil::limits_of(scenario->expect), exact_printer());
+                  skein::hil::describe(*mission).c_str());
+      const auto run = skein::hil::fly_judged(*mission, skein::hil::limits_of(scenario->expect),
+                                              skein::exact_printer());
       for (const auto& check : run.broken) {
         for (const auto& v : check.violations) std::printf("%s\n", v.sentence.c_str());
       }
