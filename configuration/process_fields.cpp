@@ -124,6 +124,11 @@ void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
             "must be longer than heartbeat_s and shorter than lease_s; mend one of them");
   seconds(v, {"clock_guard_s", "largest difference of two clocks"}, {0.0, 60.0, "s"},
           p.clock_guard);
+  seconds(v,
+          {"cut_max_s",
+           "longest that parts of the team may work without hearing each other; after it a lost "
+           "leader's site is taken up anew"},
+          long_time, p.cut_max);
   seconds(v, {"monitoring_interval_s", "between two attempts of a leader to form a coalition"},
           long_time, p.monitoring_interval);
   seconds(v, {"authorisation_lead_s", "time that the operator has at least to decide"},

@@ -16,7 +16,7 @@ static_assert(wire::kTasksPerKindMax == kTasksPerKindMax);
 static_assert(wire::kTasksMax == coalition::kTasksMax);
 static_assert(wire::kMembersMax == coalition::kMembersMax);
 static_assert(wire::ASSESS + 1 == static_cast<int>(TaskKind::count));
-static_assert(wire::FAILED + 1 == static_cast<int>(coalition::TaskState::count));
+static_assert(wire::UNKNOWN + 1 == static_cast<int>(coalition::TaskState::count));
 static_assert(wire::HOLDING + 1 == static_cast<int>(mission::Activity::count));
 static_assert(wire::SURVEYING == static_cast<int>(mission::Activity::surveying));
 static_assert(wire::EXECUTING == static_cast<int>(mission::Activity::executing));
@@ -140,6 +140,10 @@ coalition::Round round(const wire::Round& w) {
   return {{VehicleId{w.leader()}, InstanceId{w.leader_instance()}, w.coalition()}, w.number()};
 }
 
+coalition::CoalitionId coalition_id(const wire::CoalitionId& w) {
+  return {VehicleId{w.leader()}, InstanceId{w.leader_instance()}, w.number()};
+}
+
 coalition::Message body(Check& c, const wire::Announcement& w) {
   coalition::Announcement m;
   m.round = round(w.round());
@@ -157,6 +161,7 @@ coalition::Message body(Check& c, const wire::Bid& w) {
   coalition::Bid m;
   m.round = round(w.round());
   m.bidder = VehicleId{w.bidder()};
+  m.instance = InstanceId{w.instance()};
   const Vec2 position = point(c, w.position_at_formation());
   m.pose_at_formation = {position.x(), position.y(), c.angle(w.heading_at_formation_rad())};
   m.speed_mps = c.speed(w.speed_mps());
@@ -177,7 +182,9 @@ coalition::Message body(Check& c, const wire::Award& w) {
   m.site = site(c, w.site());
   m.formed_at = c.instant(w.formed_at_ns());
   m.assignments = c.each(w.assignments(), coalition::kTasksMax, assignment);
+  m.awarded_at = c.instant(w.awarded_at_ns());
   m.lease_until = c.instant(w.lease_until_ns());
+  m.continues = coalition_id(w.continues());
   return m;
 }
 
@@ -193,11 +200,26 @@ coalition::Message body(Check& c, const wire::Cancel& w) {
 coalition::Message body(Check& c, const wire::LeaseRenewal& w) {
   coalition::LeaseRenewal m;
   m.round = round(w.round());
-  m.members = c.each(w.members(), coalition::kMembersMax,
-                     [](Check&, std::uint16_t id) { return VehicleId{id}; });
+  const auto vehicle = [](Check&, std::uint16_t id) { return VehicleId{id}; };
+  m.site = SiteId{w.site()};
+  m.members = c.each(w.members(), coalition::kMembersMax, vehicle);
+  m.electors = c.each(w.electors(), coalition::kMembersMax, vehicle);
   m.done = c.each(w.done(), coalition::kTasksMax, task_id);
+  m.unknown = c.each(w.unknown(), coalition::kTasksMax, task_id);
+  m.sent_at = c.instant(w.sent_at_ns());
   m.lease_until = c.instant(w.lease_until_ns());
+  m.closed = w.closed();
   return m;
+}
+
+coalition::Message body(Check& c, const wire::LeadershipClaim& w) {
+  return coalition::LeadershipClaim{coalition_id(w.coalition()), VehicleId{w.claimant()},
+                                    c.instant(w.sent_at_ns())};
+}
+
+coalition::Message body(Check& c, const wire::Allegiance& w) {
+  return coalition::Allegiance{coalition_id(w.coalition()), VehicleId{w.elector()},
+                               VehicleId{w.follows()}, c.instant(w.acknowledges_ns())};
 }
 
 coalition::Message body(Check& c, const wire::MemberStatus& w) {
@@ -228,6 +250,10 @@ coalition::Message body(Check& c, const wire::CoalitionBody& w) {
       return body(c, w.lease_renewal());
     case wire::MEMBER_STATUS:
       return body(c, w.member_status());
+    case wire::LEADERSHIP_CLAIM:
+      return body(c, w.leadership_claim());
+    case wire::ALLEGIANCE:
+      return body(c, w.allegiance());
   }
   c.require(false);
   return coalition::Cancel{};

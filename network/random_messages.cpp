@@ -107,11 +107,17 @@ Site site(Random& random) {
   return s;
 }
 
+coalition::CoalitionId coalition_id(Random& random) {
+  coalition::CoalitionId id;
+  id.leader = vehicle(random);
+  id.instance = InstanceId{random.next()};
+  id.number = integer<std::uint32_t>(random);
+  return id;
+}
+
 coalition::Round round(Random& random) {
   coalition::Round r;
-  r.coalition.leader = vehicle(random);
-  r.coalition.instance = InstanceId{random.next()};
-  r.coalition.number = integer<std::uint32_t>(random);
+  r.coalition = coalition_id(random);
   r.number = integer<std::uint32_t>(random);
   return r;
 }
@@ -133,6 +139,7 @@ coalition::Message bid(Random& random) {
   coalition::Bid m;
   m.round = round(random);
   m.bidder = vehicle(random);
+  m.instance = InstanceId{random.next()};
   m.pose_at_formation.x_m = coordinate(random);
   m.pose_at_formation.y_m = coordinate(random);
   m.pose_at_formation.heading_rad = angle(random);
@@ -153,7 +160,9 @@ coalition::Message award(Random& random) {
   m.site = site(random);
   m.formed_at = instant(random);
   m.assignments = several(random, coalition::kTasksMax, assignment);
+  m.awarded_at = instant(random);
   m.lease_until = instant(random);
+  m.continues = coalition_id(random);
   return m;
 }
 
@@ -176,9 +185,31 @@ coalition::Message cancel(Random& random) {
 coalition::Message lease_renewal(Random& random) {
   coalition::LeaseRenewal m;
   m.round = round(random);
+  m.site = SiteId{integer<std::uint16_t>(random)};
   m.members = several(random, coalition::kMembersMax, vehicle);
+  m.electors = several(random, coalition::kMembersMax, vehicle);
   m.done = several(random, coalition::kTasksMax, task_id);
+  m.unknown = several(random, coalition::kTasksMax, task_id);
+  m.sent_at = instant(random);
   m.lease_until = instant(random);
+  m.closed = random.chance(0.5);
+  return m;
+}
+
+coalition::Message leadership_claim(Random& random) {
+  coalition::LeadershipClaim m;
+  m.coalition = coalition_id(random);
+  m.claimant = vehicle(random);
+  m.sent_at = instant(random);
+  return m;
+}
+
+coalition::Message allegiance(Random& random) {
+  coalition::Allegiance m;
+  m.coalition = coalition_id(random);
+  m.elector = vehicle(random);
+  m.follows = vehicle(random);
+  m.acknowledges = instant(random);
   return m;
 }
 
@@ -308,8 +339,12 @@ mission::Message random_message(std::size_t kind, Random& random) {
       return command(random);
     case 12:
       return site_report(random);
-    default:
+    case 13:
       return hazard_report(random);
+    case 14:
+      return leadership_claim(random);
+    default:
+      return allegiance(random);
   }
 }
 

@@ -96,6 +96,14 @@ wire::Round round(const coalition::Round& r) {
   return w;
 }
 
+wire::CoalitionId coalition_id(const coalition::CoalitionId& id) {
+  wire::CoalitionId w;
+  w.leader(id.leader.value);
+  w.leader_instance(id.instance.value);
+  w.number(id.number);
+  return w;
+}
+
 wire::Announcement body(const coalition::Announcement& m) {
   wire::Announcement w;
   w.round(round(m.round));
@@ -113,6 +121,7 @@ wire::Bid body(const coalition::Bid& m) {
   wire::Bid w;
   w.round(round(m.round));
   w.bidder(m.bidder.value);
+  w.instance(m.instance.value);
   w.position_at_formation(point(m.pose_at_formation.position()));
   w.heading_at_formation_rad(m.pose_at_formation.heading_rad);
   w.speed_mps(m.speed_mps);
@@ -132,7 +141,9 @@ wire::Award body(const coalition::Award& m) {
   w.site(site(m.site));
   w.formed_at_ns(ns(m.formed_at));
   w.assignments(each<wire::TaskAssignment>(m.assignments, assignment));
+  w.awarded_at_ns(ns(m.awarded_at));
   w.lease_until_ns(ns(m.lease_until));
+  w.continues(coalition_id(m.continues));
   return w;
 }
 
@@ -155,9 +166,32 @@ wire::Cancel body(const coalition::Cancel& m) {
 wire::LeaseRenewal body(const coalition::LeaseRenewal& m) {
   wire::LeaseRenewal w;
   w.round(round(m.round));
-  w.members(each<std::uint16_t>(m.members, [](VehicleId id) { return id.value; }));
+  const auto value = [](VehicleId id) { return id.value; };
+  w.site(m.site.value);
+  w.members(each<std::uint16_t>(m.members, value));
+  w.electors(each<std::uint16_t>(m.electors, value));
   w.done(each<wire::TaskId>(m.done, task_id));
+  w.unknown(each<wire::TaskId>(m.unknown, task_id));
+  w.sent_at_ns(ns(m.sent_at));
   w.lease_until_ns(ns(m.lease_until));
+  w.closed(m.closed);
+  return w;
+}
+
+wire::LeadershipClaim body(const coalition::LeadershipClaim& m) {
+  wire::LeadershipClaim w;
+  w.coalition(coalition_id(m.coalition));
+  w.claimant(m.claimant.value);
+  w.sent_at_ns(ns(m.sent_at));
+  return w;
+}
+
+wire::Allegiance body(const coalition::Allegiance& m) {
+  wire::Allegiance w;
+  w.coalition(coalition_id(m.coalition));
+  w.elector(m.elector.value);
+  w.follows(m.follows.value);
+  w.acknowledges_ns(ns(m.acknowledges));
   return w;
 }
 
@@ -182,6 +216,8 @@ void set(wire::CoalitionBody& b, wire::Confirmation&& w) { b.confirmation(std::m
 void set(wire::CoalitionBody& b, wire::Cancel&& w) { b.cancel(std::move(w)); }
 void set(wire::CoalitionBody& b, wire::LeaseRenewal&& w) { b.lease_renewal(std::move(w)); }
 void set(wire::CoalitionBody& b, wire::MemberStatus&& w) { b.member_status(std::move(w)); }
+void set(wire::CoalitionBody& b, wire::LeadershipClaim&& w) { b.leadership_claim(std::move(w)); }
+void set(wire::CoalitionBody& b, wire::Allegiance&& w) { b.allegiance(std::move(w)); }
 
 }  // namespace
 

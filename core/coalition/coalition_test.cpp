@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -26,19 +27,22 @@ Site site_with(std::size_t deliveries, std::size_t assessments) {
   return site;
 }
 
-/// One leader and some vehicles on a network that a test can make unreliable. Time moves in steps
-/// of 10 ms. Tasks are given to bidders in order of id; each takes as long as the test says.
+/// Some vehicles on a network that a test can make unreliable; vehicle 1 leads, as long as it can.
+/// Time moves in steps of 10 ms. Tasks are given to bidders in order of id; each takes as long as
+/// the test says.
 class Team {
  public:
   using Fault =
       std::function<int(const Message&, VehicleId to)>;  ///< copies that arrive; 1 is perfect
+  using Cut = std::function<bool(VehicleId from, VehicleId to)>;
 
   Team(std::size_t vehicles, Site site) : site_{std::move(site)} {
     for (std::uint16_t i = 1; i <= vehicles; ++i) {
       members_.emplace(VehicleId{i}, Member{Participant{params, VehicleId{i}}});
     }
-    initiator_ = std::make_unique<Initiator>(params, CoalitionId{VehicleId{1}, InstanceId{1}, 1},
-                                             site_, Vec2{0, 0}, now);
+    auto& founder = members_.at(VehicleId{1});
+    founder.leads = std::make_unique<Initiator>(params, CoalitionId{VehicleId{1}, InstanceId{1}, 1},
+                                                site_, std::vector<TaskId>{}, Vec2{0, 0}, now);
     drain();
   }
 
@@ -46,9 +50,11 @@ class Team {
     for (const Instant end = now + d; now < end;) {
       now += 10ms;
       deliver_due();
-      if (leader_alive) initiator_->on_timeout(now);
       for (auto& [id, m] : members_) {
-        if (!silent.contains(id)) m.participant.on_timeout(now);
+        if (dead.contains(id)) continue;
+        m.participant.set_may_lead(!m.leads);
+        if (m.leads) m.leads->on_timeout(now);
+        m.participant.on_timeout(now);
       }
       work();
       drain();
@@ -63,23 +69,43 @@ class Team {
     return condition();
   }
 
-  [[nodiscard]] Initiator& leader() { return *initiator_; }
+  /// The founder, while it leads.
+  [[nodiscard]] Initiator& leader() { return *members_.at(VehicleId{1}).leads; }
+  /// Those that lead and work.
+  [[nodiscard]] std::vector<VehicleId> leaders() const {
+    std::vector<VehicleId> all;
+    for (const auto& [id, m] : members_) {
+      const bool leads = m.leads && m.leads->state() != Initiator::State::closed;
+      if (leads && !dead.contains(id)) all.push_back(id);
+    }
+    return all;
+  }
+  /// The operator grants whatever stands.
+  void authorise_all() {
+    for (auto& [id, m] : members_) {
+      if (m.leads) granted_.insert(m.leads->round());
+      if (m.leads) m.leads->authorised(m.leads->round());
+    }
+  }
   [[nodiscard]] Participant& vehicle(std::uint16_t id) {
     return members_.at(VehicleId{id}).participant;
   }
   [[nodiscard]] bool everyone_free() const {
-    return std::all_of(members_.begin(), members_.end(),
-                       [](const auto& m) { return m.second.participant.free(); });
+    return std::all_of(members_.begin(), members_.end(), [&](const auto& m) {
+      return dead.contains(m.first) || m.second.participant.free();
+    });
   }
 
   Instant now{};
   ProtocolParams params;
   Fault fault = [](const Message&, VehicleId) { return 1; };
   std::function<Duration()> delay = [] { return Duration{50ms}; };
-  std::set<VehicleId> silent;     ///< neither send nor hear nor work
+  Cut cut = [](VehicleId, VehicleId) { return false; };
+  std::set<VehicleId> silent;     ///< neither send nor hear; they work on
+  std::set<VehicleId> dead;       ///< neither send nor hear nor work
   std::set<VehicleId> unwilling;  ///< do not bid
   std::set<VehicleId> unable;     ///< refuse awards
-  bool leader_alive = true;
+  bool all_or_none = true;        ///< is a plan for some of the tasks no plan?
   Duration task_takes = 4s;
   std::map<TaskId, int> flown;  ///< how often each task was done
   std::vector<Initiator::Output> leader_outputs;
@@ -88,24 +114,26 @@ class Team {
  private:
   struct Member {
     Participant participant;
+    std::unique_ptr<Initiator> leads{};
     std::map<TaskId, Instant> held{};  ///< leases, by expiry, as the vehicle believes
     std::map<TaskId, Instant> due{};   ///< when its tasks will be done
   };
   struct Packet {
     Instant at;
+    VehicleId from;
     VehicleId to;
     Message message;
   };
 
   void post(const Message& message, VehicleId from) {
-    if (silent.contains(from)) return;
     for (auto& [to, m] : members_) {
       if (to == from) {
-        inbox_.push_back({now, to, message});
+        inbox_.push_back({now, from, to, message});
         continue;
       }
+      if (silent.contains(from) || dead.contains(from) || cut(from, to)) continue;
       for (int copies = fault(message, to); copies > 0; --copies) {
-        inbox_.push_back({now + delay(), to, message});
+        inbox_.push_back({now + delay(), from, to, message});
       }
     }
   }
@@ -119,53 +147,75 @@ class Team {
       inbox_.erase(inbox_.begin());
     }
     for (const auto& p : due) {
-      if (silent.contains(p.to)) continue;
+      if (dead.contains(p.to) || (silent.contains(p.to) && p.from != p.to)) continue;
       receive(p.to, p.message);
       drain();
     }
   }
 
   void receive(VehicleId to, const Message& message) {
-    auto& participant = members_.at(to).participant;
-    const bool leads = to == VehicleId{1} && leader_alive;
-    if (const auto* a = std::get_if<Announcement>(&message)) participant.on_announcement(*a, now);
-    if (const auto* a = std::get_if<Award>(&message)) participant.on_award(*a, now);
-    if (const auto* c = std::get_if<Cancel>(&message)) participant.on_cancel(*c, now);
-    if (const auto* l = std::get_if<LeaseRenewal>(&message)) participant.on_lease_renewal(*l, now);
-    if (!leads) return;
-    if (const auto* b = std::get_if<Bid>(&message)) initiator_->on_bid(*b, now);
-    if (const auto* c = std::get_if<Confirmation>(&message)) initiator_->on_confirmation(*c, now);
-    if (const auto* s = std::get_if<MemberStatus>(&message)) initiator_->on_status(*s, now);
+    Member& m = members_.at(to);
+    if (const auto* a = std::get_if<Announcement>(&message)) {
+      if (m.leads) m.leads->on_rival(a->round, false, now);
+      m.participant.on_announcement(*a, now);
+    } else if (const auto* w = std::get_if<Award>(&message)) {
+      if (m.leads) m.leads->on_rival(w->round, true, now);
+      m.participant.on_award(*w, now);
+    } else if (const auto* c = std::get_if<Cancel>(&message)) {
+      m.participant.on_cancel(*c, now);
+    } else if (const auto* l = std::get_if<LeaseRenewal>(&message)) {
+      if (m.leads) m.leads->on_rival(l->round, l->stands(), now);
+      m.participant.on_lease_renewal(*l, now);
+    } else if (const auto* n = std::get_if<LeadershipClaim>(&message)) {
+      m.participant.on_claim(*n, now);
+    } else if (const auto* g = std::get_if<Allegiance>(&message)) {
+      if (m.leads) m.leads->on_allegiance(*g, now);
+      m.participant.on_allegiance(*g, now);
+    } else if (const auto* s = std::get_if<MemberStatus>(&message)) {
+      if (m.leads) m.leads->on_status(*s, now);
+      m.participant.on_status(*s);
+    } else if (const auto* b = std::get_if<Bid>(&message)) {
+      if (m.leads) m.leads->on_bid(*b, now);
+    } else if (const auto* f = std::get_if<Confirmation>(&message)) {
+      if (m.leads) m.leads->on_confirmation(*f, now);
+    }
   }
 
   void drain() {
-    while (leader_alive) {
-      if (const auto m = initiator_->poll_message()) {
-        post(*m, VehicleId{1});
-      } else if (const auto o = initiator_->poll_output()) {
-        leader_outputs.push_back(*o);
-        if (const auto* wanted = std::get_if<Initiator::AllocationWanted>(&*o)) allocate(*wanted);
-      } else {
-        break;
-      }
-    }
     for (auto& [id, m] : members_) {
+      if (dead.contains(id)) continue;
+      while (m.leads) {
+        if (const auto message = m.leads->poll_message()) {
+          post(*message, id);
+        } else if (const auto o = m.leads->poll_output()) {
+          leader_outputs.push_back(*o);
+          if (const auto* wanted = std::get_if<Initiator::AllocationWanted>(&*o)) {
+            allocate(*m.leads, *wanted);
+          }
+          if (std::holds_alternative<Initiator::Superseded>(*o)) {
+            while (const auto last = m.leads->poll_message()) post(*last, id);
+            m.leads.reset();
+          }
+        } else {
+          break;
+        }
+      }
       while (const auto o = m.participant.poll_output()) answer(id, m, *o);
       while (const auto message = m.participant.poll_message()) post(*message, id);
     }
   }
 
-  void allocate(const Initiator::AllocationWanted& wanted) {
-    if (wanted.bids.size() < wanted.tasks.size()) {
-      initiator_->allocation_failed(wanted.round, "too few bids", now);
+  void allocate(Initiator& leader, const Initiator::AllocationWanted& wanted) {
+    if (wanted.bids.empty() || (all_or_none && wanted.bids.size() < wanted.tasks.size())) {
+      leader.allocation_failed(wanted.round, "too few bids", now);
       return;
     }
     std::vector<TaskAssignment> assignments;
-    for (std::size_t i = 0; i < wanted.tasks.size(); ++i) {
+    for (std::size_t i = 0; i < std::min(wanted.bids.size(), wanted.tasks.size()); ++i) {
       assignments.push_back(
           {wanted.tasks[i], wanted.bids[i].bidder, wanted.formed_at + task_takes});
     }
-    initiator_->allocated(wanted.round, assignments, now);
+    leader.allocated(wanted.round, assignments, now);
   }
 
   void answer(VehicleId id, Member& m, const Participant::Output& output) {
@@ -186,14 +236,21 @@ class Team {
       m.held[granted->task] = granted->until;
     } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
       m.held.erase(ended->task);
-      m.due.erase(ended->task);
+      if (!ended->held) m.due.erase(ended->task);
+    } else if (std::holds_alternative<Participant::Released>(output)) {
+      m.due.clear();
+    } else if (const auto* won = std::get_if<Participant::LeadershipWon>(&output)) {
+      if (m.leads) return;
+      const CoalitionId next{id, InstanceId{1}, ++founded_};
+      m.leads = std::make_unique<Initiator>(params, next, *won, granted_.contains(won->plan.round),
+                                            Vec2{0, 0}, now);
     }
   }
 
   /// Vehicles fly their tasks, whether anybody hears them or not, as long as they hold the lease.
   void work() {
     for (auto& [id, m] : members_) {
-      if (silent.contains(id)) continue;
+      if (dead.contains(id)) continue;
       const auto due = m.due;
       for (const auto& [task, when] : due) {
         if (now < when || !m.participant.holds(task, now, now)) continue;
@@ -206,6 +263,7 @@ class Team {
   void check_leases() {
     std::map<TaskId, int> owners;
     for (const auto& [id, m] : members_) {
+      if (dead.contains(id)) continue;
       for (const auto& [task, until] : m.held) owners[task] += until > now ? 1 : 0;
     }
     for (const auto& [task, count] : owners) lease_conflicts += count > 1 ? 1 : 0;
@@ -213,7 +271,8 @@ class Team {
 
   Site site_;
   std::map<VehicleId, Member> members_;
-  std::unique_ptr<Initiator> initiator_;
+  std::set<Round> granted_;
+  std::uint32_t founded_ = 1;
   std::vector<Packet> inbox_;
 };
 
@@ -278,7 +337,7 @@ TEST(Coalition, ASilentMembersTaskIsGivenAwayOnlyAfterItsLease) {
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
   team.run_for(2s);
-  team.silent = {VehicleId{2}};
+  team.dead = {VehicleId{2}};
   const Instant fell_silent = team.now;
   ASSERT_TRUE(
       team.run_until([&] { return count<Initiator::TaskLost>(team.leader_outputs) == 1; }, 30s));
@@ -298,7 +357,7 @@ TEST(Coalition, AnAuthorisedDeliveryThatMayHaveBeenFlownIsNotFlownAgain) {
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
   team.leader().authorised(team.leader().round());
-  team.silent = {VehicleId{2}};
+  team.dead = {VehicleId{2}};
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 40s));
   EXPECT_EQ(count<Initiator::TaskUnknown>(team.leader_outputs), 1);
@@ -323,10 +382,63 @@ TEST(Coalition, WithoutItsLeaderAMemberIsFreeWhenTheLeaseHasRunOut) {
   team.task_takes = 60s;
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
-  team.leader_alive = false;
-  team.run_for(team.params.lease + 1s);
+  // The two others are no majority of four.
+  team.dead = {VehicleId{1}, VehicleId{2}};
+  team.run_for(team.params.lease + team.params.succession_time() + 1s);
   EXPECT_TRUE(team.everyone_free());
   EXPECT_TRUE(team.flown.empty());
+}
+
+TEST(Coalition, ALostLeaderIsReplacedAndItsPlanHeld) {
+  Team team{5, site_with(4, 0)};
+  team.task_takes = 40s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.run_for(5s);
+  team.dead = {VehicleId{1}};
+  ASSERT_TRUE(team.run_until([&] { return !team.leaders().empty(); },
+                             team.params.lease + team.params.silence));
+  EXPECT_EQ(team.leaders(), std::vector{VehicleId{2}}) << "the lowest id that is left";
+  // Three of the four tasks are flown at the time of the first plan, the fourth is given away.
+  ASSERT_TRUE(team.run_until([&] { return team.flown.size() == 3; }, 30s));
+  EXPECT_LT(team.now, Instant{} + 45s);
+  ASSERT_TRUE(team.run_until([&] { return team.leaders().empty(); }, 120s));
+  EXPECT_EQ(team.flown.size(), 4U);
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+  EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, ALeaderThatWasCutOffGivesUpWhenItHearsItsSuccessor) {
+  Team team{5, site_with(4, 0)};
+  team.task_takes = 70s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.run_for(5s);
+  const auto alone = [](VehicleId id) { return id == VehicleId{1}; };
+  team.cut = [&](VehicleId from, VehicleId to) { return alone(from) != alone(to); };
+  ASSERT_TRUE(team.run_until([&] { return team.leaders().size() == 2; }, 25s));
+  team.run_for(10s);
+  EXPECT_EQ(team.leaders().size(), 2U);
+  team.cut = [](VehicleId, VehicleId) { return false; };
+  team.run_for(3s);
+  EXPECT_EQ(team.leaders(), std::vector{VehicleId{2}});
+  ASSERT_TRUE(team.run_until([&] { return team.leaders().empty(); }, 200s));
+  EXPECT_EQ(team.flown.size(), 4U);
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+  EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, WithoutAMajorityTheLeaderWaitsBeforeItStartsAnew) {
+  Team team{6, site_with(4, 0)};
+  team.task_takes = 30s;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.run_for(5s);
+  team.dead = {VehicleId{2}, VehicleId{3}, VehicleId{4}};
+  const Instant lost = team.now;
+  ASSERT_TRUE(team.run_until([&] { return team.leader().round().number > 1; }, 120s));
+  EXPECT_GE(team.now, lost + team.params.cut_max);
+  EXPECT_EQ(team.lease_conflicts, 0);
 }
 
 TEST(Coalition, CloseReleasesEveryone) {
@@ -339,51 +451,73 @@ TEST(Coalition, CloseReleasesEveryone) {
   EXPECT_TRUE(team.everyone_free());
 }
 
-/// Loss, doubling, delay, reordering and silence at random, then a network that works: at no time
-/// has a task two owners, no delivery is flown twice, and in the end nothing is forgotten.
-TEST(Coalition, RandomFaultsBreakNoInvariantAndAllIsDoneOnceTheyEnd) {
-  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random{seed};
-    Team team{6, site_with(3, 2)};
-    const double loss = random.uniform(0.0, 0.6);
-    const double twice = random.uniform(0.0, 0.3);
-    const double slow = random.uniform(0.01, 0.4);
-    team.task_takes = from_seconds(random.uniform(3.0, 30.0));
-    bool faults = true;
-    team.fault = [&](const Message&, VehicleId) {
-      if (!faults) return 1;
-      return random.chance(loss) ? 0 : (random.chance(twice) ? 2 : 1);
-    };
-    team.delay = [&] { return from_seconds(faults ? random.uniform(0.0, slow) : 0.05); };
-    for (int i = 0; i < 20; ++i) {
-      for (int k = 0; k < 200; ++k) {
-        team.run_for(10ms);
-        team.leader().authorised(team.leader().round());
-      }
-      team.silent.clear();
-      if (random.chance(0.3))
-        team.silent.insert(VehicleId{static_cast<std::uint16_t>(2 + random.index(5))});
+/// Loss, doubling, delay, reordering, silence, cuts and deaths at random, then a network that
+/// works: at no time has a task two owners, no delivery is flown twice, and in the end nothing is
+/// forgotten by those who live. A coalition that has lost its leader and its majority is the
+/// vehicle agent's to find again.
+void fly_with_random_faults(std::uint64_t seed) {
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  Random random{seed};
+  Team team{8, site_with(3, 2)};
+  const double loss = random.uniform(0.0, 0.6);
+  const double twice = random.uniform(0.0, 0.3);
+  const double slow = random.uniform(0.01, 0.4);
+  const bool leader_dies = random.chance(0.3);
+  team.all_or_none = false;
+  team.task_takes = from_seconds(random.uniform(3.0, 60.0));
+  bool faults = true;
+  team.fault = [&](const Message&, VehicleId) {
+    if (!faults) return 1;
+    return random.chance(loss) ? 0 : (random.chance(twice) ? 2 : 1);
+  };
+  team.delay = [&] { return from_seconds(faults ? random.uniform(0.0, slow) : 0.05); };
+  const auto anyone = [&] { return VehicleId{static_cast<std::uint16_t>(1 + random.index(8))}; };
+  std::set<VehicleId> far;
+  team.cut = [&](VehicleId from, VehicleId to) { return far.contains(from) != far.contains(to); };
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 200; ++k) {
+      team.run_for(10ms);
+      team.authorise_all();
     }
-    faults = false;
     team.silent.clear();
-    ASSERT_TRUE(
-        team.run_until([&] { return team.leader().state() == Initiator::State::closed; }, 120s))
-        << "state " << to_string(team.leader().state());
-    EXPECT_EQ(team.lease_conflicts, 0);
-    int unknown = 0;
+    if (random.chance(0.3)) team.silent.insert(anyone());
+    if (random.chance(0.2)) far = {anyone(), anyone(), anyone()};
+    if (random.chance(0.2)) far.clear();
+    if (i == 8 && leader_dies) team.dead.insert(VehicleId{1});
+    if (random.chance(0.03)) team.dead.insert(anyone());
+  }
+  faults = false;
+  team.silent.clear();
+  far.clear();
+  const auto flown_or_unknown = [&] {
+    std::set<TaskId> over;
+    for (const auto& [task, times] : team.flown) over.insert(task);
     for (const auto& output : team.leader_outputs) {
       const auto* u = std::get_if<Initiator::TaskUnknown>(&output);
-      if (u != nullptr && team.flown[u->assignment.task] == 0) ++unknown;
+      if (u != nullptr) over.insert(u->assignment.task);
     }
-    int done = 0;
-    for (const auto& [task, times] : team.flown) {
-      done += times > 0 ? 1 : 0;
-      if (task.kind == TaskKind::deliver) {
-        EXPECT_LE(times, 1) << to_string(task);
-      }
+    return over.size();
+  };
+  team.run_for(20s);  // those who were cut off and those who lead now have met
+  EXPECT_LE(team.leaders().size(), 1U);
+  const bool led = !team.leaders().empty();
+  if (led) {
+    ASSERT_TRUE(team.run_until([&] { return team.leaders().empty(); }, 300s));
+    EXPECT_EQ(flown_or_unknown(), 5U) << "a task was forgotten";
+  }
+  EXPECT_EQ(team.lease_conflicts, 0);
+  for (const auto& [task, times] : team.flown) {
+    if (task.kind == TaskKind::deliver) {
+      EXPECT_LE(times, 1) << to_string(task);
     }
-    EXPECT_EQ(done + unknown, 5) << "a task was forgotten";
+  }
+}
+
+TEST(Coalition, RandomFaultsBreakNoInvariantAndAllIsDoneOnceTheyEnd) {
+  const char* const wanted = std::getenv("SKEIN_FAULT_RUNS");
+  const std::uint64_t runs = wanted == nullptr ? 150 : std::strtoull(wanted, nullptr, 10);
+  for (std::uint64_t seed = 1; seed <= runs && !testing::Test::HasFailure(); ++seed) {
+    fly_with_random_faults(seed);
   }
 }
 

@@ -2,29 +2,74 @@
 #include "skein/coalition/initiator.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <utility>
 
 namespace skein::coalition {
 namespace {
-/// An award gives a short lease; it grows by renewals once the member has confirmed. So a member
-/// whose confirmation is lost frees its tasks soon.
-constexpr Duration kFirstLease = std::chrono::seconds{3};
 /// How long after a task's time its owner may still say that it has not begun.
 constexpr Duration kOverdue = std::chrono::seconds{3};
+/// How long before its time a delivery may have begun, where the owner's bid is not known.
+constexpr Duration kLongestRun = std::chrono::seconds{15};
 }  // namespace
 
 Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const Site& site,
-                     const Vec2& leader_at_formation, Instant now)
+                     const std::vector<TaskId>& done, const Vec2& leader_at_formation, Instant now)
     : params_{params}, leader_at_formation_{leader_at_formation} {
   announcement_.round.coalition = id;
   announcement_.site = site;
-  for (const auto& task : site.tasks_after_survey()) {
+  make_ledger(done);
+  start_round(now);
+}
+
+Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const Elector::Won& won,
+                     bool authorised, const Vec2& leader_at_formation, Instant now)
+    : params_{params},
+      machine_{kTable, State::awarding},
+      leader_at_formation_{leader_at_formation} {
+  announcement_.round = {id, 1};
+  announcement_.site = won.plan.site;
+  announcement_.announced_at = now;
+  announcement_.bids_until = now;
+  announcement_.formed_at = now;
+  announcement_.leader_at_formation = leader_at_formation;
+  make_ledger(won.done);
+  promised_until_ = won.promised_from + params_.lease;
+  majority_ = won.majority;
+  for (const VehicleId elector : won.supporters) {
+    electors_[elector] = won.promised_from;
+    heard_[elector] = now;
+  }
+  std::vector<TaskAssignment> held;
+  for (auto& entry : ledger_) {
+    if (entry.ownership == Ownership::done) continue;
+    const auto planned =
+        std::find_if(won.plan.assignments.begin(), won.plan.assignments.end(),
+                     [&](const TaskAssignment& a) { return a.task == entry.task; });
+    const bool in_plan = planned != won.plan.assignments.end();
+    if (in_plan && electors_.contains(planned->vehicle)) {
+      held.push_back(*planned);
+    } else if (entry.task.kind == TaskKind::deliver && authorised &&
+               (!in_plan || planned->time <= now)) {
+      entry.ownership = Ownership::unknown;  // its owner follows somebody else, or is lost
+      if (in_plan) entry.assignment = *planned;
+      outputs_.push(TaskUnknown{won.plan.round, entry.assignment});
+    }
+  }
+  send_award(std::move(held), now);
+  award_->continues = won.plan.round.coalition;
+  messages_.push(*award_);
+}
+
+void Initiator::make_ledger(const std::vector<TaskId>& done) {
+  for (const auto& task : announcement_.site.tasks_after_survey()) {
     Entry entry;
     entry.task = task;
+    entry.assignment.task = task;
+    if (std::find(done.begin(), done.end(), task) != done.end()) entry.ownership = Ownership::done;
     ledger_.push_back(entry);
   }
-  start_round(now);
 }
 
 void Initiator::start_round(Instant now) {
@@ -48,7 +93,7 @@ void Initiator::collect_open_tasks(Instant now) {
     const bool begun = entry.ownership == Ownership::leased &&
                        entry.reported == TaskState::started && entry.lease_until > now;
     const bool over = entry.ownership == Ownership::done || entry.ownership == Ownership::unknown;
-    if (!begun && !over) announcement_.tasks.push_back(entry.task);
+    if (!begun && !over && !entry.maybe_flown) announcement_.tasks.push_back(entry.task);
   }
   announcement_.reward =
       announcement_.site.reward * static_cast<double>(announcement_.tasks.size());
@@ -68,10 +113,9 @@ void Initiator::close_bids(Instant now) {
   wanted.answer_by = now + params_.allocation_time;
   deadline_ = wanted.answer_by;
   for (auto& entry : ledger_) {
-    // Who bids again has given its tasks back (Participant::bid).
-    if (entry.ownership == Ownership::leased && bids_.contains(entry.assignment.vehicle) &&
-        entry.reported == TaskState::planned) {
-      entry.ownership = Ownership::open;
+    const auto bid = bids_.find(entry.assignment.vehicle);
+    if (entry.ownership == Ownership::leased && bid != bids_.end()) {
+      take_back(entry, bid->second, now);
     }
     if (entry.ownership == Ownership::open) wanted.tasks.push_back(entry.task);
   }
@@ -83,31 +127,122 @@ void Initiator::close_bids(Instant now) {
   }
 }
 
+/// Who bids again has given back what it had not begun (Participant::bid). Who has started anew
+/// holds nothing any more, and cannot say what it had begun.
+void Initiator::take_back(Entry& entry, const Bid& bid, Instant now) {
+  const bool started_anew = bid.instance != entry.instance;
+  if (!started_anew && entry.reported != TaskState::planned) return;
+  const bool may_be_flown = started_anew && entry.task.kind == TaskKind::deliver &&
+                            authorised_rounds_.contains(entry.round.number) && now >= entry.begins;
+  if (may_be_flown || entry.maybe_flown) {
+    make_unknown(entry);
+  } else {
+    entry.ownership = Ownership::open;
+  }
+}
+
 void Initiator::allocated(const Round& round, std::vector<TaskAssignment> assignments,
                           Instant now) {
   if (round != announcement_.round || !machine_.in(State::allocating))
     return;  // too late: asked anew
+  const Instant lease_until = std::max(announcement_.formed_at, now) + params_.first_lease();
+  if (authority_until() < lease_until) {
+    not_formed(Event::allocation_failed, "too few of the coalition's electors are heard", now);
+    return;
+  }
   machine_.fire(Event::allocated);
+  send_award(std::move(assignments), now);
+  messages_.push(*award_);
+}
+
+void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now) {
   Award award;
-  award.round = round;
+  award.round = announcement_.round;
   award.site = announcement_.site;
   award.formed_at = announcement_.formed_at;
   award.assignments = std::move(assignments);
-  award.lease_until = std::max(announcement_.formed_at, now) + kFirstLease;
+  award.awarded_at = now;
+  award.lease_until =
+      std::min(authority_until(), std::max(announcement_.formed_at, now) + params_.first_lease());
+  for (auto& entry : ledger_) entry.left_over = entry.ownership == Ownership::open;
   for (const auto& a : award.assignments) {
     Entry* entry = find(a.task);
     if (entry == nullptr) continue;
     entry->ownership = Ownership::leased;
+    entry->left_over = false;
     entry->assignment = a;
-    entry->round = round;
+    entry->round = award.round;
+    entry->begins = a.time - kLongestRun;
+    const auto bid = bids_.find(a.vehicle);
+    if (bid != bids_.end()) {
+      entry->instance = bid->second.instance;
+      if (bid->second.speed_mps > 0.0) {
+        entry->begins = a.time - from_seconds(bid->second.final_approach_m / bid->second.speed_mps);
+      }
+    }
     entry->reported = TaskState::planned;
     entry->lease_until = award.lease_until;
     confirmed_[a.vehicle] = false;
   }
   deadline_ = std::max(announcement_.formed_at, now) + 2 * params_.message_delay + params_.margin;
   next_repeat_ = now + params_.message_delay;
-  award_ = award;
-  messages_.push(std::move(award));
+  award_ = std::move(award);
+}
+
+/// How far the electors' promises to follow nobody else reach: half of them, this leader included,
+/// are enough, because another leader needs more than half (Elector).
+Instant Initiator::authority_until() const {
+  const std::size_t needed = (electors_.size() + 1) / 2;
+  if (needed <= 1) return promised_until_;
+  std::vector<Instant> stamps;
+  for (const auto& [elector, stamp] : electors_) {
+    if (elector != announcement_.round.coalition.leader) stamps.push_back(stamp);
+  }
+  const auto nth = stamps.begin() + static_cast<std::ptrdiff_t>(needed - 2);
+  std::nth_element(stamps.begin(), nth, stamps.end(), std::greater<>{});
+  return *nth == Instant::min() ? *nth : std::min(promised_until_, *nth + params_.lease);
+}
+
+void Initiator::on_allegiance(const Allegiance& message, Instant now) {
+  if (message.coalition != announcement_.round.coalition) return;
+  const auto elector = electors_.find(message.elector);
+  if (elector == electors_.end() || message.elector == message.coalition.leader) return;
+  if (message.follows == VehicleId{}) {
+    electors_.erase(elector);
+  } else if (message.follows == message.coalition.leader) {
+    heard_[message.elector] = now;
+    elector->second = std::max(elector->second, message.acknowledges);
+  }
+}
+
+void Initiator::on_rival(const Round& rival, bool rival_stands, Instant now) {
+  const auto& own = announcement_.round.coalition;
+  if (rival.coalition == own || machine_.in(State::closed)) return;
+  const bool stands = !electors_.empty() && has_authority(now);
+  if (stands == rival_stands ? own < rival.coalition : stands) {
+    next_heartbeat_ = now;  // so that the other hears of it
+    return;
+  }
+  MemberStatus known{rival, own.leader, {}};
+  for (const auto& entry : ledger_) {
+    if (entry.ownership == Ownership::done) {
+      known.tasks.push_back({entry.task, TaskState::done, entry.done_at});
+    }
+  }
+  close("vehicle " + std::to_string(rival.coalition.leader.value) + " leads the site", now);
+  if (!known.tasks.empty()) messages_.push(std::move(known));
+  outputs_.push(Superseded{announcement_.round, rival.coalition});
+}
+
+/// Half of the electors have not been heard for so long that none of them can be at work under
+/// another leader: the next coalition that stands chooses its electors anew.
+void Initiator::start_anew(Instant now) {
+  const Instant until = authority_until();
+  if (until >= now) return;
+  Instant heard = until == Instant::min() ? announcement_.formed_at : until;
+  if (now < heard + params_.cut_max) return;
+  electors_.clear();
+  promised_until_ = Instant::max();
 }
 
 void Initiator::allocation_failed(const Round& round, const std::string& why, Instant now) {
@@ -150,21 +285,45 @@ void Initiator::on_confirmation(const Confirmation& message, Instant now) {
     machine_.fire(Event::confirmed);
     outputs_.push(Formed{announcement_.round, award_->assignments});
     next_heartbeat_ = now;
+    found(now);
   }
 }
 
+/// The coalition stands. Who may choose another leader is settled the first time, and again only
+/// where nobody is left who could.
+void Initiator::found(Instant now) {
+  const VehicleId self = announcement_.round.coalition.leader;
+  const bool taken_over = promised_until_ != Instant::max();
+  if (taken_over) {
+    const auto came_over = std::count_if(confirmed_.begin(), confirmed_.end(), [&](const auto& c) {
+      return c.first != self && electors_.contains(c.first);
+    });
+    if (static_cast<std::size_t>(came_over) + 1 < majority_) return;
+    promised_until_ = Instant::max();
+    electors_.clear();
+  }
+  if (electors_.size() > 1) return;
+  electors_[self] = now;
+  for (const auto& [elector, yes] : confirmed_) electors_.emplace(elector, Instant::min());
+}
+
 void Initiator::on_status(const MemberStatus& message, Instant now) {
-  if (message.round.coalition != announcement_.round.coalition) return;
-  heard_[message.member] = now;
+  const bool own = message.round.coalition == announcement_.round.coalition;
+  if (own) heard_[message.member] = now;
   for (const auto& reported : message.tasks) {
     Entry* entry = find(reported.task);
     if (entry == nullptr || entry->ownership == Ownership::done) continue;
+    if (!own && reported.state != TaskState::done && reported.state != TaskState::unknown) continue;
     const bool owner =
         entry->ownership == Ownership::leased && entry->assignment.vehicle == message.member;
     if (reported.state == TaskState::done) {  // whoever did it, it is done
       entry->ownership = Ownership::done;
       entry->assignment.vehicle = message.member;
       entry->done_at = reported.time;
+      next_heartbeat_ = now;  // who waits for it hears it at once
+    } else if (reported.state == TaskState::unknown && entry->ownership != Ownership::unknown) {
+      entry->maybe_flown = true;
+      if (entry->ownership == Ownership::open) make_unknown(*entry);
     } else if (owner && reported.state == TaskState::failed && message.round == entry->round) {
       entry->ownership = Ownership::open;
       outputs_.push(TaskLost{entry->round, entry->assignment, "its owner reports that it failed"});
@@ -181,9 +340,18 @@ void Initiator::finish_if_done() {
   });
   if (!over || !machine_.accepts(Event::all_done)) return;
   machine_.fire(Event::all_done);
-  // So that members need not go on reporting.
-  messages_.push(LeaseRenewal{announcement_.round, {}, done_tasks(), announcement_.formed_at});
+  messages_.push(farewell());
   outputs_.push(AllDone{announcement_.round});
+}
+
+LeaseRenewal Initiator::farewell() const {
+  LeaseRenewal last;
+  last.round = announcement_.round;
+  last.site = announcement_.site.id;
+  last.done = tasks_that_are(Ownership::done);
+  last.unknown = tasks_that_are(Ownership::unknown);
+  last.closed = true;
+  return last;
 }
 
 void Initiator::expire(Instant now) {
@@ -193,9 +361,8 @@ void Initiator::expire(Instant now) {
     const bool may_be_flown = entry.task.kind == TaskKind::deliver &&
                               authorised_rounds_.contains(entry.round.number) &&
                               entry.assignment.time <= entry.lease_until;
-    if (may_be_flown) {
-      entry.ownership = Ownership::unknown;
-      outputs_.push(TaskUnknown{entry.round, entry.assignment});
+    if (may_be_flown || entry.maybe_flown) {
+      make_unknown(entry);
     } else {
       entry.ownership = Ownership::open;
       outputs_.push(TaskLost{entry.round, entry.assignment, "its owner fell silent"});
@@ -204,25 +371,38 @@ void Initiator::expire(Instant now) {
   finish_if_done();
 }
 
+void Initiator::make_unknown(Entry& entry) {
+  entry.ownership = Ownership::unknown;
+  outputs_.push(TaskUnknown{entry.round, entry.assignment});
+}
+
 void Initiator::heartbeat(Instant now) {
   next_heartbeat_ = now + params_.heartbeat;
   std::set<VehicleId> members;
   for (const auto& entry : ledger_) {
-    if (entry.ownership != Ownership::leased) continue;
+    if (entry.ownership != Ownership::leased || entry.maybe_flown) continue;
     const auto confirmed = confirmed_.find(entry.assignment.vehicle);
     const bool unconfirmed =
         entry.round == announcement_.round && confirmed != confirmed_.end() && !confirmed->second;
     if (unconfirmed || !hears(entry.assignment.vehicle, now)) continue;
     members.insert(entry.assignment.vehicle);
   }
-  const Instant until = now + params_.lease;
+  LeaseRenewal renewal;
+  renewal.round = announcement_.round;
+  renewal.site = announcement_.site.id;
+  renewal.members = {members.begin(), members.end()};
+  for (const auto& [elector, stamp] : electors_) renewal.electors.push_back(elector);
+  renewal.done = tasks_that_are(Ownership::done);
+  renewal.unknown = tasks_that_are(Ownership::unknown);
+  renewal.sent_at = now;
+  renewal.lease_until =
+      std::max(announcement_.formed_at, std::min(authority_until(), now + params_.lease));
   for (auto& entry : ledger_) {
     if (entry.ownership == Ownership::leased && members.contains(entry.assignment.vehicle)) {
-      entry.lease_until = std::max(entry.lease_until, until);
+      entry.lease_until = std::max(entry.lease_until, renewal.lease_until);
     }
   }
-  messages_.push(
-      LeaseRenewal{announcement_.round, {members.begin(), members.end()}, done_tasks(), until});
+  messages_.push(std::move(renewal));
 }
 
 void Initiator::announce_again(const std::string& why, Instant now) {
@@ -245,6 +425,7 @@ void Initiator::close(const std::string& why, Instant /*now*/) {
 void Initiator::on_timeout(Instant now) {
   if (machine_.in(State::closed)) return;
   expire(now);
+  start_anew(now);
   if (now >= next_heartbeat_) heartbeat(now);
   switch (machine_.state()) {
     case State::announcing:
@@ -269,17 +450,23 @@ void Initiator::on_timeout(Instant now) {
       }
       break;
     case State::monitoring:
-      if (now >= deadline_ && machine_.fire(Event::try_again)) start_round(now);
+      if (now >= deadline_ && has_authority(now) && machine_.fire(Event::try_again)) {
+        start_round(now);
+      }
       break;
     case State::executing: {
+      const bool owned_by_anyone = std::any_of(ledger_.begin(), ledger_.end(), [](const Entry& e) {
+        return e.ownership == Ownership::leased;
+      });
       const auto needs_round = [&](const Entry& e) {
         // An owner that is heard and has not begun in time holds at its gate. One that is not heard
         // keeps its lease until that runs out.
         const bool overdue = e.ownership == Ownership::leased && e.reported == TaskState::planned &&
                              now > e.assignment.time + kOverdue && hears(e.assignment.vehicle, now);
-        return e.ownership == Ownership::open || overdue;
+        const bool waits = e.left_over && owned_by_anyone;
+        return overdue || (e.ownership == Ownership::open && !waits);
       };
-      if (std::any_of(ledger_.begin(), ledger_.end(), needs_round)) {
+      if (has_authority(now) && std::any_of(ledger_.begin(), ledger_.end(), needs_round)) {
         announce_again("tasks are open again", now);
       }
       break;
@@ -321,10 +508,10 @@ std::vector<TaskAssignment> Initiator::owned() const {
 std::optional<Message> Initiator::poll_message() { return messages_.pop(); }
 std::optional<Initiator::Output> Initiator::poll_output() { return outputs_.pop(); }
 
-std::vector<TaskId> Initiator::done_tasks() const {
+std::vector<TaskId> Initiator::tasks_that_are(Ownership ownership) const {
   std::vector<TaskId> tasks;
   for (const auto& entry : ledger_) {
-    if (entry.ownership == Ownership::done) tasks.push_back(entry.task);
+    if (entry.ownership == ownership) tasks.push_back(entry.task);
   }
   return tasks;
 }

@@ -9,19 +9,29 @@
 namespace skein::coalition {
 namespace {
 /// How long a finished task is reported to a leader that does not say that it knows.
-constexpr Duration kReportFinishedFor = std::chrono::seconds{60};
+constexpr Duration kReportFinishedFor = std::chrono::seconds{300};
+/// What was done here is remembered, for leaders that do not know; the oldest goes first.
+constexpr std::size_t kFinishedMax = 64;
+constexpr std::size_t kOverMax = 256;
+
+template <class T>
+bool contains(const std::vector<T>& all, const T& one) {
+  return std::find(all.begin(), all.end(), one) != all.end();
+}
 }  // namespace
 
 Participant::Participant(const ProtocolParams& params, VehicleId self)
-    : params_{params}, self_{self} {}
+    : params_{params}, self_{self}, elector_{params, self} {}
 
 void Participant::on_announcement(const Announcement& message, Instant now) {
   // A leader that announces what is done here has not heard of it: it is told again, and gets no
   // bid until it knows. A bid would say that the task was given back (Initiator::close_bids).
-  const bool done_here = std::any_of(finished_.begin(), finished_.end(), [&](const Finished& f) {
-    return f.entry.state == TaskState::done && std::find(message.tasks.begin(), message.tasks.end(),
-                                                         f.entry.task) != message.tasks.end();
-  });
+  bool done_here = false;
+  for (auto& f : finished_) {
+    if (f.entry.state != TaskState::done || !contains(message.tasks, f.entry.task)) continue;
+    done_here = true;
+    f.report_until = now + kReportFinishedFor;
+  }
   if (done_here) {
     send_status(now);
     return;
@@ -31,13 +41,18 @@ void Participant::on_announcement(const Announcement& message, Instant now) {
     messages_.push(*bid_);
     return;
   }
-  if (now >= message.bids_until) return;
+  // By the leader's clock it may still be time.
+  if (now >= message.bids_until + params_.clock_guard) return;
   const bool newer_of_mine =
       message.round.coalition == round_.coalition && message.round.number > round_.number;
   if (machine_.in(State::free)) {
     outputs_.push(BidWanted{message});
   } else if (machine_.in(State::member)) {
     if (newer_of_mine && !task_in_progress()) outputs_.push(BidWanted{message});
+  } else if (machine_.in(State::orphaned)) {  // whoever leads the site now plans it anew
+    if (message.site.id == award_->site.id && !task_in_progress()) {
+      outputs_.push(BidWanted{message});
+    }
   } else if (newer_of_mine) {  // bidding: the round that was bid in has come to nothing
     leave(Event::new_round, "the leader opened another round");
     outputs_.push(BidWanted{message});
@@ -64,21 +79,24 @@ void Participant::decline(const Announcement& announcement) {
 }
 
 void Participant::on_award(const Award& message, Instant now) {
-  if (message.round != round_) return;
-  if (confirmation_ && !machine_.in(State::bidding) && !machine_.in(State::rebidding)) {
+  const bool goes_on = machine_.in(State::orphaned) && elector_.succeeds(message);
+  if (message.round != round_ && !goes_on) return;
+  if (!goes_on && confirmation_ && !machine_.in(State::bidding) && !machine_.in(State::rebidding)) {
     messages_.push(*confirmation_);  // the leader has not heard it
     return;
   }
-  if (!machine_.in(State::bidding) && !machine_.in(State::rebidding)) return;
+  if (!machine_.in(State::bidding) && !machine_.in(State::rebidding) && !goes_on) return;
   std::vector<TaskAssignment> mine;
   for (const auto& a : message.assignments) {
     if (a.vehicle == self_) mine.push_back(a);
   }
   if (mine.empty() || now >= message.lease_until) {
-    leave(Event::not_awarded, mine.empty() ? "not needed" : "the award came too late");
+    if (!goes_on)
+      leave(Event::not_awarded, mine.empty() ? "not needed" : "the award came too late");
     return;
   }
   if (!machine_.fire(Event::award_received)) return;
+  round_ = message.round;
   award_ = message;
   outputs_.push(AwardReceived{message, std::move(mine)});
 }
@@ -89,9 +107,16 @@ void Participant::accept(Instant now) {
   for (const auto& a : award_->assignments) {
     if (a.vehicle != self_) continue;
     std::erase_if(finished_, [&](const Finished& f) { return f.entry.task == a.task; });
-    leases_.push_back({a.task, TaskState::planned, award_->lease_until});
+    // Of a plan that was held for a successor, what has begun goes on.
+    const auto held = std::find_if(leases_.begin(), leases_.end(),
+                                   [&](const Lease& l) { return l.task == a.task; });
+    const TaskState state = held == leases_.end() ? TaskState::planned : held->state;
+    if (held != leases_.end()) leases_.erase(held);
+    leases_.push_back({a.task, state, award_->lease_until});
     outputs_.push(LeaseGranted{round_, a.task, award_->lease_until});
   }
+  std::erase_if(leases_, [now](const Lease& l) { return l.until <= now; });
+  elector_.accepted(*award_);
   confirmation_ = Confirmation{round_, self_, true, {}};
   messages_.push(*confirmation_);
   next_status_ = now + params_.heartbeat;
@@ -109,15 +134,23 @@ void Participant::on_cancel(const Cancel& message, Instant /*now*/) {
 }
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
-  std::erase_if(finished_, [&](const Finished& f) {
-    return f.round.coalition == message.round.coalition &&
-           std::find(message.done.begin(), message.done.end(), f.entry.task) != message.done.end();
-  });
-  if (std::find(message.members.begin(), message.members.end(), self_) == message.members.end())
-    return;
+  elector_.on_lease_renewal(message, now);
+  for (const auto& task : message.done) note_over(task);
+  for (const auto& task : message.unknown) note_over(task);
+  for (auto& f : finished_) {
+    const bool concerned =
+        f.entry.state == TaskState::done || f.round.coalition == message.round.coalition;
+    if (concerned && contains(message.done, f.entry.task)) f.report_until = now;
+  }
+  if (!contains(message.members, self_)) return;
   if (message.round.coalition != round_.coalition || message.round.number < round_.number) return;
+  if (award_ && message.sent_at <= award_->awarded_at) return;
+  // Renewals were lost, and the leader still counts on the plan that is held for a successor.
+  const bool heard_again = machine_.in(State::orphaned) && message.round == round_ &&
+                           message.lease_until > now && elector_.follows_leader();
+  if (heard_again) machine_.fire(Event::leader_heard);
   for (auto& lease : leases_) {
-    if (lease.until <= now || message.lease_until <= lease.until) continue;
+    if ((lease.until <= now && !heard_again) || message.lease_until <= lease.until) continue;
     lease.until = message.lease_until;
     outputs_.push(LeaseGranted{round_, lease.task, lease.until});
   }
@@ -127,16 +160,77 @@ void Participant::on_timeout(Instant now) {
   if ((machine_.in(State::bidding) || machine_.in(State::rebidding)) && now >= bidding_until_) {
     leave(Event::no_award, "no award came");
   }
-  const auto ran_out = [now](const Lease& lease) { return lease.until <= now; };
-  if (std::any_of(leases_.begin(), leases_.end(), ran_out)) {
-    for (const auto& lease : leases_) {
-      if (ran_out(lease)) outputs_.push(LeaseEnded{round_, lease.task, "the lease ran out"});
+  if (machine_.in(State::orphaned)) {
+    if (now >= orphaned_until_) {
+      for (const auto& lease : leases_) give_up(lease, now);
+      leases_.clear();
+      leave(Event::released, "no successor of the leader came");
     }
-    std::erase_if(leases_, ran_out);
-    if (leases_.empty() && machine_.in(State::member)) leave(Event::released, "the lease ran out");
+  } else {
+    expire_leases(now);
   }
-  std::erase_if(finished_, [now](const Finished& f) { return f.report_until <= now; });
-  if (now >= next_status_ && (!leases_.empty() || !finished_.empty())) send_status(now);
+  elector_.on_timeout(now);
+  while (auto message = elector_.poll_message()) messages_.push(std::move(*message));
+  if (auto won = elector_.poll_won()) outputs_.push(std::move(*won));
+  std::erase_if(finished_, [now](const Finished& f) {
+    return f.entry.state != TaskState::done && f.report_until <= now;
+  });
+  if (finished_.size() > kFinishedMax) finished_.erase(finished_.begin());
+  if (now >= next_status_ && has_news(now)) send_status(now);
+}
+
+void Participant::expire_leases(Instant now) {
+  const auto ran_out = [now](const Lease& lease) { return lease.until <= now; };
+  if (std::none_of(leases_.begin(), leases_.end(), ran_out)) return;
+  // What has begun is left: nobody may fly a task without its lease.
+  const bool held = machine_.in(State::member) && elector_.awaits_successor() &&
+                    !task_in_progress() && std::all_of(leases_.begin(), leases_.end(), ran_out);
+  for (const auto& lease : leases_) {
+    if (ran_out(lease)) outputs_.push(LeaseEnded{round_, lease.task, "the lease ran out", held});
+  }
+  if (held) {
+    machine_.fire(Event::leader_lost);
+    orphaned_until_ = now + params_.succession_time();
+    return;
+  }
+  for (const auto& lease : leases_) {
+    if (ran_out(lease)) give_up(lease, now);
+  }
+  std::erase_if(leases_, ran_out);
+  if (leases_.empty() && machine_.in(State::member)) leave(Event::released, "the lease ran out");
+}
+
+/// The leader may count on a lease for longer than it was heard to: it is told otherwise.
+void Participant::give_up(const Lease& lease, Instant now) {
+  finished_.push_back({round_, {lease.task, TaskState::failed, now}, now + params_.lease});
+}
+
+void Participant::on_status(const MemberStatus& message) {
+  elector_.on_status(message);
+  for (const auto& entry : message.tasks) {
+    if (entry.state == TaskState::done) note_over(entry.task);
+  }
+}
+
+void Participant::note_over(const TaskId& task) {
+  if (contains(over_, task)) return;
+  over_.push_back(task);
+  if (over_.size() > kOverMax) over_.erase(over_.begin());
+}
+
+bool Participant::knows_over(const TaskId& task) const { return contains(over_, task); }
+
+void Participant::on_claim(const LeadershipClaim& message, Instant now) {
+  elector_.on_claim(message, now);
+}
+
+void Participant::on_allegiance(const Allegiance& message, Instant now) {
+  elector_.on_allegiance(message, now);
+}
+
+bool Participant::has_news(Instant now) const {
+  return !leases_.empty() || std::any_of(finished_.begin(), finished_.end(),
+                                         [now](const Finished& f) { return f.report_until > now; });
 }
 
 bool Participant::task_in_progress() const {
@@ -168,10 +262,10 @@ void Participant::finish(const TaskId& task, TaskState state, Instant now) {
       std::find_if(leases_.begin(), leases_.end(), [&](const Lease& l) { return l.task == task; });
   if (lease == leases_.end()) return;
   leases_.erase(lease);
-  outputs_.push(LeaseEnded{round_, task, std::string{to_string(state)}});
+  outputs_.push(LeaseEnded{round_, task, std::string{to_string(state)}, false});
   finished_.push_back({round_, {task, state, now}, now + kReportFinishedFor});
   send_status(now);
-  if (leases_.empty() && machine_.in(State::member)) {
+  if (leases_.empty() && (machine_.in(State::member) || machine_.in(State::orphaned))) {
     leave(Event::released, "its tasks are " + std::string{to_string(state)});
   }
 }
@@ -186,7 +280,7 @@ void Participant::end_leases(const std::string& why, bool unstarted_only) {
     return !unstarted_only || l.state == TaskState::planned;
   };
   for (const auto& lease : leases_) {
-    if (ends(lease)) outputs_.push(LeaseEnded{round_, lease.task, why});
+    if (ends(lease)) outputs_.push(LeaseEnded{round_, lease.task, why, false});
   }
   std::erase_if(leases_, ends);
 }
@@ -194,6 +288,7 @@ void Participant::end_leases(const std::string& why, bool unstarted_only) {
 void Participant::leave(Event event, const std::string& why) {
   if (!machine_.fire(event)) return;
   end_leases(why, false);
+  if (event != Event::new_round) elector_.leave();
   bid_.reset();
   award_.reset();
   outputs_.push(Released{round_, why});
@@ -207,6 +302,7 @@ void Participant::send_status(Instant now) {
     status.tasks.push_back({lease.task, lease.state, now});
   }
   for (const auto& done : finished_) {
+    if (done.report_until <= now) continue;
     auto& status = by_coalition[done.round.coalition];
     status.round = std::max(status.round, done.round);
     status.tasks.push_back(done.entry);
@@ -224,22 +320,27 @@ std::optional<Participant::Output> Participant::poll_output() { return outputs_.
 Instant Participant::next_timeout() const {
   Instant next = Instant::max();
   if (machine_.in(State::bidding) || machine_.in(State::rebidding)) next = bidding_until_;
-  for (const auto& lease : leases_) next = std::min(next, lease.until);
-  if (!leases_.empty() || !finished_.empty()) next = std::min(next, next_status_);
+  if (machine_.in(State::orphaned)) {
+    next = orphaned_until_;
+  } else {
+    for (const auto& lease : leases_) next = std::min(next, lease.until);
+  }
+  next = std::min(next, elector_.next_timeout());
+  if (has_news(next_status_)) next = std::min(next, next_status_);
   return next;
 }
 
 std::string_view to_string(Participant::State state) {
-  static constexpr std::array<std::string_view, 5> kNames{"free", "bidding", "deciding", "member",
-                                                          "rebidding"};
+  static constexpr std::array<std::string_view, 6> kNames{"free",   "bidding",   "deciding",
+                                                          "member", "rebidding", "orphaned"};
   static_assert(kNames.size() == static_cast<std::size_t>(Participant::State::count));
   return kNames.at(static_cast<std::size_t>(state));
 }
 
 std::string_view to_string(Participant::Event event) {
-  static constexpr std::array<std::string_view, 8> kNames{"bid",      "award_received", "accepted",
-                                                          "refused",  "not_awarded",    "no_award",
-                                                          "released", "new_round"};
+  static constexpr std::array<std::string_view, 10> kNames{
+      "bid",      "award_received", "accepted",  "refused",     "not_awarded",
+      "no_award", "released",       "new_round", "leader_lost", "leader_heard"};
   static_assert(kNames.size() == static_cast<std::size_t>(Participant::Event::count));
   return kNames.at(static_cast<std::size_t>(event));
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "skein/base/assert.hpp"
@@ -12,6 +13,8 @@ namespace skein::mission {
 namespace {
 /// A new path starts this far ahead: time for control to take it over before it turns.
 constexpr Duration kHandover = std::chrono::milliseconds{200};
+/// An orbit in wind is flown some metres off its circle.
+constexpr double kHoldClearanceM = 20.0;
 }  // namespace
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
@@ -53,17 +56,26 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
 }
 
 double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const {
-  const double radius = vehicle_.planning_radius_m();
-  for (const double side : {1.0, -1.0}) {
-    const Vec2 centre = at.position() + side * radius * left_of(unit_vector(at.heading_rad));
-    const bool clear = std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
-      // Outside the orbit, or wholly inside it.
-      const double d = (h.centre - centre).norm();
-      return d >= radius + h.radius_m || d + h.radius_m <= radius;
-    });
-    if (clear) return side / radius;
+  // The first orbit that keeps its distance; where none does, the one that keeps most.
+  double best = 1.0 / vehicle_.planning_radius_m();
+  double best_clearance = -std::numeric_limits<double>::infinity();
+  for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
+    for (const double side : {1.0, -1.0}) {
+      const double radius = factor * vehicle_.planning_radius_m();
+      const Vec2 centre = at.position() + side * radius * left_of(unit_vector(at.heading_rad));
+      double clearance = kHoldClearanceM;
+      for (const Hazard& h : hazards) {
+        const double d = (h.centre - centre).norm();
+        const double outside = d - radius - h.radius_m;
+        const double around = radius - d - h.radius_m;  // the hazard lies wholly inside the orbit
+        clearance = std::min(clearance, std::max(outside, around));
+      }
+      if (clearance <= best_clearance) continue;
+      best_clearance = clearance;
+      best = side / radius;
+    }
   }
-  return 1.0 / radius;
+  return best;
 }
 
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {

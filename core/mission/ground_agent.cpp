@@ -15,6 +15,12 @@ constexpr std::size_t kAuthorisationsMax = 64;
 constexpr std::size_t kStrangersMax = 64;
 constexpr std::size_t kInstancesMax = 8;
 constexpr std::size_t kSeenEventsMax = 8192;
+constexpr std::size_t kTasksRememberedMax = 1024;
+constexpr std::size_t kSitesRememberedMax = 64;
+// How often it passes on what a leader says, and that a site is closed.
+constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
+constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
+constexpr int kClosedTimes = 5;
 
 std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
 std::string name_of(SiteId site) { return "site " + std::to_string(site.value); }
@@ -38,6 +44,10 @@ void GroundAgent::on_message(const Message& message, VehicleId sender, Instant n
     on_request(*request, now);
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
+  } else if (const auto* said = std::get_if<coalition::Message>(&message)) {
+    if (const auto* status = std::get_if<coalition::MemberStatus>(said)) on_status(*status);
+    if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
+    if (const auto* a = std::get_if<coalition::Announcement>(said)) on_announcement(*a, now);
   }
   on_timeout(now);
 }
@@ -126,11 +136,94 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
     return !p.decision && p.request.site == request.site &&
            p.request.round.coalition == request.round.coalition;
   });
+  if (tell_what_is_over(request, now)) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
+  const Authorisation* before = granted_before(request);
+  const std::string by = before == nullptr ? "" : before->decided_by;
   pending_.push_back({request, now, std::nullopt});
+  if (!by.empty()) (void)decide(pending_.back(), true, by, now);
+}
+
+void GroundAgent::on_status(const coalition::MemberStatus& status) {
+  for (const auto& entry : status.tasks) {
+    if (entry.state != coalition::TaskState::done || done_.size() >= kTasksRememberedMax) continue;
+    done_.emplace(entry.task, entry);
+  }
+}
+
+void GroundAgent::on_renewal(const coalition::LeaseRenewal& renewal, Instant now) {
+  if (!led_.contains(renewal.site) && led_.size() >= kSitesRememberedMax) return;
+  LedSite& led = led_[renewal.site];
+  if (led.last.closed) return;
+  led.last = renewal;
+  if (!renewal.closed && now < led.passed_on_at + kLeaderPassedOn) return;
+  led.passed_on_at = now;
+  messages_.push(Message{coalition::Message{renewal}});
+}
+
+/// Somebody announces what was done: it has not heard that the site is closed.
+void GroundAgent::on_announcement(const coalition::Announcement& announcement, Instant now) {
+  const auto led = led_.find(announcement.site.id);
+  if (led == led_.end() || !led->second.last.closed) return;
+  if (now < led->second.passed_on_at + kClosedPassedOn) return;
+  led->second.passed_on_at = now;
+  messages_.push(Message{coalition::Message{led->second.last}});
+}
+
+/// True when the request has deliveries that nobody may fly again: its leader is told, and asks
+/// anew without them.
+bool GroundAgent::tell_what_is_over(const AuthorisationRequest& request, Instant now) {
+  coalition::MemberStatus over{request.round, kGroundStation, {}};
+  for (const auto& delivery : request.deliveries) {
+    const TaskId& task = delivery.assignment.task;
+    const auto done = done_.find(task);
+    const auto granted = granted_.find(task);
+    if (done != done_.end()) {
+      over.tasks.push_back(done->second);
+    } else if (granted != granted_.end() && !granted->second.given_up &&
+               granted->second.round.coalition != request.round.coalition &&
+               granted->second.assignment.time <= now) {
+      over.tasks.push_back({task, coalition::TaskState::unknown, granted->second.assignment.time});
+    }
+  }
+  if (over.tasks.empty()) return false;
+  messages_.push(Message{coalition::Message{std::move(over)}});
+  return true;
+}
+
+/// The grant that has every delivery of the request as it stands: same vehicle, time and bearing.
+const Authorisation* GroundAgent::granted_before(const AuthorisationRequest& request) const {
+  std::optional<coalition::Round> round;
+  for (const auto& delivery : request.deliveries) {
+    const auto granted = granted_.find(delivery.assignment.task);
+    if (granted == granted_.end()) return nullptr;
+    const auto& was = granted->second;
+    const bool same = was.assignment.vehicle == delivery.assignment.vehicle &&
+                      was.assignment.time == delivery.assignment.time &&
+                      was.bearing_rad == delivery.bearing_rad;
+    if (!same || (round && *round != was.round)) return nullptr;
+    round = was.round;
+  }
+  for (const auto& pending : pending_) {
+    if (round && pending.request.round == *round && pending.decision) return &*pending.decision;
+  }
+  return nullptr;
 }
 
 void GroundAgent::on_event(const MissionEvent& event) {
+  const bool lost = event.kind == EventKind::lease_ended &&
+                    event.text != coalition::to_string(coalition::TaskState::done);
+  const bool gives_up =
+      lost || event.kind == EventKind::task_failed || event.kind == EventKind::authorisation_late;
+  const auto granted = granted_.find(event.task);
+  if (gives_up && granted != granted_.end() && granted->second.round == event.round &&
+      granted->second.assignment.vehicle == event.vehicle) {
+    granted->second.given_up = true;
+  }
+  if (event.kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
+    done_.emplace(event.task, coalition::MemberStatus::Entry{event.task, coalition::TaskState::done,
+                                                             event.time});
+  }
   if (!seen_events_.emplace(event.time, event.vehicle, event.kind, event.task, event.text).second) {
     return;
   }
@@ -173,6 +266,11 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
       return Error{"two vehicles answer to the id of " + name_of(member->first) +
                    ", which is part of this plan; stop or renumber one of them first"};
     }
+  }
+  for (const auto& delivery : request.deliveries) {
+    if (!granted) break;
+    granted_.insert_or_assign(delivery.assignment.task, Granted{request.round, delivery.assignment,
+                                                                delivery.bearing_rad, false});
   }
   pending.decision = Authorisation{request.round, request.site, granted, by, now};
   report(granted ? EventKind::authorised : EventKind::authorisation_refused, request.round,
@@ -244,6 +342,14 @@ void GroundAgent::send_again(Instant now) {
       next_repeat_ = now + kAuthorisationRepeat;
     }
   }
+  for (auto& [site, led] : led_) {
+    const bool due = led.last.closed && led.times_closed < kClosedTimes &&
+                     now >= led.passed_on_at + kClosedPassedOn;
+    if (!due) continue;
+    ++led.times_closed;
+    led.passed_on_at = now;
+    messages_.push(Message{coalition::Message{led.last}});
+  }
   for (auto& sent : commands_) {
     if (now < sent.next) continue;
     messages_.push(Message{sent.command});
@@ -258,6 +364,11 @@ std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
 Instant GroundAgent::next_timeout() const {
   Instant next = next_repeat_;
   for (const auto& sent : commands_) next = std::min(next, sent.next);
+  for (const auto& [site, led] : led_) {
+    if (led.last.closed && led.times_closed < kClosedTimes) {
+      next = std::min(next, led.passed_on_at + kClosedPassedOn);
+    }
+  }
   for (const auto& [vehicle, entry] : fleet_) {
     if (entry.telemetry && !entry.silent) next = std::min(next, entry.heard_at + config_.silence);
     if (!entry.duplicate) continue;

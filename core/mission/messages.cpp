@@ -14,7 +14,7 @@ std::string_view to_string(Activity activity) {
 }
 
 std::string_view to_string(EventKind kind) {
-  static constexpr std::array<std::string_view, 29> kNames{"site_detected",
+  static constexpr std::array<std::string_view, 30> kNames{"site_detected",
                                                            "survey_started",
                                                            "survey_done",
                                                            "announced",
@@ -41,6 +41,7 @@ std::string_view to_string(EventKind kind) {
                                                            "hazard_known",
                                                            "conflict_yielded",
                                                            "monitoring",
+                                                           "leader_replaced",
                                                            "site_done",
                                                            "warning"};
   static_assert(kNames.size() == static_cast<std::size_t>(EventKind::count));

@@ -29,10 +29,11 @@ struct TaskFlight {
   [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
 };
 
-/// A survey on its way.
+/// A survey on its way, or (`relief`) a flight to a surveyed site whose leader is lost.
 struct SurveyFlight {
   Site site;
   planning::TaskPlan plan;
+  bool relief = false;
   bool begun = false;
 
   [[nodiscard]] Instant begin_time() const {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "flight.hpp"
+#include "site_book.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/coalition/initiator.hpp"
 #include "skein/coalition/participant.hpp"
@@ -64,14 +65,23 @@ class VehicleAgent::Impl {
   void on_site_report(const SiteReport& message, Instant now);
   void take_up_site(Instant now);
   void fly_survey(Instant now);
-  void lead(const Site& site, Instant now);
+  void take_up_lost_site(Instant now);
+  void fly_to_lost_site(Instant now);
+  [[nodiscard]] Instant unheard_since(Instant now) const;
+  void lead(const Site& site, const std::vector<TaskId>& done, Instant now);
+  void take_over(const coalition::Participant::LeadershipWon& won, Instant now);
+  void meet_rival(SiteId site, const coalition::Round& rival, bool stands, Instant now);
+  void end_closed_site(const coalition::LeaseRenewal& last, Instant now);
+  [[nodiscard]] coalition::CoalitionId next_coalition();
   void answer(const coalition::Initiator::Output& output, Instant now);
   void request_allocation(const coalition::Initiator::AllocationWanted& wanted);
   void request_authorisation(const coalition::Initiator::Formed& formed, Instant now);
   void watch_authorisation(Instant now);
   void yield_to(const coalition::Announcement& other, Instant now);
+  void say_farewell(Instant now);
   void stop_leading(Instant now);
 
+  [[nodiscard]] bool deliveries_over(const Site& site) const;
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
   [[nodiscard]] double range_left(Instant at) const;
@@ -92,8 +102,16 @@ class VehicleAgent::Impl {
   std::vector<Site> surveyed_;  ///< surveyed here, waiting to be led
   std::vector<Site> found_;     ///< found here, waiting to be surveyed
   std::set<SiteId> known_;      ///< found or announced by anybody
+  SiteBook sites_;              ///< as others lead them
   std::optional<coalition::Initiator> initiator_;
+  struct Farewell {
+    coalition::LeaseRenewal last;
+    Instant next{};
+    int times = 0;  ///< still to be said
+  };
+  std::vector<Farewell> farewells_;  ///< of the coalitions that were led here to the end
   std::uint32_t coalitions_led_ = 0;
+  std::vector<coalition::Round> granted_;  ///< rounds that the operator has authorised, newest last
   std::map<VehicleId, coalition::Bid> bids_;  ///< of the round being allocated or flown
 
   /// The request that awaits the operator's decision.

@@ -16,6 +16,11 @@ constexpr Duration kDecisionMargin = std::chrono::seconds{2};
 constexpr Duration kRequestPeriod = std::chrono::seconds{1};
 constexpr Duration kSurveyLead = std::chrono::milliseconds{200};
 constexpr std::size_t kSitesWaitingMax = 16;
+constexpr int kFarewells = 5;
+/// Who goes to lead a lost site must have this times the way there left, and goes around it at this
+/// times its planning radius at least.
+constexpr double kReliefRangeFactor = 2.0;
+constexpr double kReliefRadiusFactor = 1.2;
 
 /// "exact: J 1.7312, proven" or "colony: J 1.7312, at most 0.0040 below the optimum".
 std::string summary_of(const planning::Allocation& allocation) {
@@ -56,7 +61,7 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
   if (!surveyed_.empty()) {
     const Site site = surveyed_.front();
     surveyed_.erase(surveyed_.begin());
-    lead(site, now);
+    lead(site, sites_.done(site.id), now);
     return;
   }
   if (found_.empty()) return;
@@ -73,10 +78,54 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
            plan ? "the path has too many pieces" : plan.error().message, now);
     return;
   }
-  survey_ = SurveyFlight{site, *plan};
+  survey_ = SurveyFlight{site, *plan, false};
+}
+
+/// The stagger lets one of several free vehicles go first; its announcement calls the others off.
+Instant VehicleAgent::Impl::unheard_since(Instant now) const {
+  constexpr Duration kStagger = std::chrono::seconds{2};
+  constexpr int kRanks = 8;
+  return now - config_.protocol.cut_max - config_.vehicle.id.value % kRanks * kStagger;
+}
+
+void VehicleAgent::Impl::take_up_lost_site(Instant now) {
+  if (duplicate_id_) return;
+  const auto* lost = sites_.lost(unheard_since(now));
+  if (lost == nullptr) return;
+  const Instant start = now + kSurveyLead;
+  const Pose2 from = flight_.pose_at(start);
+  const double way_m = (lost->site.position - from.position()).norm();
+  if (range_left(start) < kReliefRangeFactor * way_m) return;
+  VehicleSpec vehicle = config_.vehicle;  // it goes around the site at any radius that it can fly
+  vehicle.sensor_radius_m =
+      std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
+  const auto plan =
+      planning::plan_survey(config_.planning, vehicle, from, start, lost->site, hazards_);
+  if (!plan ||
+      !flight_.continue_with(start, plan->timed.path, plan->timed.tail_curvature_per_m, now)) {
+    return;
+  }
+  report(EventKind::plan_changed, {}, {lost->site.id, {}, 0}, 0.0,
+         "the site's leader is lost: goes there to lead", now);
+  survey_ = SurveyFlight{lost->site, *plan, true};
+}
+
+void VehicleAgent::Impl::fly_to_lost_site(Instant now) {
+  const auto* lost = sites_.lost(survey_->site.id, unheard_since(now));
+  if (lost == nullptr) {  // its leader was heard, or nothing is left to do
+    survey_.reset();
+    flight_.search(hazards_, now);
+  } else if (now >= survey_->begin_time() + config_.protocol.silence) {  // it has listened there
+    survey_.reset();
+    lead(lost->site, lost->done, now);
+  }
 }
 
 void VehicleAgent::Impl::fly_survey(Instant now) {
+  if (survey_->relief) {
+    fly_to_lost_site(now);
+    return;
+  }
   const TaskId task{survey_->site.id, TaskKind::survey, 0};
   if (!survey_->begun && now >= survey_->begin_time()) {
     survey_->begun = true;
@@ -90,19 +139,49 @@ void VehicleAgent::Impl::fly_survey(Instant now) {
     return;
   }
   report(EventKind::survey_done, {}, task, to_seconds(survey.begin_time()), {}, survey.end_time());
-  lead(survey.site, now);
+  if (sites_.led(survey.site.id, now - config_.protocol.cut_max)) return;
+  lead(survey.site, {}, now);
 }
 
-void VehicleAgent::Impl::lead(const Site& site, Instant now) {
+void VehicleAgent::Impl::lead(const Site& site, const std::vector<TaskId>& done, Instant now) {
   if (site.tasks_after_survey().empty()) {
     report(EventKind::site_done, {}, {site.id, TaskKind::survey, 0}, 0.0, {}, now);
     return;
   }
-  const coalition::CoalitionId id{config_.vehicle.id, config_.instance, ++coalitions_led_};
-  initiator_.emplace(config_.protocol, id, site,
+  initiator_.emplace(config_.protocol, next_coalition(), site, done,
                      flight_.pose_at(now + config_.protocol.formation_time()).position(), now);
   report(EventKind::announced, initiator_->round(), {site.id, {}, 0},
          static_cast<double>(initiator_->announcement().tasks.size()), {}, now);
+}
+
+void VehicleAgent::Impl::end_closed_site(const coalition::LeaseRenewal& last, Instant now) {
+  const bool other = initiator_ && initiator_->site().id == last.site &&
+                     initiator_->round().coalition != last.round.coalition;
+  if (!other) return;
+  initiator_->close("the site is done", now);
+  stop_leading(now);
+}
+
+coalition::CoalitionId VehicleAgent::Impl::next_coalition() {
+  return {config_.vehicle.id, config_.instance, ++coalitions_led_};
+}
+
+void VehicleAgent::Impl::take_over(const coalition::Participant::LeadershipWon& won, Instant now) {
+  if (initiator_) return;
+  const bool authorised =
+      std::find(granted_.begin(), granted_.end(), won.plan.round) != granted_.end();
+  initiator_.emplace(config_.protocol, next_coalition(), won, authorised,
+                     flight_.pose_at(now + config_.protocol.formation_time()).position(), now);
+  const VehicleId lost = won.plan.round.coalition.leader;
+  report(EventKind::leader_replaced, initiator_->round(), {won.plan.site.id, {}, 0},
+         static_cast<double>(won.supporters.size()),
+         "takes over from vehicle " + std::to_string(lost.value), now);
+}
+
+void VehicleAgent::Impl::meet_rival(SiteId site, const coalition::Round& rival, bool stands,
+                                    Instant now) {
+  if (initiator_ && initiator_->site().id == site) initiator_->on_rival(rival, stands, now);
+  std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
 }
 
 void VehicleAgent::Impl::answer(const Initiator::Output& output, Instant now) {
@@ -128,8 +207,15 @@ void VehicleAgent::Impl::answer(const Initiator::Output& output, Instant now) {
            "may have been flown: vehicle " + std::to_string(unknown->assignment.vehicle.value) +
                " fell silent; the operator must look",
            now);
+  } else if (const auto* superseded = std::get_if<Initiator::Superseded>(&output)) {
+    report(EventKind::conflict_yielded, superseded->round, {site, {}, 0}, 0.0,
+           "vehicle " + std::to_string(superseded->by.leader.value) + " leads the site", now);
+    pump(now);  // its last messages
+    stop_leading(now);
   } else if (std::holds_alternative<Initiator::AllDone>(output)) {
     report(EventKind::site_done, initiator_->round(), {site, {}, 0}, 0.0, {}, now);
+    farewells_.push_back({initiator_->farewell(), now, kFarewells});
+    if (farewells_.size() > kSitesWaitingMax) farewells_.erase(farewells_.begin());
     pump(now);  // its last messages
     stop_leading(now);
   }
@@ -218,8 +304,9 @@ void VehicleAgent::Impl::watch_authorisation(Instant now) {
 void VehicleAgent::Impl::yield_to(const coalition::Announcement& other, Instant now) {
   if (!initiator_ || other.round.coalition == initiator_->round().coalition) return;
   if (initiator_->state() != Initiator::State::announcing || !initiator_->owned().empty()) return;
-  if (now >= other.bids_until) return;
+  if (now >= other.bids_until + config_.protocol.clock_guard) return;
   const auto& own = initiator_->announcement();
+  if (other.site.id == own.site.id) return;  // a rival: Initiator::on_rival
   const bool yields =
       own.reward < other.reward ||
       (own.reward == other.reward && config_.vehicle.id > other.round.coalition.leader);
@@ -229,6 +316,16 @@ void VehicleAgent::Impl::yield_to(const coalition::Announcement& other, Instant 
   surveyed_.push_back(own.site);
   initiator_->close("yields to a larger reward", now);
   stop_leading(now);
+}
+
+/// The end of a coalition is said several times, and again to whoever announces its site.
+void VehicleAgent::Impl::say_farewell(Instant now) {
+  for (auto& farewell : farewells_) {
+    if (farewell.times == 0 || now < farewell.next) continue;
+    --farewell.times;
+    farewell.next = now + config_.protocol.heartbeat;
+    messages.push(Message{coalition::Message{farewell.last}});
+  }
 }
 
 void VehicleAgent::Impl::stop_leading(Instant now) {

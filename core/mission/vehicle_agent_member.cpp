@@ -17,6 +17,8 @@ constexpr Duration kCommitLead = std::chrono::seconds{1};
 constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 /// A plan that starts now, for an award that came after the agreed moment.
 constexpr Duration kLateStart = std::chrono::milliseconds{200};
+constexpr std::size_t kGrantsMax = 64;
+constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 }  // namespace
 
 using coalition::Participant;
@@ -31,9 +33,12 @@ void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) 
            now);
   } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
     report(EventKind::lease_ended, ended->round, ended->task, 0.0, ended->why, now);
-    if (task_ && task_->assignment.task == ended->task) drop_task(now);
+    if (task_ && task_->assignment.task == ended->task && !ended->held) drop_task(now);
   } else if (const auto* released = std::get_if<Participant::Released>(&output)) {
     report(EventKind::released, released->round, {}, 0.0, released->why, now);
+    if (task_ && task_->round == released->round) drop_task(now);  // held for a successor in vain
+  } else if (const auto* won = std::get_if<Participant::LeadershipWon>(&output)) {
+    take_over(*won, now);
   }
 }
 
@@ -80,6 +85,7 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
   if (way > self.range_left_m) return Error{"not enough range left"};
 
   coalition::Bid bid;
+  bid.instance = config_.instance;
   bid.pose_at_formation = pose;
   bid.speed_mps = self.speed_mps;
   bid.planning_radius_m = self.planning_radius_m;
@@ -112,6 +118,16 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
   };
   if (award.mine.size() != 1) return refuse("it can fly one task at a time");
   const auto& mine = award.mine.front();
+  const bool goes_on = task_ && task_->assignment.task == mine.task &&
+                       task_->assignment.time == mine.time &&
+                       award.award.continues.leader.value > 0;
+  if (goes_on) {  // a successor's award: the path is flown already
+    task_->round = award.award.round;
+    task_->authorised = false;
+    report(EventKind::confirmed, task_->round, mine.task, to_seconds(mine.time), {}, now);
+    participant_.accept(now);
+    return;
+  }
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
   const Pose2 pose = flight_.pose_at(start);
@@ -135,12 +151,18 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
 }
 
 void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant now) {
+  if (message.granted &&
+      std::find(granted_.begin(), granted_.end(), message.round) == granted_.end()) {
+    granted_.push_back(message.round);
+    if (granted_.size() > kGrantsMax) granted_.erase(granted_.begin());
+  }
   if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
       task_->site.id == message.site && !task_->authorised) {
     task_->authorised = true;
     report(EventKind::authorised, message.round, task_->assignment.task, 0.0, message.decided_by,
            now);
   }
+  if (!message.granted) sites_.close(message.site);
   if (!initiator_ || !request_ || message.round != request_->round) return;
   request_.reset();
   if (message.granted) {
@@ -170,11 +192,17 @@ void VehicleAgent::Impl::fly_task(Instant now) {
   if (task_->is_delivery()) commit_delivery(now);
   const TaskId id = task_->assignment.task;
   if (!task_->begun && now >= task_->begin_time()) {
-    if (task_->is_delivery() && !task_->committed) {
-      if (!std::exchange(task_->late, true)) {
+    const bool may_begin = task_->is_delivery()
+                               ? task_->committed
+                               : participant_.holds(id, now, now) && deliveries_over(task_->site);
+    if (!may_begin || task_->late) {
+      // News of the last delivery may come a moment after the arc has begun.
+      const bool news_may_come = !task_->is_delivery() && now < task_->begin_time() + kNewsMayTake;
+      if (!news_may_come && !std::exchange(task_->late, true)) {
         report(EventKind::authorisation_late, task_->round, id, 0.0,
-               task_->authorised ? "the lease does not reach over the delivery"
-                                 : "holding at the gate",
+               !task_->is_delivery() ? "its deliveries or its lease are not certain"
+               : task_->authorised   ? "the lease does not reach over the delivery"
+                                     : "holding at the gate",
                now);
       }
       return;
@@ -191,6 +219,14 @@ void VehicleAgent::Impl::fly_task(Instant now) {
   report(flown ? EventKind::task_done : EventKind::task_failed, task.round, id,
          to_seconds(task.assignment.time), flown ? "" : "off the planned path", task.end_time());
   flown ? participant_.task_done(id, now) : participant_.task_failed(id, now);
+}
+
+/// An assessment waits until the leader or who flew them has said so of all deliveries.
+bool VehicleAgent::Impl::deliveries_over(const Site& site) const {
+  for (std::uint8_t i = 0; i < site.deliveries.size(); ++i) {
+    if (!participant_.knows_over({site.id, TaskKind::deliver, i})) return false;
+  }
+  return true;
 }
 
 /// The lease has gone: the plan must lead past no gate.
@@ -218,7 +254,8 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
     initiator_->close("the operator holds the leader", now);
     stop_leading(now);
   }
-  if (survey_) found_.push_back(std::exchange(survey_, std::nullopt)->site);
+  if (survey_ && !survey_->relief) found_.push_back(survey_->site);
+  survey_.reset();
   pump(now);
   if (message.kind == CommandKind::return_home) {
     flight_.fly_home(hazards_, now);
@@ -254,6 +291,7 @@ void VehicleAgent::Impl::idle(Instant now) {
   if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
   if (initiator_) return;  // it keeps circling its site
   take_up_site(now);
+  if (!survey_ && !initiator_) take_up_lost_site(now);
   if (!survey_ && !initiator_ && !flight_.searching()) flight_.search(hazards_, now);
 }
 

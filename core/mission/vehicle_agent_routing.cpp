@@ -62,8 +62,10 @@ void VehicleAgent::Impl::step(Instant now) {
         flight_.pose_at(now + config_.protocol.formation_time()).position());
     initiator_->on_timeout(now);
   }
+  participant_.set_may_lead(!initiator_ && !survey_ && !duplicate_id_ && !held_by_operator_);
   participant_.on_timeout(now);
   pump(now);
+  say_farewell(now);
   watch_authorisation(now);
   if (task_) fly_task(now);
   if (survey_) fly_survey(now);
@@ -105,25 +107,45 @@ void VehicleAgent::Impl::send(const coalition::Message& message, Instant now) {
 
 void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now) {
   if (!flight_.started()) return;
-  std::visit(
-      Overloaded{[&](const coalition::Announcement& m) {
-                   known_.insert(m.site.id);
-                   yield_to(m, now);
-                   participant_.on_announcement(m, now);
-                 },
-                 [&](const coalition::Bid& m) {
-                   if (initiator_) initiator_->on_bid(m, now);
-                 },
-                 [&](const coalition::Award& m) { participant_.on_award(m, now); },
-                 [&](const coalition::Confirmation& m) {
-                   if (initiator_) initiator_->on_confirmation(m, now);
-                 },
-                 [&](const coalition::Cancel& m) { participant_.on_cancel(m, now); },
-                 [&](const coalition::LeaseRenewal& m) { participant_.on_lease_renewal(m, now); },
-                 [&](const coalition::MemberStatus& m) {
-                   if (initiator_) initiator_->on_status(m, now);
-                 }},
-      message);
+  std::visit(Overloaded{[&](const coalition::Announcement& m) {
+                          known_.insert(m.site.id);
+                          for (auto& farewell : farewells_) {
+                            if (farewell.last.site == m.site.id) farewell.times = 1;
+                          }
+                          sites_.on_leader(m.site, now);
+                          meet_rival(m.site.id, m.round, false, now);
+                          yield_to(m, now);
+                          participant_.on_announcement(m, now);
+                        },
+                        [&](const coalition::Bid& m) {
+                          if (initiator_) initiator_->on_bid(m, now);
+                        },
+                        [&](const coalition::Award& m) {
+                          sites_.on_leader(m.site, now);
+                          meet_rival(m.site.id, m.round, true, now);
+                          participant_.on_award(m, now);
+                        },
+                        [&](const coalition::Confirmation& m) {
+                          if (initiator_) initiator_->on_confirmation(m, now);
+                        },
+                        [&](const coalition::Cancel& m) { participant_.on_cancel(m, now); },
+                        [&](const coalition::LeaseRenewal& m) {
+                          sites_.on_renewal(m, now);
+                          if (m.closed) end_closed_site(m, now);
+                          meet_rival(m.site, m.round, m.stands(), now);
+                          participant_.on_lease_renewal(m, now);
+                        },
+                        [&](const coalition::MemberStatus& m) {
+                          if (initiator_) initiator_->on_status(m, now);
+                          participant_.on_status(m);
+                          sites_.on_status(m);
+                        },
+                        [&](const coalition::LeadershipClaim& m) { participant_.on_claim(m, now); },
+                        [&](const coalition::Allegiance& m) {
+                          if (initiator_) initiator_->on_allegiance(m, now);
+                          participant_.on_allegiance(m, now);
+                        }},
+             message);
 }
 
 void VehicleAgent::Impl::report(EventKind kind, const coalition::Round& round, const TaskId& task,
@@ -148,6 +170,9 @@ double VehicleAgent::Impl::range_left(Instant at) const {
 Instant VehicleAgent::Impl::next_timeout() const {
   Instant next = participant_.next_timeout();
   if (initiator_) next = std::min(next, initiator_->next_timeout());
+  for (const auto& farewell : farewells_) {
+    if (farewell.times > 0) next = std::min(next, farewell.next);
+  }
   if (request_) next = std::min({next, request_again_, request_->decide_by});
   if (task_) next = std::min(next, task_->begun ? task_->end_time() : task_->begin_time());
   if (survey_) next = std::min(next, survey_->begun ? survey_->end_time() : survey_->begin_time());

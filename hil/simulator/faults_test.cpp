@@ -228,7 +228,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, Series,
 
 TEST(Faults, FiveHundredMixedMissionsAreSafe) {
   // What does not hold yet, and why: docs/simulation.md.
-  EXPECT_EQ(broken("mixed", 500, {"completion", "precedence", "hazards"}), "");
+  EXPECT_EQ(broken("mixed", 500, {}), "");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ inline constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds{100};
 inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
     {Topic::telemetry, "skein/telemetry", "skein::wire::Telemetry", kVehicles, kAll, false, 1, 64,
      Duration{}},
-    {Topic::coalition, "skein/coalition", "skein::wire::CoalitionMessage", kVehicles, kAll, true,
+    {Topic::coalition, "skein/coalition", "skein::wire::CoalitionMessage", kAll, kAll, true,
      64, 256, kHeartbeatPeriod},
     {Topic::authorisation_request, "skein/authorisation_request",
      "skein::wire::AuthorisationRequest", kVehicles, kGround, true, 16, 64, kHeartbeatPeriod},

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/coalition/elector.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/coalition/state_table.hpp"
@@ -91,15 +92,30 @@ class Initiator {
   struct AllDone {
     Round round;
   };
-  using Output = std::variant<AllocationWanted, Formed, NotFormed, TaskLost, TaskUnknown, AllDone>;
+  /// Another vehicle leads the site by now; this coalition is closed.
+  struct Superseded {
+    Round round;
+    CoalitionId by;
+  };
+  using Output =
+      std::variant<AllocationWanted, Formed, NotFormed, TaskLost, TaskUnknown, AllDone, Superseded>;
 
-  /// Opens the first round at once: poll_message() has the announcement.
+  /// Opens the first round at once: poll_message() has the announcement. `done` is what is known to
+  /// be done already.
   Initiator(const ProtocolParams& params, const CoalitionId& id, const Site& site,
-            const Vec2& leader_at_formation, Instant now);
+            const std::vector<TaskId>& done, const Vec2& leader_at_formation, Instant now);
+  /// Takes over from a leader that fell silent: awards what is left of its plan, with its times, to
+  /// those who follow. `authorised`: the operator's grant for the plan was heard.
+  Initiator(const ProtocolParams& params, const CoalitionId& id, const Elector::Won& won,
+            bool authorised, const Vec2& leader_at_formation, Instant now);
 
   void on_bid(const Bid& message, Instant now);
   void on_confirmation(const Confirmation& message, Instant now);
   void on_status(const MemberStatus& message, Instant now);
+  void on_allegiance(const Allegiance& message, Instant now);
+  /// Another vehicle leads the same site. Whose coalition does not stand gives up, and tells what
+  /// it knows to be done; where both stand or neither does, the smaller id goes on.
+  void on_rival(const Round& rival, bool rival_stands, Instant now);
   void on_timeout(Instant now);
 
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
@@ -124,6 +140,8 @@ class Initiator {
   void set_leader_at_formation(const Vec2& position) { leader_at_formation_ = position; }
   /// The latest time of a delivery that is done or may have been flown; nothing when there is none.
   [[nodiscard]] std::optional<Instant> last_delivery() const;
+  /// What is said last: the coalition is over, and what became of its tasks.
+  [[nodiscard]] LeaseRenewal farewell() const;
   /// The tasks that others still own in this round, with their times.
   [[nodiscard]] std::vector<TaskAssignment> owned() const;
   [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
@@ -133,21 +151,33 @@ class Initiator {
   struct Entry {
     TaskId task;
     Ownership ownership = Ownership::open;
+    bool left_over = false;     ///< not part of the newest award: waits until that is flown
+    bool maybe_flown = false;   ///< the ground station says so: unknown when its lease has ended
+    InstanceId instance;        ///< of the owner, as it bid
+    Instant begins{};           ///< when the owner begins its run at the earliest
     TaskAssignment assignment;  ///< of the owner, while leased, and of who did it
     Round round;                ///< of that award
     TaskState reported = TaskState::planned;
     Instant lease_until{};  ///< the latest that the owner may believe in
     Instant done_at{};
   };
+  void make_ledger(const std::vector<TaskId>& done);
   void start_round(Instant now);
+  void send_award(std::vector<TaskAssignment> assignments, Instant now);
+  void start_anew(Instant now);
+  void found(Instant now);
+  [[nodiscard]] Instant authority_until() const;
+  [[nodiscard]] bool has_authority(Instant now) const { return authority_until() > now; }
   void collect_open_tasks(Instant now);
   void close_bids(Instant now);
+  void take_back(Entry& entry, const Bid& bid, Instant now);
   void expire(Instant now);
+  void make_unknown(Entry& entry);
   void heartbeat(Instant now);
   void not_formed(Event event, const std::string& why, Instant now);
   void finish_if_done();
   [[nodiscard]] bool all_confirmed() const;
-  [[nodiscard]] std::vector<TaskId> done_tasks() const;
+  [[nodiscard]] std::vector<TaskId> tasks_that_are(Ownership ownership) const;
   [[nodiscard]] bool hears(VehicleId member, Instant now) const;
   [[nodiscard]] Entry* find(const TaskId& task);
 
@@ -158,8 +188,15 @@ class Initiator {
   std::vector<Entry> ledger_;  ///< one entry a task, in the order of the site
   std::map<VehicleId, Bid> bids_;
   std::optional<Award> award_;
+  /// Taking over: how far the supporters' promises reach, and how many of them must come over to
+  /// this coalition, so that the lost leader can never have a majority again.
+  Instant promised_until_{Instant::max()};
+  std::size_t majority_ = 0;
   std::map<VehicleId, bool> confirmed_;  ///< members of award_
   std::map<VehicleId, Instant> heard_;   ///< members, by when they last spoke
+  /// Who was in the first coalition that stood, and may choose another leader; empty before. By the
+  /// stamp of the newest heartbeat that they have acknowledged. They only become fewer.
+  std::map<VehicleId, Instant> electors_;
   std::map<std::uint32_t, bool> authorised_rounds_;
   Instant deadline_{};  ///< of the present state
   Instant next_repeat_{};

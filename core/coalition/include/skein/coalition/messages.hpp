@@ -50,6 +50,7 @@ struct Announcement {
 struct Bid {
   Round round;
   VehicleId bidder;
+  InstanceId instance;  ///< of the bidder's program: one that has started anew remembers nothing
   Pose2 pose_at_formation;
   double speed_mps = 0.0;
   double planning_radius_m = 0.0;
@@ -68,8 +69,11 @@ struct Award {
   Site site;
   Instant formed_at{};
   std::vector<TaskAssignment> assignments;
+  Instant awarded_at{};  ///< by the leader's clock; a renewal sent earlier is for earlier awards
   /// The lease: until then, and no longer, the members own their tasks. Renewed by LeaseRenewal.
   Instant lease_until{};
+  /// The coalition whose plan this award goes on with under a new leader; leader 0 for none.
+  CoalitionId continues{};
 };
 
 /// A member's answer to an award.
@@ -89,13 +93,38 @@ struct Cancel {
 /// The leader's heartbeat to those members that it hears.
 struct LeaseRenewal {
   Round round;
+  SiteId site;
   std::vector<VehicleId> members;
-  std::vector<TaskId>
-      done;  ///< the tasks that the leader knows to be done: need not be reported again
+  /// Who may choose another leader when this one falls silent (see Elector).
+  std::vector<VehicleId> electors;
+  std::vector<TaskId> done;     ///< known to be done: need not be reported again
+  std::vector<TaskId> unknown;  ///< deliveries that may have been flown: nobody is to fly them
+  Instant sent_at{};            ///< by the leader's clock; an Allegiance gives it back
   Instant lease_until{};
+  bool closed = false;  ///< the site needs nobody any more; the coalition is over
+
+  /// The coalition stands, and its leader has its electors behind it.
+  [[nodiscard]] bool stands() const { return !electors.empty() && lease_until > sent_at; }
 };
 
-enum class TaskState : std::uint8_t { planned, started, done, failed, count };
+/// "The leader has fallen silent: follow me." Repeated every heartbeat until enough have answered.
+struct LeadershipClaim {
+  CoalitionId coalition;
+  VehicleId claimant;
+  Instant sent_at{};  ///< by the claimant's clock; an Allegiance gives it back
+};
+
+/// An elector's answer to a LeaseRenewal or a LeadershipClaim: whom it follows, and for how long it
+/// will follow nobody else: ProtocolParams::lease from when it heard what it acknowledges.
+struct Allegiance {
+  CoalitionId coalition;
+  VehicleId elector;
+  VehicleId follows;       ///< the leader or a claimant; 0: nobody any more, it is no elector
+  Instant acknowledges{};  ///< sent_at of the renewal or claim
+};
+
+/// `unknown`: said by the ground station of a delivery that may have been flown by who fell silent.
+enum class TaskState : std::uint8_t { planned, started, done, failed, unknown, count };
 [[nodiscard]] std::string_view to_string(TaskState state);
 
 /// A member's heartbeat to its leader, with the state of each of its tasks.
@@ -110,8 +139,8 @@ struct MemberStatus {
   std::vector<Entry> tasks;
 };
 
-using Message =
-    std::variant<Announcement, Bid, Award, Confirmation, Cancel, LeaseRenewal, MemberStatus>;
+using Message = std::variant<Announcement, Bid, Award, Confirmation, Cancel, LeaseRenewal,
+                             MemberStatus, LeadershipClaim, Allegiance>;
 
 /// Limits on what is accepted from the network; larger messages are dropped and counted.
 inline constexpr std::size_t kTasksMax = 32;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/coalition/elector.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/coalition/state_table.hpp"
@@ -21,7 +22,7 @@ namespace skein::coalition {
 /// Call with a `now` that never decreases; drain poll_message() and poll_event() after each call.
 class Participant {
  public:
-  enum class State : std::uint8_t { free, bidding, deciding, member, rebidding, count };
+  enum class State : std::uint8_t { free, bidding, deciding, member, rebidding, orphaned, count };
   enum class Event : std::uint8_t {
     bid,
     award_received,
@@ -31,6 +32,8 @@ class Participant {
     no_award,
     released,
     new_round,
+    leader_lost,
+    leader_heard,
     count
   };
   static constexpr std::array kTable{
@@ -44,6 +47,11 @@ class Participant {
       Transition<State, Event>{State::deciding, Event::refused, State::free},
       Transition<State, Event>{State::member, Event::bid, State::rebidding},
       Transition<State, Event>{State::member, Event::released, State::free},
+      Transition<State, Event>{State::member, Event::leader_lost, State::orphaned},
+      Transition<State, Event>{State::orphaned, Event::leader_heard, State::member},
+      Transition<State, Event>{State::orphaned, Event::award_received, State::deciding},
+      Transition<State, Event>{State::orphaned, Event::bid, State::rebidding},
+      Transition<State, Event>{State::orphaned, Event::released, State::free},
       Transition<State, Event>{State::rebidding, Event::award_received, State::deciding},
       Transition<State, Event>{State::rebidding, Event::not_awarded, State::free},
       Transition<State, Event>{State::rebidding, Event::no_award, State::free},
@@ -66,18 +74,23 @@ class Participant {
     TaskId task;
     Instant until{};
   };
-  /// A lease ended: the task was done, taken back, given up or it ran out.
+  /// A lease ended: the task was done, taken back, given up or it ran out. When `held`, the leader
+  /// is silent: the plan is flown on, but nothing is begun, until a successor's award or Released.
   struct LeaseEnded {
     Round round;
     TaskId task;
     std::string why;
+    bool held = false;
   };
   /// Not (any more) in a coalition; all leases have ended.
   struct Released {
     Round round;
     std::string why;
   };
-  using Output = std::variant<BidWanted, AwardReceived, LeaseGranted, LeaseEnded, Released>;
+  /// This vehicle leads from now on: Initiator's second constructor takes it.
+  using LeadershipWon = Elector::Won;
+  using Output =
+      std::variant<BidWanted, AwardReceived, LeaseGranted, LeaseEnded, Released, LeadershipWon>;
 
   Participant(const ProtocolParams& params, VehicleId self);
 
@@ -85,7 +98,13 @@ class Participant {
   void on_award(const Award& message, Instant now);
   void on_cancel(const Cancel& message, Instant now);
   void on_lease_renewal(const LeaseRenewal& message, Instant now);
+  /// Of other members: what they have done, whom they follow, who wants to lead.
+  void on_status(const MemberStatus& message);
+  void on_claim(const LeadershipClaim& message, Instant now);
+  void on_allegiance(const Allegiance& message, Instant now);
   void on_timeout(Instant now);
+  /// May this vehicle lead another coalition now?
+  void set_may_lead(bool may_lead) { elector_.set_may_lead(may_lead); }
 
   /// Answers to BidWanted. Precondition: the announcement is the one asked about.
   void bid(const Announcement& announcement, Bid bid, Instant now);
@@ -110,6 +129,8 @@ class Participant {
   [[nodiscard]] const Round& round() const { return round_; }
   /// Is a lease on the task held at `now`, and does it last until `until`?
   [[nodiscard]] bool holds(const TaskId& task, Instant now, Instant until) const;
+  /// Has anybody said that the task is done, or that nobody is to fly it any more?
+  [[nodiscard]] bool knows_over(const TaskId& task) const;
   [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
 
  private:
@@ -126,8 +147,12 @@ class Participant {
   void finish(const TaskId& task, TaskState state, Instant now);
   void end_leases(const std::string& why, bool unstarted_only);
   void leave(Event event, const std::string& why);
+  void expire_leases(Instant now);
+  void note_over(const TaskId& task);
+  void give_up(const Lease& lease, Instant now);
   void send_status(Instant now);
   [[nodiscard]] bool task_in_progress() const;
+  [[nodiscard]] bool has_news(Instant now) const;
 
   ProtocolParams params_;
   VehicleId self_;
@@ -136,9 +161,12 @@ class Participant {
   std::optional<Bid> bid_;  ///< sent again when the announcement is heard again
   std::optional<Award> award_;
   std::optional<Confirmation> confirmation_;  ///< sent again when the award is heard again
+  Elector elector_;
   Instant bidding_until_{};
+  Instant orphaned_until_{};
   std::vector<Lease> leases_;
-  std::vector<Finished> finished_;  ///< reported until the leader knows
+  std::vector<Finished> finished_;  ///< reported until the leader knows; what is done is kept
+  std::vector<TaskId> over_;        ///< done or unknown, as heard; newest last
   Instant next_status_{};
   BoundedQueue<Message> messages_{64};
   BoundedQueue<Output> outputs_{256};

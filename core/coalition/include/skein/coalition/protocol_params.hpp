@@ -17,12 +17,23 @@ struct ProtocolParams {
   Duration silence = std::chrono::seconds{5};              ///< after it a member counts as lost
   Duration clock_guard = std::chrono::milliseconds{500};   ///< largest difference of two clocks
   Duration monitoring_interval = std::chrono::seconds{5};  ///< between attempts
-  Duration authorisation_lead = std::chrono::seconds{8};   ///< what the operator has at least
+  /// The longest that two parts of the team that are both at work may be unable to hear each other.
+  /// A leader that has not heard half of its electors for that long starts anew without them, and a
+  /// site whose leader was not heard for that long is taken up by another vehicle.
+  Duration cut_max = std::chrono::seconds{60};
+  Duration authorisation_lead = std::chrono::seconds{8};  ///< what the operator has at least
 
   /// delta_max (eq. 20): from the announcement to the standing coalition.
   [[nodiscard]] Duration formation_time() const {
     return 3 * message_delay + allocation_time + margin;
   }
+  /// The lease of an award. It is short, so that a member whose confirmation was lost frees its
+  /// tasks soon; renewals prolong it, once leader and members have heard each other twice.
+  [[nodiscard]] Duration first_lease() const {
+    return 4 * message_delay + 2 * heartbeat + std::chrono::seconds{1};
+  }
+  /// How long the members of a lost leader hold its plan, after their leases, for a successor.
+  [[nodiscard]] Duration succession_time() const { return 2 * silence + clock_guard; }
 };
 
 }  // namespace skein::coalition

@@ -49,7 +49,11 @@ struct PendingAuthorisation {
 /// All decisions of the ground station, without I/O: keeps the fleet picture, holds requests for
 /// authorisation, sends decisions (every 0.5 s until the last delivery's time has passed) and
 /// commands (every 1 s for 5 s). Same calling rules as VehicleAgent. An authorisation is only ever
-/// made by authorise(), refuse() or a scripted decision.
+/// made by authorise(), refuse() or a scripted decision; a successor's plan with the very
+/// deliveries that were granted needs no new one. It remembers what was flown: a delivery that is
+/// done, or was granted to another coalition and may have been flown, is not put to the operator
+/// again, but told to the leader that asks. And it passes on, now and then, that a leader is there
+/// and that a site is done, so that who is out of the leader's range does not take it for lost.
 class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
@@ -75,6 +79,18 @@ class GroundAgent {
 
  private:
   using EventKey = std::tuple<Instant, VehicleId, EventKind, TaskId, std::string>;
+  /// A delivery that the operator has granted, to the newest round that asked for it.
+  struct Granted {
+    coalition::Round round;
+    TaskAssignment assignment;
+    double bearing_rad = 0.0;
+    bool given_up = false;  ///< its owner has said that it does not fly it
+  };
+  struct LedSite {
+    coalition::LeaseRenewal last;  ///< of its leader
+    Instant passed_on_at{Instant::min()};
+    int times_closed = 0;  ///< that its end was passed on
+  };
   struct SentCommand {
     Command command;
     Instant next{};
@@ -84,6 +100,11 @@ class GroundAgent {
   void on_telemetry(const Telemetry& telemetry, Instant now);
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
+  void on_status(const coalition::MemberStatus& status);
+  void on_renewal(const coalition::LeaseRenewal& renewal, Instant now);
+  void on_announcement(const coalition::Announcement& announcement, Instant now);
+  bool tell_what_is_over(const AuthorisationRequest& request, Instant now);
+  [[nodiscard]] const Authorisation* granted_before(const AuthorisationRequest& request) const;
   void mark_silent(Instant now);
   void mark_mended(Instant now);
   void decide_by_script(Instant now);
@@ -104,6 +125,9 @@ class GroundAgent {
   std::vector<PendingAuthorisation> pending_;
   std::map<SiteId, std::size_t> scripted_;  ///< decisions that the script has taken so far
   Instant script_again_{Instant::min()};    ///< after a decision that could not be taken
+  std::map<TaskId, Granted> granted_;
+  std::map<TaskId, coalition::MemberStatus::Entry> done_;
+  std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
   std::uint32_t last_command_ = 0;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations

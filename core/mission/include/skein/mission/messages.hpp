@@ -93,6 +93,7 @@ enum class EventKind : std::uint8_t {
   hazard_known,
   conflict_yielded,
   monitoring,
+  leader_replaced,
   site_done,
   warning,
   count

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "site_book.hpp"
+
+#include <algorithm>
+
+namespace skein::mission {
+namespace {
+constexpr std::size_t kSitesMax = 64;  ///< what a flood from the network can make us remember
+}
+
+void SiteBook::on_leader(const Site& site, Instant now) {
+  if (!entries_.contains(site.id) && entries_.size() >= kSitesMax) return;
+  Entry& entry = entries_[site.id];
+  entry.site = site;
+  entry.heard_at = now;
+}
+
+void SiteBook::on_renewal(const coalition::LeaseRenewal& message, Instant now) {
+  const auto known = entries_.find(message.site);
+  if (known == entries_.end()) return;
+  known->second.heard_at = now;
+  known->second.closed = known->second.closed || message.closed;
+  for (const auto& task : message.done) note_done(known->second, task);
+}
+
+void SiteBook::on_status(const coalition::MemberStatus& message) {
+  for (const auto& entry : message.tasks) {
+    const auto known = entries_.find(entry.task.site);
+    const bool over = entry.state == coalition::TaskState::done;
+    if (known != entries_.end() && over) note_done(known->second, entry.task);
+  }
+}
+
+void SiteBook::note_done(Entry& entry, const TaskId& task) {
+  if (task.site != entry.site.id || task.kind == TaskKind::survey) return;
+  if (task.index >= entry.site.task_count(task.kind)) return;
+  if (std::find(entry.done.begin(), entry.done.end(), task) != entry.done.end()) return;
+  entry.done.push_back(task);
+}
+
+void SiteBook::close(SiteId site) {
+  const auto known = entries_.find(site);
+  if (known != entries_.end()) known->second.closed = true;
+}
+
+const SiteBook::Entry* SiteBook::lost(Instant before) const {
+  for (const auto& [site, entry] : entries_) {
+    if (!entry.closed && entry.heard_at < before) return &entry;
+  }
+  return nullptr;
+}
+
+const SiteBook::Entry* SiteBook::lost(SiteId site, Instant before) const {
+  const auto known = entries_.find(site);
+  if (known == entries_.end() || known->second.closed || known->second.heard_at >= before) {
+    return nullptr;
+  }
+  return &known->second;
+}
+
+std::vector<TaskId> SiteBook::done(SiteId site) const {
+  const auto known = entries_.find(site);
+  return known == entries_.end() ? std::vector<TaskId>{} : known->second.done;
+}
+
+bool SiteBook::led(SiteId site, Instant since) const {
+  const auto known = entries_.find(site);
+  return known != entries_.end() && (known->second.closed || known->second.heard_at >= since);
+}
+
+}  // namespace skein::mission
