@@ -44,7 +44,7 @@ Result<TeamMission> seeded_mission(const configuration::Scenario& scenario, std:
 }
 
 JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
-                     const TeamObserver& watcher) {
+                     const TeamObserver& watcher, checks::RunRecord* record) {
   TeamRecorder recorder{mission, watcher};
   const TeamObserver observer = recorder.observer();
   JudgedRun run;
@@ -59,7 +59,9 @@ JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
     held_to.planned_time_s += differ;
     held_to.arrival_s += differ;
   }
-  run.broken = checks::judge(recorder.finish(run.result), held_to);
+  const checks::RunRecord& recorded = recorder.finish(run.result);
+  run.broken = checks::judge(recorded, held_to);
+  if (record != nullptr) *record = recorded;
   run.broken.push_back(protocol_errors(run.result));
   std::erase_if(run.broken, [](const auto& check) { return check.held(); });
   return run;

@@ -2,6 +2,7 @@
 #include "site_finder.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace skein::hil {
@@ -13,10 +14,20 @@ std::vector<VehicleSpec> specs(const TeamMission& mission) {
   return all;
 }
 
+std::vector<Site> sites(const TeamMission& mission, bool reported) {
+  std::vector<Site> some;
+  std::copy_if(mission.sites.begin(), mission.sites.end(), std::back_inserter(some),
+               [&](const Site& site) { return mission.reported.contains(site.id) == reported; });
+  return some;
+}
+
 }  // namespace
 
 SiteFinder::SiteFinder(const TeamMission& mission)
-    : mission_{mission}, specs_{specs(mission)}, sensors_{mission.sites, specs_} {}
+    : mission_{mission},
+      specs_{specs(mission)},
+      sensors_{sites(mission, false), specs_},
+      to_report_{sites(mission, true)} {}
 
 SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
   finder_[site.id] = vehicle;
@@ -35,6 +46,30 @@ std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<FlyingVehicle>
                                      [&](const auto& spec) { return spec.id == report.finder; });
     all.push_back(found(static_cast<std::size_t>(finder - specs_.begin()), report.site));
   }
+  return all;
+}
+
+std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<FlyingVehicle>& vehicles,
+                                                      Instant now) {
+  std::vector<Found> all;
+  std::set<std::size_t> told;
+  std::erase_if(to_report_, [&](const Site& site) {
+    if (mission_.reported.at(site.id) > now) return false;
+    std::optional<std::size_t> nearest;
+    const auto distance = [&](std::size_t i) {
+      return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
+    };
+    for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      const auto* agent = vehicles[i].agent();
+      const bool can = agent != nullptr && specs_[i].capabilities.has(TaskKind::survey) &&
+                       agent->activity() == mission::Activity::searching && !told.contains(i);
+      if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
+    }
+    if (!nearest) return false;
+    told.insert(*nearest);
+    all.push_back(found(*nearest, site));
+    return true;
+  });
   return all;
 }
 

@@ -25,6 +25,9 @@ class SiteFinder {
   };
   /// What the sensors see now.
   [[nodiscard]] std::vector<Found> look(const std::vector<FlyingVehicle>& vehicles);
+  /// The sites whose time to be reported has come (TeamMission::reported).
+  [[nodiscard]] std::vector<Found> report_due(const std::vector<FlyingVehicle>& vehicles,
+                                              Instant now);
   /// Every site that is hidden still is reported, each to the nearest vehicle that can survey it;
   /// to different ones as long as there are some.
   [[nodiscard]] std::vector<Found> report_all(const std::vector<FlyingVehicle>& vehicles);
@@ -38,6 +41,7 @@ class SiteFinder {
   const TeamMission& mission_;
   std::vector<VehicleSpec> specs_;
   SurveySensors sensors_;
+  std::vector<Site> to_report_;
   std::map<SiteId, std::size_t> finder_;
   std::set<SiteId> taken_up_;
 };

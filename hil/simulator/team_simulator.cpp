@@ -215,6 +215,7 @@ class Team {
 
   void sense(Instant now) {
     hand_over_sites(finder_.look(vehicles_), now, false);
+    hand_over_sites(finder_.report_due(vehicles_, now), now, true);
     for (const auto& h : mission_.hazards) {
       if (h.known_from <= Instant{} || h.known_from > now || !told_.insert(h.hazard.id).second)
         continue;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "skein/base/angles.hpp"
 
@@ -170,6 +171,32 @@ TEST(TeamSimulator, TooFewVehiclesInRangeMakeTheLeaderMonitor) {
   EXPECT_EQ(flown.result.sites_done, 0U);
   EXPECT_GT(flown.of(EventKind::monitoring).size(), 5U);
   EXPECT_TRUE(flown.done(TaskKind::deliver).empty());
+}
+
+TEST(TeamSimulator, AReportedSiteIsToldAtItsTimeToTheNearestWhoCanSurvey) {
+  TeamMission mission = small_mission();
+  mission.vehicles.push_back(
+      {spec(6, {TaskKind::survey, TaskKind::assess}, 0), {900, 700, 0}, {{900, 700}}});
+  // The scout passes the site before anybody is told of it, and is the nearest then.
+  mission.reported[SiteId{1}] = at_seconds(30.0);
+  std::vector<MissionEvent> found;
+  TeamObserver observer;
+  observer.event = [&](const MissionEvent& event) {
+    if (event.kind == EventKind::site_detected) found.push_back(event);
+  };
+  const TeamResult result = simulate_team(mission, observer);
+  EXPECT_EQ(result.sites_done, 1U);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().vehicle, VehicleId{1});
+  EXPECT_NEAR(to_seconds(found.front().time), 30.0, 0.15);
+
+  found.clear();
+  mission.vehicles.back().start = {50, 150, 0};
+  mission.vehicles.back().search = {{50, 150}};
+  mission.reported[SiteId{1}] = at_seconds(1.0);
+  simulate_team(mission, observer);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().vehicle, VehicleId{6});
 }
 
 }  // namespace

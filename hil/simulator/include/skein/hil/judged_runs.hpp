@@ -9,6 +9,7 @@
 
 #include "skein/base/result.hpp"
 #include "skein/checks/checks.hpp"
+#include "skein/checks/run_record.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/team_simulator.hpp"
 
@@ -28,9 +29,11 @@ struct JudgedRun {
 [[nodiscard]] Result<TeamMission> seeded_mission(const configuration::Scenario& scenario,
                                                  std::uint64_t seed, const std::string& faults);
 
-/// Flies the mission once, in the calling thread, and judges it. `watcher` sees the run.
+/// Flies the mission once, in the calling thread, and judges it. `watcher` sees the run; what the
+/// judges read is copied to `record` where one is wanted.
 [[nodiscard]] JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
-                                   const TeamObserver& watcher = {});
+                                   const TeamObserver& watcher = {},
+                                   checks::RunRecord* record = nullptr);
 
 struct RunSeries {
   std::string faults = "none";

@@ -48,6 +48,9 @@ struct SimulatedRadio {
 struct TeamMission {
   std::vector<SimulatedVehicle> vehicles;
   std::vector<Site> sites;
+  /// Sites that nobody's sensor finds: each is told, from its time on, to the nearest vehicle that
+  /// can survey and is searching.
+  std::map<SiteId, Instant> reported;
   std::vector<TimedHazard> hazards;
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
