@@ -8,8 +8,8 @@
 #include <cmath>
 #include <set>
 
-#include "drawing.hpp"
 #include "skein/checks/flown.hpp"
+#include "skein/report/drawing.hpp"
 
 namespace skein::report {
 namespace {

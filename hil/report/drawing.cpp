@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drawing.hpp"
+#include "skein/report/drawing.hpp"
 
 #include <fmt/format.h>
 

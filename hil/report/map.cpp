@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "charts.hpp"
-#include "drawing.hpp"
+#include "skein/report/drawing.hpp"
 
 namespace skein::report {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "charts.hpp"
-#include "drawing.hpp"
+#include "skein/report/drawing.hpp"
 #include "story.hpp"
 #include "style.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "drawing.hpp"
+#include "skein/report/drawing.hpp"
 #include "story.hpp"
 
 namespace skein::report {
