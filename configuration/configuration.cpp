@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "loader.hpp"
+#include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/vehicle_config.hpp"
@@ -80,5 +81,13 @@ Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name) 
   return parse<Scenario>(yaml, name);
 }
 std::string to_yaml(const Scenario& scenario) { return written(scenario); }
+
+Result<Experiment> load_experiment(const std::filesystem::path& file) {
+  return load<Experiment>(file);
+}
+Result<Experiment> parse_experiment(std::string_view yaml, const std::string& name) {
+  return parse<Experiment>(yaml, name);
+}
+std::string to_yaml(const Experiment& experiment) { return written(experiment); }
 
 }  // namespace skein::configuration

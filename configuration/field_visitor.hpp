@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "skein/base/geometry.hpp"
+#include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 
@@ -78,5 +79,6 @@ void fields(FieldVisitor& v, VehicleConfig& config);
 void fields(FieldVisitor& v, GroundConfig& config);
 void fields(FieldVisitor& v, Scenario& scenario);
 void fields(FieldVisitor& v, ScenarioVehicle& vehicle);
+void fields(FieldVisitor& v, Experiment& experiment);
 
 }  // namespace skein::configuration
