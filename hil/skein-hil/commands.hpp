@@ -36,4 +36,12 @@ struct SimulateArguments {
 };
 int simulate(const SimulateArguments& arguments);
 
+struct SweepArguments {
+  std::filesystem::path experiment;
+  std::filesystem::path folder;
+  std::optional<std::size_t> runs;  ///< in place of the experiment's
+  std::size_t jobs = 0;             ///< 0: one for each core
+};
+int sweep(const SweepArguments& arguments);
+
 }  // namespace skein::hil

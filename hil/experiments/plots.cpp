@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plots.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <string_view>
+
+#include "skein/base/geometry.hpp"
+#include "skein/report/drawing.hpp"
+
+namespace skein::experiments {
+namespace {
+
+constexpr double kWidth = 680.0;
+constexpr double kHeight = 380.0;
+constexpr double kLeft = 62.0;
+constexpr double kRight = 490.0;  // right of it is the legend
+constexpr double kTop = 54.0;
+constexpr double kBottom = kHeight - 44.0;
+constexpr std::size_t kColours = 7;
+
+/// Colours after Okabe and Ito (2008).
+constexpr std::string_view kStyle = R"(<style>
+:root{--paper:#fff;--ink:#1c2530;--soft:#5b6774;--rule:#dfe3e8}
+.c0{--c:#0072b2}.c1{--c:#d55e00}.c2{--c:#00875f}.c3{--c:#b8578f}.c4{--c:#c98500}.c5{--c:#3a9fd6}.c6{--c:#7a838d}
+@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ink:#e6eaef;--soft:#98a3af;--rule:#2f3741}
+.c0{--c:#5ab4f0}.c1{--c:#ff8f4a}.c2{--c:#35c99a}.c3{--c:#e79fc8}.c4{--c:#f0b73c}.c5{--c:#8fd3fa}.c6{--c:#98a3af}}
+.paper{fill:var(--paper)}text{font:12px system-ui,sans-serif;fill:var(--soft)}.title{font-size:14px;font-weight:600;fill:var(--ink)}
+.mid{text-anchor:middle}.end{text-anchor:end}.grid{stroke:var(--rule)}
+.line{fill:none;stroke:var(--c);stroke-width:2}.bar{fill:var(--c)}.dot{fill:var(--c)}.error{fill:none;stroke:var(--c);stroke-width:1.3}
+.bar+.error{stroke:var(--ink)}
+</style>)";
+
+report::Axis value_axis(const Plot& plot, bool bars) {
+  double low = bars ? 0.0 : std::numeric_limits<double>::infinity();
+  double high = bars ? 0.0 : -std::numeric_limits<double>::infinity();
+  for (const Series& series : plot.series) {
+    for (const Estimate& e : series.values) {
+      if (e.count == 0) continue;
+      low = std::min(low, e.mean - e.half_width);
+      high = std::max(high, e.mean + e.half_width);
+    }
+  }
+  if (low > high) low = high = 0.0;  // no value at all
+  const double room = high - low > 0.0 ? 0.06 * (high - low) : 1.0;
+  return {low < 0.0 || !bars ? low - room : low, high + room, kBottom, kTop};
+}
+
+/// The interval around a mean.
+std::string error_bar(const report::Axis& value, const Estimate& e, double x) {
+  if (e.count < 2) return "";
+  return fmt::format(
+      R"(<path class="error" d="M{0:.1f} {1:.1f}V{2:.1f}M{3:.1f} {1:.1f}H{4:.1f}M{3:.1f} {2:.1f}H{4:.1f}"/>)",
+      x, value(e.mean - e.half_width), value(e.mean + e.half_width), x - 3.0, x + 3.0);
+}
+
+std::string lines_of(const Plot& plot, const report::Axis& value, double step) {
+  std::string text;
+  for (std::size_t s = 0; s < plot.series.size(); ++s) {
+    // Beside each other, so that no interval hides another.
+    const double aside =
+        6.0 * (static_cast<double>(s) - 0.5 * static_cast<double>(plot.series.size() - 1));
+    std::vector<Vec2> line;
+    std::string marks;
+    for (std::size_t i = 0; i < plot.x.size(); ++i) {
+      const Estimate& e = plot.series[s].values.at(i);
+      if (e.count == 0) continue;
+      const double x = kLeft + step * (static_cast<double>(i) + 0.5) + aside;
+      line.emplace_back(x, value(e.mean));
+      marks += error_bar(value, e, x);
+      marks += fmt::format(
+          R"(<circle class="dot" cx="{:.1f}" cy="{:.1f}" r="3.5"><title>{}, {}: {:.4g} +- {:.2g}, {} runs</title></circle>)",
+          x, value(e.mean), report::escaped(plot.series[s].name), report::escaped(plot.x[i]),
+          e.mean, e.half_width, e.count);
+    }
+    text += fmt::format(R"(<g class="c{}"><polyline class="line" points="{}"/>{}</g>)",
+                        s % kColours, report::points_text(line), marks);
+  }
+  return text;
+}
+
+std::string bars_of(const Plot& plot, const report::Axis& value, double step) {
+  std::string text;
+  const double width = 0.8 * step / static_cast<double>(plot.series.size());
+  for (std::size_t s = 0; s < plot.series.size(); ++s) {
+    text += fmt::format(R"(<g class="c{}">)", s % kColours);
+    for (std::size_t i = 0; i < plot.x.size(); ++i) {
+      const Estimate& e = plot.series[s].values.at(i);
+      if (e.count == 0) continue;
+      const double x =
+          kLeft + step * (static_cast<double>(i) + 0.1) + width * static_cast<double>(s);
+      const double top = std::min(value(e.mean), value(0.0));
+      const double height = std::max(value(e.mean), value(0.0)) - top;
+      text += fmt::format(
+          R"(<rect class="bar" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}"><title>{}, {}: {:.4g} +- {:.2g}, {} runs</title></rect>)",
+          x, top, 0.9 * width, height, report::escaped(plot.series[s].name),
+          report::escaped(plot.x[i]), e.mean, e.half_width, e.count);
+      text += error_bar(value, e, x + 0.45 * width);
+    }
+    text += "</g>";
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string svg(const Plot& plot, bool bars) {
+  const report::Axis value = value_axis(plot, bars);
+  const double step = (kRight - kLeft) / static_cast<double>(plot.x.size());
+  std::string text = fmt::format(
+      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{3}</text><text x="12" y="40">{4}</text>)",
+      kWidth, kHeight, kStyle, report::escaped(plot.title), report::escaped(plot.y_label));
+  for (const double v : value.ticks(6)) {
+    text += fmt::format(
+        R"(<path class="grid" d="M{0:.0f} {1:.1f}H{2:.0f}"/><text class="end" x="{3:.0f}" y="{4:.1f}">{5:g}</text>)",
+        kLeft, value(v), kRight, kLeft - 6.0, value(v) + 4.0, v);
+  }
+  for (std::size_t i = 0; i < plot.x.size(); ++i) {
+    text += fmt::format(R"(<text class="mid" x="{:.1f}" y="{:.0f}">{}</text>)",
+                        kLeft + step * (static_cast<double>(i) + 0.5), kBottom + 18.0,
+                        report::escaped(plot.x[i]));
+  }
+  text += fmt::format(R"(<text class="mid" x="{:.0f}" y="{:.0f}">{}</text>)",
+                      0.5 * (kLeft + kRight), kBottom + 36.0, report::escaped(plot.x_label));
+  text += bars ? bars_of(plot, value, step) : lines_of(plot, value, step);
+  for (std::size_t s = 0; s < plot.series.size() && plot.series.size() > 1; ++s) {
+    const double y = kTop + 12.0 + 20.0 * static_cast<double>(s);
+    text += fmt::format(
+        R"(<rect class="bar c{}" x="{:.0f}" y="{:.1f}" width="12" height="12" rx="2"/><text x="{:.0f}" y="{:.1f}">{}</text>)",
+        s % kColours, kRight + 14.0, y - 10.0, kRight + 32.0, y,
+        report::escaped(plot.series[s].name));
+  }
+  return text + "</svg>\n";
+}
+
+}  // namespace skein::experiments

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "commands.hpp"
+#include "skein/configuration/experiment.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/experiments/run_table.hpp"
+#include "skein/experiments/sweep.hpp"
+
+namespace skein::hil {
+namespace {
+
+std::atomic<bool> asked_to_stop{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+/// The second signal ends the program as ever.
+void stop(int signal) {
+  asked_to_stop = true;
+  std::signal(signal, SIG_DFL);
+}
+
+int complain(const std::string& sentence) {
+  fmt::print(stderr, "{}\n", sentence);
+  return kExitBadInput;
+}
+
+/// How far, and how long still: a line that is written over, or one now and then in a log.
+class Progress {
+ public:
+  explicit Progress(std::size_t runs) : runs_{runs}, terminal_{::isatty(STDERR_FILENO) != 0} {
+    if (!terminal_) next_ += kLogPeriod;
+  }
+
+  void count(bool safe) {
+    ++done_;
+    if (!safe) ++broken_;
+    const auto now = Clock::now();
+    if (now < next_ && done_ < runs_) return;
+    next_ = now + (terminal_ ? kTerminalPeriod : kLogPeriod);
+    const double passed = std::chrono::duration<double>(now - start_).count();
+    const double left = passed * static_cast<double>(runs_ - done_) / static_cast<double>(done_);
+    fmt::print(stderr, "{}{}/{} runs, {} violated, {:.0f} s left{}", terminal_ ? "\r" : "", done_,
+               runs_, broken_, left, terminal_ ? "   " : "\n");
+    std::fflush(stderr);
+  }
+  void clear() const {
+    if (terminal_) fmt::print(stderr, "\r{:60}\r", "");
+  }
+  [[nodiscard]] std::size_t broken() const { return broken_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kTerminalPeriod{200};
+  static constexpr std::chrono::milliseconds kLogPeriod{30'000};
+  std::size_t runs_;
+  bool terminal_;
+  std::size_t done_ = 0;
+  std::size_t broken_ = 0;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point next_ = start_;
+};
+
+}  // namespace
+
+int sweep(const SweepArguments& arguments) {
+  auto experiment = configuration::load_experiment(arguments.experiment);
+  if (!experiment) return complain(experiment.error().message);
+  if (arguments.runs) experiment->runs = *arguments.runs;
+  const auto base =
+      configuration::load_scenario(arguments.experiment.parent_path() / experiment->scenario);
+  if (!base) return complain(arguments.experiment.string() + ": scenario: " + base.error().message);
+
+  experiments::SweepOptions options;
+  options.folder = !arguments.folder.empty()
+                       ? arguments.folder
+                       : std::filesystem::path{"runs"} / arguments.experiment.stem();
+  options.jobs = arguments.jobs > 0 ? arguments.jobs
+                                    : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  auto table = experiments::RunTable::open(options.folder, *experiment, *base);
+  if (!table) return complain(table.error().message);
+
+  const std::size_t lacking = experiments::missing(*experiment, *table);
+  Progress progress{lacking};
+  options.on_done = [&](const experiments::Measures& m) { progress.count(m.safe); };
+  options.stopped = [] { return asked_to_stop.load(); };
+  std::signal(SIGINT, stop);
+  std::signal(SIGTERM, stop);
+  const auto outcome = experiments::sweep(*experiment, *base, options, *table);
+  progress.clear();
+  if (!outcome) return complain(arguments.experiment.string() + ": " + outcome.error().message);
+  if (const auto written = experiments::write_results(*experiment, *table, options.folder);
+      !written) {
+    return complain(written.error().message);
+  }
+  fmt::print("{}\n{}\n{} of {} runs, {} of them flown now; tables and plots: {}\n",
+             experiment->title, experiments::text_table(*experiment, *table), outcome->present,
+             outcome->wanted, outcome->flown, options.folder.string());
+  if (outcome->present < outcome->wanted) {
+    fmt::print(stderr, "interrupted; the same command goes on where it was\n");
+    return kExitViolated;
+  }
+  return progress.broken() == 0 ? kExitHeld : kExitViolated;
+}
+
+}  // namespace skein::hil
