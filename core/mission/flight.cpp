@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/avoidance.hpp"
 
@@ -15,6 +16,9 @@ namespace {
 constexpr Duration kHandover = std::chrono::milliseconds{200};
 /// An orbit in wind is flown some metres off its circle.
 constexpr double kHoldClearanceM = 20.0;
+/// Where no orbit begun here keeps its distance: directions that are tried, and how far away.
+constexpr int kWaysOut = 8;
+constexpr double kWayOutRadii = 6.0;
 }  // namespace
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
@@ -56,9 +60,12 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
 }
 
 double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const {
-  // The first orbit that keeps its distance; where none does, the one that keeps most.
-  double best = 1.0 / vehicle_.planning_radius_m();
-  double best_clearance = -std::numeric_limits<double>::infinity();
+  return best_orbit(at, hazards).curvature_per_m;
+}
+
+/// The first orbit that keeps its distance; where none does, the one that keeps most.
+Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const {
+  Orbit best{1.0 / vehicle_.planning_radius_m(), -std::numeric_limits<double>::infinity()};
   for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
     for (const double side : {1.0, -1.0}) {
       const double radius = factor * vehicle_.planning_radius_m();
@@ -70,9 +77,7 @@ double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazard
         const double around = radius - d - h.radius_m;  // the hazard lies wholly inside the orbit
         clearance = std::min(clearance, std::max(outside, around));
       }
-      if (clearance <= best_clearance) continue;
-      best_clearance = clearance;
-      best = side / radius;
+      if (clearance > best.clearance_m) best = {side / radius, clearance};
     }
   }
   return best;
@@ -80,7 +85,27 @@ double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazard
 
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
   const Instant at = now + kHandover;
-  continue_with(at, Path{pose_at(at), {}}, hold_curvature(pose_at(at), hazards), now);
+  const Pose2 here = pose_at(at);
+  Path way{here, {}};
+  Orbit orbit = best_orbit(here, hazards);
+  if (orbit.clearance_m < kHoldClearanceM) {  // to where there is room, by the shortest way
+    double shortest_m = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kWaysOut; ++i) {
+      const double heading = wrap_pi(here.heading_rad + i * kTwoPi / kWaysOut);
+      const Vec2 there =
+          here.position() + kWayOutRadii * vehicle_.planning_radius_m() * unit_vector(heading);
+      const Pose2 to{there.x(), there.y(), heading};
+      const Orbit room = best_orbit(to, hazards);
+      if (room.clearance_m < kHoldClearanceM) continue;
+      const auto leg = planning::shortest_clear_path(avoidance_, here, to,
+                                                     vehicle_.planning_radius_m(), hazards);
+      if (!leg || leg->length_m() >= shortest_m) continue;
+      shortest_m = leg->length_m();
+      way = *leg;
+      orbit = room;
+    }
+  }
+  continue_with(at, way, orbit.curvature_per_m, now);
 }
 
 void Flight::pass_waypoints(Instant now) {

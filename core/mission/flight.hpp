@@ -29,20 +29,26 @@ class Flight {
   /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`.
   /// False, and nothing changed, when that has too many pieces.
   bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now);
-  /// The same without a next path: an orbit from here on, clear of the hazards where it can be.
+  /// The same without a next path: an orbit from here on, or from where there is room for one.
   void hold(const std::vector<Hazard>& hazards, Instant now);
   /// Along what is left of the search route, then an orbit at its end.
   void search(const std::vector<Hazard>& hazards, Instant now);
   void fly_home(const std::vector<Hazard>& hazards, Instant now);
   [[nodiscard]] bool searching() const { return searching_; }
 
-  /// An orbit's curvature at that pose: to the left, or to the right where only that is clear.
+  /// The curvature of an orbit at that pose that keeps its distance from the hazards, to the left
+  /// where it can.
   [[nodiscard]] double hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const;
 
   /// The newest plan, once.
   [[nodiscard]] std::optional<FlightPlan> poll_plan();
 
  private:
+  struct Orbit {
+    double curvature_per_m = 0.0;
+    double clearance_m = 0.0;  ///< from the nearest hazard, as far as it matters
+  };
+  [[nodiscard]] Orbit best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const;
   void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards, Instant now);
   void replace(const TimedPath& timed);
   void pass_waypoints(Instant now);

@@ -53,6 +53,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] Result<coalition::Bid> make_bid(const coalition::Announcement& announcement,
                                                 Instant now) const;
   void answer_award(const coalition::Participant::AwardReceived& award, Instant now);
+  [[nodiscard]] Result<TaskFlight> set_out(TaskFlight task, Instant start, Instant now);
   void fly_task(Instant now);
   void commit_delivery(Instant now);
   void drop_task(Instant now);

@@ -130,24 +130,31 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
   }
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
-  const Pose2 pose = flight_.pose_at(start);
-  const auto plan = planning::plan_task(config_.planning, candidate(pose, start), start,
-                                        award.award.site, mine, hazards_);
-  if (!plan) return refuse(plan.error().message);
+  const auto task = set_out({award.award.round, award.award.site, mine, {}}, start, now);
+  if (!task) return refuse(task.error().message);
+  report(EventKind::confirmed, task->round, mine.task, to_seconds(mine.time), {}, now);
+  task_ = *task;
+  participant_.accept(now);
+}
 
-  TaskFlight task{award.award.round, award.award.site, mine, *plan};
+/// The flight to that task from where the vehicle will be at `start`, which is then its flight
+/// plan.
+Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, Instant start, Instant now) {
+  const Pose2 pose = flight_.pose_at(start);
+  auto plan = planning::plan_task(config_.planning, candidate(pose, start), start, task.site,
+                                  task.assignment, hazards_);
+  if (!plan) return plan.error();
+  task.plan = *plan;
   Path path = plan->timed.path;
   double tail = plan->timed.tail_curvature_per_m;
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
-    if (!to_gate) return refuse("its path has too many pieces");
+    if (!to_gate) return Error{"its path has too many pieces"};
     path = *to_gate;
     tail = flight_.hold_curvature(path.end(), hazards_);
   }
-  if (!flight_.continue_with(start, path, tail, now)) return refuse("its path has too many pieces");
-  report(EventKind::confirmed, task.round, mine.task, to_seconds(mine.time), {}, now);
-  task_ = task;
-  participant_.accept(now);
+  if (!flight_.continue_with(start, path, tail, now)) return Error{"its path has too many pieces"};
+  return task;
 }
 
 void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant now) {
@@ -277,9 +284,18 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   if (rest && planning::is_clear(*rest, hazards_)) return;
   if (flight_.searching()) {
     flight_.search(hazards_, now);
+    return;
+  }
+  // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
+  // to the leader, who times the coalition anew.
+  const bool under_way = task_ && !task_->begun && !task_->committed;
+  const auto detour =
+      under_way ? set_out(*task_, now + kLateStart, now) : Result<TaskFlight>{Error{""}};
+  if (detour) {
+    task_ = *detour;
+    report(EventKind::plan_changed, task_->round, task_->assignment.task, 0.0,
+           "around the hazard, to the same time", now);
   } else {
-    // Its way is barred: the task goes back to the leader, who finds another way or another
-    // vehicle.
     participant_.withdraw("a hazard bars its path", now);
     pump(now);
     flight_.hold(hazards_, now);
