@@ -37,6 +37,8 @@ void settings_fields(FieldVisitor& v, ExperimentSettings& s) {
            s.radio_range_m);
   v.number({"message_delay_s", "dt_d; the radio's own delays are spread evenly from 0 to it"},
            short_time, s.message_delay_s);
+  v.number({"radio_delay_s", "of every message, in place of that spread"}, {0.0, 60.0, "s"},
+           s.radio_delay_s);
   v.number({"allocation_time_s", "t_TA"}, short_time, s.allocation_time_s);
   v.number({"formation_margin_s", "delta_t"}, {0.0, 60.0, "s"}, s.formation_margin_s);
   v.number({"lease_s", "as in the scenario's protocol"}, long_time, s.lease_s);

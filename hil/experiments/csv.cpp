@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "csv.hpp"
 
+#include <cerrno>
+#include <system_error>
+
 namespace skein::experiments {
 
 std::string csv_line(const std::vector<std::string>& fields) {
@@ -34,6 +37,11 @@ std::vector<std::string> csv_fields(std::string_view line) {
     }
   }
   return fields;
+}
+
+Error not_written(const std::string& file) {
+  return {file + ": cannot be written: " + std::generic_category().message(errno) +
+          "; make room or name another folder with --out"};
 }
 
 }  // namespace skein::experiments

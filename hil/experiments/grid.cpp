@@ -38,6 +38,7 @@ ExperimentSettings settings_of(const Experiment& experiment, const Cell& cell) {
     put(own.allocation, all.allocation);
     put(own.radio_range_m, all.radio_range_m);
     put(own.message_delay_s, all.message_delay_s);
+    put(own.radio_delay_s, all.radio_delay_s);
     put(own.allocation_time_s, all.allocation_time_s);
     put(own.formation_margin_s, all.formation_margin_s);
     put(own.lease_s, all.lease_s);
@@ -62,6 +63,10 @@ void apply(const ExperimentSettings& settings, Scenario& scenario) {
     put_duration(settings.message_delay_s, protocol.message_delay);
     scenario.radio.delay_mean = protocol.message_delay / 2;
     scenario.radio.delay_jitter = protocol.message_delay / 2;
+  }
+  if (settings.radio_delay_s) {
+    put_duration(settings.radio_delay_s, scenario.radio.delay_mean);
+    scenario.radio.delay_jitter = {};
   }
   put_duration(settings.allocation_time_s, protocol.allocation_time);
   put_duration(settings.formation_margin_s, protocol.margin);

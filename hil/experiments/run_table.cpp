@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <iterator>
 #include <sstream>
 
@@ -48,7 +46,7 @@ Result<void> keep(const std::filesystem::path& file, const std::string& text,
   if (!std::filesystem::exists(file)) {
     std::ofstream out{file, std::ios::binary};
     out << text << std::flush;
-    if (!out) return Error{file.string() + ": cannot be written: " + std::strerror(errno)};
+    if (!out) return not_written(file.string());
     return {};
   }
   if (text_of(file) == text) return {};
@@ -94,7 +92,7 @@ Result<RunTable> RunTable::open(const std::filesystem::path& folder, const Exper
   if (auto read = table.read(file); !read) return read.error();
   table.out_.open(file, std::ios::binary | std::ios::app);
   if (std::filesystem::file_size(file, error) == 0) table.out_ << table.header() << std::flush;
-  if (!table.out_) return Error{table.name_ + ": cannot be written: " + std::strerror(errno)};
+  if (!table.out_) return not_written(table.name_);
   return table;
 }
 
@@ -155,7 +153,7 @@ Result<void> RunTable::append(std::size_t cell, std::uint64_t seed, const Measur
   fields.push_back(fmt::format("{}", fmt::join(measures.broken, ";")));
   rows_.emplace(std::pair{seed, cell}, std::move(values));
   out_ << csv_line(fields) << std::flush;
-  if (!out_) return Error{name_ + ": cannot be written: " + std::strerror(errno)};
+  if (!out_) return not_written(name_);
   return {};
 }
 

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <optional>
@@ -50,7 +48,7 @@ std::vector<Draw> missing_draws(const Experiment& experiment, const RunTable& ta
 Result<void> write(const std::filesystem::path& file, const std::string& text) {
   std::ofstream out{file, std::ios::binary};
   out << text << std::flush;
-  if (!out) return Error{file.string() + ": cannot be written: " + std::strerror(errno)};
+  if (!out) return not_written(file.string());
   return {};
 }
 

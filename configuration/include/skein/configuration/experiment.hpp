@@ -23,6 +23,7 @@ struct ExperimentSettings {
   std::optional<double> radio_range_m;  ///< r_n, of the radio and of the protocol
   /// dt_d of the protocol; the radio's own delays are spread evenly from 0 to it.
   std::optional<double> message_delay_s;
+  std::optional<double> radio_delay_s;       ///< of every message, in place of that spread
   std::optional<double> allocation_time_s;   ///< t_TA
   std::optional<double> formation_margin_s;  ///< delta_t
   std::optional<double> lease_s;
