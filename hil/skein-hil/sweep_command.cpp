@@ -19,12 +19,12 @@
 namespace skein::hil {
 namespace {
 
-std::atomic<bool> asked_to_stop{false};
+std::atomic<bool> g_asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 /// The second signal ends the program as ever.
 void stop(int signal) {
-  asked_to_stop = true;
+  g_asked_to_stop = true;
   std::signal(signal, SIG_DFL);
 }
 
@@ -91,7 +91,7 @@ int sweep(const SweepArguments& arguments) {
   const std::size_t lacking = experiments::missing(*experiment, *table);
   Progress progress{lacking};
   options.on_done = [&](const experiments::Measures& m) { progress.count(m.safe); };
-  options.stopped = [] { return asked_to_stop.load(); };
+  options.stopped = [] { return g_asked_to_stop.load(); };
   std::signal(SIGINT, stop);
   std::signal(SIGTERM, stop);
   const auto outcome = experiments::sweep(*experiment, *base, options, *table);
