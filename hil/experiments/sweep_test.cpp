@@ -44,7 +44,7 @@ class Sweeps : public ::testing::Test {
     EXPECT_TRUE(experiment) << experiment.error().message;
     experiment_ = *experiment;
   }
-  ~Sweeps() override { std::filesystem::remove_all(root_); }
+  void TearDown() override { std::filesystem::remove_all(root_); }
 
   /// Flies until `runs` are flown, or all, and writes the results.
   SweepOutcome fly(const std::string& folder, std::size_t jobs = 1, std::size_t runs = 1000) {
