@@ -101,6 +101,14 @@ void Initiator::collect_open_tasks(Instant now) {
 
 void Initiator::on_bid(const Bid& message, Instant now) {
   heard_[message.bidder] = now;
+  for (auto& entry : ledger_) {
+    const bool newer = message.round.coalition == entry.round.coalition &&
+                       message.round.number > entry.round.number;
+    if (entry.ownership == Ownership::leased && entry.assignment.vehicle == message.bidder &&
+        newer) {
+      take_back(entry, message, now);
+    }
+  }
   if (message.round != announcement_.round || !machine_.in(State::announcing)) return;
   if (bids_.size() < kMembersMax) bids_.emplace(message.bidder, message);
 }
@@ -113,10 +121,6 @@ void Initiator::close_bids(Instant now) {
   wanted.answer_by = now + params_.allocation_time;
   deadline_ = wanted.answer_by;
   for (auto& entry : ledger_) {
-    const auto bid = bids_.find(entry.assignment.vehicle);
-    if (entry.ownership == Ownership::leased && bid != bids_.end()) {
-      take_back(entry, bid->second, now);
-    }
     if (entry.ownership == Ownership::open) wanted.tasks.push_back(entry.task);
   }
   for (const auto& [bidder, bid] : bids_) wanted.bids.push_back(bid);
@@ -132,8 +136,9 @@ void Initiator::close_bids(Instant now) {
 void Initiator::take_back(Entry& entry, const Bid& bid, Instant now) {
   const bool started_anew = bid.instance != entry.instance;
   if (!started_anew && entry.reported != TaskState::planned) return;
-  const bool may_be_flown = started_anew && entry.task.kind == TaskKind::deliver &&
-                            authorised_rounds_.contains(entry.round.number) && now >= entry.begins;
+  const bool begun = entry.reported == TaskState::started ||
+                     (authorised_rounds_.contains(entry.round.number) && now >= entry.begins);
+  const bool may_be_flown = started_anew && entry.task.kind == TaskKind::deliver && begun;
   if (may_be_flown || entry.maybe_flown) {
     make_unknown(entry);
   } else {
@@ -358,9 +363,10 @@ void Initiator::expire(Instant now) {
   for (auto& entry : ledger_) {
     if (entry.ownership != Ownership::leased || now < entry.lease_until + params_.clock_guard)
       continue;
-    const bool may_be_flown = entry.task.kind == TaskKind::deliver &&
-                              authorised_rounds_.contains(entry.round.number) &&
-                              entry.assignment.time <= entry.lease_until;
+    const bool due = authorised_rounds_.contains(entry.round.number) &&
+                     entry.assignment.time <= entry.lease_until;
+    const bool may_be_flown =
+        entry.task.kind == TaskKind::deliver && (due || entry.reported == TaskState::started);
     if (may_be_flown || entry.maybe_flown) {
       make_unknown(entry);
     } else {
@@ -391,12 +397,13 @@ void Initiator::heartbeat(Instant now) {
   renewal.round = announcement_.round;
   renewal.site = announcement_.site.id;
   renewal.members = {members.begin(), members.end()};
-  for (const auto& [elector, stamp] : electors_) renewal.electors.push_back(elector);
+  if (promised_until_ == Instant::max()) {  // until then they are those of the lost leader
+    for (const auto& [elector, stamp] : electors_) renewal.electors.push_back(elector);
+  }
   renewal.done = tasks_that_are(Ownership::done);
   renewal.unknown = tasks_that_are(Ownership::unknown);
   renewal.sent_at = now;
-  renewal.lease_until =
-      std::max(announcement_.formed_at, std::min(authority_until(), now + params_.lease));
+  renewal.lease_until = std::max(Instant{}, std::min(authority_until(), now + params_.lease));
   for (auto& entry : ledger_) {
     if (entry.ownership == Ownership::leased && members.contains(entry.assignment.vehicle)) {
       entry.lease_until = std::max(entry.lease_until, renewal.lease_until);

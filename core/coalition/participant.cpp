@@ -62,6 +62,9 @@ void Participant::on_announcement(const Announcement& message, Instant now) {
 void Participant::bid(const Announcement& announcement, Bid bid, Instant now) {
   if (!machine_.fire(Event::bid)) return;
   // Bidding anew gives the old tasks back: the leader may award them to somebody else from now on.
+  if (announcement.round.coalition != round_.coalition) {  // its leader does not hear this bid
+    for (const auto& lease : leases_) give_up(lease, now);
+  }
   end_leases("bid in a new round", true);
   round_ = announcement.round;
   bid.round = round_;
@@ -163,7 +166,6 @@ void Participant::on_timeout(Instant now) {
   if (machine_.in(State::orphaned)) {
     if (now >= orphaned_until_) {
       for (const auto& lease : leases_) give_up(lease, now);
-      leases_.clear();
       leave(Event::released, "no successor of the leader came");
     }
   } else {

@@ -21,6 +21,7 @@ constexpr std::size_t kSitesRememberedMax = 64;
 constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
 constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
 constexpr int kClosedTimes = 5;
+constexpr Duration kLeaderLost = std::chrono::seconds{75};
 
 std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
 std::string name_of(SiteId site) { return "site " + std::to_string(site.value); }
@@ -141,7 +142,7 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
   const Authorisation* before = granted_before(request);
   const std::string by = before == nullptr ? "" : before->decided_by;
   pending_.push_back({request, now, std::nullopt});
-  if (!by.empty()) (void)decide(pending_.back(), true, by, now);
+  if (!by.empty() && now < request.decide_by) (void)decide(pending_.back(), true, by, now);
 }
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {
@@ -156,6 +157,7 @@ void GroundAgent::on_renewal(const coalition::LeaseRenewal& renewal, Instant now
   LedSite& led = led_[renewal.site];
   if (led.last.closed) return;
   led.last = renewal;
+  led.heard_at = now;
   if (!renewal.closed && now < led.passed_on_at + kLeaderPassedOn) return;
   led.passed_on_at = now;
   messages_.push(Message{coalition::Message{renewal}});
@@ -163,8 +165,13 @@ void GroundAgent::on_renewal(const coalition::LeaseRenewal& renewal, Instant now
 
 /// Somebody announces what was done: it has not heard that the site is closed.
 void GroundAgent::on_announcement(const coalition::Announcement& announcement, Instant now) {
-  const auto led = led_.find(announcement.site.id);
-  if (led == led_.end() || !led->second.last.closed) return;
+  if (!led_.contains(announcement.site.id) && led_.size() >= kSitesRememberedMax) return;
+  const auto led = led_.try_emplace(announcement.site.id).first;
+  if (!led->second.last.closed) {
+    led->second.announcement = announcement;
+    led->second.heard_at = now;
+    return;
+  }
   if (now < led->second.passed_on_at + kClosedPassedOn) return;
   led->second.passed_on_at = now;
   messages_.push(Message{coalition::Message{led->second.last}});
@@ -201,7 +208,7 @@ const Authorisation* GroundAgent::granted_before(const AuthorisationRequest& req
     const bool same = was.assignment.vehicle == delivery.assignment.vehicle &&
                       was.assignment.time == delivery.assignment.time &&
                       was.bearing_rad == delivery.bearing_rad;
-    if (!same || (round && *round != was.round)) return nullptr;
+    if (!same || was.given_up || (round && *round != was.round)) return nullptr;
     round = was.round;
   }
   for (const auto& pending : pending_) {
@@ -212,13 +219,16 @@ const Authorisation* GroundAgent::granted_before(const AuthorisationRequest& req
 
 void GroundAgent::on_event(const MissionEvent& event) {
   const bool lost = event.kind == EventKind::lease_ended &&
-                    event.text != coalition::to_string(coalition::TaskState::done);
+                    event.text != coalition::to_string(coalition::TaskState::done) &&
+                    event.text != kHeldForSuccessor;
   const bool gives_up =
       lost || event.kind == EventKind::task_failed || event.kind == EventKind::authorisation_late;
   const auto granted = granted_.find(event.task);
-  if (gives_up && granted != granted_.end() && granted->second.round == event.round &&
+  if (granted != granted_.end() && granted->second.round == event.round &&
       granted->second.assignment.vehicle == event.vehicle) {
-    granted->second.given_up = true;
+    // What was begun may be flown to its end, whatever is said afterwards.
+    granted->second.begun = granted->second.begun || event.kind == EventKind::task_started;
+    granted->second.given_up = granted->second.given_up || (gives_up && !granted->second.begun);
   }
   if (event.kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
     done_.emplace(event.task, coalition::MemberStatus::Entry{event.task, coalition::TaskState::done,
@@ -266,6 +276,10 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
       return Error{"two vehicles answer to the id of " + name_of(member->first) +
                    ", which is part of this plan; stop or renumber one of them first"};
     }
+  }
+  if (!granted) {
+    led_[request.site].announcement.reset();
+    std::erase_if(granted_, [&](const auto& g) { return g.first.site == request.site; });
   }
   for (const auto& delivery : request.deliveries) {
     if (!granted) break;
@@ -343,6 +357,10 @@ void GroundAgent::send_again(Instant now) {
     }
   }
   for (auto& [site, led] : led_) {
+    if (!led.last.closed && led.announcement && now >= led.heard_at + kLeaderLost) {
+      led.heard_at = now;
+      messages_.push(Message{coalition::Message{*led.announcement}});
+    }
     const bool due = led.last.closed && led.times_closed < kClosedTimes &&
                      now >= led.passed_on_at + kClosedPassedOn;
     if (!due) continue;

@@ -8,11 +8,11 @@ namespace {
 constexpr std::size_t kSitesMax = 64;  ///< what a flood from the network can make us remember
 }
 
-void SiteBook::on_leader(const Site& site, Instant now) {
+void SiteBook::on_leader(const Site& site, Instant said_at) {
   if (!entries_.contains(site.id) && entries_.size() >= kSitesMax) return;
   Entry& entry = entries_[site.id];
   entry.site = site;
-  entry.heard_at = now;
+  entry.heard_at = std::max(entry.heard_at, said_at);
 }
 
 void SiteBook::on_renewal(const coalition::LeaseRenewal& message, Instant now) {
@@ -20,22 +20,23 @@ void SiteBook::on_renewal(const coalition::LeaseRenewal& message, Instant now) {
   if (known == entries_.end()) return;
   known->second.heard_at = now;
   known->second.closed = known->second.closed || message.closed;
-  for (const auto& task : message.done) note_done(known->second, task);
+  for (const auto& task : message.done) note_over(known->second, task);
+  for (const auto& task : message.unknown) note_over(known->second, task);
 }
 
 void SiteBook::on_status(const coalition::MemberStatus& message) {
   for (const auto& entry : message.tasks) {
     const auto known = entries_.find(entry.task.site);
     const bool over = entry.state == coalition::TaskState::done;
-    if (known != entries_.end() && over) note_done(known->second, entry.task);
+    if (known != entries_.end() && over) note_over(known->second, entry.task);
   }
 }
 
-void SiteBook::note_done(Entry& entry, const TaskId& task) {
+void SiteBook::note_over(Entry& entry, const TaskId& task) {
   if (task.site != entry.site.id || task.kind == TaskKind::survey) return;
   if (task.index >= entry.site.task_count(task.kind)) return;
-  if (std::find(entry.done.begin(), entry.done.end(), task) != entry.done.end()) return;
-  entry.done.push_back(task);
+  if (std::find(entry.over.begin(), entry.over.end(), task) != entry.over.end()) return;
+  entry.over.push_back(task);
 }
 
 void SiteBook::close(SiteId site) {
@@ -43,11 +44,12 @@ void SiteBook::close(SiteId site) {
   if (known != entries_.end()) known->second.closed = true;
 }
 
-const SiteBook::Entry* SiteBook::lost(Instant before) const {
+std::vector<const SiteBook::Entry*> SiteBook::lost(Instant before) const {
+  std::vector<const Entry*> all;
   for (const auto& [site, entry] : entries_) {
-    if (!entry.closed && entry.heard_at < before) return &entry;
+    if (!entry.closed && entry.heard_at < before) all.push_back(&entry);
   }
-  return nullptr;
+  return all;
 }
 
 const SiteBook::Entry* SiteBook::lost(SiteId site, Instant before) const {
@@ -58,9 +60,9 @@ const SiteBook::Entry* SiteBook::lost(SiteId site, Instant before) const {
   return &known->second;
 }
 
-std::vector<TaskId> SiteBook::done(SiteId site) const {
+std::vector<TaskId> SiteBook::over(SiteId site) const {
   const auto known = entries_.find(site);
-  return known == entries_.end() ? std::vector<TaskId>{} : known->second.done;
+  return known == entries_.end() ? std::vector<TaskId>{} : known->second.over;
 }
 
 bool SiteBook::led(SiteId site, Instant since) const {

@@ -13,8 +13,8 @@ namespace skein::mission {
 /// not forgotten: whoever is free flies there, and leads it if it is still silent there.
 class SiteBook {
  public:
-  /// An announcement or an award.
-  void on_leader(const Site& site, Instant now);
+  /// An announcement or an award, and when its leader made it: the ground station repeats old ones.
+  void on_leader(const Site& site, Instant said_at);
   void on_renewal(const coalition::LeaseRenewal& message, Instant now);
   void on_status(const coalition::MemberStatus& message);
   /// The site needs nobody any more: it is done, or the operator wants it no more.
@@ -22,20 +22,20 @@ class SiteBook {
 
   struct Entry {
     Site site;
-    std::vector<TaskId> done;
-    Instant heard_at{};  ///< its leader
+    std::vector<TaskId> over;  ///< done, or never to be flown again because they may have been
+    Instant heard_at{};        ///< its leader
     bool closed = false;
   };
-  /// The first site that is not closed and whose leader has not been heard of since `before`.
-  [[nodiscard]] const Entry* lost(Instant before) const;
+  /// The sites that are not closed and whose leader has not been heard of since `before`.
+  [[nodiscard]] std::vector<const Entry*> lost(Instant before) const;
   /// That site, on the same conditions.
   [[nodiscard]] const Entry* lost(SiteId site, Instant before) const;
-  [[nodiscard]] std::vector<TaskId> done(SiteId site) const;
+  [[nodiscard]] std::vector<TaskId> over(SiteId site) const;
   /// Somebody leads it, and was heard of since `since`, or it is closed.
   [[nodiscard]] bool led(SiteId site, Instant since) const;
 
  private:
-  static void note_done(Entry& entry, const TaskId& task);
+  static void note_over(Entry& entry, const TaskId& task);
   std::map<SiteId, Entry> entries_;
 };
 

@@ -67,6 +67,7 @@ class VehicleAgent::Impl {
   void take_up_site(Instant now);
   void fly_survey(Instant now);
   void take_up_lost_site(Instant now);
+  bool fly_to(const SiteBook::Entry& lost, Instant now);
   void fly_to_lost_site(Instant now);
   [[nodiscard]] Instant unheard_since(Instant now) const;
   void lead(const Site& site, const std::vector<TaskId>& done, Instant now);
@@ -111,6 +112,8 @@ class VehicleAgent::Impl {
     int times = 0;  ///< still to be said
   };
   std::vector<Farewell> farewells_;  ///< of the coalitions that were led here to the end
+  Instant relief_again_{};
+  std::uint64_t protocol_errors_led_ = 0;  ///< of coalitions that were led here before
   std::uint32_t coalitions_led_ = 0;
   std::vector<coalition::Round> granted_;  ///< rounds that the operator has authorised, newest last
   std::map<VehicleId, coalition::Bid> bids_;  ///< of the round being allocated or flown

@@ -20,6 +20,7 @@ constexpr int kFarewells = 5;
 /// Who goes to lead a lost site must have this times the way there left, and goes around it at this
 /// times its planning radius at least.
 constexpr double kReliefRangeFactor = 2.0;
+constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for such sites
 constexpr double kReliefRadiusFactor = 1.2;
 
 /// "exact: J 1.7312, proven" or "colony: J 1.7312, at most 0.0040 below the optimum".
@@ -61,7 +62,7 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
   if (!surveyed_.empty()) {
     const Site site = surveyed_.front();
     surveyed_.erase(surveyed_.begin());
-    lead(site, sites_.done(site.id), now);
+    lead(site, sites_.over(site.id), now);
     return;
   }
   if (found_.empty()) return;
@@ -89,25 +90,31 @@ Instant VehicleAgent::Impl::unheard_since(Instant now) const {
 }
 
 void VehicleAgent::Impl::take_up_lost_site(Instant now) {
-  if (duplicate_id_) return;
-  const auto* lost = sites_.lost(unheard_since(now));
-  if (lost == nullptr) return;
+  if (duplicate_id_ || now < relief_again_) return;
+  relief_again_ = now + kReliefPeriod;
+  for (const auto* lost : sites_.lost(unheard_since(now))) {
+    if (fly_to(*lost, now)) return;
+  }
+}
+
+bool VehicleAgent::Impl::fly_to(const SiteBook::Entry& lost, Instant now) {
   const Instant start = now + kSurveyLead;
   const Pose2 from = flight_.pose_at(start);
-  const double way_m = (lost->site.position - from.position()).norm();
-  if (range_left(start) < kReliefRangeFactor * way_m) return;
+  const double way_m = (lost.site.position - from.position()).norm();
+  if (range_left(start) < kReliefRangeFactor * way_m) return false;
   VehicleSpec vehicle = config_.vehicle;  // it goes around the site at any radius that it can fly
   vehicle.sensor_radius_m =
       std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
   const auto plan =
-      planning::plan_survey(config_.planning, vehicle, from, start, lost->site, hazards_);
+      planning::plan_survey(config_.planning, vehicle, from, start, lost.site, hazards_);
   if (!plan ||
       !flight_.continue_with(start, plan->timed.path, plan->timed.tail_curvature_per_m, now)) {
-    return;
+    return false;
   }
-  report(EventKind::plan_changed, {}, {lost->site.id, {}, 0}, 0.0,
+  report(EventKind::plan_changed, {}, {lost.site.id, {}, 0}, 0.0,
          "the site's leader is lost: goes there to lead", now);
-  survey_ = SurveyFlight{lost->site, *plan, true};
+  survey_ = SurveyFlight{lost.site, *plan, true};
+  return true;
 }
 
 void VehicleAgent::Impl::fly_to_lost_site(Instant now) {
@@ -117,7 +124,7 @@ void VehicleAgent::Impl::fly_to_lost_site(Instant now) {
     flight_.search(hazards_, now);
   } else if (now >= survey_->begin_time() + config_.protocol.silence) {  // it has listened there
     survey_.reset();
-    lead(lost->site, lost->done, now);
+    lead(lost->site, lost->over, now);
   }
 }
 
@@ -255,9 +262,11 @@ void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instan
     const auto& assignments = result.allocation->assignments;
     report(EventKind::allocation_done, result.round, about, to_seconds(result.took),
            std::to_string(bids_.size()) + " bids; " + summary_of(*result.allocation), now);
-    report(EventKind::awarded, result.round, about, static_cast<double>(assignments.size()), {},
-           now);
     initiator_->allocated(result.round, assignments, now);
+    if (initiator_->state() == Initiator::State::awarding) {
+      report(EventKind::awarded, result.round, about, static_cast<double>(assignments.size()), {},
+             now);
+    }
   } else {
     const auto& why = result.allocation.error().message;
     report(EventKind::allocation_failed, result.round, about, static_cast<double>(bids_.size()),
@@ -335,6 +344,7 @@ void VehicleAgent::Impl::stop_leading(Instant now) {
     if (!message) break;
     send(*message, now);
   }
+  if (initiator_) protocol_errors_led_ += initiator_->protocol_errors();
   initiator_.reset();
   request_.reset();
 }

@@ -32,7 +32,8 @@ void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) 
     report(EventKind::lease_granted, granted->round, granted->task, to_seconds(granted->until), {},
            now);
   } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
-    report(EventKind::lease_ended, ended->round, ended->task, 0.0, ended->why, now);
+    report(EventKind::lease_ended, ended->round, ended->task, 0.0,
+           ended->held ? std::string{kHeldForSuccessor} : ended->why, now);
     if (task_ && task_->assignment.task == ended->task && !ended->held) drop_task(now);
   } else if (const auto* released = std::get_if<Participant::Released>(&output)) {
     report(EventKind::released, released->round, {}, 0.0, released->why, now);
@@ -170,12 +171,13 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
            now);
   }
   if (!message.granted) sites_.close(message.site);
+  // A grant counts for the rounds before this one too: a member may have heard it and begun.
+  if (initiator_ && message.granted && message.round.coalition == initiator_->round().coalition) {
+    initiator_->authorised(message.round);
+  }
   if (!initiator_ || !request_ || message.round != request_->round) return;
   request_.reset();
-  if (message.granted) {
-    initiator_->authorised(message.round);
-    return;
-  }
+  if (message.granted) return;
   report(EventKind::authorisation_refused, message.round, {message.site, TaskKind::deliver, 0}, 0.0,
          message.decided_by, now);
   initiator_->close("refused by the operator", now);
@@ -239,6 +241,7 @@ bool VehicleAgent::Impl::deliveries_over(const Site& site) const {
 /// The lease has gone: the plan must lead past no gate.
 void VehicleAgent::Impl::drop_task(Instant now) {
   const bool leads_on = task_->committed || !task_->is_delivery();
+  if (task_->begun && task_->is_delivery() && loads_ > 0) --loads_;  // it counts as used
   task_.reset();
   if (leads_on) flight_.hold(hazards_, now);
 }

@@ -112,7 +112,7 @@ void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now)
                           for (auto& farewell : farewells_) {
                             if (farewell.last.site == m.site.id) farewell.times = 1;
                           }
-                          sites_.on_leader(m.site, now);
+                          sites_.on_leader(m.site, m.announced_at);
                           meet_rival(m.site.id, m.round, false, now);
                           yield_to(m, now);
                           participant_.on_announcement(m, now);
@@ -121,7 +121,7 @@ void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now)
                           if (initiator_) initiator_->on_bid(m, now);
                         },
                         [&](const coalition::Award& m) {
-                          sites_.on_leader(m.site, now);
+                          sites_.on_leader(m.site, m.awarded_at);
                           meet_rival(m.site.id, m.round, true, now);
                           participant_.on_award(m, now);
                         },
@@ -205,8 +205,8 @@ Telemetry VehicleAgent::Impl::telemetry() const {
 }
 
 std::map<std::string, std::uint64_t> VehicleAgent::Impl::counters() const {
-  return {{"protocol_errors",
-           participant_.protocol_errors() + (initiator_ ? initiator_->protocol_errors() : 0)},
+  return {{"protocol_errors", participant_.protocol_errors() + protocol_errors_led_ +
+                                  (initiator_ ? initiator_->protocol_errors() : 0)},
           {"messages_dropped", messages.dropped()},
           {"events_dropped", events.dropped()}};
 }

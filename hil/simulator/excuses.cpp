@@ -33,13 +33,18 @@ bool all_matched(std::size_t tasks, std::size_t vehicles,
   return true;
 }
 
-/// What leaders told the operator about deliveries that nobody can know of.
+/// What leaders told the operator about deliveries that nobody can know of. Without a grant for its
+/// site no delivery can have been flown.
 std::set<TaskId> may_have_been_flown(const checks::RunRecord& record) {
   std::set<TaskId> tasks;
+  std::set<SiteId> granted;
+  for (const auto& event : record.ground_events) {
+    if (event.kind == mission::EventKind::authorised) granted.insert(event.task.site);
+  }
   for (const auto& recorded : record.recordings) {
     for (const auto& event : recorded.events) {
       if (event.kind == mission::EventKind::warning && event.task.kind == TaskKind::deliver &&
-          event.text.starts_with("may have been flown")) {
+          event.text.starts_with("may have been flown") && granted.contains(event.task.site)) {
         tasks.insert(event.task);
       }
     }

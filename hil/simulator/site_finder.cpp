@@ -30,7 +30,7 @@ SiteFinder::SiteFinder(const TeamMission& mission)
       to_report_{sites(mission, true)} {}
 
 SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
-  finder_[site.id] = vehicle;
+  knowing_[site.id].insert(specs_[vehicle].id);
   return {vehicle, {specs_[vehicle].id, site}};
 }
 
@@ -104,19 +104,17 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<FlyingVe
 }
 
 void SiteFinder::on_event(const mission::MissionEvent& event) {
-  if (event.kind == mission::EventKind::lease_granted ||
-      event.kind == mission::EventKind::site_done)
-    taken_up_.insert(event.task.site);
+  if (event.kind == mission::EventKind::site_done) done_.insert(event.task.site);
+  // Whoever announces, bids or declines has heard of the site.
+  if (event.vehicle != kGroundStation) knowing_[event.task.site].insert(event.vehicle);
 }
 
 void SiteFinder::on_agent_end(std::size_t vehicle) {
   std::vector<Site> hidden = sensors_.hidden();
   for (const Site& site : mission_.sites) {
-    const auto finder = finder_.find(site.id);
-    if (finder == finder_.end() || finder->second != vehicle || taken_up_.contains(site.id))
-      continue;
-    finder_.erase(finder);
-    hidden.push_back(site);
+    auto& knowing = knowing_[site.id];
+    const bool forgets = knowing.erase(specs_[vehicle].id) > 0 && knowing.empty();
+    if (forgets && !done_.contains(site.id)) hidden.push_back(site);
   }
   sensors_ = SurveySensors{hidden, specs_};
 }

@@ -13,8 +13,8 @@
 
 namespace skein::hil {
 
-/// Who finds which site. What only one agent knew is hidden again when that agent ends: as long as
-/// no task of a site was ever leased, nobody else has taken anything up there.
+/// Who finds which site. A site that is not done is hidden again when the last program that had
+/// heard of it ends.
 class SiteFinder {
  public:
   explicit SiteFinder(const TeamMission& mission);
@@ -42,8 +42,8 @@ class SiteFinder {
   std::vector<VehicleSpec> specs_;
   SurveySensors sensors_;
   std::vector<Site> to_report_;
-  std::map<SiteId, std::size_t> finder_;
-  std::set<SiteId> taken_up_;
+  std::map<SiteId, std::set<VehicleId>> knowing_;  ///< whose programs have heard of it
+  std::set<SiteId> done_;
 };
 
 }  // namespace skein::hil

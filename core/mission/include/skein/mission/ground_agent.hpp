@@ -53,7 +53,9 @@ struct PendingAuthorisation {
 /// deliveries that were granted needs no new one. It remembers what was flown: a delivery that is
 /// done, or was granted to another coalition and may have been flown, is not put to the operator
 /// again, but told to the leader that asks. And it passes on, now and then, that a leader is there
-/// and that a site is done, so that who is out of the leader's range does not take it for lost.
+/// and that a site is done, so that who is out of the leader's range does not take it for lost. A
+/// site whose leader has been silent for long is announced by it: too late for bids, but it is
+/// known again to all.
 class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
@@ -84,12 +86,15 @@ class GroundAgent {
     coalition::Round round;
     TaskAssignment assignment;
     double bearing_rad = 0.0;
+    bool begun = false;
     bool given_up = false;  ///< its owner has said that it does not fly it
   };
   struct LedSite {
     coalition::LeaseRenewal last;  ///< of its leader
     Instant passed_on_at{Instant::min()};
-    int times_closed = 0;  ///< that its end was passed on
+    int times_closed = 0;                                 ///< that its end was passed on
+    std::optional<coalition::Announcement> announcement;  ///< the newest; none when refused
+    Instant heard_at{};                                   ///< its leader
   };
   struct SentCommand {
     Command command;

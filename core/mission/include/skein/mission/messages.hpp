@@ -111,6 +111,9 @@ struct MissionEvent {
   std::string text;        ///< for people
 };
 
+/// The text of a lease_ended event when the plan is held: its lease may come back.
+inline constexpr std::string_view kHeldForSuccessor = "the leader is silent: the plan is held";
+
 enum class CommandKind : std::uint8_t { hold, resume, return_home, count };
 [[nodiscard]] std::string_view to_string(CommandKind kind);
 
