@@ -5,8 +5,6 @@
 #include <bit>
 #include <numeric>
 
-#include "skein/planning/assignment.hpp"
-
 namespace skein::planning::coupled {
 
 Bounds::Bounds(const Model& model)
@@ -17,7 +15,8 @@ Bounds::Bounds(const Model& model)
       head_s_(model.tasks.size(), 0.0),
       survey_end_s_(model.vehicles.size()),
       delivery_s_(model.vehicles.size()),
-      penalty_(static_cast<Eigen::Index>(model.tasks.size()), kPlacesMax) {
+      packed_(model.classes.size()),
+      penalty_(model.tasks.size() * kPlacesMax, kInfinity) {
   make_tails();
   make_least_range_costs();
 }
@@ -191,8 +190,24 @@ double Bounds::add_assessments(const PartialPlan& plan, double cost, Index s, do
 
 bool Bounds::places_suffice(const PartialPlan& plan, double limit) {
   if (chains(plan) >= limit) return false;
-  open_count_ = 0;
+  find_open(plan);
   double own_cost = 0.0;
+  for (std::size_t row = 0; row < open_count_; ++row) {
+    own_cost = model_.add(own_cost, open_[row].cost);
+  }
+  // What the chains know beyond the heads is not used: penalties are counted from the heads.
+  const double room = limit - model_.add(plan.cost(), own_cost);
+  pack();
+  make_places(plan, room, limit);
+  if (too_many_) return true;
+  if (!give_places()) return false;
+  if (model_.criterion == Criterion::makespan) return true;
+  return row_sum_ < room && least_sum_is_below(room);
+}
+
+void Bounds::find_open(const PartialPlan& plan) {
+  open_count_ = 0;
+  double last_head_s = 0.0;
   for (Index t = 0; t < model_.task_count(); ++t) {
     if ((plan.done() & bit(t)) != 0) continue;
     double after_s = kInfinity;
@@ -200,89 +215,114 @@ bool Bounds::places_suffice(const PartialPlan& plan, double limit) {
       after_s = std::min(after_s, kind.least_after_s[at(t)]);
     }
     const double cost = model_.least_cost_of(t, head_s_[at(t)] + after_s) + range_cost_[at(t)];
-    own_cost = model_.add(own_cost, cost);
-    open_[open_count_++] = {t, cost};
+    open_[open_count_++] = {t, cost, 0.0};
+    last_head_s = std::max(last_head_s, head_s_[at(t)]);
   }
-  // What the chains know beyond the heads is not used: penalties are counted from the heads.
-  const double room = limit - model_.add(plan.cost(), own_cost);
-  make_places(plan, room, limit);
-  if (too_many_) return true;
-  if (!give_places()) return false;
-  if (model_.criterion == Criterion::makespan) return true;
-  if (places_ < static_cast<int>(open_count_)) return false;
-  if (row_sum_ >= room) return false;
-  const auto least =
-      least_sum_assignment(penalty_.topLeftCorner(static_cast<Eigen::Index>(open_count_), places_));
-  return least && least->cost < room;
+  for (std::size_t row = 0; row < open_count_; ++row) {
+    open_[row].least_slope_per_s = model_.least_slope_of(open_[row].task, last_head_s);
+  }
 }
 
-/// What comes second or later comes from another open task.
-void Bounds::make_legs_into_open() {
-  if (model_.criterion != Criterion::value) return;
+void Bounds::pack() {
   const std::size_t tasks = model_.tasks.size();
-  std::fill(least_into_s_.begin(), least_into_s_.end(), kInfinity);
-  for (std::size_t k = 0; k < model_.classes.size(); ++k) {
-    double* into_s = least_into_s_.data() + k * tasks;
+  for (std::size_t k = 0; k < packed_.size(); ++k) {
+    const VehicleClass& kind = model_.classes[k];
+    Packed& can = packed_[k];
+    can.count = 0;
     for (std::size_t row = 0; row < open_count_; ++row) {
-      const double* leg_s = model_.classes[k].least_between_s.data() + at(open_[row].task) * tasks;
-      for (std::size_t t = 0; t < tasks; ++t) into_s[t] = std::min(into_s[t], leg_s[t]);
+      const std::size_t t = at(open_[row].task);
+      if (kind.least_after_s[t] == kInfinity) continue;
+      can.row[can.count] = row;
+      can.head_s[can.count] = head_s_[t];
+      can.after_s[can.count] = kind.least_after_s[t];
+      can.slope_per_s[can.count] = open_[row].least_slope_per_s;
+      ++can.count;
+    }
+    can.leg_s.resize(can.count * can.count);
+    for (std::size_t a = 0; a < can.count; ++a) {
+      const double* leg_s = kind.least_between_s.data() + at(open_[can.row[a]].task) * tasks;
+      for (std::size_t b = 0; b < can.count; ++b) {
+        can.leg_s[a * can.count + b] = a == b ? kInfinity : leg_s[at(open_[can.row[b]].task)];
+      }
     }
   }
 }
 
-/// One leg more: from the ends of open tasks to the times of all.
-void Bounds::walk(const VehicleClass& kind, const std::array<double, kCoupledTasksMax>& end_s,
-                  std::array<double, kCoupledTasksMax>& reach_s) const {
-  const std::size_t tasks = model_.tasks.size();
-  reach_s.fill(kInfinity);
-  for (std::size_t row = 0; row < open_count_; ++row) {
-    const double from_s = end_s[row];
-    if (from_s == kInfinity) continue;
-    const double* leg_s = kind.least_between_s.data() + at(open_[row].task) * tasks;
-    for (std::size_t t = 0; t < tasks; ++t) reach_s[t] = std::min(reach_s[t], from_s + leg_s[t]);
+void Bounds::first_place(const PartialPlan& plan, const Packed& can, Index vehicle,
+                         Place& place) const {
+  const Vehicle& its = model_.vehicles[at(vehicle)];
+  const double free_s = plan.vehicles()[at(vehicle)].free_s;
+  for (std::size_t c = 0; c < can.count; ++c) {
+    place.reach_s[c] = arrival_s(plan, vehicle, open_[can.row[c]].task);
+    place.wait_cost[c] =
+        its.range_weight_per_s * (std::max(place.reach_s[c], can.head_s[c]) - free_s);
+  }
+}
+
+/// One leg more: from the ends of open tasks to the times of all. A wait before a task costs range,
+/// or as long a delay of the task before it, whose cost is concave.
+void Bounds::next_place(const Packed& can, double weight_per_s, Place& place) const {
+  const std::size_t count = can.count;
+  std::fill_n(place.reach_s.begin(), count, kInfinity);
+  std::fill_n(place.wait_cost.begin(), count, kInfinity);
+  for (std::size_t a = 0; a < count; ++a) {
+    const double end_s = place.end_s[a];
+    if (end_s == kInfinity) continue;
+    const double* leg_s = can.leg_s.data() + a * count;
+    const double slope_per_s = std::min(weight_per_s, can.slope_per_s[a]);
+    for (std::size_t b = 0; b < count; ++b) {
+      const double reach_s = end_s + leg_s[b];
+      place.reach_s[b] = std::min(place.reach_s[b], reach_s);
+      const double wait_s = std::max(0.0, can.head_s[b] - reach_s);
+      place.wait_cost[b] =
+          std::min(place.wait_cost[b], weight_per_s * leg_s[b] + slope_per_s * wait_s);
+    }
   }
 }
 
 void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
   const double most = model_.criterion == Criterion::makespan ? limit : room;
-  make_legs_into_open();
-  std::array<double, kCoupledTasksMax> end_s{};
-  std::array<double, kCoupledTasksMax> next_s{};
-  std::array<double, kCoupledTasksMax> reach_s{};
-  std::array<double, kCoupledTasksMax> least_penalty{};
-  least_penalty.fill(kInfinity);
+  PerTask least_penalty;
+  std::fill_n(least_penalty.begin(), open_count_, kInfinity);
+  std::fill_n(allowed_.begin(), open_count_, Mask{0});
   places_ = 0;
   too_many_ = false;
-  for (std::size_t row = 0; row < open_count_; ++row) allowed_[row] = 0;
+  Place place;
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
-    const VehicleClass& kind = model_.class_of(i);
-    for (std::size_t position = 0; position < open_count_; ++position) {
-      bool any = false;
+    const Vehicle& its = model_.vehicles[at(i)];
+    const Packed& can = packed_[at(its.kind)];
+    const bool loaded = plan.vehicles()[at(i)].loads > 0;
+    for (std::size_t position = 0; position < can.count; ++position) {
       if (places_ == kPlacesMax) {
         too_many_ = true;
         return;
       }
       if (position == 0) {
-        for (std::size_t row = 0; row < open_count_; ++row) {
-          reach_s[at(open_[row].task)] = arrival_s(plan, i, open_[row].task);
-        }
+        first_place(plan, can, i, place);
       } else {
-        walk(kind, end_s, reach_s);
+        next_place(can, its.range_weight_per_s, place);
       }
       for (std::size_t row = 0; row < open_count_; ++row) {
-        const Index t = open_[row].task;
-        const double ends_s = std::max(reach_s[at(t)], head_s_[at(t)]) + kind.least_after_s[at(t)];
-        const double more = penalty(plan, open_[row], i, ends_s, position);
-        const bool possible = more < most;
-        next_s[row] = possible ? ends_s : kInfinity;
-        penalty_(static_cast<Eigen::Index>(row), places_) = possible ? more : kInfinity;
-        if (possible) allowed_[row] |= bit(places_);
-        any = any || possible;
+        penalty_[row * kPlacesMax + places_] = kInfinity;
+      }
+      bool any = false;
+      for (std::size_t c = 0; c < can.count; ++c) {
+        const std::size_t row = can.row[c];
+        const Open& open = open_[row];
+        double end_s = std::max(place.reach_s[c], can.head_s[c]) + can.after_s[c];
+        const bool able = loaded || model_.tasks[at(open.task)].id.kind != TaskKind::deliver;
+        const double range_cost = place.wait_cost[c] + its.range_weight_per_s * can.after_s[c];
+        const double more = able ? penalty(open, its, end_s, range_cost) : kInfinity;
+        place.end_s[c] = kInfinity;
+        if (!(more < most)) continue;
+        place.end_s[c] = end_s;
+        penalty_[row * kPlacesMax + places_] = more;
+        allowed_[row] |= Mask{1} << places_;
+        any = true;
         least_penalty[row] = std::min(least_penalty[row], more);
       }
       if (!any) break;
       ++places_;
-      std::swap(end_s, next_s);
     }
   }
   row_sum_ = std::accumulate(least_penalty.begin(),
@@ -291,21 +331,26 @@ void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
 
 /// What the task costs at a place beyond what it costs by its chain; for a makespan the least end
 /// of all.
-double Bounds::penalty(const PartialPlan& plan, const Open& open, Index vehicle, double end_s,
-                       std::size_t position) const {
-  const Index t = open.task;
-  if (!in_time(vehicle, end_s)) return kInfinity;
-  if (model_.criterion == Criterion::makespan) return end_s + tail_s_[at(t)];
-  double cost = model_.least_cost_of(t, end_s);
-  const Vehicle& its = model_.vehicles[at(vehicle)];
-  if (its.range_weight_per_s > 0.0) {
-    const double after_s = model_.class_of(vehicle).least_after_s[at(t)];
-    const double seconds =
-        position == 0 ? end_s - plan.vehicles()[at(vehicle)].free_s
-                      : least_into_s_[at(its.kind) * model_.tasks.size() + at(t)] + after_s;
-    cost += its.range_weight_per_s * seconds;
+double Bounds::penalty(const Open& open, const Vehicle& vehicle, double end_s,
+                       double range_cost) const {
+  if (!(end_s <= vehicle.deadline_s)) return kInfinity;
+  if (model_.criterion == Criterion::makespan) return end_s + tail_s_[at(open.task)];
+  return std::max(0.0, model_.least_cost_of(open.task, end_s) + range_cost - open.cost);
+}
+
+bool Bounds::least_sum_is_below(double room) {
+  cost_.clear();
+  for (std::size_t row = 0; row < open_count_; ++row) {
+    const auto first = penalty_.begin() + static_cast<std::ptrdiff_t>(row * kPlacesMax);
+    cost_.insert(cost_.end(), first, first + static_cast<std::ptrdiff_t>(places_));
   }
-  return std::max(0.0, cost - open.cost);
+  const auto place_of = std::span{place_of_}.first(open_count_);
+  if (!solver_.least_sum(cost_, places_, place_of)) return false;
+  double sum = 0.0;
+  for (std::size_t row = 0; row < open_count_; ++row) {
+    sum += cost_[row * places_ + static_cast<std::size_t>(place_of[row])];
+  }
+  return sum < room;
 }
 
 /// Is there any way to give every open task a place? Kuhn's augmenting paths.

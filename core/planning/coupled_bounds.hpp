@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <vector>
 
 #include "coupled_model.hpp"
 #include "coupled_partial.hpp"
+#include "skein/planning/assignment.hpp"
 
 namespace skein::planning::coupled {
 
@@ -24,7 +24,9 @@ class Bounds {
   /// vehicle has still to do, for less than `limit`? `false` is certain. A task's time at a place
   /// is at least that of the shortest walk of so many open tasks that ends with it, and at least
   /// that of its chain; the places are given out by the assignment of the least sum (makespan: by
-  /// any that is in time). Between groups only. O(vehicles x depth x tasks^2 + tasks^2 x places).
+  /// any that is in time). What is not a vehicle's first also costs the leg to it, and the wait
+  /// after it, or that the task before it was done as much later. Between groups only.
+  /// O(vehicles x depth x tasks^2 + tasks^2 x places).
   [[nodiscard]] bool places_suffice(const PartialPlan& plan, double limit);
 
  private:
@@ -38,7 +40,24 @@ class Bounds {
   };
   struct Open {
     Index task = 0;
-    double cost = 0.0;  ///< by its chain
+    double cost = 0.0;               ///< by its chain
+    double least_slope_per_s = 0.0;  ///< of its cost, as long as any task may have to wait
+  };
+  using PerTask = std::array<double, kCoupledTasksMax>;
+  /// The open tasks that a class can do, side by side.
+  struct Packed {
+    std::size_t count = 0;
+    std::array<std::size_t, kCoupledTasksMax> row{};  ///< of open_
+    PerTask head_s{};
+    PerTask after_s{};
+    PerTask slope_per_s{};
+    std::vector<double> leg_s;  ///< [from * count + to]
+  };
+  /// The next place of a vehicle, by packed task.
+  struct Place {
+    PerTask reach_s{};
+    PerTask end_s{};
+    PerTask wait_cost{};  ///< of range, from the end of the task before
   };
 
   void make_tails();
@@ -51,12 +70,14 @@ class Bounds {
   [[nodiscard]] bool in_time(Index vehicle, double end_s) const {
     return end_s <= model_.vehicles[at(vehicle)].deadline_s;
   }
+  void find_open(const PartialPlan& plan);
+  void pack();
   void make_places(const PartialPlan& plan, double room, double limit);
-  [[nodiscard]] double penalty(const PartialPlan& plan, const Open& open, Index vehicle,
-                               double end_s, std::size_t position) const;
-  void make_legs_into_open();
-  void walk(const VehicleClass& kind, const std::array<double, kCoupledTasksMax>& end_s,
-            std::array<double, kCoupledTasksMax>& reach_s) const;
+  [[nodiscard]] double penalty(const Open& open, const Vehicle& vehicle, double end_s,
+                               double range_cost) const;
+  void first_place(const PartialPlan& plan, const Packed& can, Index vehicle, Place& place) const;
+  void next_place(const Packed& can, double weight_per_s, Place& place) const;
+  [[nodiscard]] bool least_sum_is_below(double room);
   [[nodiscard]] bool give_places();
   [[nodiscard]] bool match(std::size_t row, Mask& tried);
 
@@ -76,11 +97,15 @@ class Bounds {
   // Of the last places_suffice.
   std::array<Open, kCoupledTasksMax> open_{};
   std::size_t open_count_ = 0;
-  static constexpr int kPlacesMax = 64;
-  int places_ = 0;
+  std::vector<Packed> packed_;  ///< by class
+  static constexpr std::size_t kPlacesMax = 64;
+  std::size_t places_ = 0;
   bool too_many_ = false;
-  double row_sum_ = 0.0;  ///< of the least penalty of every task
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor> penalty_;
+  double row_sum_ = 0.0;         ///< of the least penalty of every task
+  std::vector<double> penalty_;  ///< [row * kPlacesMax + place]
+  std::vector<double> cost_;     ///< the part of it in use
+  std::array<int, kCoupledTasksMax> place_of_{};
+  AssignmentSolver solver_;
   std::array<Mask, kCoupledTasksMax> allowed_{};
   std::array<int, kPlacesMax> holder_{};
 };

@@ -140,6 +140,15 @@ class Model {
     const double* values = chords.data() + at(t.chords) + c;
     return t.weight * (values[0] + (values[1] - values[0]) * (cell - static_cast<double>(c)));
   }
+  /// By how much at least `least_cost_of` grows in a second, up to a time; 0 where it is unknown.
+  [[nodiscard]] double least_slope_of(Index task, double until_s) const {
+    if (criterion != Criterion::value) return 0.0;
+    const Task& t = tasks[at(task)];
+    const double cell = until_s * chords_per_s;
+    if (!(cell + 1.0 < static_cast<double>(kChords))) return 0.0;
+    const double* values = chords.data() + at(t.chords) + static_cast<std::size_t>(cell) + 1;
+    return t.weight * (values[1] - values[0]) * chords_per_s;
+  }
   [[nodiscard]] double add(double cost, double more) const {
     return criterion == Criterion::makespan ? std::max(cost, more) : cost + more;
   }
