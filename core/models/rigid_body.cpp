@@ -2,8 +2,6 @@
 #include "skein/models/rigid_body.hpp"
 
 #include <Eigen/LU>
-#include <algorithm>
-#include <cmath>
 
 #include "skein/base/assert.hpp"
 
@@ -57,20 +55,6 @@ double energy(const RigidBodyState& state, const MassProperties& mass, double gr
 
 Vec3 angular_momentum(const RigidBodyState& state, const MassProperties& mass) {
   return state.attitude * (mass.inertia_kgm2() * state.rates_radps);
-}
-
-EulerAngles euler_angles(const Eigen::Quaterniond& attitude) {
-  const Eigen::Matrix3d to_ned = attitude.toRotationMatrix();
-  return {.roll_rad = std::atan2(to_ned(2, 1), to_ned(2, 2)),
-          .pitch_rad = std::asin(std::clamp(-to_ned(2, 0), -1.0, 1.0)),
-          .yaw_rad = std::atan2(to_ned(1, 0), to_ned(0, 0))};
-}
-
-Eigen::Quaterniond attitude_from(const EulerAngles& angles) {
-  using Eigen::AngleAxisd;
-  return Eigen::Quaterniond{AngleAxisd{angles.yaw_rad, Vec3::UnitZ()} *
-                            AngleAxisd{angles.pitch_rad, Vec3::UnitY()} *
-                            AngleAxisd{angles.roll_rad, Vec3::UnitX()}};
 }
 
 }  // namespace skein::models

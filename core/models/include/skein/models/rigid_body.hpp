@@ -4,15 +4,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "skein/base/attitude.hpp"
 #include "skein/base/frames.hpp"
 
 namespace skein::models {
-
-/// A vector of three components. Two frames occur here: NED (north, east, down from the mission's
-/// origin) and body (forward, right, down from the centre of mass); every name says which.
-using Vec3 = Eigen::Vector3d;
-
-inline constexpr double kGravity_mps2 = 9.81;
 
 /// Six degrees of freedom over a flat earth that does not turn.
 struct RigidBodyState {
@@ -74,15 +69,6 @@ using RigidBodyVector = Eigen::Matrix<double, kRigidBodySize, 1>;
                             double gravity_mps2 = kGravity_mps2);
 /// Angular momentum about the centre of mass, NED, N m s.
 [[nodiscard]] Vec3 angular_momentum(const RigidBodyState& state, const MassProperties& mass);
-
-/// Roll, pitch and yaw (aerospace order), rad.
-struct EulerAngles {
-  double roll_rad = 0.0;
-  double pitch_rad = 0.0;
-  double yaw_rad = 0.0;  ///< from north, clockwise, in (-pi, pi]
-};
-[[nodiscard]] EulerAngles euler_angles(const Eigen::Quaterniond& attitude);
-[[nodiscard]] Eigen::Quaterniond attitude_from(const EulerAngles& angles);
 
 /// Between the mission frame and NED about the same origin.
 [[nodiscard]] inline Vec3 ned_from(const Position<MissionEnu>& p) { return {p.y(), p.x(), -p.z()}; }
