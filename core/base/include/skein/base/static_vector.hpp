@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <span>
 #include <type_traits>
 
 #include "skein/base/assert.hpp"
@@ -11,7 +10,7 @@
 namespace skein {
 
 /// A vector of at most `Capacity` trivially copyable elements, stored in place: it can be handed
-/// between threads by value and never allocates.
+/// between threads by value and never allocates. Being a contiguous range, it converts to std::span.
 template <class T, std::size_t Capacity>
 class StaticVector {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -56,8 +55,6 @@ class StaticVector {
   [[nodiscard]] const T* end() const { return items_.data() + size_; }
   [[nodiscard]] T* begin() { return items_.data(); }
   [[nodiscard]] T* end() { return items_.data() + size_; }
-  // NOLINTNEXTLINE(google-explicit-constructor): as the standard containers convert
-  operator std::span<const T>() const { return {items_.data(), size_}; }
 
  private:
   std::array<T, Capacity> items_{};
