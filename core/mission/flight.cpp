@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -19,6 +20,65 @@ constexpr double kHoldClearanceM = 20.0;
 /// Where no orbit begun here keeps its distance: directions that are tried, and how far away.
 constexpr int kWaysOut = 8;
 constexpr double kWayOutRadii = 6.0;
+/// Turns that are tried to each side where none may miss a hazard that has just become known, and
+/// how far straight on after them.
+constexpr int kTurns = 72;
+constexpr double kStraightMaxM = 400.0;
+constexpr double kStepM = 1.0;
+constexpr double kEdgeM = 0.5;  ///< what steps may miss of a hazard
+
+/// Is the vehicle outside all hazards, and headed so that it need not enter one? A hazard that is
+/// two radii away is missed by a turn.
+bool is_free(const Pose2& pose, double radius_m, std::span<const Hazard> hazards) {
+  return std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
+    const Vec2 offset = h.centre - pose.position();
+    const double room_m = offset.norm() - h.radius_m - kEdgeM;
+    const bool away = offset.dot(unit_vector(pose.heading_rad)) <= 0.0;
+    return room_m > 0.0 && (away || room_m >= 2.0 * radius_m);
+  });
+}
+
+bool is_inside(const Vec2& point, std::span<const Hazard> hazards) {
+  return std::any_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
+    return (point - h.centre).norm() < h.radius_m + kEdgeM;
+  });
+}
+
+/// A turn, then straight on until the vehicle is free.
+struct WayOut {
+  double turn_m = 0.0;
+  double straight_m = 0.0;
+  double inside_m = std::numeric_limits<double>::infinity();  ///< of hazards
+  [[nodiscard]] double length_m() const { return turn_m + straight_m; }
+};
+
+/// The one to that side that is inside hazards for the shortest.
+WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const Hazard> hazards) {
+  const double radius_m = 1.0 / std::abs(curvature_per_m);
+  WayOut best;
+  double turned_inside_m = 0.0;
+  const double turn_step_m = kTwoPi * radius_m / kTurns;
+  for (int i = 0; i < kTurns; ++i) {
+    const Pose2 begin = advance(from, curvature_per_m, i * turn_step_m);
+    const Vec2 forward = unit_vector(begin.heading_rad);
+    WayOut way{i * turn_step_m, 0.0, turned_inside_m};
+    Pose2 pose = begin;
+    while (way.straight_m < kStraightMaxM && !is_free(pose, radius_m, hazards)) {
+      if (is_inside(pose.position(), hazards)) way.inside_m += kStepM;
+      way.straight_m += kStepM;
+      const Vec2 point = begin.position() + way.straight_m * forward;
+      pose.x_m = point.x();
+      pose.y_m = point.y();
+    }
+    const bool shorter = way.inside_m == best.inside_m && way.length_m() < best.length_m();
+    if (way.straight_m < kStraightMaxM && (way.inside_m < best.inside_m || shorter)) best = way;
+    for (double s = 0.0; s < turn_step_m; s += kStepM) {
+      const Pose2 along = advance(begin, curvature_per_m, s);
+      if (is_inside(along.position(), hazards)) turned_inside_m += kStepM;
+    }
+  }
+  return best;
+}
 }  // namespace
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
@@ -83,29 +143,62 @@ Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& haz
   return best;
 }
 
+Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const {
+  const double radius = vehicle_.planning_radius_m();
+  Path path{from, {}};
+  if (is_free(from, radius, hazards)) return path;
+  const WayOut left = least_inside(from, 1.0 / radius, hazards);
+  const WayOut right = least_inside(from, -1.0 / radius, hazards);
+  const bool to_left = left.inside_m < right.inside_m ||
+                       (left.inside_m == right.inside_m && left.length_m() <= right.length_m());
+  const WayOut& way = to_left ? left : right;
+  // What no turn need enter is the planner's to find its way around.
+  if (way.inside_m == 0.0 || std::isinf(way.inside_m)) return path;
+  SKEIN_ASSERT(path.append(Segment{(to_left ? 1.0 : -1.0) / radius, way.turn_m}) &&
+               path.append(Segment{0.0, way.straight_m}));
+  return path;
+}
+
+double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const {
+  const Pose2 from = path.end();
+  const Orbit here = best_orbit(from, hazards);
+  if (here.clearance_m >= kHoldClearanceM) return here.curvature_per_m;
+  Path way{from, {}};
+  double curvature = here.curvature_per_m;
+  double shortest_m = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kWaysOut; ++i) {
+    const double heading = wrap_pi(from.heading_rad + i * kTwoPi / kWaysOut);
+    const Vec2 there =
+        from.position() + kWayOutRadii * vehicle_.planning_radius_m() * unit_vector(heading);
+    const Pose2 to{there.x(), there.y(), heading};
+    const Orbit room = best_orbit(to, hazards);
+    if (room.clearance_m < kHoldClearanceM) continue;
+    const auto leg =
+        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
+    if (!leg || leg->length_m() >= shortest_m) continue;
+    shortest_m = leg->length_m();
+    way = *leg;
+    curvature = room.curvature_per_m;
+  }
+  return path.append(way) ? curvature : here.curvature_per_m;
+}
+
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
   const Instant at = now + kHandover;
-  const Pose2 here = pose_at(at);
-  Path way{here, {}};
-  Orbit orbit = best_orbit(here, hazards);
-  if (orbit.clearance_m < kHoldClearanceM) {  // to where there is room, by the shortest way
-    double shortest_m = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < kWaysOut; ++i) {
-      const double heading = wrap_pi(here.heading_rad + i * kTwoPi / kWaysOut);
-      const Vec2 there =
-          here.position() + kWayOutRadii * vehicle_.planning_radius_m() * unit_vector(heading);
-      const Pose2 to{there.x(), there.y(), heading};
-      const Orbit room = best_orbit(to, hazards);
-      if (room.clearance_m < kHoldClearanceM) continue;
-      const auto leg = planning::shortest_clear_path(avoidance_, here, to,
-                                                     vehicle_.planning_radius_m(), hazards);
-      if (!leg || leg->length_m() >= shortest_m) continue;
-      shortest_m = leg->length_m();
-      way = *leg;
-      orbit = room;
-    }
-  }
-  continue_with(at, way, orbit.curvature_per_m, now);
+  Path way = forced_way(pose_at(at), hazards);
+  const double tail = append_hold(way, hazards);
+  continue_with(at, way, tail, now);
+}
+
+bool Flight::keeps_clear(const std::vector<Hazard>& hazards, Instant now) const {
+  std::vector<Hazard> circles = hazards;
+  for (Hazard& circle : circles) circle.radius_m = avoidance_.safety_radius_m(circle);
+  const TimedPath& timed = plan_.timed;
+  const double ahead = timed.distance_at(now);
+  const double tail = std::abs(timed.tail_curvature_per_m);
+  const double lap = tail > 0.0 ? kTwoPi / tail : 0.0;
+  const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()) + lap);
+  return rest && planning::is_clear(*rest, circles);
 }
 
 void Flight::pass_waypoints(Instant now) {
@@ -136,10 +229,9 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
 void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
                     Instant now) {
   const Instant at = now + kHandover;
-  Path route;
-  route.start = pose_at(at);
+  Path route = forced_way(pose_at(at), hazards);
   std::vector<double> marks;
-  Pose2 from = route.start;
+  Pose2 from = route.end();
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     // Each point is passed in the direction between those of arriving and leaving.
     const Vec2 in = waypoints[i] - from.position();
@@ -163,8 +255,8 @@ void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard
     marks.push_back(route.length_m());
     from = to;
   }
-  const Pose2 end = route.end();
-  if (!continue_with(at, route, hold_curvature(end, hazards), now)) return;
+  const double tail = append_hold(route, hazards);
+  if (!continue_with(at, route, tail, now)) return;
   const double lead = plan_.timed.path.length_m() - route.length_m();
   search_marks_.clear();
   for (const double mark : marks) search_marks_.push_back(lead + mark);

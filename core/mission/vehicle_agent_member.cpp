@@ -281,10 +281,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   report(EventKind::hazard_known, {}, {}, hazard.radius_m,
          "hazard " + std::to_string(hazard.id.value), now);
   if (!flight_.started()) return;
-  const auto& timed = flight_.plan().timed;
-  const double ahead = timed.distance_at(now);
-  const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
-  if (rest && planning::is_clear(*rest, hazards_)) return;
+  if (flight_.keeps_clear(hazards_, now)) return;
   if (flight_.searching()) {
     flight_.search(hazards_, now);
     return;
@@ -299,6 +296,11 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
     report(EventKind::plan_changed, task_->round, task_->assignment.task, 0.0,
            "around the hazard, to the same time", now);
   } else {
+    // A task or a survey is flown on where the hazard is near its way but does not bar it.
+    const auto& timed = flight_.plan().timed;
+    const double ahead = timed.distance_at(now);
+    const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
+    if ((task_ || survey_) && rest && planning::is_clear(*rest, hazards_)) return;
     participant_.withdraw("a hazard bars its path", now);
     pump(now);
     flight_.hold(hazards_, now);

@@ -11,6 +11,16 @@ namespace {
 /// A task counts as flown when the vehicle is this close to where its plan has it.
 constexpr double kOnTrackM = 30.0;
 
+/// Paths keep this far from hazards where there is room: in long turns with the wind, which leave
+/// no rate to spare, a vehicle gets up to 11 m off.
+constexpr double kHazardMarginM = 12.0;
+
+VehicleAgentConfig with_margin(VehicleAgentConfig config) {
+  double& margin_m = config.planning.avoidance.margin_m;
+  margin_m = std::max(margin_m, kHazardMarginM);
+  return config;
+}
+
 template <class... Fs>
 struct Overloaded : Fs... {
   using Fs::operator()...;
@@ -20,8 +30,8 @@ Overloaded(Fs...) -> Overloaded<Fs...>;
 }  // namespace
 
 VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
-    : config_{config},
-      flight_{config.vehicle, config.planning.avoidance, config.search},
+    : config_{with_margin(config)},
+      flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
       loads_{config.vehicle.loads},
       participant_{config.protocol, config.vehicle.id} {}

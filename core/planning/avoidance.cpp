@@ -65,7 +65,7 @@ std::vector<Hazard> circles_around(const AvoidanceParams& params, const Pose2& f
   for (Hazard& circle : circles) {
     const double room = std::min(room_to(circle.centre, from, radius_m),
                                  room_to(circle.centre, backwards(to), radius_m));
-    const double safety_m = std::min(params.kappa * circle.radius_m, room - kInside_m);
+    const double safety_m = std::min(params.safety_radius_m(circle), room - kInside_m);
     circle.radius_m += part * std::max(0.0, safety_m - circle.radius_m);
   }
   return circles;
@@ -222,7 +222,7 @@ bool out_of_reach(const AvoidanceParams& params, const Pose2& from, const Pose2&
                   double length_m, std::span<const Hazard> hazards) {
   return std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
     return (h.centre - from.position()).norm() + (h.centre - to.position()).norm() >
-           length_m + 2.0 * params.kappa * h.radius_m;
+           length_m + 2.0 * params.safety_radius_m(h);
   });
 }
 

@@ -14,10 +14,6 @@ using recording::Recording;
 
 // Relative slack for the rounding of 1/r, nothing else.
 constexpr double kRounding = 1e-9;
-// Arcs are walked in steps that leave at most a millimetre between chord and arc.
-constexpr double kWalkStep = 0.5;
-// A plan that touches a hazard's edge has not entered it.
-constexpr double kEdge = 0.01;
 
 std::string plan_name(const Recording& recorded, const PlanRecord& plan) {
   return "plan " + std::to_string(plan.number) + " of " + vehicle_name(recorded.vehicle);
@@ -80,83 +76,6 @@ double judge_track_turns(const Recording& recorded, const VehicleSpec& vehicle,
              fixed(vehicle.turn_radius_m / (1.0 + limits.turn_share), 1) + " m)"});
   }
   return tightest > 0.0 ? 1.0 / (tightest * vehicle.turn_radius_m) : 1e9;
-}
-
-/// When a plan stopped being followed; the end of the track for the last one.
-Instant end_of(const Recording& recorded, std::size_t plan) {
-  if (plan + 1 < recorded.plans.size()) return recorded.plans[plan + 1].since;
-  return recorded.track.empty() ? recorded.plans[plan].since : recorded.track.back().state.time;
-}
-
-void judge_plan_hazard(const Recording& recorded, std::size_t index, const KnownHazard& known,
-                       const Limits& limits, CheckResult& result) {
-  const PlanRecord& plan = recorded.plans[index];
-  const Instant held_from = known.known_from + from_seconds(limits.hazard_reaction_s);
-  const double length = plan_length_m(plan.plan);
-  double from = plan_distance_m(plan.plan, plan.since);
-  double to = length;
-  if (plan.since >= held_from || known.known_from <= Instant{}) {
-    // Made in knowledge of the hazard, so clear to its end, one round of the hold included.
-    if (plan.plan.tail_curvature_per_m != 0.0) {
-      to = std::max(from, length) + kTwoPi / std::abs(plan.plan.tail_curvature_per_m);
-    }
-  } else {
-    from = std::max(from, plan_distance_m(plan.plan, held_from));
-    to = plan_distance_m(plan.plan, end_of(recorded, index));
-  }
-  if (to <= from) return;
-  ++result.judged;
-
-  bool outside_before = false;
-  std::optional<double> where;
-  double nearest = known.hazard.radius_m - kEdge;
-  walk_plan(plan.plan, from, to, kWalkStep, [&](double distance, const Vec2& point) {
-    const double away = (point - known.hazard.centre).norm();
-    outside_before = outside_before || away >= known.hazard.radius_m;
-    if (outside_before && away < nearest) {
-      nearest = away;
-      where = distance;
-    }
-    // The straight way back to the edge is the shortest; the margin is for rounding.
-    return away - known.hazard.radius_m - kEdge;
-  });
-  if (where) {
-    const Instant when = plan.plan.start_time + from_seconds(*where / plan.plan.speed_mps);
-    result.violations.push_back({recorded.vehicle, plan.since,
-                                 plan_name(recorded, plan) + " leads " + at(when) + " " +
-                                     fixed(known.hazard.radius_m - nearest, 1) + " m into hazard " +
-                                     std::to_string(known.hazard.id.value) + " (radius " +
-                                     fixed(known.hazard.radius_m, 1) + " m)"});
-  }
-}
-
-/// The least clearance of the track, metres; negative inside.
-double judge_track_hazard(const Recording& recorded, const KnownHazard& known, const Limits& limits,
-                          CheckResult& result) {
-  const Instant held_from = known.known_from <= Instant{}
-                                ? known.known_from
-                                : known.known_from + from_seconds(limits.hazard_reaction_s);
-  double nearest = 1e12;
-  Instant when{};
-  bool outside_before = false;
-  for (std::size_t i = first_at(recorded.track, held_from); i < recorded.track.size(); ++i) {
-    const VehicleState& s = recorded.track[i].state;
-    const double away = (Vec2{s.x_m, s.y_m} - known.hazard.centre).norm() - known.hazard.radius_m;
-    outside_before = outside_before || away >= 0.0;
-    if (outside_before && away < nearest) {
-      nearest = away;
-      when = s.time;
-    }
-  }
-  ++result.judged;
-  if (nearest < 0.0) {
-    result.violations.push_back({recorded.vehicle, when,
-                                 vehicle_name(recorded.vehicle) + " flew " + at(when) + " " +
-                                     fixed(-nearest, 1) + " m inside hazard " +
-                                     std::to_string(known.hazard.id.value) + " (radius " +
-                                     fixed(known.hazard.radius_m, 1) + " m)"});
-  }
-  return nearest;
 }
 
 }  // namespace
@@ -272,23 +191,6 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
     }
   }
   result.measured = "most used " + fixed(100.0 * fullest, 1) + " % of the range";
-  return result;
-}
-
-CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
-  CheckResult result{"hazards", "no plan and no track enters a known hazard",
-                     0,         "plans and tracks against hazards",
-                     "",        {}};
-  double least = 1e12;
-  for (const Recording& recorded : record.recordings) {
-    for (const KnownHazard& known : record.hazards) {
-      for (std::size_t i = 0; i < recorded.plans.size(); ++i) {
-        judge_plan_hazard(recorded, i, known, limits, result);
-      }
-      least = std::min(least, judge_track_hazard(recorded, known, limits, result));
-    }
-  }
-  if (least < 1e11) result.measured = "least clearance flown " + fixed(least, 1) + " m";
   return result;
 }
 

@@ -105,44 +105,5 @@ TEST(PlanChecks, RangeIsNotTakenOnTheVehiclesWord) {
   EXPECT_THAT(failed(record), ElementsAre("range"));
 }
 
-TEST(PlanChecks, AHazardOnTheWayIsFoundInPlanAndTrack) {
-  RunRecord record = good_record();
-  record.hazards = {{{HazardId{3}, {0.0, -1500.0}, 100.0}, Instant{}}};
-  const CheckResult result = check_hazards(record, {});
-  ASSERT_EQ(result.violations.size(), 2U);
-  EXPECT_THAT(result.violations[0].sentence, HasSubstr("plan 1 of vehicle 3"));
-  EXPECT_THAT(result.violations[1].sentence, HasSubstr("vehicle 3 flew at 30.00 s 100.0 m inside"));
-}
-
-TEST(PlanChecks, AHazardBesideTheWayIsNone) {
-  RunRecord record = good_record();
-  record.hazards = {{{HazardId{3}, {-101.0, -1500.0}, 100.0}, Instant{}}};
-  const CheckResult result = check_hazards(record, {});
-  EXPECT_TRUE(result.held());
-  EXPECT_EQ(result.measured, "least clearance flown 1.0 m");
-}
-
-TEST(PlanChecks, TheHoldIsJudgedToo) {
-  RunRecord record = good_record();
-  auto& plan = of(record, kSurveyor).plans.front().plan;
-  const Pose2 hold = plan.pose_at_distance(plan.path.length_m() + kPi * 200.0);
-  record.hazards = {{{HazardId{3}, {hold.x_m, hold.y_m}, 20.0}, Instant{}}};
-  of(record, kSurveyor).track.resize(700);  // it never came there
-  EXPECT_THAT(check_hazards(record, {}).violations.size(), 1U);
-}
-
-TEST(PlanChecks, AHazardCountsOnlyOnceKnown) {
-  RunRecord record = good_record();
-  // Vehicle 3 is in it from 28 s to 32 s.
-  KnownHazard known{{HazardId{3}, {0.0, -1500.0}, 100.0}, at_seconds(33.0)};
-  record.hazards = {known};
-  EXPECT_TRUE(check_hazards(record, {}).held());
-  record.hazards.front().known_from = at_seconds(20.0);
-  EXPECT_FALSE(check_hazards(record, {}).held());
-  // Who is inside when it becomes binding may leave.
-  record.hazards.front().known_from = at_seconds(25.0);
-  EXPECT_TRUE(check_hazards(record, {}).held());
-}
-
 }  // namespace
 }  // namespace skein::checks

@@ -56,6 +56,9 @@ std::string sentences(const CheckResult& check) {
   if (check.violations.size() > kSentencesMax) {
     html += fmt::format("<li>and {} more</li>", check.violations.size() - kSentencesMax);
   }
+  for (const auto& excused : check.excused) {
+    html += "<li>excused: " + escaped(excused.sentence) + "</li>";
+  }
   return html + "</ul></td></tr>";
 }
 
@@ -69,7 +72,7 @@ std::string check_table(const std::vector<CheckResult>& checks) {
         check.held() ? "pass-word" : "fail-word", check.held() ? "held" : "FAILED",
         escaped(check.name), escaped(check.requirement), check.judged, escaped(check.judged_what),
         escaped(check.measured), check.violations.size());
-    if (!check.held()) html += sentences(check);
+    if (!check.held() || !check.excused.empty()) html += sentences(check);
   }
   return html + "</tbody></table>";
 }

@@ -34,6 +34,7 @@ std::string text_table(const std::vector<checks::CheckResult>& checks,
     if (check.violations.size() > kSentencesMax) {
       text += fmt::format("       and {} more\n", check.violations.size() - kSentencesMax);
     }
+    for (const auto& excused : check.excused) text += "       excused: " + excused.sentence + "\n";
   }
   return text + (failed == 0
                      ? fmt::format("PASS: all {} checks held\n", checks.size())

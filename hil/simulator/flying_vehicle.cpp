@@ -9,6 +9,9 @@
 namespace skein::hil {
 namespace {
 
+/// An orbit in wind is flown some metres off its circle.
+constexpr double kOrbitClearance_m = 15.0;
+
 /// Kinds whose value is a moment.
 bool has_moment(mission::EventKind kind) {
   using mission::EventKind;
@@ -68,7 +71,7 @@ std::optional<double> FlyingVehicle::hold_curvature(const std::vector<Hazard>& h
   for (const double side : {1.0, -1.0}) {
     const Vec2 centre = here.position() + side * radius * left_of(unit_vector(here.heading_rad));
     const bool clear = std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
-      return std::abs((h.centre - centre).norm() - radius) > h.radius_m;
+      return std::abs((h.centre - centre).norm() - radius) > h.radius_m + kOrbitClearance_m;
     });
     if (clear) return side / radius;
   }

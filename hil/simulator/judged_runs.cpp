@@ -63,6 +63,9 @@ JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
   run.broken = checks::judge(recorded, held_to);
   if (record != nullptr) *record = recorded;
   run.broken.push_back(protocol_errors(run.result));
+  for (const auto& check : run.broken) {
+    run.excused.insert(run.excused.end(), check.excused.begin(), check.excused.end());
+  }
   std::erase_if(run.broken, [](const auto& check) { return check.held(); });
   return run;
 }
@@ -96,6 +99,8 @@ SeriesSummary summarise(const std::vector<JudgedRun>& runs) {
   for (const JudgedRun& run : runs) {
     ++summary.runs;
     if (run.held()) ++summary.held;
+    if (!run.excused.empty()) ++summary.excused;
+    summary.excused_all += run.excused.size();
     for (const auto& check : run.broken) ++broken[check.name];
     if (!run.sites_done) continue;
     const double t = to_seconds(run.result.ended_at);

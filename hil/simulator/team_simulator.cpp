@@ -162,7 +162,7 @@ class Team {
     }
     const std::size_t i = *coming.victim;
     if (now < coming.at) return;
-    // The flight controller knows of no hazards: its orbit must happen to be clear of them.
+    // The flight controller knows of no hazards: its orbit must happen to keep its distance.
     if (!vehicles_[i].can_hold(hazards_)) return;
     coming.over = true;
     if (vehicles_[i].agent() == nullptr) return;  // down already

@@ -97,6 +97,7 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
       "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
       run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
       to_seconds(run.result.ended_at), run.result.messages, run.result.protocol_errors);
+  for (const auto& excused : run.excused) fmt::print("EXCUSED: {}\n", excused.sentence);
   if (!run.held()) fmt::print("VIOLATED:\n");
   print_broken(run);
   return run.held() ? kExitHeld : kExitViolated;
@@ -116,6 +117,18 @@ void print_failures(const std::vector<JudgedRun>& runs, const SimulateArguments&
   if (shown > kFailuresShown) fmt::print("... and {} seeds more\n", shown - kFailuresShown);
 }
 
+/// " seeds 3, 5, ..."
+std::string excused_seeds(const std::vector<JudgedRun>& runs) {
+  std::string text;
+  std::size_t shown = 0;
+  for (const auto& run : runs) {
+    if (run.excused.empty()) continue;
+    if (++shown > kFailuresShown) return text + ", ...";
+    text += fmt::format("{} {}", shown == 1 ? " seeds" : ",", run.seed);
+  }
+  return text;
+}
+
 int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
   RunSeries series;
   series.faults = arguments.faults;
@@ -133,6 +146,10 @@ int fly_many(const configuration::Scenario& scenario, const SimulateArguments& a
   fmt::print("runs       {}, seeds {} to {}\n", summary.runs, runs.front().seed, runs.back().seed);
   fmt::print("violated   {}", summary.runs - summary.held);
   for (const auto& broken : summary.broken) fmt::print("; {} {}", broken.check, broken.runs);
+  if (summary.excused > 0) {
+    fmt::print("\nexcused    {} in {} runs, proven unavoidable:{}", summary.excused_all,
+               summary.excused, excused_seeds(runs));
+  }
   fmt::print("\nall sites  done in {} runs", summary.finished);
   if (summary.finished > 0) {
     fmt::print(", after {:.1f} s at least, {:.1f} s on average, {:.1f} s at most",

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "skein/base/result.hpp"
@@ -11,6 +12,13 @@ namespace skein::planning {
 
 struct AvoidanceParams {
   double kappa = 1.1;  ///< safety circle over hazard radius, > 1 (Wang 2022, fig. 5)
+  /// A safety circle is larger than its hazard by this at least: what a path is flown off in wind
+  /// does not shrink with the hazard. >= 0.
+  double margin_m = 0.0;
+
+  [[nodiscard]] double safety_radius_m(const Hazard& hazard) const {
+    return std::max(kappa * hazard.radius_m, hazard.radius_m + margin_m);
+  }
 };
 
 /// Does the path stay outside every hazard? Exact for lines and arcs; touching counts as outside.

@@ -26,6 +26,8 @@ struct CheckResult {
   std::string judged_what;  ///< "tracks", "deliveries"
   std::string measured;     ///< the worst figure found, empty where there is none
   std::vector<Violation> violations;
+  /// What would be a violation, but was proven to be beyond what the vehicle can do.
+  std::vector<Violation> excused = {};
   [[nodiscard]] bool held() const { return violations.empty(); }
 };
 
@@ -39,8 +41,11 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_continuity(const RunRecord& record, const Limits& limits);
 /// No vehicle flew, or planned to fly, further than its range.
 [[nodiscard]] CheckResult check_range(const RunRecord& record, const Limits& limits);
-/// No plan and no track enters a hazard that is known. Who is inside when it becomes known may
-/// leave.
+/// No plan and no track enters a hazard from Limits::hazard_reaction_s after it is known on.
+/// Excused is who was inside at that moment, or so near that the tightest turn to either side, in
+/// the wind that it had, led into it; and only for the time of the shortest way out and
+/// Limits::hazard_leaving_s more. Coming back is not excused. Hazards known before the mission
+/// excuse nothing.
 [[nodiscard]] CheckResult check_hazards(const RunRecord& record, const Limits& limits);
 
 /// Survey before deliveries before assessments, with the site's wait between the last two (eq. 14).

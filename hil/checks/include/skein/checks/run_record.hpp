@@ -54,7 +54,8 @@ struct Limits {
   double turn_window_s = 1.0;  ///< over which a flown turn is measured
   double plan_jump_m = 10.0;   ///< between two plans where one replaces the other
   double plan_jump_rad = radians(15.0);
-  double hazard_reaction_s = 5.0;  ///< from learning of a hazard to a plan that avoids it
+  double hazard_reaction_s = 1.0;  ///< from learning of a hazard to a plan that avoids it
+  double hazard_leaving_s = 1.0;   ///< more than the shortest way out of a hazard may take
   double planned_time_s = 0.05;    ///< to which planned times must keep the site's offsets
   double arrival_s = 1.0;          ///< flown against planned or required times
   double bearing_rad = radians(5.0);

@@ -21,6 +21,7 @@ struct JudgedRun {
   TeamResult result;
   bool sites_done = false;                  ///< all of them
   std::vector<checks::CheckResult> broken;  ///< the checks that did not hold, all violations
+  std::vector<checks::Violation> excused;   ///< of all checks: proven to be unavoidable
   [[nodiscard]] bool held() const { return broken.empty(); }
 };
 
@@ -61,7 +62,9 @@ struct SeriesSummary {
     std::string check;
     std::size_t runs = 0;
   };
-  std::vector<Broken> broken;  ///< by name
+  std::vector<Broken> broken;   ///< by name
+  std::size_t excused = 0;      ///< in how many runs something was
+  std::size_t excused_all = 0;  ///< and how much in all
 };
 [[nodiscard]] SeriesSummary summarise(const std::vector<JudgedRun>& runs);
 
