@@ -77,8 +77,11 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
       "cruise_speed_mps", "must lie between speed_min_mps and speed_max_mps; mend one of them");
   v.number({"turn_radius_m", "least turn radius, at cruise speed", kRequired}, {1.0, 5000.0, "m"},
            spec.turn_radius_m);
-  v.number({"turn_radius_margin", "paths are planned at this many times the turn radius"},
-           {1.0, 3.0}, spec.turn_radius_margin);
+  v.number(
+      {"turn_radius_margin",
+       "paths are planned at this many times the turn radius; to be held in wind w at speed v it "
+       "takes (v / (v - w))^2"},
+      {1.0, 3.0}, spec.turn_radius_margin);
   v.number({"heading_gain_per_s", "of the autopilot: turn rate per radian of heading error"},
            {0.05, 20.0, "1/s"}, spec.heading_gain_per_s);
   v.number({"range_m", "distance that the vehicle can fly", kRequired}, {100.0, 1e7, "m"},

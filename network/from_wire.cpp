@@ -219,7 +219,7 @@ coalition::Message body(Check& c, const wire::LeadershipClaim& w) {
 
 coalition::Message body(Check& c, const wire::Allegiance& w) {
   return coalition::Allegiance{coalition_id(w.coalition()), VehicleId{w.elector()},
-                               VehicleId{w.follows()}, c.instant(w.acknowledges_ns())};
+                               InstanceId{w.instance()}, VehicleId{w.follows()}, c.instant(w.acknowledges_ns())};
 }
 
 coalition::Message body(Check& c, const wire::MemberStatus& w) {

@@ -208,6 +208,7 @@ coalition::Message allegiance(Random& random) {
   coalition::Allegiance m;
   m.coalition = coalition_id(random);
   m.elector = vehicle(random);
+  m.instance = InstanceId{random.next()};
   m.follows = vehicle(random);
   m.acknowledges = instant(random);
   return m;

@@ -190,6 +190,7 @@ wire::Allegiance body(const coalition::Allegiance& m) {
   wire::Allegiance w;
   w.coalition(coalition_id(m.coalition));
   w.elector(m.elector.value);
+  w.instance(m.instance.value);
   w.follows(m.follows.value);
   w.acknowledges_ns(ns(m.acknowledges));
   return w;

@@ -4,20 +4,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "skein/base/contains.hpp"
+
 namespace skein::coalition {
 namespace {
 constexpr std::size_t kLeftMax = 16;
 /// Between the first claims of two electors, so that they do not split the others.
 constexpr Duration kStagger = std::chrono::milliseconds{1500};
 constexpr VehicleId kNobody{};
-
-template <class T>
-bool contains(const std::vector<T>& all, const T& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
-}
 }  // namespace
 
-Elector::Elector(const ProtocolParams& params, VehicleId self) : params_{params}, self_{self} {}
+Elector::Elector(const ProtocolParams& params, VehicleId self, InstanceId instance)
+    : params_{params}, self_{self}, instance_{instance} {}
 
 void Elector::accepted(const Award& award) {
   const bool goes_on = plan_ && plan_->round.coalition == award.round.coalition;
@@ -37,6 +35,7 @@ void Elector::leave() {
   electors_.clear();
   supporters_.clear();
   follows_ = kNobody;
+  renewed_at_ = Instant::min();
   strayed_ = false;
 }
 
@@ -45,7 +44,7 @@ void Elector::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   if (coalition.leader == self_) return;  // it follows itself, and its initiator knows
   const bool named = contains(message.electors, self_);
   if (contains(left_, coalition)) {
-    if (named) messages_.push(Allegiance{coalition, self_, kNobody, message.sent_at});
+    if (named) messages_.push(Allegiance{coalition, self_, instance_, kNobody, message.sent_at});
     return;
   }
   if (!plan_ || plan_->round.coalition != coalition) return;
@@ -53,8 +52,11 @@ void Elector::on_lease_renewal(const LeaseRenewal& message, Instant now) {
     if (!contains(done_, task)) done_.push_back(task);
   }
   // Who has promised to follow a claimant is deaf to the old leader until that promise is over.
+  // A renewal that comes late, or twice, names electors that may have left since.
+  if (message.sent_at < renewed_at_) return;
   if (!named || (elector_ && follows_ != coalition.leader && !promise_over(now))) return;
   elector_ = true;
+  renewed_at_ = message.sent_at;
   electors_ = message.electors;
   supporters_.clear();
   follow(coalition.leader, message.sent_at, now);
@@ -64,7 +66,7 @@ void Elector::follow(VehicleId whom, Instant stamp, Instant now) {
   follows_ = whom;
   strayed_ = strayed_ || whom != plan_->round.coalition.leader;
   promised_until_ = now + params_.lease;
-  messages_.push(Allegiance{plan_->round.coalition, self_, whom, stamp});
+  messages_.push(Allegiance{plan_->round.coalition, self_, instance_, whom, stamp});
 }
 
 /// The guard is for leases, which end by the clocks of those that hold them.

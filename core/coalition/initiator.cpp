@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "skein/base/contains.hpp"
+
 namespace skein::coalition {
 namespace {
 /// How long after a task's time its owner may still say that it has not begun.
@@ -38,7 +40,7 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
   promised_until_ = won.promised_from + params_.lease;
   majority_ = won.majority;
   for (const VehicleId elector : won.supporters) {
-    electors_[elector] = won.promised_from;
+    electors_[elector].acknowledged = won.promised_from;
     heard_[elector] = now;
   }
   std::vector<TaskAssignment> held;
@@ -67,7 +69,7 @@ void Initiator::make_ledger(const std::vector<TaskId>& done) {
     Entry entry;
     entry.task = task;
     entry.assignment.task = task;
-    if (std::find(done.begin(), done.end(), task) != done.end()) entry.ownership = Ownership::done;
+    if (contains(done, task)) entry.ownership = Ownership::done;
     ledger_.push_back(entry);
   }
 }
@@ -139,10 +141,10 @@ void Initiator::take_back(Entry& entry, const Bid& bid, Instant now) {
   const bool begun = entry.reported == TaskState::started ||
                      (authorised_rounds_.contains(entry.round.number) && now >= entry.begins);
   const bool may_be_flown = started_anew && entry.task.kind == TaskKind::deliver && begun;
-  if (may_be_flown || entry.maybe_flown) {
+  if (may_be_flown) {
     make_unknown(entry);
   } else {
-    entry.ownership = Ownership::open;
+    reopen(entry);
   }
 }
 
@@ -200,8 +202,8 @@ Instant Initiator::authority_until() const {
   const std::size_t needed = (electors_.size() + 1) / 2;
   if (needed <= 1) return promised_until_;
   std::vector<Instant> stamps;
-  for (const auto& [elector, stamp] : electors_) {
-    if (elector != announcement_.round.coalition.leader) stamps.push_back(stamp);
+  for (const auto& [vehicle, elector] : electors_) {
+    if (vehicle != announcement_.round.coalition.leader) stamps.push_back(elector.acknowledged);
   }
   const auto nth = stamps.begin() + static_cast<std::ptrdiff_t>(needed - 2);
   std::nth_element(stamps.begin(), nth, stamps.end(), std::greater<>{});
@@ -212,11 +214,15 @@ void Initiator::on_allegiance(const Allegiance& message, Instant now) {
   if (message.coalition != announcement_.round.coalition) return;
   const auto elector = electors_.find(message.elector);
   if (elector == electors_.end() || message.elector == message.coalition.leader) return;
+  // One that has started anew does not know what it had promised to whom.
+  auto& [acknowledged, instance] = elector->second;
+  if (instance != InstanceId{} && instance != message.instance) return;
+  instance = message.instance;
   if (message.follows == VehicleId{}) {
     electors_.erase(elector);
   } else if (message.follows == message.coalition.leader) {
     heard_[message.elector] = now;
-    elector->second = std::max(elector->second, message.acknowledges);
+    acknowledged = std::max(acknowledged, message.acknowledges);
   }
 }
 
@@ -275,7 +281,7 @@ void Initiator::on_confirmation(const Confirmation& message, Instant now) {
     for (auto& entry : ledger_) {
       if (entry.ownership == Ownership::leased && entry.assignment.vehicle == message.member &&
           entry.round == message.round) {
-        entry.ownership = Ownership::open;
+        reopen(entry);
       }
     }
     if (machine_.in(State::awarding)) {
@@ -308,8 +314,13 @@ void Initiator::found(Instant now) {
     electors_.clear();
   }
   if (electors_.size() > 1) return;
-  electors_[self] = now;
-  for (const auto& [elector, yes] : confirmed_) electors_.emplace(elector, Instant::min());
+  electors_[self].acknowledged = now;
+  for (const auto& [vehicle, yes] : confirmed_) {
+    const auto bid = bids_.find(vehicle);
+    electors_.try_emplace(
+        vehicle,
+        ElectorEntry{Instant::min(), bid == bids_.end() ? InstanceId{} : bid->second.instance});
+  }
 }
 
 void Initiator::on_status(const MemberStatus& message, Instant now) {
@@ -330,8 +341,7 @@ void Initiator::on_status(const MemberStatus& message, Instant now) {
       entry->maybe_flown = true;
       if (entry->ownership == Ownership::open) make_unknown(*entry);
     } else if (owner && reported.state == TaskState::failed && message.round == entry->round) {
-      entry->ownership = Ownership::open;
-      outputs_.push(TaskLost{entry->round, entry->assignment, "its owner reports that it failed"});
+      lose(*entry, "its owner reports that it failed");
     } else if (owner && reported.state == TaskState::started) {
       entry->reported = TaskState::started;
     }
@@ -367,14 +377,29 @@ void Initiator::expire(Instant now) {
                      entry.assignment.time <= entry.lease_until;
     const bool may_be_flown =
         entry.task.kind == TaskKind::deliver && (due || entry.reported == TaskState::started);
-    if (may_be_flown || entry.maybe_flown) {
+    if (may_be_flown) {
       make_unknown(entry);
     } else {
-      entry.ownership = Ownership::open;
-      outputs_.push(TaskLost{entry.round, entry.assignment, "its owner fell silent"});
+      lose(entry, "its owner fell silent");
     }
   }
   finish_if_done();
+}
+
+/// Nobody's again, unless the ground station has said that it may have been flown.
+void Initiator::reopen(Entry& entry) {
+  if (entry.maybe_flown) {
+    make_unknown(entry);
+  } else {
+    entry.ownership = Ownership::open;
+  }
+}
+
+void Initiator::lose(Entry& entry, const std::string& why) {
+  reopen(entry);
+  if (entry.ownership == Ownership::open) {
+    outputs_.push(TaskLost{entry.round, entry.assignment, why});
+  }
 }
 
 void Initiator::make_unknown(Entry& entry) {
@@ -398,7 +423,7 @@ void Initiator::heartbeat(Instant now) {
   renewal.site = announcement_.site.id;
   renewal.members = {members.begin(), members.end()};
   if (promised_until_ == Instant::max()) {  // until then they are those of the lost leader
-    for (const auto& [elector, stamp] : electors_) renewal.electors.push_back(elector);
+    for (const auto& [vehicle, elector] : electors_) renewal.electors.push_back(vehicle);
   }
   renewal.done = tasks_that_are(Ownership::done);
   renewal.unknown = tasks_that_are(Ownership::unknown);

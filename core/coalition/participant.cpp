@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
 
 namespace skein::coalition {
 namespace {
@@ -13,19 +14,14 @@ constexpr Duration kReportFinishedFor = std::chrono::seconds{300};
 /// What was done here is remembered, for leaders that do not know; the oldest goes first.
 constexpr std::size_t kFinishedMax = 64;
 constexpr std::size_t kOverMax = 256;
-
-template <class T>
-bool contains(const std::vector<T>& all, const T& one) {
-  return std::find(all.begin(), all.end(), one) != all.end();
-}
 }  // namespace
 
-Participant::Participant(const ProtocolParams& params, VehicleId self)
-    : params_{params}, self_{self}, elector_{params, self} {}
+Participant::Participant(const ProtocolParams& params, VehicleId self, InstanceId instance)
+    : params_{params}, self_{self}, elector_{params, self, instance} {}
 
 void Participant::on_announcement(const Announcement& message, Instant now) {
   // A leader that announces what is done here has not heard of it: it is told again, and gets no
-  // bid until it knows. A bid would say that the task was given back (Initiator::close_bids).
+  // bid until it knows. A bid would say that the task was given back (Initiator::take_back).
   bool done_here = false;
   for (auto& f : finished_) {
     if (f.entry.state != TaskState::done || !contains(message.tasks, f.entry.task)) continue;
@@ -131,8 +127,12 @@ void Participant::refuse(const std::string& reason, Instant /*now*/) {
   leave(Event::refused, reason);
 }
 
-void Participant::on_cancel(const Cancel& message, Instant /*now*/) {
+void Participant::on_cancel(const Cancel& message, Instant now) {
   if (message.round != round_ || machine_.in(State::free)) return;
+  // The leader counts on what it was told has begun.
+  for (const auto& lease : leases_) {
+    if (lease.state == TaskState::started) give_up(lease, now);
+  }
   leave(Event::released, message.reason);
 }
 
@@ -297,19 +297,16 @@ void Participant::leave(Event event, const std::string& why) {
 }
 
 void Participant::send_status(Instant now) {
-  std::map<CoalitionId, MemberStatus> by_coalition;
+  std::map<Round, MemberStatus> by_round;
   for (const auto& lease : leases_) {
-    auto& status = by_coalition[round_.coalition];
-    status.round = round_;
-    status.tasks.push_back({lease.task, lease.state, now});
+    by_round[round_].tasks.push_back({lease.task, lease.state, now});
   }
   for (const auto& done : finished_) {
     if (done.report_until <= now) continue;
-    auto& status = by_coalition[done.round.coalition];
-    status.round = std::max(status.round, done.round);
-    status.tasks.push_back(done.entry);
+    by_round[done.round].tasks.push_back(done.entry);
   }
-  for (auto& [id, status] : by_coalition) {
+  for (auto& [round, status] : by_round) {
+    status.round = round;
     status.member = self_;
     messages_.push(std::move(status));
   }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "skein/base/contains.hpp"
+
 namespace skein::mission {
 namespace {
 
@@ -60,10 +62,7 @@ void GroundAgent::on_timeout(Instant now) {
   send_again(now);
 }
 
-bool GroundAgent::expects(VehicleId vehicle) const {
-  return std::find(config_.expected.begin(), config_.expected.end(), vehicle) !=
-         config_.expected.end();
-}
+bool GroundAgent::expects(VehicleId vehicle) const { return contains(config_.expected, vehicle); }
 
 void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
   const VehicleId vehicle = telemetry.vehicle;
@@ -137,7 +136,7 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
     return !p.decision && p.request.site == request.site &&
            p.request.round.coalition == request.round.coalition;
   });
-  if (tell_what_is_over(request, now)) return;
+  if (tell_what_is_over(request, now) || granted_to_another(request) != nullptr) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
   const Authorisation* before = granted_before(request);
   const std::string by = before == nullptr ? "" : before->decided_by;
@@ -196,6 +195,22 @@ bool GroundAgent::tell_what_is_over(const AuthorisationRequest& request, Instant
   if (over.tasks.empty()) return false;
   messages_.push(Message{coalition::Message{std::move(over)}});
   return true;
+}
+
+/// A grant to another coalition that another vehicle may still fly: until it has said otherwise, or
+/// the time has passed (tell_what_is_over), nobody else is granted that delivery.
+const GroundAgent::Granted* GroundAgent::granted_to_another(
+    const AuthorisationRequest& request) const {
+  for (const auto& delivery : request.deliveries) {
+    const auto granted = granted_.find(delivery.assignment.task);
+    if (granted == granted_.end() || granted->second.given_up) continue;
+    const Granted& to = granted->second;
+    if (to.round.coalition != request.round.coalition &&
+        to.assignment.vehicle != delivery.assignment.vehicle) {
+      return &to;
+    }
+  }
+  return nullptr;
 }
 
 /// The grant that has every delivery of the request as it stands: same vehicle, time and bearing.
@@ -270,6 +285,14 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
                                  Instant now) {
   const auto& request = pending.request;
   if (granted) {
+    if (const Granted* const other = granted_to_another(request)) {
+      return Error{to_string(other->assignment.task) + " is granted to " +
+                   name_of(other->assignment.vehicle) + " in another coalition already; refuse " +
+                   name_of(request.site) + " to take that back, or wait until its time has passed"};
+    }
+    if (tell_what_is_over(request, now)) {
+      return Error{"a delivery of this plan is over by now; its leader will ask again"};
+    }
     for (const auto& delivery : request.deliveries) {
       const auto member = fleet_.find(delivery.assignment.vehicle);
       if (member == fleet_.end() || !member->second.duplicate) continue;

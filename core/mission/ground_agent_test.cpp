@@ -201,6 +201,33 @@ TEST(GroundAgent, ADecisionIsForTheNewestPlanAndNoOther) {
   EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(12.5)).ok());
 }
 
+TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
+  Bench bench;
+  bench.ask(request(1, 20.0, 30.0), 10.0);
+  AuthorisationRequest rival = request(1, 20.0, 35.0);
+  rival.round.coalition.leader = {3};
+  rival.deliveries[0].assignment.vehicle = {3};
+  bench.ask(rival, 11.0);  // both wait; the newest is decided first
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)).ok());
+  const auto second = bench.agent.authorise(kSite, "Ada", at_seconds(13.0));
+  ASSERT_FALSE(second.ok());
+  EXPECT_THAT(second.error().message, HasSubstr("is granted to vehicle 3 in another coalition"));
+
+  // Until its owner says that it does not fly it.
+  bench.ask(request(2, 25.0, 40.0), 14.0);
+  EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(14.5)).ok());
+  MissionEvent gives_up{{3},
+                        at_seconds(15.0),
+                        EventKind::lease_ended,
+                        rival.round,
+                        rival.deliveries[0].assignment.task,
+                        0.0,
+                        "bid in a new round"};
+  bench.agent.on_message(Message{gives_up}, {3}, at_seconds(15.0));
+  bench.ask(request(2, 25.0, 40.0), 15.5);
+  EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0)).ok());
+}
+
 TEST(GroundAgent, DoesNotAuthoriseADuplicate) {
   GroundAgentConfig config = fleet_of_three();
   config.decisions = {{.site = kSite, .reaction = from_seconds(1.0)}};

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "skein/base/contains.hpp"
+
 namespace skein::mission {
 namespace {
 constexpr std::size_t kSitesMax = 64;  ///< what a flood from the network can make us remember
@@ -35,7 +37,7 @@ void SiteBook::on_status(const coalition::MemberStatus& message) {
 void SiteBook::note_over(Entry& entry, const TaskId& task) {
   if (task.site != entry.site.id || task.kind == TaskKind::survey) return;
   if (task.index >= entry.site.task_count(task.kind)) return;
-  if (std::find(entry.over.begin(), entry.over.end(), task) != entry.over.end()) return;
+  if (contains(entry.over, task)) return;
   entry.over.push_back(task);
 }
 

@@ -241,7 +241,11 @@ bool VehicleAgent::Impl::deliveries_over(const Site& site) const {
 /// The lease has gone: the plan must lead past no gate.
 void VehicleAgent::Impl::drop_task(Instant now) {
   const bool leads_on = task_->committed || !task_->is_delivery();
-  if (task_->begun && task_->is_delivery() && loads_ > 0) --loads_;  // it counts as used
+  if (task_->begun && task_->is_delivery()) {
+    if (loads_ > 0) --loads_;  // it counts as used
+    report(EventKind::task_failed, task_->round, task_->assignment.task,
+           to_seconds(task_->assignment.time), "released within it", now);
+  }
   task_.reset();
   if (leads_on) flight_.hold(hazards_, now);
 }

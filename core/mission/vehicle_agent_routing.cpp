@@ -34,7 +34,7 @@ VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
       loads_{config.vehicle.loads},
-      participant_{config.protocol, config.vehicle.id} {}
+      participant_{config.protocol, config.vehicle.id, config.instance} {}
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   state_ = state;
@@ -72,6 +72,7 @@ void VehicleAgent::Impl::step(Instant now) {
         flight_.pose_at(now + config_.protocol.formation_time()).position());
     initiator_->on_timeout(now);
   }
+  if (task_ && task_->begun) fly_task(now);  // what is done was done under the lease that ends now
   participant_.set_may_lead(!initiator_ && !survey_ && !duplicate_id_ && !held_by_operator_);
   participant_.on_timeout(now);
   pump(now);

@@ -119,7 +119,12 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
       const Pose2 here = plan_pose(plan.plan, plan_distance_m(plan.plan, plan.since));
       Pose2 before = here;
       const char* what = "the plan before it";
-      if (i > 0) {
+      // Where the vehicle's program has ended, what flies it starts from where it is.
+      const bool program_ended =
+          std::any_of(record.agent_ends.begin(), record.agent_ends.end(), [&](const AgentEnd& end) {
+            return end.vehicle == recorded.vehicle && end.at == plan.since;
+          });
+      if (i > 0 && !program_ended) {
         const PlanRecord& old = recorded.plans[i - 1];
         before = plan_pose(old.plan, plan_distance_m(old.plan, plan.since));
         if (plan.number <= old.number || plan.since < old.since) {

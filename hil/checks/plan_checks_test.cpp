@@ -76,6 +76,21 @@ TEST(PlanChecks, AJumpBetweenPlansIsFound) {
   EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("20.0 deg"));
 }
 
+TEST(PlanChecks, WhatFliesOnWithoutItsProgramStartsFromTheVehicle) {
+  RunRecord record = good_record();
+  auto& recorded = of(record, kFromWest);
+  const auto since = recorded.plans.back().since;
+  recorded.plans.back().plan.path.start.y_m += 12.0;
+  for (auto& point : recorded.track) {  // it is off its plan, and the new one begins where it is
+    if (point.state.time >= since) point.state.y_m += 12.0;
+  }
+  EXPECT_FALSE(check_continuity(record, {}).held());
+  record.agent_ends = {{kFromWest, since, {}}};
+  EXPECT_TRUE(check_continuity(record, {}).held());
+  recorded.plans.back().plan.path.start.y_m += 12.0;
+  EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("from the vehicle"));
+}
+
 TEST(PlanChecks, AFirstPlanAwayFromTheVehicleIsFound) {
   RunRecord record = good_record();
   of(record, kFromSouth).plans.front().plan.path.start.y_m -= 100.0;

@@ -34,7 +34,14 @@ void judge_order(const Order& order, const Limits& limits, CheckResult& result) 
   const std::string rule =
       order.wait > Duration{} ? " (wait " + fixed(to_seconds(order.wait), 1) + " s)" : "";
   ++result.judged;
-  if (order.before.cut_off) return;  // nobody can know when it ended, or whether
+  if (order.before.cut_off) {  // nobody can know when it ended, or whether; but when it began
+    if (order.after.begin() >= order.before.begin()) return;
+    result.violations.push_back({order.after.vehicle, order.after.begin(),
+                                 run_name(order.after) + " began " + at(order.after.begin()) +
+                                     ", before " + run_name(order.before) + " did, " +
+                                     at(order.before.begin())});
+    return;
+  }
   if (!order.before.done ||
       order.after.begin() + from_seconds(limits.arrival_s) < *order.before.done + order.wait) {
     result.violations.push_back(

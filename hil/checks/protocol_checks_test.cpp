@@ -224,6 +224,13 @@ TEST(ProtocolChecks, WhatEndsWithItsAgentIsCutOffAndCountsAsFlown) {
   record.excused = {{kEastward, "may have been flown"}};
   EXPECT_THAT(failed(record), IsEmpty());
   EXPECT_THAT(check_completion(record, {}).measured, HasSubstr("1 may have been flown"));
+  // When it ended nobody knows; but nothing that comes after it may begin before it did.
+  RunRecord early = record;
+  for (auto& e : of(early, kFromWest).events) {
+    if (e.kind == EventKind::task_started) e.time = at_seconds(90.0);
+  }
+  early.agent_ends = {{kFromWest, at_seconds(91.0), {}}};
+  EXPECT_FALSE(check_precedence(early, {}).held());
   // It is not to be flown again for that.
   of(record, kAssessor)
       .events.push_back(event(kAssessor, 95.0, EventKind::task_started, kEastward));

@@ -30,7 +30,7 @@ class Elector {
     std::vector<TaskId> done;           ///< as far as this vehicle has heard
   };
 
-  Elector(const ProtocolParams& params, VehicleId self);
+  Elector(const ProtocolParams& params, VehicleId self, InstanceId instance);
 
   /// The member has accepted that award.
   void accepted(const Award& award);
@@ -65,12 +65,14 @@ class Elector {
 
   ProtocolParams params_;
   VehicleId self_;
+  InstanceId instance_;
   bool may_lead_ = true;
   std::optional<Award> plan_;
-  bool elector_ = false;             ///< of plan_'s coalition
-  std::vector<VehicleId> electors_;  ///< of it, the leader among them
-  VehicleId follows_;                ///< the leader, or a claimant
-  bool strayed_ = false;             ///< it has followed a claimant in that coalition
+  bool elector_ = false;                ///< of plan_'s coalition
+  std::vector<VehicleId> electors_;     ///< of it, the leader among them
+  Instant renewed_at_{Instant::min()};  ///< by the leader's clock: the newest renewal
+  VehicleId follows_;                   ///< the leader, or a claimant
+  bool strayed_ = false;                ///< it has followed a claimant in that coalition
   Instant promised_until_{};
   std::vector<TaskId> done_;
   std::map<VehicleId, Instant> supporters_;  ///< of this vehicle's claim, by what they acknowledge

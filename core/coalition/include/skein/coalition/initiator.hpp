@@ -161,6 +161,10 @@ class Initiator {
     Instant lease_until{};  ///< the latest that the owner may believe in
     Instant done_at{};
   };
+  struct ElectorEntry {
+    Instant acknowledged{Instant::min()};  ///< the stamp of the newest heartbeat that it answered
+    InstanceId instance;                   ///< the one that was chosen; 0 until it has spoken
+  };
   void make_ledger(const std::vector<TaskId>& done);
   void start_round(Instant now);
   void send_award(std::vector<TaskAssignment> assignments, Instant now);
@@ -172,6 +176,8 @@ class Initiator {
   void close_bids(Instant now);
   void take_back(Entry& entry, const Bid& bid, Instant now);
   void expire(Instant now);
+  void reopen(Entry& entry);
+  void lose(Entry& entry, const std::string& why);
   void make_unknown(Entry& entry);
   void heartbeat(Instant now);
   void not_formed(Event event, const std::string& why, Instant now);
@@ -194,9 +200,9 @@ class Initiator {
   std::size_t majority_ = 0;
   std::map<VehicleId, bool> confirmed_;  ///< members of award_
   std::map<VehicleId, Instant> heard_;   ///< members, by when they last spoke
-  /// Who was in the first coalition that stood, and may choose another leader; empty before. By the
-  /// stamp of the newest heartbeat that they have acknowledged. They only become fewer.
-  std::map<VehicleId, Instant> electors_;
+  /// Who was in the first coalition that stood, and may choose another leader; empty before. They
+  /// only become fewer.
+  std::map<VehicleId, ElectorEntry> electors_;
   std::map<std::uint32_t, bool> authorised_rounds_;
   Instant deadline_{};  ///< of the present state
   Instant next_repeat_{};

@@ -119,6 +119,7 @@ struct LeadershipClaim {
 struct Allegiance {
   CoalitionId coalition;
   VehicleId elector;
+  InstanceId instance;     ///< of the elector's program: one that has started anew has no promise
   VehicleId follows;       ///< the leader or a claimant; 0: nobody any more, it is no elector
   Instant acknowledges{};  ///< sent_at of the renewal or claim
 };

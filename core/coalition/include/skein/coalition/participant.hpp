@@ -92,7 +92,8 @@ class Participant {
   using Output =
       std::variant<BidWanted, AwardReceived, LeaseGranted, LeaseEnded, Released, LeadershipWon>;
 
-  Participant(const ProtocolParams& params, VehicleId self);
+  /// `instance`: of this vehicle's program, new with each start.
+  Participant(const ProtocolParams& params, VehicleId self, InstanceId instance);
 
   void on_announcement(const Announcement& message, Instant now);
   void on_award(const Award& message, Instant now);

@@ -109,6 +109,7 @@ class GroundAgent {
   void on_renewal(const coalition::LeaseRenewal& renewal, Instant now);
   void on_announcement(const coalition::Announcement& announcement, Instant now);
   bool tell_what_is_over(const AuthorisationRequest& request, Instant now);
+  [[nodiscard]] const Granted* granted_to_another(const AuthorisationRequest& request) const;
   [[nodiscard]] const Authorisation* granted_before(const AuthorisationRequest& request) const;
   void mark_silent(Instant now);
   void mark_mended(Instant now);
