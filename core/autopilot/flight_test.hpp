@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "skein/autopilot/fixed_wing_loops.hpp"
+#include "skein/autopilot/hexarotor_loops.hpp"
 #include "skein/models/dryden_gusts.hpp"
 #include "skein/models/fixed_wing.hpp"
+#include "skein/models/hexarotor.hpp"
 #include "skein/models/sensors.hpp"
 
 namespace skein::autopilot {
@@ -96,6 +98,90 @@ class TestFlight {
   models::Imu imu_;
   Random random_;
   models::FixedWing plane_;
+  Vec3 wind_ = Vec3::Zero();
+  double seconds_ = 0.0;
+};
+
+/// A hexarotor in wind, likewise.
+class TestHover {
+ public:
+  static constexpr double kControl_s = 0.0025;
+
+  struct Conditions {
+    double height_m = 0.0;  ///< 0 for on its feet, motors off
+    double roll_rad = 0.0;
+    Vec3 wind_mps = Vec3::Zero();
+    double gusts_wind_mps = 0.0;
+    std::uint64_t seed = 1;
+    bool noise = false;
+  };
+
+  explicit TestHover(const Conditions& c)
+      : conditions_{c},
+        gusts_{c.gusts_wind_mps, c.seed},
+        imu_{{}, c.seed + 1},
+        random_{c.seed + 2},
+        vehicle_{start(c)} {}
+
+  static models::RotorSpeeds speeds(const RotorCommand& command) {
+    models::RotorSpeeds speeds;
+    for (std::size_t i = 0; i < speeds.size(); ++i) {
+      speeds[i] = models::firefly().speed_max_radps * std::sqrt(command.thrust[i]);
+    }
+    return speeds;
+  }
+
+  void advance(const RotorCommand& command) {
+    const Vec3 air = state().velocity_ned_mps() - conditions_.wind_mps;
+    (void)gusts_.step(kControl_s, air.norm(), -state().position_m.z());
+    wind_ = conditions_.wind_mps + gusts_.velocity_ned_mps(euler_angles(state().attitude).yaw_rad);
+    vehicle_.step(speeds(command), wind_, kControl_s);
+    seconds_ += kControl_s;
+  }
+
+  [[nodiscard]] Estimate estimate() {
+    Estimate e;
+    e.position_m = state().position_m;
+    e.velocity_mps = state().velocity_ned_mps();
+    e.attitude = state().attitude;
+    e.rates_radps = state().rates_radps;
+    e.specific_force_mps2 = vehicle_.specific_force(wind_);
+    if (conditions_.noise) {
+      const models::ImuSample sample = imu_.sample(state(), e.specific_force_mps2, kControl_s);
+      e.rates_radps = sample.rates_radps - imu_.gyro_bias_radps();
+      e.specific_force_mps2 = sample.specific_force_mps2;
+      for (const int axis : {0, 1, 2}) {
+        e.velocity_mps[axis] += random_.normal(0.0, 0.05);
+        e.position_m[axis] += random_.normal(0.0, 0.1);
+      }
+    }
+    return e;
+  }
+
+  [[nodiscard]] const models::RigidBodyState& state() const { return vehicle_.state(); }
+  [[nodiscard]] bool on_ground() const { return vehicle_.on_ground(); }
+  [[nodiscard]] double height_m() const { return -state().position_m.z(); }
+  [[nodiscard]] double seconds() const { return seconds_; }
+
+ private:
+  static models::Hexarotor start(const Conditions& c) {
+    models::RigidBodyState state;
+    state.position_m.z() = c.height_m > 0.0 ? -c.height_m : -0.075;
+    state.attitude = attitude_from({.roll_rad = c.roll_rad});
+    models::Hexarotor vehicle{models::firefly(), state};
+    if (c.height_m > 0.0) {
+      models::RotorSpeeds hover;
+      hover.fill(models::hover_speed_radps(models::firefly()));
+      vehicle.set_speeds(hover);
+    }
+    return vehicle;
+  }
+
+  Conditions conditions_;
+  models::DrydenGusts gusts_;
+  models::Imu imu_;
+  Random random_;
+  models::Hexarotor vehicle_;
   Vec3 wind_ = Vec3::Zero();
   double seconds_ = 0.0;
 };

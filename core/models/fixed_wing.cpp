@@ -116,10 +116,10 @@ FixedWingParams froude_scaled(const FixedWingParams& params, double scale) {
   p.propulsion.no_load_amps *= current;
   p.servo_time_s *= root;
   p.throttle_time_s *= root;
-  for (std::size_t i = 0; i < p.ground.points.size(); ++i) {
-    p.ground.points[i].x_m *= scale;
-    p.ground.points[i].y_m *= scale;
-    p.ground.points[i].z_m *= scale;
+  for (auto& point : p.ground.points) {
+    point.x_m *= scale;
+    point.y_m *= scale;
+    point.z_m *= scale;
   }
   p.ground.stiffness_n_per_m *= scale * scale;
   p.ground.damping_ns_per_m *= scale * scale * root;
