@@ -20,7 +20,7 @@ class TestFlight {
   struct Conditions {
     double airspeed_mps = 50.0;
     double heading_rad = 0.0;
-    double height_m = 300.0;
+    double height_m = 300.0;       ///< 0 for on its wheels, at rest
     Vec3 wind_mps = Vec3::Zero();  ///< NED
     double gusts_wind_mps = 0.0;   ///< the wind at 6 m that makes the gusts
     std::uint64_t seed = 1;
@@ -83,6 +83,12 @@ class TestFlight {
  private:
   static models::FixedWing start(const Conditions& c) {
     const models::FixedWingParams params = models::fast_fixed_wing();
+    if (c.height_m == 0.0) {
+      models::RigidBodyState parked;
+      parked.position_m.z() = -0.46;
+      parked.attitude = attitude_from({.yaw_rad = c.heading_rad});
+      return {params, parked, {}};
+    }
     const models::Trim trim = models::trim(params, {.airspeed_mps = c.airspeed_mps}).value();
     models::RigidBodyState state = trim.state;
     state.position_m.z() = -c.height_m;

@@ -65,6 +65,11 @@ double steer_to_line(const Estimate& estimate, const Vec2& from_m, const Vec2& t
   return steer_to_course(estimate, course, gain_per_s);
 }
 
+double ground_steering_rad(const Estimate& estimate, double heading_rad, double limit_rad) {
+  const double error = wrap_pi(heading_rad - euler_angles(estimate.attitude).yaw_rad);
+  return std::clamp(-1.5 * error + 0.6 * estimate.rates_radps.z(), -limit_rad, limit_rad);
+}
+
 double progress_on_line(const Estimate& estimate, const Vec2& from_m, const Vec2& to_m) {
   const Vec2 along = to_m - from_m;
   return (estimate.position_m.head<2>() - from_m).dot(along) / along.squaredNorm();

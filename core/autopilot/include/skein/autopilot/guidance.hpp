@@ -31,6 +31,9 @@ struct Orbit {
 /// Precondition: the points differ.
 [[nodiscard]] double steer_to_line(const Estimate& estimate, const Vec2& from_m, const Vec2& to_m,
                                    double gain_per_s);
+/// Rudder that keeps the nose on the wheels, damped.
+[[nodiscard]] double ground_steering_rad(const Estimate& estimate, double heading_rad,
+                                         double limit_rad);
 /// How far along that line the vehicle is: 0 at `from`, 1 at `to`.
 [[nodiscard]] double progress_on_line(const Estimate& estimate, const Vec2& from_m,
                                       const Vec2& to_m);
