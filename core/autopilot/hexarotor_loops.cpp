@@ -21,6 +21,14 @@ Vector limited(const Vector& v, double norm_max) {
 
 double bearing(std::size_t rotor) { return radians(30.0 + 60.0 * static_cast<double>(rotor)); }
 
+/// Speed towards a place `distance_m` away: proportional when near, and farther off such that the
+/// deceleration is not exceeded.
+double closing_speed(double distance_m, double gain_per_s, double deceleration_mps2) {
+  const double linear_m = deceleration_mps2 / (gain_per_s * gain_per_s);
+  if (distance_m < linear_m) return gain_per_s * distance_m;
+  return std::sqrt(2.0 * deceleration_mps2 * (distance_m - 0.5 * linear_m));
+}
+
 /// The attitude whose body down axis is `down` (unit, NED) and whose nose is over `yaw_rad`.
 Eigen::Quaterniond attitude_with(const Vec3& down, double yaw_rad) {
   const Vec3 right = down.cross(Vec3{std::cos(yaw_rad), std::sin(yaw_rad), 0.0}).normalized();
@@ -74,11 +82,18 @@ RotorCommand HexarotorLoops::fly(const Estimate& estimate, const MotionDemand& d
   const HexarotorTuning& t = tuning_;
   Vec3 velocity = demand.velocity_mps;
   if (demand.horizontal_m) {
-    velocity.head<2>() +=
-        t.position_gain_per_s * (*demand.horizontal_m - estimate.position_m.head<2>());
+    const Vec2 off = *demand.horizontal_m - estimate.position_m.head<2>();
+    const double distance = off.norm();
+    if (distance > 0.0) {
+      const double speed =
+          std::min(closing_speed(distance, t.position_gain_per_s, 0.5 * t.acceleration_max_mps2),
+                   demand.speed_max_mps.value_or(t.speed_max_mps));
+      velocity.head<2>() += off * (speed / distance);
+    }
   }
   if (demand.down_m) {
-    velocity.z() += t.position_gain_per_s * (*demand.down_m - estimate.position_m.z());
+    const double off = *demand.down_m - estimate.position_m.z();
+    velocity.z() += std::copysign(closing_speed(std::abs(off), t.position_gain_per_s, 1.5), off);
   }
   velocity.head<2>() = limited(Vec2{velocity.head<2>()}, t.speed_max_mps);
   velocity.z() = std::clamp(velocity.z(), -t.climb_max_mps, t.sink_max_mps);

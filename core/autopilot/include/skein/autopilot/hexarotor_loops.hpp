@@ -50,7 +50,8 @@ struct MotionDemand {
   Vec3 velocity_mps = Vec3::Zero();       ///< of the point to follow
   Vec3 acceleration_mps2 = Vec3::Zero();  ///< of it, too
   double yaw_rad = 0.0;
-  double yaw_rate_radps = 0.0;  ///< of yaw_rad
+  double yaw_rate_radps = 0.0;            ///< of yaw_rad
+  std::optional<double> speed_max_mps{};  ///< towards horizontal_m; the tuning's where none
 };
 
 /// The cascaded loops of a hexarotor: position, velocity, thrust vector and attitude (Lee, Leok and

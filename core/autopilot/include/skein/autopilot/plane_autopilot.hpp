@@ -9,6 +9,7 @@
 #include "skein/autopilot/fixed_wing_loops.hpp"
 #include "skein/autopilot/guidance.hpp"
 #include "skein/autopilot/modes.hpp"
+#include "skein/autopilot/sticks.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/static_vector.hpp"
 
@@ -29,14 +30,6 @@ struct PlaneParams {
   bool companion_failsafe = false;  ///< FS_GCS_ENABL
   Duration companion_timeout = std::chrono::seconds{5};
   Duration setpoint_timeout = std::chrono::seconds{3};  ///< of attitude targets
-};
-
-/// Sticks of a pilot: full right, nose up, clockwise are +1; throttle in [0, 1].
-struct Sticks {
-  double roll = 0.0;
-  double pitch = 0.0;
-  double yaw = 0.0;
-  double throttle = 0.0;
 };
 
 /// Heights are above the mission's origin, as everywhere in this module.
