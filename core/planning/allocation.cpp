@@ -73,7 +73,14 @@ Chosen run_best(const AllocationParams& params, AllocationTable& table,
   return best;
 }
 
-Error no_plan(AllocationMethod method, AllocationTable& table) {
+Error no_plan(const Chosen& chosen, AllocationTable& table, const PlanningBudget& budget) {
+  const AllocationMethod method = chosen.method;
+  const bool tries_all = method == AllocationMethod::exact || method == AllocationMethod::earliest;
+  const bool feasible_by_count = quick_bound(table) > -std::numeric_limits<double>::infinity();
+  if (feasible_by_count && !chosen.result.proven &&
+      (tries_all || (method == AllocationMethod::colony && budget.is_spent(0)))) {
+    return Error{table.name() + ": no plan was found within the planning budget; there may be one"};
+  }
   // So far the lengths may have been lower bounds: the reason may be hazards.
   table.measure_all();
   if (auto error = table.missing()) return *error;
@@ -82,12 +89,13 @@ Error no_plan(AllocationMethod method, AllocationTable& table) {
     return Error{table.name() + ": the candidates can fly some of its " + deliveries +
                  " deliveries, but not all of them together"};
   }
-  const bool tries_all = method == AllocationMethod::exact || method == AllocationMethod::earliest;
-  return Error{table.name() + ": no times were found " +
-               (tries_all ? "" : "by the method " + std::string{to_string(method)} + " ") +
-               "at which " + std::to_string(table.columns()) + " candidates could fly its " +
-               deliveries + " deliveries and " + std::to_string(table.assessments()) +
-               " assessments within their ranges"};
+  return Error{
+      table.name() +
+      (tries_all ? ": it is proven that there are no times "
+                 : ": no times were found by the method " + std::string{to_string(method)} + " ") +
+      "at which " + std::to_string(table.columns()) + " candidates could fly its " + deliveries +
+      " deliveries and " + std::to_string(table.assessments()) +
+      " assessments within their ranges"};
 }
 
 }  // namespace
@@ -113,7 +121,7 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
   const Chosen chosen = params.method == AllocationMethod::best
                             ? run_best(params, table, budget)
                             : Chosen{params.method, run(params, params.method, table, budget)};
-  if (!chosen.result.plan) return no_plan(chosen.method, table);
+  if (!chosen.result.plan) return no_plan(chosen, table, budget);
   Allocation allocation = table.allocation(*chosen.result.plan);
   allocation.method = chosen.method;
   const bool bounded = chosen.result.bound < std::numeric_limits<double>::infinity();

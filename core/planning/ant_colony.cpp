@@ -295,7 +295,7 @@ void Colony::reward_best() {
 MethodResult Colony::run() {
   MethodResult result;
   std::uint64_t built = 0;
-  const auto spent = [&] { return best_ && budget_.is_spent(built); };
+  const auto spent = [&] { return budget_.is_spent(built); };
   for (int generation = 0; generation < params_.generations && !spent(); ++generation) {
     for (int cluster = 0; cluster < params_.ants && !spent(); ++cluster) {
       ++built;

@@ -61,46 +61,58 @@ void AssignmentSolver::take_path(std::size_t row, std::size_t sink, std::span<in
   }
 }
 
+/// Dijkstra from the row `current` to the nearest free column; kNone where none is reached. `least`
+/// is how far the search has come. `onward(row, least)` says how far it is by way of that row:
+/// a function of an entry of its and the entry's column.
+template <typename Onward>
+std::size_t AssignmentSolver::nearest_free(std::span<const double> cost, std::size_t current,
+                                           double& least, const Onward& onward) {
+  const std::size_t columns = row_of_.size();
+  start_row();
+  std::size_t row = current;
+  while (true) {
+    const std::span<const double> entries = cost.subspan(row * columns, columns);
+    const auto through = onward(row, least);
+    std::size_t nearest = kNone;
+    double nearest_distance = kInfinity;
+    for (std::size_t column = 0; column < columns; ++column) {
+      if (done_[column] != 0) continue;
+      const double reached = through(entries[column], column);
+      if (reached < distance_[column]) {
+        distance_[column] = reached;
+        predecessor_[column] = static_cast<int>(row);
+      }
+      const double distance = distance_[column];
+      const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
+                               row_of_[nearest] >= 0 && row_of_[column] < 0;
+      if (distance < nearest_distance || free_at_tie) {
+        nearest = column;
+        nearest_distance = distance;
+      }
+    }
+    if (nearest == kNone) return kNone;
+    least = nearest_distance;
+    done_[nearest] = 1;
+    if (row_of_[nearest] < 0) return nearest;
+    row = static_cast<std::size_t>(row_of_[nearest]);
+  }
+}
+
 bool AssignmentSolver::least_sum(std::span<const double> cost, std::size_t columns,
                                  std::span<int> column_of) {
   const std::size_t rows = column_of.size();
   SKEIN_ASSERT(cost.size() == rows * columns);
   start(rows, columns, column_of);
+  // Lengths add up, over reduced costs.
+  const auto onward = [this](std::size_t row, double least) {
+    return [this, base = least - row_price_[row]](double entry, std::size_t column) {
+      return base + entry - column_price_[column];
+    };
+  };
   for (std::size_t current = 0; current < rows; ++current) {
-    // Dijkstra over reduced costs from the row `current` to the nearest free column.
-    start_row();
-    std::size_t row = current;
-    std::size_t sink = kNone;
     double least = 0.0;
-    while (sink == kNone) {
-      const std::span<const double> entries = cost.subspan(row * columns, columns);
-      const double base = least - row_price_[row];
-      std::size_t nearest = kNone;
-      double nearest_distance = kInfinity;
-      for (std::size_t column = 0; column < columns; ++column) {
-        if (done_[column] != 0) continue;
-        const double through = base + entries[column] - column_price_[column];
-        if (through < distance_[column]) {
-          distance_[column] = through;
-          predecessor_[column] = static_cast<int>(row);
-        }
-        const double distance = distance_[column];
-        const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
-                                 row_of_[nearest] >= 0 && row_of_[column] < 0;
-        if (distance < nearest_distance || free_at_tie) {
-          nearest = column;
-          nearest_distance = distance;
-        }
-      }
-      if (nearest == kNone) return false;
-      least = nearest_distance;
-      done_[nearest] = 1;
-      if (row_of_[nearest] < 0) {
-        sink = nearest;
-      } else {
-        row = static_cast<std::size_t>(row_of_[nearest]);
-      }
-    }
+    const std::size_t sink = nearest_free(cost, current, least, onward);
+    if (sink == kNone) return false;
     row_price_[current] += least;
     for (std::size_t column = 0; column < columns; ++column) {
       if (done_[column] == 0 || column == sink) continue;
@@ -120,39 +132,14 @@ std::optional<double> AssignmentSolver::bottleneck(std::span<const double> cost,
   const std::size_t rows = column_of.size();
   SKEIN_ASSERT(cost.size() == rows * columns);
   start(rows, columns, column_of);
+  // The length of a path is its largest entry.
+  const auto onward = [](std::size_t, double threshold) {
+    return [threshold](double entry, std::size_t) { return std::max(threshold, entry); };
+  };
   double threshold = -kInfinity;
   for (std::size_t current = 0; current < rows; ++current) {
-    start_row();
-    std::size_t row = current;
-    std::size_t sink = kNone;
-    while (sink == kNone) {
-      const std::span<const double> entries = cost.subspan(row * columns, columns);
-      std::size_t nearest = kNone;
-      double nearest_distance = kInfinity;
-      for (std::size_t column = 0; column < columns; ++column) {
-        if (done_[column] != 0) continue;
-        const double through = std::max(threshold, entries[column]);
-        if (through < distance_[column]) {
-          distance_[column] = through;
-          predecessor_[column] = static_cast<int>(row);
-        }
-        const double distance = distance_[column];
-        const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
-                                 row_of_[nearest] >= 0 && row_of_[column] < 0;
-        if (distance < nearest_distance || free_at_tie) {
-          nearest = column;
-          nearest_distance = distance;
-        }
-      }
-      if (nearest == kNone) return std::nullopt;
-      threshold = std::max(threshold, nearest_distance);
-      done_[nearest] = 1;
-      if (row_of_[nearest] < 0) {
-        sink = nearest;
-      } else {
-        row = static_cast<std::size_t>(row_of_[nearest]);
-      }
-    }
+    const std::size_t sink = nearest_free(cost, current, threshold, onward);
+    if (sink == kNone) return std::nullopt;
     take_path(current, sink, column_of);
   }
   return threshold;

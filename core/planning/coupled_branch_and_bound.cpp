@@ -171,7 +171,10 @@ Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem, const Planni
   if (!model) return model.error();
   coupled::Tree tree{*model, budget};
   tree.run();
-  if (tree.best_cost() == coupled::kInfinity) return coupled::no_plan(*model);
+  if (tree.best_cost() == coupled::kInfinity) {
+    return coupled::no_plan(*model, tree.is_proven() ? coupled::Sought::everywhere
+                                                     : coupled::Sought::within_the_budget);
+  }
   auto plan = coupled::make_plan(*model, problem, tree.best());
   if (!plan) return plan;
   plan->bound = model->objective(tree.is_proven() ? tree.best_cost() : tree.bound());

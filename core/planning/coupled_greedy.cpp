@@ -151,7 +151,7 @@ Result<CoupledPlan> greedy_awards(const CoupledProblem& problem) {
   const auto model = coupled::Model::make(problem);
   if (!model) return model.error();
   const auto orders = coupled::greedy_orders(*model);
-  if (!orders) return coupled::no_plan(*model);
+  if (!orders) return coupled::no_plan(*model, coupled::Sought::in_one_way);
   return coupled::make_plan(*model, problem, *orders);
 }
 

@@ -2,6 +2,7 @@
 #include "coupled_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <string>
@@ -606,7 +607,7 @@ Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
   return plan;
 }
 
-Error no_plan(const Model& model) {
+Error no_plan(const Model& model, Sought sought) {
   for (Index t = 0; t < model.task_count(); ++t) {
     bool any = false;
     for (Index i = 0; i < model.vehicle_count(); ++i) {
@@ -619,7 +620,11 @@ Error no_plan(const Model& model) {
                    "' within its range"};
     }
   }
-  return Error{"No plan was found that does all " + std::to_string(model.tasks.size()) +
+  const std::array<const char*, 3> outcomes = {
+      "It is proven that no plan does all ",
+      "No plan was found within the planning budget that does all ",
+      "No plan was found that does all "};
+  return Error{outcomes[static_cast<std::size_t>(sought)] + std::to_string(model.tasks.size()) +
                " tasks within the loads and ranges of " + std::to_string(model.vehicles.size()) +
                " vehicles"};
 }

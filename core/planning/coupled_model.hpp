@@ -228,8 +228,11 @@ class Timing {
 [[nodiscard]] Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
                                             const Orders& orders);
 
-/// Why a problem has no plan, as far as is easily said.
-[[nodiscard]] Error no_plan(const Model& model);
+/// Where a plan was sought, and there was none.
+enum class Sought : std::uint8_t { everywhere, within_the_budget, in_one_way };
+
+/// Why a problem has no plan, as far as is easily said; whether that is proven.
+[[nodiscard]] Error no_plan(const Model& model, Sought sought);
 
 /// The orders of greedy_awards; nothing where a task is left.
 [[nodiscard]] std::optional<Orders> greedy_orders(const Model& model);

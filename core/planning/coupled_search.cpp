@@ -10,7 +10,7 @@
 namespace skein::planning::coupled {
 namespace {
 
-// Tuned on the instances of tests/benchmarks/coupled_benchmark.cpp.
+// Tuned on the instances of tests/benchmarks/coupled.cpp.
 constexpr double kBlink = 0.02;        ///< chance that a place is overlooked, for variety
 constexpr int kRuinMost = 12;          ///< tasks taken out at once
 constexpr double kRuinPart = 0.7;      ///< and the part of all
@@ -317,7 +317,9 @@ Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& ran
   if (!model) return model.error();
   coupled::Search search{*model, random};
   while (!budget.is_spent(search.steps())) search.step();
-  if (search.best_cost() == coupled::kInfinity) return coupled::no_plan(*model);
+  if (search.best_cost() == coupled::kInfinity) {
+    return coupled::no_plan(*model, coupled::Sought::within_the_budget);
+  }
   auto plan = coupled::make_plan(*model, problem, search.best());
   if (plan) plan->steps = search.steps();
   return plan;

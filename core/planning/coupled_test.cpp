@@ -419,6 +419,13 @@ TEST(CoupledPlans, SayWhatIsMissing) {
   const auto plan = branch_and_bound(problem, {});
   ASSERT_FALSE(plan.ok());
   EXPECT_THAT(plan.error().message, HasSubstr("site 1 deliver 1"));
+  problem.vehicles.resize(1);
+  problem.vehicles[0].loads = 2;
+  EXPECT_THAT(branch_and_bound(problem, {}).error().message, HasSubstr("It is proven"));
+  PlanningBudget none;
+  none.steps_max = 0;
+  EXPECT_THAT(branch_and_bound(problem, none).error().message,
+              HasSubstr("within the planning budget"));
   problem.open_tasks.push_back({SiteId{9}, TaskKind::survey, 0});
   EXPECT_THAT(greedy_awards(problem).error().message, HasSubstr("site 9"));
 }

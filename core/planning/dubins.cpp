@@ -164,7 +164,7 @@ WordLengths word_lengths(const Pose2& from, const Pose2& to, double radius_m) {
   result.same = csc.same;
   result.other = csc.other;
   result.shortest_m = least_of(Pair::least(csc.same, csc.other));
-  const auto may_win = Pair::ccc_may_win(csc, radius_m, Pair::splat(result.shortest_m));
+  const auto may_win = Pair::ccc_may_win(goal, csc, radius_m, Pair::splat(result.shortest_m));
   if (Pair::any(may_win)) {
     result.ccc = Pair::select(may_win, Pair::ccc(goal, csc, radius_m), Pair::infinity());
     result.shortest_m = std::min(result.shortest_m, least_of(result.ccc));

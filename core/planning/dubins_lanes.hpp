@@ -254,10 +254,20 @@ struct DubinsLanes {
     return result;
   }
 
-  /// Where a CCC word with the middle arc above a half turn could be shorter than `best`: it is
-  /// never shorter than 2 pi r - 2 r asin(distance / 4 r), and asin(q) <= q pi / 2.
-  static Bits ccc_may_win(const Csc& c, double r, Real best) {
-    return (c.distance <= 4.0 * r + kSlack_m) & (kTwoPi * r - (kPi / 4.0) * c.distance < best);
+  /// Where a CCC word with the middle arc above a half turn could be shorter than `best`. Its
+  /// middle is 2 pi - 2 asin(distance / 4 r), and q <= asin(q) <= q pi / 2; its first and last turn
+  /// sum to the goal's turn and the middle, but for full circles.
+  static Bits ccc_may_win(const Goal& g, const Csc& c, double r, Real best) {
+    const Real low = kTwoPi * r - (kPi / 4.0) * c.distance;
+    const Real high = kTwoPi * r - 0.5 * c.distance;
+    const Real turn = r * g.turn;
+    const Real least_sum = turn + low;
+    const Real beyond = least_sum - kTwoPi * r;
+    // Next to a full circle the slack may take it for none.
+    constexpr double kNearFull_rad = 1e-3;
+    Real ends = select(turn + high < (kTwoPi - kNearFull_rad) * r, least_sum, beyond);
+    ends = select(ends > 0.0, ends, Real{});
+    return (c.distance <= 4.0 * r + kSlack_m) & (low + ends < best);
   }
 
   /// LRL. Halfway round the middle arc the heading is that of c2 - c1.
@@ -279,13 +289,10 @@ struct DubinsLanes {
     const Csc left = csc(g, r);
     const Csc right = csc(m, r);
     Real best = least(least(left.same, left.other), least(right.same, right.other));
-    const Bits lrl = ccc_may_win(left, r, best);
-    const Bits rlr = ccc_may_win(right, r, best);
-    if (any(lrl | rlr)) {
-      const Real a = select(lrl, ccc(g, left, r), infinity());
-      const Real b = select(rlr, ccc(m, right, r), infinity());
-      best = least(best, least(a, b));
-    }
+    const Bits lrl = ccc_may_win(g, left, r, best);
+    const Bits rlr = ccc_may_win(m, right, r, best);
+    if (any(lrl)) best = least(best, select(lrl, ccc(g, left, r), infinity()));
+    if (any(rlr)) best = least(best, select(rlr, ccc(m, right, r), infinity()));
     return select(is_here(g, r), Real{}, best);
   }
 

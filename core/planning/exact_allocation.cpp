@@ -34,8 +34,7 @@ class Sweep {
     return !result_.plan || bound > result_.plan->value + kValueTolerance / 2.0;
   }
   [[nodiscard]] bool exhausted() const {
-    if (assignments_ >= kAssignmentsMax) return true;
-    return result_.plan && budget_.is_spent(assignments_);
+    return assignments_ >= kAssignmentsMax || budget_.is_spent(assignments_);
   }
 
   AllocationTable& table_;
@@ -87,7 +86,7 @@ std::optional<double> Sweep::soonest_assessments(double delivery_s) {
 
 /// The best assignment at these moments; true when it is a plan (better than before, or not).
 bool Sweep::solve(const Moments& at) {
-  while (assignments_ < kAssignmentsMax) {
+  while (!exhausted()) {
     ++assignments_;
     cost_.assign(table_.rows() * table_.columns(), kInfinity);
     std::size_t i = 0;

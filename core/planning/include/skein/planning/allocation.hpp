@@ -98,9 +98,11 @@ inline constexpr double kValueTolerance = 1e-6;
 /// Vehicles to tasks, one task each: all deliveries at one common time plus their offsets, all
 /// assessments together, after the wait. Every time is one that the vehicle can fly exactly
 /// (path_of_length succeeds), within its range. Deterministic but for budget.expired: ties by id.
-/// The first plan is always made; more budget never gives one of a smaller J. A step is an
-/// assignment problem that exact solves, or a plan that the colony builds. Fails with what is
-/// missing ("site 2 needs 6 deliveries: 4 of 9 candidates can deliver").
+/// More budget never gives a plan of a smaller J. A step is an assignment problem that exact
+/// solves, or a plan that the colony builds. A spent budget stops exact, earliest and colony even
+/// where they have no plan yet; best then still has that of greedy, which is quick. Fails with what
+/// is missing ("site 2 needs 6 deliveries: 4 of 9 candidates can deliver"); the sentence tells
+/// whether it is proven that there is no plan, or none was found within the budget.
 [[nodiscard]] Result<Allocation> allocate(const AllocationParams& params,
                                           const AllocationProblem& problem,
                                           const PlanningBudget& budget = {});

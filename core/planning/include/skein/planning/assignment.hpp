@@ -36,6 +36,9 @@ class AssignmentSolver {
  private:
   void start(std::size_t rows, std::size_t columns, std::span<int> column_of);
   void start_row();
+  template <typename Onward>
+  std::size_t nearest_free(std::span<const double> cost, std::size_t current, double& least,
+                           const Onward& onward);
   void take_path(std::size_t row, std::size_t sink, std::span<int> column_of);
 
   std::vector<double> row_price_;

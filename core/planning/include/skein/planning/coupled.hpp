@@ -143,7 +143,7 @@ inline constexpr double kCoupledTolerance = 1e-9;
 /// Optimal, or the best so far with a bound when the budget is spent (a step is a node). Depth
 /// first over plans built in the order of their times, from the plan of a short ruin and recreate.
 /// Deterministic; more steps never give a worse plan or a worse bound. Fails where there is no
-/// plan, or none was found.
+/// plan, or none was found within the budget; the sentence tells which.
 [[nodiscard]] Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem,
                                                    const PlanningBudget& budget);
 
