@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Prints simulated missions to the last bit, for comparison between compilers (./dev test
-// compilers).
+// Prints simulated missions, plans of coupled problems and Dubins lengths to the last bit, for
+// comparison between compilers (./dev test compilers).
 #include <array>
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <vector>
 
+#include "coupled_instances.hpp"
+#include "skein/base/angles.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/planning/dubins_batch.hpp"
 
 namespace skein {
 namespace {
@@ -40,6 +44,57 @@ struct Trace {
 constexpr std::array<Trace, 3> kTraces{
     {{"coalition-32", "none", 1, 1}, {"coalition-6", "lossy", 1, 3}, {"faults-8", "mixed", 1, 12}}};
 
+void print(const planning::CoupledPlan& plan) {
+  std::printf("coupled plan %a %a, %u steps\n", plan.objective, plan.bound.value_or(0.0),
+              static_cast<unsigned>(plan.steps));
+  for (const planning::CoupledTask& task : plan.tasks) {
+    std::printf("%s %u %a %a %a\n", to_string(task.task).c_str(),
+                static_cast<unsigned>(task.vehicle.value), task.time_s, task.end_s, task.transit_m);
+  }
+}
+
+/// A tree that ends, one that a budget ends, and a search, by every criterion.
+void print_coupled_plans() {
+  for (const auto criterion : {planning::Criterion::value, planning::Criterion::completion,
+                               planning::Criterion::makespan}) {
+    for (const std::size_t sites : {std::size_t{3}, std::size_t{6}}) {
+      Random draws{sites};
+      planning::CoupledProblem problem =
+          planning::draw_problem(draws, {.sites = sites, .vehicles = sites});
+      problem.criterion = criterion;
+      if (const auto plan = branch_and_bound(problem, {.steps_max = 3000, .expired = {}})) {
+        print(*plan);
+      }
+      Random lots{7};
+      if (const auto plan = ruin_and_recreate(problem, lots, {.steps_max = 300, .expired = {}})) {
+        print(*plan);
+      }
+    }
+  }
+}
+
+void print_lengths() {
+  Random random{8};
+  for (const double size_m : {300.0, 1000.0, 10000.0}) {
+    planning::PoseBatch from;
+    planning::PoseBatch to;
+    const auto draw = [&] {
+      return Pose2{random.uniform(0.0, size_m), random.uniform(0.0, size_m),
+                   random.uniform(-kPi, kPi)};
+    };
+    constexpr int kPairs = 2000;
+    for (int i = 0; i < kPairs; ++i) {
+      from.push_back(draw());
+      to.push_back(draw());
+    }
+    std::vector<double> lengths_m(kPairs);
+    for (const planning::SimdLevel level : planning::simd_levels()) {
+      shortest_dubins_lengths(from.columns(), to.columns(), 165.0, lengths_m, level);
+      for (const double length_m : lengths_m) std::printf("length %a\n", length_m);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace skein
 
@@ -68,5 +123,7 @@ int main(int argc, char** argv) {
       }
     }
   }
+  skein::print_coupled_plans();
+  skein::print_lengths();
   return 0;
 }
