@@ -13,7 +13,8 @@ constexpr std::uint32_t kErrorBit = 1U << 29U;
 constexpr std::uint8_t kFlagBrs = 1;
 constexpr std::size_t kStandardDigits = 3;
 constexpr std::size_t kExtendedDigits = 8;
-constexpr std::size_t kSecondsDigitsMax = 10;  // the year 2286
+constexpr std::size_t kSecondsDigits = 10;
+constexpr std::uint64_t kSecondsMax = 9'000'000'000;  // the year 2255: nanoseconds in 63 bits
 constexpr std::size_t kFractionDigitsMax = 9;
 
 Error error(std::string_view line, std::string_view what) {
@@ -51,12 +52,12 @@ std::optional<Duration> timestamp_of(std::string_view word) {
   if (word.size() < 2 || word.front() != '(' || word.back() != ')') return std::nullopt;
   word = word.substr(1, word.size() - 2);
   const std::size_t point = word.find('.');
-  if (point == std::string_view::npos || point > kSecondsDigitsMax) return std::nullopt;
+  if (point == std::string_view::npos) return std::nullopt;
   const std::string_view fraction = word.substr(point + 1);
   if (fraction.size() > kFractionDigitsMax) return std::nullopt;
   const auto seconds = number<std::uint64_t>(word.substr(0, point), 10);
   auto nanoseconds = number<std::uint64_t>(fraction, 10);
-  if (!seconds || !nanoseconds) return std::nullopt;
+  if (!seconds || *seconds > kSecondsMax || !nanoseconds) return std::nullopt;
   for (std::size_t i = fraction.size(); i < kFractionDigitsMax; ++i) *nanoseconds *= 10;
   return std::chrono::seconds{*seconds} + Duration{*nanoseconds};
 }
@@ -135,7 +136,7 @@ std::string to_candump(std::string_view interface, const Frame& frame) {
   const std::int64_t microseconds =
       std::chrono::duration_cast<std::chrono::microseconds>(frame.timestamp).count();
   std::string text = "(";
-  append_decimal(text, microseconds / 1'000'000, kSecondsDigitsMax);
+  append_decimal(text, microseconds / 1'000'000, kSecondsDigits);
   text += '.';
   append_decimal(text, microseconds % 1'000'000, 6);
   text += ") ";

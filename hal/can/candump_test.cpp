@@ -43,12 +43,26 @@ TEST(Candump, EveryKindOfFrame) {
 }
 
 TEST(Candump, WhatIsNoLineIsRefusedWithAReason) {
-  for (const char* text :
-       {"", "can0 123#00", "(1.0) can0", "(1.0) can0 123", "(1.0) can0 12#00", "(1.0) can0 123#0",
-        "(1.0) can0 123#0G", "(1.0) can0 800#00", "(1.0) can0 FFFFFFFF#00", "(1) can0 123#00",
-        "(x.0) can0 123#00", "(1.0) can0 123#001122334455667788", "(1.0) can0 123##",
-        "(1.0) can0 123##0001122334455667788", "(1.0) can0 123#00 more", "(1.0) can0 123#R9",
-        "(1.0000000000) can0 123#00", "(11111111111.0) can0 123#00", "(-1.0) can0 123#00"}) {
+  for (const char* text : {"",
+                           "can0 123#00",
+                           "(1.0) can0",
+                           "(1.0) can0 123",
+                           "(1.0) can0 12#00",
+                           "(1.0) can0 123#0",
+                           "(1.0) can0 123#0G",
+                           "(1.0) can0 800#00",
+                           "(1.0) can0 FFFFFFFF#00",
+                           "(1) can0 123#00",
+                           "(x.0) can0 123#00",
+                           "(1.0) can0 123#001122334455667788",
+                           "(1.0) can0 123##",
+                           "(1.0) can0 123##0001122334455667788",
+                           "(1.0) can0 123#00 more",
+                           "(1.0) can0 123#R9",
+                           "(1.0000000000) can0 123#00",
+                           "(11111111111.0) can0 123#00",
+                           "(9999999999.0) can0 123#00",
+                           "(-1.0) can0 123#00"}) {
     const auto entry = parse_candump(text);
     ASSERT_FALSE(entry) << text;
     EXPECT_NE(entry.error().message.find("'(seconds.microseconds) interface id#data'"),

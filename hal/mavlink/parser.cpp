@@ -112,7 +112,8 @@ Parser::Verdict Parser::judge(std::span<const std::uint8_t> bytes, std::size_t& 
 
 Parser::Verdict Parser::judge_unknown(std::span<const std::uint8_t> bytes, std::size_t size) {
   // Its checksum cannot be known; that another packet follows at once speaks for it.
-  if (bytes.size() > size && !is_magic(bytes[size])) return Verdict::not_a_packet;
+  if (bytes.size() == size) return Verdict::wait;
+  if (!is_magic(bytes[size])) return Verdict::not_a_packet;
   ++statistics_.unknown;
   statistics_.last_unknown = packet_.id;
   count_sequence();

@@ -44,4 +44,18 @@ struct SweepArguments {
 };
 int sweep(const SweepArguments& arguments);
 
+struct CanDumpArguments {
+  std::string bus;            ///< as can::open() takes it
+  std::filesystem::path log;  ///< empty: none is written
+  std::optional<double> seconds;
+};
+int dump_can(const CanDumpArguments& arguments);
+
+struct CanReplayArguments {
+  std::filesystem::path log;
+  std::string bus;    ///< empty: nothing is sent, only shown
+  double rate = 1.0;  ///< seconds of the log in a real second
+};
+int replay_can(const CanReplayArguments& arguments);
+
 }  // namespace skein::hil

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
       "  skein-hil run scenarios/coalition-32.yaml         the mission of 32 vehicles\n"
       "  skein-hil simulate scenarios/coalition-32.yaml    the same in virtual time, in a second\n"
       "  skein-hil sweep experiments/radio.yaml            600 missions, means and plots\n"
+      "  skein-hil can dump vcan0                          what is said on a CAN bus\n"
       "Scenario files are explained in docs/scenarios.md.");
   app.require_subcommand(1);
 
@@ -87,7 +88,32 @@ int main(int argc, char** argv) {
       "Examples: skein-hil sweep experiments/mission-32.yaml\n"
       "          skein-hil sweep experiments/radio.yaml --runs 10 --out runs/radio-10");
 
+  skein::hil::CanDumpArguments dump;
+  skein::hil::CanReplayArguments replay;
+  auto* can_command = app.add_subcommand("can", "Look at a CAN bus, record it, replay a record");
+  can_command->require_subcommand(1);
+  auto* dump_command = can_command->add_subcommand(
+      "dump", "Show what is said on a bus: DroneCAN and the MAVLink in it");
+  dump_command
+      ->add_option("bus", dump.bus, "can0, vcan0, ... or mcast:NUMBER, mcast:NUMBER@INTERFACE")
+      ->required();
+  dump_command->add_option("--log", dump.log, "File to write, as candump -L does");
+  dump_command->add_option("--seconds", dump.seconds, "End after that (default: at Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  dump_command->footer("Example: skein-hil can dump mcast:0 --log flight.log");
+  auto* replay_command =
+      can_command->add_subcommand("replay", "Send a record (candump -L) to a bus, and show it");
+  replay_command->add_option("log", replay.log, "File of candump -L")->required();
+  replay_command->add_option("bus", replay.bus,
+                             "As for dump; without it, the record is only shown");
+  replay_command->add_option("--rate", replay.rate, "Seconds of the record in a real second")
+      ->check(CLI::Range(0.01, 1000.0))
+      ->capture_default_str();
+  replay_command->footer("Example: skein-hil can replay flight.log mcast:1 --rate 10");
+
   CLI11_PARSE(app, argc, argv);
+  if (dump_command->parsed()) return skein::hil::dump_can(dump);
+  if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
   return sweep_command->parsed() ? skein::hil::sweep(sweep) : skein::hil::simulate(simulate);
 }

@@ -34,6 +34,12 @@ bool is_core(std::string_view path) {
   return path.starts_with("core/") && is_cpp(path) && !path.ends_with("_test.cpp");
 }
 
+/// What does no input or output: core, and the codes of DroneCAN and MAVLink, without their tests.
+bool is_pure(std::string_view path) {
+  const bool is_code = path.starts_with("hal/dronecan/") || path.starts_with("hal/mavlink/");
+  return is_core(path) || (is_code && is_cpp(path) && !path.ends_with("_test.cpp"));
+}
+
 bool is_cpp_outside_dds(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && !path.starts_with("network/") &&
          !path.starts_with("hil/radio/") && !path.starts_with("idl/");
@@ -49,8 +55,8 @@ bool is_cpp_outside_node(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && path != "network/node.cpp";
 }
 
-bool is_core_but_assert(std::string_view path) {
-  return is_core(path) && path != "core/base/assert.cpp";  // its last words go to stderr
+bool is_pure_but_assert(std::string_view path) {
+  return is_pure(path) && path != "core/base/assert.cpp";  // its last words go to stderr
 }
 
 bool is_text_of_ours(std::string_view path) { return !is_tidy(path); }
@@ -68,34 +74,34 @@ struct LineRule {
 constexpr auto kCode = LineRule::View::code;
 
 constexpr std::array kLineRules{
-    LineRule{"core-clock", is_core, kCode,
+    LineRule{"core-clock", is_pure, kCode,
              R"(\b(system_clock|steady_clock|high_resolution_clock|utc_clock|clock_gettime)\b|)"
              R"(\b(gettimeofday|sleep_for|sleep_until|nanosleep|usleep)\b|\bstd::time\b|)"
              R"(#\s*include\s*<(ctime|time\.h|sys/time\.h)>)",
-             "core has no clock: take an Instant as an argument"},
-    LineRule{"core-thread", is_core, kCode,
+             "no clock here: take an Instant as an argument"},
+    LineRule{"core-thread", is_pure, kCode,
              R"(\bstd::(thread|jthread|async|future|promise)\b|\b(this_thread|thread_local)\b|)"
              R"(\bpthread_|#\s*include\s*<(thread|future|stop_token|pthread\.h)>)",
-             "core has no threads: they belong to the processes (onboard, groundstation, hil)"},
-    LineRule{"core-lock", is_core, kCode,
+             "no threads here: they belong to the processes (onboard, groundstation, hil)"},
+    LineRule{"core-lock", is_pure, kCode,
              R"(\bstd::(\w*mutex|condition_variable\w*|\w+_lock|lock_guard|\w+_semaphore)\b|)"
              R"(#\s*include\s*<(mutex|shared_mutex|condition_variable|semaphore|latch|barrier)>)",
-             "core has no locks: its objects belong to one thread"},
-    LineRule{"core-socket", is_core, kCode,
+             "no locks here: the objects belong to one thread"},
+    LineRule{"core-socket", is_pure, kCode,
              R"(\bsocket\s*\(|#\s*include\s*<(sys/|netinet/|arpa/|net/|linux/))"
              R"(|#\s*include\s*<(unistd|fcntl|poll|netdb)\.h>)",
-             "core does no input or output: hand messages in and out"},
-    LineRule{"core-output", is_core_but_assert, kCode,
+             "no input or output here: hand messages in and out"},
+    LineRule{"core-output", is_pure_but_assert, kCode,
              R"(\bstd::(cout|cerr|clog|cin)\b|\b(printf|fprintf|puts|fputs|fopen|getenv)\s*\(|)"
              R"(#\s*include\s*<(iostream|fstream|filesystem|print)>)",
-             "core does no input or output: return the text, or a Result with the reason"},
-    LineRule{"core-random", is_core, kCode,
+             "no input or output here: return the text, or a Result with the reason"},
+    LineRule{"core-random", is_pure, kCode,
              R"(\b(s?rand|rand_r|drand48)\s*\(|\b(random_device|mt19937\w*|minstd_rand0?)\b|)"
              R"(\bdefault_random_engine\b|#\s*include\s*<random>)",
              "take a seeded skein::Random as an argument (skein/base/random.hpp)"},
-    LineRule{"core-unordered", is_core, kCode, R"(\bunordered_(multi)?(map|set)\b)",
+    LineRule{"core-unordered", is_pure, kCode, R"(\bunordered_(multi)?(map|set)\b)",
              "its order differs between libraries: use std::map, std::set or a sorted vector"},
-    LineRule{"core-throw", is_core, kCode, R"(\bthrow\b)",
+    LineRule{"core-throw", is_pure, kCode, R"(\bthrow\b)",
              "return a Result with the reason; a broken invariant is SKEIN_ASSERT"},
     LineRule{"core-library", is_core, kCode,
              R"(#\s*include\s*<(?!Eigen/|GeographicLib/|sys/|netinet/|arpa/|net/|linux/)[^>]*/)",
