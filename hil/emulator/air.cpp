@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "air.hpp"
+
+#include "skein/models/fixed_wing.hpp"
+
+namespace skein::hil {
+namespace {
+
+constexpr double kWindFilterTime_s = 10.0;
+// Standard deviations of a filter's output, m/s and m.
+constexpr double kVelocityNoise_mps = 0.05;
+constexpr double kClimbNoise_mps = 0.1;
+constexpr double kHorizontalNoise_m = 0.1;
+constexpr double kHeightNoise_m = 0.2;
+constexpr double kAirspeedNoise_mps = 0.2;
+
+}  // namespace
+
+Air::Air(const EmulatorConfig& config)
+    : steady_{config.wind_mps.y(), config.wind_mps.x(), 0.0},
+      gusts_{config.gusts_wind_mps, config.seed},
+      gusty_{config.gusts_wind_mps > 0.0},
+      wind_{steady_},
+      estimated_{steady_} {}
+
+void Air::step(const models::RigidBodyState& state, double seconds) {
+  if (!gusty_) return;
+  (void)gusts_.step(seconds, airspeed_mps(state), -state.position_m.z());
+  wind_ = steady_ + gusts_.velocity_ned_mps(euler_angles(state.attitude).yaw_rad);
+  estimated_ += seconds / kWindFilterTime_s * (wind_ - estimated_);
+}
+
+double Air::airspeed_mps(const models::RigidBodyState& state) const {
+  return models::air_data(state, wind_).airspeed_mps;
+}
+
+Senses::Senses(const EmulatorConfig& config)
+    : noise_{config.noise}, imu_{{}, config.seed + 1}, random_{config.seed + 2} {}
+
+autopilot::Estimate Senses::estimate(const models::RigidBodyState& state,
+                                     const Vec3& specific_force_mps2, double airspeed_mps,
+                                     double seconds) {
+  autopilot::Estimate e;
+  e.position_m = state.position_m;
+  e.velocity_mps = state.velocity_ned_mps();
+  e.attitude = state.attitude;
+  e.rates_radps = state.rates_radps;
+  e.specific_force_mps2 = specific_force_mps2;
+  e.airspeed_mps = airspeed_mps;
+  if (!noise_) return e;
+  const models::ImuSample sample = imu_.sample(state, specific_force_mps2, seconds);
+  e.rates_radps = sample.rates_radps - imu_.gyro_bias_radps();
+  e.specific_force_mps2 = sample.specific_force_mps2;
+  const auto add = [this](double& value, double deviation) {
+    value += random_.normal(0.0, deviation);
+  };
+  add(e.velocity_mps.x(), kVelocityNoise_mps);
+  add(e.velocity_mps.y(), kVelocityNoise_mps);
+  add(e.velocity_mps.z(), kClimbNoise_mps);
+  add(e.position_m.x(), kHorizontalNoise_m);
+  add(e.position_m.y(), kHorizontalNoise_m);
+  add(e.position_m.z(), kHeightNoise_m);
+  add(e.airspeed_mps, kAirspeedNoise_mps);
+  return e;
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "arguments.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <sstream>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::hil {
+namespace {
+
+constexpr int kExitBadInput = 2;
+
+constexpr const char* kDescription =
+    "A flight controller as its own process on a CAN bus, with the aircraft that it flies: speaks\n"
+    "DroneCAN and MAVLink 2 as ArduPilot's Plane 4.6 does through a DroneCAN serial port, in real\n"
+    "time. A board or a software-in-the-loop build of ArduPilot can take its place.";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  skein-fc --bus mcast:3 --airborne --start 2200 2000 300 --heading 50\n"
+    "      in flight over the scenario's origin, armed, in GUIDED, for the companion node 42\n"
+    "  skein-fc --bus vcan0 --node 11 --companion 43 --system 7 --failsafe \\\n"
+    "           --wind-speed 5 --wind-from 240 --gusts 5 --seed 7\n"
+    "      on the ground, disarmed, in MANUAL\n"
+    "  skein-fc --airborne --at '30 mode RTL' --at '60 silent on'\n"
+    "      the pilot takes over after 30 s, and after 60 s nothing more is heard of it\n"
+    "\n"
+    "Standard input takes what the companion cannot do, a line each:\n"
+    "  mode NAME             the pilot's switch: MANUAL FBWA AUTO RTL LOITER TAKEOFF GUIDED\n"
+    "  arm, disarm           the pilot's sticks; disarm works in flight, too\n"
+    "  reboot                the autopilot restarts: 1.2 s off the bus, MAVLink after 5.2 s;\n"
+    "                        in flight it comes back armed and in LOITER\n"
+    "  silent on|off         it sends nothing, but hears and flies on\n"
+    "  position lost|good    the navigation filter\n"
+    "\n"
+    "Standard output says 'ready' once it is on the bus. It ends with status 0 on SIGINT or\n"
+    "SIGTERM; 2 means bad arguments, 3 that the bus cannot be used.";
+
+const std::map<std::string, std::uint32_t> kStartModes{
+    {"MANUAL", 0}, {"FBWA", 5}, {"RTL", 11}, {"LOITER", 12}, {"GUIDED", 15}};
+
+/// "30 mode RTL".
+std::optional<TimedLine> timed_line(const std::string& text) {
+  std::istringstream words{text};
+  double seconds = 0.0;
+  TimedLine out;
+  if (!(words >> seconds >> std::ws) || !(seconds >= 0.0 && seconds < 1e6)) return std::nullopt;
+  if (!std::getline(words, out.line) || out.line.empty()) return std::nullopt;
+  out.after = from_seconds(seconds);
+  return out;
+}
+
+/// What is said in people's units.
+struct Texts {
+  std::array<double, 3> origin{31.522062, 105.044327, 480.0};
+  std::array<double, 3> start{0.0, 0.0, 0.0};
+  double heading_deg = 0.0;
+  double wind_mps = 0.0;
+  double wind_from_deg = 0.0;
+  int node = 10;
+  int companion = 42;
+  int serial = 0;
+  int system = 1;
+  std::optional<int> companion_system;
+  std::string airframe = "plane";
+  std::string mode = "GUIDED";
+  bool no_noise = false;
+  std::vector<std::string> at;
+};
+
+void add_options(CLI::App& app, FcArguments& a, Texts& t) {
+  EmulatorConfig& c = a.config;
+  app.add_option("--bus", a.bus, "CAN bus: mcast:N, mcast:N@INTERFACE, can0, vcan0")
+      ->capture_default_str();
+  app.add_option("--node", t.node, "Its DroneCAN node")
+      ->check(CLI::Range(1, 127))
+      ->capture_default_str();
+  app.add_option("--companion", t.companion, "Node that may use its serial port")
+      ->check(CLI::Range(1, 127))
+      ->capture_default_str();
+  app.add_option("--serial", t.serial, "Number of the serial port")
+      ->check(CLI::Range(0, 15))
+      ->capture_default_str();
+  app.add_flag("--fd", c.fd, "Send CAN FD frames");
+  app.add_option("--system", t.system, "Its MAVLink system")
+      ->check(CLI::Range(1, 255))
+      ->capture_default_str();
+  app.add_option("--companion-system", t.companion_system,
+                 "MAVLink system whose heartbeat the failsafe waits for (default: its own)")
+      ->check(CLI::Range(1, 255));
+  app.add_flag("--failsafe", c.companion_failsafe,
+               "RTL 5 s after the last heartbeat of the companion");
+  app.add_option("--airframe", t.airframe, "The kind of aircraft")
+      ->check(CLI::IsMember({"plane", "copter"}))
+      ->capture_default_str();
+  app.add_option("--origin", t.origin, "LATITUDE LONGITUDE HEIGHT: degrees, m above the ellipsoid")
+      ->capture_default_str();
+  app.add_option("--start", t.start, "EAST NORTH HEIGHT, m from the origin; height only in flight")
+      ->capture_default_str();
+  app.add_option("--heading", t.heading_deg, "At the start, degrees from north, clockwise")
+      ->capture_default_str();
+  auto* airborne = app.add_flag("--airborne", c.airborne, "Start in flight, armed");
+  app.add_option("--mode", t.mode, "At the start in flight")
+      ->check(CLI::IsMember(kStartModes))
+      ->needs(airborne)
+      ->capture_default_str();
+  app.add_option("--hold-until", a.hold_until_unix_ns,
+                 "In flight it stands still at its start until that system time, ns since 1970")
+      ->needs(airborne);
+  app.add_option("--speed", c.airspeed_mps, "Cruise airspeed, m/s")->capture_default_str();
+  app.add_option("--speed-min", c.airspeed_min_mps, "Least airspeed, m/s")->capture_default_str();
+  app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed, m/s")
+      ->capture_default_str();
+  app.add_option("--turn-radius", c.turn_radius_m,
+                 "m, at cruise: the bank limit is that of this circle and 5 degrees")
+      ->capture_default_str();
+  app.add_option("--wind-speed", t.wind_mps, "Steady wind, m/s")
+      ->check(CLI::Range(0.0, 25.0))
+      ->capture_default_str();
+  app.add_option("--wind-from", t.wind_from_deg, "Where it comes from, degrees from north")
+      ->capture_default_str();
+  app.add_option("--gusts", c.gusts_wind_mps,
+                 "Dryden gusts as a wind of this speed at 6 m makes them, m/s; their standard\n"
+                 "deviation at 300 m is a tenth of it")
+      ->capture_default_str();
+  app.add_option("--seed", c.seed, "Of gusts and sensor noise")->capture_default_str();
+  app.add_flag("--no-noise", t.no_noise, "Sensors without noise");
+  app.add_option("--at", t.at,
+                 "'SECONDS LINE': does what the line says on standard input, so long after the\n"
+                 "start (with --hold-until: after that)");
+}
+
+}  // namespace
+
+std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
+  CLI::App app{kDescription};
+  app.footer(kFooter);
+  app.set_version_flag("--version", "skein-fc " SKEIN_VERSION);
+  FcArguments arguments;
+  Texts texts;
+  add_options(app, arguments, texts);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitBadInput;
+  }
+  EmulatorConfig& c = arguments.config;
+  c.node_id = static_cast<std::uint8_t>(texts.node);
+  c.companion_node = static_cast<std::uint8_t>(texts.companion);
+  c.serial_id = static_cast<std::int8_t>(texts.serial);
+  c.system_id = static_cast<std::uint8_t>(texts.system);
+  c.companion_system = static_cast<std::uint8_t>(texts.companion_system.value_or(texts.system));
+  c.airframe = texts.airframe == "copter" ? Airframe::copter : Airframe::plane;
+  c.mode = kStartModes.at(texts.mode);
+  c.origin = {texts.origin[0], texts.origin[1], texts.origin[2]};
+  c.start = {texts.start[0], texts.start[1], heading_from_compass_deg(texts.heading_deg)};
+  c.height_m = texts.start[2];
+  c.wind_mps = -texts.wind_mps * unit_vector(heading_from_compass_deg(texts.wind_from_deg));
+  c.noise = !texts.no_noise;
+  for (const std::string& text : texts.at) {
+    const auto line = timed_line(text);
+    if (!line) {
+      std::fprintf(stderr, "skein-fc: --at '%s': it is 'SECONDS LINE', such as '30 mode RTL'\n",
+                   text.c_str());
+      return kExitBadInput;
+    }
+    arguments.script.push_back(*line);
+  }
+  std::stable_sort(arguments.script.begin(), arguments.script.end(),
+                   [](const TimedLine& a, const TimedLine& b) { return a.after < b.after; });
+  if (const auto good = check(c); !good) {
+    std::fprintf(stderr, "skein-fc: %s\n", good.error().message.c_str());
+    return kExitBadInput;
+  }
+  return arguments;
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/emulated_flight_controller.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mavlink_endpoint.hpp"
+#include "plane_vehicle.hpp"
+#include "skein/dronecan/node.hpp"
+#include "skein/dronecan/tunnel.hpp"
+
+namespace skein::hil {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// After a restart, as measured of ArduPilot 4.6.3: NodeStatus is back, and MAVLink.
+constexpr Duration kBusAfter = 1200ms;
+constexpr Duration kMavlinkAfter = 5200ms;
+/// Of ArduPilot's serial ports on DroneCAN, each way.
+constexpr std::size_t kPortBytes = 2048;
+
+dronecan::NodeParams node_params(const EmulatorConfig& config) {
+  dronecan::NodeParams p;
+  p.node_id = config.node_id;
+  p.name = "org.skein.fc";
+  p.software_version.major = 4;
+  p.software_version.minor = 6;
+  p.hardware_version.major = 1;
+  // The same at every start, another for every node and system.
+  p.hardware_version.unique_id = {'s', 'k', 'e', 'i', 'n', '-', 'f', 'c'};
+  p.hardware_version.unique_id[14] = config.system_id;
+  p.hardware_version.unique_id[15] = config.node_id;
+  p.fd = config.fd;
+  return p;
+}
+
+dronecan::TunnelParams tunnel_params(const EmulatorConfig& config) {
+  dronecan::TunnelParams p;
+  p.remote_node = config.companion_node;
+  p.serial_id = config.serial_id;
+  p.check_target = false;
+  p.buffer_bytes = kPortBytes;
+  return p;
+}
+
+/// All that a restart of the autopilot begins anew.
+struct Link {
+  Link(const EmulatorConfig& config, Instant booted)
+      : node{node_params(config), booted}, port{tunnel_params(config), booted} {}
+
+  dronecan::Node node;
+  dronecan::TunnelPort port;
+  std::optional<MavlinkEndpoint> mavlink;
+};
+
+}  // namespace
+
+struct EmulatedFlightController::State {
+  State(const EmulatorConfig& c, const MissionOrigin& origin) : config{c}, earth{origin} {}
+
+  void restart(Instant now) {
+    link.reset();
+    booted = now;
+    bus_from = now + kBusAfter;
+    mavlink_from = now + kMavlinkAfter;
+  }
+
+  void watch_nodes() {
+    while (const auto event = link->node.poll_event()) {
+      if (event->kind != dronecan::NodeEventKind::informed) continue;
+      const dronecan::RemoteNode* const other = link->node.find(event->node_id);
+      const auto [known, is_new] =
+          nodes.try_emplace(event->node_id, other->info->hardware_version.unique_id);
+      if (!is_new && known->second != other->info->hardware_version.unique_id) {
+        const auto& name = other->info->name;
+        duplicate = fmt::format("DroneCAN: Duplicate Node {}/{}!",
+                                std::string{name.begin(), name.end()}, event->node_id);
+      }
+    }
+  }
+
+  [[nodiscard]] std::optional<std::string> refusal() const {
+    if (const auto reason = autopilot::arming_refusal(health)) return std::string{*reason};
+    if (!duplicate.empty()) return duplicate;
+    for (const dronecan::RemoteNode& other : link->node.others()) {
+      if (other.online && (other.status.health != dronecan::Health::ok ||
+                           other.status.mode != dronecan::Mode::operational)) {
+        return fmt::format("DroneCAN: Node {} unhealthy!", other.node_id);
+      }
+    }
+    return std::nullopt;
+  }
+
+  void period(Instant t, bool last) {
+    if (!link) {
+      if (t < bus_from) {
+        vehicle->coast(t);
+        return;
+      }
+      link.emplace(config, booted);
+      vehicle->restart(t);
+    }
+    vehicle->control(t);
+    if (t < mavlink_from) return;
+    if (!link->mavlink) {
+      link->mavlink.emplace(config, earth, *vehicle, link->port, booted, t);
+    }
+    if (!last) return;  // a program that was held up does not send the past
+    link->mavlink->set_refusal(refusal());
+    link->mavlink->step(t);
+    if (link->mavlink->wants_restart(t)) restart(t);
+  }
+
+  EmulatorConfig config;
+  Earth earth;
+  std::unique_ptr<Vehicle> vehicle;
+  std::optional<Link> link;
+  Instant booted;
+  Instant bus_from;
+  Instant mavlink_from;
+  Instant next_period;
+  autopilot::Health health;
+  std::map<std::uint8_t, dronecan::UniqueId> nodes;  ///< kept over restarts, as ArduPilot does
+  std::string duplicate;
+  bool silent = false;
+};
+
+EmulatedFlightController::EmulatedFlightController(std::unique_ptr<State> state)
+    : state_{std::move(state)} {}
+EmulatedFlightController::~EmulatedFlightController() = default;
+EmulatedFlightController::EmulatedFlightController(EmulatedFlightController&&) noexcept = default;
+EmulatedFlightController& EmulatedFlightController::operator=(EmulatedFlightController&&) noexcept =
+    default;
+
+Result<EmulatedFlightController> EmulatedFlightController::make(const EmulatorConfig& config,
+                                                                Instant now) {
+  if (auto good = check(config); !good) return good.error();
+  const auto origin = MissionOrigin::make(config.origin);
+  if (!origin) return origin.error();
+  auto state = std::make_unique<State>(config, *origin);
+  auto vehicle = PlaneVehicle::make(config, state->earth, now);
+  if (!vehicle) return vehicle.error();
+  state->vehicle = std::move(vehicle).value();
+  state->booted = state->bus_from = state->mavlink_from = state->next_period = now;
+  state->link.emplace(config, now);
+  return EmulatedFlightController{std::move(state)};
+}
+
+void EmulatedFlightController::on_frame(const can::Frame& frame, Instant now) {
+  auto& link = state_->link;
+  if (!link) return;
+  if (const dronecan::Transfer* const transfer = link->node.on_frame(frame, 0, now)) {
+    link->port.on_transfer(*transfer, link->node.node_id(), now);
+  }
+}
+
+void EmulatedFlightController::step(Instant now) {
+  State& s = *state_;
+  while (s.next_period <= now) {
+    const Instant t = s.next_period;
+    s.next_period += s.vehicle->period();
+    s.period(t, s.next_period > now);
+  }
+  if (!s.link) return;
+  s.watch_nodes();
+  s.link->port.step(s.link->node, now);
+  s.link->node.step(now);
+}
+
+Instant EmulatedFlightController::next_timeout() const {
+  const State& s = *state_;
+  if (!s.link) return s.next_period;
+  return std::min({s.next_period, s.link->port.next_timeout(), s.link->node.next_timeout()});
+}
+
+std::span<const can::Frame> EmulatedFlightController::front() {
+  if (!state_->link) return {};
+  dronecan::Node& node = state_->link->node;
+  while (state_->silent && !node.front().empty()) node.pop();
+  return node.front();
+}
+
+void EmulatedFlightController::pop() {
+  if (state_->link) state_->link->node.pop();
+}
+
+Result<void> EmulatedFlightController::interfere(std::string_view line, Instant now) {
+  State& s = *state_;
+  const std::size_t space = line.find(' ');
+  const std::string_view verb = line.substr(0, space);
+  const std::string_view word =
+      space == std::string_view::npos ? std::string_view{} : line.substr(space + 1);
+  const bool is_word = !word.empty();
+  if (verb == "silent" && (word == "on" || word == "off")) {
+    s.silent = word == "on";
+    return {};
+  }
+  if (verb == "position" && (word == "lost" || word == "good")) {
+    s.health.position = word == "good";
+    s.vehicle->set_health(s.health);
+    return {};
+  }
+  if (verb == "reboot" && !is_word) {
+    s.restart(now);
+    return {};
+  }
+  const bool is_arming = (verb == "arm" || verb == "disarm") && !is_word;
+  if (!is_arming && (verb != "mode" || !is_word)) {
+    return Error{
+        fmt::format("'{}': not one of mode NAME, arm, disarm, reboot, silent on|off, "
+                    "position lost|good",
+                    line)};
+  }
+  if (!s.link || !s.link->mavlink) return Error{fmt::format("'{}': the autopilot restarts", line)};
+  auto result = mavlink::CommandResult::failed;
+  if (verb == "arm") {
+    result = s.link->mavlink->arm();
+  } else if (verb == "disarm") {
+    result = on_wire(s.vehicle->disarm(true));
+  } else {
+    const auto mode = s.vehicle->mode_named(word);
+    if (!mode) return Error{fmt::format("'{}': there is no such mode", line)};
+    result = on_wire(s.vehicle->select_mode(*mode));
+  }
+  if (result != mavlink::CommandResult::accepted) {
+    return Error{fmt::format("'{}': refused by the autopilot", line)};
+  }
+  return {};
+}
+
+}  // namespace skein::hil

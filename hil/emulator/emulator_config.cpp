@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/emulator_config.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "skein/autopilot/fixed_wing_loops.hpp"
+#include "skein/autopilot/modes.hpp"
+#include "skein/base/angles.hpp"
+
+namespace skein::hil {
+namespace {
+
+constexpr double kBankReserve_rad = radians(5.0);
+
+double bank_of_circle(const EmulatorConfig& config) {
+  return std::atan(config.airspeed_mps * config.airspeed_mps /
+                   (kGravity_mps2 * config.turn_radius_m));
+}
+
+Result<void> check_plane(const EmulatorConfig& c) {
+  const autopilot::FixedWingTuning airframe;
+  if (!(c.airspeed_min_mps >= airframe.airspeed_min_mps && c.airspeed_min_mps <= c.airspeed_mps &&
+        c.airspeed_mps <= c.airspeed_max_mps && c.airspeed_max_mps <= airframe.airspeed_max_mps)) {
+    return Error{fmt::format(
+        "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {:g} to "
+        "{:g} m/s of the airframe",
+        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe.airspeed_min_mps,
+        airframe.airspeed_max_mps)};
+  }
+  if (!(c.turn_radius_m > 0.0) || bank_of_circle(c) > airframe.roll_max_rad) {
+    const double least =
+        c.airspeed_mps * c.airspeed_mps / (kGravity_mps2 * std::tan(airframe.roll_max_rad));
+    return Error{
+        fmt::format("turn radius {:g} m: at {:g} m/s the airframe turns no tighter than {:.0f} m",
+                    c.turn_radius_m, c.airspeed_mps, std::ceil(least))};
+  }
+  if (c.airborne && !autopilot::plane_mode(c.mode)) {
+    return Error{fmt::format("mode {}: not one of the emulated Plane's", c.mode)};
+  }
+  return {};
+}
+
+}  // namespace
+
+double bank_limit_rad(const EmulatorConfig& config) {
+  const autopilot::FixedWingTuning airframe;
+  return std::min(bank_of_circle(config) + kBankReserve_rad, airframe.roll_max_rad);
+}
+
+Result<void> check(const EmulatorConfig& c) {
+  if (c.node_id < 1 || c.node_id > 127 || c.companion_node < 1 || c.companion_node > 127) {
+    return Error{
+        fmt::format("nodes {} and {}: a DroneCAN node is 1 to 127", c.node_id, c.companion_node)};
+  }
+  if (c.node_id == c.companion_node) {
+    return Error{fmt::format("node {}: the companion must have another", c.node_id)};
+  }
+  if (c.serial_id < 0 || c.serial_id > 15) {
+    return Error{fmt::format("serial port {}: it is 0 to 15", c.serial_id)};
+  }
+  if (c.system_id < 1 || c.companion_system < 1) {
+    return Error{"MAVLink systems are 1 to 255"};
+  }
+  if (!std::isfinite(c.start.x_m) || !std::isfinite(c.start.y_m) || !std::isfinite(c.height_m) ||
+      !std::isfinite(c.start.heading_rad)) {
+    return Error{"the start is not a number"};
+  }
+  if (c.airborne && !(c.height_m >= 10.0)) {
+    return Error{fmt::format("start height {:g} m: in flight it is at least 10 m", c.height_m)};
+  }
+  if (!c.wind_mps.allFinite() || !(c.wind_mps.norm() <= 25.0) ||
+      !(c.gusts_wind_mps >= 0.0 && c.gusts_wind_mps <= 25.0)) {
+    return Error{fmt::format("wind {:g} m/s, gusts of {:g} m/s: 0 to 25 can be flown",
+                             c.wind_mps.norm(), c.gusts_wind_mps)};
+  }
+  if (auto origin = MissionOrigin::make(c.origin); !origin) return origin.error();
+  if (c.airframe == Airframe::copter) {
+    return Error{"airframe copter: only plane is emulated"};
+  }
+  return check_plane(c);
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "skein/base/frames.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+
+namespace skein::hil {
+
+enum class Airframe : std::uint8_t { plane, copter };
+
+/// A flight controller on a bus, with its aircraft. The defaults are those of ArduPilot where it
+/// has them.
+struct EmulatorConfig {
+  Airframe airframe = Airframe::plane;
+
+  std::uint8_t node_id = 10;          ///< DroneCAN, 1..127
+  std::uint8_t companion_node = 42;   ///< CAN_D1_UC_S1_NOD: who may use the serial port
+  std::int8_t serial_id = 0;          ///< CAN_D1_UC_S1_IDX, 0..15
+  bool fd = false;                    ///< sends CAN FD frames
+  std::uint8_t system_id = 1;         ///< MAVLink
+  std::uint8_t companion_system = 1;  ///< SYSID_MYGCS: whose heartbeat the failsafe waits for
+  bool companion_failsafe = false;    ///< FS_GCS_ENABL
+
+  Wgs84 origin;             ///< of the frame in which `start` is given
+  Pose2 start;              ///< mission frame
+  double height_m = 0.0;    ///< above the origin, in flight
+  bool airborne = false;    ///< starts in flight, armed, in `mode`; else on the ground
+  std::uint32_t mode = 15;  ///< at the start in flight: ArduPilot's number; 15 is GUIDED of Plane
+  /// In flight the aircraft stands still at its start until then.
+  Instant hold_until{};
+
+  double airspeed_mps = 50.0;  ///< cruise; of a copter the greatest speed
+  double airspeed_min_mps = 40.0;
+  double airspeed_max_mps = 70.0;
+  double turn_radius_m = 150.0;  ///< at cruise, that the bank limit must allow
+
+  Vec2 wind_mps{0.0, 0.0};      ///< where the air moves to, mission frame
+  double gusts_wind_mps = 0.0;  ///< Dryden gusts of a wind of this speed at 6 m; 0 for none
+  bool noise = true;            ///< of the sensors
+  std::uint64_t seed = 1;       ///< of gusts and noise
+  std::int64_t unix_us = 0;     ///< system time at Instant{}: what its satellites tell
+};
+
+/// The bank that flies the circle of `turn_radius_m` at cruise, and five degrees.
+[[nodiscard]] double bank_limit_rad(const EmulatorConfig& config);
+
+/// Fails with one sentence for the first thing that cannot be.
+[[nodiscard]] Result<void> check(const EmulatorConfig& config);
+
+}  // namespace skein::hil

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "plane_vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::hil {
+namespace {
+
+using autopilot::PlaneMode;
+using mavlink::CommandResult;
+
+constexpr Duration kModelStep = std::chrono::microseconds{2500};
+/// Of the wheels under the centre of mass, when parked.
+constexpr double kParkedHeight_m = 0.46;
+/// Circles that it flies by itself are wider than its tightest.
+constexpr double kLoiterRadii = 1.1;
+
+/// DO_REPOSITION, param2.
+constexpr unsigned kChangeMode = 1;
+/// ArduPlane takes less for this much.
+constexpr float kHeadingAccelerationLeast_mps2 = 0.05F;
+/// ArduPlane 4.6 with a rate for GUIDED_CHANGE_ALTITUDE hardly climbs: 0.1 m/s were measured where
+/// 3 m/s were asked for.
+constexpr double kAltitudeRateShare = 1.0 / 30.0;
+
+// HEARTBEAT, base_mode, as ArduPlane sends it.
+constexpr std::uint8_t kPilotBase = mavlink::mode_custom_enabled | mavlink::mode_stabilize_enabled |
+                                    mavlink::mode_manual_input_enabled;
+constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
+
+models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& trim) {
+  const models::FixedWingParams params = models::fast_fixed_wing();
+  const double yaw = wrap_pi(kPi / 2.0 - config.start.heading_rad);
+  models::RigidBodyState state;
+  if (!config.airborne) {
+    state.position_m = {config.start.y_m, config.start.x_m, -kParkedHeight_m};
+    state.attitude = attitude_from({.yaw_rad = yaw});
+    return {params, state, {}};
+  }
+  state = trim.state;
+  state.position_m = {config.start.y_m, config.start.x_m, -config.height_m};
+  EulerAngles angles = euler_angles(state.attitude);
+  angles.yaw_rad = yaw;
+  state.attitude = attitude_from(angles);
+  state.velocity_mps +=
+      state.attitude.conjugate() * Vec3{config.wind_mps.y(), config.wind_mps.x(), 0.0};
+  return {params, state, trim.input};
+}
+
+autopilot::PlaneParams params_of(const EmulatorConfig& config) {
+  autopilot::PlaneParams p;
+  p.tuning.airspeed_min_mps = config.airspeed_min_mps;
+  p.tuning.airspeed_cruise_mps = config.airspeed_mps;
+  p.tuning.airspeed_max_mps = config.airspeed_max_mps;
+  p.tuning.roll_max_rad = bank_limit_rad(config);
+  p.loiter_radius_m = kLoiterRadii * config.turn_radius_m;
+  p.companion_failsafe = config.companion_failsafe;
+  return p;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Vehicle>> PlaneVehicle::make(const EmulatorConfig& config,
+                                                    const Earth& earth, Instant now) {
+  const auto trim = models::trim(models::fast_fixed_wing(), {.airspeed_mps = config.airspeed_mps});
+  if (!trim) return trim.error();
+  return std::unique_ptr<Vehicle>{std::make_unique<PlaneVehicle>(config, earth, *trim, now)};
+}
+
+PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
+                           const models::Trim& trim, Instant now)
+    : earth_{earth},
+      hold_until_{config.airborne ? config.hold_until : Instant::min()},
+      air_{config},
+      senses_{config},
+      aircraft_{at_start(config, trim)},
+      flown_to_{now},
+      params_{params_of(config)},
+      autopilot_{params_} {
+  report_.home_m = {config.start.y_m, config.start.x_m, 0.0};
+  sense(to_seconds(period()));
+  start_autopilot(now, static_cast<PlaneMode>(config.mode));
+}
+
+void PlaneVehicle::start_autopilot(Instant now, PlaneMode mode) {
+  autopilot_ = autopilot::PlaneAutopilot{params_};
+  autopilot_.set_health(health_);
+  // Its first period tells it whether it flies.
+  (void)autopilot_.step(report_.estimate, now);
+  if (autopilot_.status().flying) {
+    (void)arm();
+    (void)autopilot_.select_mode(mode);
+    while (autopilot_.poll_notice()) continue;
+  }
+  tell();
+}
+
+void PlaneVehicle::restart(Instant now) { start_autopilot(now, PlaneMode::loiter); }
+
+void PlaneVehicle::coast(Instant now) {
+  if (held(now)) {
+    flown_to_ = now;
+    return;
+  }
+  flown_to_ = std::max(flown_to_, hold_until_);
+  const models::FixedWingInput input{surfaces_.elevator_rad, surfaces_.aileron_rad,
+                                     surfaces_.rudder_rad, surfaces_.throttle};
+  for (; flown_to_ + kModelStep <= now; flown_to_ += kModelStep) {
+    air_.step(aircraft_.state(), to_seconds(kModelStep));
+    aircraft_.step(input, air_.wind_ned_mps(), to_seconds(kModelStep));
+  }
+}
+
+void PlaneVehicle::control(Instant now) {
+  coast(now);
+  sense(to_seconds(period()));
+  if (!held(now)) surfaces_ = autopilot_.step(report_.estimate, now);
+  tell();
+}
+
+void PlaneVehicle::sense(double seconds) {
+  report_.estimate =
+      senses_.estimate(aircraft_.state(), aircraft_.specific_force(air_.wind_ned_mps()),
+                       air_.airspeed_mps(aircraft_.state()), seconds);
+}
+
+void PlaneVehicle::tell() {
+  const autopilot::PlaneStatus& status = autopilot_.status();
+  const PlaneMode mode = autopilot_.mode();
+  report_.wind_ned_mps = air_.estimated_ned_mps();
+  report_.throttle = surfaces_.throttle;
+  report_.armed = autopilot_.armed();
+  report_.flying = status.flying;
+  report_.mode = static_cast<std::uint32_t>(mode);
+  report_.base_mode =
+      mode == PlaneMode::manual || mode == PlaneMode::fbwa ? kPilotBase : kGuidedBase;
+  report_.goal_m = {status.goal_m.x(), status.goal_m.y(), -status.height_m};
+  report_.goal_airspeed_mps = status.airspeed_mps;
+  report_.roll_demand_rad = status.roll_rad;
+  report_.pitch_demand_rad = status.pitch_rad;
+}
+
+std::optional<std::uint32_t> PlaneVehicle::mode_named(std::string_view name) const {
+  constexpr std::uint32_t kModes = 32;
+  for (std::uint32_t number = 0; number < kModes; ++number) {
+    const auto mode = autopilot::plane_mode(number);
+    if (mode && autopilot::to_string(*mode) == name) return number;
+  }
+  return std::nullopt;
+}
+
+autopilot::CommandResult PlaneVehicle::select_mode(std::uint32_t number) {
+  const auto mode = autopilot::plane_mode(number);
+  const auto result = mode ? autopilot_.select_mode(*mode) : autopilot::CommandResult::failed;
+  tell();
+  return result;
+}
+
+autopilot::CommandResult PlaneVehicle::arm() {
+  const bool was_armed = autopilot_.armed();
+  const auto result = autopilot_.arm();
+  if (!was_armed && autopilot_.armed()) {
+    report_.home_m = report_.estimate.position_m;
+    if (autopilot_.status().flying) report_.home_m.z() = 0.0;
+  }
+  tell();
+  return result;
+}
+
+autopilot::CommandResult PlaneVehicle::disarm(bool force) {
+  const auto result = autopilot_.disarm(force);
+  tell();
+  return result;
+}
+
+void PlaneVehicle::set_health(const autopilot::Health& health) {
+  health_ = health;
+  autopilot_.set_health(health);
+}
+
+std::optional<autopilot::Notice> PlaneVehicle::poll_notice() { return autopilot_.poll_notice(); }
+
+CommandResult PlaneVehicle::command(const mavlink::CommandInt& c) {
+  using mavlink::Command;
+  switch (static_cast<Command>(c.command)) {
+    case Command::do_reposition:
+      return reposition(c);
+    case Command::do_change_speed:
+      return change_speed(c);
+    case Command::do_change_altitude:
+      return change_height(c);
+    case Command::guided_change_speed:
+      return guided_speed(c);
+    case Command::guided_change_altitude:
+      return guided_height(c);
+    case Command::guided_change_heading:
+      return guided_heading(c);
+    case Command::nav_loiter_unlim:
+      return enter(PlaneMode::loiter);
+    case Command::nav_return_to_launch:
+      return enter(PlaneMode::rtl);
+    case Command::nav_takeoff:  // of a quadplane
+      return CommandResult::failed;
+    default:
+      return CommandResult::unsupported;
+  }
+}
+
+/// ArduPlane says accepted whether or not the mode was entered.
+CommandResult PlaneVehicle::enter(PlaneMode mode) {
+  (void)autopilot_.select_mode(mode);
+  tell();
+  return CommandResult::accepted;
+}
+
+CommandResult PlaneVehicle::reposition(const mavlink::CommandInt& c) {
+  const auto down = down_of(static_cast<double>(c.z), c.frame, earth_, report_.home_m);
+  if (!down) return CommandResult::denied;
+  auto place = earth_.ned({c.x, c.y, earth_.origin_height_m() - *down});
+  if (!place) return CommandResult::denied;
+  if (c.x == 0 && c.y == 0) place->head<2>() = report_.estimate.position_m.head<2>();
+  const bool change_mode =
+      c.param2 > 0.0F && c.param2 < 256.0F && (static_cast<unsigned>(c.param2) & kChangeMode) != 0;
+  if (!change_mode && !guided()) return CommandResult::failed;
+  const bool has_radius = std::isfinite(c.param3) && c.param3 > 0.0F;
+  const auto result = autopilot_.reposition({
+      .centre_m = place->head<2>(),
+      .height_m = -*down,
+      .radius_m = has_radius ? static_cast<double>(c.param3) : 0.0,
+      .clockwise = !std::isfinite(c.param4) || c.param4 == 0.0F,
+      .change_mode = change_mode,
+  });
+  tell();
+  return on_wire(result);
+}
+
+CommandResult PlaneVehicle::change_speed(const mavlink::CommandInt& c) {
+  constexpr float kAirspeed = 0.0F;
+  if (!guided() && autopilot_.mode() != PlaneMode::mission) return CommandResult::failed;
+  if (c.param1 != kAirspeed) return CommandResult::failed;
+  const auto result = autopilot_.change_speed(static_cast<double>(c.param2));
+  return result == autopilot::CommandResult::accepted ? CommandResult::accepted
+                                                      : CommandResult::failed;
+}
+
+CommandResult PlaneVehicle::change_height(const mavlink::CommandInt& c) {
+  if (!std::isfinite(c.param1) || !(c.param2 >= 0.0F && c.param2 <= 255.0F)) {
+    return CommandResult::denied;
+  }
+  const auto down = down_of(static_cast<double>(c.param1), static_cast<std::uint8_t>(c.param2),
+                            earth_, report_.home_m);
+  if (!down) return CommandResult::denied;
+  return on_wire(autopilot_.change_height(-*down));
+}
+
+CommandResult PlaneVehicle::guided_speed(const mavlink::CommandInt& c) {
+  if (!guided()) return CommandResult::failed;
+  if (std::trunc(c.param1) != 0.0F) return CommandResult::denied;
+  return on_wire(autopilot_.guided_speed(static_cast<double>(c.param2),
+                                         std::abs(static_cast<double>(c.param3))));
+}
+
+CommandResult PlaneVehicle::guided_height(const mavlink::CommandInt& c) {
+  if (!guided()) return CommandResult::failed;
+  if (c.z == -1.0F || c.z == 0.0F) return CommandResult::denied;
+  const auto down = down_of(static_cast<double>(c.z), c.frame, earth_, report_.home_m);
+  if (!down) return CommandResult::denied;
+  return on_wire(autopilot_.guided_height(
+      -*down, kAltitudeRateShare * std::abs(static_cast<double>(c.param3))));
+}
+
+CommandResult PlaneVehicle::guided_heading(const mavlink::CommandInt& c) {
+  if (!guided()) return CommandResult::failed;
+  if (!(c.param2 >= 0.0F && c.param2 < 360.0F)) return CommandResult::denied;
+  if (!(c.param1 > -1.0F && c.param1 < 2.0F) || !std::isfinite(c.param3)) {
+    return CommandResult::denied;
+  }
+  const auto kind = static_cast<int>(c.param1);
+  return on_wire(autopilot_.guided_heading(
+      static_cast<autopilot::HeadingKind>(kind), radians(static_cast<double>(c.param2)),
+      static_cast<double>(std::max(c.param3, kHeadingAccelerationLeast_mps2))));
+}
+
+void PlaneVehicle::on_attitude_target(const mavlink::SetAttitudeTarget& target, Instant now) {
+  // ArduPlane inverts the mask, and takes an attitude that is not ignored for roll and pitch both,
+  // whatever the rate bits say; with the attitude ignored, the rate bits choose.
+  const bool whole = (target.type_mask & mavlink::ignore_attitude) == 0;
+  const bool roll = whole || (target.type_mask & mavlink::ignore_roll_rate) == 0;
+  const bool pitch = whole || (target.type_mask & mavlink::ignore_pitch_rate) == 0;
+  const Eigen::Quaterniond q{static_cast<double>(target.q[0]), static_cast<double>(target.q[1]),
+                             static_cast<double>(target.q[2]), static_cast<double>(target.q[3])};
+  if (!roll && !pitch) return;
+  if (!q.coeffs().allFinite() || !(q.norm() > 0.5)) return;
+  const EulerAngles angles = euler_angles(q.normalized());
+  autopilot::AttitudeTarget wanted;
+  if (roll) wanted.roll_rad = angles.roll_rad;
+  if (pitch) wanted.pitch_rad = angles.pitch_rad;
+  if ((target.type_mask & mavlink::ignore_thrust) == 0) {
+    wanted.throttle = static_cast<double>(target.thrust);
+  }
+  (void)autopilot_.attitude_target(wanted, now);
+}
+
+void PlaneVehicle::on_position_target(const mavlink::SetPositionTargetLocalNed& target,
+                                      Instant /*now*/) {
+  // Of the local frames ArduPlane takes only the offset to its own height.
+  if (!guided() ||
+      target.coordinate_frame != static_cast<std::uint8_t>(mavlink::Frame::local_offset_ned)) {
+    return;
+  }
+  (void)autopilot_.change_height(report_.estimate.height_m() - static_cast<double>(target.z));
+}
+
+void PlaneVehicle::on_position_target(const mavlink::SetPositionTargetGlobalInt& target,
+                                      Instant /*now*/) {
+  // The altitude alone, even where the mask says to ignore it.
+  if (!guided()) return;
+  const auto down =
+      down_of(static_cast<double>(target.alt), target.coordinate_frame, earth_, report_.home_m);
+  if (down) (void)autopilot_.change_height(-*down);
+}
+
+}  // namespace skein::hil
