@@ -130,9 +130,10 @@ class TestHover {
         vehicle_{start(c)} {}
 
   static models::RotorSpeeds speeds(const RotorCommand& command) {
+    static const double fastest = models::firefly().speed_max_radps;
     models::RotorSpeeds speeds;
     for (std::size_t i = 0; i < speeds.size(); ++i) {
-      speeds[i] = models::firefly().speed_max_radps * std::sqrt(command.thrust[i]);
+      speeds[i] = fastest * std::sqrt(command.thrust[i]);
     }
     return speeds;
   }
