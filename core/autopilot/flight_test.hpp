@@ -131,7 +131,7 @@ class TestHover {
 
   static models::RotorSpeeds speeds(const RotorCommand& command) {
     static const double fastest = models::firefly().speed_max_radps;
-    models::RotorSpeeds speeds;
+    models::RotorSpeeds speeds{};
     for (std::size_t i = 0; i < speeds.size(); ++i) {
       speeds[i] = fastest * std::sqrt(command.thrust[i]);
     }
@@ -177,7 +177,7 @@ class TestHover {
     state.attitude = attitude_from({.roll_rad = c.roll_rad});
     models::Hexarotor vehicle{models::firefly(), state};
     if (c.height_m > 0.0) {
-      models::RotorSpeeds hover;
+      models::RotorSpeeds hover{};
       hover.fill(models::hover_speed_radps(models::firefly()));
       vehicle.set_speeds(hover);
     }

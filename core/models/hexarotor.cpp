@@ -14,7 +14,7 @@ namespace {
 using StateVector = Eigen::Matrix<double, kRigidBodySize + static_cast<int>(kRotors), 1>;
 
 RotorSpeeds speeds_of(const StateVector& x) {
-  RotorSpeeds speeds;
+  RotorSpeeds speeds{};
   for (std::size_t i = 0; i < kRotors; ++i) {
     speeds[i] = x[kRigidBodySize + static_cast<Eigen::Index>(i)];
   }
@@ -26,9 +26,9 @@ RotorSpeeds speeds_of(const StateVector& x) {
 HexarotorParams firefly() {
   HexarotorParams p;
   p.mass = MassProperties{1.56779, Vec3{0.0347563, 0.0458929, 0.0977}.asDiagonal()};
-  p.arm_m = 0.215;
   for (std::size_t i = 0; i < kRotors; ++i) {
-    p.bearing_rad[i] = radians(30.0 + 60.0 * static_cast<double>(i));
+    const double bearing = radians(30.0 + 60.0 * static_cast<double>(i));
+    p.rotor_m[i] = 0.215 * Vec3{std::cos(bearing), std::sin(bearing), 0.0};
     p.turning[i] = i % 2 == 0 ? 1.0 : -1.0;
   }
   p.lift_ns2_per_rad2 = 8.54858e-6;
@@ -57,8 +57,7 @@ Wrench hexarotor_wrench(const HexarotorParams& params, const RigidBodyState& sta
   sum.force_n = -params.body_drag_n_per_mps2 * air.norm() * air;
   for (std::size_t i = 0; i < kRotors; ++i) {
     const double w = speeds[i];
-    const Vec3 arm =
-        params.arm_m * Vec3{std::cos(params.bearing_rad[i]), std::sin(params.bearing_rad[i]), 0.0};
+    const Vec3& arm = params.rotor_m[i];
     Vec3 in_plane = air + state.rates_radps.cross(arm);
     in_plane.z() = 0.0;
     const double lift = params.lift_ns2_per_rad2 * w * w;
@@ -91,8 +90,8 @@ void Hexarotor::step(const RotorSpeeds& command, const Vec3& wind_ned_mps, doubl
   SKEIN_ASSERT(seconds > 0.0);
   StateVector x;
   x.head<kRigidBodySize>() = to_vector(state_);
-  std::array<double, kRotors> goal;
-  std::array<double, kRotors> lag_s;
+  std::array<double, kRotors> goal{};
+  std::array<double, kRotors> lag_s{};
   for (std::size_t i = 0; i < kRotors; ++i) {
     goal[i] = std::clamp(command[i], 0.0, params_.speed_max_radps);
     lag_s[i] = goal[i] > speeds_[i] ? params_.time_up_s : params_.time_down_s;

@@ -11,7 +11,7 @@ namespace skein::models {
 namespace {
 
 RotorSpeeds all(double speed) {
-  RotorSpeeds speeds;
+  RotorSpeeds speeds{};
   speeds.fill(speed);
   return speeds;
 }
@@ -59,10 +59,11 @@ TEST(Hexarotor, RotorsTurnTheBodyTheOtherWay) {
   for (std::size_t i = 0; i < kRotors; ++i) {
     speeds = all(500.0);
     speeds[i] = 550.0;
-    const double b = params.bearing_rad[i];
+    const Vec3& arm = params.rotor_m[i];
+    EXPECT_NEAR(arm.norm(), 0.215, 1e-12);
     // A rotor on the right pushes the right side up: a roll to the left. In front: nose up.
-    EXPECT_NEAR(moment().x(), -params.arm_m * std::sin(b) * more, 1e-9);
-    EXPECT_NEAR(moment().y(), params.arm_m * std::cos(b) * more, 1e-9);
+    EXPECT_NEAR(moment().x(), -arm.y() * more, 1e-9);
+    EXPECT_NEAR(moment().y(), arm.x() * more, 1e-9);
     EXPECT_NEAR(moment().z(), -params.turning[i] * 0.016 * more, 1e-9);
   }
 }

@@ -28,7 +28,7 @@ models::Hexarotor hexarotor() {
   models::RigidBodyState state;
   state.position_m.z() = -20.0;
   models::Hexarotor vehicle{models::firefly(), state};
-  models::RotorSpeeds hover;
+  models::RotorSpeeds hover{};
   hover.fill(models::hover_speed_radps(models::firefly()));
   vehicle.set_speeds(hover);
   return vehicle;
@@ -88,7 +88,7 @@ void hexarotor_flight(benchmark::State& state) {
   for ([[maybe_unused]] auto _ : state) {
     const autopilot::RotorCommand command =
         loops.fly(estimate(vehicle.state(), vehicle.specific_force(Vec3::Zero())), demand, 0.0025);
-    models::RotorSpeeds speeds;
+    models::RotorSpeeds speeds{};
     for (std::size_t i = 0; i < speeds.size(); ++i) {
       speeds[i] = fastest * std::sqrt(command.thrust[i]);
     }

@@ -17,9 +17,7 @@ inline constexpr std::size_t kRotors = 6;
 /// 2012). Speeds follow their command with a first-order lag, faster up than down.
 struct HexarotorParams {
   MassProperties mass{1.0, Eigen::Matrix3d::Identity()};
-  double arm_m = 0.0;
-  /// From forward, clockwise seen from above.
-  std::array<double, kRotors> bearing_rad{};
+  std::array<Vec3, kRotors> rotor_m{};  ///< their places, body axes
   /// +1 where the rotor turns clockwise seen from above (its drag turns the body the other way).
   std::array<double, kRotors> turning{};
   double lift_ns2_per_rad2 = 0.0;      ///< k_f
