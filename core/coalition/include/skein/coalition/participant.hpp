@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/base/state_table.hpp"
 #include "skein/coalition/elector.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/coalition/protocol_params.hpp"
-#include "skein/coalition/state_table.hpp"
 
 namespace skein::coalition {
 

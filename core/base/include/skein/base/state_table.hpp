@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace skein::coalition {
+namespace skein {
 
 /// One line of a state machine's table. The table is the machine: what is not in it does not
 /// happen.
@@ -55,7 +55,7 @@ class StateMachine {
   std::uint64_t protocol_errors_ = 0;
 };
 
-/// The table as a Mermaid state diagram, for docs/protocol.md. `name_of` is to_string of both
+/// The table as a Mermaid state diagram, for the documents. `name_of` is to_string of both
 /// enums.
 template <class State, class Event>
 [[nodiscard]] std::string mermaid(std::span<const Transition<State, Event>> table, State initial) {
@@ -67,4 +67,4 @@ template <class State, class Event>
   return text;
 }
 
-}  // namespace skein::coalition
+}  // namespace skein

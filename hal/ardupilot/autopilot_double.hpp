@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/frames.hpp"
+#include "skein/base/time.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mavlink/enums.hpp"
+#include "skein/mavlink/parser.hpp"
+
+namespace skein::ardupilot {
+
+inline constexpr Wgs84 kTestOrigin{31.522062, 105.044327, 480.0};
+
+/// The MAVLink of an autopilot, for tests: it streams what it is asked for, obeys or refuses, and
+/// keeps what it was told. Its aircraft stays where the test puts it.
+class AutopilotDouble {
+ public:
+  explicit AutopilotDouble(Instant booted) : booted_{booted} {}
+
+  VehicleState truth{.x_m = 100.0,
+                     .y_m = -50.0,
+                     .z_m = 300.0,
+                     .heading_rad = 0.5,
+                     .course_rad = 0.6,
+                     .groundspeed_mps = 52.0,
+                     .airspeed_mps = 50.0};
+  double turn_rate_radps = 0.0;
+  std::uint32_t mode = 12;  ///< LOITER
+  bool armed = true;
+  std::uint8_t landed = 2;  ///< in the air
+  double relative_height_m = 300.0;
+  std::uint8_t maker = 3;
+  std::uint8_t type = 1;
+  std::uint32_t firmware = 0x04060300;
+  std::uint32_t health = 0xFFFFFFFF;
+  bool mute = false;
+  struct Refusal {
+    std::uint8_t result;
+    std::string text;  ///< said after the answer
+  };
+  std::map<std::uint16_t, Refusal> refuses;  ///< by command
+
+  std::vector<mavlink::CommandLong> commands;
+  std::vector<mavlink::SetAttitudeTarget> attitudes;
+  std::vector<mavlink::SetPositionTargetLocalNed> velocities;
+  std::vector<Instant> target_times;
+  int heartbeats = 0;
+
+  void hear(std::span<const std::uint8_t> bytes, Instant now) {
+    parser_.parse(bytes, [this, now](const mavlink::Packet& packet) { on_packet(packet, now); });
+  }
+
+  /// What it has to say by `now`.
+  [[nodiscard]] std::vector<std::uint8_t> speak(Instant now) {
+    if (!mute) {
+      due(0, now, [&] { return heartbeat(); });
+      due(30, now, [&] { return attitude(now); });
+      due(33, now, [&] { return position(now); });
+      due(74, now, [&] { return hud(); });
+      due(1, now, [&] { return status(); });
+      due(245, now,
+          [&] { return mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = landed}; });
+    }
+    std::vector<std::uint8_t> said;
+    said.swap(out_);
+    if (mute) said.clear();
+    return said;
+  }
+
+  void say(const std::string& text, mavlink::Severity severity) {
+    mavlink::Statustext message;
+    message.severity = static_cast<std::uint8_t>(severity);
+    message.text = mavlink::field_of<50>(text);
+    send(message);
+  }
+
+  void reboot(Instant now) {
+    booted_ = now;
+    intervals_ = {{0, std::chrono::seconds{1}}};
+    next_.clear();
+    mode = 12;
+  }
+
+  [[nodiscard]] int count(mavlink::Command command) const {
+    int n = 0;
+    for (const auto& c : commands) n += c.command == static_cast<std::uint16_t>(command) ? 1 : 0;
+    return n;
+  }
+  [[nodiscard]] std::optional<mavlink::CommandLong> last(mavlink::Command command) const {
+    for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
+      if (c->command == static_cast<std::uint16_t>(command)) return *c;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  template <class Message>
+  void send(const Message& message) {
+    for (const std::uint8_t byte : encoder_.encode(message)) out_.push_back(byte);
+  }
+  template <class Make>
+  void due(std::uint32_t id, Instant now, const Make& make) {
+    const auto interval = intervals_.find(id);
+    if (interval == intervals_.end()) return;
+    auto& next = next_.try_emplace(id, now).first->second;
+    if (now < next) return;
+    next += interval->second;
+    send(make());
+  }
+  [[nodiscard]] std::uint32_t boot_ms(Instant now) const {
+    return static_cast<std::uint32_t>(
+        std::chrono::duration_cast<std::chrono::milliseconds>(now - booted_).count());
+  }
+  [[nodiscard]] mavlink::Heartbeat heartbeat() const {
+    mavlink::Heartbeat h;
+    h.custom_mode = mode;
+    h.type = type;
+    h.autopilot = maker;
+    h.base_mode = static_cast<std::uint8_t>(mavlink::mode_custom_enabled |
+                                            (armed ? mavlink::mode_safety_armed : 0));
+    return h;
+  }
+  [[nodiscard]] mavlink::Attitude attitude(Instant now) const {
+    mavlink::Attitude a;
+    a.time_boot_ms = boot_ms(now);
+    a.yaw = static_cast<float>(wrap_pi(kPi / 2.0 - truth.heading_rad));
+    a.yawspeed = static_cast<float>(-turn_rate_radps);
+    return a;
+  }
+  [[nodiscard]] mavlink::GlobalPositionInt position(Instant now) const {
+    const auto origin = MissionOrigin::make(kTestOrigin).value();
+    const Wgs84 at = origin.to_wgs84({truth.x_m, truth.y_m, truth.z_m});
+    mavlink::GlobalPositionInt p;
+    p.time_boot_ms = boot_ms(now);
+    p.lat = static_cast<std::int32_t>(std::lround(at.latitude_deg * 1e7));
+    p.lon = static_cast<std::int32_t>(std::lround(at.longitude_deg * 1e7));
+    p.alt = static_cast<std::int32_t>(std::lround(at.height_m * 1e3));
+    p.relative_alt = static_cast<std::int32_t>(std::lround(relative_height_m * 1e3));
+    p.vx = static_cast<std::int16_t>(
+        std::lround(truth.groundspeed_mps * std::sin(truth.course_rad) * 100.0));
+    p.vy = static_cast<std::int16_t>(
+        std::lround(truth.groundspeed_mps * std::cos(truth.course_rad) * 100.0));
+    return p;
+  }
+  [[nodiscard]] mavlink::VfrHud hud() const {
+    mavlink::VfrHud h;
+    h.airspeed = static_cast<float>(truth.airspeed_mps);
+    return h;
+  }
+  [[nodiscard]] mavlink::SysStatus status() const {
+    mavlink::SysStatus s;
+    s.onboard_control_sensors_enabled = 0xFFFFFFFF;
+    s.onboard_control_sensors_health = health;
+    return s;
+  }
+
+  void on_packet(const mavlink::Packet& packet, Instant now) {
+    if (mavlink::decode<mavlink::Heartbeat>(packet)) ++heartbeats;
+    if (const auto question = mavlink::decode<mavlink::Timesync>(packet)) {
+      mavlink::Timesync answer;
+      answer.ts1 = question->ts1;
+      answer.tc1 = (now - booted_).count();
+      send(answer);
+    }
+    if (const auto target = mavlink::decode<mavlink::SetAttitudeTarget>(packet)) {
+      attitudes.push_back(*target);
+      target_times.push_back(now);
+    }
+    if (const auto target = mavlink::decode<mavlink::SetPositionTargetLocalNed>(packet)) {
+      velocities.push_back(*target);
+      target_times.push_back(now);
+    }
+    if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);
+  }
+  void obey(const mavlink::CommandLong& command, Instant /*now*/) {
+    commands.push_back(command);
+    mavlink::CommandAck ack;
+    ack.command = command.command;
+    if (const auto refusal = refuses.find(command.command); refusal != refuses.end()) {
+      ack.result = refusal->second.result;
+      send(ack);
+      if (!refusal->second.text.empty()) {
+        say(refusal->second.text, mavlink::Severity::critical);
+      }
+      return;
+    }
+    send(ack);
+    switch (static_cast<mavlink::Command>(command.command)) {
+      case mavlink::Command::set_message_interval:
+        intervals_[static_cast<std::uint32_t>(command.param1)] =
+            std::chrono::microseconds{std::lround(command.param2)};
+        next_.erase(static_cast<std::uint32_t>(command.param1));
+        break;
+      case mavlink::Command::request_message: {
+        mavlink::AutopilotVersion version;
+        version.flight_sw_version = firmware;
+        send(version);
+        break;
+      }
+      case mavlink::Command::do_set_mode:
+        mode = static_cast<std::uint32_t>(command.param2);
+        break;
+      case mavlink::Command::component_arm_disarm:
+        armed = command.param1 > 0.5F;
+        break;
+      case mavlink::Command::do_land_start:
+        mode = 10;
+        break;
+      default:
+        break;
+    }
+  }
+
+  Instant booted_;
+  mavlink::Encoder encoder_{1, 1};
+  mavlink::Parser parser_;
+  std::map<std::uint32_t, Duration> intervals_{{0, std::chrono::seconds{1}}};
+  std::map<std::uint32_t, Instant> next_;
+  std::vector<std::uint8_t> out_;
+};
+
+}  // namespace skein::ardupilot

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/can_link.hpp"
+
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace skein::ardupilot {
+namespace {
+
+constexpr std::string_view kUniqueIdStem = "skein.vehicle";
+/// NodeStatus messages that cross may seem to go back by one.
+constexpr std::uint32_t kUptimeSlack_s = 1;
+
+dronecan::NodeParams node_params(const CanLinkParams& params) {
+  dronecan::NodeParams node;
+  node.node_id = params.companion_node_id;
+  auto& id = node.hardware_version.unique_id;
+  for (std::size_t i = 0; i < kUniqueIdStem.size(); ++i) {
+    id.at(i) = static_cast<std::uint8_t>(kUniqueIdStem[i]);
+  }
+  const std::uint16_t vehicle = params.companion.vehicle.id.value;
+  id.at(kUniqueIdStem.size()) = static_cast<std::uint8_t>(vehicle >> 8U);
+  id.at(kUniqueIdStem.size() + 1) = static_cast<std::uint8_t>(vehicle);
+  id.at(kUniqueIdStem.size() + 2) = params.companion_node_id;
+  return node;
+}
+
+dronecan::TunnelParams tunnel_params(const CanLinkParams& params) {
+  dronecan::TunnelParams tunnel;
+  tunnel.remote_node = params.node_id;
+  tunnel.serial_id = params.serial_id;
+  return tunnel;
+}
+
+}  // namespace
+
+CanLink::CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params,
+                 const MissionOrigin& origin, Instant now)
+    : params_{params},
+      bus_{std::move(bus)},
+      node_{node_params(params), now},
+      port_{tunnel_params(params), now},
+      companion_{params.companion, origin, now} {}
+
+void CanLink::step(Instant now) {
+  receive(now);
+  std::array<std::uint8_t, 512> bytes{};
+  while (const std::size_t size = port_.read(bytes)) {
+    companion_.on_bytes(std::span{bytes}.first(size), now);
+  }
+  companion_.step(now);
+  transmit(now);
+}
+
+void CanLink::receive(Instant now) {
+  while (const auto frame = bus_->receive()) {
+    const auto header = dronecan::header_of(*frame);
+    if (header && header->source == params_.companion_node_id) {
+      companion_.on_duplicate(params_.companion_node_id, now);
+    }
+    if (header && header->source == params_.node_id) companion_.on_frame_heard(now);
+    if (const auto* transfer = node_.on_frame(*frame, 0, now)) on_transfer(*transfer, now);
+  }
+  while (const auto event = node_.poll_event()) {
+    if (event->kind == dronecan::NodeEventKind::duplicate && event->node_id == params_.node_id) {
+      companion_.on_duplicate(params_.node_id, now);
+    }
+  }
+}
+
+void CanLink::on_transfer(const dronecan::Transfer& transfer, Instant now) {
+  port_.on_transfer(transfer, params_.companion_node_id, now);
+  if (transfer.header.source != params_.node_id || !dronecan::is<dronecan::NodeStatus>(transfer)) {
+    return;
+  }
+  const auto status = dronecan::decode<dronecan::NodeStatus>(transfer);
+  if (!status) return;
+  if (uptime_s_ && status->uptime_sec + kUptimeSlack_s < *uptime_s_) companion_.on_reboot(now);
+  uptime_s_ = status->uptime_sec;
+}
+
+void CanLink::transmit(Instant now) {
+  while (const auto packet = companion_.poll_packet()) {
+    if (!port_.write(*packet)) ++transfers_dropped_;
+  }
+  if (companion_.may_send()) {
+    port_.step(node_, now);
+    node_.step(now);
+  }
+  for (auto frames = node_.front(); !frames.empty(); frames = node_.front()) {
+    if (companion_.may_send() && !bus_->send(frames)) ++transfers_dropped_;
+    node_.pop();
+  }
+  bus_->flush();
+}
+
+}  // namespace skein::ardupilot

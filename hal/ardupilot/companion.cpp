@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/companion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "companion_impl.hpp"
+#include "steering.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using mavlink::Command;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kHeartbeatPeriod = seconds{1};
+constexpr Duration kTargetPeriod = milliseconds{40};  ///< of attitude and velocity targets
+constexpr int kRetries = 5;
+constexpr int kArmRetries = 60;  ///< a filter that has no position yet takes most of a minute
+constexpr Duration kAskAgain = seconds{2};  ///< for streams that do not come
+constexpr Duration kSilenceUnstreamed = seconds{3};
+constexpr Duration kClockSoon = milliseconds{200};
+constexpr Duration kClockPeriod = seconds{1};
+constexpr int kClockQuestionsSoon = 8;
+constexpr Duration kDuplicateGone = seconds{2};
+constexpr Duration kSampleAgeMax = milliseconds{500};
+constexpr double kSpeedStep_mps = 0.2;
+constexpr Duration kSpeedPeriod = milliseconds{200};
+constexpr double kHeightStep_m = 0.5;
+constexpr double kHeartbeat_hz = 10.0;
+constexpr double kHud_hz = 10.0;
+constexpr double kHealth_hz = 2.0;
+
+}  // namespace
+
+// --- what the operator asks ----------------------------------------------------------------------
+
+bool Companion::Impl::order(FlightOrder order, Instant now) {
+  if (!machine_.accepts(Event::order_given)) {
+    say(true, "cannot order the autopilot: the aircraft is not the companion's", now);
+    return false;
+  }
+  order_ = order;
+  fire(Event::order_given, now);
+  return true;
+}
+
+bool Companion::Impl::resume(Instant now) {
+  std::string why;
+  if (machine_.in(State::duplicated)) {
+    if (duplicate_at_ && now - *duplicate_at_ < kDuplicateGone) {
+      why = "two nodes on the bus still have the id " + std::to_string(duplicate_node_);
+    }
+  } else if (!machine_.accepts(Event::resumed)) {
+    return false;
+  } else if (!armed_ || !airborne()) {
+    why = "it is not armed and in the air";
+  }
+  if (!why.empty()) {
+    say(true, "cannot resume: " + why, now);
+    return false;
+  }
+  fire(Event::resumed, now);
+  return true;
+}
+
+// --- what is due ---------------------------------------------------------------------------------
+
+void Companion::Impl::step(Instant now) {
+  watch_silence(now);
+  while (const auto outcome = desk_.give_up(now)) on_outcome(*outcome, now);
+  if (refusal_ && now - refusal_at_ > kReasonWithin) report_refusal(now);
+  switch (machine_.state()) {
+    case State::preparing:
+      prepare(now);
+      break;
+    case State::standing_by:
+      stand_by(now);
+      break;
+    case State::arming:
+      arm(now);
+      break;
+    case State::climbing:
+      if (motion_.relative_height_m() >= params_.takeoff_height_m * 0.9) fire(Event::climbed, now);
+      break;
+    case State::taking_over:
+      ask_for_mode(now);
+      break;
+    case State::ordered:
+      if (!mode_confirmed_) ask_for_mode(now);
+      break;
+    case State::flying:
+      fly(now);
+      break;
+    default:
+      break;
+  }
+  if (system_ == 0) return;
+  keep_clock(now);
+  if (now >= heartbeat_at_) {
+    heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
+    mavlink::Heartbeat heartbeat;
+    heartbeat.type = static_cast<std::uint8_t>(mavlink::VehicleType::onboard_controller);
+    heartbeat.autopilot = static_cast<std::uint8_t>(mavlink::Autopilot::invalid);
+    heartbeat.system_status = static_cast<std::uint8_t>(mavlink::SystemState::active);
+    send(heartbeat);
+  }
+  while (const auto command = desk_.next(now)) send(*command);
+}
+
+void Companion::Impl::watch_silence(Instant now) {
+  if (machine_.in(State::preparing)) {
+    if (now - packet_heard_ > kSilenceUnstreamed) fire(Event::link_lost, now);
+    return;
+  }
+  const Duration silence =
+      streams_granted_ ? params_.silence : std::max(params_.silence, kSilenceUnstreamed);
+  if (now - packet_heard_ < silence) return;
+  if (now - frame_heard_ >= silence) {
+    if (machine_.accepts(Event::link_lost)) fire(Event::link_lost, now);
+  } else if (machine_.accepts(Event::autopilot_silent) && !machine_.in(State::lost)) {
+    fire(Event::autopilot_silent, now);
+  }
+}
+
+void Companion::Impl::prepare(Instant now) {
+  if (!asked_streams_ || (desk_.idle() && now - asked_streams_at_ >= kAskAgain)) {
+    asked_streams_ = true;
+    asked_streams_at_ = now;
+    const auto stream = [this](std::uint32_t id, double hz) {
+      ask(command_of(Command::set_message_interval, id, 1e6 / hz), {}, false);
+    };
+    stream(mavlink::Heartbeat::kDefinition.id, kHeartbeat_hz);
+    stream(mavlink::Attitude::kDefinition.id, params_.stream_hz);
+    stream(mavlink::GlobalPositionInt::kDefinition.id, params_.stream_hz);
+    stream(mavlink::VfrHud::kDefinition.id, kHud_hz);
+    stream(mavlink::SysStatus::kDefinition.id, kHealth_hz);
+    stream(mavlink::ExtendedSysState::kDefinition.id, kHealth_hz);
+    if (!firmware_settled_) {
+      ask(command_of(Command::request_message, mavlink::AutopilotVersion::kDefinition.id), {},
+          false);
+    }
+  }
+  const bool clock_known = clock_.synchronised() || now - asked_streams_at_ >= kAskAgain / 2;
+  if (desk_.idle() && clock_known && has_health_ && motion_.sample()) fire(Event::ready, now);
+}
+
+bool Companion::Impl::airborne() const {
+  if (landed_ != mavlink::LandedState::undefined) return landed_ != mavlink::LandedState::on_ground;
+  const auto sample = motion_.sample();
+  if (!sample) return false;
+  return params_.airframe == Airframe::copter
+             ? motion_.relative_height_m() > 2.0
+             : sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
+}
+
+void Companion::Impl::stand_by(Instant now) {
+  if (!navigation_healthy()) return;
+  const bool in_flight = armed_ && airborne();
+  switch (params_.take_over) {
+    case TakeOver::when_guided:
+      if (in_flight && guided()) fire(Event::guided, now);
+      break;
+    case TakeOver::in_flight:
+      if (in_flight) fire(guided() ? Event::guided : Event::may_take, now);
+      break;
+    case TakeOver::from_ground: {
+      const bool high = motion_.relative_height_m() >= params_.takeoff_height_m * 0.9;
+      const bool may_arm = (sensors_health_ & mavlink::sensor_prearm_check) != 0 ||
+                           (sensors_enabled_ & mavlink::sensor_prearm_check) == 0;
+      if (launched_ && in_flight && high) {
+        fire(guided() ? Event::guided : Event::may_take, now);
+      } else if (!launched_ && !launch_failed_ && !armed_ && may_arm) {
+        fire(Event::may_launch, now);
+      }
+      break;
+    }
+    case TakeOver::count:
+      break;
+  }
+}
+
+void Companion::Impl::arm(Instant now) {
+  if (now < retry_at_) return;
+  if (retries_++ >= kArmRetries) {
+    launch_failed_ = true;
+    return fire(Event::not_obeyed, now);
+  }
+  retry_at_ = now + kRetryPeriod;
+  if (mode_ != takeoff_mode(params_.airframe)) {
+    ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod},
+        true);
+  } else {
+    ask(command_of(Command::component_arm_disarm, 1), {1, kRetryPeriod}, true);
+  }
+}
+
+void Companion::Impl::ask_for_mode(Instant now) {
+  if (now < retry_at_) return;
+  if (retries_++ >= kRetries) return fire(Event::not_obeyed, now);
+  retry_at_ = now + kRetryPeriod;
+  const bool ordered = machine_.in(State::ordered);
+  if (ordered && order_ == FlightOrder::land && params_.airframe == Airframe::plane) {
+    return ask(command_of(Command::do_land_start), {1, kRetryPeriod}, true);
+  }
+  const std::uint32_t mode =
+      ordered ? mode_of(params_.airframe, order_) : guided_mode(params_.airframe);
+  ask(command_of(Command::do_set_mode, 1, mode), {1, kRetryPeriod}, true);
+}
+
+void Companion::Impl::fly(Instant now) {
+  const auto sample = motion_.sample();
+  if (!setpoint_ || now - setpoint_at_ > params_.setpoint_age_max || !sample ||
+      now - sample->state.time > kSampleAgeMax) {
+    return;
+  }
+  const VehicleState state = carried_to(*sample, now);
+  if (now >= target_at_) {
+    target_at_ = std::max(target_at_ + kTargetPeriod, now + kTargetPeriod / 2);
+    const auto boot_ms = static_cast<std::uint32_t>(
+        std::chrono::duration_cast<milliseconds>(now.time_since_epoch()).count());
+    const auto address = [this, boot_ms](auto target) {
+      target.time_boot_ms = boot_ms;
+      target.target_system = system_;
+      target.target_component = mavlink::kComponentAutopilot;
+      return target;
+    };
+    if (params_.airframe == Airframe::copter) {
+      send(address(velocity_target(*setpoint_, state)));
+    } else {
+      send(address(roll_target(bank_for(params_.vehicle, *setpoint_, state))));
+    }
+  }
+  if (params_.airframe == Airframe::copter) return;
+  set_speed(*setpoint_, now);
+  set_height(*setpoint_, state, now);
+}
+
+void Companion::Impl::set_speed(const Setpoint& setpoint, Instant now) {
+  const double wanted = std::clamp(setpoint.airspeed_mps, params_.vehicle.speed_min_mps,
+                                   params_.vehicle.speed_max_mps);
+  const bool differs = !speed_sent_ || std::abs(wanted - *speed_sent_) >= kSpeedStep_mps;
+  if (!differs || (speed_sent_ && now - speed_at_ < kSpeedPeriod)) return;
+  speed_sent_ = wanted;
+  speed_at_ = now;
+  ask(command_of(Command::do_change_speed, 0, wanted, -1), {1, Patience{}.each}, true);
+}
+
+void Companion::Impl::set_height(const Setpoint& setpoint, const VehicleState& state, Instant now) {
+  // The mission's plane is flat and the sea is not: by two metres at five kilometres.
+  const double above_sea =
+      origin_.to_wgs84({state.x_m, state.y_m, setpoint.height_m}).height_m - params_.geoid_height_m;
+  if (height_sent_ && std::abs(above_sea - *height_sent_) < kHeightStep_m) return;
+  if (height_at_ && now - *height_at_ < kRetryPeriod) return;
+  height_sent_ = above_sea;
+  height_at_ = now;
+  ask(command_of(Command::do_change_altitude, above_sea,
+                 static_cast<double>(mavlink::Frame::global)),
+      {}, true);
+}
+
+void Companion::Impl::keep_clock(Instant now) {
+  if (now < clock_at_) return;
+  clock_at_ = now + (clock_questions_ < kClockQuestionsSoon ? kClockSoon : kClockPeriod);
+  ++clock_questions_;
+  mavlink::Timesync question;
+  question.ts1 = now.time_since_epoch().count();
+  send(question);
+}
+
+void Companion::Impl::ask(const mavlink::CommandLong& command, const Patience& patience,
+                          bool latest) {
+  mavlink::CommandLong addressed = command;
+  addressed.target_system = system_;
+  addressed.target_component = mavlink::kComponentAutopilot;
+  desk_.ask(addressed, patience, latest);
+}
+
+// --- changes of state ----------------------------------------------------------------------------
+
+void Companion::Impl::fire(Event event, Instant now) {
+  const State from = machine_.state();
+  if (machine_.fire(event)) entered(from, event, now);
+}
+
+void Companion::Impl::entered(State from, Event event, Instant now) {
+  retry_at_ = now;
+  retries_ = 0;
+  mode_at_entry_ = mode_;
+  mode_confirmed_ = false;
+  switch (machine_.state()) {
+    case State::searching:
+      reset_link();
+      say(true,
+          event == Event::rebooted ? "the autopilot has rebooted"
+          : event == Event::resumed
+              ? "looking for the autopilot again"
+              : "the autopilot has gone before it was prepared; looking for it again",
+          now);
+      break;
+    case State::refused:
+      reset_link();
+      break;
+    case State::preparing:
+      said_refusal_.clear();
+      say(false, "found an autopilot, system " + std::to_string(system_) + ", in " + mode_name(),
+          now);
+      break;
+    case State::standing_by:
+      if (from == State::preparing) {
+        say(false, "the autopilot is ready", now);
+      } else if (event == Event::disarmed) {
+        say(false, "the autopilot has disarmed", now);
+      } else if (event == Event::not_obeyed) {
+        say(true, "the autopilot does not arm; waiting for the operator", now);
+      }
+      break;
+    case State::climbing: {
+      launched_ = true;
+      say(false, "armed; taking off", now);
+      if (params_.airframe == Airframe::copter) {
+        mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
+        takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
+        ask(takeoff, {}, true);
+      }
+      break;
+    }
+    case State::flying:
+      speed_sent_.reset();
+      height_sent_.reset();
+      height_at_.reset();
+      target_at_ = now;
+      say(false, "flying the companion's setpoints", now);
+      break;
+    case State::piloted:
+      desk_.clear();
+      say(true,
+          event == Event::not_obeyed
+              ? "the autopilot does not obey; the operator must resume"
+              : "the mode was changed to " + mode_name() +
+                    " by the pilot or a failsafe; no setpoints until the operator resumes",
+          now);
+      break;
+    case State::lost:
+    case State::silent:
+      if (from != State::lost && from != State::silent) {
+        desk_.clear();
+        if (from != State::checking) before_loss_ = from;
+        say(true,
+            machine_.in(State::lost) ? "no frame comes from the flight controller"
+                                     : "the autopilot is silent, though its node is on the bus",
+            now);
+      }
+      break;
+    case State::duplicated:
+      desk_.clear();
+      while (packets_.pop()) {
+      }
+      say(true,
+          "two nodes on the bus have the id " + std::to_string(duplicate_node_) +
+              ": nothing is sent any more; give each its own, then resume",
+          now);
+      break;
+    default:
+      break;
+  }
+}
+
+Companion::Companion(const CompanionParams& params, const MissionOrigin& origin, Instant now)
+    : impl_{std::make_unique<Impl>(params, origin, now)} {}
+Companion::~Companion() = default;
+
+void Companion::on_bytes(std::span<const std::uint8_t> bytes, Instant now) {
+  impl_->on_bytes(bytes, now);
+}
+void Companion::on_frame_heard(Instant now) { impl_->on_frame_heard(now); }
+void Companion::on_reboot(Instant now) { impl_->on_reboot(now); }
+void Companion::on_duplicate(std::uint8_t node_id, Instant now) {
+  impl_->on_duplicate(node_id, now);
+}
+void Companion::command(const Setpoint& setpoint, Instant now) { impl_->command(setpoint, now); }
+bool Companion::order(FlightOrder order, Instant now) { return impl_->order(order, now); }
+bool Companion::resume(Instant now) { return impl_->resume(now); }
+void Companion::step(Instant now) { impl_->step(now); }
+std::optional<mavlink::WireBytes> Companion::poll_packet() {
+  return may_send() ? impl_->poll_packet() : std::nullopt;
+}
+std::optional<Notice> Companion::poll_notice() { return impl_->poll_notice(); }
+std::optional<MotionSample> Companion::sample() const { return impl_->sample(); }
+Companion::State Companion::state() const { return impl_->machine().state(); }
+std::uint64_t Companion::protocol_errors() const { return impl_->machine().protocol_errors(); }
+const mavlink::ParserStatistics& Companion::parser() const { return impl_->parser(); }
+
+}  // namespace skein::ardupilot

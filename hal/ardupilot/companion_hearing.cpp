@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "companion_impl.hpp"
+
+/// What the companion makes of what it hears.
+namespace skein::ardupilot {
+namespace {
+
+using mavlink::Command;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr Duration kTripMax = seconds{2};          ///< of a question about the time
+constexpr Duration kBootStep = milliseconds{500};  ///< the clock goes back so far: a reboot
+constexpr std::uint32_t kFirmwareMin = 0x0405;     ///< 4.5 is the first with the tunnel
+
+std::string version_text(std::uint32_t version) {
+  return std::to_string(version >> 24U) + "." + std::to_string((version >> 16U) & 0xFFU) + "." +
+         std::to_string((version >> 8U) & 0xFFU);
+}
+
+}  // namespace
+
+void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
+  const bool of_autopilot = packet.component == mavlink::kComponentAutopilot &&
+                            (system_ == 0 || packet.system == system_);
+  if (!of_autopilot) return;
+  packet_heard_ = now;
+  if (machine_.in(State::lost) || machine_.in(State::silent)) fire(Event::packets_back, now);
+  if (const auto heartbeat = mavlink::decode<mavlink::Heartbeat>(packet)) {
+    return on_heartbeat(*heartbeat, packet, now);
+  }
+  if (system_ == 0) return;
+  if (const auto attitude = mavlink::decode<mavlink::Attitude>(packet)) {
+    if (const auto at = measured_at(attitude->time_boot_ms, now)) {
+      motion_.on_attitude(*attitude, *at);
+    }
+  } else if (const auto position = mavlink::decode<mavlink::GlobalPositionInt>(packet)) {
+    if (const auto at = measured_at(position->time_boot_ms, now)) {
+      motion_.on_position(*position, *at);
+    }
+  } else if (const auto hud = mavlink::decode<mavlink::VfrHud>(packet)) {
+    motion_.on_hud(*hud);
+  } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
+    has_health_ = true;
+    sensors_enabled_ = status->onboard_control_sensors_enabled;
+    sensors_health_ = status->onboard_control_sensors_health;
+  } else if (const auto extended = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
+    landed_ = static_cast<mavlink::LandedState>(extended->landed_state);
+  } else if (const auto timesync = mavlink::decode<mavlink::Timesync>(packet)) {
+    on_timesync(*timesync, now);
+  } else if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
+    on_version(*version, now);
+  } else if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
+    on_text(*text, now);
+  } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
+    if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
+  }
+}
+
+void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
+                                   const mavlink::Packet& packet, Instant now) {
+  mode_ = heartbeat.custom_mode;
+  armed_ = (heartbeat.base_mode & mavlink::mode_safety_armed) != 0;
+  if (machine_.in(State::searching) || (machine_.in(State::refused) && !firmware_refused_)) {
+    std::string wrong;
+    if (heartbeat.autopilot != static_cast<std::uint8_t>(mavlink::Autopilot::ardupilotmega)) {
+      wrong = "is of make " + std::to_string(heartbeat.autopilot) +
+              ", not an ArduPilot (3); choose another kind of flight controller";
+    } else if (!is_of(params_.airframe, heartbeat.type)) {
+      wrong = "flies an aircraft of MAV_TYPE " + std::to_string(heartbeat.type) + ", which is no " +
+              (params_.airframe == Airframe::copter ? "copter" : "plane") +
+              "; mend the airframe in the configuration";
+    }
+    if (wrong.empty()) {
+      system_ = packet.system;
+      encoder_.emplace(system_, mavlink::kComponentOnboardComputer);
+      fire(Event::autopilot_found, now);
+    } else if (machine_.in(State::searching)) {
+      fire(Event::wrong_autopilot, now);
+      say(true, "the autopilot " + wrong, now);
+    }
+    return;
+  }
+  on_mode(now);
+}
+
+void Companion::Impl::on_mode(Instant now) {
+  switch (machine_.state()) {
+    case State::arming:
+      if (mode_ == takeoff_mode(params_.airframe)) {
+        mode_confirmed_ = true;
+        if (armed_) fire(Event::armed, now);
+      } else if (mode_confirmed_) {
+        fire(Event::other_mode, now);
+      }
+      break;
+    case State::climbing:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (mode_ != takeoff_mode(params_.airframe)) {
+        fire(Event::other_mode, now);
+      }
+      break;
+    case State::taking_over:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (guided()) {
+        fire(Event::guided, now);
+      } else if (mode_ != mode_at_entry_) {
+        fire(Event::other_mode, now);
+      }
+      break;
+    case State::flying:
+      if (!guided()) {
+        fire(Event::other_mode, now);
+      } else if (!armed_) {
+        fire(Event::disarmed, now);
+      }
+      break;
+    case State::ordered:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (mode_ == mode_of(params_.airframe, order_)) {
+        mode_confirmed_ = true;
+      } else if (mode_confirmed_ || mode_ != mode_at_entry_) {
+        fire(Event::other_mode, now);
+      }
+      break;
+    case State::checking:
+      on_check(now);
+      break;
+    default:
+      break;
+  }
+}
+
+void Companion::Impl::on_check(Instant now) {
+  switch (before_loss_) {
+    case State::flying:
+    case State::taking_over:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (guided()) {
+        fire(Event::guided, now);
+      } else {
+        fire(before_loss_ == State::flying ? Event::other_mode : Event::not_ours, now);
+      }
+      break;
+    case State::ordered:
+      fire(mode_ == mode_of(params_.airframe, order_) ? Event::order_stands : Event::other_mode,
+           now);
+      break;
+    case State::piloted:
+      fire(Event::other_mode, now);
+      break;
+    default:
+      fire(Event::not_ours, now);
+      break;
+  }
+}
+
+void Companion::Impl::on_timesync(const mavlink::Timesync& timesync, Instant now) {
+  const std::int64_t ours = now.time_since_epoch().count();
+  if (timesync.tc1 == 0) {
+    mavlink::Timesync answer;
+    answer.tc1 = ours;
+    answer.ts1 = timesync.ts1;
+    return send(answer);
+  }
+  const Instant sent{Duration{timesync.ts1}};
+  // Somebody else's question, or one from before a restart of this program.
+  if (sent > now || now - sent > kTripMax) return;
+  clock_.on_round_trip(sent, now, Duration{timesync.tc1});
+}
+
+void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Instant now) {
+  firmware_ = version.flight_sw_version;
+  if (firmware_settled_) return;
+  firmware_settled_ = true;
+  if ((firmware_ >> 16U) < kFirmwareMin) {
+    say(true,
+        "the autopilot runs ArduPilot " + version_text(firmware_) +
+            ", older than 4.5; update its firmware",
+        now);
+    firmware_refused_ = true;
+    if (machine_.in(State::preparing)) fire(Event::wrong_autopilot, now);
+    return;
+  }
+  say(false, "the autopilot runs ArduPilot " + version_text(firmware_), now);
+}
+
+void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
+  // A long one comes in chunks with one id.
+  if (text.id != 0 && text.chunk_seq > 0 && text.id == text_id_) {
+    last_text_ += mavlink::text_of(text.text);
+  } else {
+    last_text_ = mavlink::text_of(text.text);
+  }
+  text_id_ = text.id;
+  const bool warning = text.severity <= static_cast<std::uint8_t>(mavlink::Severity::warning);
+  if (warning) last_text_at_ = now;
+  say(false, "autopilot: " + last_text_, now);
+  if (warning && refusal_) report_refusal(now);
+}
+
+void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
+  const auto command = static_cast<Command>(outcome.command.command);
+  if (command == Command::set_message_interval) {
+    const bool attitude =
+        static_cast<std::uint32_t>(outcome.command.param1) == mavlink::Attitude::kDefinition.id;
+    if (attitude) streams_granted_ = outcome.answer == Answer::accepted;
+  }
+  if (command == Command::request_message && outcome.answer != Answer::accepted) {
+    firmware_settled_ = true;
+  }
+  if (command == Command::do_change_altitude && outcome.answer != Answer::accepted) {
+    height_sent_.reset();
+  }
+  if (outcome.answer != Answer::refused) return;
+  if (refusal_) report_refusal(now);
+  refusal_ = outcome;
+  refusal_at_ = now;
+  // The reason comes as a text of its own, before the answer or after it.
+  if (last_text_at_ && now - *last_text_at_ <= kReasonWithin) report_refusal(now);
+}
+
+void Companion::Impl::report_refusal(Instant now) {
+  std::string text = "the autopilot refuses " + name_of_command(refusal_->command.command) + ": " +
+                     name_of_result(refusal_->result);
+  const auto command = static_cast<Command>(refusal_->command.command);
+  if (command == Command::set_message_interval) {
+    const auto id = static_cast<std::uint32_t>(refusal_->command.param1);
+    const auto* info = mavlink::find_message(id);
+    text += " (" + (info != nullptr ? std::string{info->name} : std::to_string(id)) + ")";
+  }
+  if (last_text_at_ && now - *last_text_at_ <= 2 * kReasonWithin) text += ": " + last_text_;
+  refusal_.reset();
+  if (text == said_refusal_) return;
+  said_refusal_ = text;
+  say(true, std::move(text), now);
+}
+
+std::optional<Instant> Companion::Impl::measured_at(std::uint32_t time_boot_ms, Instant now) {
+  const Duration boot = milliseconds{time_boot_ms};
+  if (boot_ && boot + kBootStep < *boot_) on_reboot(now);
+  boot_ = std::max(boot_.value_or(boot), boot);
+  clock_.on_arrival(now, boot);
+  return clock_.mission_time(boot, now);
+}
+
+void Companion::Impl::on_reboot(Instant now) {
+  reset_link();
+  firmware_refused_ = false;
+  if (machine_.accepts(Event::rebooted)) fire(Event::rebooted, now);
+}
+
+void Companion::Impl::on_duplicate(std::uint8_t node_id, Instant now) {
+  duplicate_at_ = now;
+  duplicate_node_ = node_id;
+  if (machine_.accepts(Event::duplicate)) fire(Event::duplicate, now);
+}
+
+void Companion::Impl::reset_link() {
+  desk_.clear();
+  clock_.restart();
+  motion_.forget();
+  boot_.reset();
+  system_ = 0;
+  clock_questions_ = 0;
+  asked_streams_ = false;
+  streams_granted_ = false;
+  has_health_ = false;
+  firmware_settled_ = false;
+  refusal_.reset();
+  landed_ = mavlink::LandedState::undefined;
+}
+
+}  // namespace skein::ardupilot

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <utility>
+
+#include "boot_clock.hpp"
+#include "command_desk.hpp"
+#include "flight_modes.hpp"
+#include "skein/ardupilot/companion.hpp"
+#include "skein/base/bounded_queue.hpp"
+
+namespace skein::ardupilot {
+
+/// A refusal and its reason come apart, in any order.
+inline constexpr Duration kReasonWithin = std::chrono::milliseconds{500};
+/// What it takes to know where the aircraft is.
+inline constexpr std::uint32_t kNavigation = mavlink::sensor_gps | mavlink::sensor_ahrs;
+/// After it a mode or arming is asked for again.
+inline constexpr Duration kRetryPeriod = std::chrono::seconds{1};
+
+[[nodiscard]] inline mavlink::CommandLong command_of(mavlink::Command command, double p1 = 0.0,
+                                                     double p2 = 0.0, double p3 = 0.0) {
+  mavlink::CommandLong c;
+  c.command = static_cast<std::uint16_t>(command);
+  c.param1 = static_cast<float>(p1);
+  c.param2 = static_cast<float>(p2);
+  c.param3 = static_cast<float>(p3);
+  return c;
+}
+
+class Companion::Impl {
+ public:
+  Impl(const CompanionParams& params, const MissionOrigin& origin, Instant now)
+      : params_{params},
+        origin_{origin},
+        motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
+        frame_heard_{now},
+        packet_heard_{now},
+        heartbeat_at_{now},
+        clock_at_{now} {}
+
+  void on_bytes(std::span<const std::uint8_t> bytes, Instant now) {
+    on_frame_heard(now);
+    parser_.parse(bytes, [this, now](const mavlink::Packet& packet) { on_packet(packet, now); });
+  }
+  void on_frame_heard(Instant now) {
+    frame_heard_ = now;
+    if (machine_.in(State::lost)) fire(Event::autopilot_silent, now);
+  }
+  void on_reboot(Instant now);
+  void on_duplicate(std::uint8_t node_id, Instant now);
+  void command(const Setpoint& setpoint, Instant now) {
+    setpoint_ = setpoint;
+    setpoint_at_ = now;
+  }
+  bool order(FlightOrder order, Instant now);
+  bool resume(Instant now);
+  void step(Instant now);
+
+  std::optional<mavlink::WireBytes> poll_packet() { return packets_.pop(); }
+  std::optional<Notice> poll_notice() { return notices_.pop(); }
+  [[nodiscard]] std::optional<MotionSample> sample() const { return motion_.sample(); }
+  [[nodiscard]] const StateMachine<State, Event>& machine() const { return machine_; }
+  [[nodiscard]] const mavlink::ParserStatistics& parser() const { return parser_.statistics(); }
+
+ private:
+  // What comes.
+  void on_packet(const mavlink::Packet& packet, Instant now);
+  void on_heartbeat(const mavlink::Heartbeat& heartbeat, const mavlink::Packet& packet,
+                    Instant now);
+  void on_mode(Instant now);
+  void on_check(Instant now);
+  void on_timesync(const mavlink::Timesync& timesync, Instant now);
+  void on_version(const mavlink::AutopilotVersion& version, Instant now);
+  void on_text(const mavlink::Statustext& text, Instant now);
+  void on_outcome(const Outcome& outcome, Instant now);
+  std::optional<Instant> measured_at(std::uint32_t time_boot_ms, Instant now);
+
+  // What is due.
+  void watch_silence(Instant now);
+  void prepare(Instant now);
+  void stand_by(Instant now);
+  void arm(Instant now);
+  void ask_for_mode(Instant now);
+  void fly(Instant now);
+  void set_speed(const Setpoint& setpoint, Instant now);
+  void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
+  void keep_clock(Instant now);
+  void report_refusal(Instant now);
+
+  void fire(Event event, Instant now);
+  void entered(State from, Event event, Instant now);
+  void reset_link();
+  [[nodiscard]] bool airborne() const;
+  [[nodiscard]] bool navigation_healthy() const {
+    return (sensors_enabled_ & kNavigation & ~sensors_health_) == 0;
+  }
+  [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
+  [[nodiscard]] std::string mode_name() const { return name_of_mode(params_.airframe, mode_); }
+  void ask(const mavlink::CommandLong& command, const Patience& patience, bool latest);
+  template <class Message>
+  void send(const Message& message) {
+    if (encoder_) packets_.push(encoder_->encode(message));
+  }
+  void say(bool warning, std::string text, Instant now) {
+    notices_.push({now, warning, std::move(text)});
+  }
+
+  CompanionParams params_;
+  MissionOrigin origin_;
+  StateMachine<State, Event> machine_{Companion::table(), State::searching};
+  mavlink::Parser parser_;
+  std::optional<mavlink::Encoder> encoder_;  ///< once the system's number is known
+  CommandDesk desk_;
+  BootClock clock_;
+  Motion motion_;
+  BoundedQueue<mavlink::WireBytes> packets_{64};
+  BoundedQueue<Notice> notices_{64};
+
+  // What was heard.
+  Instant frame_heard_;
+  Instant packet_heard_;
+  std::uint8_t system_ = 0;
+  std::uint32_t mode_ = 0;
+  bool armed_ = false;
+  std::uint32_t firmware_ = 0;
+  bool firmware_settled_ = false;
+  bool firmware_refused_ = false;
+  bool has_health_ = false;
+  bool streams_granted_ = false;
+  std::uint32_t sensors_enabled_ = 0;
+  std::uint32_t sensors_health_ = 0;
+  mavlink::LandedState landed_ = mavlink::LandedState::undefined;
+  std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
+  std::string last_text_;
+  std::optional<Instant> last_text_at_;
+  std::uint16_t text_id_ = 0;
+
+  // What was asked and done.
+  State before_loss_ = State::standing_by;
+  Instant heartbeat_at_;
+  Instant clock_at_;
+  int clock_questions_ = 0;
+  Instant asked_streams_at_;
+  bool asked_streams_ = false;
+  Instant retry_at_;
+  int retries_ = 0;
+  std::uint32_t mode_at_entry_ = 0;
+  bool mode_confirmed_ = false;
+  bool launched_ = false;  ///< the companion has armed: once is enough
+  bool launch_failed_ = false;
+  FlightOrder order_ = FlightOrder::hold;
+  std::optional<Instant> duplicate_at_;
+  std::uint8_t duplicate_node_ = 0;
+  std::optional<Setpoint> setpoint_;
+  Instant setpoint_at_;
+  Instant target_at_;
+  std::optional<double> speed_sent_;
+  Instant speed_at_;
+  std::optional<double> height_sent_;
+  std::optional<Instant> height_at_;
+  std::optional<Outcome> refusal_;
+  Instant refusal_at_;
+  std::string said_refusal_;
+};
+
+}  // namespace skein::ardupilot

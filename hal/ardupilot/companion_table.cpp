@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstddef>
+
+#include "skein/ardupilot/companion.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using State = Companion::State;
+using Event = Companion::Event;
+using Entry = Companion::Entry;
+
+/// The states in which streams are expected, so that silence means something.
+constexpr std::array kLinked{State::standing_by, State::arming,  State::climbing,
+                             State::taking_over, State::flying,  State::piloted,
+                             State::ordered,     State::checking};
+
+constexpr std::array kOwn{
+    Entry{State::searching, Event::autopilot_found, State::preparing},
+    Entry{State::searching, Event::wrong_autopilot, State::refused},
+    Entry{State::searching, Event::duplicate, State::duplicated},
+    Entry{State::refused, Event::autopilot_found, State::preparing},
+    Entry{State::refused, Event::duplicate, State::duplicated},
+    Entry{State::refused, Event::rebooted, State::searching},
+    Entry{State::preparing, Event::ready, State::standing_by},
+    Entry{State::preparing, Event::wrong_autopilot, State::refused},
+    Entry{State::preparing, Event::link_lost, State::searching},
+    Entry{State::preparing, Event::rebooted, State::searching},
+    Entry{State::preparing, Event::duplicate, State::duplicated},
+    Entry{State::standing_by, Event::guided, State::flying},
+    Entry{State::standing_by, Event::may_take, State::taking_over},
+    Entry{State::standing_by, Event::may_launch, State::arming},
+    Entry{State::standing_by, Event::resumed, State::taking_over},
+    Entry{State::arming, Event::armed, State::climbing},
+    Entry{State::arming, Event::not_obeyed, State::standing_by},
+    Entry{State::arming, Event::other_mode, State::piloted},
+    Entry{State::climbing, Event::climbed, State::taking_over},
+    Entry{State::climbing, Event::other_mode, State::piloted},
+    Entry{State::climbing, Event::disarmed, State::standing_by},
+    Entry{State::climbing, Event::order_given, State::ordered},
+    Entry{State::taking_over, Event::guided, State::flying},
+    Entry{State::taking_over, Event::not_obeyed, State::piloted},
+    Entry{State::taking_over, Event::other_mode, State::piloted},
+    Entry{State::taking_over, Event::disarmed, State::standing_by},
+    Entry{State::taking_over, Event::order_given, State::ordered},
+    Entry{State::flying, Event::other_mode, State::piloted},
+    Entry{State::flying, Event::disarmed, State::standing_by},
+    Entry{State::flying, Event::order_given, State::ordered},
+    Entry{State::piloted, Event::resumed, State::taking_over},
+    Entry{State::ordered, Event::order_given, State::ordered},
+    Entry{State::ordered, Event::resumed, State::taking_over},
+    Entry{State::ordered, Event::other_mode, State::piloted},
+    Entry{State::ordered, Event::not_obeyed, State::piloted},
+    Entry{State::ordered, Event::disarmed, State::standing_by},
+    Entry{State::lost, Event::packets_back, State::checking},
+    Entry{State::lost, Event::autopilot_silent, State::silent},
+    Entry{State::lost, Event::rebooted, State::searching},
+    Entry{State::lost, Event::duplicate, State::duplicated},
+    Entry{State::silent, Event::packets_back, State::checking},
+    Entry{State::silent, Event::link_lost, State::lost},
+    Entry{State::silent, Event::rebooted, State::searching},
+    Entry{State::silent, Event::duplicate, State::duplicated},
+    Entry{State::checking, Event::guided, State::flying},
+    Entry{State::checking, Event::order_stands, State::ordered},
+    Entry{State::checking, Event::not_ours, State::standing_by},
+    Entry{State::checking, Event::other_mode, State::piloted},
+    Entry{State::checking, Event::disarmed, State::standing_by},
+    Entry{State::duplicated, Event::resumed, State::searching},
+};
+
+constexpr auto kTable = [] {
+  std::array<Entry, kOwn.size() + 4 * kLinked.size()> table{};
+  std::size_t at = 0;
+  for (const Entry& entry : kOwn) table[at++] = entry;
+  for (const State state : kLinked) {
+    table[at++] = {state, Event::link_lost, State::lost};
+    table[at++] = {state, Event::autopilot_silent, State::silent};
+    table[at++] = {state, Event::rebooted, State::searching};
+    table[at++] = {state, Event::duplicate, State::duplicated};
+  }
+  return table;
+}();
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(State::count)> kStateNames{
+    "searching", "refused", "preparing", "standing_by", "arming", "climbing", "taking_over",
+    "flying",    "piloted", "ordered",   "lost",        "silent", "checking", "duplicated"};
+
+constexpr std::array<std::string_view, static_cast<std::size_t>(Event::count)> kEventNames{
+    "autopilot_found", "wrong_autopilot",  "ready",        "may_launch", "armed",
+    "climbed",         "may_take",         "guided",       "other_mode", "disarmed",
+    "not_obeyed",      "order_given",      "order_stands", "not_ours",   "resumed",
+    "link_lost",       "autopilot_silent", "packets_back", "rebooted",   "duplicate"};
+
+}  // namespace
+
+std::span<const Companion::Entry> Companion::table() { return kTable; }
+
+std::string_view to_string(Companion::State state) {
+  return kStateNames.at(static_cast<std::size_t>(state));
+}
+std::string_view to_string(Companion::Event event) {
+  return kEventNames.at(static_cast<std::size_t>(event));
+}
+
+}  // namespace skein::ardupilot

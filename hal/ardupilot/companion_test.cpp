@@ -1,0 +1,585 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/companion.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <deque>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "autopilot_double.hpp"
+#include "skein/base/random.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using State = Companion::State;
+using Event = Companion::Event;
+using std::chrono::milliseconds;
+using testing::AnyOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+VehicleSpec vehicle() {
+  VehicleSpec v;
+  v.id = {7};
+  v.cruise_speed_mps = 50.0;
+  v.speed_min_mps = 42.5;
+  v.speed_max_mps = 57.5;
+  v.turn_radius_m = 150.0;
+  v.heading_gain_per_s = 1.5;
+  v.height_m = 300.0;
+  return v;
+}
+
+CompanionParams params(TakeOver take_over = TakeOver::in_flight,
+                       Airframe airframe = Airframe::plane) {
+  CompanionParams p;
+  p.vehicle = vehicle();
+  p.take_over = take_over;
+  p.airframe = airframe;
+  return p;
+}
+
+/// A companion and an autopilot with a line between them that takes its time.
+struct Line {
+  explicit Line(const CompanionParams& p = params())
+      : companion{p, MissionOrigin::make(kTestOrigin).value(), now} {}
+
+  static constexpr Duration kTick = milliseconds{5};
+  Instant now = at_seconds(-20.0);  // processes start before the mission does
+  Duration delay = milliseconds{10};
+  bool cut = false;      ///< nothing comes through
+  bool frames = true;    ///< the flight controller's node is on the bus
+  bool commands = true;  ///< the control loop sends setpoints
+  Setpoint setpoint{.heading_rad = 0.7, .airspeed_mps = 53.0, .height_m = 310.0};
+  AutopilotDouble autopilot{now - std::chrono::seconds{60}};
+  Companion companion;
+  std::vector<std::string> notices;
+  std::vector<std::string> warnings;
+
+  void tick() {
+    now += kTick;
+    const auto said = autopilot.speak(now);
+    if (!said.empty() && !cut) down_.push_back({now + delay, said});
+    while (!down_.empty() && down_.front().at <= now) {
+      if (!cut) companion.on_bytes(down_.front().bytes, now);
+      down_.pop_front();
+    }
+    if (frames && !cut) companion.on_frame_heard(now);
+    if (commands) companion.command(setpoint, now);
+    companion.step(now);
+    while (const auto packet = companion.poll_packet()) {
+      sent_at = now;
+      if (!cut) up_.push_back({now + delay, {packet->begin(), packet->end()}});
+    }
+    while (!up_.empty() && up_.front().at <= now) {
+      autopilot.hear(up_.front().bytes, now);
+      up_.pop_front();
+    }
+    while (const auto notice = companion.poll_notice()) {
+      notices.push_back(notice->text);
+      if (notice->warning) warnings.push_back(notice->text);
+    }
+  }
+  void run(double seconds) {
+    for (const Instant end = now + from_seconds(seconds); now < end;) tick();
+  }
+  /// How long it took until the companion was in that state; the limit if it never was.
+  Duration until(State state, double limit_s) {
+    const Instant begin = now;
+    while (companion.state() != state && now - begin < from_seconds(limit_s)) tick();
+    return now - begin;
+  }
+  std::size_t targets_within(double seconds) {
+    const std::size_t before = autopilot.target_times.size();
+    run(seconds);
+    return autopilot.target_times.size() - before;
+  }
+
+  Instant sent_at;
+
+ private:
+  struct Bytes {
+    Instant at;
+    std::vector<std::uint8_t> bytes;
+  };
+  std::deque<Bytes> down_;
+  std::deque<Bytes> up_;
+};
+
+TEST(Companion, ConnectsTakesTheAircraftInFlightAndFliesSetpoints) {
+  Line line;
+  EXPECT_LT(line.until(State::flying, 10.0), std::chrono::seconds{6});
+  ASSERT_EQ(line.companion.state(), State::flying);
+  EXPECT_EQ(line.autopilot.mode, 15U);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::component_arm_disarm), 0);
+  EXPECT_GE(line.targets_within(2.0), 40U);  // 20 Hz or more
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+  EXPECT_THAT(line.notices, Contains(HasSubstr("ArduPilot 4.6.3")));
+  EXPECT_TRUE(line.warnings.empty()) << line.warnings.front();
+}
+
+TEST(Companion, BanksForTheTurnWithRollAlone) {
+  Line line;
+  line.setpoint.heading_rad = line.autopilot.truth.heading_rad + 0.1;  // to the left
+  line.until(State::flying, 10.0);
+  line.run(0.5);
+  ASSERT_FALSE(line.autopilot.attitudes.empty());
+  const auto left = line.autopilot.attitudes.back();
+  EXPECT_EQ(left.type_mask, 0xC6);
+  const double bank = 2.0 * std::atan2(left.q[1], left.q[0]);
+  EXPECT_NEAR(bank, -std::atan(50.0 * 1.5 * 0.1 / 9.81), 1e-3);
+  EXPECT_EQ(left.q[2], 0.0F);
+  // A turn that is asked too tight is flown at the vehicle's turn radius.
+  line.setpoint.heading_rad = line.autopilot.truth.heading_rad - 2.0;
+  line.run(0.5);
+  const auto right = line.autopilot.attitudes.back();
+  EXPECT_NEAR(2.0 * std::atan2(right.q[1], right.q[0]), std::atan(50.0 * 50.0 / 150.0 / 9.81),
+              1e-3);
+}
+
+TEST(Companion, SendsSpeedAndHeightWhenTheyChange) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(3.0);
+  using mavlink::Command;
+  EXPECT_EQ(line.autopilot.count(Command::do_change_speed), 1);
+  EXPECT_EQ(line.autopilot.count(Command::do_change_altitude), 1);
+  const auto height = line.autopilot.last(Command::do_change_altitude);
+  ASSERT_TRUE(height);
+  EXPECT_NEAR(height->param1, 480.0 + 310.0, 0.1);
+  EXPECT_EQ(height->param2, 0.0F);
+  // However fast it changes, at most five a second, and never outside the vehicle's limits.
+  const int before = line.autopilot.count(Command::do_change_speed);
+  for (int i = 0; i < 400; ++i) {
+    line.setpoint.airspeed_mps = 50.0 + 30.0 * std::sin(0.05 * i);
+    line.tick();
+  }
+  EXPECT_LE(line.autopilot.count(Command::do_change_speed) - before, 10);
+  EXPECT_GE(line.autopilot.count(Command::do_change_speed) - before, 7);
+  for (const auto& c : line.autopilot.commands) {
+    if (c.command != static_cast<std::uint16_t>(Command::do_change_speed)) continue;
+    EXPECT_GE(c.param2, 42.5F);
+    EXPECT_LE(c.param2, 57.5F);
+  }
+}
+
+TEST(Companion, ReportsTheStateInTheMissionsFrameAndTime) {
+  Line line;
+  line.delay = milliseconds{30};
+  line.autopilot.turn_rate_radps = 0.2;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  const auto sample = line.companion.sample();
+  ASSERT_TRUE(sample);
+  const auto& truth = line.autopilot.truth;
+  EXPECT_NEAR(sample->state.x_m, truth.x_m, 0.02);
+  EXPECT_NEAR(sample->state.y_m, truth.y_m, 0.02);
+  EXPECT_NEAR(sample->state.z_m, truth.z_m, 0.01);
+  EXPECT_NEAR(sample->state.heading_rad, truth.heading_rad, 0.01);
+  EXPECT_NEAR(sample->state.course_rad, truth.course_rad, 1e-3);
+  EXPECT_NEAR(sample->state.groundspeed_mps, truth.groundspeed_mps, 0.01);
+  EXPECT_NEAR(sample->state.airspeed_mps, truth.airspeed_mps, 1e-4);
+  EXPECT_NEAR(sample->turn_rate_radps, 0.2, 1e-6);
+  // Measured one delay before it came, and the stream has 40 ms.
+  const Duration age = line.now - sample->state.time;
+  EXPECT_GE(age, milliseconds{25});
+  EXPECT_LE(age, milliseconds{85});
+}
+
+TEST(Companion, LeavesTheAircraftToItsPilotUntilGuided) {
+  Line line{params(TakeOver::when_guided)};
+  line.run(8.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_set_mode), 0);
+  EXPECT_TRUE(line.autopilot.target_times.empty());
+  line.autopilot.mode = 15;
+  EXPECT_LE(line.until(State::flying, 1.0), milliseconds{150});
+  EXPECT_GT(line.targets_within(0.5), 5U);
+}
+
+TEST(Companion, NeitherArmsNorTakesOffUnasked) {
+  for (const TakeOver take_over : {TakeOver::when_guided, TakeOver::in_flight}) {
+    Line line{params(take_over)};
+    line.autopilot.armed = false;
+    line.autopilot.landed = 1;
+    line.run(8.0);
+    EXPECT_EQ(line.companion.state(), State::standing_by);
+    EXPECT_EQ(line.autopilot.count(mavlink::Command::component_arm_disarm), 0);
+    EXPECT_EQ(line.autopilot.count(mavlink::Command::do_set_mode), 0);
+    EXPECT_FALSE(line.companion.resume(line.now));
+    EXPECT_FALSE(line.companion.order(FlightOrder::land, line.now));
+  }
+}
+
+TEST(Companion, TakesOffWhereAsked) {
+  Line line{params(TakeOver::from_ground)};
+  auto& fc = line.autopilot;
+  fc.armed = false;
+  fc.landed = 1;
+  fc.relative_height_m = 0.0;
+  fc.health = ~0x10000000U;  // not yet ready to arm
+  line.run(8.0);
+  EXPECT_EQ(fc.count(mavlink::Command::component_arm_disarm), 0);
+  fc.health = 0xFFFFFFFF;
+  line.until(State::climbing, 5.0);
+  ASSERT_EQ(line.companion.state(), State::climbing);
+  EXPECT_EQ(fc.mode, 13U);  // TAKEOFF
+  EXPECT_TRUE(fc.armed);
+  line.run(2.0);
+  EXPECT_EQ(line.companion.state(), State::climbing);
+  fc.landed = 2;
+  fc.relative_height_m = 40.0;
+  line.until(State::flying, 3.0);
+  EXPECT_EQ(fc.mode, 15U);
+  // Landed and disarmed, it stays there: once was asked for.
+  fc.armed = false;
+  fc.landed = 1;
+  line.run(5.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  EXPECT_EQ(fc.count(mavlink::Command::component_arm_disarm), 1);
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, FliesACopterByVelocity) {
+  CompanionParams p = params(TakeOver::from_ground, Airframe::copter);
+  p.takeoff_height_m = 15.0;
+  Line line{p};
+  auto& fc = line.autopilot;
+  fc.type = 13;
+  fc.mode = 0;
+  fc.armed = false;
+  fc.landed = 1;
+  fc.relative_height_m = 0.0;
+  line.until(State::climbing, 10.0);
+  line.run(0.2);
+  const auto takeoff = fc.last(mavlink::Command::nav_takeoff);
+  ASSERT_TRUE(takeoff);
+  EXPECT_EQ(takeoff->param7, 15.0F);
+  fc.landed = 2;
+  fc.relative_height_m = 15.0;
+  line.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 6.0, .height_m = 302.0};
+  line.until(State::flying, 3.0);
+  EXPECT_GE(line.targets_within(1.0), 20U);
+  EXPECT_TRUE(fc.attitudes.empty());
+  const auto target = fc.velocities.back();
+  EXPECT_EQ(target.type_mask, 0xDC7);
+  EXPECT_NEAR(target.vx, 6.0, 1e-5);  // north
+  EXPECT_NEAR(target.vy, 0.0, 1e-5);
+  EXPECT_NEAR(target.vz, -2.0, 0.02);
+}
+
+TEST(Companion, ThePilotWinsAtOnceUntilTheOperatorResumes) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.autopilot.mode = 5;                                        // FBWA
+  EXPECT_LE(line.until(State::piloted, 1.0), milliseconds{120});  // HEARTBEAT at 10 Hz and the line
+  line.run(0.1);                                                  // what was on the line
+  EXPECT_EQ(line.targets_within(2.0), 0U);
+  EXPECT_EQ(line.autopilot.mode, 5U);
+  line.autopilot.mode = 15;  // not even GUIDED is leave to fly
+  EXPECT_EQ(line.targets_within(2.0), 0U);
+  line.autopilot.mode = 6;
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("FBWA")));
+  ASSERT_TRUE(line.companion.resume(line.now));
+  EXPECT_LE(line.until(State::flying, 2.0), milliseconds{300});
+  EXPECT_GT(line.targets_within(0.5), 5U);
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, ALostLinkIsNoticedWithin100MsAndFlownOnWithin200MsOfItsReturn) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  for (int i = 0; i < 5; ++i) {
+    line.run(0.013 * i);
+    line.cut = true;
+    EXPECT_LE(line.until(State::lost, 1.0), milliseconds{105});
+    EXPECT_EQ(line.targets_within(1.0), 0U);
+    line.cut = false;
+    const Instant back = line.now;
+    line.until(State::flying, 1.0);
+    line.tick();
+    EXPECT_LE(line.now - back, milliseconds{200});
+    EXPECT_GT(line.targets_within(0.2), 3U);
+  }
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("no frame comes")));
+}
+
+TEST(Companion, ASilentAutopilotIsToldFromALostLink) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.autopilot.mute = true;  // its node is heard all the same
+  EXPECT_LE(line.until(State::silent, 1.0), milliseconds{115});
+  EXPECT_EQ(line.targets_within(1.0), 0U);
+  line.frames = false;
+  EXPECT_LE(line.until(State::lost, 1.0), milliseconds{105});
+  line.frames = true;
+  line.run(0.02);
+  EXPECT_EQ(line.companion.state(), State::silent);
+  line.autopilot.mute = false;
+  EXPECT_LE(line.until(State::flying, 1.0), milliseconds{200});
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, AModeThatChangedWhileTheLinkWasLostIsThePilots) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.cut = true;
+  line.run(6.0);
+  line.autopilot.mode = 11;  // its failsafe: RTL
+  line.cut = false;
+  line.until(State::piloted, 1.0);
+  EXPECT_EQ(line.companion.state(), State::piloted);
+  EXPECT_EQ(line.targets_within(1.0), 0U);
+}
+
+TEST(Companion, ARebootedAutopilotIsPreparedAnew) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  const int asked = line.autopilot.count(mavlink::Command::set_message_interval);
+  line.cut = true;
+  line.run(1.2);
+  line.cut = false;
+  line.autopilot.reboot(line.now);
+  line.autopilot.mute = true;
+  line.run(0.1);
+  EXPECT_EQ(line.companion.state(), State::silent);
+  line.companion.on_reboot(line.now);  // its node's uptime has gone back
+  EXPECT_EQ(line.companion.state(), State::searching);
+  line.run(3.0);
+  EXPECT_FALSE(line.companion.sample());
+  line.autopilot.mute = false;
+  line.until(State::flying, 6.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  EXPECT_GE(line.autopilot.count(mavlink::Command::set_message_interval), asked + 6);
+  EXPECT_THAT(line.warnings, Contains("the autopilot has rebooted"));
+  line.run(1.0);
+  EXPECT_LE(line.now - line.companion.sample()->state.time, milliseconds{70});
+}
+
+TEST(Companion, ARebootIsSeenInTheClockToo) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.autopilot.reboot(line.now);
+  // Its old streams go on for this test: only the clock tells.
+  mavlink::Encoder encoder{1, 1};
+  mavlink::Attitude attitude;
+  attitude.time_boot_ms = 12;
+  line.companion.on_bytes(encoder.encode(attitude), line.now);
+  EXPECT_EQ(line.companion.state(), State::searching);
+}
+
+TEST(Companion, FallsSilentWhenAnotherNodeHasItsId) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.companion.on_duplicate(42, line.now);
+  EXPECT_EQ(line.companion.state(), State::duplicated);
+  EXPECT_FALSE(line.companion.may_send());
+  line.sent_at = {};
+  line.run(0.5);
+  EXPECT_EQ(line.sent_at, Instant{});  // not a heartbeat
+  EXPECT_FALSE(line.companion.resume(line.now));
+  line.run(3.0);
+  ASSERT_TRUE(line.companion.resume(line.now));
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("have the id 42")));
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, PassesRefusalsOnWithTheAutopilotsReason) {
+  Line line{params(TakeOver::from_ground)};
+  line.autopilot.armed = false;
+  line.autopilot.landed = 1;
+  line.autopilot.relative_height_m = 0.0;
+  line.autopilot.refuses[400] = {1, "Arm: Need Position Estimate"};
+  line.run(15.0);
+  EXPECT_THAT(line.warnings,
+              Contains("the autopilot refuses COMPONENT_ARM_DISARM: temporarily rejected: Arm: "
+                       "Need Position Estimate"));
+  EXPECT_EQ(line.warnings.size(), 1U);  // the same again is not news
+  line.autopilot.refuses.clear();       // and it goes on asking
+  line.until(State::climbing, 3.0);
+  EXPECT_EQ(line.companion.state(), State::climbing);
+}
+
+TEST(Companion, GivesUpWhenGuidedIsRefused) {
+  Line line;
+  line.autopilot.refuses[176] = {4, ""};
+  line.until(State::piloted, 15.0);
+  EXPECT_EQ(line.companion.state(), State::piloted);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_set_mode), 5);
+  EXPECT_THAT(line.warnings, Contains("the autopilot refuses DO_SET_MODE: failed"));
+  EXPECT_EQ(line.autopilot.target_times.size(), 0U);
+}
+
+TEST(Companion, WorksWithWhatStreamsItGets) {
+  Line line;
+  line.autopilot.refuses[511] = {2, ""};
+  line.run(6.0);
+  EXPECT_EQ(line.companion.state(), State::preparing);  // no streams, no state
+  EXPECT_THAT(line.warnings,
+              Contains(HasSubstr("refuses SET_MESSAGE_INTERVAL: denied (HEARTBEAT)")));
+  line.autopilot.refuses.clear();
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+}
+
+TEST(Companion, RefusesWhatIsNotTheAutopilotThatWasConfigured) {
+  struct Case {
+    std::uint8_t make;
+    std::uint8_t type;
+    std::uint32_t firmware;
+    const char* why;
+  };
+  for (const Case& c :
+       {Case{12, 1, 0x04060300, "not an ArduPilot"}, Case{3, 2, 0x04060300, "which is no plane"},
+        Case{3, 1, 0x04040000, "ArduPilot 4.4.0, older than 4.5"}}) {
+    Line line;
+    line.autopilot.maker = c.make;
+    line.autopilot.type = c.type;
+    line.autopilot.firmware = c.firmware;
+    line.run(8.0);
+    EXPECT_EQ(line.companion.state(), State::refused);
+    EXPECT_THAT(line.warnings, Contains(HasSubstr(c.why)));
+    EXPECT_EQ(line.warnings.size(), 1U);
+    EXPECT_EQ(line.autopilot.count(mavlink::Command::do_set_mode), 0);
+    EXPECT_EQ(line.companion.protocol_errors(), 0U);
+  }
+}
+
+TEST(Companion, DoesNotTakeAnAircraftThatDoesNotKnowWhereItIs) {
+  Line line;
+  line.autopilot.health = ~std::uint32_t{mavlink::sensor_gps};
+  line.run(8.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  line.autopilot.health = 0xFFFFFFFF;
+  line.until(State::flying, 2.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+}
+
+TEST(Companion, OrdersHoldReturnAndLandToTheAutopilot) {
+  Line line;
+  line.until(State::flying, 10.0);
+  ASSERT_TRUE(line.companion.order(FlightOrder::hold, line.now));
+  line.run(0.3);
+  EXPECT_EQ(line.autopilot.mode, 12U);  // LOITER
+  EXPECT_EQ(line.targets_within(0.5), 0U);
+  ASSERT_TRUE(line.companion.order(FlightOrder::return_home, line.now));
+  line.run(0.3);
+  EXPECT_EQ(line.autopilot.mode, 11U);  // RTL
+  ASSERT_TRUE(line.companion.order(FlightOrder::land, line.now));
+  line.run(0.3);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_land_start), 1);
+  EXPECT_EQ(line.companion.state(), State::ordered);
+  line.autopilot.mode = 5;  // the pilot takes it here too
+  line.until(State::piloted, 0.5);
+  EXPECT_FALSE(line.companion.order(FlightOrder::hold, line.now));
+  ASSERT_TRUE(line.companion.resume(line.now));
+  line.until(State::flying, 2.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, AnOrderStandsThroughALoss) {
+  Line line;
+  line.until(State::flying, 10.0);
+  ASSERT_TRUE(line.companion.order(FlightOrder::hold, line.now));
+  line.run(0.5);
+  line.cut = true;
+  line.run(1.0);
+  line.cut = false;
+  line.until(State::ordered, 1.0);
+  EXPECT_EQ(line.companion.state(), State::ordered);
+}
+
+TEST(Companion, SendsNoSetpointThatIsOld) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.commands = false;
+  line.run(0.3);
+  EXPECT_EQ(line.targets_within(1.0), 0U);
+  EXPECT_GT(line.autopilot.heartbeats, 0);
+}
+
+TEST(Companion, SurvivesAnyBytesAndAnyOrderOfEvents) {
+  Random random{11};
+  for (int round = 0; round < 20; ++round) {
+    Line line{params(static_cast<TakeOver>(round % 3))};
+    for (int i = 0; i < 400; ++i) {
+      switch (random.index(12)) {
+        case 0:
+          line.cut = !line.cut;
+          break;
+        case 1:
+          line.autopilot.mode = static_cast<std::uint32_t>(random.index(17));
+          break;
+        case 2:
+          line.autopilot.armed = !line.autopilot.armed;
+          break;
+        case 3:
+          line.autopilot.mute = !line.autopilot.mute;
+          break;
+        case 4:
+          line.companion.on_reboot(line.now);
+          break;
+        case 5:
+          if (random.index(10) == 0) line.companion.on_duplicate(42, line.now);
+          break;
+        case 6:
+          (void)line.companion.resume(line.now);
+          break;
+        case 7:
+          (void)line.companion.order(static_cast<FlightOrder>(random.index(3)), line.now);
+          break;
+        case 8: {
+          std::vector<std::uint8_t> noise(random.index(60));
+          for (auto& byte : noise) byte = static_cast<std::uint8_t>(random.index(256));
+          line.companion.on_bytes(noise, line.now);
+          break;
+        }
+        default:
+          break;
+      }
+      line.run(0.01 * static_cast<double>(1 + random.index(30)));
+      EXPECT_EQ(line.companion.protocol_errors(), 0U);
+    }
+  }
+}
+
+TEST(CompanionTable, ReachesEveryStateUnambiguously) {
+  std::set<State> reached{State::searching};
+  for (std::size_t i = 0; i < Companion::table().size(); ++i) {
+    for (const auto& t : Companion::table()) {
+      if (reached.contains(t.from)) reached.insert(t.to);
+    }
+  }
+  EXPECT_EQ(reached.size(), static_cast<std::size_t>(State::count));
+  std::set<std::pair<State, Event>> seen;
+  for (const auto& t : Companion::table()) {
+    EXPECT_TRUE(seen.insert({t.from, t.event}).second)
+        << to_string(t.from) << " " << to_string(t.event);
+  }
+}
+
+/// After a change of the table, paste what this prints into docs/ardupilot.md.
+TEST(CompanionTable, IsDrawnInTheDocument) {
+  std::ifstream file{SKEIN_SOURCE_DIR "/docs/ardupilot.md"};
+  std::stringstream document;
+  document << file.rdbuf();
+  const auto diagram = mermaid<State, Event>(Companion::table(), State::searching);
+  EXPECT_NE(document.str().find(diagram), std::string::npos) << "docs/ardupilot.md lacks:\n"
+                                                             << diagram;
+}
+
+}  // namespace
+}  // namespace skein::ardupilot

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "skein/ardupilot/motion.hpp"
+#include "skein/base/frames.hpp"
+#include "skein/base/state_table.hpp"
+#include "skein/base/time.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mavlink/enums.hpp"
+#include "skein/mavlink/parser.hpp"
+
+namespace skein::ardupilot {
+
+enum class Airframe : std::uint8_t { plane, copter, count };
+
+/// When the companion takes the aircraft. It arms and takes off only where that is asked for.
+enum class TakeOver : std::uint8_t {
+  when_guided,  ///< once the pilot has armed it, has it in the air and switches to GUIDED
+  in_flight,    ///< once it is armed and in the air; the companion asks for GUIDED itself
+  from_ground,  ///< at once: it arms and takes off itself, one time
+  count
+};
+
+/// What the autopilot does by itself, until resume().
+enum class FlightOrder : std::uint8_t { hold, return_home, land };
+
+struct CompanionParams {
+  VehicleSpec vehicle;
+  Airframe airframe = Airframe::plane;
+  TakeOver take_over = TakeOver::when_guided;
+  double takeoff_height_m = 40.0;  ///< above the ground, where the companion takes it
+  /// The geoid above the ellipsoid at the mission's origin: autopilots count heights from it.
+  double geoid_height_m = 0.0;
+  double stream_hz = 25.0;  ///< of attitude and position; ArduPlane grants 40 at most
+  /// Without a frame (or a packet) for that long, the link (or the autopilot) is lost.
+  Duration silence = std::chrono::milliseconds{100};
+  /// A setpoint older than that is sent no more.
+  Duration setpoint_age_max = std::chrono::milliseconds{250};
+};
+
+/// A line for the log; a warning is for the operator too.
+struct Notice {
+  Instant time;
+  bool warning = false;
+  std::string text;
+};
+
+/// The companion's side of a flight by an ArduPilot (4.5 or newer), over any stream of bytes that
+/// carries MAVLink 2. No I/O, no clock: bytes and times come in, bytes and notices go out. What it
+/// does in which state, and what brings it to another: docs/ardupilot.md, printed from kTable.
+class Companion {
+ public:
+  enum class State : std::uint8_t {
+    searching,    ///< for the HEARTBEAT of an autopilot
+    refused,      ///< there is one, and it is not what was configured
+    preparing,    ///< asks for firmware, streams and the autopilot's clock
+    standing_by,  ///< connected; the aircraft is not the companion's
+    arming,       ///< has asked for take-off mode and arming
+    climbing,     ///< armed by the companion; the autopilot takes off
+    taking_over,  ///< has asked for GUIDED
+    flying,       ///< GUIDED: setpoints go out
+    piloted,      ///< the mode was changed by others, who have the aircraft until resume()
+    ordered,      ///< the autopilot holds, returns or lands because it was ordered to
+    lost,         ///< no frame of the flight controller comes
+    silent,       ///< frames come, MAVLink does not
+    checking,     ///< MAVLink is back; whose the aircraft is now, the next HEARTBEAT tells
+    duplicated,   ///< two nodes have one id, ours or its: nothing is sent until resume()
+    count
+  };
+  enum class Event : std::uint8_t {
+    autopilot_found,
+    wrong_autopilot,
+    ready,       ///< the streams flow
+    may_launch,  ///< on the ground, ready to arm, and that was asked for
+    armed,
+    climbed,     ///< high enough to be taken
+    may_take,    ///< in the air, and the companion shall ask for it
+    guided,      ///< HEARTBEAT says GUIDED
+    other_mode,  ///< HEARTBEAT says a mode that the companion did not ask for
+    disarmed,
+    not_obeyed,  ///< was asked several times
+    order_given,
+    order_stands,  ///< after a loss: still the mode that was ordered
+    not_ours,      ///< after a loss: it was not the companion's before either
+    resumed,       ///< by the operator
+    link_lost,
+    autopilot_silent,
+    packets_back,
+    rebooted,
+    duplicate,
+    count
+  };
+  using Entry = Transition<State, Event>;
+  [[nodiscard]] static std::span<const Entry> table();
+
+  Companion(const CompanionParams& params, const MissionOrigin& origin, Instant now);
+  ~Companion();
+  Companion(const Companion&) = delete;
+  Companion& operator=(const Companion&) = delete;
+
+  /// Bytes of the tunnel.
+  void on_bytes(std::span<const std::uint8_t> bytes, Instant now);
+  /// A frame of the flight controller, of whatever kind.
+  void on_frame_heard(Instant now);
+  /// Its node has restarted.
+  void on_reboot(Instant now);
+  /// A sign that two nodes on the bus have that id: ours or the flight controller's.
+  void on_duplicate(std::uint8_t node_id, Instant now);
+
+  /// Flown while the state is `flying`; the last one stands until it is too old.
+  void command(const Setpoint& setpoint, Instant now);
+  /// Hold, return or land. False where the aircraft is not the companion's.
+  bool order(FlightOrder order, Instant now);
+  /// The operator gives the aircraft (back) to the companion. False where it cannot be given.
+  bool resume(Instant now);
+
+  /// What is due by `now`. To be called every 10 ms or so. Precondition: `now` never decreases.
+  void step(Instant now);
+
+  /// The next packet to be sent, whole; or nothing. Those of a duplicated node are withheld.
+  [[nodiscard]] std::optional<mavlink::WireBytes> poll_packet();
+  [[nodiscard]] std::optional<Notice> poll_notice();
+  /// The newest state of the vehicle; nothing before there is one. Its time says how old it is.
+  [[nodiscard]] std::optional<MotionSample> sample() const;
+
+  [[nodiscard]] State state() const;
+  [[nodiscard]] bool may_send() const { return state() != State::duplicated; }
+  /// Events that the table had no entry for.
+  [[nodiscard]] std::uint64_t protocol_errors() const;
+  [[nodiscard]] const mavlink::ParserStatistics& parser() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+[[nodiscard]] std::string_view to_string(Companion::State state);
+[[nodiscard]] std::string_view to_string(Companion::Event event);
+
+}  // namespace skein::ardupilot

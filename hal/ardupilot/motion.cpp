@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+/// Below it the direction of motion is noise.
+constexpr double kCourseKnownAbove_mps = 1.0;
+/// Two positions further apart in time are not joined to a distance flown.
+constexpr Duration kGapMax = std::chrono::seconds{2};
+
+}  // namespace
+
+VehicleState carried_to(const MotionSample& sample, Instant now) {
+  VehicleState state = sample.state;
+  const Duration ahead = std::clamp(now - state.time, Duration{}, kCarryMax);
+  const double seconds = to_seconds(ahead);
+  const double turned = sample.turn_rate_radps * seconds;
+  const double metres = state.groundspeed_mps * seconds;
+  const Vec2 moved = metres * unit_vector(state.course_rad + turned / 2.0);
+  state.time += ahead;
+  state.x_m += moved.x();
+  state.y_m += moved.y();
+  state.z_m += sample.climb_mps * seconds;
+  state.heading_rad = wrap_pi(state.heading_rad + turned);
+  state.course_rad = wrap_pi(state.course_rad + turned);
+  state.distance_flown_m += metres;
+  return state;
+}
+
+void Motion::on_attitude(const mavlink::Attitude& attitude, Instant measured) {
+  if (!std::isfinite(attitude.yaw) || !std::isfinite(attitude.roll)) return;
+  has_attitude_ = true;
+  attitude_at_ = measured;
+  heading_rad_ = wrap_pi(kPi / 2.0 - double{attitude.yaw});
+  // Body rates to the rate of yaw (Beard and McLain, eq. 3.3); yaw is clockwise, heading is not.
+  const double roll = attitude.roll;
+  const double pitch = std::clamp(double{attitude.pitch}, -1.4, 1.4);
+  turn_rate_radps_ =
+      -(double{attitude.pitchspeed} * std::sin(roll) + double{attitude.yawspeed} * std::cos(roll)) /
+      std::cos(pitch);
+}
+
+void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant measured) {
+  const auto enu = origin_.to_enu({position.lat * 1e-7, position.lon * 1e-7,
+                                   static_cast<double>(position.alt) * 1e-3 + geoid_height_m_});
+  const Vec2 over_ground{position.vy * 0.01, position.vx * 0.01};
+  const Duration since = measured - state_.time;
+  if (has_position_ && since > Duration{} && since <= kGapMax && measured > Instant{}) {
+    state_.distance_flown_m += over_ground.norm() * to_seconds(since);
+  }
+  has_position_ = true;
+  state_.time = measured;
+  state_.x_m = enu.x();
+  state_.y_m = enu.y();
+  state_.z_m = enu.z();
+  state_.groundspeed_mps = over_ground.norm();
+  if (state_.groundspeed_mps > kCourseKnownAbove_mps) {
+    state_.course_rad = std::atan2(over_ground.y(), over_ground.x());
+  } else {
+    state_.course_rad = heading_rad_;
+  }
+  climb_mps_ = -position.vz * 0.01;
+  relative_height_m_ = position.relative_alt * 1e-3;
+}
+
+void Motion::on_hud(const mavlink::VfrHud& hud) {
+  if (!std::isfinite(hud.airspeed)) return;
+  has_hud_ = true;
+  airspeed_mps_ = hud.airspeed;
+}
+
+void Motion::forget() {
+  has_attitude_ = false;
+  has_position_ = false;
+  has_hud_ = false;
+}
+
+std::optional<MotionSample> Motion::sample() const {
+  if (!has_attitude_ || !has_position_ || !has_hud_) return std::nullopt;
+  MotionSample sample{state_, turn_rate_radps_, climb_mps_};
+  if (hovers_) {
+    sample.state.heading_rad = state_.course_rad;
+    sample.state.airspeed_mps = state_.groundspeed_mps;
+    // Its body may turn as it likes.
+    sample.turn_rate_radps = 0.0;
+    return sample;
+  }
+  const Duration apart = std::clamp(state_.time - attitude_at_, -kCarryMax, kCarryMax);
+  sample.state.heading_rad = wrap_pi(heading_rad_ + turn_rate_radps_ * to_seconds(apart));
+  sample.state.airspeed_mps = airspeed_mps_;
+  return sample;
+}
+
+}  // namespace skein::ardupilot

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include "boot_clock.hpp"
+#include "command_desk.hpp"
+#include "flight_modes.hpp"
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+#include "steering.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using mavlink::Command;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+mavlink::CommandLong command(Command c, float p1 = 0.0F) {
+  mavlink::CommandLong l;
+  l.command = static_cast<std::uint16_t>(c);
+  l.param1 = p1;
+  return l;
+}
+
+TEST(BootClock, FindsTheOffsetThroughADelayThatVaries) {
+  Random random{3};
+  BootClock clock;
+  const Instant zero = at_seconds(-73.25);
+  EXPECT_FALSE(clock.mission_time(seconds{80}, at_seconds(7.0)));
+  Instant now = at_seconds(0.0);
+  for (int i = 0; i < 60; ++i) {
+    const Duration there = from_seconds(random.uniform(0.002, 0.060));
+    const Duration back = from_seconds(random.uniform(0.002, 0.060));
+    clock.on_round_trip(now, now + there + back, now + there - zero);
+    now += seconds{1};
+  }
+  const auto mapped = clock.mission_time(seconds{100}, at_seconds(100.0));
+  ASSERT_TRUE(mapped);
+  EXPECT_LT(std::abs(to_seconds(*mapped - (zero + seconds{100}))), 0.010);
+  EXPECT_LT(clock.uncertainty(now), milliseconds{20});
+}
+
+TEST(BootClock, TakesArrivalForMeasurementUntilItKnowsBetter) {
+  BootClock clock;
+  clock.on_arrival(at_seconds(10.0), seconds{5});
+  EXPECT_EQ(clock.mission_time(seconds{5}, at_seconds(10.0)), at_seconds(10.0));
+  clock.on_arrival(at_seconds(11.2), seconds{6});  // this one was delayed
+  EXPECT_EQ(clock.mission_time(seconds{6}, at_seconds(11.2)), at_seconds(11.0));
+  clock.restart();
+  EXPECT_FALSE(clock.mission_time(seconds{6}, at_seconds(11.2)));
+}
+
+TEST(BootClock, NeverSaysThatAMessageCameBeforeItWasMeasured) {
+  BootClock clock;
+  clock.on_round_trip(at_seconds(1.0), at_seconds(1.1), seconds{5});
+  EXPECT_EQ(clock.mission_time(seconds{6}, at_seconds(2.0)), at_seconds(2.0));
+}
+
+TEST(CommandDesk, HasOneOfAKindUnderWayAndRepeatsIt) {
+  CommandDesk desk;
+  const Instant t{};
+  desk.ask(command(Command::set_message_interval, 30.0F), {2, milliseconds{300}}, false);
+  desk.ask(command(Command::set_message_interval, 33.0F), {2, milliseconds{300}}, false);
+  desk.ask(command(Command::do_set_mode, 1.0F), {1, milliseconds{300}}, true);
+  ASSERT_EQ(desk.next(t)->param1, 30.0F);
+  ASSERT_EQ(desk.next(t)->param1, 1.0F);
+  EXPECT_FALSE(desk.next(t));
+  const auto again = desk.next(t + milliseconds{300});
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->param1, 30.0F);
+  EXPECT_EQ(again->confirmation, 1);
+  mavlink::CommandAck ack;
+  ack.command = static_cast<std::uint16_t>(Command::set_message_interval);
+  const auto first = desk.on_ack(ack);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->command.param1, 30.0F);
+  EXPECT_EQ(first->answer, Answer::accepted);
+  EXPECT_EQ(desk.next(t + milliseconds{300})->param1, 33.0F);
+  const auto given_up = desk.give_up(t + milliseconds{301});
+  ASSERT_TRUE(given_up);
+  EXPECT_EQ(given_up->answer, Answer::unanswered);
+  EXPECT_EQ(given_up->command.command, static_cast<std::uint16_t>(Command::do_set_mode));
+  EXPECT_FALSE(desk.give_up(t + milliseconds{302}));
+}
+
+TEST(CommandDesk, KeepsOnlyTheNewestWhereThatIsAllThatMatters) {
+  CommandDesk desk;
+  desk.ask(command(Command::do_change_speed, 50.0F), {}, true);
+  ASSERT_EQ(desk.next(Instant{})->param1, 50.0F);
+  desk.ask(command(Command::do_change_speed, 51.0F), {}, true);
+  desk.ask(command(Command::do_change_speed, 52.0F), {}, true);
+  mavlink::CommandAck ack;
+  ack.command = static_cast<std::uint16_t>(Command::do_change_speed);
+  ack.result = 2;
+  EXPECT_EQ(desk.on_ack(ack)->answer, Answer::refused);
+  EXPECT_EQ(desk.next(Instant{})->param1, 52.0F);
+  ASSERT_TRUE(desk.on_ack(ack));
+  EXPECT_TRUE(desk.idle());
+}
+
+TEST(CommandDesk, WaitsOnWhileACommandIsInProgressAndIgnoresAnswersToOthers) {
+  CommandDesk desk;
+  desk.ask(command(Command::component_arm_disarm), {}, true);
+  mavlink::CommandAck ack;
+  ack.command = static_cast<std::uint16_t>(Command::component_arm_disarm);
+  EXPECT_FALSE(desk.on_ack(ack));  // not even sent
+  ASSERT_TRUE(desk.next(Instant{}));
+  ack.result = 5;
+  EXPECT_FALSE(desk.on_ack(ack));
+  EXPECT_TRUE(desk.asks(Command::component_arm_disarm));
+  ack.command = 999;
+  EXPECT_FALSE(desk.on_ack(ack));
+}
+
+TEST(CarriedTo, GoesOnAlongTheArcAndNoFurtherThanItMay) {
+  MotionSample sample;
+  sample.state = {.time = at_seconds(10.0),
+                  .x_m = 5.0,
+                  .y_m = 0.0,
+                  .z_m = 100.0,
+                  .heading_rad = 0.0,
+                  .course_rad = 0.0,
+                  .groundspeed_mps = 50.0,
+                  .airspeed_mps = 48.0,
+                  .distance_flown_m = 1000.0};
+  sample.turn_rate_radps = 0.5;
+  sample.climb_mps = 2.0;
+  const auto state = carried_to(sample, at_seconds(10.2));
+  EXPECT_EQ(state.time, at_seconds(10.2));
+  const double radius = 50.0 / 0.5;
+  EXPECT_NEAR(state.x_m, 5.0 + radius * std::sin(0.1), 0.01);
+  EXPECT_NEAR(state.y_m, radius * (1.0 - std::cos(0.1)), 0.01);
+  EXPECT_NEAR(state.z_m, 100.4, 1e-9);
+  EXPECT_NEAR(state.course_rad, 0.1, 1e-9);
+  EXPECT_NEAR(state.distance_flown_m, 1010.0, 1e-6);
+  EXPECT_EQ(carried_to(sample, at_seconds(20.0)).time, at_seconds(10.25));
+  EXPECT_EQ(carried_to(sample, at_seconds(9.0)).time, at_seconds(10.0));
+}
+
+TEST(FlightModes, AreThoseOfTheAirframe) {
+  EXPECT_EQ(guided_mode(Airframe::plane), 15U);
+  EXPECT_EQ(guided_mode(Airframe::copter), 4U);
+  EXPECT_EQ(mode_of(Airframe::plane, FlightOrder::return_home), 11U);
+  EXPECT_EQ(mode_of(Airframe::copter, FlightOrder::land), 9U);
+  EXPECT_EQ(name_of_mode(Airframe::copter, 4), "GUIDED");
+  EXPECT_EQ(name_of_mode(Airframe::plane, 4), "ACRO");
+  EXPECT_EQ(name_of_mode(Airframe::plane, 77), "mode 77");
+  EXPECT_TRUE(is_of(Airframe::plane, 1));
+  EXPECT_FALSE(is_of(Airframe::plane, 13));
+  EXPECT_TRUE(is_of(Airframe::copter, 13));
+}
+
+}  // namespace
+}  // namespace skein::ardupilot
