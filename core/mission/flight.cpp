@@ -10,6 +10,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/avoidance.hpp"
+#include "skein/planning/dubins.hpp"
 
 namespace skein::mission {
 namespace {
@@ -85,7 +86,8 @@ Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
                std::vector<Vec2> search)
     : vehicle_{vehicle}, avoidance_{avoidance}, search_{std::move(search)} {}
 
-void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, Instant now) {
+void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
+                   Instant now) {
   home_ = pose.position();
   TimedPath here;
   here.start_time = now;
@@ -93,7 +95,7 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, Instan
   here.path.start = pose;
   here.tail_curvature_per_m = 0.0;  // straight on until the first path begins
   replace(here);
-  search(hazards, now);
+  search(hazards, range_m, now);
 }
 
 void Flight::replace(const TimedPath& timed) {
@@ -115,6 +117,7 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (!timed.path.append(next)) return false;
   if (searching_) pass_waypoints(now);
   searching_ = false;
+  homing_ = false;
   replace(timed);
   return true;
 }
@@ -210,24 +213,34 @@ void Flight::pass_waypoints(Instant now) {
   search_marks_.clear();
 }
 
-void Flight::search(const std::vector<Hazard>& hazards, Instant now) {
+void Flight::search(const std::vector<Hazard>& hazards, double range_m, Instant now) {
   if (searching_) pass_waypoints(now);
   if (search_.empty()) {
     hold(hazards, now);
   } else {
-    follow(search_, hazards, now);
+    follow(search_, hazards, range_m, now);
   }
   searching_ = true;
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
-  follow({home_}, hazards, now);
+  follow({home_}, hazards, std::numeric_limits<double>::infinity(), now);
   searching_ = false;
+  homing_ = true;
   search_marks_.clear();
 }
 
+double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {
+  const Vec2 way = home_ - from.position();
+  const double heading = way.norm() > 1.0 ? std::atan2(way.y(), way.x()) : from.heading_rad;
+  const Pose2 to{home_.x(), home_.y(), heading};
+  const double radius = vehicle_.planning_radius_m();
+  const auto clear = planning::shortest_clear_length(avoidance_, from, to, radius, hazards);
+  return clear ? *clear : planning::shortest_dubins_length(from, to, radius);
+}
+
 void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
-                    Instant now) {
+                    double range_m, Instant now) {
   const Instant at = now + kHandover;
   Path route = forced_way(pose_at(at), hazards);
   std::vector<double> marks;
@@ -251,6 +264,8 @@ void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard
       marks.push_back(route.length_m());
       continue;
     }
+    const bool homeward = std::isinf(range_m);
+    if (!homeward && route.length_m() + leg->length_m() + way_home_m(to, hazards) > range_m) break;
     if (!route.append(*leg)) break;
     marks.push_back(route.length_m());
     from = to;

@@ -18,8 +18,8 @@ class Flight {
  public:
   Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance, std::vector<Vec2> search);
 
-  /// The first plan: from where the vehicle is, along the search route.
-  void start(const Pose2& pose, const std::vector<Hazard>& hazards, Instant now);
+  /// The first plan: from where the vehicle is, which is its home, along the search route.
+  void start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m, Instant now);
   [[nodiscard]] bool started() const { return plan_.number > 0; }
 
   /// Where the plan has the vehicle at `t`. Precondition of these: started().
@@ -31,10 +31,15 @@ class Flight {
   bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now);
   /// The same without a next path: an orbit from here on, or from where there is room for one.
   void hold(const std::vector<Hazard>& hazards, Instant now);
-  /// Along what is left of the search route, then an orbit at its end.
-  void search(const std::vector<Hazard>& hazards, Instant now);
+  /// Along what is left of the search route, as far as `range_m` lasts there and home again, then
+  /// an orbit where that ends.
+  void search(const std::vector<Hazard>& hazards, double range_m, Instant now);
   void fly_home(const std::vector<Hazard>& hazards, Instant now);
   [[nodiscard]] bool searching() const { return searching_; }
+  [[nodiscard]] bool homing() const { return homing_; }
+  /// The length of the way from there to where the first plan began, clear of hazards where it can
+  /// be.
+  [[nodiscard]] double way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const;
 
   /// The curvature of an orbit at that pose that keeps its distance from the hazards, to the left
   /// where it can.
@@ -59,7 +64,8 @@ class Flight {
   /// Where the vehicle is inside a hazard that has just become known, or no turn misses it: the
   /// turn to either side, and straight on, that is inside for the shortest. Empty elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
-  void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards, Instant now);
+  void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
+              double range_m, Instant now);
   void replace(const TimedPath& timed);
   void pass_waypoints(Instant now);
 
@@ -71,6 +77,7 @@ class Flight {
   Vec2 home_{0.0, 0.0};
   FlightPlan plan_;
   bool searching_ = false;
+  bool homing_ = false;
   bool fresh_ = false;
 };
 

@@ -61,13 +61,16 @@ class VehicleAgent::Impl {
   void on_command(const Command& message, Instant now);
   void on_hazard(const Hazard& hazard, Instant now);
   void idle(Instant now);
+  void search(Instant now);
+  void watch_range(Instant now);
+  void hand_on_lead(Instant now);
 
   // Leader: surveys what was found and sees its tasks done.
   void on_site_report(const SiteReport& message, Instant now);
   void take_up_site(Instant now);
   void fly_survey(Instant now);
   void take_up_lost_site(Instant now);
-  bool fly_to(const SiteBook::Entry& lost, Instant now);
+  [[nodiscard]] Result<SurveyFlight> fly_around(const Site& site, bool relief, Instant now);
   void fly_to_lost_site(Instant now);
   [[nodiscard]] Instant unheard_since(Instant now) const;
   void lead(const Site& site, const std::vector<TaskId>& done, Instant now);
@@ -87,6 +90,9 @@ class VehicleAgent::Impl {
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
   [[nodiscard]] double range_left(Instant at) const;
+  [[nodiscard]] double range_for(const Site& site, Instant at) const;
+  [[nodiscard]] double range_to_spend(Instant at) const;
+  [[nodiscard]] double spare_range(Instant now) const;
 
   VehicleAgentConfig config_;
   VehicleState state_;
@@ -94,6 +100,8 @@ class VehicleAgent::Impl {
   std::vector<Hazard> hazards_;
   std::uint8_t loads_ = 0;
   bool held_by_operator_ = false;
+  Instant range_again_{};  ///< when its range is looked at next
+  bool spent_ = false;     ///< what is left of its range is for the way home
   std::uint32_t last_command_ = 0;
   bool duplicate_id_ = false;
 
@@ -102,9 +110,14 @@ class VehicleAgent::Impl {
 
   std::optional<SurveyFlight> survey_;
   std::vector<Site> surveyed_;  ///< surveyed here, waiting to be led
-  std::vector<Site> found_;     ///< found here, waiting to be surveyed
-  std::set<SiteId> known_;      ///< found or announced by anybody
-  SiteBook sites_;              ///< as others lead them
+  struct FoundSite {
+    Site site;
+    bool told = false;  ///< that it cannot be surveyed now
+  };
+  std::vector<FoundSite> found_;  ///< found here, waiting to be surveyed
+  Instant survey_again_{};
+  std::set<SiteId> known_;  ///< found or announced by anybody
+  SiteBook sites_;          ///< as others lead them
   std::optional<coalition::Initiator> initiator_;
   struct Farewell {
     coalition::LeaseRenewal last;

@@ -15,11 +15,10 @@ namespace {
 constexpr Duration kDecisionMargin = std::chrono::seconds{2};
 constexpr Duration kRequestPeriod = std::chrono::seconds{1};
 constexpr Duration kSurveyLead = std::chrono::milliseconds{200};
+constexpr Duration kSurveyPeriod = std::chrono::seconds{5};  ///< between attempts to plan one
 constexpr std::size_t kSitesWaitingMax = 16;
 constexpr int kFarewells = 5;
-/// Who goes to lead a lost site must have this times the way there left, and goes around it at this
-/// times its planning radius at least.
-constexpr double kReliefRangeFactor = 2.0;
+/// Who goes to lead a lost site goes around it at this times its planning radius at least.
 constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for such sites
 constexpr double kReliefRadiusFactor = 1.2;
 
@@ -54,7 +53,7 @@ void VehicleAgent::Impl::on_site_report(const SiteReport& message, Instant now) 
   if (message.finder != config_.vehicle.id || !known_.insert(message.site.id).second) return;
   const double range = (message.site.position - state_.position().horizontal()).norm();
   report(EventKind::site_detected, {}, {message.site.id, TaskKind::survey, 0}, range, {}, now);
-  if (found_.size() < kSitesWaitingMax) found_.push_back(message.site);
+  if (found_.size() < kSitesWaitingMax) found_.push_back({message.site});
 }
 
 void VehicleAgent::Impl::take_up_site(Instant now) {
@@ -65,21 +64,46 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
     lead(site, sites_.over(site.id), now);
     return;
   }
-  if (found_.empty()) return;
-  const Site site = found_.front();
-  found_.erase(found_.begin());
-  const Instant start = now + kSurveyLead;
-  const auto plan = planning::plan_survey(config_.planning, config_.vehicle, flight_.pose_at(start),
-                                          start, site, hazards_);
-  const TaskId task{site.id, TaskKind::survey, 0};
-  // It goes on circling the site on the survey's own arc while it leads.
-  if (!plan ||
-      !flight_.continue_with(start, plan->timed.path, plan->timed.tail_curvature_per_m, now)) {
-    report(EventKind::task_failed, {}, task, 0.0,
-           plan ? "the path has too many pieces" : plan.error().message, now);
-    return;
+  if (found_.empty() || now < survey_again_) return;
+  survey_again_ = now + kSurveyPeriod;
+  for (auto& found : found_) {
+    const auto survey = fly_around(found.site, false, now);
+    if (survey) {
+      survey_ = *survey;
+      survey_again_ = now;
+      std::erase_if(found_, [&](const FoundSite& f) { return f.site.id == survey_->site.id; });
+      return;
+    }
+    // It may become possible: from elsewhere, or with other hazards known.
+    if (!std::exchange(found.told, true)) {
+      report(EventKind::task_failed, {}, {found.site.id, TaskKind::survey, 0}, 0.0,
+             survey.error().message, now);
+    }
   }
-  survey_ = SurveyFlight{site, *plan, false};
+}
+
+/// The flight to a site and around it, for its survey or (`relief`) to lead there, is the flight
+/// plan from now on. It goes on circling the site on the same arc.
+Result<SurveyFlight> VehicleAgent::Impl::fly_around(const Site& site, bool relief, Instant now) {
+  const Instant start = now + kSurveyLead;
+  VehicleSpec vehicle = config_.vehicle;
+  if (relief) {  // at any radius that it can fly
+    vehicle.sensor_radius_m =
+        std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
+  }
+  const auto plan = planning::plan_survey(config_.planning, vehicle, flight_.pose_at(start), start,
+                                          site, hazards_);
+  if (!plan) return plan.error();
+  const Path& path = plan->timed.path;
+  // Who is to lead there must also have the range to stay for some time.
+  const double stay_m = relief ? path.length_m() : 0.0;
+  if (path.length_m() + stay_m + flight_.way_home_m(path.end(), hazards_) > range_to_spend(start)) {
+    return Error{"not enough range left"};
+  }
+  if (!flight_.continue_with(start, path, plan->timed.tail_curvature_per_m, now)) {
+    return Error{"the path has too many pieces"};
+  }
+  return SurveyFlight{site, *plan, relief};
 }
 
 /// The stagger lets one of several free vehicles go first; its announcement calls the others off.
@@ -93,35 +117,20 @@ void VehicleAgent::Impl::take_up_lost_site(Instant now) {
   if (duplicate_id_ || now < relief_again_) return;
   relief_again_ = now + kReliefPeriod;
   for (const auto* lost : sites_.lost(unheard_since(now))) {
-    if (fly_to(*lost, now)) return;
+    const auto relief = fly_around(lost->site, true, now);
+    if (!relief) continue;
+    report(EventKind::plan_changed, {}, {lost->site.id, {}, 0}, 0.0,
+           "the site's leader is lost: goes there to lead", now);
+    survey_ = *relief;
+    return;
   }
-}
-
-bool VehicleAgent::Impl::fly_to(const SiteBook::Entry& lost, Instant now) {
-  const Instant start = now + kSurveyLead;
-  const Pose2 from = flight_.pose_at(start);
-  const double way_m = (lost.site.position - from.position()).norm();
-  if (range_left(start) < kReliefRangeFactor * way_m) return false;
-  VehicleSpec vehicle = config_.vehicle;  // it goes around the site at any radius that it can fly
-  vehicle.sensor_radius_m =
-      std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
-  const auto plan =
-      planning::plan_survey(config_.planning, vehicle, from, start, lost.site, hazards_);
-  if (!plan ||
-      !flight_.continue_with(start, plan->timed.path, plan->timed.tail_curvature_per_m, now)) {
-    return false;
-  }
-  report(EventKind::plan_changed, {}, {lost.site.id, {}, 0}, 0.0,
-         "the site's leader is lost: goes there to lead", now);
-  survey_ = SurveyFlight{lost.site, *plan, true};
-  return true;
 }
 
 void VehicleAgent::Impl::fly_to_lost_site(Instant now) {
   const auto* lost = sites_.lost(survey_->site.id, unheard_since(now));
   if (lost == nullptr) {  // its leader was heard, or nothing is left to do
     survey_.reset();
-    flight_.search(hazards_, now);
+    search(now);
   } else if (now >= survey_->begin_time() + config_.protocol.silence) {  // it has listened there
     survey_.reset();
     lead(lost->site, lost->over, now);
@@ -142,7 +151,7 @@ void VehicleAgent::Impl::fly_survey(Instant now) {
   const auto survey = *std::exchange(survey_, std::nullopt);
   if (!on_track(survey.plan.timed)) {
     report(EventKind::task_failed, {}, task, 0.0, "off the planned path", now);
-    found_.push_back(survey.site);
+    found_.push_back({survey.site});
     return;
   }
   report(EventKind::survey_done, {}, task, to_seconds(survey.begin_time()), {}, survey.end_time());

@@ -17,6 +17,8 @@ constexpr Duration kCommitLead = std::chrono::seconds{1};
 constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 /// A plan that starts now, for an award that came after the agreed moment.
 constexpr Duration kLateStart = std::chrono::milliseconds{200};
+/// At least, between two looks at the range left. What is flown in it twice is less than an orbit.
+constexpr Duration kRangePeriod = std::chrono::seconds{1};
 constexpr std::size_t kGrantsMax = 64;
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 }  // namespace
@@ -65,6 +67,7 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
   if (survey_) return Error{"surveying"};
   if (initiator_ && !own) return Error{"leading its own site"};
   if (task_ && task_->begun) return Error{"a task is in progress"};
+  if (spent_) return Error{"not enough range left"};
 
   const auto& vehicle = config_.vehicle;
   const auto can = [&](const TaskId& t) {
@@ -82,7 +85,8 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
   const double way =
       planning::shortest_to_point(pose, announcement.site.position, vehicle.planning_radius_m())
           .length_m();
-  const auto self = candidate(pose, announcement.formed_at);
+  auto self = candidate(pose, announcement.formed_at);
+  self.range_left_m = range_for(announcement.site, announcement.formed_at);
   if (way > self.range_left_m) return Error{"not enough range left"};
 
   coalition::Bid bid;
@@ -97,6 +101,15 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
   bid.loads = self.loads;
   bid.eta = announcement.formed_at + from_seconds(way / vehicle.cruise_speed_mps);
   return bid;
+}
+
+/// What a task at that site may use up, so that it can come home from any end of it.
+double VehicleAgent::Impl::range_for(const Site& site, Instant at) const {
+  const auto& vehicle = config_.vehicle;
+  const Pose2 there{site.position.x(), site.position.y(), 0.0};
+  const double turn_m = kTwoPi * vehicle.planning_radius_m();
+  return range_to_spend(at) - flight_.way_home_m(there, hazards_) - vehicle.assess_radius_m -
+         turn_m;
 }
 
 planning::Candidate VehicleAgent::Impl::candidate(const Pose2& pose, Instant at) const {
@@ -145,8 +158,11 @@ Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, Instant start, I
   auto plan = planning::plan_task(config_.planning, candidate(pose, start), start, task.site,
                                   task.assignment, hazards_);
   if (!plan) return plan.error();
-  task.plan = *plan;
   Path path = plan->timed.path;
+  if (path.length_m() + flight_.way_home_m(path.end(), hazards_) > range_to_spend(start)) {
+    return Error{"not enough range left"};
+  }
+  task.plan = *plan;
   double tail = plan->timed.tail_curvature_per_m;
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
@@ -258,7 +274,7 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
          "the operator commands: " + std::string{to_string(message.kind)}, now);
   if (message.kind == CommandKind::resume) {
     held_by_operator_ = false;
-    if (!task_ && !survey_) flight_.search(hazards_, now);
+    if (!task_ && !survey_) search(now);
     return;
   }
   held_by_operator_ = true;
@@ -268,7 +284,7 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
     initiator_->close("the operator holds the leader", now);
     stop_leading(now);
   }
-  if (survey_ && !survey_->relief) found_.push_back(survey_->site);
+  if (survey_ && !survey_->relief) found_.push_back({survey_->site});
   survey_.reset();
   pump(now);
   if (message.kind == CommandKind::return_home) {
@@ -282,12 +298,13 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   const auto same = [&](const Hazard& h) { return h.id == hazard.id; };
   if (std::any_of(hazards_.begin(), hazards_.end(), same)) return;
   hazards_.push_back(hazard);
+  range_again_ = now;  // the way home may be longer by it
   report(EventKind::hazard_known, {}, {}, hazard.radius_m,
          "hazard " + std::to_string(hazard.id.value), now);
   if (!flight_.started()) return;
   if (flight_.keeps_clear(hazards_, now)) return;
-  if (flight_.searching()) {
-    flight_.search(hazards_, now);
+  if (flight_.searching() || flight_.homing()) {
+    flight_.homing() ? flight_.fly_home(hazards_, now) : search(now);
     return;
   }
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
@@ -314,10 +331,48 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
 /// Nothing to do: search on, or take up a site that waits.
 void VehicleAgent::Impl::idle(Instant now) {
   if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
+  if (spent_) {
+    if (!flight_.homing()) flight_.fly_home(hazards_, now);
+    return;
+  }
   if (initiator_) return;  // it keeps circling its site
   take_up_site(now);
   if (!survey_ && !initiator_) take_up_lost_site(now);
-  if (!survey_ && !initiator_ && !flight_.searching()) flight_.search(hazards_, now);
+  if (!survey_ && !initiator_ && !flight_.searching()) search(now);
+}
+
+void VehicleAgent::Impl::search(Instant now) {
+  spent_ ? flight_.fly_home(hazards_, now) : flight_.search(hazards_, range_to_spend(now), now);
+}
+
+/// While it still can it turns for home, whatever it was about. Only a run that has begun is flown
+/// to its end: that was planned with the way home.
+void VehicleAgent::Impl::watch_range(Instant now) {
+  if (spent_) hand_on_lead(now);
+  if (spent_ || now < range_again_ || (task_ && (task_->begun || task_->committed))) return;
+  // A metre of flight brings it at most a metre further from home.
+  const double spare_s = spare_range(now) / (2.0 * config_.vehicle.cruise_speed_mps);
+  range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
+  if (spare_s > 0.0) return;
+  spent_ = true;
+  report(EventKind::plan_changed, {}, {}, range_left(now),
+         "returns: it needs its range for the way", now);
+  participant_.withdraw("not enough range left", now);
+  if (survey_ && !survey_->relief) found_.push_back({survey_->site});
+  survey_.reset();
+  pump(now);
+  hand_on_lead(now);
+  if (!flight_.homing()) flight_.fly_home(hazards_, now);
+}
+
+/// Who is on the way home leads as long as others fly what it awarded. Then its silence tells the
+/// others to take the site up.
+void VehicleAgent::Impl::hand_on_lead(Instant now) {
+  if (!initiator_ || !initiator_->owned().empty()) return;
+  report(EventKind::cancelled, initiator_->round(), {initiator_->site().id, {}, 0}, 0.0,
+         "not enough range left to lead", now);
+  initiator_->close("not enough range left to lead", now);
+  stop_leading(now);
 }
 
 }  // namespace skein::mission

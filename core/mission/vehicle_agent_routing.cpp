@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "skein/planning/path_follower.hpp"
 #include "vehicle_agent_impl.hpp"
 
@@ -38,7 +39,7 @@ VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   state_ = state;
-  if (!flight_.started()) flight_.start(state.pose(), hazards_, now);
+  if (!flight_.started()) flight_.start(state.pose(), hazards_, range_to_spend(now), now);
   step(now);
 }
 
@@ -73,7 +74,8 @@ void VehicleAgent::Impl::step(Instant now) {
     initiator_->on_timeout(now);
   }
   if (task_ && task_->begun) fly_task(now);  // what is done was done under the lease that ends now
-  participant_.set_may_lead(!initiator_ && !survey_ && !duplicate_id_ && !held_by_operator_);
+  participant_.set_may_lead(!initiator_ && !survey_ && !duplicate_id_ && !held_by_operator_ &&
+                            !spent_);
   participant_.on_timeout(now);
   pump(now);
   say_farewell(now);
@@ -81,6 +83,7 @@ void VehicleAgent::Impl::step(Instant now) {
   if (task_) fly_task(now);
   if (survey_) fly_survey(now);
   pump(now);
+  watch_range(now);
   idle(now);
   pump(now);
 }
@@ -178,6 +181,16 @@ double VehicleAgent::Impl::range_left(Instant at) const {
   return config_.vehicle.range_m - state_.distance_flown_m - until_then;
 }
 
+/// Without what is kept for an orbit at home, for whoever lands it.
+double VehicleAgent::Impl::range_to_spend(Instant at) const {
+  return range_left(at) - kTwoPi * config_.vehicle.planning_radius_m();
+}
+
+/// What it could still spend before it must turn for home.
+double VehicleAgent::Impl::spare_range(Instant now) const {
+  return range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards_);
+}
+
 Instant VehicleAgent::Impl::next_timeout() const {
   Instant next = participant_.next_timeout();
   if (initiator_) next = std::min(next, initiator_->next_timeout());
@@ -192,6 +205,7 @@ Instant VehicleAgent::Impl::next_timeout() const {
 
 Activity VehicleAgent::Impl::activity() const {
   if (held_by_operator_) return Activity::holding;
+  if (spent_ && !task_ && !initiator_) return Activity::holding;
   if (task_) return Activity::executing;
   if (initiator_) {
     return initiator_->state() == coalition::Initiator::State::monitoring ? Activity::monitoring

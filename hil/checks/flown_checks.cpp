@@ -264,6 +264,17 @@ std::vector<ArcFlown> arcs_flown(const RunRecord& record, TaskKind kind, const L
   return all;
 }
 
+/// The recording ended with the mission, before the approach that had begun could.
+bool outlasts_recording(const RunRecord& record, const TaskRun& run) {
+  const auto* recorded = recording_of(record, run.vehicle);
+  const auto* vehicle = spec_of(record, run.vehicle);
+  if (run.done || recorded == nullptr || vehicle == nullptr || recorded->track.empty()) {
+    return false;
+  }
+  const Duration approach = from_seconds(vehicle->final_approach_m / vehicle->cruise_speed_mps);
+  return recorded->track.back().state.time < run.begin() + approach;
+}
+
 CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
   CheckResult result{"deliveries",
                      "as flown: within " + fixed(limits.arrival_s, 1) + " s, " +
@@ -274,7 +285,8 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
                      "",
                      {}};
   for (const TaskRun& run : task_runs(record)) {
-    const bool delivered = run.task.kind == TaskKind::deliver && run.flown() && !run.cut_off;
+    const bool delivered = run.task.kind == TaskKind::deliver && run.flown() && !run.cut_off &&
+                           !outlasts_recording(record, run);
     const Site* site = site_of(record, run.task.site);
     if (delivered &&
         (!run.planned || site == nullptr || run.task.index >= site->deliveries.size())) {

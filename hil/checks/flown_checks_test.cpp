@@ -71,6 +71,16 @@ TEST(FlownChecks, ADeliveryThatTheTrackDoesNotShowIsFound) {
   EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("the track does not show it"));
 }
 
+TEST(FlownChecks, AnApproachThatOutlastsTheRecordingIsNotJudged) {
+  RunRecord record = good_record();
+  spec(record, kFromSouth).final_approach_m = 300.0;  // 6 s from 54 s on
+  erase_events(record, kFromSouth, EventKind::task_done);
+  of(record, kFromSouth).track.resize(1201);
+  EXPECT_EQ(check_deliveries(record, {}).violations.size(), 1U);  // it ends at 60 s
+  of(record, kFromSouth).track.resize(1199);
+  EXPECT_TRUE(check_deliveries(record, {}).held());
+}
+
 TEST(FlownChecks, ADeliveryWhoseEndWasNeverToldIsFound) {
   RunRecord record = good_record();
   erase_events(record, kFromSouth, EventKind::task_done);
