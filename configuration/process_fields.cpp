@@ -10,6 +10,8 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(TaskKind::count)
     "survey", "deliver", "assess"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(FlightControllerKind::count)>
     kFlightControllers{"simulated"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(Recovery::count)> kRecoveries{
+    "home", "anywhere"};
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
 constexpr Range kPort{1.0, 65535.0};
 
@@ -86,6 +88,12 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
            {0.05, 20.0, "1/s"}, spec.heading_gain_per_s);
   v.number({"range_m", "distance that the vehicle can fly", kRequired}, {100.0, 1e7, "m"},
            spec.range_m);
+  auto recovery = static_cast<std::size_t>(spec.recovery);
+  v.choice({"recovery",
+            "where the flight ends: `home`, its start, for which it keeps enough of its range, or "
+            "`anywhere`, where its range ends"},
+           kRecoveries, recovery);
+  spec.recovery = static_cast<Recovery>(recovery);
   capabilities(v, {"capabilities", "tasks that the vehicle can do", kRequired}, spec.capabilities);
   v.number({"sensor_radius_m", "detects sites within it and surveys on a circle of it"},
            {0.0, 20000.0, "m"}, spec.sensor_radius_m);

@@ -231,6 +231,7 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
 }
 
 double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {
+  if (vehicle_.recovery == Recovery::anywhere) return 0.0;
   const Vec2 way = home_ - from.position();
   const double heading = way.norm() > 1.0 ? std::atan2(way.y(), way.x()) : from.heading_rad;
   const Pose2 to{home_.x(), home_.y(), heading};

@@ -38,7 +38,7 @@ class Flight {
   [[nodiscard]] bool searching() const { return searching_; }
   [[nodiscard]] bool homing() const { return homing_; }
   /// The length of the way from there to where the first plan began, clear of hazards where it can
-  /// be.
+  /// be; 0 where the vehicle needs not come home.
   [[nodiscard]] double way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const;
 
   /// The curvature of an orbit at that pose that keeps its distance from the hazards, to the left

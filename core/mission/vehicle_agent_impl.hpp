@@ -62,6 +62,7 @@ class VehicleAgent::Impl {
   void on_hazard(const Hazard& hazard, Instant now);
   void idle(Instant now);
   void search(Instant now);
+  [[nodiscard]] bool comes_home() const;
   void watch_range(Instant now);
   void hand_on_lead(Instant now);
 

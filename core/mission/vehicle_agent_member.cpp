@@ -105,6 +105,7 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
 
 /// What a task at that site may use up, so that it can come home from any end of it.
 double VehicleAgent::Impl::range_for(const Site& site, Instant at) const {
+  if (!comes_home()) return range_to_spend(at);
   const auto& vehicle = config_.vehicle;
   const Pose2 there{site.position.x(), site.position.y(), 0.0};
   const double turn_m = kTwoPi * vehicle.planning_radius_m();
@@ -332,7 +333,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
 void VehicleAgent::Impl::idle(Instant now) {
   if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
   if (spent_) {
-    if (!flight_.homing()) flight_.fly_home(hazards_, now);
+    if (comes_home() && !flight_.homing()) flight_.fly_home(hazards_, now);
     return;
   }
   if (initiator_) return;  // it keeps circling its site
@@ -342,11 +343,19 @@ void VehicleAgent::Impl::idle(Instant now) {
 }
 
 void VehicleAgent::Impl::search(Instant now) {
-  spent_ ? flight_.fly_home(hazards_, now) : flight_.search(hazards_, range_to_spend(now), now);
+  if (!spent_) {
+    flight_.search(hazards_, range_to_spend(now), now);
+  } else if (!comes_home()) {
+    flight_.hold(hazards_, now);
+  } else if (!flight_.homing()) {
+    flight_.fly_home(hazards_, now);
+  }
 }
 
-/// While it still can it turns for home, whatever it was about. Only a run that has begun is flown
-/// to its end: that was planned with the way home.
+bool VehicleAgent::Impl::comes_home() const { return config_.vehicle.recovery == Recovery::home; }
+
+/// While it still can it turns for home (or holds, to be recovered), whatever it was about. Only a
+/// run that has begun is flown to its end: that was planned with the way home.
 void VehicleAgent::Impl::watch_range(Instant now) {
   if (spent_) hand_on_lead(now);
   if (spent_ || now < range_again_ || (task_ && (task_->begun || task_->committed))) return;
@@ -355,14 +364,16 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
   if (spare_s > 0.0) return;
   spent_ = true;
-  report(EventKind::plan_changed, {}, {}, range_left(now),
-         "returns: it needs its range for the way", now);
+  report(
+      EventKind::plan_changed, {}, {}, range_left(now),
+      comes_home() ? "its range is used up but for the way home" : "its range is used up: it holds",
+      now);
   participant_.withdraw("not enough range left", now);
   if (survey_ && !survey_->relief) found_.push_back({survey_->site});
   survey_.reset();
   pump(now);
   hand_on_lead(now);
-  if (!flight_.homing()) flight_.fly_home(hazards_, now);
+  search(now);
 }
 
 /// Who is on the way home leads as long as others fly what it awarded. Then its silence tells the

@@ -52,7 +52,7 @@ struct RandomTeam {
   double north_m = 0.0;
   /// Each vehicle searches from point to point, each near a site drawn by lot, as far as this share
   /// of its range; 0: it stays where it starts.
-  double search_share = 0.0;
+  double search_share = 1.0;
   double search_radius_m = 1000.0;  ///< how near
 };
 

@@ -12,6 +12,9 @@
 
 namespace skein {
 
+/// Where a vehicle ends its flight: at its start, for which it keeps the range, or where it is.
+enum class Recovery : std::uint8_t { home, anywhere, count };
+
 /// What a vehicle is (Wang 2022, eq. 2-4).
 struct VehicleSpec {
   VehicleId id;
@@ -21,6 +24,7 @@ struct VehicleSpec {
   double turn_radius_m = 0.0;       ///< r_min, at cruise speed
   double heading_gain_per_s = 1.0;  ///< W: d heading/dt = W (commanded - heading)
   double range_m = 0.0;             ///< L_max
+  Recovery recovery = Recovery::home;
   Capabilities capabilities;
   double sensor_radius_m = 0.0;   ///< C^r: detection and the survey arc
   double assess_radius_m = 0.0;   ///< C^e: the assessment arc
