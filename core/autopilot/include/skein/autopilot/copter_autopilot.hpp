@@ -111,27 +111,27 @@ class CopterAutopilot {
   ModeMachine<CopterMode, CopterEvent> machine_{kCopterModes, CopterMode::stabilize};
   CompanionWatch companion_;
   BoundedQueue<Notice> notices_{32};
-  Health health_;
   Sticks sticks_;
   Estimate estimate_;
   CopterStatus status_;
   std::optional<Instant> last_step_;
-  bool armed_ = false;
-  bool flying_ = false;
   double resting_s_ = 0.0;  ///< how long it has looked landed
   double climb_mps_ = 0.0;  ///< filtered
   double sink_wanted_mps_ = 0.0;
   double lifted_s_ = 0.0;  ///< how long it has looked flying
   Vec3 home_m_ = Vec3::Zero();
 
-  Guided guided_ = Guided::hold;
-  Return return_ = Return::climb;
   MotionDemand motion_;
   Instant motion_until_{};
-  bool motion_ends_ = false;  ///< it has a velocity, which grows old
   CopterAttitudeTarget attitude_;
   double takeoff_height_m_ = 0.0;
   double return_down_m_ = 0.0;
+  Health health_;
+  bool armed_ = false;
+  bool flying_ = false;
+  bool motion_ends_ = false;  ///< it has a velocity, which grows old
+  Guided guided_ = Guided::hold;
+  Return return_ = Return::climb;
 };
 
 }  // namespace skein::autopilot

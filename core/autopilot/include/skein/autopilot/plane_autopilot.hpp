@@ -155,13 +155,10 @@ class PlaneAutopilot {
   ModeMachine<PlaneMode, PlaneEvent> machine_{kPlaneModes, PlaneMode::manual};
   CompanionWatch companion_;
   BoundedQueue<Notice> notices_{32};
-  Health health_;
   Sticks sticks_;
   Estimate estimate_;
   PlaneStatus status_;
   std::optional<Instant> last_step_;
-  bool armed_ = false;
-  bool flying_ = false;
   Vec2 home_m_{0.0, 0.0};
   double home_height_m_ = 0.0;
   double airspeed_mps_ = 0.0;  ///< asked for, where nothing outranks it
@@ -180,6 +177,9 @@ class PlaneAutopilot {
   std::size_t item_ = 0;
   Vec2 leg_from_m_{0.0, 0.0};
   double takeoff_course_rad_ = 0.0;
+  Health health_;
+  bool armed_ = false;
+  bool flying_ = false;
   Landing landing_ = Landing::approach;
 };
 
