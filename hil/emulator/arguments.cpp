@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <map>
 #include <sstream>
 
 #include "skein/base/angles.hpp"
@@ -17,7 +16,8 @@ constexpr int kExitBadInput = 2;
 
 constexpr const char* kDescription =
     "A flight controller as its own process on a CAN bus, with the aircraft that it flies: speaks\n"
-    "DroneCAN and MAVLink 2 as ArduPilot's Plane 4.6 does through a DroneCAN serial port, in real\n"
+    "DroneCAN and MAVLink 2 as ArduPilot 4.6 (Plane, Copter) does through a DroneCAN serial port, "
+    "in real\n"
     "time. A board or a software-in-the-loop build of ArduPilot can take its place.";
 
 constexpr const char* kFooter =
@@ -27,11 +27,14 @@ constexpr const char* kFooter =
     "  skein-fc --bus vcan0 --node 11 --companion 43 --system 7 --failsafe \\\n"
     "           --wind-speed 5 --wind-from 240 --gusts 5 --seed 7\n"
     "      on the ground, disarmed, in MANUAL\n"
+    "  skein-fc --airframe copter\n"
+    "      a hexarotor on the ground, in STABILIZE\n"
     "  skein-fc --airborne --at '30 mode RTL' --at '60 silent on'\n"
     "      the pilot takes over after 30 s, and after 60 s nothing more is heard of it\n"
     "\n"
     "Standard input takes what the companion cannot do, a line each:\n"
-    "  mode NAME             the pilot's switch: MANUAL FBWA AUTO RTL LOITER TAKEOFF GUIDED\n"
+    "  mode NAME             the pilot's switch. Plane: MANUAL FBWA RTL LOITER TAKEOFF GUIDED;\n"
+    "                        copter: STABILIZE GUIDED LOITER RTL LAND\n"
     "  arm, disarm           the pilot's sticks; disarm works in flight, too\n"
     "  reboot                the autopilot restarts: 1.2 s off the bus, MAVLink after 5.2 s;\n"
     "                        in flight it comes back armed and in LOITER\n"
@@ -41,8 +44,8 @@ constexpr const char* kFooter =
     "Standard output says 'ready' once it is on the bus. It ends with status 0 on SIGINT or\n"
     "SIGTERM; 2 means bad arguments, 3 that the bus cannot be used.";
 
-const std::map<std::string, std::uint32_t> kStartModes{
-    {"MANUAL", 0}, {"FBWA", 5}, {"RTL", 11}, {"LOITER", 12}, {"GUIDED", 15}};
+/// A copter's speed, where none is said.
+constexpr double kCopterSpeed_mps = 10.0;
 
 /// "30 mode RTL".
 std::optional<TimedLine> timed_line(const std::string& text) {
@@ -68,7 +71,7 @@ struct Texts {
   int system = 1;
   std::optional<int> companion_system;
   std::string airframe = "plane";
-  std::string mode = "GUIDED";
+  std::optional<double> speed_mps;
   bool no_noise = false;
   std::vector<std::string> at;
 };
@@ -105,19 +108,20 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--heading", t.heading_deg, "At the start, degrees from north, clockwise")
       ->capture_default_str();
   auto* airborne = app.add_flag("--airborne", c.airborne, "Start in flight, armed");
-  app.add_option("--mode", t.mode, "At the start in flight")
-      ->check(CLI::IsMember(kStartModes))
+  app.add_option("--mode", c.mode, "At the start in flight, as ArduPilot names it")
       ->needs(airborne)
       ->capture_default_str();
   app.add_option("--hold-until", a.hold_until_unix_ns,
                  "In flight it stands still at its start until that system time, ns since 1970")
       ->needs(airborne);
-  app.add_option("--speed", c.airspeed_mps, "Cruise airspeed, m/s")->capture_default_str();
-  app.add_option("--speed-min", c.airspeed_min_mps, "Least airspeed, m/s")->capture_default_str();
-  app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed, m/s")
+  app.add_option("--speed", t.speed_mps,
+                 "Cruise airspeed of a plane (default: 50), greatest speed of a copter (10), m/s");
+  app.add_option("--speed-min", c.airspeed_min_mps, "Least airspeed of a plane, m/s")
+      ->capture_default_str();
+  app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed of a plane, m/s")
       ->capture_default_str();
   app.add_option("--turn-radius", c.turn_radius_m,
-                 "m, at cruise: the bank limit is that of this circle and 5 degrees")
+                 "m, of a plane at cruise: the bank limit is that of this circle and 5 degrees")
       ->capture_default_str();
   app.add_option("--wind-speed", t.wind_mps, "Steady wind, m/s")
       ->check(CLI::Range(0.0, 25.0))
@@ -156,7 +160,8 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   c.system_id = static_cast<std::uint8_t>(texts.system);
   c.companion_system = static_cast<std::uint8_t>(texts.companion_system.value_or(texts.system));
   c.airframe = texts.airframe == "copter" ? Airframe::copter : Airframe::plane;
-  c.mode = kStartModes.at(texts.mode);
+  if (c.airframe == Airframe::copter) c.airspeed_mps = kCopterSpeed_mps;
+  c.airspeed_mps = texts.speed_mps.value_or(c.airspeed_mps);
   c.origin = {texts.origin[0], texts.origin[1], texts.origin[2]};
   c.start = {texts.start[0], texts.start[1], heading_from_compass_deg(texts.heading_deg)};
   c.height_m = texts.start[2];

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "copter_vehicle.hpp"
 #include "mavlink_endpoint.hpp"
 #include "plane_vehicle.hpp"
 #include "skein/dronecan/node.hpp"
@@ -144,9 +145,13 @@ Result<EmulatedFlightController> EmulatedFlightController::make(const EmulatorCo
   const auto origin = MissionOrigin::make(config.origin);
   if (!origin) return origin.error();
   auto state = std::make_unique<State>(config, *origin);
-  auto vehicle = PlaneVehicle::make(config, state->earth, now);
-  if (!vehicle) return vehicle.error();
-  state->vehicle = std::move(vehicle).value();
+  if (config.airframe == Airframe::copter) {
+    state->vehicle = std::make_unique<CopterVehicle>(config, state->earth, now);
+  } else {
+    auto plane = PlaneVehicle::make(config, state->earth, now);
+    if (!plane) return plane.error();
+    state->vehicle = std::move(plane).value();
+  }
   state->booted = state->bus_from = state->mavlink_from = state->next_period = now;
   state->link.emplace(config, now);
   return EmulatedFlightController{std::move(state)};
@@ -224,7 +229,7 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
   } else if (verb == "disarm") {
     result = on_wire(s.vehicle->disarm(true));
   } else {
-    const auto mode = s.vehicle->mode_named(word);
+    const auto mode = mode_named(s.config.airframe, word);
     if (!mode) return Error{fmt::format("'{}': there is no such mode", line)};
     result = on_wire(s.vehicle->select_mode(*mode));
   }

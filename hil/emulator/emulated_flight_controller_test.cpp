@@ -535,7 +535,7 @@ TEST(EmulatorConfig, ImpossibleOnesAreRefusedWithTheReason) {
   EXPECT_NE(reason([](EmulatorConfig& c) { c.height_m = 0.0; }), "");
   EXPECT_NE(reason([](EmulatorConfig& c) { c.wind_mps = {30.0, 0.0}; }), "");
   EXPECT_NE(reason([](EmulatorConfig& c) { c.origin.latitude_deg = 91.0; }), "");
-  EXPECT_NE(reason([](EmulatorConfig& c) { c.mode = 99; }), "");
+  EXPECT_NE(reason([](EmulatorConfig& c) { c.mode = "FLY"; }), "");
   EXPECT_NE(
       reason([](EmulatorConfig& c) { c.start.x_m = std::numeric_limits<double>::quiet_NaN(); }),
       "");

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "skein/autopilot/fixed_wing_loops.hpp"
+#include "skein/autopilot/hexarotor_loops.hpp"
 #include "skein/autopilot/modes.hpp"
 #include "skein/base/angles.hpp"
 
@@ -37,13 +38,33 @@ Result<void> check_plane(const EmulatorConfig& c) {
         fmt::format("turn radius {:g} m: at {:g} m/s the airframe turns no tighter than {:.0f} m",
                     c.turn_radius_m, c.airspeed_mps, std::ceil(least))};
   }
-  if (c.airborne && !autopilot::plane_mode(c.mode)) {
-    return Error{fmt::format("mode {}: not one of the emulated Plane's", c.mode)};
+  return {};
+}
+
+Result<void> check_copter(const EmulatorConfig& c) {
+  const autopilot::HexarotorTuning airframe;
+  if (!(c.airspeed_mps >= 1.0 && c.airspeed_mps <= airframe.speed_max_mps)) {
+    return Error{fmt::format("speed {:g} m/s: the copter flies at 1 to {:g}", c.airspeed_mps,
+                             airframe.speed_max_mps)};
   }
   return {};
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name) {
+  constexpr std::uint32_t kNumbers = 32;
+  for (std::uint32_t number = 0; number < kNumbers; ++number) {
+    if (airframe == Airframe::plane) {
+      const auto mode = autopilot::plane_mode(number);
+      if (mode && autopilot::to_string(*mode) == name) return number;
+    } else {
+      const auto mode = autopilot::copter_mode(number);
+      if (mode && autopilot::to_string(*mode) == name) return number;
+    }
+  }
+  return std::nullopt;
+}
 
 double bank_limit_rad(const EmulatorConfig& config) {
   const autopilot::FixedWingTuning airframe;
@@ -77,10 +98,10 @@ Result<void> check(const EmulatorConfig& c) {
                              c.wind_mps.norm(), c.gusts_wind_mps)};
   }
   if (auto origin = MissionOrigin::make(c.origin); !origin) return origin.error();
-  if (c.airframe == Airframe::copter) {
-    return Error{"airframe copter: only plane is emulated"};
+  if (c.airborne && !mode_named(c.airframe, c.mode)) {
+    return Error{fmt::format("mode '{}': the emulated autopilot has none of that name", c.mode)};
   }
-  return check_plane(c);
+  return c.airframe == Airframe::plane ? check_plane(c) : check_copter(c);
 }
 
 }  // namespace skein::hil

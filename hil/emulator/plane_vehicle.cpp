@@ -82,7 +82,8 @@ PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
       autopilot_{params_} {
   report_.home_m = {config.start.y_m, config.start.x_m, 0.0};
   sense(to_seconds(period()));
-  start_autopilot(now, static_cast<PlaneMode>(config.mode));
+  const auto mode = autopilot::plane_mode(mode_named(config.airframe, config.mode).value_or(0));
+  start_autopilot(now, mode.value_or(PlaneMode::manual));
 }
 
 void PlaneVehicle::start_autopilot(Instant now, PlaneMode mode) {
@@ -117,7 +118,11 @@ void PlaneVehicle::coast(Instant now) {
 void PlaneVehicle::control(Instant now) {
   coast(now);
   sense(to_seconds(period()));
-  if (!held(now)) surfaces_ = autopilot_.step(report_.estimate, now);
+  if (!held(now)) {
+    // The hands of a pilot who does not steer.
+    autopilot_.set_sticks({.throttle = report_.flying ? params_.tuning.throttle_level : 0.0});
+    surfaces_ = autopilot_.step(report_.estimate, now);
+  }
   tell();
 }
 
@@ -141,15 +146,6 @@ void PlaneVehicle::tell() {
   report_.goal_airspeed_mps = status.airspeed_mps;
   report_.roll_demand_rad = status.roll_rad;
   report_.pitch_demand_rad = status.pitch_rad;
-}
-
-std::optional<std::uint32_t> PlaneVehicle::mode_named(std::string_view name) const {
-  constexpr std::uint32_t kModes = 32;
-  for (std::uint32_t number = 0; number < kModes; ++number) {
-    const auto mode = autopilot::plane_mode(number);
-    if (mode && autopilot::to_string(*mode) == name) return number;
-  }
-  return std::nullopt;
 }
 
 autopilot::CommandResult PlaneVehicle::select_mode(std::uint32_t number) {

@@ -32,7 +32,6 @@ class PlaneVehicle final : public Vehicle {
   void restart(Instant now) override;
   [[nodiscard]] const FlightReport& report() const override { return report_; }
 
-  [[nodiscard]] std::optional<std::uint32_t> mode_named(std::string_view name) const override;
   autopilot::CommandResult select_mode(std::uint32_t mode) override;
   autopilot::CommandResult arm() override;
   autopilot::CommandResult disarm(bool force) override;

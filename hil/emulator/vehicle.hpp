@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <optional>
-#include <string_view>
 
 #include "earth.hpp"
 #include "skein/autopilot/command.hpp"
@@ -55,7 +54,6 @@ class Vehicle {
   virtual void restart(Instant now) = 0;
   [[nodiscard]] virtual const FlightReport& report() const = 0;
 
-  [[nodiscard]] virtual std::optional<std::uint32_t> mode_named(std::string_view name) const = 0;
   virtual autopilot::CommandResult select_mode(std::uint32_t mode) = 0;
   virtual autopilot::CommandResult arm() = 0;
   virtual autopilot::CommandResult disarm(bool force) = 0;

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <string_view>
 
 #include "skein/base/frames.hpp"
 #include "skein/base/geometry.hpp"
@@ -26,11 +28,11 @@ struct EmulatorConfig {
   std::uint8_t companion_system = 1;  ///< SYSID_MYGCS: whose heartbeat the failsafe waits for
   bool companion_failsafe = false;    ///< FS_GCS_ENABL
 
-  Wgs84 origin;             ///< of the frame in which `start` is given
-  Pose2 start;              ///< mission frame
-  double height_m = 0.0;    ///< above the origin, in flight
-  bool airborne = false;    ///< starts in flight, armed, in `mode`; else on the ground
-  std::uint32_t mode = 15;  ///< at the start in flight: ArduPilot's number; 15 is GUIDED of Plane
+  Wgs84 origin;                 ///< of the frame in which `start` is given
+  Pose2 start;                  ///< mission frame
+  double height_m = 0.0;        ///< above the origin, in flight
+  bool airborne = false;        ///< starts in flight, armed, in `mode`; else on the ground
+  std::string mode = "GUIDED";  ///< at the start in flight, as ArduPilot names it
   /// In flight the aircraft stands still at its start until then.
   Instant hold_until{};
 
@@ -46,7 +48,10 @@ struct EmulatorConfig {
   std::int64_t unix_us = 0;     ///< system time at Instant{}: what its satellites tell
 };
 
-/// The bank that flies the circle of `turn_radius_m` at cruise, and five degrees.
+/// ArduPilot's number of a mode, or nothing for one that is not emulated.
+[[nodiscard]] std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name);
+
+/// Of a plane: the bank that flies the circle of `turn_radius_m` at cruise, and five degrees.
 [[nodiscard]] double bank_limit_rad(const EmulatorConfig& config);
 
 /// Fails with one sentence for the first thing that cannot be.
