@@ -75,6 +75,7 @@ int dump(can::Bus& bus, const CanDumpArguments& arguments) {
   BusListener listener;
   can::State state = bus.state();
   end_at_signal();
+  fmt::print(stderr, "listening on {}; Ctrl-C ends\n", bus.name());
   const auto end = Clock::now() + std::chrono::duration<double>(arguments.seconds.value_or(0));
   while (!g_end_asked && (!arguments.seconds || Clock::now() < end)) {
     while (const auto frame = bus.receive()) {
@@ -82,6 +83,7 @@ int dump(can::Bus& bus, const CanDumpArguments& arguments) {
       if (log.is_open()) log << can::to_candump(interface, *frame) << '\n';
     }
     std::fflush(stdout);
+    log.flush();
     watch_state(bus, state);
     pollfd readable{bus.descriptor(), POLLIN, 0};
     (void)::poll(&readable, 1, kLook_ms);
