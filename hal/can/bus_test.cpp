@@ -51,6 +51,7 @@ class BusTest : public testing::TestWithParam<const char*> {
       name_ = own_mcast();
       return;
     }
+    // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
     const char* interface = std::getenv("SKEIN_CAN_INTERFACE");
     name_ = interface != nullptr ? interface : "vcan0";
     const auto bus = open(name_);
