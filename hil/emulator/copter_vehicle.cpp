@@ -85,9 +85,9 @@ CopterVehicle::CopterVehicle(const EmulatorConfig& config, const Earth& earth, I
       aircraft_{at_start(config)},
       flown_to_{now},
       params_{params_of(config)},
-      autopilot_{params_} {
+      autopilot_{params_},
+      rotors_{aircraft_.speeds_radps()} {
   report_.home_m = ekf_origin_m_;
-  rotors_ = aircraft_.speeds_radps();
   sense();
   const auto mode = autopilot::copter_mode(mode_named(config.airframe, config.mode).value_or(0));
   start_autopilot(now, config.airborne, mode.value_or(CopterMode::stabilize));
@@ -160,15 +160,18 @@ void CopterVehicle::tell() {
   report_.throttle = status.thrust;
   report_.armed = autopilot_.armed();
   report_.flying = status.flying;
-  report_.mode = static_cast<std::uint32_t>(mode);
+  braking_ = braking_ && mode == CopterMode::loiter;
+  report_.mode = braking_ ? kBrake : static_cast<std::uint32_t>(mode);
   report_.base_mode =
       mode == CopterMode::stabilize || mode == CopterMode::land ? kPilotBase : kGuidedBase;
   report_.goal_m = status.goal_m;
 }
 
 autopilot::CommandResult CopterVehicle::select_mode(std::uint32_t number) {
-  const auto mode = autopilot::copter_mode(number);
+  const auto mode = autopilot::copter_mode(
+      number == kBrake ? static_cast<std::uint32_t>(CopterMode::loiter) : number);
   const auto result = mode ? autopilot_.select_mode(*mode) : autopilot::CommandResult::failed;
+  if (result == autopilot::CommandResult::accepted) braking_ = number == kBrake;
   tell();
   return result;
 }

@@ -40,6 +40,9 @@ class CopterVehicle final : public Vehicle {
   [[nodiscard]] std::optional<autopilot::Notice> poll_notice() override;
 
  private:
+  /// BRAKE is its LOITER with the sticks in the middle, where a companion keeps its hands off.
+  static constexpr std::uint32_t kBrake = 17;
+
   [[nodiscard]] bool held(Instant now) const { return now < hold_until_; }
   void start_autopilot(Instant now, bool in_flight, autopilot::CopterMode mode);
   void sense();
@@ -58,6 +61,7 @@ class CopterVehicle final : public Vehicle {
   autopilot::CopterAutopilot autopilot_;
   autopilot::Health health_;
   models::RotorSpeeds rotors_{};
+  bool braking_ = false;
   FlightReport report_;
 };
 

@@ -198,7 +198,8 @@ CommandResult PlaneVehicle::command(const mavlink::CommandInt& c) {
       return enter(PlaneMode::loiter);
     case Command::nav_return_to_launch:
       return enter(PlaneMode::rtl);
-    case Command::nav_takeoff:  // of a quadplane
+    case Command::nav_takeoff:    // of a quadplane
+    case Command::do_land_start:  // of a mission with a landing
       return CommandResult::failed;
     default:
       return CommandResult::unsupported;

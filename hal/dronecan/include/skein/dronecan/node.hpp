@@ -97,9 +97,9 @@ class Node {
  private:
   struct Outgoing {
     Header header;
-    std::uint64_t signature;
+    std::uint64_t signature = 0;
     Payload payload;
-    std::uint64_t order;
+    std::uint64_t order = 0;
   };
   struct Watch {  ///< beside others_, what is remembered to judge them
     std::optional<Instant> asked;

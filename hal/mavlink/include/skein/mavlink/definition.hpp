@@ -31,16 +31,17 @@ consteval Field<Message, Value> field(const char* name, Value Message::*member) 
   return {name, member};
 }
 
-/// Of what a field is made: elements of one type; `count` is 0 for a lone one, as in the CRC extra.
+/// Of what a field is made: elements of one type; `kCount` is 0 for a lone one, as in the CRC
+/// extra.
 template <class Value>
 struct FieldShape {
   using Element = Value;
-  static constexpr std::size_t count = 0;
+  static constexpr std::size_t kCount = 0;
 };
 template <class Value, std::size_t Count>
 struct FieldShape<std::array<Value, Count>> {
   using Element = Value;
-  static constexpr std::size_t count = Count;
+  static constexpr std::size_t kCount = Count;
 };
 
 template <class Element>
@@ -125,7 +126,7 @@ consteval auto field_infos() {
     infos.at(i) = {f.name,
                    element_type<typename Shape::Element>(),
                    static_cast<std::uint8_t>(sizeof(typename Shape::Element)),
-                   static_cast<std::uint8_t>(Shape::count),
+                   static_cast<std::uint8_t>(Shape::kCount),
                    static_cast<std::uint8_t>(offset),
                    i >= decltype(Message::kDefinition)::kBaseFields};
     offset += infos.at(i).size();

@@ -80,7 +80,7 @@ template <class Message>
   Payload payload{};
   std::size_t at = 0;
   Message::kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
-    if constexpr (FieldShape<V>::count == 0) {
+    if constexpr (FieldShape<V>::kCount == 0) {
       wire::put(message.*f.member, payload.data() + at);
       at += sizeof(V);
     } else {
@@ -98,7 +98,7 @@ template <class Message>
   Message message;
   std::size_t at = 0;
   Message::kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
-    if constexpr (FieldShape<V>::count == 0) {
+    if constexpr (FieldShape<V>::kCount == 0) {
       message.*f.member = wire::get<V>(payload.data() + at);
       at += sizeof(V);
     } else {
