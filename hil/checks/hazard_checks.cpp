@@ -174,8 +174,10 @@ void judge_plan(const Recording& recorded, std::size_t index, const KnownHazard&
   if (to <= from) return;
   ++result.judged;
 
-  // Who is inside a hazard that was known before the mission has been judged for the way in.
-  bool outside_before = !held.always;
+  // A plan from before the vehicle was held to the hazard may lead out of it then; how long that
+  // may take is judged by the track. Who is inside one that was known before the mission has been
+  // judged for the way in.
+  bool outside_before = !held.always && (plan.since >= held.from || excuse);
   std::optional<double> where;
   double nearest = known.hazard.radius_m - kEdge;
   walk_plan(plan.plan, from, to, kWalkStep, [&](double distance, const Vec2& point) {
