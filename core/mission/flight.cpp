@@ -26,7 +26,8 @@ constexpr double kWayOutRadii = 6.0;
 constexpr int kTurns = 72;
 constexpr double kStraightMaxM = 400.0;
 constexpr double kStepM = 1.0;
-constexpr double kEdgeM = 0.5;  ///< what steps may miss of a hazard
+/// A turn that keeps less than this from a hazard counts as none that misses it.
+constexpr double kEdgeM = 5.0;
 
 /// Is the vehicle outside all hazards, and headed so that it need not enter one? A hazard that is
 /// two radii away is missed by a turn.
@@ -147,17 +148,21 @@ Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& haz
 }
 
 Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const {
-  const double radius = vehicle_.planning_radius_m();
+  const double planning_radius = vehicle_.planning_radius_m();
   Path path{from, {}};
-  if (is_free(from, radius, hazards)) return path;
-  const WayOut left = least_inside(from, 1.0 / radius, hazards);
-  const WayOut right = least_inside(from, -1.0 / radius, hazards);
+  if (is_free(from, planning_radius, hazards)) return path;
+  // What need not be entered is the planner's to find its way around.
+  for (const double side : {1.0, -1.0}) {
+    if (least_inside(from, side / planning_radius, hazards).inside_m == 0.0) return path;
+  }
+  const double tightest = 1.0 / vehicle_.turn_radius_m;
+  const WayOut left = least_inside(from, tightest, hazards);
+  const WayOut right = least_inside(from, -tightest, hazards);
   const bool to_left = left.inside_m < right.inside_m ||
                        (left.inside_m == right.inside_m && left.length_m() <= right.length_m());
   const WayOut& way = to_left ? left : right;
-  // What no turn need enter is the planner's to find its way around.
-  if (way.inside_m == 0.0 || std::isinf(way.inside_m)) return path;
-  SKEIN_ASSERT(path.append(Segment{(to_left ? 1.0 : -1.0) / radius, way.turn_m}) &&
+  if (std::isinf(way.inside_m)) return path;
+  SKEIN_ASSERT(path.append(Segment{to_left ? tightest : -tightest, way.turn_m}) &&
                path.append(Segment{0.0, way.straight_m}));
   return path;
 }

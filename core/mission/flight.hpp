@@ -61,8 +61,9 @@ class Flight {
   /// The way to where there is room for an orbit, where there is none at the path's end. The
   /// orbit's curvature.
   [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
-  /// Where the vehicle is inside a hazard that has just become known, or no turn misses it: the
-  /// turn to either side, and straight on, that is inside for the shortest. Empty elsewhere.
+  /// Where the vehicle is inside a hazard that has just become known, or no turn at the planning
+  /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
+  /// shortest. Empty elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
   void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
               double range_m, Instant now);
