@@ -70,8 +70,10 @@ class Team {
     return condition();
   }
 
-  /// The founder, while it leads.
-  [[nodiscard]] Initiator& leader() { return *members_.at(VehicleId{1}).leads; }
+  /// The founder or another, while it leads.
+  [[nodiscard]] Initiator& leader(std::uint16_t id = 1) {
+    return *members_.at(VehicleId{id}).leads;
+  }
   /// Those that lead and work.
   [[nodiscard]] std::vector<VehicleId> leaders() const {
     std::vector<VehicleId> all;
@@ -127,6 +129,7 @@ class Team {
   std::set<VehicleId> dead;       ///< neither send nor hear nor work
   std::set<VehicleId> unwilling;  ///< do not bid
   std::set<VehicleId> unable;     ///< refuse awards
+  std::set<VehicleId> late;       ///< hold before their tasks
   bool all_or_none = true;        ///< is a plan for some of the tasks no plan?
   Duration task_takes = 4s;
   Duration begun_before{};             ///< how long before its time a task begins
@@ -288,7 +291,7 @@ class Team {
   /// Vehicles fly their tasks, whether anybody hears them or not, as long as they hold the lease.
   void work() {
     for (auto& [id, m] : members_) {
-      if (dead.contains(id)) continue;
+      if (dead.contains(id) || late.contains(id)) continue;
       const auto due = m.due;
       const Instant at = clock(id);
       for (const auto& [task, when] : due) {
@@ -453,6 +456,26 @@ TEST(Coalition, ALostLeaderIsReplacedAndItsPlanHeld) {
   EXPECT_EQ(team.lease_conflicts, 0);
 }
 
+TEST(Coalition, WhoHeldUnderASuccessorAndBidsAgainHasNotFlown) {
+  Team team{5, site_with(4, 0)};
+  team.task_takes = 40s;
+  team.late = {VehicleId{3}};
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.authorise_all();
+  team.run_for(5s);
+  team.dead = {VehicleId{1}};
+  ASSERT_TRUE(team.run_until([&] { return team.leaders() == std::vector{VehicleId{2}}; }, 30s));
+  team.authorise_all();
+  ASSERT_TRUE(team.run_until([&] { return team.leader(2).round().number == 2; }, 40s));
+  team.run_for(2s);
+  team.late.clear();
+  ASSERT_TRUE(team.run_until([&] { return team.leaders().empty(); }, 120s));
+  EXPECT_EQ(count<Initiator::TaskUnknown>(team.leader_outputs), 0);
+  EXPECT_EQ(team.flown.size(), 4U);
+  for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
+}
+
 TEST(Coalition, ALeaderThatWasCutOffGivesUpWhenItHearsItsSuccessor) {
   Team team{5, site_with(4, 0)};
   team.task_takes = 70s;
@@ -484,6 +507,22 @@ TEST(Coalition, WithoutAMajorityTheLeaderWaitsBeforeItStartsAnew) {
   ASSERT_TRUE(team.run_until([&] { return team.leader().round().number > 1; }, 120s));
   EXPECT_GE(team.now, lost + team.params.cut_max);
   EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, ATaskIsOverSinceItsEnd) {
+  const TaskId flown{SiteId{1}, TaskKind::deliver, 0};
+  const TaskId lost{SiteId{1}, TaskKind::deliver, 1};
+  Participant participant{ProtocolParams{}, VehicleId{3}, InstanceId{1}};
+  EXPECT_EQ(participant.over_since(flown), std::nullopt);
+  const Instant end = Instant{} + 20s;
+  LeaseRenewal renewal;
+  renewal.done = {flown};
+  renewal.unknown = {lost};
+  participant.on_lease_renewal(renewal, end + 4s);
+  EXPECT_EQ(participant.over_since(flown), end + 4s) << "no later than the leader's word";
+  EXPECT_EQ(participant.over_since(lost), Instant::min());
+  participant.on_status({Round{}, VehicleId{2}, {{flown, TaskState::done, end}}});
+  EXPECT_EQ(participant.over_since(flown), end);
 }
 
 TEST(Coalition, CloseReleasesEveryone) {

@@ -106,7 +106,7 @@ void Elector::on_timeout(Instant now) {
   follows_ = self_;
   strayed_ = true;
   promised_until_ = now + params_.lease;
-  supporters_[self_] = now;
+  supporters_[self_] = {now, instance_};
   messages_.push(LeadershipClaim{plan_->round.coalition, self_, now});
 }
 
@@ -114,18 +114,19 @@ void Elector::on_allegiance(const Allegiance& message, Instant now) {
   if (!elector_ || message.coalition != plan_->round.coalition) return;
   if (message.follows != self_ || follows_ != self_ || !contains(electors_, message.elector))
     return;
-  auto& stamp = supporters_[message.elector];
-  stamp = std::max(stamp, message.acknowledges);
+  auto& [acknowledged, instance] = supporters_[message.elector];
+  acknowledged = std::max(acknowledged, message.acknowledges);
+  instance = message.instance;
   if (supporters_.size() + 1 == electors_.size()) count_supporters(now);  // all but the leader
 }
 
 void Elector::count_supporters(Instant now) {
   Won won;
   won.promised_from = now;
-  for (const auto& [elector, stamp] : supporters_) {
-    if (now > stamp + params_.silence) continue;
-    won.supporters.push_back(elector);
-    won.promised_from = std::min(won.promised_from, stamp);
+  for (const auto& [elector, support] : supporters_) {
+    if (now > support.acknowledged + params_.silence) continue;
+    won.supporters.push_back({elector, support.instance});
+    won.promised_from = std::min(won.promised_from, support.acknowledged);
   }
   won.majority = electors_.size() / 2 + 1;
   if (won.supporters.size() < won.majority) return;

@@ -39,8 +39,8 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
   make_ledger(won.done);
   promised_until_ = won.promised_from + params_.lease;
   majority_ = won.majority;
-  for (const VehicleId elector : won.supporters) {
-    electors_[elector].acknowledged = won.promised_from;
+  for (const auto& [elector, instance] : won.supporters) {
+    electors_[elector] = {won.promised_from, instance};
     heard_[elector] = now;
   }
   std::vector<TaskAssignment> held;
@@ -186,6 +186,8 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
       if (bid->second.speed_mps > 0.0) {
         entry->begins = a.time - from_seconds(bid->second.final_approach_m / bid->second.speed_mps);
       }
+    } else if (const auto elector = electors_.find(a.vehicle); elector != electors_.end()) {
+      entry->instance = elector->second.instance;  // its plan goes on under this leader
     }
     entry->reported = TaskState::planned;
     entry->lease_until = award.lease_until;

@@ -138,8 +138,8 @@ void Participant::on_cancel(const Cancel& message, Instant now) {
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   elector_.on_lease_renewal(message, now);
-  for (const auto& task : message.done) note_over(task);
-  for (const auto& task : message.unknown) note_over(task);
+  for (const auto& task : message.done) note_over(task, now);
+  for (const auto& task : message.unknown) note_over(task, Instant::min());
   for (auto& f : finished_) {
     const bool concerned =
         f.entry.state == TaskState::done || f.round.coalition == message.round.coalition;
@@ -210,17 +210,26 @@ void Participant::give_up(const Lease& lease, Instant now) {
 void Participant::on_status(const MemberStatus& message) {
   elector_.on_status(message);
   for (const auto& entry : message.tasks) {
-    if (entry.state == TaskState::done) note_over(entry.task);
+    if (entry.state == TaskState::done) note_over(entry.task, entry.time);
   }
 }
 
-void Participant::note_over(const TaskId& task) {
-  if (contains(over_, task)) return;
-  over_.push_back(task);
+void Participant::note_over(const TaskId& task, Instant since) {
+  const auto known =
+      std::find_if(over_.begin(), over_.end(), [&](const Over& over) { return over.task == task; });
+  if (known != over_.end()) {
+    known->since = std::min(known->since, since);
+    return;
+  }
+  over_.push_back({task, since});
   if (over_.size() > kOverMax) over_.erase(over_.begin());
 }
 
-bool Participant::knows_over(const TaskId& task) const { return contains(over_, task); }
+std::optional<Instant> Participant::over_since(const TaskId& task) const {
+  const auto known =
+      std::find_if(over_.begin(), over_.end(), [&](const Over& over) { return over.task == task; });
+  return known == over_.end() ? std::nullopt : std::optional{known->since};
+}
 
 void Participant::on_claim(const LeadershipClaim& message, Instant now) {
   elector_.on_claim(message, now);

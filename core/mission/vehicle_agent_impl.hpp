@@ -87,7 +87,7 @@ class VehicleAgent::Impl {
   void say_farewell(Instant now);
   void stop_leading(Instant now);
 
-  [[nodiscard]] bool deliveries_over(const Site& site) const;
+  [[nodiscard]] bool deliveries_over(const TaskFlight& assessment) const;
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
   [[nodiscard]] double range_left(Instant at) const;

@@ -220,7 +220,7 @@ void VehicleAgent::Impl::fly_task(Instant now) {
   if (!task_->begun && now >= task_->begin_time()) {
     const bool may_begin = task_->is_delivery()
                                ? task_->committed
-                               : participant_.holds(id, now, now) && deliveries_over(task_->site);
+                               : participant_.holds(id, now, now) && deliveries_over(*task_);
     if (!may_begin || task_->late) {
       // News of the last delivery may come a moment after the arc has begun.
       const bool news_may_come = !task_->is_delivery() && now < task_->begin_time() + kNewsMayTake;
@@ -247,10 +247,13 @@ void VehicleAgent::Impl::fly_task(Instant now) {
   flown ? participant_.task_done(id, now) : participant_.task_failed(id, now);
 }
 
-/// An assessment waits until the leader or who flew them has said so of all deliveries.
-bool VehicleAgent::Impl::deliveries_over(const Site& site) const {
+/// An assessment waits until the leader or who flew them has said so of all deliveries. They may
+/// have been flown later than its round had them.
+bool VehicleAgent::Impl::deliveries_over(const TaskFlight& assessment) const {
+  const Site& site = assessment.site;
   for (std::uint8_t i = 0; i < site.deliveries.size(); ++i) {
-    if (!participant_.knows_over({site.id, TaskKind::deliver, i})) return false;
+    const auto since = participant_.over_since({site.id, TaskKind::deliver, i});
+    if (!since || *since > assessment.begin_time() + kNewsMayTake - site.assess_wait) return false;
   }
   return true;
 }

@@ -21,10 +21,14 @@ namespace skein::coalition {
 /// no more could give the lost leader a majority again.
 class Elector {
  public:
+  struct Supporter {
+    VehicleId vehicle;
+    InstanceId instance;
+  };
   /// This vehicle is followed by more than half of the electors.
   struct Won {
     Award plan;                         ///< the latest that this vehicle was part of
-    std::vector<VehicleId> supporters;  ///< itself among them, by id
+    std::vector<Supporter> supporters;  ///< itself among them, by id
     std::size_t majority = 0;           ///< how many of the electors it takes to lead
     Instant promised_from{};            ///< its own stamp; their promises reach a lease from here
     std::vector<TaskId> done;           ///< as far as this vehicle has heard
@@ -58,6 +62,10 @@ class Elector {
   [[nodiscard]] Instant next_timeout() const;
 
  private:
+  struct Support {
+    Instant acknowledged{Instant::min()};  ///< the stamp of the newest claim that it answered
+    InstanceId instance;
+  };
   void follow(VehicleId whom, Instant stamp, Instant now);
   [[nodiscard]] bool promise_over(Instant now) const;
   [[nodiscard]] Instant claims_at() const;
@@ -75,7 +83,7 @@ class Elector {
   bool strayed_ = false;                ///< it has followed a claimant in that coalition
   Instant promised_until_{};
   std::vector<TaskId> done_;
-  std::map<VehicleId, Instant> supporters_;  ///< of this vehicle's claim, by what they acknowledge
+  std::map<VehicleId, Support> supporters_;  ///< of this vehicle's claim
   Instant next_claim_{};
   std::optional<Won> won_;
   std::vector<CoalitionId> left_;  ///< newest last

@@ -130,8 +130,9 @@ class Participant {
   [[nodiscard]] const Round& round() const { return round_; }
   /// Is a lease on the task held at `now`, and does it last until `until`?
   [[nodiscard]] bool holds(const TaskId& task, Instant now, Instant until) const;
-  /// Has anybody said that the task is done, or that nobody is to fly it any more?
-  [[nodiscard]] bool knows_over(const TaskId& task) const;
+  /// Since when the task is over, if anybody has said that: its end as who flew it told it, else
+  /// when the leader's word came; Instant::min() for one that may have been flown at any time.
+  [[nodiscard]] std::optional<Instant> over_since(const TaskId& task) const;
   [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
 
  private:
@@ -139,6 +140,10 @@ class Participant {
     TaskId task;
     TaskState state = TaskState::planned;
     Instant until{};
+  };
+  struct Over {
+    TaskId task;
+    Instant since{};
   };
   struct Finished {
     Round round;
@@ -149,7 +154,7 @@ class Participant {
   void end_leases(const std::string& why, bool unstarted_only);
   void leave(Event event, const std::string& why);
   void expire_leases(Instant now);
-  void note_over(const TaskId& task);
+  void note_over(const TaskId& task, Instant since);
   void give_up(const Lease& lease, Instant now);
   void send_status(Instant now);
   [[nodiscard]] bool task_in_progress() const;
@@ -167,7 +172,7 @@ class Participant {
   Instant orphaned_until_{};
   std::vector<Lease> leases_;
   std::vector<Finished> finished_;  ///< reported until the leader knows; what is done is kept
-  std::vector<TaskId> over_;        ///< done or unknown, as heard; newest last
+  std::vector<Over> over_;          ///< done or unknown, as heard; newest last
   Instant next_status_{};
   BoundedQueue<Message> messages_{64};
   BoundedQueue<Output> outputs_{256};
