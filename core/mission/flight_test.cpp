@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+
+namespace skein::mission {
+namespace {
+using namespace std::chrono_literals;
+
+VehicleSpec vehicle_with(Recovery recovery) {
+  VehicleSpec spec;
+  spec.id = VehicleId{1};
+  spec.cruise_speed_mps = 50.0;
+  spec.turn_radius_m = 150.0;
+  spec.recovery = recovery;
+  return spec;
+}
+
+std::vector<Vec2> random_route(Random& random) {
+  std::vector<Vec2> route;
+  for (int i = 0; i < 12; ++i) {
+    route.emplace_back(random.uniform(-4000.0, 4000.0), random.uniform(-4000.0, 4000.0));
+  }
+  return route;
+}
+
+TEST(Flight, SearchesAsFarAsItsRangeLastsThereAndHome) {
+  Random random{7};
+  int nearly_all = 0;
+  for (int i = 0; i < 200; ++i) {
+    Flight flight{vehicle_with(Recovery::home), {}, random_route(random)};
+    const Pose2 home{random.uniform(-4000.0, 4000.0), random.uniform(-4000.0, 4000.0),
+                     random.uniform(-kPi, kPi)};
+    const std::vector<Hazard> hazards{
+        {HazardId{1}, {random.uniform(-3000.0, 3000.0), random.uniform(-3000.0, 3000.0)}, 300.0}};
+    if ((hazards[0].centre - home.position()).norm() < 1000.0) continue;
+    const double range_m = random.uniform(5000.0, 60000.0);
+    flight.start(home, hazards, range_m, Instant{});
+    const TimedPath& plan = flight.plan().timed;
+    // The handover and the way to an orbit come on top; the agent keeps a lap for them.
+    const double lap_m = kTwoPi * vehicle_with(Recovery::home).planning_radius_m();
+    const double all_m = plan.path.length_m() + flight.way_home_m(plan.path.end(), hazards);
+    EXPECT_LE(all_m, range_m + lap_m) << "route " << i;
+    nearly_all += all_m > 0.8 * range_m ? 1 : 0;
+  }
+  EXPECT_GT(nearly_all, 20) << "of routes that end for want of range";
+}
+
+TEST(Flight, WhoMayEndAnywhereSpendsItsRangeOnTheRoute) {
+  Random random{7};
+  const std::vector<Vec2> route = random_route(random);
+  const Pose2 home{0.0, 0.0, 0.0};
+  Flight returns{vehicle_with(Recovery::home), {}, route};
+  Flight stays{vehicle_with(Recovery::anywhere), {}, route};
+  returns.start(home, {}, 20000.0, Instant{});
+  stays.start(home, {}, 20000.0, Instant{});
+  EXPECT_GT(stays.plan().timed.path.length_m(), returns.plan().timed.path.length_m());
+  EXPECT_LE(stays.plan().timed.path.length_m(), 20000.0 + 1000.0);
+  EXPECT_EQ(stays.way_home_m({3000.0, 0.0, 0.0}, {}), 0.0);
+  EXPECT_GE(returns.way_home_m({3000.0, 0.0, 0.0}, {}), 3000.0);
+}
+
+TEST(Flight, ARouteIsTakenUpWhereItWasLeft) {
+  const std::vector<Vec2> route{{2000.0, 0.0}, {4000.0, 0.0}, {6000.0, 0.0}};
+  Flight flight{vehicle_with(Recovery::anywhere), {}, route};
+  flight.start({0.0, 0.0, 0.0}, {}, 1e6, Instant{});
+  const Instant later = Instant{} + 50s;  // 500 m past the first point
+  flight.hold({}, later);
+  EXPECT_FALSE(flight.searching());
+  flight.search({}, 1e6, later + 30s);
+  const TimedPath& plan = flight.plan().timed;
+  const double flown_m = plan.distance_at(later + 30s);
+  EXPECT_NEAR(plan.path.end().x_m, 6000.0, 1e-6);
+  // Had it gone back to the first point, the rest would be 2 km longer at least.
+  EXPECT_LT(plan.path.length_m() - flown_m, 3500.0 + 1500.0);
+}
+
+}  // namespace
+}  // namespace skein::mission
