@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "skein/base/angles.hpp"
@@ -85,6 +86,25 @@ TEST(VehicleConfigFile, NamesTheMethodOfAllocation) {
           .ok());
 }
 
+TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
+  const std::string keys =
+      "flight_controller: {kind: ardupilot, can: 'mcast:3', node_id: 11, companion_node_id: 43, "
+      "airframe: copter, take_over: from_ground, takeoff_height_m: 25, geoid_height_m: -38.5}\n";
+  const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
+  ASSERT_TRUE(config.ok()) << config.error().message;
+  for (const auto& c : {*config, parse_vehicle_config(to_yaml(*config), "again.yaml").value()}) {
+    const ArdupilotConfig& fc = c.flight_controller.ardupilot;
+    EXPECT_EQ(c.flight_controller.kind, FlightControllerKind::ardupilot);
+    EXPECT_EQ(fc.can, "mcast:3");
+    EXPECT_EQ(fc.node_id, 11);
+    EXPECT_EQ(fc.companion_node_id, 43);
+    EXPECT_EQ(fc.airframe, AirframeKind::copter);
+    EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
+    EXPECT_EQ(fc.takeoff_height_m, 25.0);
+    EXPECT_EQ(fc.geoid_height_m, -38.5);
+  }
+}
+
 struct Mistake {
   const char* from;
   const char* to;
@@ -146,6 +166,17 @@ TEST(VehicleConfigFile, NamesEveryMistake) {
        "v.yaml:12: search[2]: is not [east, north]; write two numbers from -1000000 to 1000000 m"},
       {"start:", "recording_folder: [a]\nstart:",
        "v.yaml:12: recording_folder: is a list, not text; write it in \"quotes\""},
+      {"start:", "flight_controller: {kind: ardupilot}\nstart:",
+       "v.yaml:12: flight_controller.can: an ardupilot needs a CAN bus; name one, such as can0 or "
+       "mcast:0"},
+      {"start:", "flight_controller: {kind: ardupilott, can: can0}\nstart:",
+       "v.yaml:12: flight_controller.kind: is \"ardupilott\", not one of simulated, ardupilot; did "
+       "you mean ardupilot?"},
+      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 42}\nstart:",
+       "v.yaml:12: flight_controller.companion_node_id: is the autopilot's node_id too; every node "
+       "on a bus has its own"},
+      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
+       "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
       {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
        "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},
   };
@@ -380,6 +411,45 @@ TEST(Deployment, GivesEveryNodeItsPortItsPeersAndItsSeed) {
   EXPECT_THAT(ground.vehicles, testing::ElementsAre(VehicleId{1}, VehicleId{2}, VehicleId{3}));
 }
 
+TEST(Deployment, GivesFlightControllersOnCanBusesAndNodesOfTheirOwn) {
+  Scenario s = scenario();
+  s.vehicles[0].flight_controller.kind = FlightControllerKind::ardupilot;
+  s.vehicles[2].flight_controller.kind = FlightControllerKind::ardupilot;
+  Deployment deployment;
+  deployment.can_buses = {"mcast:5", "mcast:9"};
+  auto vehicles = vehicle_configs(s, deployment);
+  const auto& first = vehicles[0].flight_controller.ardupilot;
+  const auto& second = vehicles[2].flight_controller.ardupilot;
+  EXPECT_EQ(first.can, "mcast:5");
+  EXPECT_EQ(second.can, "mcast:9");
+  EXPECT_EQ(first.take_over, TakeOverKind::in_flight);
+  EXPECT_EQ((std::set<int>{first.node_id, first.companion_node_id, second.node_id,
+                           second.companion_node_id}
+                 .size()),
+            4U);
+  EXPECT_EQ(vehicles[1].flight_controller.kind, FlightControllerKind::simulated);
+  deployment.can_buses = {"vcan0"};
+  vehicles = vehicle_configs(s, deployment);
+  EXPECT_EQ(vehicles[2].flight_controller.ardupilot.can, "vcan0");
+  // What the scenario names itself stays.
+  s.vehicles[0].flight_controller.ardupilot.can = "can7";
+  s.vehicles[0].flight_controller.ardupilot.node_id = 99;
+  EXPECT_EQ(vehicle_configs(s, deployment)[0].flight_controller.ardupilot.can, "can7");
+  EXPECT_EQ(vehicle_configs(s, deployment)[0].flight_controller.ardupilot.node_id, 99);
+}
+
+TEST(ScenarioCheck, WantsNodesOfTheirOwnOnASharedBus) {
+  Scenario s = scenario();
+  for (auto& v : s.vehicles) v.flight_controller.kind = FlightControllerKind::ardupilot;
+  EXPECT_TRUE(check(s).ok()) << check(s).error().message;
+  s.vehicles[0].flight_controller.ardupilot.can = "vcan0";
+  s.vehicles[1].flight_controller.ardupilot.can = "vcan0";
+  s.vehicles[1].flight_controller.ardupilot.node_id = 11;
+  ASSERT_FALSE(check(s).ok());
+  EXPECT_EQ(check(s).error().message,
+            "vehicle 2 and vehicle 1 have node 42 on bus vcan0; give each node its own id");
+}
+
 TEST(Deployment, WhatIsWrittenIsReadBackExactly) {
   for (const auto& file : shipped()) {
     const auto s = load_scenario(file);
@@ -387,6 +457,7 @@ TEST(Deployment, WhatIsWrittenIsReadBackExactly) {
     Deployment deployment;
     deployment.time = {1'700'000'000'123'456'789, 2.5};
     deployment.recording_folder = "/tmp/run \"1\"";
+    deployment.can_buses = {"mcast:1"};
     for (const VehicleConfig& config : vehicle_configs(*s, deployment)) {
       const auto read_back = parse_vehicle_config(to_yaml(config), "written");
       ASSERT_TRUE(read_back.ok()) << read_back.error().message;

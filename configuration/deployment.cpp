@@ -39,19 +39,40 @@ std::string folder_of(const Deployment& deployment, const std::string& name) {
   return deployment.recording_folder.empty() ? "" : deployment.recording_folder + "/" + name;
 }
 
+constexpr std::uint8_t kFirstNode = 10;
+constexpr std::uint8_t kFirstCompanionNode = 70;
+
+/// For the `index`th vehicle that needs a bus.
+ArdupilotConfig on_bus(ArdupilotConfig ardupilot, const Deployment& deployment, std::size_t index) {
+  const auto& buses = deployment.can_buses;
+  SKEIN_ASSERT(buses.size() == 1 || index < buses.size());
+  SKEIN_ASSERT(kFirstNode + index < kFirstCompanionNode);
+  ardupilot.can = buses[buses.size() == 1 ? 0 : index];
+  ardupilot.node_id = static_cast<std::uint8_t>(kFirstNode + index);
+  ardupilot.companion_node_id = static_cast<std::uint8_t>(kFirstCompanionNode + index);
+  ardupilot.take_over = TakeOverKind::in_flight;
+  return ardupilot;
+}
+
 }  // namespace
 
 std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deployment& deployment) {
   const std::vector<NetworkPeer> nodes = nodes_of(scenario, deployment);
   Random seeds{scenario.seed};
   std::vector<VehicleConfig> configs;
+  std::size_t on_buses = 0;
   for (const ScenarioVehicle& vehicle : scenario.vehicles) {
     VehicleConfig config;
     config.vehicle = vehicle.spec;
     config.origin = scenario.origin;
     config.start = vehicle.start;
     config.search = vehicle.search;
+    config.flight_controller = vehicle.flight_controller;
     config.flight_controller.wind = scenario.wind;
+    ArdupilotConfig& ardupilot = config.flight_controller.ardupilot;
+    if (config.flight_controller.kind == FlightControllerKind::ardupilot && ardupilot.can.empty()) {
+      ardupilot = on_bus(ardupilot, deployment, on_buses++);
+    }
     config.network = network_of(configs.size() + 1, nodes, deployment);
     config.protocol = scenario.protocol;
     config.planning = scenario.planning;

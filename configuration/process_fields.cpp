@@ -9,9 +9,13 @@ namespace {
 constexpr std::array<std::string_view, static_cast<std::size_t>(TaskKind::count)> kTaskKinds{
     "survey", "deliver", "assess"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(FlightControllerKind::count)>
-    kFlightControllers{"simulated"};
+    kFlightControllers{"simulated", "ardupilot"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Recovery::count)> kRecoveries{
     "home", "anywhere"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(AirframeKind::count)> kAirframes{
+    "plane", "copter"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(TakeOverKind::count)> kTakeOvers{
+    "when_guided", "in_flight", "from_ground"};
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
 constexpr Range kPort{1.0, 65535.0};
 
@@ -27,14 +31,46 @@ void capabilities(FieldVisitor& v, const Field& field, Capabilities& value) {
   for (const std::size_t kind : kinds) value.add(static_cast<TaskKind>(kind));
 }
 
-void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config) {
-  auto kind = static_cast<std::size_t>(config.kind);
-  v.choice({"kind", "what flies the vehicle"}, kFlightControllers, kind);
-  config.kind = static_cast<FlightControllerKind>(kind);
-  wind_fields(v, config.wind, "wind_");
+template <class Choice, std::size_t Count>
+void choice_of(FieldVisitor& v, const Field& field,
+               const std::array<std::string_view, Count>& names, Choice& value) {
+  auto index = static_cast<std::size_t>(value);
+  v.choice(field, names, index);
+  value = static_cast<Choice>(index);
 }
 
 }  // namespace
+
+void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, bool bus_required) {
+  const Range node{1.0, 127.0};
+  ArdupilotConfig& fc = config.ardupilot;
+  choice_of(v, {"kind", "what flies the vehicle; the keys below `can` are for an ardupilot"},
+            kFlightControllers, config.kind);
+  v.text({"can", bus_required ? "bus of an ardupilot: can0, vcan0, mcast:0"
+                              : "bus of an ardupilot: vcan0, mcast:0; empty: the bench chooses bus "
+                                "and nodes"},
+         fc.can);
+  whole(v, {"node_id", "of the autopilot on the bus: its CAN_D1_UC_NODE"}, node, fc.node_id);
+  whole(v, {"companion_node_id", "of this companion: the autopilot's CAN_D1_UC_S1_NOD"}, node,
+        fc.companion_node_id);
+  whole(v, {"serial_id", "of the tunnel: the autopilot's CAN_D1_UC_S1_IDX"}, {0.0, 15.0},
+        fc.serial_id);
+  choice_of(v, {"airframe", "that the autopilot flies"}, kAirframes, fc.airframe);
+  choice_of(v,
+            {"take_over",
+             "when the companion takes the aircraft: once its pilot switches to GUIDED; once it is "
+             "in the air; or it arms and takes off itself"},
+            kTakeOvers, fc.take_over);
+  v.number({"takeoff_height_m", "above the ground, from_ground"}, {5.0, 500.0, "m"},
+           fc.takeoff_height_m);
+  v.number({"geoid_height_m",
+            "of the geoid above the ellipsoid at the origin: autopilots count heights from it"},
+           {-120.0, 100.0, "m"}, fc.geoid_height_m);
+  v.require(!bus_required || config.kind != FlightControllerKind::ardupilot || !fc.can.empty(),
+            "can", "an ardupilot needs a CAN bus; name one, such as can0 or mcast:0");
+  v.require(fc.node_id != fc.companion_node_id, "companion_node_id",
+            "is the autopilot's node_id too; every node on a bus has its own");
+}
 
 void version_field(FieldVisitor& v) {
   std::int64_t version = kVersion;
@@ -226,7 +262,8 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
             [&config](FieldVisitor& inner) { pose_fields(inner, config.start); });
   search_list(v, config.search);
   v.section({"flight_controller", "what flies it"}, [&config](FieldVisitor& inner) {
-    flight_controller_fields(inner, config.flight_controller);
+    flight_controller_fields(inner, config.flight_controller, true);
+    wind_fields(inner, config.flight_controller.wind, "wind_");
   });
   v.section({"protocol", "the contract net; the same for the whole fleet"},
             [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });

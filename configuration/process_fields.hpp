@@ -17,6 +17,8 @@ inline constexpr int kVersion = 1;
 void version_field(FieldVisitor& v);
 void origin_section(FieldVisitor& v, Wgs84& origin);
 void wind_fields(FieldVisitor& v, WindConfig& wind, const std::string& prefix);
+/// `bus_required`: whether a flight controller on CAN must name its bus.
+void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, bool bus_required);
 void pose_fields(FieldVisitor& v, Pose2& pose);
 void spec_fields(FieldVisitor& v, VehicleSpec& spec);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "number_text.hpp"
 #include "skein/base/geometry.hpp"
@@ -28,6 +31,7 @@ class Check {
     check_numbers();
     for (const ScenarioVehicle& vehicle : s_.vehicles) check_vehicle(vehicle);
     check_heights();
+    check_buses();
     for (const Site& site : s_.sites) check_site(site);
     check_names();
     check_faults();
@@ -192,6 +196,22 @@ class Check {
     if (std::none_of(s_.sites.begin(), s_.sites.end(),
                      [id](const Site& site) { return site.id == id; })) {
       problem(where + " names site " + std::to_string(id.value) + ", which is not among the sites");
+    }
+  }
+
+  /// Node ids on a bus that the scenario names are the scenario's to keep apart.
+  void check_buses() {
+    std::map<std::pair<std::string, std::uint8_t>, std::string> taken;
+    for (const ScenarioVehicle& v : s_.vehicles) {
+      const ArdupilotConfig& fc = v.flight_controller.ardupilot;
+      if (v.flight_controller.kind != FlightControllerKind::ardupilot || fc.can.empty()) continue;
+      for (const std::uint8_t node : {fc.node_id, fc.companion_node_id}) {
+        const auto [other, is_new] = taken.emplace(std::pair{fc.can, node}, name(v));
+        if (!is_new) {
+          problem(name(v) + " and " + other->second + " have node " + std::to_string(node) +
+                  " on bus " + fc.can + "; give each node its own id");
+        }
+      }
     }
   }
 

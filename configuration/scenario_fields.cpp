@@ -185,6 +185,9 @@ void fields(FieldVisitor& v, ScenarioVehicle& vehicle) {
   spec_fields(v, vehicle.spec);
   pose_fields(v, vehicle.start);
   search_list(v, vehicle.search);
+  v.section({"flight_controller", "what flies it"}, [&vehicle](FieldVisitor& inner) {
+    flight_controller_fields(inner, vehicle.flight_controller, false);
+  });
 }
 
 void fields(FieldVisitor& v, Scenario& s) {

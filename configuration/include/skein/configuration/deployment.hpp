@@ -20,11 +20,15 @@ struct Deployment {
   std::string transport_plugin;
   TimeConfig time;
   std::string recording_folder;  ///< each process gets its own in it; empty: no recordings
+  /// For the vehicles whose flight controller is on a CAN bus that the scenario does not name: one
+  /// for each, or one for all. They get node ids of their own on it, and are taken over in flight.
+  std::vector<std::string> can_buses;
 };
 
 /// The configuration of every vehicle process. Every node is a peer of every other. Vehicles know
 /// the hazards whose known_from is the epoch; the later ones must be reported to them. Each
-/// vehicle's seed is drawn from the scenario's. Precondition: the ports fit in 16 bits.
+/// vehicle's seed is drawn from the scenario's. Preconditions: the ports fit in 16 bits, and there
+/// is one CAN bus, or as many as are needed.
 [[nodiscard]] std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario,
                                                          const Deployment& deployment);
 [[nodiscard]] GroundConfig ground_config(const Scenario& scenario, const Deployment& deployment);

@@ -37,7 +37,8 @@ struct ScenarioVehicle {
   std::string type;
   VehicleSpec spec;
   Pose2 start;
-  std::vector<Vec2> search;  ///< flown in order; the vehicle orbits the last point
+  std::vector<Vec2> search;                  ///< flown in order; the vehicle orbits the last point
+  FlightControllerConfig flight_controller;  ///< its wind is the scenario's
 };
 
 struct ScenarioHazard {

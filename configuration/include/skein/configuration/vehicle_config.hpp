@@ -26,11 +26,27 @@ struct WindConfig {
   double gust_mps = 0.0;        ///< standard deviation of the turbulence
 };
 
-enum class FlightControllerKind : std::uint8_t { simulated, count };
+enum class FlightControllerKind : std::uint8_t { simulated, ardupilot, count };
+enum class AirframeKind : std::uint8_t { plane, copter, count };
+/// When the companion takes the aircraft from its pilot (docs/ardupilot.md).
+enum class TakeOverKind : std::uint8_t { when_guided, in_flight, from_ground, count };
+
+/// An ArduPilot on a CAN bus. The node ids and the serial port are those of its parameters.
+struct ArdupilotConfig {
+  std::string can;  ///< "can0", "vcan0", "mcast:0"; in a scenario empty: the bench chooses
+  std::uint8_t node_id = 10;
+  std::uint8_t companion_node_id = 42;
+  std::int8_t serial_id = 0;
+  AirframeKind airframe = AirframeKind::plane;
+  TakeOverKind take_over = TakeOverKind::when_guided;
+  double takeoff_height_m = 40.0;
+  double geoid_height_m = 0.0;
+};
 
 struct FlightControllerConfig {
   FlightControllerKind kind = FlightControllerKind::simulated;
   WindConfig wind;  ///< of the simulated flight controller
+  ArdupilotConfig ardupilot;
 };
 
 /// Everything that skein-onboard needs to know (docs/configuration.md).
