@@ -32,6 +32,15 @@ constexpr double kHeartbeat_hz = 10.0;
 constexpr double kHud_hz = 10.0;
 constexpr double kHealth_hz = 2.0;
 
+/// As MAVLink carries it, and still within the limits: an autopilot refuses a speed beyond its own.
+double speed_within(double speed_mps, const VehicleSpec& vehicle) {
+  const double clamped = std::clamp(speed_mps, vehicle.speed_min_mps, vehicle.speed_max_mps);
+  const auto carried = static_cast<float>(clamped);
+  if (carried > vehicle.speed_max_mps) return std::nextafter(carried, 0.0F);
+  if (carried < vehicle.speed_min_mps) return std::nextafter(carried, 1e3F);
+  return carried;
+}
+
 }  // namespace
 
 // --- what the operator asks ----------------------------------------------------------------------
@@ -238,8 +247,7 @@ void Companion::Impl::fly(Instant now) {
 }
 
 void Companion::Impl::set_speed(const Setpoint& setpoint, Instant now) {
-  const double wanted = std::clamp(setpoint.airspeed_mps, params_.vehicle.speed_min_mps,
-                                   params_.vehicle.speed_max_mps);
+  const double wanted = speed_within(setpoint.airspeed_mps, params_.vehicle);
   const bool differs = !speed_sent_ || std::abs(wanted - *speed_sent_) >= kSpeedStep_mps;
   if (!differs || (speed_sent_ && now - speed_at_ < kSpeedPeriod)) return;
   speed_sent_ = wanted;

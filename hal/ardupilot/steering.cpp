@@ -11,6 +11,8 @@ namespace skein::ardupilot {
 namespace {
 
 constexpr double kBankMax_rad = radians(70.0);
+/// Of the least turn radius: an aircraft rolls past the bank that is asked for before it settles.
+constexpr double kRollReserve = 1.05;
 constexpr double kClimbGain_per_s = 1.0;
 constexpr double kClimbMax_mps = 3.0;
 
@@ -28,7 +30,7 @@ constexpr std::uint16_t kVelocityAlone =
 
 double bank_for(const VehicleSpec& vehicle, const Setpoint& setpoint, const VehicleState& state) {
   const double airspeed = std::max(state.airspeed_mps, vehicle.speed_min_mps);
-  const double rate_max = airspeed / vehicle.turn_radius_m;
+  const double rate_max = airspeed / (kRollReserve * vehicle.turn_radius_m);
   const double error = wrap_pi(setpoint.heading_rad - state.heading_rad);
   const double rate = std::clamp(vehicle.heading_gain_per_s * error, -rate_max, rate_max);
   // Headings count counter-clockwise, banks to the right.
