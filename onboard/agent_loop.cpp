@@ -18,6 +18,7 @@ AgentLoop::AgentLoop(const mission::VehicleAgentConfig& config, AgentLink link,
       control_{&control},
       planner_{&planner},
       events_{&events},
+      self_{config.vehicle.id},
       stepped_at_{now},
       next_telemetry_{now} {}
 
@@ -35,12 +36,19 @@ void AgentLoop::step(Instant now) {
   for (int i = 0; i < kMessagesPerStep; ++i) {
     const auto received = link_.receive();
     if (!received) break;
+    if (const auto* command = std::get_if<mission::Command>(&received->message)) pass_on(*command);
     agent_.on_message(received->message, received->sender, now);
     hand_out();
   }
   while (const auto result = planner_->result()) {
     agent_.on_planning_result(*result, now);
     hand_out();
+  }
+  if (link_.flight_event) {
+    while (auto event = link_.flight_event()) {
+      link_.send(mission::Message{*event});
+      report(std::move(*event));
+    }
   }
   if (flying) {
     agent_.on_timeout(now);
@@ -53,11 +61,20 @@ void AgentLoop::hand_out() {
   while (const auto plan = agent_.poll_plan()) control_->plan.write(*plan);
   while (const auto message = agent_.poll_message()) link_.send(*message);
   while (auto request = agent_.poll_planning_request()) planner_->request(std::move(*request));
-  while (auto event = agent_.poll_event()) {
-    const bool warning = event->kind == mission::EventKind::warning;
-    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(*event));
-    events_->push(std::move(*event));
-  }
+  while (auto event = agent_.poll_event()) report(std::move(*event));
+}
+
+void AgentLoop::report(mission::MissionEvent event) {
+  const bool warning = event.kind == mission::EventKind::warning;
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(event));
+  events_->push(std::move(event));
+}
+
+void AgentLoop::pass_on(const mission::Command& command) {
+  const bool ours = command.vehicle == self_ || command.vehicle == kGroundStation;
+  if (!ours || command.number <= command_number_) return;
+  command_number_ = command.number;
+  if (link_.on_command) link_.on_command(command.kind);
 }
 
 void AgentLoop::send_telemetry(Instant now) {

@@ -32,7 +32,9 @@ void ControlLoop::step(Instant now) {
     flight_controller_->command(
         planning::follow_path(follower_, vehicle_, plan_.timed, *state, now), now);
   }
-  if (now >= next_track_) {
+  // What a silent flight controller has told before is recorded once.
+  if (now >= next_track_ && state->time > recorded_) {
+    recorded_ = state->time;
     recording::TrackPoint point{.state = *state};
     if (has_plan_) {
       const auto error = planning::follow_error(plan_.timed, *state, now);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <mutex>
+#include <vector>
 
 #include "counted_calls.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
@@ -130,6 +131,20 @@ class SilentFlightController final : public hal::FlightController {
   std::optional<VehicleState> last;
   int commands = 0;
 };
+
+TEST(ControlLoop, RecordsAStateThatIsToldAgainOnce) {
+  SilentFlightController flight_controller;
+  ControlPorts ports;
+  ControlLoop loop{vehicle(), flight_controller, ports};
+  flight_controller.last = VehicleState{};
+  flight_controller.last->time = at_seconds(1.0);
+  for (const double now : {1.0, 1.1, 1.2}) loop.step(at_seconds(now));
+  flight_controller.last->time = at_seconds(1.3);
+  loop.step(at_seconds(1.3));
+  std::vector<Instant> times;
+  while (const auto point = ports.track.pop()) times.push_back(point->state.time);
+  EXPECT_EQ(times, (std::vector{at_seconds(1.0), at_seconds(1.3)}));
+}
 
 TEST(ControlLoop, LeavesASilentFlightControllerToItsFailsafe) {
   SilentFlightController flight_controller;

@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <utility>
 
+#include "skein/can/bus.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
+#include "skein/onboard/can_flight_controller.hpp"
 #include "skein/onboard/control_loop.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/recorder.hpp"
@@ -25,19 +28,61 @@
 namespace skein::onboard {
 namespace {
 
-std::unique_ptr<hal::FlightController> flight_controller(
-    const configuration::VehicleConfig& config) {
-  switch (config.flight_controller.kind) {
-    case configuration::FlightControllerKind::simulated:
-    case configuration::FlightControllerKind::count:
+ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) {
+  const configuration::ArdupilotConfig& fc = config.flight_controller.ardupilot;
+  ardupilot::CanLinkParams params;
+  params.node_id = fc.node_id;
+  params.companion_node_id = fc.companion_node_id;
+  params.serial_id = fc.serial_id;
+  ardupilot::CompanionParams& companion = params.companion;
+  companion.vehicle = config.vehicle;
+  companion.airframe = fc.airframe == configuration::AirframeKind::copter
+                           ? ardupilot::Airframe::copter
+                           : ardupilot::Airframe::plane;
+  switch (fc.take_over) {
+    case configuration::TakeOverKind::in_flight:
+      companion.take_over = ardupilot::TakeOver::in_flight;
+      break;
+    case configuration::TakeOverKind::from_ground:
+      companion.take_over = ardupilot::TakeOver::from_ground;
+      break;
+    case configuration::TakeOverKind::when_guided:
+    case configuration::TakeOverKind::count:
+      companion.take_over = ardupilot::TakeOver::when_guided;
       break;
   }
+  companion.takeoff_height_m = fc.takeoff_height_m;
+  companion.geoid_height_m = fc.geoid_height_m;
+  return params;
+}
+
+/// What flies the vehicle; `on_can` is the same object where it is on a bus.
+struct FlightControllers {
+  std::unique_ptr<hal::FlightController> any;
+  CanFlightController* on_can = nullptr;
+};
+
+Result<FlightControllers> flight_controllers(const configuration::VehicleConfig& config,
+                                             Instant now) {
+  FlightControllers made;
+  if (config.flight_controller.kind == configuration::FlightControllerKind::ardupilot) {
+    auto origin = MissionOrigin::make(config.origin);
+    if (!origin) return origin.error();
+    auto bus = can::open(config.flight_controller.ardupilot.can);
+    if (!bus) return bus.error();
+    auto controller = std::make_unique<CanFlightController>(std::move(bus).value(),
+                                                            can_params(config), *origin, now);
+    made.on_can = controller.get();
+    made.any = std::move(controller);
+    return made;
+  }
   const auto& wind = config.flight_controller.wind;
-  return std::make_unique<hal::SimulatedFlightController>(
+  made.any = std::make_unique<hal::SimulatedFlightController>(
       config.vehicle, config.start,
       models::WindParams{.steady_mps = -wind.speed_mps * unit_vector(wind.from_rad),
                          .gust_mps = wind.gust_mps,
                          .seed = config.seed});
+  return made;
 }
 
 mission::VehicleAgentConfig agent_config(const configuration::VehicleConfig& config,
@@ -62,21 +107,55 @@ AgentLink link_to(network::Node& node) {
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
 
-/// The four threads of threads.hpp around the objects that they run, from construction to stop().
+/// The next warning of the flight controller; what is no warning is for the log alone.
+std::optional<mission::MissionEvent> next_warning(CanFlightController& controller, VehicleId self) {
+  while (auto notice = controller.poll_notice()) {
+    if (!notice->warning) {
+      spdlog::info("{}", notice->text);
+      continue;
+    }
+    mission::MissionEvent event;
+    event.vehicle = self;
+    event.time = notice->time;
+    event.kind = mission::EventKind::warning;
+    event.text = std::move(notice->text);
+    return event;
+  }
+  return std::nullopt;
+}
+
+AgentLink link_to(network::Node& node, CanFlightController* on_can, VehicleId self) {
+  AgentLink link = link_to(node);
+  if (on_can == nullptr) return link;
+  link.flight_event = [on_can, self] { return next_warning(*on_can, self); };
+  link.on_command = [on_can](mission::CommandKind kind) {
+    if (kind == mission::CommandKind::resume) on_can->resume();
+  };
+  return link;
+}
+
+/// The threads of threads.hpp around the objects that they run, from construction to stop().
 class Threads {
  public:
   Threads(const configuration::VehicleConfig& config, const process::MissionClock& clock,
           network::Node& node, process::Wake& wake_agent, InstanceId instance,
-          std::optional<recording::Writer> writer)
+          std::optional<recording::Writer> writer, FlightControllers flight_controllers)
       : clock_{clock},
         wake_agent_{wake_agent},
-        flight_controller_{flight_controller(config)},
-        control_{config.vehicle, *flight_controller_, ports_},
-        agent_{
-            agent_config(config, instance), link_to(node), ports_, planner_, events_, clock.now()},
+        flight_controllers_{std::move(flight_controllers)},
+        control_{config.vehicle, *flight_controllers_.any, ports_},
+        agent_{agent_config(config, instance),
+               link_to(node, flight_controllers_.on_can, config.vehicle.id),
+               ports_,
+               planner_,
+               events_,
+               clock.now()},
         recorder_{std::move(writer), ports_, events_} {
     recorder_thread_ = start_thread(ThreadRole::recorder, [this] { recorder_.run(); });
     planner_thread_ = start_thread(ThreadRole::planner, [this] { planner_.run(); });
+    if (flight_controllers_.on_can != nullptr) {
+      can_thread_ = start_thread(ThreadRole::can, [this] { run_can(); });
+    }
     control_thread_ = start_thread(ThreadRole::control, [this] { run_control(); });
     agent_thread_ = start_thread(ThreadRole::agent, [this] { run_agent(); });
   }
@@ -89,6 +168,7 @@ class Threads {
     planner_.stop();
     planner_thread_.join();
     control_thread_.join();
+    if (can_thread_.joinable()) can_thread_.join();
     recorder_.stop();
     recorder_thread_.join();
   }
@@ -104,6 +184,15 @@ class Threads {
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped, errors,
         ports_.track.dropped() + ports_.plans.dropped() + events_.dropped());
+    if (flight_controllers_.on_can == nullptr) return;
+    const auto& link = flight_controllers_.on_can->link();
+    const auto& bus = link.bus().statistics();
+    spdlog::info(
+        "bus {}: frames sent {}, received {}, refused {}, lost {}; transfers broken {}, dropped "
+        "{}; MAVLink packets {}, lost {}",
+        link.bus().name(), bus.sent, bus.received, bus.refused, bus.lost,
+        link.reassembly().broken(), link.transfers_dropped(), link.companion().parser().packets,
+        link.companion().parser().lost);
   }
 
  private:
@@ -113,6 +202,13 @@ class Threads {
       clock_.sleep_until(schedule.next());
       control_.step(clock_.now());
       ports_.overruns.fetch_add(schedule.advance(clock_.now()), std::memory_order_relaxed);
+    }
+  }
+
+  void run_can() {
+    while (!stopping_) {
+      flight_controllers_.on_can->step(clock_.now());
+      flight_controllers_.on_can->wait(spec_of(ThreadRole::can).period);
     }
   }
 
@@ -130,12 +226,13 @@ class Threads {
   ControlPorts ports_;
   EventRing events_;
   Planner planner_{[this] { wake_agent_.notify(); }, [this] { return clock_.now(); }};
-  std::unique_ptr<hal::FlightController> flight_controller_;
+  FlightControllers flight_controllers_;
   ControlLoop control_;
   AgentLoop agent_;
   Recorder recorder_;
   std::atomic<bool> stopping_{false};
   std::thread control_thread_;
+  std::thread can_thread_;
   std::thread agent_thread_;
   std::thread planner_thread_;
   std::thread recorder_thread_;
@@ -166,10 +263,16 @@ int fly(const configuration::VehicleConfig& config) {
     return process::kExitCannotStart;
   }
 
+  auto controllers = flight_controllers(config, clock.now());
+  if (!controllers) {
+    spdlog::critical("cannot reach the flight controller: {}", controllers.error().message);
+    return process::kExitCannotStart;
+  }
+
   spdlog::info("vehicle {} joins the mission network, instance {:016x}", config.vehicle.id.value,
                instance.value);
-  const auto threads =
-      std::make_unique<Threads>(config, clock, **node, wake_agent, instance, std::move(writer));
+  const auto threads = std::make_unique<Threads>(config, clock, **node, wake_agent, instance,
+                                                 std::move(writer), std::move(controllers).value());
   spdlog::info("{}: stopping", shutdown.wait());
   threads->stop();
   threads->log_summary(**node);

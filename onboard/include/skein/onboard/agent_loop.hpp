@@ -24,6 +24,10 @@ struct AgentLink {
   std::function<std::optional<Received>()> receive;
   std::function<void(const mission::Message&)> send;
   std::function<std::uint64_t()> dropped;  ///< messages lost by full queues and bad packets so far
+  /// What the flight controller wants the operator to know; may be empty.
+  std::function<std::optional<mission::MissionEvent>()> flight_event = {};
+  /// Hears the operator's commands to this vehicle once each, as the agent does; may be empty.
+  std::function<void(mission::CommandKind)> on_command = {};
 };
 
 /// Carries inputs to the vehicle's agent and its outputs away: one step() takes in the newest
@@ -49,6 +53,8 @@ class AgentLoop {
 
  private:
   void hand_out();
+  void report(mission::MissionEvent event);
+  void pass_on(const mission::Command& command);
   void send_telemetry(Instant now);
 
   mission::VehicleAgent agent_;
@@ -56,6 +62,8 @@ class AgentLoop {
   ControlPorts* control_;
   Planner* planner_;
   EventRing* events_;
+  VehicleId self_;
+  std::uint32_t command_number_ = 0;
   VehicleState state_;
   bool has_state_ = false;
   Instant stepped_at_;

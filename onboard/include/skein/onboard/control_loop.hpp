@@ -66,6 +66,7 @@ class ControlLoop {
   mission::FlightPlan plan_;
   bool has_plan_ = false;
   Instant next_track_{};
+  Instant recorded_ = Instant::min();
 };
 
 }  // namespace skein::onboard

@@ -12,7 +12,7 @@
 
 namespace skein::onboard {
 
-enum class ThreadRole : std::uint8_t { control, agent, planner, recorder, count };
+enum class ThreadRole : std::uint8_t { control, can, agent, planner, recorder, count };
 enum class SchedulingPolicy : std::uint8_t { realtime, normal };
 
 /// One thread of skein-onboard. Periods and deadlines are mission time; a period of zero means that
@@ -26,10 +26,13 @@ struct ThreadSpec {
   Duration deadline;  ///< from the start of the period to the end of its work
 };
 
-/// All threads of the process but main and DDS's own, which are normal.
+/// All threads of the process but main and DDS's own, which are normal. `can` runs where the flight
+/// controller is on a bus, whenever a frame comes and at its period.
 inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::count)> kThreads{{
     {ThreadRole::control, "control", SchedulingPolicy::realtime, 50, std::chrono::milliseconds{20},
      std::chrono::milliseconds{20}},
+    {ThreadRole::can, "can", SchedulingPolicy::realtime, 60, std::chrono::milliseconds{5},
+     std::chrono::milliseconds{10}},
     {ThreadRole::agent, "agent", SchedulingPolicy::normal, 0, std::chrono::milliseconds{50},
      std::chrono::milliseconds{100}},
     {ThreadRole::planner, "planner", SchedulingPolicy::normal, 0, Duration::zero(),

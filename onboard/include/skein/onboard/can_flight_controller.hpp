@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+
+#include "skein/ardupilot/can_link.hpp"
+#include "skein/hal/flight_controller.hpp"
+#include "skein/onboard/latest_value.hpp"
+#include "skein/onboard/spsc_ring.hpp"
+
+namespace skein::onboard {
+
+/// A flight controller on a CAN bus, with the bus in a thread of its own: control reads and writes
+/// slots, so that it neither waits for the bus nor allocates.
+class CanFlightController final : public hal::FlightController {
+ public:
+  CanFlightController(std::unique_ptr<can::Bus> bus, const ardupilot::CanLinkParams& params,
+                      const MissionOrigin& origin, Instant now)
+      : link_{std::move(bus), params, origin, now} {}
+
+  // Of the control thread.
+  [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
+  void command(const Setpoint& setpoint, Instant now) override;
+
+  // Of the CAN thread.
+  void step(Instant now);
+  /// Until a frame comes, and not longer than that.
+  void wait(Duration at_most) const;
+  [[nodiscard]] const ardupilot::CanLink& link() const { return link_; }
+
+  // Of the agent's thread.
+  /// The operator gives the aircraft (back) to the companion.
+  void resume() { resume_.store(true, std::memory_order_release); }
+  [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
+
+ private:
+  struct Command {
+    Setpoint setpoint;
+    Instant at;
+  };
+  LatestValue<ardupilot::MotionSample> sample_;  ///< CAN to control
+  LatestValue<Command> command_;                 ///< control to CAN
+  SpscRing<ardupilot::Notice, 64> notices_;      ///< CAN to agent
+  std::atomic<bool> resume_{false};
+  std::optional<ardupilot::MotionSample> newest_;  ///< control's
+  ardupilot::CanLink link_;
+};
+
+}  // namespace skein::onboard
