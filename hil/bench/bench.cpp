@@ -16,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "flight_controllers.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
@@ -35,6 +36,8 @@ constexpr VehicleId kBench{255};
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};
+/// Node ids for them and their companions on one bus.
+constexpr std::size_t kCanVehiclesMax = 50;
 
 volatile std::sig_atomic_t g_interrupted = 0;
 extern "C" void on_interrupt(int /*signal*/) { g_interrupted = 1; }
@@ -116,6 +119,8 @@ class Bench {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
     const auto base = port_block(options_.port_base, 2 * nodes);
     if (!base) return base.error();
+    const auto buses = can_buses(*base);
+    if (!buses) return buses.error();
     auto table = radio::LinkTable::create();
     if (!table) return table.error();
     table_.emplace(std::move(table).value());
@@ -133,6 +138,7 @@ class Bench {
                                         (system_clock::now() + lead).time_since_epoch())
                                         .count();
     deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
+    deployment.can_buses = *buses;
 
     const auto ground = configuration::ground_config(scenario_, deployment);
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
@@ -148,6 +154,7 @@ class Bench {
     bench.peers.push_back({kGroundStation, {ground.network.address, ground.network.port}});
     for (const auto& config : configuration::vehicle_configs(scenario_, deployment)) {
       bench.peers.push_back({config.vehicle.id, {config.network.address, config.network.port}});
+      if (auto up = launch_flight_controller(config); !up) return up;
       const std::string name = "vehicle-" + std::to_string(config.vehicle.id.value);
       if (auto up =
               launch(config.vehicle.id, "skein-onboard", name, configuration::to_yaml(config));
@@ -207,6 +214,39 @@ class Bench {
     return {};
   }
 
+  /// The buses of the flight controllers that the scenario leaves to us.
+  [[nodiscard]] Result<std::vector<std::string>> can_buses(std::uint16_t port_base) const {
+    std::size_t on_can = 0;
+    std::size_t ours = 0;
+    for (const auto& vehicle : scenario_.vehicles) {
+      const auto& fc = vehicle.flight_controller;
+      if (fc.kind != configuration::FlightControllerKind::ardupilot) continue;
+      ++on_can;
+      if (fc.ardupilot.can.empty()) ++ours;
+    }
+    if (on_can > 0 && options_.rate != 1.0) {
+      return Error{"flight controllers on CAN fly in real time; leave --rate out"};
+    }
+    if (ours == 0) return std::vector<std::string>{};
+    if (ours > kCanVehiclesMax) {
+      return Error{"at most " + std::to_string(kCanVehiclesMax) +
+                   " vehicles can be on CAN; make the others simulated"};
+    }
+    if (!options_.can.empty()) return std::vector<std::string>{options_.can};
+    return quiet_buses(ours, port_base);
+  }
+
+  Result<void> launch_flight_controller(const configuration::VehicleConfig& config) {
+    if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) return {};
+    const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
+    auto child = ChildProcess::start(flight_controller_command(options_.programs, config),
+                                     options_.run_folder / (name + ".log"), {});
+    if (!child) return child.error();
+    child->make_realtime();
+    flight_controllers_.emplace(config.vehicle.id, std::move(child).value());
+    return {};
+  }
+
   void hear() {
     while (const auto received = node_->poll()) {
       if (const auto* telemetry = std::get_if<mission::Telemetry>(&received->message)) {
@@ -239,6 +279,17 @@ class Bench {
                                 (options_.run_folder / (log_name(id) + ".log")).string());
       say(outcome_.deaths.back());
     }
+    for (auto& [id, process] : flight_controllers_) {
+      if (killed_.contains(id) || fc_reported_.contains(id)) continue;
+      const auto how = process.ended();
+      if (!how) continue;
+      fc_reported_.insert(id);
+      outcome_.deaths.push_back(
+          "the flight controller of " + name_of(id) + " ended by itself: " + *how +
+          "; its log is " +
+          (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
+      say(outcome_.deaths.back());
+    }
     if (now >= Instant{} && !outcome_.all_heard_s && outcome_.deaths.empty()) {
       std::string missing;
       for (const auto& v : scenario_.vehicles) {
@@ -268,6 +319,10 @@ class Bench {
           if (const auto it = processes_.find(fault.vehicle);
               it != processes_.end() && killed_.insert(fault.vehicle).second) {
             it->second.signal(SIGKILL);
+            if (const auto fc = flight_controllers_.find(fault.vehicle);
+                fc != flight_controllers_.end()) {
+              fc->second.signal(SIGKILL);
+            }
             outcome_.killed.push_back(fault.vehicle);
             say("fault: " + name_of(fault.vehicle) + " is killed");
           }
@@ -329,7 +384,13 @@ class Bench {
       if (id != kGroundStation && !killed_.contains(id)) vehicles.push_back(&process);
     }
     const bool clean = stop_all(vehicles, kStopWithin);
-    outcome_.stopped_cleanly = stop_all({&processes_.at(kGroundStation)}, kStopWithin) && clean;
+    std::vector<ChildProcess*> controllers;
+    for (auto& [id, process] : flight_controllers_) {
+      if (!killed_.contains(id)) controllers.push_back(&process);
+    }
+    const bool controllers_clean = stop_all(controllers, kStopWithin);
+    outcome_.stopped_cleanly =
+        stop_all({&processes_.at(kGroundStation)}, kStopWithin) && clean && controllers_clean;
     for (auto& [id, process] : processes_) {
       const auto how = process.ended();
       if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
@@ -386,6 +447,7 @@ class Bench {
   InterruptWatch interrupts_;
   std::optional<radio::LinkTable> table_;
   std::map<VehicleId, ChildProcess> processes_;
+  std::map<VehicleId, ChildProcess> flight_controllers_;
   std::unique_ptr<network::Node> node_;
   SurveySensors sensors_;
   steady_clock::time_point started_;
@@ -395,6 +457,7 @@ class Bench {
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;
+  std::set<VehicleId> fc_reported_;
   std::vector<std::vector<VehicleId>> groups_;
   double loss_ = 0.0;
   std::optional<Instant> stop_at_;

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -102,6 +103,12 @@ std::optional<std::string> ChildProcess::ended() {
 
 void ChildProcess::signal(int number) const {
   if (pid_ > 0 && !status_) ::kill(pid_, number);
+}
+
+void ChildProcess::make_realtime() const {
+  constexpr int kPriority = 70;  // above the threads of skein-onboard
+  const sched_param parameters{.sched_priority = kPriority};
+  if (pid_ > 0 && !status_) (void)::sched_setscheduler(pid_, SCHED_FIFO, &parameters);
 }
 
 bool ChildProcess::wait(std::chrono::milliseconds at_most) {

@@ -36,6 +36,9 @@ int main(int argc, char** argv) {
       ->add_option("--port-base", run.port_base,
                    "First UDP port (default: free ports are looked for)")
       ->check(CLI::Range(1024, 65000));
+  run_command->add_option("--can", run.can,
+                          "CAN bus of all flight controllers, such as vcan0 (default: multicast "
+                          "buses of their own on loopback)");
   run_command->add_flag("--headless", run.headless, "No progress line; news only");
   run_command->add_flag("--prompt", run.prompt,
                         "Decide about deliveries yourself, at the ground station's prompt, in "

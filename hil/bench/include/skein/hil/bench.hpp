@@ -16,11 +16,14 @@
 namespace skein::hil {
 
 struct BenchOptions {
-  std::filesystem::path programs;      ///< folder of skein-onboard and skein-ground
+  std::filesystem::path programs;      ///< folder of skein-onboard, skein-fc and skein-ground
   std::filesystem::path radio_plugin;  ///< libskein_radio.so
   std::filesystem::path run_folder;    ///< made; configurations, logs and recordings go there
   double rate = 1.0;                   ///< mission seconds in a real second
   std::uint16_t port_base = 0;         ///< UDP; 0 looks for free ports
+  /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
+  /// one for each.
+  std::string can;
   bool prompt =
       false;  ///< leave the decisions to skein-ground's prompt (its input is the terminal's)
 };
@@ -47,10 +50,11 @@ struct BenchOutcome {
   std::uint64_t messages_dropped = 0;  ///< by full queues or as damaged, all vehicles together
 };
 
-/// Starts one skein-onboard for each vehicle, one skein-ground and the radio between them, plays
-/// the sensors and the faults, and stops everything when all sites are done, at the scenario's
-/// duration_max, when a process dies unasked, or on SIGINT or SIGTERM. Nothing is left running or
-/// in /dev/shm, whatever happens. Fails, with what to do, when it cannot start.
+/// Starts one skein-onboard for each vehicle, one skein-fc for each whose flight controller is an
+/// ardupilot, one skein-ground and the radio between them, plays the sensors and the faults, and
+/// stops everything when all sites are done, at the scenario's duration_max, when a process dies
+/// unasked, or on SIGINT or SIGTERM. Nothing is left running or in /dev/shm, whatever happens.
+/// Fails, with what to do, when it cannot start.
 [[nodiscard]] Result<BenchOutcome> fly(
     const configuration::Scenario& scenario, const BenchOptions& options,
     const std::function<void(const BenchProgress&)>& on_progress);

@@ -35,6 +35,9 @@ class ChildProcess {
   /// Did it end by itself with status 0? Precondition: ended().
   [[nodiscard]] bool clean() const { return status_ == 0; }
   void signal(int number) const;
+  /// Before all that is not real-time, as a machine of its own would be; without the right to it,
+  /// as before.
+  void make_realtime() const;
   /// Waits for the end, at most that long; false when it still runs.
   [[nodiscard]] bool wait(std::chrono::milliseconds at_most);
 

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "flight_controllers.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+
+#include "skein/base/angles.hpp"
+#include "skein/can/bus.hpp"
+
+namespace skein::hil {
+namespace {
+
+constexpr std::uint64_t kBuses = 256;
+/// A flight controller speaks ten times a second and more.
+constexpr auto kListen = std::chrono::milliseconds{300};
+/// skein-fc takes the wind at 6 m that makes the gusts; their deviation in flight is a tenth of it.
+constexpr double kGustsOfDeviation = 10.0;
+constexpr double kGustsMax_mps = 25.0;
+
+}  // namespace
+
+Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t seed) {
+  std::vector<std::unique_ptr<can::Bus>> buses;
+  // Bus 0 is where simulated ArduPilots are by default.
+  for (std::uint64_t i = 0; i < 2 * count + 8; ++i) {
+    auto bus = can::open("mcast:" + std::to_string(1 + (seed + i) % (kBuses - 1)));
+    if (!bus) return bus.error();
+    buses.push_back(std::move(bus).value());
+  }
+  const auto until = std::chrono::steady_clock::now() + kListen;
+  while (true) {
+    std::vector<pollfd> items;
+    for (const auto& bus : buses) items.push_back({bus->descriptor(), POLLIN, 0});
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        until - std::chrono::steady_clock::now());
+    if (left.count() <= 0 || items.empty()) break;
+    (void)::poll(items.data(), items.size(), static_cast<int>(left.count()));
+    std::erase_if(buses, [](const auto& bus) { return bus->receive().has_value(); });
+  }
+  if (buses.size() < count) {
+    return Error{
+        fmt::format("only {} of {} multicast CAN buses are quiet; stop other flight controllers on "
+                    "this machine",
+                    buses.size(), count)};
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < count; ++i) names.push_back(buses[i]->name());
+  return names;
+}
+
+std::vector<std::string> flight_controller_command(const std::filesystem::path& programs,
+                                                   const configuration::VehicleConfig& vehicle) {
+  const VehicleSpec& spec = vehicle.vehicle;
+  const configuration::ArdupilotConfig& fc = vehicle.flight_controller.ardupilot;
+  const configuration::WindConfig& wind = vehicle.flight_controller.wind;
+  const auto number = [](double value) { return fmt::format("{:.10g}", value); };
+  // clang-format off
+  return {(programs / "skein-fc").string(),
+          "--bus", fc.can,
+          "--node", std::to_string(fc.node_id),
+          "--companion", std::to_string(fc.companion_node_id),
+          "--serial", std::to_string(fc.serial_id),
+          "--airframe", fc.airframe == configuration::AirframeKind::copter ? "copter" : "plane",
+          "--origin", number(vehicle.origin.latitude_deg), number(vehicle.origin.longitude_deg),
+          number(vehicle.origin.height_m - fc.geoid_height_m),
+          "--airborne", "--mode", "LOITER",
+          "--start", number(vehicle.start.x_m), number(vehicle.start.y_m), number(spec.height_m),
+          "--heading", number(compass_deg_from_heading(vehicle.start.heading_rad)),
+          "--hold-until", std::to_string(vehicle.time.epoch_unix_ns),
+          "--speed", number(spec.cruise_speed_mps),
+          "--speed-min", number(spec.speed_min_mps),
+          "--speed-max", number(spec.speed_max_mps),
+          "--turn-radius", number(spec.turn_radius_m),
+          "--wind-speed", number(wind.speed_mps),
+          "--wind-from", number(compass_deg_from_heading(wind.from_rad)),
+          "--gusts", number(std::min(kGustsOfDeviation * wind.gust_mps, kGustsMax_mps)),
+          "--seed", std::to_string(vehicle.seed)};
+  // clang-format on
+}
+
+}  // namespace skein::hil
