@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// The companion against the bench's flight controller, over frames in memory and in virtual time.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "skein/ardupilot/can_link.hpp"
+#include "skein/base/angles.hpp"
+#include "skein/hil/emulated_flight_controller.hpp"
+#include "skein/planning/path_follower.hpp"
+
+namespace skein {
+namespace {
+
+using ardupilot::Companion;
+using State = Companion::State;
+using std::chrono::milliseconds;
+
+constexpr Wgs84 kOrigin{31.522062, 105.044327, 480.0};
+
+/// The companion's end of the line.
+class LineBus final : public can::Bus {
+ public:
+  using Bus::send;
+  bool send(std::span<const can::Frame> frames) override {
+    out.insert(out.end(), frames.begin(), frames.end());
+    return true;
+  }
+  void flush() override {}
+  [[nodiscard]] std::size_t pending() const override { return 0; }
+  std::optional<can::Frame> receive() override {
+    if (in.empty()) return std::nullopt;
+    const can::Frame frame = in.front();
+    in.pop_front();
+    return frame;
+  }
+  [[nodiscard]] int descriptor() const override { return -1; }
+  Result<void> set_filters(std::span<const can::Filter> /*filters*/) override { return {}; }
+  [[nodiscard]] can::State state() const override { return can::State::error_active; }
+  [[nodiscard]] const can::Statistics& statistics() const override { return statistics_; }
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] bool fd() const override { return false; }
+
+  std::deque<can::Frame> in;
+  std::deque<can::Frame> out;
+
+ private:
+  can::Statistics statistics_;
+  std::string name_ = "line";
+};
+
+VehicleSpec vehicle(double speed_mps = 50.0, double turn_radius_m = 150.0) {
+  VehicleSpec v;
+  v.id = {1};
+  v.cruise_speed_mps = speed_mps;
+  v.speed_min_mps = 0.85 * speed_mps;
+  v.speed_max_mps = 1.15 * speed_mps;
+  v.turn_radius_m = turn_radius_m;
+  v.turn_radius_margin = 1.3;
+  v.heading_gain_per_s = 1.5;
+  v.height_m = 300.0;
+  return v;
+}
+
+struct Wind {
+  double speed_mps = 0.0;
+  double gusts_mps = 0.0;  ///< as skein-fc takes them
+};
+
+hil::EmulatorConfig emulator(const VehicleSpec& spec, const Wind& wind) {
+  hil::EmulatorConfig c;
+  c.origin = kOrigin;
+  c.airborne = true;
+  c.mode = "LOITER";
+  c.height_m = spec.height_m;
+  c.airspeed_mps = spec.cruise_speed_mps;
+  c.airspeed_min_mps = spec.speed_min_mps;
+  c.airspeed_max_mps = spec.speed_max_mps;
+  c.turn_radius_m = spec.turn_radius_m;
+  c.wind_mps = -wind.speed_mps * unit_vector(heading_from_compass_deg(240.0));
+  c.gusts_wind_mps = wind.gusts_mps;
+  c.seed = 5;
+  return c;
+}
+
+ardupilot::CanLinkParams link_params(const VehicleSpec& spec) {
+  ardupilot::CanLinkParams p;
+  p.companion.vehicle = spec;
+  p.companion.take_over = ardupilot::TakeOver::in_flight;
+  return p;
+}
+
+/// Processes start before mission time 0, at which the aircraft is let go.
+struct Flight {
+  explicit Flight(const VehicleSpec& v, const Wind& wind = {}) : spec{v} {
+    auto own = std::make_unique<LineBus>();
+    bus = own.get();
+    fc = std::make_unique<hil::EmulatedFlightController>(
+        hil::EmulatedFlightController::make(emulator(v, wind), now).value());
+    link = std::make_unique<ardupilot::CanLink>(std::move(own), link_params(v),
+                                                MissionOrigin::make(kOrigin).value(), now);
+  }
+
+  void tick() {
+    now += milliseconds{2};
+    for (; !bus->out.empty(); bus->out.pop_front()) {
+      if (!cut) fc->on_frame(bus->out.front(), now);
+    }
+    fc->step(now);
+    for (auto frames = fc->front(); !frames.empty(); frames = fc->front()) {
+      if (!cut) bus->in.insert(bus->in.end(), frames.begin(), frames.end());
+      fc->pop();
+    }
+    if (now >= next_control) {
+      next_control += milliseconds{20};
+      control();
+    }
+    link->step(now);
+    while (const auto notice = link->companion().poll_notice()) {
+      if (notice->warning) last_warning = notice->text;
+    }
+  }
+  void run_until(double seconds) {
+    while (now < at_seconds(seconds)) tick();
+  }
+  Duration until(State wanted, double limit_s) {
+    const Instant begin = now;
+    while (state() != wanted && now - begin < from_seconds(limit_s)) tick();
+    return now - begin;
+  }
+  [[nodiscard]] State state() const { return link->companion().state(); }
+  [[nodiscard]] VehicleState vehicle_state() const {
+    return ardupilot::carried_to(*link->companion().sample(), now);
+  }
+
+  VehicleSpec spec;
+  Instant now = at_seconds(-8.0);
+  Instant next_control = now;
+  LineBus* bus = nullptr;
+  bool cut = false;
+  std::unique_ptr<hil::EmulatedFlightController> fc;
+  std::unique_ptr<ardupilot::CanLink> link;
+  std::optional<TimedPath> plan;
+  std::string last_warning;
+
+  double along_max_m = 0.0;
+  double cross_max_m = 0.0;
+  double height_max_m = 0.0;
+  double radius_min_m = 1e9;  ///< of a second's turn through the air
+  planning::FollowError last;
+  double judged_from_s = 20.0;
+
+ private:
+  void control() {
+    const auto sample = link->companion().sample();
+    if (!sample || !plan) return;
+    const VehicleState state = ardupilot::carried_to(*sample, now);
+    link->companion().command(planning::follow_path({}, spec, *plan, state, now), now);
+    last = planning::follow_error(*plan, state, now);
+    watch_turns(state);
+    if (now < at_seconds(judged_from_s)) return;
+    along_max_m = std::max(along_max_m, std::abs(last.along_m));
+    cross_max_m = std::max(cross_max_m, std::abs(last.cross_m));
+    height_max_m = std::max(height_max_m, std::abs(state.z_m - spec.height_m));
+  }
+  void watch_turns(const VehicleState& state) {
+    const Instant begin = now - std::chrono::seconds{1};
+    while (!second_.empty() && second_.front().time < begin) second_.pop_front();
+    if (!second_.empty() && now > at_seconds(1.0)) {
+      const VehicleState& then = second_.front();
+      const double turned = std::abs(wrap_pi(state.heading_rad - then.heading_rad));
+      const double flown =
+          0.5 * (state.airspeed_mps + then.airspeed_mps) * to_seconds(state.time - then.time);
+      if (turned > 0.1) radius_min_m = std::min(radius_min_m, flown / turned);
+    }
+    second_.push_back(state);
+  }
+
+  std::deque<VehicleState> second_;
+};
+
+/// Straight, half a circle to the left, straight, a whole circle to the right, and on.
+TimedPath course(const VehicleSpec& spec) {
+  TimedPath plan{.start_time = at_seconds(0.0),
+                 .speed_mps = spec.cruise_speed_mps,
+                 .tail_curvature_per_m = 0.0,
+                 .path = {.start = {0, 0, 0}, .segments = {}}};
+  const double r = spec.planning_radius_m();
+  for (const Segment& s :
+       {Segment{0.0, 20.0 * spec.cruise_speed_mps}, Segment{1.0 / r, r * kPi}, Segment{0.0, 800.0},
+        Segment{-1.0 / r, 2.0 * kPi * r}, Segment{0.0, 1500.0}}) {
+    EXPECT_TRUE(plan.path.append(s));
+  }
+  return plan;
+}
+
+TEST(CanFlight, KeepsItsPathAndItsTimesInWindWithGusts) {
+  for (const auto& [speed, radius] : {std::pair{50.0, 150.0}, std::pair{60.0, 200.0}}) {
+    for (const Wind& wind : {Wind{}, Wind{5.0, 5.0}}) {
+      Flight flight{vehicle(speed, radius), wind};
+      flight.plan = course(flight.spec);
+      flight.run_until(to_seconds(flight.plan->end_time()));
+      EXPECT_EQ(flight.state(), State::flying);
+      EXPECT_EQ(flight.last_warning, "");
+      std::printf(
+          "%.0f m/s, wind %.0f m/s: along %.1f m, cross %.1f m, height %.1f m, turn radius %.1f m; "
+          "end %.1f %.1f\n",
+          speed, wind.speed_mps, flight.along_max_m, flight.cross_max_m, flight.height_max_m,
+          flight.radius_min_m, flight.last.along_m, flight.last.cross_m);
+      EXPECT_LT(flight.along_max_m, 20.0);
+      EXPECT_LT(flight.cross_max_m, 25.0);
+      EXPECT_LT(flight.height_max_m, 4.0);
+      EXPECT_GT(flight.radius_min_m, 0.97 * radius);
+      EXPECT_LT(std::abs(flight.last.along_m), 10.0);
+      EXPECT_LT(std::abs(flight.last.cross_m), 5.0);
+    }
+  }
+}
+
+TEST(CanFlight, ThePilotHasTheAircraftAtOnce) {
+  Flight flight{vehicle()};
+  flight.plan = course(flight.spec);
+  flight.run_until(5.0);
+  ASSERT_EQ(flight.state(), State::flying);
+  ASSERT_TRUE(flight.fc->interfere("mode RTL", flight.now));
+  EXPECT_LE(flight.until(State::piloted, 1.0), milliseconds{130});
+  flight.run_until(15.0);
+  EXPECT_EQ(flight.state(), State::piloted);
+  ASSERT_TRUE(flight.link->companion().resume(flight.now));
+  EXPECT_LE(flight.until(State::flying, 2.0), milliseconds{300});
+}
+
+TEST(CanFlight, ALinkThatWasLostIsFlownOnWithin200Ms) {
+  Flight flight{vehicle()};
+  flight.plan = course(flight.spec);
+  flight.run_until(5.0);
+  flight.cut = true;
+  EXPECT_LE(flight.until(State::lost, 1.0), milliseconds{105});
+  flight.run_until(7.0);
+  flight.cut = false;
+  EXPECT_LE(flight.until(State::flying, 1.0), milliseconds{200});
+}
+
+TEST(CanFlight, ASilentAutopilotIsLostToo) {
+  Flight flight{vehicle()};
+  flight.plan = course(flight.spec);
+  flight.run_until(5.0);
+  ASSERT_TRUE(flight.fc->interfere("silent on", flight.now));
+  const Instant begin = flight.now;
+  while (flight.state() == State::flying && flight.now - begin < milliseconds{500}) flight.tick();
+  EXPECT_LE(flight.now - begin, milliseconds{145});  // the last packet was 40 ms old
+  ASSERT_TRUE(flight.fc->interfere("silent off", flight.now));
+  EXPECT_LE(flight.until(State::flying, 1.0), milliseconds{200});
+}
+
+TEST(CanFlight, ARebootedAutopilotIsTakenOverAgain) {
+  Flight flight{vehicle()};
+  flight.plan = course(flight.spec);
+  flight.run_until(5.0);
+  ASSERT_TRUE(flight.fc->interfere("reboot", flight.now));
+  EXPECT_LE(flight.until(State::lost, 1.0), milliseconds{145});
+  flight.until(State::searching, 3.0);
+  EXPECT_EQ(flight.last_warning, "the autopilot has rebooted");
+  flight.until(State::flying, 12.0);
+  EXPECT_EQ(flight.state(), State::flying);
+}
+
+}  // namespace
+}  // namespace skein
