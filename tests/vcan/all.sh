@@ -1,0 +1,17 @@
+#!/bin/sh
+# SPDX-License-Identifier: Apache-2.0
+#
+# all.sh BIN SCENARIO WORK: all that is tested on vcan0. The figures of the mission are the buses' own
+# counts, from the logs of the vehicles in WORK/mission.
+set -eu
+bin=$1 scenario=$2 work=$3
+
+SKEIN_CAN_INTERFACE=vcan0 "$bin/can_test" --gtest_filter='*socketcan*'
+rm -rf "$work/mission"
+"$bin/skein-hil" run "$scenario" --can vcan0 --out "$work/mission"
+echo "Buses of the vehicles:"
+grep -ho 'bus vcan.*' "$work"/mission/*.log
+if grep -hE 'bus vcan' "$work"/mission/*.log | grep -vE 'refused 0, lost 0;.*broken 0, dropped 0;.*lost 0$'; then
+  echo "frames, transfers or packets were lost: see the lines above"
+  exit 1
+fi
