@@ -126,7 +126,11 @@ class Bench {
     table_.emplace(std::move(table).value());
 
     // Everybody has started and found each other before mission time 0.
-    const auto lead = std::chrono::milliseconds{3000 + 300 * scenario_.vehicles.size()};
+    const double lead_s = options_.lead_s > 0.0
+                              ? options_.lead_s
+                              : 3.0 + 0.3 * static_cast<double>(scenario_.vehicles.size());
+    const auto lead = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>{lead_s});
     started_ = steady_clock::now();
     epoch_ = started_ + lead;
     configuration::Deployment deployment;

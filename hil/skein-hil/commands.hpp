@@ -20,7 +20,8 @@ struct RunArguments {
   double rate = 1.0;
   std::optional<std::uint64_t> seed;
   std::uint16_t port_base = 0;
-  std::string can;  ///< bus of the flight controllers; empty: one each is looked for
+  double lead_s = 0.0;  ///< 0: by the number of vehicles
+  std::string can;      ///< bus of the flight controllers; empty: one each is looked for
   bool headless = false;
   bool prompt = false;
 };

@@ -36,6 +36,11 @@ int main(int argc, char** argv) {
       ->add_option("--port-base", run.port_base,
                    "First UDP port (default: free ports are looked for)")
       ->check(CLI::Range(1024, 65000));
+  run_command
+      ->add_option("--lead", run.lead_s,
+                   "Seconds from the start of the programs to that of the mission; a slow machine "
+                   "wants more (default: by the number of vehicles)")
+      ->check(CLI::Range(1.0, 600.0));
   run_command->add_option("--can", run.can,
                           "CAN bus of all flight controllers, such as vcan0 (default: multicast "
                           "buses of their own on loopback)");

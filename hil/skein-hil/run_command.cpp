@@ -66,6 +66,7 @@ int run(const RunArguments& arguments) {
   options.radio_plugin = arguments.programs.parent_path() / "lib" / "libskein_radio.so";
   options.rate = arguments.rate;
   options.port_base = arguments.port_base;
+  options.lead_s = arguments.lead_s;
   options.can = arguments.can;
   options.prompt = arguments.prompt;
   options.run_folder =

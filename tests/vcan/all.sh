@@ -8,7 +8,7 @@ bin=$1 scenario=$2 work=$3
 
 SKEIN_CAN_INTERFACE=vcan0 "$bin/can_test" --gtest_filter='*socketcan*'
 rm -rf "$work/mission"
-"$bin/skein-hil" run "$scenario" --can vcan0 --out "$work/mission"
+"$bin/skein-hil" run "$scenario" --can vcan0 --lead 25 --out "$work/mission"
 echo "Buses of the vehicles:"
 grep -ho 'bus vcan.*' "$work"/mission/*.log
 if grep -hE 'bus vcan' "$work"/mission/*.log | grep -vE 'refused 0, lost 0;.*broken 0, dropped 0;.*lost 0$'; then

@@ -54,8 +54,14 @@ trap '[[ -z $machine ]] || { kill "$machine" && wait "$machine"; } 2>/dev/null |
       rm -rf "$work/uml"' EXIT
 trap 'exit 130' INT TERM HUP
 
-# TMPDIR holds its memory, a file without a name, for in containers /dev/shm is small or noexec.
-TMPDIR=$work/uml "$launcher" "$kernel" mem=1G quiet con=null con0=null,fd:1 \
+# TMPDIR holds its memory, a file without a name. On a disk the machine stops now and then to be written;
+# but in containers /dev/shm is often small or noexec.
+memory_in=$work/uml
+read -r free_blocks block_size < <(stat --file-system --format='%a %S' /dev/shm 2>/dev/null) || free_blocks=0
+if ((free_blocks * block_size > 2 ** 30)) && [[ ! $(findmnt --noheadings --output OPTIONS /dev/shm) =~ noexec ]]; then
+  memory_in=/dev/shm
+fi
+TMPDIR=$memory_in "$launcher" "$kernel" mem=1G quiet con=null con0=null,fd:1 \
   uml_dir="$work/uml/" umid=vm rootfstype=hostfs hostfs=/ ro \
   init="$guest" skein_work="$work" </dev/null >"$work/boot.log" 2>&1 &
 machine=$!

@@ -21,6 +21,8 @@ struct BenchOptions {
   std::filesystem::path run_folder;    ///< made; configurations, logs and recordings go there
   double rate = 1.0;                   ///< mission seconds in a real second
   std::uint16_t port_base = 0;         ///< UDP; 0 looks for free ports
+  /// From the start of the programs to mission time 0; 0: by the number of vehicles.
+  double lead_s = 0.0;
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
   /// one for each.
   std::string can;
