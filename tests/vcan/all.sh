@@ -8,10 +8,15 @@ bin=$1 scenario=$2 work=$3
 
 SKEIN_CAN_INTERFACE=vcan0 "$bin/can_test" --gtest_filter='*socketcan*'
 rm -rf "$work/mission"
-"$bin/skein-hil" run "$scenario" --can vcan0 --lead 25 --out "$work/mission"
-echo "Buses of the vehicles:"
+mkdir -p "$work/threads"
+rm -f "$work"/threads/*
+LD_PRELOAD=$(realpath "$bin/../lib/libskein_thread_watch.so") SKEIN_THREAD_WATCH=$(realpath "$work/threads") \
+  "$bin/skein-hil" run "$scenario" --lead 15 --out "$work/mission"
+echo "Buses of the vehicles, and their threads (lateness of control; age of the frames that can reads):"
 grep -ho 'bus vcan.*' "$work"/mission/*.log
-if grep -hE 'bus vcan' "$work"/mission/*.log | grep -vE 'refused 0, lost 0;.*broken 0, dropped 0;.*lost 0$'; then
-  echo "frames, transfers or packets were lost: see the lines above"
+cat "$work"/threads/*.txt
+if grep -hE 'bus vcan' "$work"/mission/*.log |
+  grep -vE 'refused 0, lost 0;.*broken 0, dropped 0;.*lost 0$'; then
+  echo "FAIL: frames, transfers or packets were lost"
   exit 1
 fi
