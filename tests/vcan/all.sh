@@ -6,7 +6,8 @@
 set -eu
 bin=$1 scenario=$2 work=$3
 
-SKEIN_CAN_INTERFACE=vcan0 "$bin/can_test" --gtest_filter='*socketcan*'
+SKEIN_CAN_INTERFACE=vcan0 SKEIN_CAN_SCRATCH_INTERFACE=vcan1 \
+  "$bin/can_test" --gtest_filter='*socketcan*:SocketCan*'
 rm -rf "$work/mission"
 mkdir -p "$work/threads"
 rm -f "$work"/threads/*
