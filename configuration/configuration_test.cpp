@@ -89,7 +89,8 @@ TEST(VehicleConfigFile, NamesTheMethodOfAllocation) {
 TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
   const std::string keys =
       "flight_controller: {kind: ardupilot, can: 'mcast:3', node_id: 11, companion_node_id: 43, "
-      "airframe: copter, take_over: from_ground, takeoff_height_m: 25, geoid_height_m: -38.5}\n";
+      "airframe: copter, take_over: from_ground, takeoff_height_m: 25, geoid_height_m: -38.5, "
+      "turn_lead_s: 0.75}\n";
   const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
   ASSERT_TRUE(config.ok()) << config.error().message;
   for (const auto& c : {*config, parse_vehicle_config(to_yaml(*config), "again.yaml").value()}) {
@@ -102,6 +103,7 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
     EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
     EXPECT_EQ(fc.takeoff_height_m, 25.0);
     EXPECT_EQ(fc.geoid_height_m, -38.5);
+    EXPECT_EQ(c.flight_controller.turn_lead_s(), 0.75);
   }
 }
 

@@ -66,6 +66,8 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, b
   v.number({"geoid_height_m",
             "of the geoid above the ellipsoid at the origin: autopilots count heights from it"},
            {-120.0, 100.0, "m"}, fc.geoid_height_m);
+  v.number({"turn_lead_s", "turns are begun so much earlier: the time that rolling takes"},
+           {0.0, 5.0, "s"}, fc.turn_lead_s);
   v.require(!bus_required || config.kind != FlightControllerKind::ardupilot || !fc.can.empty(),
             "can", "an ardupilot needs a CAN bus; name one, such as can0 or mcast:0");
   v.require(fc.node_id != fc.companion_node_id, "companion_node_id",

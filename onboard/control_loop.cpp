@@ -12,8 +12,11 @@ std::uint32_t PeriodicSchedule::advance(Instant now) {
 }
 
 ControlLoop::ControlLoop(const VehicleSpec& vehicle, hal::FlightController& flight_controller,
-                         ControlPorts& ports)
-    : vehicle_{vehicle}, flight_controller_{&flight_controller}, ports_{&ports} {}
+                         ControlPorts& ports, const planning::PathFollowerParams& follower)
+    : vehicle_{vehicle},
+      follower_{follower},
+      flight_controller_{&flight_controller},
+      ports_{&ports} {}
 
 void ControlLoop::step(Instant now) {
   ports_->periods.fetch_add(1, std::memory_order_relaxed);

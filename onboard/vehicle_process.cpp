@@ -107,13 +107,12 @@ AgentLink link_to(network::Node& node) {
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
 
-/// The next warning of the flight controller; what is no warning is for the log alone.
+/// The next warning of the flight controller. The log has all that it tells, with the moment at
+/// which it was noticed.
 std::optional<mission::MissionEvent> next_warning(CanFlightController& controller, VehicleId self) {
   while (auto notice = controller.poll_notice()) {
-    if (!notice->warning) {
-      spdlog::info("{}", notice->text);
-      continue;
-    }
+    spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time), notice->text);
+    if (!notice->warning) continue;
     mission::MissionEvent event;
     event.vehicle = self;
     event.time = notice->time;
@@ -143,7 +142,10 @@ class Threads {
       : clock_{clock},
         wake_agent_{wake_agent},
         flight_controllers_{std::move(flight_controllers)},
-        control_{config.vehicle, *flight_controllers_.any, ports_},
+        control_{config.vehicle,
+                 *flight_controllers_.any,
+                 ports_,
+                 {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{agent_config(config, instance),
                link_to(node, flight_controllers_.on_can, config.vehicle.id),
                ports_,

@@ -20,6 +20,7 @@ struct Nearest {
   double left_m = 0.0;
   double heading_rad = 0.0;  ///< of the path there
   double curvature_per_m = 0.0;
+  double curvature_soon_per_m = 0.0;  ///< where it is when a turn begun now is flown
 };
 
 /// The plan's poses, as TimedPath::pose_at_distance() and with the same roundings, but pieces that
@@ -60,7 +61,7 @@ class PlanPoses {
   Pose2 start_;  ///< of that piece
 };
 
-Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
+Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double lead_m = 0.0) {
   PlanPoses poses{plan};
   const double on_time_m = plan.distance_at(now);
   double distance_m = on_time_m;
@@ -70,7 +71,8 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
     const Vec2 forward = unit_vector(pose.heading_rad);
     const Vec2 offset = position - pose.position();
     result = {distance_m - on_time_m, left_of(forward).dot(offset), pose.heading_rad,
-              plan.curvature_at_distance(distance_m)};
+              plan.curvature_at_distance(distance_m),
+              plan.curvature_at_distance(distance_m + lead_m)};
     // Along an arc the same angle is a shorter way for who flies inside it.
     const double scale = std::max(0.5, 1.0 - result.curvature_per_m * result.left_m);
     const double moved_m = distance_m + forward.dot(offset) / scale;
@@ -86,7 +88,8 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now) {
 
 Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicle,
                      const TimedPath& plan, const VehicleState& state, Instant now) {
-  const Nearest at = nearest(plan, {state.x_m, state.y_m}, now);
+  const Nearest at =
+      nearest(plan, {state.x_m, state.y_m}, now, params.turn_lead_s * state.groundspeed_mps);
   const Vec2 over_ground = state.groundspeed_mps * unit_vector(state.course_rad);
   const Vec2 wind = over_ground - state.airspeed_mps * unit_vector(state.heading_rad);
 
@@ -96,7 +99,7 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
   const double closing_mps = over_ground.dot(left_of(unit_vector(at.heading_rad)));
   const double along_mps = over_ground.dot(unit_vector(at.heading_rad)) /
                            std::max(0.5, 1.0 - at.curvature_per_m * at.left_m);
-  const double course_rate = at.curvature_per_m * along_mps -
+  const double course_rate = at.curvature_soon_per_m * along_mps -
                              params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean);
 
   // Velocity over the ground, and the velocity through the air that gives it.

@@ -149,6 +149,8 @@ struct Flight {
   std::optional<TimedPath> plan;
   std::string last_warning;
 
+  planning::PathFollowerParams follower{.turn_lead_s = 0.5};
+
   double along_max_m = 0.0;
   double cross_max_m = 0.0;
   double height_max_m = 0.0;
@@ -161,7 +163,7 @@ struct Flight {
     const auto sample = link->companion().sample();
     if (!sample || !plan) return;
     const VehicleState state = ardupilot::carried_to(*sample, now);
-    link->companion().command(planning::follow_path({}, spec, *plan, state, now), now);
+    link->companion().command(planning::follow_path(follower, spec, *plan, state, now), now);
     last = planning::follow_error(*plan, state, now);
     watch_turns(state);
     if (now < at_seconds(judged_from_s)) return;
@@ -185,7 +187,8 @@ struct Flight {
   std::deque<VehicleState> second_;
 };
 
-/// Straight, half a circle to the left, straight, a whole circle to the right, and on.
+/// Straight, half a circle to the left, straight, a whole circle to the right, at once to the left
+/// again, and on.
 TimedPath course(const VehicleSpec& spec) {
   TimedPath plan{.start_time = at_seconds(0.0),
                  .speed_mps = spec.cruise_speed_mps,
@@ -194,7 +197,7 @@ TimedPath course(const VehicleSpec& spec) {
   const double r = spec.planning_radius_m();
   for (const Segment& s :
        {Segment{0.0, 20.0 * spec.cruise_speed_mps}, Segment{1.0 / r, r * kPi}, Segment{0.0, 800.0},
-        Segment{-1.0 / r, 2.0 * kPi * r}, Segment{0.0, 1500.0}}) {
+        Segment{-1.0 / r, 2.0 * kPi * r}, Segment{1.0 / r, 0.7 * r}, Segment{0.0, 1500.0}}) {
     EXPECT_TRUE(plan.path.append(s));
   }
   return plan;
@@ -213,8 +216,8 @@ TEST(CanFlight, KeepsItsPathAndItsTimesInWindWithGusts) {
           "end %.1f %.1f\n",
           speed, wind.speed_mps, flight.along_max_m, flight.cross_max_m, flight.height_max_m,
           flight.radius_min_m, flight.last.along_m, flight.last.cross_m);
-      EXPECT_LT(flight.along_max_m, 20.0);
-      EXPECT_LT(flight.cross_max_m, 25.0);
+      EXPECT_LT(flight.along_max_m, 10.0);
+      EXPECT_LT(flight.cross_max_m, 8.0);
       EXPECT_LT(flight.height_max_m, 4.0);
       EXPECT_GT(flight.radius_min_m, 0.97 * radius);
       EXPECT_LT(std::abs(flight.last.along_m), 10.0);
@@ -229,7 +232,7 @@ TEST(CanFlight, ThePilotHasTheAircraftAtOnce) {
   flight.run_until(5.0);
   ASSERT_EQ(flight.state(), State::flying);
   ASSERT_TRUE(flight.fc->interfere("mode RTL", flight.now));
-  EXPECT_LE(flight.until(State::piloted, 1.0), milliseconds{130});
+  EXPECT_LE(flight.until(State::piloted, 1.0), milliseconds{100});
   flight.run_until(15.0);
   EXPECT_EQ(flight.state(), State::piloted);
   ASSERT_TRUE(flight.link->companion().resume(flight.now));

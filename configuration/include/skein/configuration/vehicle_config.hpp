@@ -41,12 +41,17 @@ struct ArdupilotConfig {
   TakeOverKind take_over = TakeOverKind::when_guided;
   double takeoff_height_m = 40.0;
   double geoid_height_m = 0.0;
+  double turn_lead_s = 0.5;  ///< rolling into a turn takes so long
 };
 
 struct FlightControllerConfig {
   FlightControllerKind kind = FlightControllerKind::simulated;
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
+
+  [[nodiscard]] double turn_lead_s() const {
+    return kind == FlightControllerKind::ardupilot ? ardupilot.turn_lead_s : 0.0;
+  }
 };
 
 /// Everything that skein-onboard needs to know (docs/configuration.md).

@@ -54,7 +54,7 @@ class ControlLoop {
 
   /// Both must outlive this object.
   ControlLoop(const VehicleSpec& vehicle, hal::FlightController& flight_controller,
-              ControlPorts& ports);
+              ControlPorts& ports, const planning::PathFollowerParams& follower = {});
 
   void step(Instant now);
 

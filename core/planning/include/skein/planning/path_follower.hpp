@@ -9,6 +9,7 @@ namespace skein::planning {
 struct PathFollowerParams {
   double cross_track_gain_per_m = 0.01;  ///< tuned in path_follower_test
   double along_track_gain_per_s = 0.3;   ///< metres behind to m/s faster
+  double turn_lead_s = 0.0;  ///< turns are begun so much earlier: the time that rolling takes
 };
 
 /// How the vehicle stands to its plan, for reports.
