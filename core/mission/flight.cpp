@@ -105,14 +105,19 @@ void Flight::replace(const TimedPath& timed) {
   fresh_ = true;
 }
 
-bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now) {
+bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now,
+                           std::optional<double> speed_mps) {
   SKEIN_ASSERT(started() && at >= now);
   const TimedPath& old = plan_.timed;
   const auto before = old.piece(old.distance_at(now), old.distance_at(at));
   if (!before) return false;
   TimedPath timed;
   timed.start_time = now;
-  timed.speed_mps = old.speed_mps;
+  timed.speed_mps = speed_mps.value_or(vehicle_.cruise_speed_mps);
+  // Where `next` begins it is on time.
+  if (timed.speed_mps != old.speed_mps) {
+    timed.start_time = at - from_seconds(before->length_m() / timed.speed_mps);
+  }
   timed.tail_curvature_per_m = tail_curvature_per_m;
   timed.path = *before;
   if (!timed.path.append(next)) return false;

@@ -26,9 +26,11 @@ class Flight {
   [[nodiscard]] Pose2 pose_at(Instant t) const { return plan_.timed.pose_at(t); }
   [[nodiscard]] const FlightPlan& plan() const { return plan_; }
 
-  /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`.
-  /// False, and nothing changed, when that has too many pieces.
-  bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now);
+  /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`; at
+  /// `speed_mps` over the ground, or at cruise speed. False, and nothing changed, when that has too
+  /// many pieces.
+  bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now,
+                     std::optional<double> speed_mps = std::nullopt);
   /// The same without a next path: an orbit from here on, or from where there is room for one.
   void hold(const std::vector<Hazard>& hazards, Instant now);
   /// Along what is left of the search route, as far as `range_m` lasts there and home again, then

@@ -20,6 +20,7 @@ struct TaskFlight {
   bool committed = false;   ///< the flight plan now leads past the gate
   bool begun = false;       ///< the gate or the start of the arc has been passed
   bool late = false;        ///< the gate was reached without being committed
+  bool untimely = false;    ///< it has been told that the wind does not let it be on time
 
   [[nodiscard]] bool is_delivery() const { return assignment.task.kind == TaskKind::deliver; }
   /// When the task's own run begins: the gate of a delivery, the entry of an arc.

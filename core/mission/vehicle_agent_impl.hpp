@@ -18,7 +18,8 @@
 namespace skein::mission {
 
 /// The parts of the agent and their wiring. Sources: vehicle_agent_routing.cpp (inputs to parts and
-/// back), vehicle_agent_member.cpp (bids, awards, flying tasks), vehicle_agent_leader.cpp (sites,
+/// back), vehicle_agent_member.cpp (bids, awards, flying tasks), vehicle_agent_timing.cpp (a task's
+/// time in wind), vehicle_agent_leader.cpp (sites,
 /// surveys, leading).
 class VehicleAgent::Impl {
  public:
@@ -53,7 +54,11 @@ class VehicleAgent::Impl {
   [[nodiscard]] Result<coalition::Bid> make_bid(const coalition::Announcement& announcement,
                                                 Instant now) const;
   void answer_award(const coalition::Participant::AwardReceived& award, Instant now);
-  [[nodiscard]] Result<TaskFlight> set_out(TaskFlight task, Instant start, Instant now);
+  [[nodiscard]] Result<TaskFlight> set_out(TaskFlight task, double speed_mps, Instant start,
+                                           Instant now);
+  void keep_time(Instant now);
+  [[nodiscard]] std::optional<double> speed_for(const TaskFlight& task, double along_m,
+                                                Instant start) const;
   void fly_task(Instant now);
   void commit_delivery(Instant now);
   void drop_task(Instant now);
@@ -108,6 +113,7 @@ class VehicleAgent::Impl {
 
   coalition::Participant participant_;
   std::optional<TaskFlight> task_;
+  Instant time_again_{};  ///< when the task's time is looked at next
 
   std::optional<SurveyFlight> survey_;
   std::vector<Site> surveyed_;  ///< surveyed here, waiting to be led

@@ -145,7 +145,8 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
   }
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
-  const auto task = set_out({award.award.round, award.award.site, mine, {}}, start, now);
+  const auto task = set_out({award.award.round, award.award.site, mine, {}},
+                            config_.vehicle.cruise_speed_mps, start, now);
   if (!task) return refuse(task.error().message);
   report(EventKind::confirmed, task->round, mine.task, to_seconds(mine.time), {}, now);
   task_ = *task;
@@ -154,10 +155,13 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
 
 /// The flight to that task from where the vehicle will be at `start`, which is then its flight
 /// plan.
-Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, Instant start, Instant now) {
+Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, double speed_mps, Instant start,
+                                               Instant now) {
   const Pose2 pose = flight_.pose_at(start);
-  auto plan = planning::plan_task(config_.planning, candidate(pose, start), start, task.site,
-                                  task.assignment, hazards_);
+  auto self = candidate(pose, start);
+  self.speed_mps = speed_mps;
+  auto plan =
+      planning::plan_task(config_.planning, self, start, task.site, task.assignment, hazards_);
   if (!plan) return plan.error();
   Path path = plan->timed.path;
   if (path.length_m() + flight_.way_home_m(path.end(), hazards_) > range_to_spend(start)) {
@@ -171,7 +175,8 @@ Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, Instant start, I
     path = *to_gate;
     tail = flight_.hold_curvature(path.end(), hazards_);
   }
-  if (!flight_.continue_with(start, path, tail, now)) return Error{"its path has too many pieces"};
+  if (!flight_.continue_with(start, path, tail, now, speed_mps))
+    return Error{"its path has too many pieces"};
   return task;
 }
 
@@ -210,11 +215,12 @@ void VehicleAgent::Impl::commit_delivery(Instant now) {
   const Instant at = std::max(now, timed.start_time);
   const auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
   if (!rest) return;
-  task_->committed =
-      flight_.continue_with(at, *rest, flight_.hold_curvature(timed.path.end(), hazards_), now);
+  task_->committed = flight_.continue_with(
+      at, *rest, flight_.hold_curvature(timed.path.end(), hazards_), now, timed.speed_mps);
 }
 
 void VehicleAgent::Impl::fly_task(Instant now) {
+  keep_time(now);
   if (task_->is_delivery()) commit_delivery(now);
   const TaskId id = task_->assignment.task;
   if (!task_->begun && now >= task_->begin_time()) {
@@ -314,8 +320,9 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
   // to the leader, who times the coalition anew.
   const bool under_way = task_ && !task_->begun && !task_->committed;
-  const auto detour =
-      under_way ? set_out(*task_, now + kLateStart, now) : Result<TaskFlight>{Error{""}};
+  const auto detour = under_way
+                          ? set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now)
+                          : Result<TaskFlight>{Error{""}};
   if (detour) {
     task_ = *detour;
     report(EventKind::plan_changed, task_->round, task_->assignment.task, 0.0,
