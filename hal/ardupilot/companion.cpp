@@ -20,6 +20,7 @@ constexpr int kRetries = 5;
 constexpr int kArmRetries = 60;  ///< a filter that has no position yet takes most of a minute
 constexpr Duration kAskAgain = seconds{2};  ///< for streams that do not come
 constexpr Duration kSilenceUnstreamed = seconds{3};
+constexpr Duration kStreamsForgotten = milliseconds{500};  ///< perhaps, after such a loss
 constexpr Duration kClockSoon = milliseconds{200};
 constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
@@ -28,7 +29,7 @@ constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
 constexpr Duration kSpeedPeriod = milliseconds{200};
 constexpr double kHeightStep_m = 0.5;
-constexpr double kHeartbeat_hz = 10.0;
+constexpr double kHeartbeat_hz = 20.0;  ///< it tells of the pilot's switch
 constexpr double kHud_hz = 10.0;
 constexpr double kHealth_hz = 2.0;
 
@@ -137,15 +138,7 @@ void Companion::Impl::prepare(Instant now) {
   if (!asked_streams_ || (desk_.idle() && now - asked_streams_at_ >= kAskAgain)) {
     asked_streams_ = true;
     asked_streams_at_ = now;
-    const auto stream = [this](std::uint32_t id, double hz) {
-      ask(command_of(Command::set_message_interval, id, 1e6 / hz), {}, false);
-    };
-    stream(mavlink::Heartbeat::kDefinition.id, kHeartbeat_hz);
-    stream(mavlink::Attitude::kDefinition.id, params_.stream_hz);
-    stream(mavlink::GlobalPositionInt::kDefinition.id, params_.stream_hz);
-    stream(mavlink::VfrHud::kDefinition.id, kHud_hz);
-    stream(mavlink::SysStatus::kDefinition.id, kHealth_hz);
-    stream(mavlink::ExtendedSysState::kDefinition.id, kHealth_hz);
+    ask_streams();
     if (!firmware_settled_) {
       ask(command_of(Command::request_message, mavlink::AutopilotVersion::kDefinition.id), {},
           false);
@@ -153,6 +146,18 @@ void Companion::Impl::prepare(Instant now) {
   }
   const bool clock_known = clock_.synchronised() || now - asked_streams_at_ >= kAskAgain / 2;
   if (desk_.idle() && clock_known && has_health_ && motion_.sample()) fire(Event::ready, now);
+}
+
+void Companion::Impl::ask_streams() {
+  const auto stream = [this](std::uint32_t id, double hz) {
+    ask(command_of(Command::set_message_interval, id, 1e6 / hz), {}, false);
+  };
+  stream(mavlink::Heartbeat::kDefinition.id, kHeartbeat_hz);
+  stream(mavlink::Attitude::kDefinition.id, params_.stream_hz);
+  stream(mavlink::GlobalPositionInt::kDefinition.id, params_.stream_hz);
+  stream(mavlink::VfrHud::kDefinition.id, kHud_hz);
+  stream(mavlink::SysStatus::kDefinition.id, kHealth_hz);
+  stream(mavlink::ExtendedSysState::kDefinition.id, kHealth_hz);
 }
 
 bool Companion::Impl::airborne() const {
@@ -355,11 +360,16 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       if (from != State::lost && from != State::silent) {
         desk_.clear();
         if (from != State::checking) before_loss_ = from;
+        lost_at_ = now;
         say(true,
             machine_.in(State::lost) ? "no frame comes from the flight controller"
                                      : "the autopilot is silent, though its node is on the bus",
             now);
       }
+      break;
+    case State::checking:
+      // A reboot in the first seconds after another shows in no uptime, and forgets the streams.
+      if (now - lost_at_ > kStreamsForgotten) ask_streams();
       break;
     case State::duplicated:
       desk_.clear();

@@ -79,6 +79,7 @@ class Companion::Impl {
   // What is due.
   void watch_silence(Instant now);
   void prepare(Instant now);
+  void ask_streams();
   void stand_by(Instant now);
   void arm(Instant now);
   void ask_for_mode(Instant now);
@@ -138,6 +139,7 @@ class Companion::Impl {
 
   // What was asked and done.
   State before_loss_ = State::standing_by;
+  Instant lost_at_{};
   Instant heartbeat_at_;
   Instant clock_at_;
   int clock_questions_ = 0;
