@@ -23,6 +23,7 @@ class DeadBus final : public can::Bus {
   bool send(std::span<const can::Frame> /*frames*/) override { return true; }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
+  void discard() override {}
   std::optional<can::Frame> receive() override {
     if (next_ == frames.size()) return std::nullopt;
     return frames[next_++];

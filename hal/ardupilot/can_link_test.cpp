@@ -38,6 +38,7 @@ class WireBus final : public can::Bus {
   }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
+  void discard() override {}
   std::optional<can::Frame> receive() override {
     if (heard_.empty()) return std::nullopt;
     const can::Frame frame = heard_.front();

@@ -87,6 +87,12 @@ void FaultyBus::flush() {
   }
 }
 
+void FaultyBus::discard() {
+  own_.discarded += outgoing_.size();
+  outgoing_.clear();
+  bus_->discard();
+}
+
 std::optional<Frame> FaultyBus::receive() {
   if (is_out()) {
     while (bus_->receive()) {

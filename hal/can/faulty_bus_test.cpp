@@ -21,6 +21,7 @@ class MemoryBus final : public Bus {
   }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
+  void discard() override {}
   std::optional<Frame> receive() override {
     if (incoming.empty()) return std::nullopt;
     const Frame frame = incoming.front();

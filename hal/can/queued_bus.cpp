@@ -49,10 +49,9 @@ void QueuedBus::flush() {
 }
 
 std::optional<Frame> QueuedBus::receive() {
-  if (state_ == State::gone) {
-    look_for_interface();
-    if (state_ == State::gone) return std::nullopt;
-  }
+  // Read while it is gone too: an error or a frame that is left makes the descriptor ready for
+  // ever.
+  if (state_ == State::gone) look_for_interface();
   auto frame = read();
   if (frame) {
     ++statistics_.received;

@@ -17,6 +17,7 @@ class QueuedBus : public Bus {
   [[nodiscard]] bool send(std::span<const Frame> frames) final;
   void flush() final;
   [[nodiscard]] std::size_t pending() const final { return count_; }
+  void discard() final;
   [[nodiscard]] std::optional<Frame> receive() final;
   [[nodiscard]] State state() const final { return state_; }
   [[nodiscard]] const Statistics& statistics() const final { return statistics_; }
@@ -42,7 +43,6 @@ class QueuedBus : public Bus {
   static constexpr std::chrono::milliseconds kLookAgain{20};
 
   void look_for_interface();
-  void discard();
 
   std::string name_;
   std::vector<Frame> queue_;  ///< a ring

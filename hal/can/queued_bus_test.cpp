@@ -127,5 +127,25 @@ TEST(QueuedBus, AnInterfaceThatGoesIsTakenUpAgain) {
   EXPECT_EQ(bus.statistics().restarts, 1U);
 }
 
+TEST(QueuedBus, WhatIsForgottenIsNotSentLater) {
+  ToldBus bus{8};
+  ASSERT_TRUE(bus.send(transfer(1, 3)));
+  bus.discard();
+  EXPECT_EQ(bus.pending(), 0U);
+  EXPECT_EQ(bus.statistics().discarded, 3U);
+  bus.room = 8;
+  ASSERT_TRUE(bus.send(transfer(4, 1)));
+  EXPECT_EQ(bus.written, std::vector{4U});
+}
+
+TEST(QueuedBus, ABusThatIsGoneIsReadEmpty) {
+  ToldBus bus{8};
+  bus.there = false;
+  bus.heard = {State::gone, State::gone, State::gone};
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(bus.receive().has_value());
+  EXPECT_FALSE(bus.receive().has_value());
+  EXPECT_EQ(bus.state(), State::gone);
+}
+
 }  // namespace
 }  // namespace skein::can

@@ -38,10 +38,12 @@ class SocketCanBus final : public QueuedBus {
 
  private:
   [[nodiscard]] bool bind_to_interface();
+  [[nodiscard]] bool apply_filters();
   void learn_from(const Frame& error_frame);
 
   Descriptor socket_;
   bool fd_ = false;
+  std::vector<can_filter> filters_{{0, 0}};
 };
 
 ifreq request_for(const std::string& interface) {
@@ -95,16 +97,19 @@ Result<void> SocketCanBus::open(int receive_buffer_bytes) {
 }
 
 Result<void> SocketCanBus::set_filters(std::span<const Filter> filters) {
-  std::vector<can_filter> list;
+  filters_.clear();
   for (const Filter& filter : filters) {
-    list.push_back({filter.id | (filter.extended ? CAN_EFF_FLAG : 0), filter.mask | CAN_EFF_FLAG});
+    filters_.push_back(
+        {filter.id | (filter.extended ? CAN_EFF_FLAG : 0), filter.mask | CAN_EFF_FLAG});
   }
-  if (list.empty()) list.push_back({0, 0});
-  if (::setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, list.data(),
-                   static_cast<socklen_t>(list.size() * sizeof(can_filter))) != 0) {
-    return system_error(name() + ": filters");
-  }
+  if (filters_.empty()) filters_.push_back({0, 0});
+  if (!apply_filters()) return system_error(name() + ": filters");
   return {};
+}
+
+bool SocketCanBus::apply_filters() {
+  return ::setsockopt(socket_.get(), SOL_CAN_RAW, CAN_RAW_FILTER, filters_.data(),
+                      static_cast<socklen_t>(filters_.size() * sizeof(can_filter))) == 0;
 }
 
 QueuedBus::Written SocketCanBus::write(const Frame& frame) {
@@ -150,7 +155,11 @@ std::optional<Frame> SocketCanBus::read() {
     }
     std::copy_n(std::begin(raw.data), frame.size, frame.data.begin());
     frame.timestamp = datagram->timestamp;
-    if (frame.error) learn_from(frame);
+    if (frame.error) {
+      learn_from(frame);
+    } else if (state() == State::bus_off) {
+      enter(State::error_active);  // not every controller tells of its restart
+    }
     return frame;
   }
 }
@@ -160,9 +169,10 @@ void SocketCanBus::learn_from(const Frame& error_frame) {
     enter(State::bus_off);
   } else if ((error_frame.id & CAN_ERR_RESTARTED) != 0) {
     enter(State::error_active);
-  } else if ((error_frame.id & CAN_ERR_CRTL) != 0 && state() != State::bus_off) {
+  } else if ((error_frame.id & CAN_ERR_CRTL) != 0) {
     const std::uint8_t controller = error_frame.data[1];
-    if ((controller & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0) {
+    const bool passive = (controller & (CAN_ERR_CRTL_RX_PASSIVE | CAN_ERR_CRTL_TX_PASSIVE)) != 0;
+    if (passive && state() != State::bus_off) {
       enter(State::error_passive);
     } else if ((controller & CAN_ERR_CRTL_ACTIVE) != 0) {
       enter(State::error_active);
@@ -173,8 +183,9 @@ void SocketCanBus::learn_from(const Frame& error_frame) {
 bool SocketCanBus::reattach() {
   const auto flags = interface_flags(name());
   if (!flags || (*flags & IFF_UP) == 0) return false;
-  // An adapter that was unplugged comes back as another interface of the same name.
-  return bind_to_interface();
+  // An adapter that was unplugged comes back as another interface of the same name, and the kernel
+  // has forgotten the filters: without any, nothing is received.
+  return apply_filters() && bind_to_interface();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <linux/can/error.h>
 #include <linux/can/raw.h>
 #include <net/if.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -112,8 +113,12 @@ TEST_F(SocketCanFaults, AnInterfaceThatIsUnpluggedComesBackAsAnother) {
     // A test of its own machine. NOLINTNEXTLINE(cert-env33-c,concurrency-mt-unsafe)
     ASSERT_EQ(std::system(("ip link " + words + " " + name_).c_str()), 0);
   };
+  const Filter only{.id = 0x100, .mask = 0x1FFFFFFF, .extended = true};
+  ASSERT_TRUE(bus_->set_filters({&only, 1}));
   ip("del dev");
   const auto noticed = until(State::gone);
+  pollfd waiting{bus_->descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&waiting, 1, 1), 0) << "nothing is left that wakes its reader";
   ip("add type vcan dev");
   ip("set up dev");
   const auto back = until(State::error_active);
@@ -121,6 +126,18 @@ TEST_F(SocketCanFaults, AnInterfaceThatIsUnpluggedComesBackAsAnother) {
   frame.id = 1;
   EXPECT_TRUE(bus_->send(frame));
   EXPECT_EQ(bus_->pending(), 0U);
+  auto other = open(name_);
+  ASSERT_TRUE(other);
+  for (const std::uint32_t id : {0x200U, 0x100U}) {
+    frame.extended = true;
+    frame.id = id;
+    ASSERT_TRUE((*other)->send(frame));
+  }
+  const auto deadline = Clock::now() + kPatience;
+  std::optional<Frame> heard;
+  while (!(heard = bus_->receive()) && Clock::now() < deadline) continue;
+  ASSERT_TRUE(heard) << "the kernel forgets the filters with the interface";
+  EXPECT_EQ(heard->id, 0x100U);
   std::cout << "unplugged: noticed after " << noticed.count() << " ms, taken up again after "
             << back.count() << " ms\n";
 }
@@ -136,10 +153,16 @@ TEST_F(SocketCanFaults, WhatTheControllerReportsIsTheState) {
   report(CAN_ERR_RESTARTED, 0);
   const auto back = until(State::error_active);
   EXPECT_TRUE(bus_->send(frame));
+  report(CAN_ERR_BUSOFF, 0);
+  until(State::bus_off);
+  auto other = open(name_);
+  ASSERT_TRUE(other);
+  ASSERT_TRUE((*other)->send(frame));
+  until(State::error_active);  // what is heard was not told of a restart
   std::cout << "bus-off: noticed after " << noticed.count() << " ms, back after " << back.count()
             << " ms\n";
-  EXPECT_EQ(bus_->statistics().bus_offs, 1U);
-  EXPECT_EQ(bus_->statistics().error_frames, 3U);
+  EXPECT_EQ(bus_->statistics().bus_offs, 2U);
+  EXPECT_EQ(bus_->statistics().error_frames, 4U);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ constexpr unsigned kQuestionsMax = 5;
 /// One node that restarts this often within the time is taken for two that count each for itself.
 constexpr unsigned kRestartsOfTwo = 3;
 constexpr Duration kRestartsWithin = std::chrono::seconds{10};
-constexpr Duration kOwnDuplicateAgain = std::chrono::seconds{1};
+constexpr Duration kDuplicateAgain = std::chrono::seconds{1};
 constexpr std::uint8_t kTransferIds = 32;
 /// NodeStatus of two frames that cross may seem to go back by one.
 constexpr std::uint32_t kUptimeSlack_s = 1;
@@ -20,7 +20,7 @@ constexpr std::uint32_t kUptimeSlack_s = 1;
 }  // namespace
 
 Node::Node(const NodeParams& params, Instant now)
-    : params_{params}, started_{now}, status_at_{now}, duplicate_reported_{now} {
+    : params_{params}, started_{now}, status_at_{now} {
   SKEIN_ASSERT(params.node_id >= 1 && params.node_id <= kNodeIdMax);
   SKEIN_ASSERT(params.name.size() <= decltype(GetNodeInfoResponse::name)::capacity());
   outgoing_.reserve(params.transmit_limit);
@@ -31,11 +31,10 @@ Node::Node(const NodeParams& params, Instant now)
 const Transfer* Node::on_frame(const can::Frame& frame, std::uint8_t interface, Instant now) {
   const auto header = header_of(frame);
   if (header && header->source == params_.node_id) {
-    if (!own_is_duplicate_ || now - duplicate_reported_ >= kOwnDuplicateAgain) {
+    if (!duplicate_reported_ || now - *duplicate_reported_ >= kDuplicateAgain) {
       report(NodeEventKind::duplicate_own, params_.node_id, now);
       duplicate_reported_ = now;
     }
-    own_is_duplicate_ = true;
     return nullptr;
   }
   const bool is_service =
@@ -214,8 +213,9 @@ void Node::on_info(const Transfer& transfer, Instant now) {
 }
 
 void Node::report_duplicate(std::size_t other, Instant now) {
-  if (watches_[other].reported_duplicate) return;
-  watches_[other].reported_duplicate = true;
+  std::optional<Instant>& reported = watches_[other].duplicate_reported;
+  if (reported && now - *reported < kDuplicateAgain) return;
+  reported = now;
   report(NodeEventKind::duplicate, others_[other].node_id, now);
 }
 

@@ -31,6 +31,7 @@ class WireBus final : public can::Bus {
   }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
+  void discard() override {}
   std::optional<can::Frame> receive() override {
     if (in_->empty()) return std::nullopt;
     const can::Frame frame = in_->front();

@@ -34,6 +34,7 @@ class LineBus final : public can::Bus {
   }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
+  void discard() override {}
   std::optional<can::Frame> receive() override {
     if (in.empty()) return std::nullopt;
     const can::Frame frame = in.front();

@@ -26,10 +26,11 @@ enum class State : std::uint8_t {
 struct Statistics {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
-  std::uint64_t refused = 0;       ///< to be sent: the queue was full, or the bus off or gone
-  std::uint64_t discarded = 0;     ///< were queued when the bus went off or away
-  std::uint64_t retries = 0;       ///< times that the kernel had no room for the next frame
-  std::uint64_t lost = 0;          ///< received by the kernel, dropped because nobody read them
+  std::uint64_t refused = 0;  ///< to be sent: the queue was full, or the bus off or gone
+  std::uint64_t discarded =
+      0;                      ///< were kept, and forgotten: the bus went off or away, or discard()
+  std::uint64_t retries = 0;  ///< times that the kernel had no room for the next frame
+  std::uint64_t lost = 0;     ///< received by the kernel, dropped because nobody read them
   std::uint64_t malformed = 0;     ///< datagrams that were no frames
   std::uint64_t error_frames = 0;  ///< received
   std::uint64_t bus_offs = 0;
@@ -61,6 +62,9 @@ class Bus {
   virtual void flush() = 0;
   /// Frames kept.
   [[nodiscard]] virtual std::size_t pending() const = 0;
+  /// Forgets what was kept: commands that must not arrive late. What the kernel has is sent still
+  /// (a queue of 10 frames on most adapters). A receiver drops the transfer that this cuts.
+  virtual void discard() = 0;
 
   /// The next frame, or nothing. Error frames are delivered too.
   [[nodiscard]] virtual std::optional<Frame> receive() = 0;

@@ -44,6 +44,7 @@ class FaultyBus final : public Bus {
   [[nodiscard]] bool send(std::span<const Frame> frames) override;
   void flush() override;
   [[nodiscard]] std::size_t pending() const override { return outgoing_.size() + bus_->pending(); }
+  void discard() override;
   [[nodiscard]] std::optional<Frame> receive() override;
   [[nodiscard]] int descriptor() const override { return bus_->descriptor(); }
   [[nodiscard]] Result<void> set_filters(std::span<const Filter> filters) override {

@@ -37,6 +37,7 @@ struct RemoteNode {
   std::optional<GetNodeInfoResponse> info;  ///< once it has answered
 };
 
+/// Both of the duplicates are told again, each second at most, while their signs go on.
 enum class NodeEventKind : std::uint8_t {
   appeared,   ///< its first NodeStatus, or the first after it was silent
   informed,   ///< has answered GetNodeInfo
@@ -106,7 +107,7 @@ class Node {
     unsigned questions = 0;
     unsigned restarts = 0;  ///< in short succession
     Instant last_restart;
-    bool reported_duplicate = false;
+    std::optional<Instant> duplicate_reported;
   };
   struct Counter {
     std::uint32_t key;
@@ -127,8 +128,7 @@ class Node {
   NodeParams params_;
   Instant started_;
   Instant status_at_;
-  Instant duplicate_reported_;
-  bool own_is_duplicate_ = false;
+  std::optional<Instant> duplicate_reported_;  ///< of our own id
   Health health_ = Health::ok;
   Mode mode_ = Mode::operational;
   std::uint16_t vendor_specific_ = 0;
