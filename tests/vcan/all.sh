@@ -12,7 +12,7 @@ rm -rf "$work/mission"
 mkdir -p "$work/threads"
 rm -f "$work"/threads/*
 LD_PRELOAD=$(realpath "$bin/../lib/libskein_thread_watch.so") SKEIN_THREAD_WATCH=$(realpath "$work/threads") \
-  "$bin/skein-hil" run "$scenario" --lead 15 --out "$work/mission"
+  "$bin/skein-hil" run "$scenario" --lead 25 --out "$work/mission"
 echo "Buses of the vehicles, and their threads (lateness of control; age of the frames that can reads):"
 grep -ho 'bus vcan.*' "$work"/mission/*.log
 cat "$work"/threads/*.txt
