@@ -8,7 +8,7 @@ namespace skein::planning {
 namespace {
 
 constexpr double kStep_s = 0.5;
-constexpr double kStepsMax = 1000.0;
+constexpr int kStepsMax = 1000;
 
 /// Over the ground along that direction, the nose turned into the wind as far as it takes.
 double ground_speed(double airspeed_mps, const Vec2& wind, const Vec2& forward) {
@@ -29,12 +29,13 @@ ArrivalForecast forecast_arrival(const PathFollowerParams& params, const Vehicle
                                  Instant now, Instant until) {
   const double left_s = to_seconds(until - now);
   if (left_s <= 0.0) return {along_m, std::abs(along_m)};
-  const double steps = std::clamp(std::ceil(left_s / kStep_s), 1.0, kStepsMax);
+  const int steps =
+      static_cast<int>(std::clamp(std::ceil(left_s / kStep_s), 1.0, double{kStepsMax}));
   const double step_s = left_s / steps;
   const double begin_m = plan.distance_at(now);
   const double speed_mps = (plan.distance_at(until) - begin_m) / left_s;  // it may not have begun
   ArrivalForecast forecast{along_m, std::abs(along_m)};
-  for (double i = 0.0; i < steps; ++i) {
+  for (int i = 0; i < steps; ++i) {
     const double at_m = begin_m + i * step_s * speed_mps + forecast.along_m;
     const Vec2 forward = unit_vector(plan.pose_at_distance(at_m).heading_rad);
     const double wanted = speed_mps - params.along_track_gain_per_s * forecast.along_m;

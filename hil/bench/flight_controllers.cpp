@@ -34,6 +34,7 @@ Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t se
   const auto until = std::chrono::steady_clock::now() + kListen;
   while (true) {
     std::vector<pollfd> items;
+    items.reserve(buses.size());
     for (const auto& bus : buses) items.push_back({bus->descriptor(), POLLIN, 0});
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
         until - std::chrono::steady_clock::now());
