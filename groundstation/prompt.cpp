@@ -53,6 +53,16 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
   return Input{Order{{*vehicle}, kind}};
 }
 
+Result<Input> give_back(const std::vector<std::string_view>& words) {
+  const auto vehicle = words.size() == 2 ? id_of(words[1]) : std::nullopt;
+  if (!vehicle) {
+    return Error{fmt::format(
+        "'{0}' needs the number of one vehicle, as in '{0} 7': each pilot gives his own",
+        words[0])};
+  }
+  return Input{Order{{*vehicle}, mission::CommandKind::give_back}};
+}
+
 }  // namespace
 
 Result<Input> parse_input(std::string_view line) {
@@ -68,6 +78,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
   if (verb == "return") return order(mission::CommandKind::return_home, words);
+  if (verb == "give-back") return give_back(words);
   if (verb == "quit") {
     if (words.size() > 1) return Error{"'quit' stands alone"};
     return Input{Quit{}};
@@ -84,6 +95,9 @@ std::string help_text() {
          "hold ID|all       fly a holding pattern until told otherwise\n"
          "resume ID|all     go on with the mission\n"
          "return ID|all     fly back to the start and hold there\n"
+         "give-back ID      its pilot gives the aircraft (back) to the companion: in the air to "
+         "be\n"
+         "                  flown, on the ground to be launched where it takes off by itself\n"
          "quit              end the ground station; the vehicles go on\n";
 }
 

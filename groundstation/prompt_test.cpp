@@ -40,6 +40,8 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<Order>("resume all").vehicle, kGroundStation);
   EXPECT_EQ(parsed<Order>("resume all").kind, mission::CommandKind::resume);
   EXPECT_EQ(parsed<Order>("return 2").kind, mission::CommandKind::return_home);
+  EXPECT_EQ(parsed<Order>("give-back 7").vehicle, VehicleId{7});
+  EXPECT_EQ(parsed<Order>("give-back 7").kind, mission::CommandKind::give_back);
   parsed<Quit>("quit");
   parsed<std::monostate>("   ");
   parsed<std::monostate>("");
@@ -55,13 +57,16 @@ TEST(Prompt, SaysWhatIsWrong) {
   for (const auto* line : {"hold", "hold 0", "hold 1 2", "hold everyone"}) {
     EXPECT_THAT(refusal_of(line), HasSubstr("number of a vehicle or 'all'"));
   }
+  for (const auto* line : {"give-back", "give-back all", "give-back 0", "give-back 1 2"}) {
+    EXPECT_THAT(refusal_of(line), HasSubstr("number of one vehicle"));
+  }
   EXPECT_THAT(refusal_of("status 3"), HasSubstr("stands alone"));
   EXPECT_THAT(refusal_of("quit now"), HasSubstr("stands alone"));
 }
 
 TEST(Prompt, HelpNamesEveryCommand) {
-  for (const auto* word :
-       {"status", "sites", "pending", "authorise", "refuse", "hold", "resume", "return", "quit"}) {
+  for (const auto* word : {"status", "sites", "pending", "authorise", "refuse", "hold", "resume",
+                           "return", "give-back", "quit"}) {
     EXPECT_THAT(help_text(), HasSubstr(word));
   }
 }

@@ -156,7 +156,7 @@ TEST(Codec, RefusesTruncatedAndOverlongSamples) {
 
 TEST(Codec, RefusesEnumeratorsThatDoNotExist) {
   Bytes command = encode(mission::Command{VehicleId{1}, 2, mission::CommandKind::resume}).value();
-  put<std::uint32_t>(command, command.size() - 4, 3);
+  put<std::uint32_t>(command, command.size() - 4, 4);
   EXPECT_EQ(fault_of(Topic::command, command), Fault::bad_value);
   Bytes cancel = encode(coalition::Message{coalition::Cancel{}}).value();
   put<std::uint32_t>(cancel, 8, 7);  // the union's discriminator

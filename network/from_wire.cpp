@@ -24,7 +24,7 @@ static_assert(wire::WARNING + 1 == static_cast<int>(mission::EventKind::count));
 static_assert(wire::AWARDED == static_cast<int>(mission::EventKind::awarded));
 static_assert(wire::AUTHORISED == static_cast<int>(mission::EventKind::authorised));
 static_assert(wire::TASK_DONE == static_cast<int>(mission::EventKind::task_done));
-static_assert(wire::RETURN_HOME + 1 == static_cast<int>(mission::CommandKind::count));
+static_assert(wire::GIVE_BACK + 1 == static_cast<int>(mission::CommandKind::count));
 
 bool is_utf8(const std::string& text) {
   for (std::size_t i = 0; i < text.size();) {

@@ -74,7 +74,7 @@ void AgentLoop::pass_on(const mission::Command& command) {
   const bool ours = command.vehicle == self_ || command.vehicle == kGroundStation;
   if (!ours || command.number <= command_number_) return;
   command_number_ = command.number;
-  if (link_.on_command) link_.on_command(command.kind);
+  if (link_.on_command) link_.on_command(command);
 }
 
 void AgentLoop::send_telemetry(Instant now) {

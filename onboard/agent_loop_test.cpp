@@ -102,6 +102,26 @@ TEST(AgentLoop, AFloodOfMessagesIsTakenInPortions) {
   EXPECT_EQ(cabin.inbox.size(), 1000U - AgentLoop::kMessagesPerStep);
 }
 
+TEST(AgentLoop, PassesTheOperatorsCommandsOnOnceEachAndAsTheyWere) {
+  Cabin cabin;
+  std::vector<mission::Command> heard;
+  AgentLink link = cabin.link();
+  link.on_command = [&heard](const mission::Command& command) { heard.push_back(command); };
+  AgentLoop loop{config(), link, cabin.control, cabin.planner, cabin.events, at_seconds(-5.0)};
+  using mission::CommandKind;
+  for (const auto& command : {mission::Command{{4}, 10, CommandKind::give_back},
+                              mission::Command{{4}, 10, CommandKind::give_back},
+                              mission::Command{{5}, 11, CommandKind::give_back},
+                              mission::Command{kGroundStation, 12, CommandKind::resume}}) {
+    cabin.inbox.push_back({command, kGroundStation});
+  }
+  loop.step(at_seconds(1.0));
+  ASSERT_EQ(heard.size(), 2U);
+  EXPECT_EQ(heard[0].kind, CommandKind::give_back);
+  EXPECT_EQ(heard[0].vehicle, VehicleId{4});
+  EXPECT_EQ(heard[1].vehicle, kGroundStation);
+}
+
 TEST(Planner, AnswersRequestsUntilStopped) {
   std::counting_semaphore<> ready{0};
   Planner planner{[&] { ready.release(); }};

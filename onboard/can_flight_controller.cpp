@@ -17,11 +17,18 @@ void CanFlightController::command(const Setpoint& setpoint, Instant now) {
   command_.write({setpoint, now});
 }
 
+void CanFlightController::on_command(const mission::Command& command, VehicleId self) {
+  if (command.kind != mission::CommandKind::give_back || command.vehicle != self) return;
+  given_back_.store(mission::issued_at(command).time_since_epoch().count(),
+                    std::memory_order_release);
+}
+
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
     link_.companion().command(newer->setpoint, newer->at);
   }
-  if (resume_.exchange(false, std::memory_order_acq_rel)) (void)link_.companion().resume(now);
+  const Instant::rep issued = given_back_.exchange(kNothing, std::memory_order_acq_rel);
+  if (issued != kNothing) (void)link_.companion().give_back(now, Instant{Duration{issued}});
   link_.step(now);
   if (const auto sample = link_.companion().sample()) sample_.write(*sample);
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));

@@ -105,6 +105,30 @@ TEST(CanFlightController, CarriesTheStateOnToTheMomentThatItIsAskedFor) {
   EXPECT_EQ(cockpit.controller->state(at_seconds(12.0))->time, at_seconds(10.25));
 }
 
+/// In the state `searching` nothing can be given back, and a notice says so: that tells what came
+/// through to the companion.
+TEST(CanFlightController, IsGivenBackByThatCommandToThisVehicleAndByNoOther) {
+  Cockpit cockpit;
+  cockpit.controller->step(at_seconds(10.0));
+  const auto refused = [&cockpit](const mission::Command& command) {
+    while (cockpit.controller->poll_notice()) {
+    }
+    cockpit.controller->on_command(command, {3});
+    cockpit.controller->step(at_seconds(11.0));
+    bool said = false;
+    while (const auto notice = cockpit.controller->poll_notice()) {
+      said = said || notice->text.find("cannot be given") != std::string::npos;
+    }
+    return said;
+  };
+  using mission::CommandKind;
+  EXPECT_TRUE(refused({{3}, 10'001, CommandKind::give_back}));
+  EXPECT_FALSE(refused({kGroundStation, 10'002, CommandKind::give_back}));
+  EXPECT_FALSE(refused({{4}, 10'003, CommandKind::give_back}));
+  EXPECT_FALSE(refused({kGroundStation, 10'004, CommandKind::resume}));
+  EXPECT_FALSE(refused({{3}, 10'005, CommandKind::resume}));
+}
+
 TEST(CanFlightController, ControlNeitherAllocatesNorLocks) {
   if (!counted_calls::available()) GTEST_SKIP() << "a sanitizer stands in for what is counted";
   Cockpit cockpit;
@@ -134,7 +158,7 @@ TEST(CanFlightController, ThreadsShareItWithoutRaces) {
   // The agent's thread: until the CAN thread has noticed that nothing more comes.
   bool found = false;
   while (!found) {
-    cockpit.controller->resume();
+    cockpit.controller->on_command({{1}, 9001, mission::CommandKind::give_back}, {1});
     while (const auto notice = cockpit.controller->poll_notice()) {
       found = found || notice->text.find("found an autopilot") != std::string::npos;
     }

@@ -127,8 +127,8 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can, VehicleId se
   AgentLink link = link_to(node);
   if (on_can == nullptr) return link;
   link.flight_event = [on_can, self] { return next_warning(*on_can, self); };
-  link.on_command = [on_can](mission::CommandKind kind) {
-    if (kind == mission::CommandKind::resume) on_can->resume();
+  link.on_command = [on_can, self](const mission::Command& command) {
+    on_can->on_command(command, self);
   };
   return link;
 }

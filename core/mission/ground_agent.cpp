@@ -350,6 +350,11 @@ void GroundAgent::decide_by_script(Instant now) {
 
 Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant now) {
   const bool all = vehicle == kGroundStation;
+  if (kind == CommandKind::give_back && (all || now < Instant{})) {
+    // A vehicle that its pilot takes at this moment must be able to tell what is older.
+    return Error{all ? "an aircraft is given back one at a time"
+                     : "an aircraft cannot be given back before mission time 0"};
+  }
   if (!all && !expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
   for (const auto& [id, entry] : fleet_) {
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;

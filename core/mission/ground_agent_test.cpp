@@ -278,6 +278,17 @@ TEST(GroundAgent, TheScriptDecidesInItsOrderAtItsTime) {
   EXPECT_TRUE(sent[0].granted);
 }
 
+TEST(GroundAgent, GivesAnAircraftBackAloneAndTellsWhen) {
+  Bench bench;
+  EXPECT_FALSE(bench.agent.command(kGroundStation, CommandKind::give_back, at_seconds(10.0)).ok());
+  EXPECT_FALSE(bench.agent.command({1}, CommandKind::give_back, at_seconds(-1.0)).ok());
+  ASSERT_TRUE(bench.agent.command({1}, CommandKind::give_back, at_seconds(10.25)).ok());
+  const auto sent = bench.sent<Command>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].kind, CommandKind::give_back);
+  EXPECT_EQ(issued_at(sent[0]), at_seconds(10.25));
+}
+
 TEST(GroundAgent, RepeatsCommandsWithGrowingNumbers) {
   Bench bench;
   ASSERT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(10.0)).ok());

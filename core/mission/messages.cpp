@@ -50,7 +50,8 @@ std::string_view to_string(EventKind kind) {
 }
 
 std::string_view to_string(CommandKind kind) {
-  static constexpr std::array<std::string_view, 3> kNames{"hold", "resume", "return_home"};
+  static constexpr std::array<std::string_view, 4> kNames{"hold", "resume", "return_home",
+                                                          "give_back"};
   static_assert(kNames.size() == static_cast<std::size_t>(CommandKind::count));
   const auto i = static_cast<std::size_t>(kind);
   return i < kNames.size() ? kNames[i] : "unknown";

@@ -282,6 +282,7 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
   last_command_ = message.number;
   report(EventKind::plan_changed, {}, {}, 0.0,
          "the operator commands: " + std::string{to_string(message.kind)}, now);
+  if (message.kind == CommandKind::give_back) return;  // of the flight controller
   if (message.kind == CommandKind::resume) {
     held_by_operator_ = false;
     if (!task_ && !survey_) search(now);

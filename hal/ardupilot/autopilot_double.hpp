@@ -42,6 +42,7 @@ class AutopilotDouble {
   std::uint8_t maker = 3;
   std::uint8_t type = 1;
   std::uint32_t firmware = 0x04060300;
+  std::uint32_t enabled = 0xFFFFFFFF;  ///< sensors
   std::uint32_t health = 0xFFFFFFFF;
   bool mute = false;
   struct Refusal {
@@ -159,7 +160,7 @@ class AutopilotDouble {
   }
   [[nodiscard]] mavlink::SysStatus status() const {
     mavlink::SysStatus s;
-    s.onboard_control_sensors_enabled = 0xFFFFFFFF;
+    s.onboard_control_sensors_enabled = enabled;
     s.onboard_control_sensors_health = health;
     return s;
   }
@@ -212,9 +213,6 @@ class AutopilotDouble {
         break;
       case mavlink::Command::component_arm_disarm:
         armed = command.param1 > 0.5F;
-        break;
-      case mavlink::Command::do_land_start:
-        mode = 10;
         break;
       default:
         break;

@@ -194,7 +194,7 @@ TEST(CanLink, StopsSendingWhenASecondCompanionHasItsId) {
   while (const auto frame = listener.receive()) {
     EXPECT_NE(dronecan::header_of(*frame)->source, 42);
   }
-  EXPECT_TRUE(bench.link.companion().resume(bench.now + milliseconds{10}));
+  EXPECT_TRUE(bench.link.companion().give_back(bench.now + milliseconds{10}, bench.now));
   bench.run(6.0);
   EXPECT_EQ(bench.link.companion().state(), State::flying);
 }

@@ -18,6 +18,8 @@ constexpr Duration kHeartbeatPeriod = seconds{1};
 constexpr Duration kTargetPeriod = milliseconds{40};  ///< of attitude and velocity targets
 constexpr int kRetries = 5;
 constexpr int kArmRetries = 60;  ///< a filter that has no position yet takes most of a minute
+constexpr Duration kLaunchWithin = seconds{60};  ///< a plane may wait for the hand that throws it
+constexpr double kClimbMin_mps = 1.0;
 constexpr Duration kAskAgain = seconds{2};  ///< for streams that do not come
 constexpr Duration kSilenceUnstreamed = seconds{3};
 constexpr Duration kStreamsForgotten = milliseconds{500};  ///< perhaps, after such a loss
@@ -46,32 +48,41 @@ double speed_within(double speed_mps, const VehicleSpec& vehicle) {
 
 // --- what the operator asks ----------------------------------------------------------------------
 
-bool Companion::Impl::order(FlightOrder order, Instant now) {
-  if (!machine_.accepts(Event::order_given)) {
-    say(true, "cannot order the autopilot: the aircraft is not the companion's", now);
-    return false;
-  }
-  order_ = order;
-  fire(Event::order_given, now);
-  return true;
-}
-
-bool Companion::Impl::resume(Instant now) {
+bool Companion::Impl::give_back(Instant now, Instant issued) {
+  const bool in_flight = armed_ && airborne();
+  const bool from_ground = params_.take_over == TakeOver::from_ground;
+  const bool waits_landed =
+      !armed_ && !airborne() && (taken_by_others_ || (from_ground && launch_spent_));
   std::string why;
   if (machine_.in(State::duplicated)) {
     if (duplicate_at_ && now - *duplicate_at_ < kDuplicateGone) {
       why = "two nodes on the bus still have the id " + std::to_string(duplicate_node_);
     }
-  } else if (!machine_.accepts(Event::resumed)) {
-    return false;
-  } else if (!armed_ || !airborne()) {
+  } else if (!machine_.accepts(Event::given_back)) {
+    why = "the companion is in the state " + std::string{to_string(machine_.state())};
+  } else if (taken_by_others_ && issued < taken_at_) {
+    why = "it was taken after the operator's word";
+  } else if (!navigation_healthy()) {
+    why = "it does not know where it is";
+  } else if (!in_flight && !waits_landed) {
     why = "it is not armed and in the air";
   }
   if (!why.empty()) {
-    say(true, "cannot resume: " + why, now);
+    say(true, "the aircraft cannot be given to the companion: " + why, now);
     return false;
   }
-  fire(Event::resumed, now);
+  if (machine_.in(State::duplicated)) {
+    fire(Event::given_back, now);
+    return true;
+  }
+  taken_by_others_ = false;
+  if (in_flight) {
+    fire(Event::given_back, now);
+    return true;
+  }
+  launch_spent_ = false;
+  say(false, "given back on the ground", now);
+  if (machine_.in(State::piloted)) fire(Event::given_back_landed, now);
   return true;
 }
 
@@ -92,13 +103,14 @@ void Companion::Impl::step(Instant now) {
       arm(now);
       break;
     case State::climbing:
-      if (motion_.relative_height_m() >= params_.takeoff_height_m * 0.9) fire(Event::climbed, now);
+      if (high()) {
+        fire(Event::climbed, now);
+      } else if (now >= climb_by_) {
+        fire(Event::not_obeyed, now);
+      }
       break;
     case State::taking_over:
       ask_for_mode(now);
-      break;
-    case State::ordered:
-      if (!mode_confirmed_) ask_for_mode(now);
       break;
     case State::flying:
       fly(now);
@@ -169,8 +181,12 @@ bool Companion::Impl::airborne() const {
              : sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
 }
 
+bool Companion::Impl::high() const {
+  return motion_.relative_height_m() >= params_.takeoff_height_m * 0.9;
+}
+
 void Companion::Impl::stand_by(Instant now) {
-  if (!navigation_healthy()) return;
+  if (taken_by_others_ || !navigation_healthy()) return;
   const bool in_flight = armed_ && airborne();
   switch (params_.take_over) {
     case TakeOver::when_guided:
@@ -180,12 +196,11 @@ void Companion::Impl::stand_by(Instant now) {
       if (in_flight) fire(guided() ? Event::guided : Event::may_take, now);
       break;
     case TakeOver::from_ground: {
-      const bool high = motion_.relative_height_m() >= params_.takeoff_height_m * 0.9;
       const bool may_arm = (sensors_health_ & mavlink::sensor_prearm_check) != 0 ||
                            (sensors_enabled_ & mavlink::sensor_prearm_check) == 0;
-      if (launched_ && in_flight && high) {
+      if (own_flight_ && in_flight && high()) {
         fire(guided() ? Event::guided : Event::may_take, now);
-      } else if (!launched_ && !launch_failed_ && !armed_ && may_arm) {
+      } else if (!launch_spent_ && !armed_ && !airborne() && may_arm) {
         fire(Event::may_launch, now);
       }
       break;
@@ -197,15 +212,13 @@ void Companion::Impl::stand_by(Instant now) {
 
 void Companion::Impl::arm(Instant now) {
   if (now < retry_at_) return;
-  if (retries_++ >= kArmRetries) {
-    launch_failed_ = true;
-    return fire(Event::not_obeyed, now);
-  }
+  if (retries_++ >= kArmRetries) return fire(Event::not_obeyed, now);
   retry_at_ = now + kRetryPeriod;
   if (mode_ != takeoff_mode(params_.airframe)) {
     ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod},
         true);
   } else {
+    arm_asked_ = true;
     ask(command_of(Command::component_arm_disarm, 1), {1, kRetryPeriod}, true);
   }
 }
@@ -214,13 +227,7 @@ void Companion::Impl::ask_for_mode(Instant now) {
   if (now < retry_at_) return;
   if (retries_++ >= kRetries) return fire(Event::not_obeyed, now);
   retry_at_ = now + kRetryPeriod;
-  const bool ordered = machine_.in(State::ordered);
-  if (ordered && order_ == FlightOrder::land && params_.airframe == Airframe::plane) {
-    return ask(command_of(Command::do_land_start), {1, kRetryPeriod}, true);
-  }
-  const std::uint32_t mode =
-      ordered ? mode_of(params_.airframe, order_) : guided_mode(params_.airframe);
-  ask(command_of(Command::do_set_mode, 1, mode), {1, kRetryPeriod}, true);
+  ask(command_of(Command::do_set_mode, 1, guided_mode(params_.airframe)), {1, kRetryPeriod}, true);
 }
 
 void Companion::Impl::fly(Instant now) {
@@ -297,17 +304,36 @@ void Companion::Impl::fire(Event event, Instant now) {
   if (machine_.fire(event)) entered(from, event, now);
 }
 
+std::string Companion::Impl::why_piloted(State from, Event event) const {
+  if (event == Event::other_mode && (from != State::arming || !armed_)) {
+    return "the mode was changed to " + mode_name() + " by the pilot or a failsafe";
+  }
+  if (event == Event::other_mode) return "it was armed by others, in " + mode_name();
+  if (from != State::climbing) return "the autopilot does not obey";
+  return "it has not climbed to " + std::to_string(std::lround(params_.takeoff_height_m)) +
+         " m in time (TKOFF_ALT?)";
+}
+
+std::string Companion::Impl::ready_text() const {
+  if (taken_by_others_) return "; others have the aircraft until the operator gives it back";
+  if (params_.take_over != TakeOver::from_ground || !launch_spent_ || own_flight_) return "";
+  return "; it is not launched unless the operator gives it back on the ground";
+}
+
 void Companion::Impl::entered(State from, Event event, Instant now) {
+  const std::uint32_t mode_before = mode_at_entry_;
   retry_at_ = now;
   retries_ = 0;
   mode_at_entry_ = mode_;
   mode_confirmed_ = false;
+  arm_asked_ = false;
+  if (from == State::arming) launch_spent_ = true;
   switch (machine_.state()) {
     case State::searching:
       reset_link();
       say(true,
           event == Event::rebooted ? "the autopilot has rebooted"
-          : event == Event::resumed
+          : event == Event::given_back
               ? "looking for the autopilot again"
               : "the autopilot has gone before it was prepared; looking for it again",
           now);
@@ -321,16 +347,22 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
           now);
       break;
     case State::standing_by:
+      if (from != State::checking) desk_.clear();  // there the streams were asked for
       if (from == State::preparing) {
-        say(false, "the autopilot is ready", now);
+        const std::string more = ready_text();
+        say(!more.empty(), "the autopilot is ready" + more, now);
       } else if (event == Event::disarmed) {
         say(false, "the autopilot has disarmed", now);
       } else if (event == Event::not_obeyed) {
-        say(true, "the autopilot does not arm; waiting for the operator", now);
+        say(true, "the autopilot does not arm" + ready_text(), now);
+      } else if (event == Event::not_ours && before_loss_ == State::arming) {
+        say(true, "the launch was broken off" + ready_text(), now);
       }
       break;
     case State::climbing: {
-      launched_ = true;
+      if (from != State::arming) break;
+      own_flight_ = true;
+      climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
       say(false, "armed; taking off", now);
       if (params_.airframe == Airframe::copter) {
         mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
@@ -347,20 +379,21 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       say(false, "flying the companion's setpoints", now);
       break;
     case State::piloted:
-      desk_.clear();
-      say(true,
-          event == Event::not_obeyed
-              ? "the autopilot does not obey; the operator must resume"
-              : "the mode was changed to " + mode_name() +
-                    " by the pilot or a failsafe; no setpoints until the operator resumes",
-          now);
+      if (from != State::checking) desk_.clear();
+      taken_by_others_ = true;
+      taken_at_ = now;
+      launch_spent_ = true;
+      say(true, why_piloted(from, event) + "; no setpoints until the operator gives it back", now);
       break;
     case State::lost:
     case State::silent:
       if (from != State::lost && from != State::silent) {
         desk_.clear();
-        if (from != State::checking) before_loss_ = from;
         lost_at_ = now;
+        if (from != State::checking) {
+          before_loss_ = from;
+          mode_before_loss_ = mode_before;
+        }
         say(true,
             machine_.in(State::lost) ? "no frame comes from the flight controller"
                                      : "the autopilot is silent, though its node is on the bus",
@@ -372,12 +405,15 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       if (now - lost_at_ > kStreamsForgotten) ask_streams();
       break;
     case State::duplicated:
+      if (from != State::lost && from != State::silent && from != State::checking) {
+        before_loss_ = from;
+      }
       desk_.clear();
       while (packets_.pop()) {
       }
       say(true,
           "two nodes on the bus have the id " + std::to_string(duplicate_node_) +
-              ": nothing is sent any more; give each its own, then resume",
+              ": nothing is sent any more; give each its own, then give the aircraft back",
           now);
       break;
     default:
@@ -398,8 +434,7 @@ void Companion::on_duplicate(std::uint8_t node_id, Instant now) {
   impl_->on_duplicate(node_id, now);
 }
 void Companion::command(const Setpoint& setpoint, Instant now) { impl_->command(setpoint, now); }
-bool Companion::order(FlightOrder order, Instant now) { return impl_->order(order, now); }
-bool Companion::resume(Instant now) { return impl_->resume(now); }
+bool Companion::give_back(Instant now, Instant issued) { return impl_->give_back(now, issued); }
 void Companion::step(Instant now) { impl_->step(now); }
 std::optional<mavlink::WireBytes> Companion::poll_packet() {
   return may_send() ? impl_->poll_packet() : std::nullopt;

@@ -13,6 +13,13 @@ constexpr Duration kTripMax = seconds{2};          ///< of a question about the 
 constexpr Duration kBootStep = milliseconds{500};  ///< the clock goes back so far: a reboot
 constexpr std::uint32_t kFirmwareMin = 0x0405;     ///< 4.5 is the first with the tunnel
 
+/// The states in which the companion has the aircraft, or asks for it.
+bool is_own(Companion::State state) {
+  using State = Companion::State;
+  return state == State::arming || state == State::climbing || state == State::taking_over ||
+         state == State::flying;
+}
+
 std::string version_text(std::uint32_t version) {
   return std::to_string(version >> 24U) + "." + std::to_string((version >> 16U) & 0xFFU) + "." +
          std::to_string((version >> 8U) & 0xFFU);
@@ -46,6 +53,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
     sensors_health_ = status->onboard_control_sensors_health;
   } else if (const auto extended = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
     landed_ = static_cast<mavlink::LandedState>(extended->landed_state);
+    if (landed_ != mavlink::LandedState::undefined && airborne()) launch_spent_ = true;
   } else if (const auto timesync = mavlink::decode<mavlink::Timesync>(packet)) {
     on_timesync(*timesync, now);
   } else if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
@@ -61,6 +69,11 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
                                    const mavlink::Packet& packet, Instant now) {
   mode_ = heartbeat.custom_mode;
   armed_ = (heartbeat.base_mode & mavlink::mode_safety_armed) != 0;
+  if (armed_) {
+    launch_spent_ = true;
+  } else {
+    own_flight_ = false;
+  }
   if (machine_.in(State::searching) || (machine_.in(State::refused) && !firmware_refused_)) {
     std::string wrong;
     if (heartbeat.autopilot != static_cast<std::uint8_t>(mavlink::Autopilot::ardupilotmega)) {
@@ -87,11 +100,12 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
 void Companion::Impl::on_mode(Instant now) {
   switch (machine_.state()) {
     case State::arming:
-      if (mode_ == takeoff_mode(params_.airframe)) {
-        mode_confirmed_ = true;
-        if (armed_) fire(Event::armed, now);
-      } else if (mode_confirmed_) {
+      if (armed_ && arm_asked_ && mode_ == takeoff_mode(params_.airframe)) {
+        fire(Event::armed, now);
+      } else if (armed_ || airborne() || mode_changed(mode_at_entry_)) {
         fire(Event::other_mode, now);
+      } else if (mode_ == takeoff_mode(params_.airframe)) {
+        mode_confirmed_ = true;
       }
       break;
     case State::climbing:
@@ -117,39 +131,49 @@ void Companion::Impl::on_mode(Instant now) {
         fire(Event::disarmed, now);
       }
       break;
-    case State::ordered:
-      if (!armed_) {
-        fire(Event::disarmed, now);
-      } else if (mode_ == mode_of(params_.airframe, order_)) {
-        mode_confirmed_ = true;
-      } else if (mode_confirmed_ || mode_ != mode_at_entry_) {
-        fire(Event::other_mode, now);
-      }
-      break;
     case State::checking:
       on_check(now);
+      break;
+    case State::duplicated:
+      // Whoever changes it now is not the companion, which says nothing.
+      if (is_own(before_loss_) && mode_ != mode_at_entry_) taken_by_others_ = true;
       break;
     default:
       break;
   }
 }
 
+bool Companion::Impl::mode_changed(std::uint32_t before) const {
+  return mode_ != takeoff_mode(params_.airframe) && (mode_confirmed_ || mode_ != before);
+}
+
 void Companion::Impl::on_check(Instant now) {
   switch (before_loss_) {
     case State::flying:
-    case State::taking_over:
+    case State::taking_over: {
+      const bool as_before = before_loss_ == State::taking_over && mode_ == mode_before_loss_;
       if (!armed_) {
         fire(Event::disarmed, now);
       } else if (guided()) {
         fire(Event::guided, now);
       } else {
-        fire(before_loss_ == State::flying ? Event::other_mode : Event::not_ours, now);
+        fire(as_before ? Event::not_ours : Event::other_mode, now);
       }
       break;
-    case State::ordered:
-      fire(mode_ == mode_of(params_.airframe, order_) ? Event::order_stands : Event::other_mode,
-           now);
+    }
+    case State::climbing:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else {
+        const bool still = mode_ == takeoff_mode(params_.airframe);
+        fire(still ? Event::still_climbing : Event::other_mode, now);
+      }
       break;
+    case State::arming: {
+      const bool other = armed_ || airborne() || mode_changed(mode_before_loss_);
+      fire(other ? Event::other_mode : Event::not_ours, now);
+      break;
+    }
     case State::piloted:
       fire(Event::other_mode, now);
       break;

@@ -53,8 +53,7 @@ class Companion::Impl {
     setpoint_ = setpoint;
     setpoint_at_ = now;
   }
-  bool order(FlightOrder order, Instant now);
-  bool resume(Instant now);
+  bool give_back(Instant now, Instant issued);
   void step(Instant now);
 
   std::optional<mavlink::WireBytes> poll_packet() { return packets_.pop(); }
@@ -70,6 +69,8 @@ class Companion::Impl {
                     Instant now);
   void on_mode(Instant now);
   void on_check(Instant now);
+  /// While arming: neither what it was before nor what was asked for.
+  [[nodiscard]] bool mode_changed(std::uint32_t before) const;
   void on_timesync(const mavlink::Timesync& timesync, Instant now);
   void on_version(const mavlink::AutopilotVersion& version, Instant now);
   void on_text(const mavlink::Statustext& text, Instant now);
@@ -88,13 +89,17 @@ class Companion::Impl {
   void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
   void keep_clock(Instant now);
   void report_refusal(Instant now);
+  [[nodiscard]] std::string why_piloted(State from, Event event) const;
+  [[nodiscard]] std::string ready_text() const;
 
   void fire(Event event, Instant now);
   void entered(State from, Event event, Instant now);
   void reset_link();
   [[nodiscard]] bool airborne() const;
+  [[nodiscard]] bool high() const;
   [[nodiscard]] bool navigation_healthy() const {
-    return (sensors_enabled_ & kNavigation & ~sensors_health_) == 0;
+    // An ArduPilot without a GNSS does not count it among what is enabled.
+    return (sensors_enabled_ & sensors_health_ & kNavigation) == kNavigation;
   }
   [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
   [[nodiscard]] std::string mode_name() const { return name_of_mode(params_.airframe, mode_); }
@@ -140,6 +145,7 @@ class Companion::Impl {
   // What was asked and done.
   State before_loss_ = State::standing_by;
   Instant lost_at_{};
+  std::uint32_t mode_before_loss_ = 0;  ///< when that state was entered
   Instant heartbeat_at_;
   Instant clock_at_;
   int clock_questions_ = 0;
@@ -149,9 +155,12 @@ class Companion::Impl {
   int retries_ = 0;
   std::uint32_t mode_at_entry_ = 0;
   bool mode_confirmed_ = false;
-  bool launched_ = false;  ///< the companion has armed: once is enough
-  bool launch_failed_ = false;
-  FlightOrder order_ = FlightOrder::hold;
+  bool arm_asked_ = false;        ///< in this state
+  bool taken_by_others_ = false;  ///< until the operator gives it back: no reboot changes that
+  Instant taken_at_;
+  bool launch_spent_ = false;  ///< seen armed or in the air, or broken off: never twice unasked
+  bool own_flight_ = false;    ///< the companion has launched it, and it was not disarmed since
+  Instant climb_by_;
   std::optional<Instant> duplicate_at_;
   std::uint8_t duplicate_node_ = 0;
   std::optional<Setpoint> setpoint_;

@@ -12,9 +12,9 @@ using Event = Companion::Event;
 using Entry = Companion::Entry;
 
 /// The states in which streams are expected, so that silence means something.
-constexpr std::array kLinked{State::standing_by, State::arming,  State::climbing,
-                             State::taking_over, State::flying,  State::piloted,
-                             State::ordered,     State::checking};
+constexpr std::array kLinked{State::standing_by, State::arming, State::climbing,
+                             State::taking_over, State::flying, State::piloted,
+                             State::checking};
 
 constexpr std::array kOwn{
     Entry{State::searching, Event::autopilot_found, State::preparing},
@@ -31,28 +31,22 @@ constexpr std::array kOwn{
     Entry{State::standing_by, Event::guided, State::flying},
     Entry{State::standing_by, Event::may_take, State::taking_over},
     Entry{State::standing_by, Event::may_launch, State::arming},
-    Entry{State::standing_by, Event::resumed, State::taking_over},
+    Entry{State::standing_by, Event::given_back, State::taking_over},
     Entry{State::arming, Event::armed, State::climbing},
     Entry{State::arming, Event::not_obeyed, State::standing_by},
     Entry{State::arming, Event::other_mode, State::piloted},
     Entry{State::climbing, Event::climbed, State::taking_over},
     Entry{State::climbing, Event::other_mode, State::piloted},
     Entry{State::climbing, Event::disarmed, State::standing_by},
-    Entry{State::climbing, Event::order_given, State::ordered},
+    Entry{State::climbing, Event::not_obeyed, State::piloted},
     Entry{State::taking_over, Event::guided, State::flying},
     Entry{State::taking_over, Event::not_obeyed, State::piloted},
     Entry{State::taking_over, Event::other_mode, State::piloted},
     Entry{State::taking_over, Event::disarmed, State::standing_by},
-    Entry{State::taking_over, Event::order_given, State::ordered},
     Entry{State::flying, Event::other_mode, State::piloted},
     Entry{State::flying, Event::disarmed, State::standing_by},
-    Entry{State::flying, Event::order_given, State::ordered},
-    Entry{State::piloted, Event::resumed, State::taking_over},
-    Entry{State::ordered, Event::order_given, State::ordered},
-    Entry{State::ordered, Event::resumed, State::taking_over},
-    Entry{State::ordered, Event::other_mode, State::piloted},
-    Entry{State::ordered, Event::not_obeyed, State::piloted},
-    Entry{State::ordered, Event::disarmed, State::standing_by},
+    Entry{State::piloted, Event::given_back, State::taking_over},
+    Entry{State::piloted, Event::given_back_landed, State::standing_by},
     Entry{State::lost, Event::packets_back, State::checking},
     Entry{State::lost, Event::autopilot_silent, State::silent},
     Entry{State::lost, Event::rebooted, State::searching},
@@ -62,11 +56,11 @@ constexpr std::array kOwn{
     Entry{State::silent, Event::rebooted, State::searching},
     Entry{State::silent, Event::duplicate, State::duplicated},
     Entry{State::checking, Event::guided, State::flying},
-    Entry{State::checking, Event::order_stands, State::ordered},
+    Entry{State::checking, Event::still_climbing, State::climbing},
     Entry{State::checking, Event::not_ours, State::standing_by},
     Entry{State::checking, Event::other_mode, State::piloted},
     Entry{State::checking, Event::disarmed, State::standing_by},
-    Entry{State::duplicated, Event::resumed, State::searching},
+    Entry{State::duplicated, Event::given_back, State::searching},
 };
 
 constexpr auto kTable = [] {
@@ -83,13 +77,13 @@ constexpr auto kTable = [] {
 }();
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(State::count)> kStateNames{
-    "searching", "refused", "preparing", "standing_by", "arming", "climbing", "taking_over",
-    "flying",    "piloted", "ordered",   "lost",        "silent", "checking", "duplicated"};
+    "searching", "refused", "preparing", "standing_by", "arming",   "climbing",  "taking_over",
+    "flying",    "piloted", "lost",      "silent",      "checking", "duplicated"};
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Event::count)> kEventNames{
     "autopilot_found", "wrong_autopilot",  "ready",        "may_launch", "armed",
     "climbed",         "may_take",         "guided",       "other_mode", "disarmed",
-    "not_obeyed",      "order_given",      "order_stands", "not_ours",   "resumed",
+    "not_obeyed",      "still_climbing",   "not_ours",     "given_back", "given_back_landed",
     "link_lost",       "autopilot_silent", "packets_back", "rebooted",   "duplicate"};
 
 }  // namespace

@@ -4,12 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <deque>
 #include <fstream>
 #include <set>
 #include <sstream>
 
-#include "autopilot_double.hpp"
+#include "companion_line.hpp"
 #include "skein/base/random.hpp"
 
 namespace skein::ardupilot {
@@ -21,94 +20,6 @@ using std::chrono::milliseconds;
 using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
-
-VehicleSpec vehicle() {
-  VehicleSpec v;
-  v.id = {7};
-  v.cruise_speed_mps = 50.0;
-  v.speed_min_mps = 42.5;
-  v.speed_max_mps = 57.5;
-  v.turn_radius_m = 150.0;
-  v.heading_gain_per_s = 1.5;
-  v.height_m = 300.0;
-  return v;
-}
-
-CompanionParams params(TakeOver take_over = TakeOver::in_flight,
-                       Airframe airframe = Airframe::plane) {
-  CompanionParams p;
-  p.vehicle = vehicle();
-  p.take_over = take_over;
-  p.airframe = airframe;
-  return p;
-}
-
-/// A companion and an autopilot with a line between them that takes its time.
-struct Line {
-  explicit Line(const CompanionParams& p = params())
-      : companion{p, MissionOrigin::make(kTestOrigin).value(), now} {}
-
-  static constexpr Duration kTick = milliseconds{5};
-  Instant now = at_seconds(-20.0);  // processes start before the mission does
-  Duration delay = milliseconds{10};
-  bool cut = false;      ///< nothing comes through
-  bool frames = true;    ///< the flight controller's node is on the bus
-  bool commands = true;  ///< the control loop sends setpoints
-  Setpoint setpoint{.heading_rad = 0.7, .airspeed_mps = 53.0, .height_m = 310.0};
-  AutopilotDouble autopilot{now - std::chrono::seconds{60}};
-  Companion companion;
-  std::vector<std::string> notices;
-  std::vector<std::string> warnings;
-
-  void tick() {
-    now += kTick;
-    const auto said = autopilot.speak(now);
-    if (!said.empty() && !cut) down_.push_back({now + delay, said});
-    while (!down_.empty() && down_.front().at <= now) {
-      if (!cut) companion.on_bytes(down_.front().bytes, now);
-      down_.pop_front();
-    }
-    if (frames && !cut) companion.on_frame_heard(now);
-    if (commands) companion.command(setpoint, now);
-    companion.step(now);
-    while (const auto packet = companion.poll_packet()) {
-      sent_at = now;
-      if (!cut) up_.push_back({now + delay, {packet->begin(), packet->end()}});
-    }
-    while (!up_.empty() && up_.front().at <= now) {
-      autopilot.hear(up_.front().bytes, now);
-      up_.pop_front();
-    }
-    while (const auto notice = companion.poll_notice()) {
-      notices.push_back(notice->text);
-      if (notice->warning) warnings.push_back(notice->text);
-    }
-  }
-  void run(double seconds) {
-    for (const Instant end = now + from_seconds(seconds); now < end;) tick();
-  }
-  /// How long it took until the companion was in that state; the limit if it never was.
-  Duration until(State state, double limit_s) {
-    const Instant begin = now;
-    while (companion.state() != state && now - begin < from_seconds(limit_s)) tick();
-    return now - begin;
-  }
-  std::size_t targets_within(double seconds) {
-    const std::size_t before = autopilot.target_times.size();
-    run(seconds);
-    return autopilot.target_times.size() - before;
-  }
-
-  Instant sent_at;
-
- private:
-  struct Bytes {
-    Instant at;
-    std::vector<std::uint8_t> bytes;
-  };
-  std::deque<Bytes> down_;
-  std::deque<Bytes> up_;
-};
 
 TEST(Companion, ConnectsTakesTheAircraftInFlightAndFliesSetpoints) {
   Line line;
@@ -210,8 +121,7 @@ TEST(Companion, NeitherArmsNorTakesOffUnasked) {
     EXPECT_EQ(line.companion.state(), State::standing_by);
     EXPECT_EQ(line.autopilot.count(mavlink::Command::component_arm_disarm), 0);
     EXPECT_EQ(line.autopilot.count(mavlink::Command::do_set_mode), 0);
-    EXPECT_FALSE(line.companion.resume(line.now));
-    EXPECT_FALSE(line.companion.order(FlightOrder::land, line.now));
+    EXPECT_FALSE(line.companion.give_back(line.now, line.now));
   }
 }
 
@@ -285,7 +195,7 @@ TEST(Companion, ThePilotWinsAtOnceUntilTheOperatorResumes) {
   EXPECT_EQ(line.targets_within(2.0), 0U);
   line.autopilot.mode = 6;
   EXPECT_THAT(line.warnings, Contains(HasSubstr("FBWA")));
-  ASSERT_TRUE(line.companion.resume(line.now));
+  ASSERT_TRUE(line.companion.give_back(line.now, line.now));
   EXPECT_LE(line.until(State::flying, 2.0), milliseconds{300});
   EXPECT_GT(line.targets_within(0.5), 5U);
   EXPECT_EQ(line.companion.protocol_errors(), 0U);
@@ -386,9 +296,9 @@ TEST(Companion, FallsSilentWhenAnotherNodeHasItsId) {
   line.sent_at = {};
   line.run(0.5);
   EXPECT_EQ(line.sent_at, Instant{});  // not a heartbeat
-  EXPECT_FALSE(line.companion.resume(line.now));
+  EXPECT_FALSE(line.companion.give_back(line.now, line.now));
   line.run(3.0);
-  ASSERT_TRUE(line.companion.resume(line.now));
+  ASSERT_TRUE(line.companion.give_back(line.now, line.now));
   line.until(State::flying, 10.0);
   EXPECT_EQ(line.companion.state(), State::flying);
   EXPECT_THAT(line.warnings, Contains(HasSubstr("have the id 42")));
@@ -466,41 +376,6 @@ TEST(Companion, DoesNotTakeAnAircraftThatDoesNotKnowWhereItIs) {
   EXPECT_EQ(line.companion.state(), State::flying);
 }
 
-TEST(Companion, OrdersHoldReturnAndLandToTheAutopilot) {
-  Line line;
-  line.until(State::flying, 10.0);
-  ASSERT_TRUE(line.companion.order(FlightOrder::hold, line.now));
-  line.run(0.3);
-  EXPECT_EQ(line.autopilot.mode, 12U);  // LOITER
-  EXPECT_EQ(line.targets_within(0.5), 0U);
-  ASSERT_TRUE(line.companion.order(FlightOrder::return_home, line.now));
-  line.run(0.3);
-  EXPECT_EQ(line.autopilot.mode, 11U);  // RTL
-  ASSERT_TRUE(line.companion.order(FlightOrder::land, line.now));
-  line.run(0.3);
-  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_land_start), 1);
-  EXPECT_EQ(line.companion.state(), State::ordered);
-  line.autopilot.mode = 5;  // the pilot takes it here too
-  line.until(State::piloted, 0.5);
-  EXPECT_FALSE(line.companion.order(FlightOrder::hold, line.now));
-  ASSERT_TRUE(line.companion.resume(line.now));
-  line.until(State::flying, 2.0);
-  EXPECT_EQ(line.companion.state(), State::flying);
-  EXPECT_EQ(line.companion.protocol_errors(), 0U);
-}
-
-TEST(Companion, AnOrderStandsThroughALoss) {
-  Line line;
-  line.until(State::flying, 10.0);
-  ASSERT_TRUE(line.companion.order(FlightOrder::hold, line.now));
-  line.run(0.5);
-  line.cut = true;
-  line.run(1.0);
-  line.cut = false;
-  line.until(State::ordered, 1.0);
-  EXPECT_EQ(line.companion.state(), State::ordered);
-}
-
 TEST(Companion, SendsNoSetpointThatIsOld) {
   Line line;
   line.until(State::flying, 10.0);
@@ -536,10 +411,10 @@ TEST(Companion, SurvivesAnyBytesAndAnyOrderOfEvents) {
           if (random.index(10) == 0) line.companion.on_duplicate(42, line.now);
           break;
         case 6:
-          (void)line.companion.resume(line.now);
+          (void)line.companion.give_back(line.now, line.now);
           break;
         case 7:
-          (void)line.companion.order(static_cast<FlightOrder>(random.index(3)), line.now);
+          line.autopilot.landed = static_cast<std::uint8_t>(random.index(5));
           break;
         case 8: {
           std::vector<std::uint8_t> noise(random.index(60));

@@ -57,23 +57,6 @@ std::uint32_t takeoff_mode(Airframe airframe) {
                                       : static_cast<std::uint32_t>(PlaneMode::takeoff);
 }
 
-std::uint32_t mode_of(Airframe airframe, FlightOrder order) {
-  const bool copter = airframe == Airframe::copter;
-  switch (order) {
-    case FlightOrder::return_home:
-      return copter ? static_cast<std::uint32_t>(CopterMode::rtl)
-                    : static_cast<std::uint32_t>(PlaneMode::rtl);
-    case FlightOrder::land:
-      return copter ? static_cast<std::uint32_t>(CopterMode::land)
-                    : static_cast<std::uint32_t>(PlaneMode::automatic);
-    case FlightOrder::hold:
-      break;
-  }
-  // LOITER of a copter listens to the sticks.
-  return copter ? static_cast<std::uint32_t>(CopterMode::brake)
-                : static_cast<std::uint32_t>(PlaneMode::loiter);
-}
-
 std::string name_of_mode(Airframe airframe, std::uint32_t mode) {
   const std::span<const NamedMode> names = airframe == Airframe::copter
                                                ? std::span<const NamedMode>{kCopterModes}

@@ -12,8 +12,6 @@ namespace skein::ardupilot {
 [[nodiscard]] std::uint32_t guided_mode(Airframe airframe);
 /// In which the aircraft leaves the ground.
 [[nodiscard]] std::uint32_t takeoff_mode(Airframe airframe);
-/// That an order asks for. Landing a plane is a mission of the autopilot's own: AUTO.
-[[nodiscard]] std::uint32_t mode_of(Airframe airframe, FlightOrder order);
 /// "GUIDED"; the number of one that has no name here.
 [[nodiscard]] std::string name_of_mode(Airframe airframe, std::uint32_t mode);
 /// Whether HEARTBEAT's `type` is of the airframe.

@@ -164,7 +164,7 @@ TEST(CompanionAndEmulator, PilotSilenceAndRestartAreNoticed) {
   EXPECT_TRUE(bench.run_until(State::piloted, 0.25)) << bench.log();
   bench.run(2.0);
   EXPECT_EQ(bench.companion().state(), State::piloted);
-  EXPECT_TRUE(bench.companion().resume(bench.now())) << bench.log();
+  EXPECT_TRUE(bench.companion().give_back(bench.now(), bench.now())) << bench.log();
   EXPECT_TRUE(bench.run_until(State::flying, 3.0)) << bench.log();
 
   bench.interfere("silent on");
@@ -194,10 +194,6 @@ TEST(CompanionAndEmulator, ACopterIsFlown) {
   EXPECT_NEAR(bench.state().groundspeed_mps, 5.0, 0.7) << bench.log();
   EXPECT_NEAR(degrees(bench.state().course_rad), 0.0, 8.0);
   EXPECT_NEAR(bench.state().z_m, 30.0, 1.5);
-  EXPECT_TRUE(bench.companion().order(ardupilot::FlightOrder::hold, bench.now()));
-  bench.run(6.0);
-  EXPECT_EQ(bench.companion().state(), State::ordered) << bench.log();
-  EXPECT_NEAR(bench.state().groundspeed_mps, 0.0, 0.6);
 }
 
 }  // namespace

@@ -139,11 +139,11 @@ class CanFaults : public ::testing::Test {
     ASSERT_TRUE(opened.ok()) << opened.error().message;
     operator_ = std::move(opened).value();
   }
-  void resume() {
+  void give_back() {
     mission::Command command;
     command.vehicle = kVehicle;
-    command.number = ++commands_;
-    command.kind = mission::CommandKind::resume;
+    command.number = static_cast<std::uint32_t>(1e3 * now_s()) + 1;  // tells when it was issued
+    command.kind = mission::CommandKind::give_back;
     operator_->publish(mission::Message{command});
   }
 
@@ -190,7 +190,6 @@ class CanFaults : public ::testing::Test {
   std::uint16_t ground_port_ = free_port_pair();
   int input_ = -1;
   std::size_t read_ = 0;
-  std::uint32_t commands_ = 0;
   std::unique_ptr<hil::ChildProcess> flight_controller_;
   std::unique_ptr<hil::ChildProcess> vehicle_;
   std::unique_ptr<network::Node> operator_;
@@ -225,8 +224,8 @@ TEST_F(CanFaults, AreNoticedAndFlownOnFrom) {
   pilot("mode RTL");
   const double piloted = noticed_within(kPiloted, begin);
   begin = now_s();
-  resume();
-  print("the pilot switches to RTL", piloted, noticed_within(kFlying, begin), "the resume");
+  give_back();
+  print("the pilot switches to RTL", piloted, noticed_within(kFlying, begin), "it is given back");
 
   // Nodes tell their uptime in whole seconds: younger than that a reboot does not show.
   while (now_s() < 5.0) std::this_thread::sleep_for(20ms);

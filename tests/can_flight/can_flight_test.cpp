@@ -236,7 +236,7 @@ TEST(CanFlight, ThePilotHasTheAircraftAtOnce) {
   EXPECT_LE(flight.until(State::piloted, 1.0), milliseconds{100});
   flight.run_until(15.0);
   EXPECT_EQ(flight.state(), State::piloted);
-  ASSERT_TRUE(flight.link->companion().resume(flight.now));
+  ASSERT_TRUE(flight.link->companion().give_back(flight.now, flight.now));
   EXPECT_LE(flight.until(State::flying, 2.0), milliseconds{300});
 }
 

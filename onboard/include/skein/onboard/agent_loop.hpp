@@ -26,8 +26,9 @@ struct AgentLink {
   std::function<std::uint64_t()> dropped;  ///< messages lost by full queues and bad packets so far
   /// What the flight controller wants the operator to know; may be empty.
   std::function<std::optional<mission::MissionEvent>()> flight_event = {};
-  /// Hears the operator's commands to this vehicle once each, as the agent does; may be empty.
-  std::function<void(mission::CommandKind)> on_command = {};
+  /// Hears the operator's commands to this vehicle once each, as the agent does, those to all
+  /// included; may be empty.
+  std::function<void(const mission::Command&)> on_command = {};
 };
 
 /// Carries inputs to the vehicle's agent and its outputs away: one step() takes in the newest

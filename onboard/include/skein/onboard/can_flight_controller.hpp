@@ -2,11 +2,13 @@
 #pragma once
 
 #include <atomic>
+#include <limits>
 #include <memory>
 #include <optional>
 
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/hal/flight_controller.hpp"
+#include "skein/mission/messages.hpp"
 #include "skein/onboard/latest_value.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 
@@ -31,8 +33,9 @@ class CanFlightController final : public hal::FlightController {
   [[nodiscard]] const ardupilot::CanLink& link() const { return link_; }
 
   // Of the agent's thread.
-  /// The operator gives the aircraft (back) to the companion.
-  void resume() { resume_.store(true, std::memory_order_release); }
+  /// The operator gives the aircraft (back) to the companion, by that very command to this very
+  /// vehicle: what goes to all, and any other, takes no aircraft from its pilot.
+  void on_command(const mission::Command& command, VehicleId self);
   [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
 
  private:
@@ -43,8 +46,9 @@ class CanFlightController final : public hal::FlightController {
   LatestValue<ardupilot::MotionSample> sample_;  ///< CAN to control
   LatestValue<Command> command_;                 ///< control to CAN
   SpscRing<ardupilot::Notice, 64> notices_;      ///< CAN to agent
-  std::atomic<bool> resume_{false};
-  std::optional<ardupilot::MotionSample> newest_;  ///< control's
+  static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
+  std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued
+  std::optional<ardupilot::MotionSample> newest_;   ///< control's
   ardupilot::CanLink link_;
 };
 

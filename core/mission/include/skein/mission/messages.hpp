@@ -114,15 +114,27 @@ struct MissionEvent {
 /// The text of a lease_ended event when the plan is held: its lease may come back.
 inline constexpr std::string_view kHeldForSuccessor = "the leader is silent: the plan is held";
 
-enum class CommandKind : std::uint8_t { hold, resume, return_home, count };
+enum class CommandKind : std::uint8_t {
+  hold,
+  resume,  ///< go on with the mission
+  return_home,
+  give_back,  ///< of an aircraft that others fly: the companion takes it. To one vehicle, never all
+  count
+};
 [[nodiscard]] std::string_view to_string(CommandKind kind);
 
 /// From the ground station to one vehicle, or to all (vehicle 0).
 struct Command {
   VehicleId vehicle;
-  std::uint32_t number = 0;  ///< grows; a repeated or older number has no effect
+  /// Grows; a repeated or older number has no effect. The mission time in ms, plus 1, at which it
+  /// was issued, or more where it would not grow; before mission time 0 it tells no time.
+  std::uint32_t number = 0;
   CommandKind kind = CommandKind::hold;
 };
+/// To the millisecond before, for commands issued at mission time 0 or later.
+[[nodiscard]] inline Instant issued_at(const Command& command) {
+  return Instant{std::chrono::milliseconds{command.number} - std::chrono::milliseconds{1}};
+}
 
 /// A survey sensor or an operator has found a site. `finder` is the vehicle that should survey it.
 struct SiteReport {

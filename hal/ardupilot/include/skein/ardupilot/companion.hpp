@@ -25,12 +25,11 @@ enum class Airframe : std::uint8_t { plane, copter, count };
 enum class TakeOver : std::uint8_t {
   when_guided,  ///< once the pilot has armed it, has it in the air and switches to GUIDED
   in_flight,    ///< once it is armed and in the air; the companion asks for GUIDED itself
-  from_ground,  ///< at once: it arms and takes off itself, one time
+  /// At once: it arms and takes off itself, one time. Not any more once the aircraft has been seen
+  /// armed or in the air, or the launch was broken off, until give_back() on the ground.
+  from_ground,
   count
 };
-
-/// What the autopilot does by itself, until resume().
-enum class FlightOrder : std::uint8_t { hold, return_home, land };
 
 struct CompanionParams {
   VehicleSpec vehicle;
@@ -67,12 +66,11 @@ class Companion {
     climbing,     ///< armed by the companion; the autopilot takes off
     taking_over,  ///< has asked for GUIDED
     flying,       ///< GUIDED: setpoints go out
-    piloted,      ///< the mode was changed by others, who have the aircraft until resume()
-    ordered,      ///< the autopilot holds, returns or lands because it was ordered to
+    piloted,      ///< others have the aircraft until give_back(), whatever happens in between
     lost,         ///< no frame of the flight controller comes
     silent,       ///< frames come, MAVLink does not
     checking,     ///< MAVLink is back; whose the aircraft is now, the next HEARTBEAT tells
-    duplicated,   ///< two nodes have one id, ours or its: nothing is sent until resume()
+    duplicated,   ///< two nodes have one id, ours or its: nothing is sent until give_back()
     count
   };
   enum class Event : std::uint8_t {
@@ -86,11 +84,11 @@ class Companion {
     guided,      ///< HEARTBEAT says GUIDED
     other_mode,  ///< HEARTBEAT says a mode that the companion did not ask for
     disarmed,
-    not_obeyed,  ///< was asked several times
-    order_given,
-    order_stands,  ///< after a loss: still the mode that was ordered
-    not_ours,      ///< after a loss: it was not the companion's before either
-    resumed,       ///< by the operator
+    not_obeyed,         ///< was asked several times, or does not climb
+    still_climbing,     ///< after a loss: as before it
+    not_ours,           ///< after a loss: it was not the companion's before either
+    given_back,         ///< by the operator, in the air
+    given_back_landed,  ///< by the operator, disarmed on the ground
     link_lost,
     autopilot_silent,
     packets_back,
@@ -117,10 +115,11 @@ class Companion {
 
   /// Flown while the state is `flying`; the last one stands until it is too old.
   void command(const Setpoint& setpoint, Instant now);
-  /// Hold, return or land. False where the aircraft is not the companion's.
-  bool order(FlightOrder order, Instant now);
-  /// The operator gives the aircraft (back) to the companion. False where it cannot be given.
-  bool resume(Instant now);
+  /// The operator gives the aircraft (back) to the companion: in the air, to be flown; disarmed on
+  /// the ground, to stand by and, where it takes off by itself, to be launched (again). False where
+  /// it cannot be given, and where it was taken after the operator's word was `issued`. In
+  /// `duplicated` it says that the ids are mended, and no more.
+  bool give_back(Instant now, Instant issued);
 
   /// What is due by `now`. To be called every 10 ms or so. Precondition: `now` never decreases.
   void step(Instant now);
