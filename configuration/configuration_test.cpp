@@ -89,7 +89,8 @@ TEST(VehicleConfigFile, NamesTheMethodOfAllocation) {
 TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
   const std::string keys =
       "flight_controller: {kind: ardupilot, can: 'mcast:3', node_id: 11, companion_node_id: 43, "
-      "airframe: copter, take_over: from_ground, takeoff_height_m: 25, geoid_height_m: -38.5, "
+      "system_id: 7, airframe: copter, take_over: from_ground, takeoff_height_m: 25, "
+      "geoid_height_m: -38.5, "
       "turn_lead_s: 0.75}\n";
   const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
   ASSERT_TRUE(config.ok()) << config.error().message;
@@ -99,6 +100,7 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
     EXPECT_EQ(fc.can, "mcast:3");
     EXPECT_EQ(fc.node_id, 11);
     EXPECT_EQ(fc.companion_node_id, 43);
+    EXPECT_EQ(fc.system_id, 7);
     EXPECT_EQ(fc.airframe, AirframeKind::copter);
     EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
     EXPECT_EQ(fc.takeoff_height_m, 25.0);

@@ -53,6 +53,8 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, b
   whole(v, {"node_id", "of the autopilot on the bus: its CAN_D1_UC_NODE"}, node, fc.node_id);
   whole(v, {"companion_node_id", "of this companion: the autopilot's CAN_D1_UC_S1_NOD"}, node,
         fc.companion_node_id);
+  whole(v, {"system_id", "of the autopilot: its SYSID_THISMAV; others are not heeded"},
+        {1.0, 255.0}, fc.system_id);
   whole(v, {"serial_id", "of the tunnel: the autopilot's CAN_D1_UC_S1_IDX"}, {0.0, 15.0},
         fc.serial_id);
   choice_of(v, {"airframe", "that the autopilot flies"}, kAirframes, fc.airframe);

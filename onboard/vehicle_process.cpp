@@ -36,6 +36,7 @@ ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) 
   params.serial_id = fc.serial_id;
   ardupilot::CompanionParams& companion = params.companion;
   companion.vehicle = config.vehicle;
+  companion.system_id = fc.system_id;
   companion.airframe = fc.airframe == configuration::AirframeKind::copter
                            ? ardupilot::Airframe::copter
                            : ardupilot::Airframe::plane;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,6 +51,8 @@ class AutopilotDouble {
     std::string text;  ///< said after the answer
   };
   std::map<std::uint16_t, Refusal> refuses;  ///< by command
+  std::map<std::uint16_t, int> deaf_to;      ///< by command: so many of them get lost
+  std::set<std::uint32_t> stopped;           ///< streams
 
   std::vector<mavlink::CommandLong> commands;
   std::vector<mavlink::SetAttitudeTarget> attitudes;
@@ -112,7 +115,7 @@ class AutopilotDouble {
   template <class Make>
   void due(std::uint32_t id, Instant now, const Make& make) {
     const auto interval = intervals_.find(id);
-    if (interval == intervals_.end()) return;
+    if (interval == intervals_.end() || stopped.contains(id)) return;
     auto& next = next_.try_emplace(id, now).first->second;
     if (now < next) return;
     next += interval->second;
@@ -184,6 +187,10 @@ class AutopilotDouble {
     if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);
   }
   void obey(const mavlink::CommandLong& command, Instant /*now*/) {
+    if (auto& lost = deaf_to[command.command]; lost > 0) {
+      --lost;
+      return;
+    }
     commands.push_back(command);
     mavlink::CommandAck ack;
     ack.command = command.command;

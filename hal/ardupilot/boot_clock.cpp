@@ -8,6 +8,8 @@ namespace {
 
 /// Of two crystals against each other: 100 ppm.
 constexpr int kDriftDivisor = 10'000;
+/// Two round trips that are further apart than what they may be wrong, and this, contradict.
+constexpr Duration kContradiction = std::chrono::milliseconds{1};
 
 }  // namespace
 
@@ -24,8 +26,14 @@ Duration BootClock::uncertainty(Instant now) const {
 void BootClock::on_round_trip(Instant sent, Instant answered, Duration boot) {
   if (answered < sent) return;
   const Duration half = (answered - sent) / 2;
-  if (best_ && half > uncertainty(answered)) return;
-  best_ = Binding{sent + half - boot, half, answered};
+  const Instant zero = sent + half - boot;
+  if (best_) {
+    const Duration known = uncertainty(answered);
+    // Which of them is wrong cannot be told.
+    if (std::chrono::abs(zero - best_->zero) > half + known + kContradiction) return restart();
+    if (half > known) return;
+  }
+  best_ = Binding{zero, half, answered};
 }
 
 void BootClock::on_arrival(Instant now, Duration boot) {

@@ -9,11 +9,13 @@ namespace skein::ardupilot {
 
 /// The autopilot's clock (time since its boot) in mission time. Of the round trips of TIMESYNC the
 /// one that binds the offset best counts: half its duration, and what the clocks may have drifted
-/// since. Until one has been answered, a message counts as measured when it came.
+/// since. Until one has been answered, a message counts as measured when it came. Where two cannot
+/// both be true, none counts.
 class BootClock {
  public:
   void restart();
-  /// `boot`: the autopilot's clock, read between the two instants.
+  /// `boot`: the autopilot's clock, read between the two instants. Precondition: all three are less
+  /// than 100 years.
   void on_round_trip(Instant sent, Instant answered, Duration boot);
   /// A message that was measured at `boot` has come. Bounds the offset from one side.
   void on_arrival(Instant now, Duration boot);

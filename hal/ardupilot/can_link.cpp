@@ -33,6 +33,16 @@ dronecan::TunnelParams tunnel_params(const CanLinkParams& params) {
   return tunnel;
 }
 
+/// That a state has been left in which commands went out that must not arrive late.
+bool breaks_off(Companion::State before, Companion::State now) {
+  using State = Companion::State;
+  const auto is_own = [](State state) {
+    return state == State::arming || state == State::climbing || state == State::taking_over ||
+           state == State::flying;
+  };
+  return is_own(before) && !is_own(now);
+}
+
 }  // namespace
 
 CanLink::CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params,
@@ -44,12 +54,14 @@ CanLink::CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params,
       companion_{params.companion, origin, now} {}
 
 void CanLink::step(Instant now) {
+  const Companion::State before = companion_.state();
   receive(now);
   std::array<std::uint8_t, 512> bytes{};
   while (const std::size_t size = port_.read(bytes)) {
     companion_.on_bytes(std::span{bytes}.first(size), now);
   }
   companion_.step(now);
+  if (breaks_off(before, companion_.state())) bus_->discard();
   transmit(now);
 }
 

@@ -20,6 +20,7 @@ using std::chrono::milliseconds;
 struct Wire {
   std::vector<std::deque<can::Frame>*> ears;
   bool cut = false;
+  int discards = 0;
 };
 
 /// A bus in memory.
@@ -38,7 +39,7 @@ class WireBus final : public can::Bus {
   }
   void flush() override {}
   [[nodiscard]] std::size_t pending() const override { return 0; }
-  void discard() override {}
+  void discard() override { ++wire_->discards; }
   std::optional<can::Frame> receive() override {
     if (heard_.empty()) return std::nullopt;
     const can::Frame frame = heard_.front();
@@ -197,6 +198,49 @@ TEST(CanLink, StopsSendingWhenASecondCompanionHasItsId) {
   EXPECT_TRUE(bench.link.companion().give_back(bench.now + milliseconds{10}, bench.now));
   bench.run(6.0);
   EXPECT_EQ(bench.link.companion().state(), State::flying);
+}
+
+TEST(CanLink, ForgetsWhatMustNotArriveLate) {
+  Bench bench;
+  bench.run(6.0);
+  ASSERT_EQ(bench.link.companion().state(), State::flying);
+  EXPECT_EQ(bench.wire.discards, 0);
+  bench.fc->autopilot.mode = 6;
+  bench.run(0.3);
+  ASSERT_EQ(bench.link.companion().state(), State::piloted);
+  EXPECT_EQ(bench.wire.discards, 1);
+  ASSERT_TRUE(bench.link.companion().give_back(bench.now, bench.now));
+  bench.run(1.0);
+  ASSERT_EQ(bench.link.companion().state(), State::flying);
+  bench.wire.cut = true;
+  bench.run(1.0);
+  ASSERT_EQ(bench.link.companion().state(), State::lost);
+  EXPECT_EQ(bench.wire.discards, 2);
+}
+
+TEST(CanLink, IsNotGivenBackWhileASecondFlightControllerHasItsId) {
+  Bench bench;
+  bench.run(6.0);
+  WireBus bus{bench.wire};
+  dronecan::Node second{FlightControllerNode::node_params(), bench.now};
+  const auto run_both = [&](double seconds) {
+    for (const Instant end = bench.now + from_seconds(seconds); bench.now < end;) {
+      bench.run(0.1);
+      second.step(bench.now);
+      for (auto frames = second.front(); !frames.empty(); frames = second.front()) {
+        ASSERT_TRUE(bus.send(frames));
+        second.pop();
+      }
+    }
+  };
+  run_both(10.0);
+  ASSERT_EQ(bench.link.companion().state(), State::duplicated);
+  for (int i = 0; i < 5; ++i) {
+    run_both(1.0);
+    EXPECT_FALSE(bench.link.companion().give_back(bench.now, bench.now));
+  }
+  bench.run(3.0);  // it has been taken off the bus
+  EXPECT_TRUE(bench.link.companion().give_back(bench.now, bench.now));
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ constexpr Duration kStreamsForgotten = milliseconds{500};  ///< perhaps, after s
 constexpr Duration kClockSoon = milliseconds{200};
 constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
+constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
@@ -286,6 +287,8 @@ void Companion::Impl::keep_clock(Instant now) {
   ++clock_questions_;
   mavlink::Timesync question;
   question.ts1 = now.time_since_epoch().count();
+  if (clock_asked_.size() == kClockAskedMax) clock_asked_.erase(clock_asked_.begin());
+  clock_asked_.push_back(now);
   send(question);
 }
 

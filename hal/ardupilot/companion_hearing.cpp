@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "companion_impl.hpp"
 
 /// What the companion makes of what it hears.
@@ -9,7 +11,9 @@ using mavlink::Command;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr Duration kTripMax = seconds{2};          ///< of a question about the time
+constexpr Duration kTripMax = seconds{2};  ///< of a question about the time
+constexpr Duration kBootMax = std::chrono::hours{2400};
+constexpr std::size_t kTextMax = 400;  ///< of an autopilot's text, in however many chunks
 constexpr Duration kBootStep = milliseconds{500};  ///< the clock goes back so far: a reboot
 constexpr std::uint32_t kFirmwareMin = 0x0405;     ///< 4.5 is the first with the tunnel
 
@@ -28,9 +32,8 @@ std::string version_text(std::uint32_t version) {
 }  // namespace
 
 void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
-  const bool of_autopilot = packet.component == mavlink::kComponentAutopilot &&
-                            (system_ == 0 || packet.system == system_);
-  if (!of_autopilot) return;
+  if (packet.component != mavlink::kComponentAutopilot) return;
+  if (packet.system != params_.system_id) return refuse_system(packet, now);
   packet_heard_ = now;
   if (machine_.in(State::lost) || machine_.in(State::silent)) fire(Event::packets_back, now);
   if (const auto heartbeat = mavlink::decode<mavlink::Heartbeat>(packet)) {
@@ -46,7 +49,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
       motion_.on_position(*position, *at);
     }
   } else if (const auto hud = mavlink::decode<mavlink::VfrHud>(packet)) {
-    motion_.on_hud(*hud);
+    motion_.on_hud(*hud, now);
   } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
     has_health_ = true;
     sensors_enabled_ = status->onboard_control_sensors_enabled;
@@ -63,6 +66,18 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
   }
+}
+
+void Companion::Impl::refuse_system(const mavlink::Packet& packet, Instant now) {
+  if (packet.id != mavlink::Heartbeat::kDefinition.id || refused_systems_.test(packet.system))
+    return;
+  refused_systems_.set(packet.system);
+  say(true,
+      "an autopilot of system " + std::to_string(packet.system) +
+          " is on the line, and not heeded: the "
+          "configuration names system " +
+          std::to_string(params_.system_id),
+      now);
 }
 
 void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
@@ -191,10 +206,15 @@ void Companion::Impl::on_timesync(const mavlink::Timesync& timesync, Instant now
     answer.ts1 = timesync.ts1;
     return send(answer);
   }
-  const Instant sent{Duration{timesync.ts1}};
-  // Somebody else's question, or one from before a restart of this program.
-  if (sent > now || now - sent > kTripMax) return;
-  clock_.on_round_trip(sent, now, Duration{timesync.tc1});
+  std::erase_if(clock_asked_, [now](Instant asked) { return now - asked > kTripMax; });
+  // Anything else is the answer to somebody else's question, or a second one.
+  const auto asked =
+      std::find(clock_asked_.begin(), clock_asked_.end(), Instant{Duration{timesync.ts1}});
+  const Duration boot{timesync.tc1};
+  if (asked == clock_asked_.end() || boot < Duration{} || boot >= kBootMax) return;
+  const Instant sent = *asked;
+  clock_asked_.erase(asked);
+  clock_.on_round_trip(sent, now, boot);
 }
 
 void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Instant now) {
@@ -217,6 +237,7 @@ void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
   // A long one comes in chunks with one id.
   if (text.id != 0 && text.chunk_seq > 0 && text.id == text_id_) {
     last_text_ += mavlink::text_of(text.text);
+    last_text_.resize(std::min(last_text_.size(), kTextMax));
   } else {
     last_text_ = mavlink::text_of(text.text);
   }
@@ -239,6 +260,9 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
   }
   if (command == Command::do_change_altitude && outcome.answer != Answer::accepted) {
     height_sent_.reset();
+  }
+  if (command == Command::do_change_speed && outcome.answer == Answer::unanswered) {
+    speed_sent_.reset();
   }
   if (outcome.answer != Answer::refused) return;
   if (refusal_) report_refusal(now);
@@ -291,6 +315,7 @@ void Companion::Impl::reset_link() {
   boot_.reset();
   system_ = 0;
   clock_questions_ = 0;
+  clock_asked_.clear();
   asked_streams_ = false;
   streams_granted_ = false;
   has_health_ = false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <bitset>
 #include <utility>
+#include <vector>
 
 #include "boot_clock.hpp"
 #include "command_desk.hpp"
@@ -67,6 +69,7 @@ class Companion::Impl {
   void on_packet(const mavlink::Packet& packet, Instant now);
   void on_heartbeat(const mavlink::Heartbeat& heartbeat, const mavlink::Packet& packet,
                     Instant now);
+  void refuse_system(const mavlink::Packet& packet, Instant now);
   void on_mode(Instant now);
   void on_check(Instant now);
   /// While arming: neither what it was before nor what was asked for.
@@ -126,7 +129,8 @@ class Companion::Impl {
   // What was heard.
   Instant frame_heard_;
   Instant packet_heard_;
-  std::uint8_t system_ = 0;
+  std::uint8_t system_ = 0;  ///< once it has been found
+  std::bitset<256> refused_systems_;
   std::uint32_t mode_ = 0;
   bool armed_ = false;
   std::uint32_t firmware_ = 0;
@@ -149,6 +153,7 @@ class Companion::Impl {
   Instant heartbeat_at_;
   Instant clock_at_;
   int clock_questions_ = 0;
+  std::vector<Instant> clock_asked_;  ///< and not yet answered
   Instant asked_streams_at_;
   bool asked_streams_ = false;
   Instant retry_at_;

@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <set>
 #include <sstream>
 
@@ -76,6 +79,76 @@ TEST(Companion, SendsSpeedAndHeightWhenTheyChange) {
     EXPECT_GE(c.param2, 42.5F);
     EXPECT_LE(c.param2, 57.5F);
   }
+}
+
+TEST(Companion, SendsASpeedAgainThatWasLost) {
+  Line line;
+  line.autopilot.deaf_to[178] = 1;
+  line.until(State::flying, 10.0);
+  line.run(0.2);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_change_speed), 0);
+  line.run(0.5);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_change_speed), 1);
+  line.run(2.0);
+  EXPECT_EQ(line.autopilot.count(mavlink::Command::do_change_speed), 1);
+}
+
+TEST(Companion, FliesNoAircraftWhoseAttitudeComesNoMore) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.autopilot.stopped = {30};
+  line.run(0.7);
+  EXPECT_GE(line.now - line.companion.sample()->state.time, milliseconds{650});
+  EXPECT_EQ(line.targets_within(0.5), 0U);
+  line.autopilot.stopped = {74};  // airspeed
+  line.run(0.5);
+  EXPECT_GT(line.targets_within(0.3), 5U);
+  line.run(1.5);
+  EXPECT_EQ(line.targets_within(0.5), 0U);
+}
+
+TEST(Companion, TakesNoTimeThatItHasNotAskedFor) {
+  Line line;
+  line.delay = milliseconds{30};
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  mavlink::Encoder encoder{1, 1};
+  const std::int64_t now = line.now.time_since_epoch().count();
+  using Limits = std::numeric_limits<std::int64_t>;
+  for (const std::int64_t ts1 : {Limits::min(), Limits::max(), std::int64_t{0}, now - 1000}) {
+    for (const std::int64_t tc1 :
+         {Limits::min(), std::int64_t{-1}, std::int64_t{1}, Limits::max()}) {
+      mavlink::Timesync answer;
+      answer.ts1 = ts1;
+      answer.tc1 = tc1;
+      line.companion.on_bytes(encoder.encode(answer), line.now);
+    }
+  }
+  line.run(0.2);
+  const Duration age = line.now - line.companion.sample()->state.time;
+  EXPECT_GE(age, milliseconds{25});
+  EXPECT_LE(age, milliseconds{85});
+}
+
+TEST(Companion, HeedsNoAutopilotOfAnotherSystem) {
+  Line line;
+  mavlink::Encoder other{7, 1};
+  mavlink::Heartbeat heartbeat;
+  heartbeat.type = 1;
+  heartbeat.autopilot = 3;
+  heartbeat.custom_mode = 11;
+  for (int i = 0; i < 100; ++i) {
+    line.companion.on_bytes(other.encode(heartbeat), line.now);
+    line.run(0.05);
+  }
+  line.until(State::flying, 5.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  line.companion.on_bytes(other.encode(heartbeat), line.now);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  for (const auto& command : line.autopilot.commands) EXPECT_EQ(command.target_system, 1);
+  ASSERT_EQ(line.warnings.size(), 1U);
+  EXPECT_THAT(line.warnings.front(), HasSubstr("system 7"));
 }
 
 TEST(Companion, ReportsTheStateInTheMissionsFrameAndTime) {
@@ -427,6 +500,40 @@ TEST(Companion, SurvivesAnyBytesAndAnyOrderOfEvents) {
       }
       line.run(0.01 * static_cast<double>(1 + random.index(30)));
       EXPECT_EQ(line.companion.protocol_errors(), 0U);
+    }
+  }
+}
+
+/// Whatever an autopilot says, with a checksum that holds.
+TEST(Companion, SurvivesAnyMessages) {
+  Random random{12};
+  constexpr std::array<std::uint32_t, 10> kIds{0, 1, 30, 33, 74, 77, 111, 148, 245, 253};
+  mavlink::Encoder encoder{1, 1};
+  for (int round = 0; round < 12; ++round) {
+    const auto take_over = static_cast<TakeOver>(round % 3);
+    Line line{params(take_over, round % 2 == 0 ? Airframe::plane : Airframe::copter)};
+    if (round % 2 != 0) line.autopilot.type = 2;
+    line.run(5.0);
+    for (int i = 0; i < 600; ++i) {
+      const auto* info = mavlink::find_message(kIds.at(random.index(kIds.size())));
+      ASSERT_NE(info, nullptr);
+      mavlink::Payload payload{};
+      const std::size_t kind = random.index(3);
+      for (std::size_t b = 0; b < info->length; ++b) {
+        const std::size_t noise = kind == 0 ? random.index(256) : random.index(2) * 255;
+        payload.at(b) = static_cast<std::uint8_t>(kind == 2 && b > 3 ? 0 : noise);
+      }
+      line.companion.on_bytes(encoder.encode(*info, payload), line.now);
+      line.run(0.005 * static_cast<double>(random.index(20)));
+      const auto sample = line.companion.sample();
+      if (!sample) continue;
+      EXPECT_LE(sample->state.time, line.now);
+      const VehicleState state = carried_to(*sample, line.now);
+      EXPECT_TRUE(std::isfinite(state.x_m) && std::isfinite(state.heading_rad));
+    }
+    EXPECT_EQ(line.companion.protocol_errors(), 0U);
+    if (take_over != TakeOver::from_ground) {
+      EXPECT_EQ(line.autopilot.count(mavlink::Command::component_arm_disarm), 0);
     }
   }
 }

@@ -13,19 +13,24 @@ namespace {
 constexpr double kCourseKnownAbove_mps = 1.0;
 /// Two positions further apart in time are not joined to a distance flown.
 constexpr Duration kGapMax = std::chrono::seconds{2};
+/// Of angles in rad and rates in rad/s; what is beyond is no attitude.
+constexpr float kAttitudeMax = 100.0F;
+constexpr std::int32_t kLatitudeMax_e7 = 900'000'000;
+constexpr std::int32_t kLongitudeMax_e7 = 1'800'000'000;
+constexpr float kAirspeedMax_mps = 1000.0F;
+/// Airspeed changes slowly; one that is older makes the state as old as itself.
+constexpr Duration kAirspeedAgeMax = std::chrono::seconds{1};
 
-}  // namespace
-
-VehicleState carried_to(const MotionSample& sample, Instant now) {
+/// Along the arc, forwards or backwards.
+VehicleState moved(const MotionSample& sample, Duration by) {
   VehicleState state = sample.state;
-  const Duration ahead = std::clamp(now - state.time, Duration{}, kCarryMax);
-  const double seconds = to_seconds(ahead);
+  const double seconds = to_seconds(by);
   const double turned = sample.turn_rate_radps * seconds;
   const double metres = state.groundspeed_mps * seconds;
-  const Vec2 moved = metres * unit_vector(state.course_rad + turned / 2.0);
-  state.time += ahead;
-  state.x_m += moved.x();
-  state.y_m += moved.y();
+  const Vec2 way = metres * unit_vector(state.course_rad + turned / 2.0);
+  state.time += by;
+  state.x_m += way.x();
+  state.y_m += way.y();
   state.z_m += sample.climb_mps * seconds;
   state.heading_rad = wrap_pi(state.heading_rad + turned);
   state.course_rad = wrap_pi(state.course_rad + turned);
@@ -33,8 +38,17 @@ VehicleState carried_to(const MotionSample& sample, Instant now) {
   return state;
 }
 
+}  // namespace
+
+VehicleState carried_to(const MotionSample& sample, Instant now) {
+  return moved(sample, std::clamp(now - sample.state.time, Duration{}, kCarryMax));
+}
+
 void Motion::on_attitude(const mavlink::Attitude& attitude, Instant measured) {
-  if (!std::isfinite(attitude.yaw) || !std::isfinite(attitude.roll)) return;
+  for (const float value :
+       {attitude.yaw, attitude.roll, attitude.pitch, attitude.pitchspeed, attitude.yawspeed}) {
+    if (!(std::abs(value) <= kAttitudeMax)) return;  // NaN neither
+  }
   has_attitude_ = true;
   attitude_at_ = measured;
   heading_rad_ = wrap_pi(kPi / 2.0 - double{attitude.yaw});
@@ -47,6 +61,10 @@ void Motion::on_attitude(const mavlink::Attitude& attitude, Instant measured) {
 }
 
 void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant measured) {
+  if (position.lat < -kLatitudeMax_e7 || position.lat > kLatitudeMax_e7 ||
+      position.lon < -kLongitudeMax_e7 || position.lon > kLongitudeMax_e7) {
+    return;
+  }
   const auto enu = origin_.to_enu({position.lat * 1e-7, position.lon * 1e-7,
                                    static_cast<double>(position.alt) * 1e-3 + geoid_height_m_});
   const Vec2 over_ground{position.vy * 0.01, position.vx * 0.01};
@@ -69,10 +87,11 @@ void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant mea
   relative_height_m_ = position.relative_alt * 1e-3;
 }
 
-void Motion::on_hud(const mavlink::VfrHud& hud) {
-  if (!std::isfinite(hud.airspeed)) return;
+void Motion::on_hud(const mavlink::VfrHud& hud, Instant now) {
+  if (!(std::abs(hud.airspeed) <= kAirspeedMax_mps)) return;
   has_hud_ = true;
   airspeed_mps_ = hud.airspeed;
+  hud_at_ = now;
 }
 
 void Motion::forget() {
@@ -94,6 +113,12 @@ std::optional<MotionSample> Motion::sample() const {
   const Duration apart = std::clamp(state_.time - attitude_at_, -kCarryMax, kCarryMax);
   sample.state.heading_rad = wrap_pi(heading_rad_ + turn_rate_radps_ * to_seconds(apart));
   sample.state.airspeed_mps = airspeed_mps_;
+  // An attitude that comes no more makes the state old, though positions go on coming.
+  if (apart > Duration{}) sample.state = moved(sample, -apart);
+  sample.state.time = std::min(sample.state.time, attitude_at_);
+  if (state_.time - hud_at_ > kAirspeedAgeMax) {
+    sample.state.time = std::min(sample.state.time, hud_at_);
+  }
   return sample;
 }
 

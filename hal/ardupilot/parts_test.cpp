@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
+
 #include "boot_clock.hpp"
 #include "command_desk.hpp"
 #include "flight_modes.hpp"
+#include "skein/ardupilot/motion.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "steering.hpp"
@@ -54,6 +58,21 @@ TEST(BootClock, NeverSaysThatAMessageCameBeforeItWasMeasured) {
   BootClock clock;
   clock.on_round_trip(at_seconds(1.0), at_seconds(1.1), seconds{5});
   EXPECT_EQ(clock.mission_time(seconds{6}, at_seconds(2.0)), at_seconds(2.0));
+}
+
+TEST(BootClock, BeginsAnewWhereTwoRoundTripsContradict) {
+  BootClock clock;
+  const auto answer = [&clock](double at, Duration boot) {
+    clock.on_round_trip(at_seconds(at), at_seconds(at + 0.01), boot + milliseconds{5});
+  };
+  answer(1.0, std::chrono::hours{700});  // whoever said that
+  EXPECT_TRUE(clock.synchronised());
+  answer(2.0, seconds{6});
+  EXPECT_FALSE(clock.synchronised());
+  answer(3.0, seconds{7});
+  EXPECT_EQ(clock.mission_time(seconds{7}, at_seconds(10.0)), at_seconds(3.0));
+  answer(4.0, seconds{8});
+  EXPECT_TRUE(clock.synchronised());
 }
 
 TEST(CommandDesk, HasOneOfAKindUnderWayAndRepeatsIt) {
@@ -135,6 +154,63 @@ TEST(CarriedTo, GoesOnAlongTheArcAndNoFurtherThanItMay) {
   EXPECT_NEAR(state.distance_flown_m, 1010.0, 1e-6);
   EXPECT_EQ(carried_to(sample, at_seconds(20.0)).time, at_seconds(10.25));
   EXPECT_EQ(carried_to(sample, at_seconds(9.0)).time, at_seconds(10.0));
+}
+
+struct Heard {
+  Motion motion{MissionOrigin::make({31.0, 105.0, 0.0}).value(), 0.0, false};
+  void position(double at, double east_deg = 0.0) {
+    mavlink::GlobalPositionInt p;
+    p.lat = 310'000'000;
+    p.lon = 1'050'000'000 + static_cast<std::int32_t>(std::lround(1e7 * east_deg));
+    p.vy = 5000;  // east, 50 m/s
+    motion.on_position(p, at_seconds(at));
+  }
+  void attitude(double at) {
+    mavlink::Attitude a;
+    a.yaw = static_cast<float>(kPi / 2.0);
+    a.yawspeed = -0.3F;
+    motion.on_attitude(a, at_seconds(at));
+  }
+  void airspeed(double at) {
+    mavlink::VfrHud hud;
+    hud.airspeed = 50.0F;
+    motion.on_hud(hud, at_seconds(at));
+  }
+};
+
+TEST(Motion, IsAsOldAsTheOldestOfItsParts) {
+  Heard heard;
+  heard.airspeed(10.0);
+  heard.attitude(9.98);
+  heard.position(10.0);
+  auto sample = heard.motion.sample();
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->state.time, at_seconds(9.98));
+  // Where it was then; carried on, it is where it was measured.
+  EXPECT_NEAR(sample->state.x_m, -1.0, 0.01);
+  const VehicleState at_position = carried_to(*sample, at_seconds(10.0));
+  EXPECT_NEAR(at_position.x_m, 0.0, 1e-3);
+  EXPECT_NEAR(at_position.y_m, 0.0, 1e-3);
+  EXPECT_NEAR(at_position.heading_rad, 0.3 * 0.02, 1e-6);
+  // An attitude that comes no more.
+  heard.position(11.0);
+  EXPECT_EQ(heard.motion.sample()->state.time, at_seconds(9.98));
+  heard.attitude(11.0);
+  EXPECT_EQ(heard.motion.sample()->state.time, at_seconds(11.0));
+  // An airspeed that comes no more.
+  heard.attitude(11.5);
+  heard.position(11.5);
+  EXPECT_EQ(heard.motion.sample()->state.time, at_seconds(10.0));
+}
+
+TEST(Motion, TakesNothingThatIsNoNumber) {
+  Heard heard;
+  heard.airspeed(10.0);
+  heard.position(10.0);
+  mavlink::Attitude a;
+  a.yawspeed = std::numeric_limits<float>::quiet_NaN();
+  heard.motion.on_attitude(a, at_seconds(10.0));
+  EXPECT_FALSE(heard.motion.sample());
 }
 
 TEST(FlightModes, AreThoseOfTheAirframe) {

@@ -21,6 +21,7 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   vehicle.vehicle.height_m = 309.0;
   vehicle.flight_controller.ardupilot.can = "mcast:7";
   vehicle.flight_controller.ardupilot.node_id = 12;
+  vehicle.flight_controller.ardupilot.system_id = 9;
   vehicle.flight_controller.wind = {5.0, heading_from_compass_deg(240.0), 0.5};
   vehicle.time.epoch_unix_ns = 1'795'000'000'123'456'789;
   const auto command = flight_controller_command("/opt/bin", vehicle);
@@ -33,6 +34,7 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   EXPECT_EQ(after("--origin"), (std::vector<std::string>{"31.5", "105", "480"}));
   EXPECT_EQ(after("--bus").front(), "mcast:7");
   EXPECT_EQ(after("--node").front(), "12");
+  EXPECT_EQ(after("--system").front(), "9");
   EXPECT_EQ(after("--heading").front(), "50");
   EXPECT_EQ(after("--hold-until").front(), "1795000000123456789");
   EXPECT_EQ(after("--wind-from").front(), "240");

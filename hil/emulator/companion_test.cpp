@@ -180,6 +180,18 @@ TEST(CompanionAndEmulator, PilotSilenceAndRestartAreNoticed) {
   EXPECT_NE(bench.companion().state(), State::silent) << bench.log();
 }
 
+TEST(CompanionAndEmulator, APlaneThatDoesNotKnowWhereItIsIsNotTaken) {
+  Bench bench{plane_in_wind()};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};
+  bench.interfere("position lost");
+  ASSERT_TRUE(bench.run_until(State::standing_by, 10.0)) << bench.log();
+  bench.run(2.0);
+  EXPECT_EQ(bench.companion().state(), State::standing_by) << bench.log();
+  EXPECT_FALSE(bench.companion().give_back(bench.now(), bench.now()));
+  bench.interfere("position good");
+  EXPECT_TRUE(bench.run_until(State::flying, 3.0)) << bench.log();
+}
+
 TEST(CompanionAndEmulator, ACopterIsFlown) {
   EmulatorConfig config = plane_in_wind();
   config.airframe = Airframe::copter;

@@ -114,6 +114,7 @@ struct EmulatedFlightController::State {
     }
     if (!last) return;  // a program that was held up does not send the past
     link->mavlink->set_refusal(refusal());
+    link->mavlink->set_position(health.position);
     link->mavlink->step(t);
     if (link->mavlink->wants_restart(t)) restart(t);
   }

@@ -269,6 +269,7 @@ Situation MavlinkEndpoint::situation(Instant now) const {
           .type = vehicle_.type(),
           .since_boot = now - booted_,
           .unix_us = config_.unix_us + now.time_since_epoch() / std::chrono::microseconds{1},
+          .position = position_,
           .may_arm = !refusal_,
           .ekf_origin_m = {config_.start.y_m, config_.start.x_m, 0.0}};
 }

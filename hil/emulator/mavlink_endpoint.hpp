@@ -27,6 +27,8 @@ class MavlinkEndpoint {
 
   /// Why it may not be armed; checked, told and shown in SYS_STATUS.
   void set_refusal(std::optional<std::string> reason) { refusal_ = std::move(reason); }
+  /// Whether it knows where it is, as SYS_STATUS tells.
+  void set_position(bool known) { position_ = known; }
   /// Arms, or says why not.
   mavlink::CommandResult arm();
   /// Was asked to restart, and has had the time to say that it will.
@@ -67,6 +69,7 @@ class MavlinkEndpoint {
   Instant timesync_at_;
   Instant refusal_told_at_;
   std::optional<std::string> refusal_;
+  bool position_ = true;
   std::optional<Instant> restart_at_;
 };
 

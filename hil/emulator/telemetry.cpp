@@ -62,6 +62,11 @@ SysStatus sys_status(const Situation& s) {
   m.onboard_control_sensors_present = kSensors | sensor_prearm_check;
   m.onboard_control_sensors_enabled = kSensors | sensor_prearm_check;
   m.onboard_control_sensors_health = kSensors;
+  if (!s.position) {
+    // As ArduPilot does without a GNSS: it counts no more among what is enabled.
+    m.onboard_control_sensors_enabled &= ~std::uint32_t{sensor_gps};
+    m.onboard_control_sensors_health &= ~std::uint32_t{sensor_gps | sensor_ahrs};
+  }
   if (s.may_arm || s.flight.armed) m.onboard_control_sensors_health |= sensor_prearm_check;
   m.load = 166;
   m.voltage_battery = kVoltage_mv;

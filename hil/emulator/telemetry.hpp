@@ -18,6 +18,7 @@ struct Situation {
   mavlink::VehicleType type = mavlink::VehicleType::fixed_wing;
   Duration since_boot{};
   std::int64_t unix_us = 0;
+  bool position = true;              ///< it knows where it is
   bool may_arm = false;              ///< the checks before arming pass
   Vec3 ekf_origin_m = Vec3::Zero();  ///< of the local position, NED of the mission's origin
 };

@@ -36,6 +36,7 @@ struct ArdupilotConfig {
   std::string can;  ///< "can0", "vcan0", "mcast:0"; in a scenario empty: the bench chooses
   std::uint8_t node_id = 10;
   std::uint8_t companion_node_id = 42;
+  std::uint8_t system_id = 1;
   std::int8_t serial_id = 0;
   AirframeKind airframe = AirframeKind::plane;
   TakeOverKind take_over = TakeOverKind::when_guided;

@@ -35,6 +35,7 @@ struct CompanionParams {
   VehicleSpec vehicle;
   Airframe airframe = Airframe::plane;
   TakeOver take_over = TakeOver::when_guided;
+  std::uint8_t system_id = 1;      ///< of the autopilot: SYSID_THISMAV; others are not heeded
   double takeoff_height_m = 40.0;  ///< above the ground, where the companion takes it
   /// The geoid above the ellipsoid at the mission's origin: autopilots count heights from it.
   double geoid_height_m = 0.0;

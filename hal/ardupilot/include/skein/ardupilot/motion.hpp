@@ -35,11 +35,13 @@ class Motion {
 
   void on_attitude(const mavlink::Attitude& attitude, Instant measured);
   void on_position(const mavlink::GlobalPositionInt& position, Instant measured);
-  void on_hud(const mavlink::VfrHud& hud);
+  /// It tells no time, so that of its coming counts.
+  void on_hud(const mavlink::VfrHud& hud, Instant now);
   /// The clock of the autopilot was set anew: nothing that was heard counts. The distance stays.
   void forget();
 
-  /// Nothing until all three have been heard.
+  /// Nothing until all three have been heard. As old as the oldest of what it is made of: position,
+  /// attitude (but of an aircraft that hovers), and the airspeed once that is older than a second.
   [[nodiscard]] std::optional<MotionSample> sample() const;
   /// Above the place that it was first heard on.
   [[nodiscard]] double relative_height_m() const { return relative_height_m_; }
@@ -55,6 +57,7 @@ class Motion {
   double turn_rate_radps_ = 0.0;
   Instant attitude_at_;
   double airspeed_mps_ = 0.0;
+  Instant hud_at_;
   double relative_height_m_ = 0.0;
   VehicleState state_;  ///< its heading and airspeed stand above
   double climb_mps_ = 0.0;
