@@ -129,11 +129,11 @@ class Companion::Impl {
   // What was heard.
   Instant frame_heard_;
   Instant packet_heard_;
-  std::uint8_t system_ = 0;  ///< once it has been found
   std::bitset<256> refused_systems_;
   std::uint32_t mode_ = 0;
-  bool armed_ = false;
   std::uint32_t firmware_ = 0;
+  std::uint8_t system_ = 0;  ///< once it has been found
+  bool armed_ = false;
   bool firmware_settled_ = false;
   bool firmware_refused_ = false;
   bool has_health_ = false;
@@ -147,27 +147,27 @@ class Companion::Impl {
   std::uint16_t text_id_ = 0;
 
   // What was asked and done.
-  State before_loss_ = State::standing_by;
-  Instant lost_at_{};
-  std::uint32_t mode_before_loss_ = 0;  ///< when that state was entered
-  Instant heartbeat_at_;
-  Instant clock_at_;
-  int clock_questions_ = 0;
-  std::vector<Instant> clock_asked_;  ///< and not yet answered
-  Instant asked_streams_at_;
   bool asked_streams_ = false;
-  Instant retry_at_;
-  int retries_ = 0;
-  std::uint32_t mode_at_entry_ = 0;
   bool mode_confirmed_ = false;
   bool arm_asked_ = false;        ///< in this state
   bool taken_by_others_ = false;  ///< until the operator gives it back: no reboot changes that
+  bool launch_spent_ = false;     ///< seen armed or in the air, or broken off: never twice unasked
+  bool own_flight_ = false;       ///< the companion has launched it, and it was not disarmed since
+  std::uint8_t duplicate_node_ = 0;
+  State before_loss_ = State::standing_by;
+  std::uint32_t mode_before_loss_ = 0;  ///< when that state was entered
+  int clock_questions_ = 0;
+  int retries_ = 0;
+  std::uint32_t mode_at_entry_ = 0;
+  Instant lost_at_{};
+  Instant heartbeat_at_;
+  Instant clock_at_;
+  std::vector<Instant> clock_asked_;  ///< and not yet answered
+  Instant asked_streams_at_;
+  Instant retry_at_;
   Instant taken_at_;
-  bool launch_spent_ = false;  ///< seen armed or in the air, or broken off: never twice unasked
-  bool own_flight_ = false;    ///< the companion has launched it, and it was not disarmed since
   Instant climb_by_;
   std::optional<Instant> duplicate_at_;
-  std::uint8_t duplicate_node_ = 0;
   std::optional<Setpoint> setpoint_;
   Instant setpoint_at_;
   Instant target_at_;
