@@ -50,7 +50,7 @@ std::string content_of(const Message& message) {
   std::string text = Message::kDefinition.name;
   Message::kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
     text += std::string{" "} + f.name + "=";
-    if constexpr (FieldShape<V>::count == 0) {
+    if constexpr (FieldShape<V>::kCount == 0) {
       text += text_of_element(message.*f.member);
     } else {
       constexpr bool kText = std::is_same_v<typename FieldShape<V>::Element, char>;
@@ -89,7 +89,7 @@ Message random_message(Random& random) {
       message.*f.member = V{};
       return;
     }
-    if constexpr (FieldShape<V>::count == 0) {
+    if constexpr (FieldShape<V>::kCount == 0) {
       message.*f.member = random_element<V>(random);
     } else {
       for (auto& element : message.*f.member) {
