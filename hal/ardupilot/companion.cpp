@@ -330,6 +330,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
   mode_at_entry_ = mode_;
   mode_confirmed_ = false;
   arm_asked_ = false;
+  clock_heard_ = false;
   if (from == State::arming) launch_spent_ = true;
   switch (machine_.state()) {
     case State::searching:

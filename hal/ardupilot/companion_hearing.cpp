@@ -163,6 +163,9 @@ bool Companion::Impl::mode_changed(std::uint32_t before) const {
 }
 
 void Companion::Impl::on_check(Instant now) {
+  // A HEARTBEAT has no time in it: that of a rebooted autopilot, in its first mode, would pass for
+  // the pilot's word. Which boot it is of, the clock says, or the node's uptime.
+  if (!clock_heard_) return;
   switch (before_loss_) {
     case State::flying:
     case State::taking_over: {
@@ -292,6 +295,7 @@ std::optional<Instant> Companion::Impl::measured_at(std::uint32_t time_boot_ms, 
   const Duration boot = milliseconds{time_boot_ms};
   if (boot_ && boot + kBootStep < *boot_) on_reboot(now);
   boot_ = std::max(boot_.value_or(boot), boot);
+  clock_heard_ = true;
   clock_.on_arrival(now, boot);
   return clock_.mission_time(boot, now);
 }

@@ -142,6 +142,7 @@ class Companion::Impl {
   std::uint32_t sensors_health_ = 0;
   mavlink::LandedState landed_ = mavlink::LandedState::undefined;
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
+  bool clock_heard_ = false;      ///< and not younger than that, since this state was entered
   std::string last_text_;
   std::optional<Instant> last_text_at_;
   std::uint16_t text_id_ = 0;

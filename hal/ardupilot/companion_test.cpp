@@ -348,6 +348,22 @@ TEST(Companion, ARebootedAutopilotIsPreparedAnew) {
   EXPECT_LE(line.now - line.companion.sample()->state.time, milliseconds{70});
 }
 
+TEST(Companion, TheFirstModeOfARebootedAutopilotIsNotThePilots) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  line.cut = true;
+  line.run(0.3);
+  line.cut = false;
+  line.autopilot.reboot(line.now);  // it says HEARTBEAT alone until streams are asked for
+  line.run(0.6);
+  EXPECT_EQ(line.targets_within(0.5), 0U);
+  line.companion.on_reboot(line.now);  // its node tells its uptime last of all
+  line.until(State::flying, 8.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  EXPECT_THAT(line.warnings, Not(Contains(HasSubstr("by the pilot"))));
+}
+
 TEST(Companion, ARebootIsSeenInTheClockToo) {
   Line line;
   line.until(State::flying, 10.0);
