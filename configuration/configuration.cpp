@@ -8,6 +8,7 @@
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/configuration/shape_file.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "writer.hpp"
 
@@ -89,5 +90,11 @@ Result<Experiment> parse_experiment(std::string_view yaml, const std::string& na
   return parse<Experiment>(yaml, name);
 }
 std::string to_yaml(const Experiment& experiment) { return written(experiment); }
+
+Result<ShapeFile> load_shape(const std::filesystem::path& file) { return load<ShapeFile>(file); }
+Result<ShapeFile> parse_shape(std::string_view yaml, const std::string& name) {
+  return parse<ShapeFile>(yaml, name);
+}
+std::string to_yaml(const ShapeFile& shape) { return written(shape); }
 
 }  // namespace skein::configuration

@@ -14,6 +14,7 @@
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/configuration/shape_file.hpp"
 
 namespace skein::configuration {
 
@@ -80,5 +81,6 @@ void fields(FieldVisitor& v, GroundConfig& config);
 void fields(FieldVisitor& v, Scenario& scenario);
 void fields(FieldVisitor& v, ScenarioVehicle& vehicle);
 void fields(FieldVisitor& v, Experiment& experiment);
+void fields(FieldVisitor& v, ShapeFile& shape);
 
 }  // namespace skein::configuration

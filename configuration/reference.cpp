@@ -156,7 +156,10 @@ std::string configuration_reference() {
   return "<!-- Printed from configuration/*_fields.cpp by configuration_test; do not edit. -->\n"
          "# Configuration of the processes\n\n" +
          std::string{kRules} + "\n# `skein-onboard --config FILE`\n" + page_of<VehicleConfig>() +
-         "\n# `skein-ground --config FILE`\n" + page_of<GroundConfig>();
+         "\n# `skein-ground --config FILE`\n" + page_of<GroundConfig>() +
+         "\n# Shapes: `shapes/*.yaml`\n\nWhat formations make of them stands in "
+         "[formation.md](formation.md).\n" +
+         page_of<ShapeFile>();
 }
 
 }  // namespace skein::configuration

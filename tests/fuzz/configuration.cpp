@@ -9,6 +9,7 @@
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/configuration/shape_file.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 
 namespace skein::fuzz {
@@ -39,6 +40,8 @@ void run(std::string_view text) {
       return read_and_write(&configuration::parse_ground_config, text);
     case 'e':
       return read_and_write(&configuration::parse_experiment, text);
+    case 'f':
+      return read_and_write(&configuration::parse_shape, text);
     default: {
       read_and_write(&configuration::parse_scenario, text);
       const auto scenario = configuration::parse_scenario(text, "fuzzed");
