@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/formation/change_planner.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::formation {
+namespace {
+
+/// From its least disc on: a larger one may be shorter in time, since tight turns are slow.
+constexpr double kDiscGrowth = 1.03;
+constexpr int kDiscsMax = 60;
+
+using Pair = std::pair<std::size_t, std::size_t>;
+
+/// What the pairs of a change are to each other.
+struct Nearness {
+  double least_m = std::numeric_limits<double>::infinity();
+  Pair nearest{0, 0};
+  std::vector<Pair> conflicts;  ///< nearer than asked
+};
+
+std::string metres(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2f m", value);
+  return text.data();
+}
+
+std::string name(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
+
+/// The transfers, and after them the keep-outs as vehicles that wait.
+class Planner {
+ public:
+  explicit Planner(const ChangeRequest& request)
+      : request_{request},
+        count_{request.transfers.size()},
+        apart_m_{request.separation.horizontal_m + request.reserve_m},
+        height_factor_{request.separation.height_factor()} {}
+
+  Result<PlannedChange> plan();
+
+ private:
+  [[nodiscard]] Change straight() const;
+  [[nodiscard]] Change layers(const std::vector<int>& layer) const;
+  [[nodiscard]] std::optional<PlannedChange> around(const Nearness& straight) const;
+  [[nodiscard]] std::vector<int> layers_for(const Nearness& straight) const;
+  /// Of all pairs; where it need not be complete it ends with the first conflict.
+  [[nodiscard]] Nearness nearness(const Change& change, bool complete) const;
+  [[nodiscard]] double keep_out_distance(const ChangeMotion& motion, std::size_t mover,
+                                         const KeepOut& keep_out) const;
+  [[nodiscard]] PlannedChange planned(Change change, Way way, double least_m) const;
+  [[nodiscard]] Error too_near(const Nearness& nearness) const;
+  [[nodiscard]] Vec3 stretched(Vec3 v) const {
+    v.z() *= height_factor_;
+    return v;
+  }
+
+  const ChangeRequest& request_;
+  std::size_t count_;
+  double apart_m_;
+  double height_factor_;
+};
+
+Change Planner::straight() const {
+  Change change;
+  change.limits = request_.limits;
+  change.separation = request_.separation;
+  for (const Transfer& transfer : request_.transfers) {
+    change.movers.push_back({transfer.vehicle, {transfer.from, transfer.to}, false});
+  }
+  return change;
+}
+
+double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
+                                  const KeepOut& keep_out) const {
+  const Vec3 from = stretched(keep_out.from);
+  const Vec3 way = stretched(keep_out.to) - from;
+  const double squared = way.squaredNorm();
+  const double pace = motion.speed_max_mps(mover) * std::max(1.0, height_factor_);
+  const double end_s = to_seconds(motion.duration());
+  double least = std::numeric_limits<double>::infinity();
+  for (double t = 0.0;;) {
+    const Vec3 at = stretched(motion.position(mover, from_seconds(t)));
+    const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
+    const double d = (from + share * way - at).norm();
+    least = std::min(least, d);
+    if (t >= end_s || least < apart_m_) return least;
+    t = std::min(end_s, t + std::max(0.01, (d - apart_m_) / std::max(pace, 1e-3)));
+  }
+}
+
+Nearness Planner::nearness(const Change& change, bool complete) const {
+  const ChangeMotion motion{change};
+  Nearness result;
+  const auto see = [&](double distance, Pair pair) {
+    if (distance < result.least_m) {
+      result.least_m = distance;
+      result.nearest = pair;
+    }
+    if (distance < apart_m_) result.conflicts.push_back(pair);
+  };
+  for (std::size_t a = 0; a < count_; ++a) {
+    for (std::size_t b = a + 1; b < count_; ++b) {
+      see(motion.least_distance_m(a, b, height_factor_, complete ? 0.0 : apart_m_), {a, b});
+      if (!complete && !result.conflicts.empty()) return result;
+    }
+    for (std::size_t k = 0; k < request_.keep_outs.size(); ++k) {
+      see(keep_out_distance(motion, a, request_.keep_outs[k]), {a, count_ + k});
+      if (!complete && !result.conflicts.empty()) return result;
+    }
+  }
+  return result;
+}
+
+/// Everybody who is in a conflict goes around one disc in the middle of the conflicts.
+std::optional<PlannedChange> Planner::around(const Nearness& straight_lines) const {
+  Vec2 sum{0.0, 0.0};
+  std::vector<bool> around(count_, false);
+  for (const auto& [a, b] : straight_lines.conflicts) {
+    if (b >= count_) return std::nullopt;  // nobody can make a keep-out turn with the others
+    // Where the two are nearest, both are the same share of their ways on.
+    const Transfer& first = request_.transfers[a];
+    const Transfer& second = request_.transfers[b];
+    const Vec3 begin = stretched(first.from - second.from);
+    const Vec3 way = stretched(first.to - second.to) - begin;
+    const double squared = way.squaredNorm();
+    const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
+    const Vec3 middle = 0.5 * (first.from + share * (first.to - first.from) + second.from +
+                               share * (second.to - second.from));
+    sum += Vec2{middle.x(), middle.y()};
+    around[a] = around[b] = true;
+  }
+  const auto turning = static_cast<double>(std::count(around.begin(), around.end(), true));
+  Change change = straight();
+  for (std::size_t i = 0; i < count_; ++i) change.movers[i].around = around[i];
+  change.roundabout = Roundabout{sum / static_cast<double>(straight_lines.conflicts.size()),
+                                 apart_m_ / (2.0 * std::sin(kPi / std::max(2.0, turning)))};
+  std::optional<PlannedChange> best;
+  for (int disc = 0; disc < kDiscsMax; ++disc, change.roundabout->radius_m *= kDiscGrowth) {
+    if (!valid(change)) break;  // a start or a place lies inside the rim
+    if (best && ChangeMotion{change}.duration() >= best->duration) break;
+    const Nearness found = nearness(change, false);
+    if (found.conflicts.empty()) {
+      best = planned(change, Way::roundabout, found.least_m);
+      continue;
+    }
+    // Who was out of their way may be in it now.
+    for (const std::size_t i : {found.conflicts[0].first, found.conflicts[0].second}) {
+      if (i < count_) change.movers[i].around = true;
+    }
+  }
+  return best;
+}
+
+/// The least number that no one in conflict has; greedy, in the order of the vehicles. 0 stays
+/// below.
+std::vector<int> Planner::layers_for(const Nearness& straight_lines) const {
+  std::vector<std::vector<std::size_t>> others(count_);
+  std::vector<int> layer(count_, 0);
+  for (const auto& [a, b] : straight_lines.conflicts) {
+    if (b < count_) {
+      others[std::max(a, b)].push_back(std::min(a, b));
+    } else {
+      layer[a] = 1;  // at least, to pass over it
+    }
+  }
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto taken = [&](int number) {
+      return std::any_of(others[i].begin(), others[i].end(),
+                         [&](std::size_t other) { return layer[other] == number; });
+    };
+    while (taken(layer[i])) ++layer[i];
+  }
+  return layer;
+}
+
+Change Planner::layers(const std::vector<int>& layer) const {
+  double highest = -std::numeric_limits<double>::infinity();
+  for (const Transfer& transfer : request_.transfers) {
+    highest = std::max({highest, transfer.from.z(), transfer.to.z()});
+  }
+  for (const KeepOut& keep_out : request_.keep_outs) {
+    highest = std::max({highest, keep_out.from.z(), keep_out.to.z()});
+  }
+  const double step = apart_m_ / height_factor_;
+  Change change = straight();
+  change.stages = 3;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const Transfer& transfer = request_.transfers[i];
+    Vec3 up = transfer.from;
+    Vec3 down = transfer.to;
+    if (layer[i] > 0) up.z() = down.z() = highest + layer[i] * step;
+    change.movers[i].points = {transfer.from, up, down, transfer.to};
+  }
+  return change;
+}
+
+PlannedChange Planner::planned(Change change, Way way, double least_m) const {
+  PlannedChange result;
+  result.duration = ChangeMotion{change}.duration();
+  result.change = std::move(change);
+  result.way = way;
+  result.least_separation_m = least_m;
+  return result;
+}
+
+Error Planner::too_near(const Nearness& nearness) const {
+  const auto [a, b] = nearness.nearest;
+  const std::string other =
+      b < count_ ? name(request_.transfers[b].vehicle)
+                 : name(request_.keep_outs[b - count_].vehicle) + ", which is silent,";
+  return Error{name(request_.transfers[a].vehicle) + " and " + other + " would come within " +
+               metres(nearness.least_m) + " of each other, and " + metres(apart_m_) +
+               " are needed; choose a larger spacing or another place"};
+}
+
+Result<PlannedChange> Planner::plan() {
+  if (count_ == 0) return Error{"there is no vehicle to move"};
+  Change change = straight();
+  if (!valid(change)) {
+    return Error{"a vehicle is named twice, or a position or a limit is no number above 0"};
+  }
+  const Nearness direct = nearness(change, true);
+  if (direct.conflicts.empty()) return planned(std::move(change), Way::straight, direct.least_m);
+  if (auto found = around(direct)) return *std::move(found);
+
+  // At one height vehicles may meet that passed over each other before: then they too differ.
+  for (Nearness known = direct;;) {
+    const Change layered = layers(layers_for(known));
+    const auto over_ceiling = [&](const Mover& mover) {
+      return mover.points[1].z() > std::max(request_.ceiling_m, mover.points[0].z());
+    };
+    const auto high = std::find_if(layered.movers.begin(), layered.movers.end(), over_ceiling);
+    if (high != layered.movers.end()) {
+      return Error{too_near(direct).message + "; passing over each other would take " +
+                   metres(high->points[1].z()) + " of height, and the ceiling is " +
+                   metres(request_.ceiling_m)};
+    }
+    const Nearness over = nearness(layered, true);
+    if (over.conflicts.empty()) return planned(layered, Way::layers, over.least_m);
+    const std::size_t before = known.conflicts.size();
+    auto& all = known.conflicts;
+    all.insert(all.end(), over.conflicts.begin(), over.conflicts.end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    if (known.conflicts.size() == before) return too_near(over);
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(Way way) {
+  switch (way) {
+    case Way::straight:
+      return "straight";
+    case Way::roundabout:
+      return "roundabout";
+    case Way::layers:
+      return "layers";
+    case Way::count:
+      break;
+  }
+  return "?";
+}
+
+Result<PlannedChange> plan_change(const ChangeRequest& request) { return Planner{request}.plan(); }
+
+}  // namespace skein::formation

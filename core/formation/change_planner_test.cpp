@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/formation/change_planner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+
+namespace skein::formation {
+namespace {
+
+constexpr MotionLimits kLimits{.speed_mps = 3.0, .acceleration_mps2 = 2.0, .jerk_mps3 = 4.0};
+
+/// Least distance, by looking so often that nothing can happen in between: never above the truth.
+double least_by_sampling(const Change& change) {
+  const ChangeMotion motion{change};
+  const double end = to_seconds(motion.duration());
+  const double factor = change.separation.height_factor();
+  constexpr double kStep_s = 0.02;
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> before;
+  for (double t = 0.0; t < end + kStep_s; t += kStep_s) {
+    std::vector<Vec3> at;
+    for (std::size_t i = 0; i < motion.movers(); ++i) {
+      at.push_back(motion.position(i, from_seconds(t)));
+      at.back().z() *= factor;
+    }
+    for (std::size_t i = 0; i < at.size() && !before.empty(); ++i) {
+      for (std::size_t j = i + 1; j < at.size(); ++j) {
+        // The chord between two moments.
+        const Vec3 begin = before[i] - before[j];
+        const Vec3 way = at[i] - at[j] - begin;
+        const double squared = way.squaredNorm();
+        const double share = squared > 0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
+        least = std::min(least, (begin + share * way).norm());
+      }
+    }
+    before = at;
+  }
+  return least;
+}
+
+std::vector<Vec3> spread(std::size_t n, double apart_m, double width_m, Random& random) {
+  std::vector<Vec3> points;
+  while (points.size() < n) {
+    const Vec3 p{random.uniform(0.0, width_m), random.uniform(0.0, width_m),
+                 random.uniform(10.0, 20.0)};
+    if (std::all_of(points.begin(), points.end(), [&](const Vec3& other) {
+          return Vec2{p.x() - other.x(), p.y() - other.y()}.norm() >= apart_m;
+        })) {
+      points.push_back(p);
+    }
+  }
+  return points;
+}
+
+TEST(PlanChange, WhatItSaysOfSeparationIsTrue) {
+  Random random{7};
+  int ways[3] = {0, 0, 0};
+  for (int i = 0; i < 150; ++i) {
+    const std::size_t n = 2 + random.index(19);
+    const double width = 12.0 * std::sqrt(static_cast<double>(n));
+    ChangeRequest request;
+    request.limits = kLimits;
+    request.separation = {3.0, random.uniform(2.0, 6.0)};
+    request.reserve_m = 1.0;
+    request.ceiling_m = 1000.0;
+    const auto from = spread(n, 4.1, width, random);
+    const auto to = spread(n, 4.1, width, random);  // anybody anywhere: most paths meet
+    for (std::size_t k = 0; k < n; ++k) {
+      request.transfers.push_back({{static_cast<std::uint16_t>(k + 1)}, from[k], to[k]});
+    }
+    const auto planned = plan_change(request);
+    ASSERT_TRUE(planned.ok()) << planned.error().message;
+    ++ways[static_cast<int>(planned->way)];
+    EXPECT_GE(planned->least_separation_m, 4.0);
+    const double sampled = least_by_sampling(planned->change);
+    EXPECT_LE(planned->least_separation_m, sampled + 1e-3);
+    EXPECT_NEAR(planned->least_separation_m, sampled, 0.02);
+    const ChangeMotion motion{planned->change};
+    for (std::size_t k = 0; k < n; ++k) {
+      EXPECT_LT((motion.position(k, Duration{}) - from[k]).norm(), 1e-9);
+      EXPECT_LT((motion.position(k, motion.duration()) - to[k]).norm(), 1e-6);
+    }
+  }
+  for (const int count : ways) EXPECT_GT(count, 0);
+}
+
+TEST(PlanChange, PointsAreDerivativesOfEachOther) {
+  Random random{3};
+  ChangeRequest request;
+  request.limits = kLimits;
+  for (int i = 0; i < 6; ++i) {
+    const Vec2 at = 20.0 * unit_vector(i * kPi / 3.0 + random.uniform(-0.1, 0.1));
+    request.transfers.push_back(
+        {{static_cast<std::uint16_t>(i + 1)}, {at.x(), at.y(), 20.0}, {-at.x(), -at.y(), 25.0}});
+  }
+  const auto planned = plan_change(request);
+  ASSERT_TRUE(planned.ok());
+  ASSERT_EQ(planned->way, Way::roundabout);
+  const ChangeMotion motion{planned->change};
+  for (double t = 0.05; t < to_seconds(motion.duration()); t += 0.0503) {
+    constexpr double kH = 1e-4;
+    for (std::size_t i = 0; i < 6; ++i) {
+      const auto before = motion.at(i, from_seconds(t - kH));
+      const auto now = motion.at(i, from_seconds(t));
+      const auto after = motion.at(i, from_seconds(t + kH));
+      EXPECT_LT(((after.position_m - before.position_m) / (2 * kH) - now.velocity_mps).norm(),
+                1e-3);
+      EXPECT_LT(now.velocity_mps.norm(), 3.0 * 1.001);
+      EXPECT_LT(now.acceleration_mps2.norm(), 2.0 * std::sqrt(2.0));
+      EXPECT_LT(now.velocity_mps.norm(), motion.speed_max_mps(i) + 1e-9);
+    }
+  }
+}
+
+TEST(PlanChange, RefusesWithTheTwoThatAreTooNear) {
+  ChangeRequest request;
+  request.limits = kLimits;
+  request.transfers = {{{3}, {0, 0, 10}, {0, 10, 10}}, {{8}, {1, 0, 10}, {20, 10, 10}}};
+  const auto planned = plan_change(request);
+  ASSERT_FALSE(planned.ok());
+  EXPECT_NE(planned.error().message.find("vehicle 3 and vehicle 8 would come within 1.00 m"),
+            std::string::npos)
+      << planned.error().message;
+}
+
+TEST(PlanChange, RefusesWhatWouldTakeTooMuchHeight) {
+  // Nobody can turn: the starts lie in each other's way within any disc.
+  ChangeRequest request;
+  request.limits = kLimits;
+  request.ceiling_m = 15.0;
+  request.transfers = {{{1}, {0, 0, 14}, {4.5, 0, 14}}, {{2}, {4.5, 0, 14}, {0, 0, 14}}};
+  const auto low = plan_change(request);
+  request.ceiling_m = 30.0;
+  const auto high = plan_change(request);
+  ASSERT_TRUE(high.ok());
+  if (high->way == Way::layers) {
+    ASSERT_FALSE(low.ok());
+    EXPECT_NE(low.error().message.find("the ceiling is 15.00 m"), std::string::npos);
+  } else {
+    EXPECT_TRUE(low.ok());
+  }
+}
+
+TEST(PlanChange, KeepsAwayFromWhoIsSilent) {
+  ChangeRequest request;
+  request.limits = kLimits;
+  request.transfers = {{{1}, {0, 0, 14}, {40, 0, 14}}, {{2}, {0, 10, 14}, {40, 10, 14}}};
+  request.keep_outs = {{{9}, {20, -5, 14}, {20, 4, 14}}};
+  const auto planned = plan_change(request);
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_EQ(planned->way, Way::layers);
+  const ChangeMotion motion{planned->change};
+  for (double t = 0.0; t < to_seconds(motion.duration()); t += 0.05) {
+    const Vec3 at = motion.position(0, from_seconds(t));
+    const double y = std::clamp(at.y(), -5.0, 4.0);
+    EXPECT_GE((at - Vec3{20.0, y, 14.0}).norm(), 4.0 - 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace skein::formation

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "skein/base/attitude.hpp"
+#include "skein/base/geometry.hpp"
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/formation/limits.hpp"
+#include "skein/formation/motion_profile.hpp"
+
+namespace skein::formation {
+
+/// A disc that vehicles keep on their left: straight to it, along its rim, straight on. With
+/// everybody turning the same way round, paths that would all cross in one point do not.
+struct Roundabout {
+  Vec2 centre{0.0, 0.0};
+  double radius_m = 0.0;
+};
+
+/// One vehicle in a change: from rest at the first point to rest at the last, by way of the others,
+/// at rest in each. Who only waits has one point, or equal ones.
+struct Mover {
+  VehicleId vehicle;
+  std::vector<Vec3> points;  ///< mission frame; Change::stages + 1 of them
+  bool around = false;       ///< straight legs that cut the roundabout go around it
+};
+
+/// A planned change of formation: where everybody flies, in one plan time. In each stage all leave
+/// together and arrive together, each at a speed in proportion to its way (Zheng 2020, eq. 6-8).
+struct Change {
+  std::uint32_t number = 0;  ///< grows; a newer change replaces an older one
+  Instant start{};           ///< of plan time
+  MotionLimits limits;       ///< of whoever has the longest way
+  Separation separation;     ///< that the vehicles' references keep, see passage.hpp
+  std::size_t stages = 1;
+  std::optional<Roundabout> roundabout;
+  std::vector<Mover> movers;
+};
+
+/// The motion of a change, in plan time: 0 at its start, no vehicle ahead of the others or behind.
+/// Immutable; position() allocates nothing.
+class ChangeMotion {
+ public:
+  ChangeMotion() = default;
+  /// Precondition: valid(change).
+  explicit ChangeMotion(const Change& change);
+
+  [[nodiscard]] Duration duration() const { return duration_; }
+  [[nodiscard]] std::size_t movers() const { return movers_; }
+  [[nodiscard]] Vec3 position(std::size_t mover, Duration plan_time) const;
+  struct Point {
+    Vec3 position_m{0.0, 0.0, 0.0};
+    Vec3 velocity_mps{0.0, 0.0, 0.0};       ///< by plan time
+    Vec3 acceleration_mps2{0.0, 0.0, 0.0};  ///< by plan time
+  };
+  [[nodiscard]] Point at(std::size_t mover, Duration plan_time) const;
+  /// The mover's greatest speed in the whole change.
+  [[nodiscard]] double speed_max_mps(std::size_t mover) const { return speed_max_[mover]; }
+
+  /// The least distance of two movers over the whole change, heights stretched by `height_factor`;
+  /// correct to 5 mm, and never above the truth. Stops early, with a smaller value than the
+  /// truth's, once it is below `enough`.
+  [[nodiscard]] double least_distance_m(std::size_t a, std::size_t b, double height_factor,
+                                        double enough = 0.0) const;
+
+ private:
+  /// Straight, or straight to a rim, along it and straight on; heights in proportion to the way.
+  struct Leg {
+    Vec3 from{0.0, 0.0, 0.0};
+    Vec3 to{0.0, 0.0, 0.0};
+    double length_m = 0.0;
+    bool bent = false;
+    double flat_m = 0.0;   ///< without height, of a bent one
+    double in_m = 0.0;     ///< to the rim
+    double arc_m = 0.0;    ///< along it
+    double rim_rad = 0.0;  ///< where the rim is reached, as seen from its centre
+  };
+  struct Stage {
+    Duration begin{};
+    MotionProfile profile;
+  };
+  [[nodiscard]] Leg leg_between(const Vec3& from, const Vec3& to, bool around) const;
+  [[nodiscard]] const Leg& leg(std::size_t mover, std::size_t stage) const {
+    return legs_[stage * movers_ + mover];
+  }
+  [[nodiscard]] std::size_t stage_at(Duration plan_time) const;
+  [[nodiscard]] Vec3 on_leg(const Leg& leg, double share) const;
+  [[nodiscard]] double least_on_stage(std::size_t stage, std::size_t a, std::size_t b,
+                                      double height_factor, double enough) const;
+
+  [[nodiscard]] double least_between(const Leg& first, const Leg& second, double from, double to,
+                                     double height_factor, double enough) const;
+
+  std::size_t movers_ = 0;
+  std::optional<Roundabout> roundabout_;
+  std::vector<Stage> stages_;
+  std::vector<Leg> legs_;
+  std::vector<double> speed_max_;
+  Duration duration_{};
+};
+
+/// That a change from outside can be flown at all: finite numbers, points for every stage, legs
+/// that go around start and end outside the rim, limits above 0, no vehicle twice.
+[[nodiscard]] bool valid(const Change& change);
+
+}  // namespace skein::formation

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "skein/base/time.hpp"
+#include "skein/formation/change.hpp"
+
+namespace skein::formation {
+
+/// Progress is decided anew at every multiple of it in mission time.
+inline constexpr Duration kSlot = std::chrono::milliseconds{50};
+
+/// How far a vehicle is in its change, in grains of plan time (Passage::grain()).
+struct Progress {
+  std::uint32_t change = 0;
+  Instant at{};            ///< a multiple of kSlot; up to one slot ahead
+  std::uint32_t done = 0;  ///< grains, at `at`
+  std::uint16_t rate = 0;  ///< of plan time by time, at `at`: full_rate() is 1
+  double off_m = 0.0;      ///< how far the vehicle itself is from its reference
+  friend bool operator==(const Progress&, const Progress&) = default;
+};
+
+struct PassageParams {
+  Duration clock_error = std::chrono::milliseconds{20};  ///< between any two vehicles
+  double tolerance_m = 0.5;  ///< Progress::off_m up to which Change::separation allows for it
+};
+
+/// Flies one vehicle's part of a change so that separation holds however late others are and
+/// however old what is known of them. After Cap, Gregoire and Frazzoli, "Provably safe and
+/// deadlock-free execution of multi-robot plans under delaying disturbances", IROS 2016 (RMTRACK):
+/// who is ahead in plan time does not enter where somebody behind has yet to pass. Here vehicles
+/// brake in finite time and messages are late or lost: all vehicles slow down by at most one rate a
+/// slot, so that every message, however old, says how far its sender is by now at least. The
+/// reference speeds up only when, should it brake one slot later, it would at every moment keep the
+/// change's separation from wherever everyone behind it may be at that moment. Whoever is ahead in
+/// plan time does so; so one of each two always does, and no breach is possible while references
+/// are followed within tolerance. The last of all never waits, for what it needs is the separation
+/// that the plan has in plan time, so there is no deadlock once messages come through;
+/// ChangeRequest::reserve_m is what the others may be late by without anybody slowing down.
+///
+/// Deterministic; step() and reference() allocate nothing.
+class Passage {
+ public:
+  struct Reference {
+    Vec3 position_m{0.0, 0.0, 0.0};
+    Vec3 velocity_mps{0.0, 0.0, 0.0};
+    Vec3 acceleration_mps2{0.0, 0.0, 0.0};
+  };
+
+  Passage() = default;
+  /// Precondition: valid(change), self < movers.
+  Passage(const Change& change, std::size_t self, const PassageParams& params, Instant now);
+
+  /// Of another mover, in any order, any number of times. What is impossible or of another change
+  /// is ignored.
+  void on_progress(std::size_t mover, const Progress& progress);
+  /// How far the vehicle itself is from its reference.
+  void set_off(double off_m);
+  /// Brakes, and stays where it then is until it may go on.
+  void hold(bool held) { held_ = held; }
+  /// Decides all slots up to `now`, which never decreases.
+  void step(Instant now);
+
+  /// To be told to the others, with Progress::off_m filled in.
+  [[nodiscard]] Progress progress() const;
+  /// At a moment of the slot that step() has reached.
+  [[nodiscard]] Reference reference(Instant now) const;
+
+  [[nodiscard]] bool finished() const { return done_ >= end_; }
+  [[nodiscard]] bool at_rest() const { return finished() || (rate_ == 0 && next_rate_ == 0); }
+  /// The mover for whom it slowed down or waited in the last slot.
+  [[nodiscard]] std::optional<std::size_t> waits_for() const { return waits_for_; }
+  /// How late it is against the change's own timing.
+  [[nodiscard]] Duration delay(Instant now) const;
+
+  [[nodiscard]] const ChangeMotion& motion() const { return motion_; }
+  [[nodiscard]] std::uint16_t full_rate() const { return full_; }
+
+ private:
+  using Grains = std::int64_t;
+
+  struct Other {
+    std::int64_t slot = 0;  ///< of what is known
+    Grains done = 0;
+    Grains rate = 0;
+    double off_m = 0.0;      ///< beyond what is allowed for
+    double least_m = 0.0;    ///< from this vehicle, in the plan
+    double speed_mps = 0.0;  ///< heights stretched
+  };
+  /// From a slot's boundary on: one slot with the rates given, then braking.
+  struct Future {
+    Grains done;
+    Grains rate;
+    Grains next;
+    [[nodiscard]] Grains at(std::int64_t slots) const;
+    [[nodiscard]] std::int64_t stops_after() const { return next + 1; }
+  };
+
+  [[nodiscard]] Grains at_least(const Other& other, std::int64_t slot) const;
+  [[nodiscard]] bool clear_of_all(const Future& future);
+  [[nodiscard]] bool clear_of(std::size_t mover, const Future& future) const;
+  [[nodiscard]] bool keeps_clear(std::size_t mover, Grains own_from, Grains own_to, Grains from,
+                                 Grains to, double apart_m) const;
+  void look_again(std::size_t mover, Grains at_least_now);
+  void decide();
+  [[nodiscard]] double seconds(Grains grains) const {
+    return static_cast<double>(grains) * grain_s_;
+  }
+  [[nodiscard]] Vec3 place(std::size_t mover, Grains at) const;
+
+  ChangeMotion motion_;
+  std::uint32_t number_ = 0;
+  std::size_t self_ = 0;
+  PassageParams params_;
+  double separation_m_ = 0.0;
+  double height_factor_ = 1.0;
+  double grain_s_ = 0.0;
+  std::uint16_t full_ = 1;
+  Grains end_ = 0;
+  Grains clock_error_ = 0;
+  std::int64_t start_ = 0;             ///< slots; plan time begins
+  std::vector<Other> others_;          ///< and this vehicle itself, of whom only the speed counts
+  std::vector<std::int32_t> look_at_;  ///< slots since start_, before which each cannot matter
+  std::vector<std::uint32_t> due_;     ///< who can, now
+  double off_m_ = 0.0;                 ///< beyond what is allowed for
+
+  std::int64_t slot_ = 0;  ///< since mission time 0
+  Grains done_ = 0;        ///< at its begin
+  Grains rate_ = 0;
+  Grains next_rate_ = 0;  ///< at its end
+  bool held_ = false;
+  std::optional<std::size_t> waits_for_;
+};
+
+}  // namespace skein::formation

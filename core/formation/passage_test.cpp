@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/formation/passage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <limits>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+#include "skein/formation/change_planner.hpp"
+
+namespace skein::formation {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr MotionLimits kLimits{.speed_mps = 3.0, .acceleration_mps2 = 2.0, .jerk_mps3 = 4.0};
+constexpr Separation kSeparation{3.0, 3.0};
+
+std::vector<Transfer> swap_on_circle(std::size_t n, double radius_m, Random& random) {
+  std::vector<Transfer> transfers;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double angle = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(n);
+    const Vec2 at = radius_m * unit_vector(angle);
+    const Vec3 jitter{random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1), 0.0};
+    transfers.push_back({{static_cast<std::uint16_t>(i + 1)},
+                         Vec3{at.x(), at.y(), 20.0} + jitter,
+                         Vec3{-at.x(), -at.y(), 20.0}});
+  }
+  return transfers;
+}
+
+/// Vehicles that follow their references exactly, and messages between them.
+struct Team {
+  struct Network {
+    Duration delay = milliseconds{200};
+    double loss = 0.2;
+    Duration period = milliseconds{50};
+  };
+  struct Sent {
+    Instant due;
+    std::size_t to;
+    std::size_t from;
+    Progress progress;
+  };
+
+  Team(const Change& planned, Network net, std::uint64_t seed)
+      : change{planned}, network{net}, random{seed} {
+    change.number = 1;
+    change.start = at_seconds(1.0);
+    for (std::size_t i = 0; i < change.movers.size(); ++i) {
+      vehicles.emplace_back(change, i, PassageParams{}, now);
+      clock.push_back(from_seconds(random.uniform(-0.01, 0.01)));
+    }
+  }
+
+  void tick() {
+    now += milliseconds{10};
+    for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      const Instant local = now + clock[i];
+      if (stalled) vehicles[i].hold(stalled(i, now));
+      vehicles[i].step(local);
+      if (now.time_since_epoch() % network.period == Duration{}) {
+        for (std::size_t to = 0; to < vehicles.size(); ++to) {
+          if (to == i || random.chance(network.loss)) continue;
+          air.push_back({now + network.delay, to, i, vehicles[i].progress()});
+        }
+      }
+    }
+    while (!air.empty() && air.front().due <= now) {
+      vehicles[air.front().to].on_progress(air.front().from, air.front().progress);
+      air.pop_front();
+    }
+    judge();
+  }
+
+  /// By the references alone: every 10 ms, and what can happen in between.
+  void judge() {
+    for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      const Vec3 at = vehicles[i].reference(now + clock[i]).position_m;
+      if (i < places.size()) fastest = std::max(fastest, (at - places[i]).norm() / 0.01);
+      if (i < places.size())
+        places[i] = at;
+      else
+        places.push_back(at);
+    }
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t j = i + 1; j < places.size(); ++j) {
+        least = std::min(least, (places[i] - places[j]).norm());
+      }
+    }
+  }
+
+  bool run(double limit_s) {
+    const Instant end = now + from_seconds(limit_s);
+    while (now < end) {
+      tick();
+      if (std::all_of(vehicles.begin(), vehicles.end(),
+                      [](const Passage& p) { return p.finished(); }))
+        return true;
+    }
+    return false;
+  }
+
+  Change change;
+  Network network;
+  Random random;
+  Instant now{};
+  std::vector<Passage> vehicles;
+  std::vector<Duration> clock;
+  std::deque<Sent> air;
+  std::vector<Vec3> places;
+  std::function<bool(std::size_t, Instant)> stalled;
+  double least = std::numeric_limits<double>::infinity();
+  double fastest = 0.0;
+};
+
+PlannedChange swap_plan(std::size_t n, double radius_m, std::uint64_t seed,
+                        double reserve_m = 1.0) {
+  Random random{seed};
+  const auto planned = plan_change({.transfers = swap_on_circle(n, radius_m, random),
+                                    .keep_outs = {},
+                                    .limits = kLimits,
+                                    .separation = kSeparation,
+                                    .reserve_m = reserve_m});
+  EXPECT_TRUE(planned.ok()) << planned.error().message;
+  return *planned;
+}
+
+TEST(Passage, AloneKeepsTheChangesOwnTime) {
+  Team team{swap_plan(1, 40.0, 1).change, {}, 1};
+  ASSERT_TRUE(team.run(60.0));
+  const double planned_s = to_seconds(team.vehicles[0].motion().duration());
+  EXPECT_LE(to_seconds(team.now) - 1.0, planned_s + 0.15);
+  EXPECT_LE(team.fastest, 3.0 * 1.001);
+}
+
+TEST(Passage, AntipodalSwapKeepsSeparationAndEnds) {
+  for (const std::size_t n : {2, 5, 12, 32}) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const auto planned = swap_plan(n, 40.0, seed);
+      Team team{planned.change, {}, seed};
+      ASSERT_TRUE(team.run(300.0)) << n << " vehicles, seed " << seed;
+      EXPECT_GE(team.least, 3.0) << n << " vehicles, seed " << seed;
+    }
+  }
+}
+
+TEST(Passage, WhoStallsIsNeverRunInto) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Team team{swap_plan(9, 25.0, seed).change, {.delay = milliseconds{300}, .loss = 0.5}, seed};
+    Random random{seed + 1000};
+    const auto victim = random.index(9);
+    const Instant from = at_seconds(random.uniform(0.5, 12.0));
+    const Instant until = from + from_seconds(random.uniform(0.2, 8.0));
+    team.stalled = [=](std::size_t i, Instant now) {
+      return i == victim && now >= from && now < until;
+    };
+    ASSERT_TRUE(team.run(300.0)) << seed;
+    EXPECT_GE(team.least, 3.0) << seed;
+  }
+}
+
+TEST(Passage, HaltsAndStays) {
+  Team team{swap_plan(9, 25.0, 4).change, {}, 4};
+  team.run(6.0);
+  for (auto& vehicle : team.vehicles) vehicle.hold(true);
+  team.run(3.0);
+  for (const auto& vehicle : team.vehicles) {
+    EXPECT_TRUE(vehicle.at_rest());
+    EXPECT_FALSE(vehicle.finished());
+  }
+  EXPECT_GE(team.least, 3.0);
+}
+
+}  // namespace
+}  // namespace skein::formation
