@@ -127,6 +127,7 @@ TEST(ControlLoop, RecordsTwentyStatesASecondAndEveryPlanOnce) {
 class SilentFlightController final : public hal::FlightController {
  public:
   std::optional<VehicleState> state(Instant) override { return last; }
+  using FlightController::command;
   void command(const Setpoint&, Instant) override { ++commands; }
   std::optional<VehicleState> last;
   int commands = 0;

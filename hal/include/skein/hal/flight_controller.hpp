@@ -10,8 +10,9 @@
 
 namespace skein::hal {
 
-/// A flight controller, as the control thread sees it. Both calls are made from that one thread at
-/// the control rate; neither blocks, allocates or locks.
+/// A flight controller, as the control thread sees it. All calls are made from that one thread at
+/// the control rate; none blocks, allocates or locks. A fixed wing is flown by Setpoint, a
+/// multirotor by PositionSetpoint (an ArduPilot copter by either: the newest counts).
 class FlightController {
  public:
   virtual ~FlightController() = default;
@@ -20,7 +21,12 @@ class FlightController {
   [[nodiscard]] virtual std::optional<VehicleState> state(Instant now) = 0;
 
   /// Asks for a heading, airspeed and height from `now` on; the last one stands until the next.
+  /// Has no effect on a simulated multirotor.
   virtual void command(const Setpoint& setpoint, Instant now) = 0;
+
+  /// Asks to be where a point is that is there at `now` and moves on. Has no effect on a fixed
+  /// wing.
+  virtual void command(const PositionSetpoint& /*setpoint*/, Instant /*now*/) {}
 };
 
 }  // namespace skein::hal

@@ -7,7 +7,7 @@
 
 namespace skein::hal {
 
-/// A flight controller with its aircraft, in this process: models::HeadingDynamics, integrated up
+/// A flight controller with its fixed wing, in this process: models::HeadingDynamics, integrated up
 /// to `now` whenever it is asked. Until mission time 0 it stays at its start.
 class SimulatedFlightController final : public FlightController {
  public:
@@ -15,6 +15,7 @@ class SimulatedFlightController final : public FlightController {
                             const models::WindParams& wind);
 
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
+  using FlightController::command;
   void command(const Setpoint& setpoint, Instant now) override;
 
  private:

@@ -24,6 +24,7 @@ class CanFlightController final : public hal::FlightController {
 
   // Of the control thread.
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
+  using FlightController::command;
   void command(const Setpoint& setpoint, Instant now) override;
 
   // Of the CAN thread.

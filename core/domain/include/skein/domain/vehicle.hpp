@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <string>
 
@@ -49,16 +50,55 @@ struct VehicleState {
   double groundspeed_mps = 0.0;
   double airspeed_mps = 0.0;
   double distance_flown_m =
-      0.0;  ///< over the ground, since the start; what the range budget counts
+      0.0;                 ///< over the ground, since the start; what the range budget counts
+  double climb_mps = 0.0;  ///< of a multirotor; 0 where it is not known
   [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
   [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
+  /// Over the ground, mission frame.
+  [[nodiscard]] Eigen::Vector3d velocity_mps() const {
+    const Vec2 horizontal = groundspeed_mps * unit_vector(course_rad);
+    return {horizontal.x(), horizontal.y(), climb_mps};
+  }
 };
 
-/// What control asks of the flight controller. Trivially copyable.
+/// What control asks of the flight controller of a fixed wing. Trivially copyable.
 struct Setpoint {
   double heading_rad = 0.0;  ///< commanded heading, see VehicleSpec::heading_gain_per_s
   double airspeed_mps = 0.0;
   double height_m = 0.0;
+};
+
+/// What control asks of the flight controller of a multirotor: to be where a moving point is.
+/// Mission frame. A point above the ground lifts a vehicle that stands on it; where the point stays
+/// at the ground or below it, the vehicle lands. Trivially copyable.
+struct PositionSetpoint {
+  double x_m = 0.0;
+  double y_m = 0.0;
+  double z_m = 0.0;
+  double vx_mps = 0.0;
+  double vy_mps = 0.0;
+  double vz_mps = 0.0;
+  double ax_mps2 = 0.0;
+  double ay_mps2 = 0.0;
+  double az_mps2 = 0.0;
+  double yaw_rad = 0.0;  ///< of the nose, from east, counter-clockwise
+
+  [[nodiscard]] Eigen::Vector3d position_m() const { return {x_m, y_m, z_m}; }
+  [[nodiscard]] Eigen::Vector3d velocity_mps() const { return {vx_mps, vy_mps, vz_mps}; }
+  [[nodiscard]] Eigen::Vector3d acceleration_mps2() const { return {ax_mps2, ay_mps2, az_mps2}; }
+  /// The point so much later, its acceleration unchanged.
+  [[nodiscard]] PositionSetpoint carried_on(double seconds) const {
+    const Eigen::Vector3d velocity = velocity_mps() + seconds * acceleration_mps2();
+    const Eigen::Vector3d position = position_m() + 0.5 * seconds * (velocity_mps() + velocity);
+    PositionSetpoint later = *this;
+    later.x_m = position.x();
+    later.y_m = position.y();
+    later.z_m = position.z();
+    later.vx_mps = velocity.x();
+    later.vy_mps = velocity.y();
+    later.vz_mps = velocity.z();
+    return later;
+  }
 };
 
 }  // namespace skein
