@@ -101,7 +101,7 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
     EXPECT_EQ(fc.node_id, 11);
     EXPECT_EQ(fc.companion_node_id, 43);
     EXPECT_EQ(fc.system_id, 7);
-    EXPECT_EQ(fc.airframe, AirframeKind::copter);
+    EXPECT_EQ(c.flight_controller.airframe, AirframeKind::copter);
     EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
     EXPECT_EQ(fc.takeoff_height_m, 25.0);
     EXPECT_EQ(fc.geoid_height_m, -38.5);

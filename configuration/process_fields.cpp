@@ -46,6 +46,10 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, b
   ArdupilotConfig& fc = config.ardupilot;
   choice_of(v, {"kind", "what flies the vehicle; the keys below `can` are for an ardupilot"},
             kFlightControllers, config.kind);
+  choice_of(v,
+            {"airframe",
+             "plane: a fixed wing, flown along paths; copter: a multirotor, flown in formations"},
+            kAirframes, config.airframe);
   v.text({"can", bus_required ? "bus of an ardupilot: can0, vcan0, mcast:0"
                               : "bus of an ardupilot: vcan0, mcast:0; empty: the bench chooses bus "
                                 "and nodes"},
@@ -57,7 +61,6 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, b
         {1.0, 255.0}, fc.system_id);
   whole(v, {"serial_id", "of the tunnel: the autopilot's CAN_D1_UC_S1_IDX"}, {0.0, 15.0},
         fc.serial_id);
-  choice_of(v, {"airframe", "that the autopilot flies"}, kAirframes, fc.airframe);
   choice_of(v,
             {"take_over",
              "when the companion takes the aircraft: once its pilot switches to GUIDED; once it is "

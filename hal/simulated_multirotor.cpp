@@ -214,10 +214,7 @@ std::optional<VehicleState> SimulatedMultirotor::state(Instant now) {
 
 void SimulatedMultirotor::command(const PositionSetpoint& setpoint, Instant now) {
   advance_to(now);  // the setpoint before this one stood until now
-  if (!setpoint.position_m().allFinite() || !setpoint.velocity_mps().allFinite() ||
-      !setpoint.acceleration_mps2().allFinite() || !std::isfinite(setpoint.yaw_rad)) {
-    return;
-  }
+  if (!setpoint.finite()) return;
   setpoint_ = setpoint;
   setpoint_at_ = now;
 }

@@ -17,6 +17,10 @@ void CanFlightController::command(const Setpoint& setpoint, Instant now) {
   command_.write({setpoint, now});
 }
 
+void CanFlightController::command(const PositionSetpoint& setpoint, Instant now) {
+  command_.write({setpoint, now});
+}
+
 void CanFlightController::on_command(const mission::Command& command, VehicleId self) {
   if (command.kind != mission::CommandKind::give_back || command.vehicle != self) return;
   given_back_.store(mission::issued_at(command).time_since_epoch().count(),
@@ -25,7 +29,9 @@ void CanFlightController::on_command(const mission::Command& command, VehicleId 
 
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
-    link_.companion().command(newer->setpoint, newer->at);
+    std::visit(
+        [this, at = newer->at](const auto& setpoint) { link_.companion().command(setpoint, at); },
+        newer->setpoint);
   }
   const Instant::rep issued = given_back_.exchange(kNothing, std::memory_order_acq_rel);
   if (issued != kNothing) (void)link_.companion().give_back(now, Instant{Duration{issued}});

@@ -137,7 +137,9 @@ TEST(CanFlightController, ControlNeitherAllocatesNorLocks) {
   for (int i = 0; i < 1000; ++i) {
     const Instant now = at_seconds(10.0 + 0.02 * i);
     ASSERT_TRUE(cockpit.controller->state(now));
-    cockpit.controller->command({.heading_rad = 0.1, .airspeed_mps = 50, .height_m = 1}, now);
+    cockpit.controller->command(Setpoint{.heading_rad = 0.1, .airspeed_mps = 50, .height_m = 1},
+                                now);
+    cockpit.controller->command(PositionSetpoint{}, now);
   }
   EXPECT_EQ(counted_calls::allocations(), 0);
   EXPECT_EQ(counted_calls::locks(), 0);
@@ -152,7 +154,7 @@ TEST(CanFlightController, ThreadsShareItWithoutRaces) {
   std::thread control{[&] {
     for (int i = 0; !stop; ++i) {
       (void)cockpit.controller->state(at_seconds(10.0 + 0.001 * i));
-      cockpit.controller->command({}, at_seconds(10.0 + 0.001 * i));
+      cockpit.controller->command(Setpoint{}, at_seconds(10.0 + 0.001 * i));
     }
   }};
   // The agent's thread: until the CAN thread has noticed that nothing more comes.

@@ -12,6 +12,7 @@
 
 #include "skein/can/bus.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
+#include "skein/hal/simulated_multirotor.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
@@ -37,7 +38,7 @@ ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) 
   ardupilot::CompanionParams& companion = params.companion;
   companion.vehicle = config.vehicle;
   companion.system_id = fc.system_id;
-  companion.airframe = fc.airframe == configuration::AirframeKind::copter
+  companion.airframe = config.flight_controller.airframe == configuration::AirframeKind::copter
                            ? ardupilot::Airframe::copter
                            : ardupilot::Airframe::plane;
   switch (fc.take_over) {
@@ -78,6 +79,16 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
     return made;
   }
   const auto& wind = config.flight_controller.wind;
+  if (config.flight_controller.airframe == configuration::AirframeKind::copter) {
+    hal::SimulatedMultirotorParams params;
+    params.start = {config.start.x_m, config.start.y_m, 0.0};
+    params.yaw_rad = config.start.heading_rad;
+    params.wind_mps = -wind.speed_mps * unit_vector(wind.from_rad);
+    params.gust_mps = wind.gust_mps;
+    params.seed = config.seed;
+    made.any = std::make_unique<hal::SimulatedMultirotor>(params);
+    return made;
+  }
   made.any = std::make_unique<hal::SimulatedFlightController>(
       config.vehicle, config.start,
       models::WindParams{.steady_mps = -wind.speed_mps * unit_vector(wind.from_rad),

@@ -57,6 +57,7 @@ class AutopilotDouble {
   std::vector<mavlink::CommandLong> commands;
   std::vector<mavlink::SetAttitudeTarget> attitudes;
   std::vector<mavlink::SetPositionTargetLocalNed> velocities;
+  std::vector<mavlink::SetPositionTargetGlobalInt> points;
   std::vector<Instant> target_times;
   int heartbeats = 0;
 
@@ -182,6 +183,10 @@ class AutopilotDouble {
     }
     if (const auto target = mavlink::decode<mavlink::SetPositionTargetLocalNed>(packet)) {
       velocities.push_back(*target);
+      target_times.push_back(now);
+    }
+    if (const auto target = mavlink::decode<mavlink::SetPositionTargetGlobalInt>(packet)) {
+      points.push_back(*target);
       target_times.push_back(now);
     }
     if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);

@@ -28,6 +28,7 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
+constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
 constexpr Duration kSpeedPeriod = milliseconds{200};
@@ -111,10 +112,13 @@ void Companion::Impl::step(Instant now) {
       }
       break;
     case State::taking_over:
-      ask_for_mode(now);
+      ask_for_mode(guided_mode(params_.airframe), now);
       break;
     case State::flying:
       fly(now);
+      break;
+    case State::landing:
+      if (!mode_confirmed_) ask_for_mode(land_mode(), now);
       break;
     default:
       break;
@@ -224,39 +228,62 @@ void Companion::Impl::arm(Instant now) {
   }
 }
 
-void Companion::Impl::ask_for_mode(Instant now) {
+void Companion::Impl::ask_for_mode(std::uint32_t mode, Instant now) {
   if (now < retry_at_) return;
   if (retries_++ >= kRetries) return fire(Event::not_obeyed, now);
   retry_at_ = now + kRetryPeriod;
-  ask(command_of(Command::do_set_mode, 1, guided_mode(params_.airframe)), {1, kRetryPeriod}, true);
+  ask(command_of(Command::do_set_mode, 1, mode), {1, kRetryPeriod}, true);
+}
+
+template <class Message>
+void Companion::Impl::send_target(Message target, Instant now) {
+  if (now < target_at_) return;
+  target_at_ = std::max(target_at_ + kTargetPeriod, now + kTargetPeriod / 2);
+  target.time_boot_ms = static_cast<std::uint32_t>(
+      std::chrono::duration_cast<milliseconds>(now.time_since_epoch()).count());
+  target.target_system = system_;
+  target.target_component = mavlink::kComponentAutopilot;
+  send(target);
 }
 
 void Companion::Impl::fly(Instant now) {
   const auto sample = motion_.sample();
-  if (!setpoint_ || now - setpoint_at_ > params_.setpoint_age_max || !sample ||
+  if (now - setpoint_at_ > params_.setpoint_age_max || !sample ||
       now - sample->state.time > kSampleAgeMax) {
+    on_ground_since_.reset();
     return;
   }
   const VehicleState state = carried_to(*sample, now);
-  if (now >= target_at_) {
-    target_at_ = std::max(target_at_ + kTargetPeriod, now + kTargetPeriod / 2);
-    const auto boot_ms = static_cast<std::uint32_t>(
-        std::chrono::duration_cast<milliseconds>(now.time_since_epoch()).count());
-    const auto address = [this, boot_ms](auto target) {
-      target.time_boot_ms = boot_ms;
-      target.target_system = system_;
-      target.target_component = mavlink::kComponentAutopilot;
-      return target;
-    };
+  if (const auto* point = std::get_if<PositionSetpoint>(&setpoint_)) {
+    const double home_z_m = sample->state.z_m - motion_.relative_height_m();
+    fly_to(point->carried_on(to_seconds(now - setpoint_at_)), state, home_z_m, now);
+  } else if (const auto* setpoint = std::get_if<Setpoint>(&setpoint_)) {
     if (params_.airframe == Airframe::copter) {
-      send(address(velocity_target(*setpoint_, state)));
-    } else {
-      send(address(roll_target(bank_for(params_.vehicle, *setpoint_, state))));
+      send_target(velocity_target(*setpoint, state), now);
+      return;
     }
+    send_target(roll_target(bank_for(params_.vehicle, *setpoint, state)), now);
+    set_speed(*setpoint, now);
+    set_height(*setpoint, state, now);
   }
-  if (params_.airframe == Airframe::copter) return;
-  set_speed(*setpoint_, now);
-  set_height(*setpoint_, state, now);
+}
+
+void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m,
+                             Instant now) {
+  const double off_m = std::hypot(point.x_m - state.x_m, point.y_m - state.y_m);
+  if (point.z_m > home_z_m + kGround_m || off_m > kLandWithin_m) {
+    on_ground_since_.reset();
+  } else if (!on_ground_since_) {
+    on_ground_since_ = now;
+  } else if (now - *on_ground_since_ >= kLandAfter) {
+    return fire(Event::may_land, now);
+  }
+  if (point.z_m < home_z_m + kLandFrom_m) {
+    point.z_m = home_z_m + kLandFrom_m;
+    point.vz_mps = 0.0;
+    point.az_mps2 = 0.0;
+  }
+  send_target(point_target(point, origin_, params_.geoid_height_m), now);
 }
 
 void Companion::Impl::set_speed(const Setpoint& setpoint, Instant now) {
@@ -375,7 +402,11 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       }
       break;
     }
+    case State::landing:
+      say(false, "landing at its place", now);
+      break;
     case State::flying:
+      on_ground_since_.reset();
       speed_sent_.reset();
       height_sent_.reset();
       height_at_.reset();
@@ -438,6 +469,9 @@ void Companion::on_duplicate(std::uint8_t node_id, Instant now) {
   impl_->on_duplicate(node_id, now);
 }
 void Companion::command(const Setpoint& setpoint, Instant now) { impl_->command(setpoint, now); }
+void Companion::command(const PositionSetpoint& setpoint, Instant now) {
+  impl_->command(setpoint, now);
+}
 bool Companion::give_back(Instant now, Instant issued) { return impl_->give_back(now, issued); }
 void Companion::step(Instant now) { impl_->step(now); }
 std::optional<mavlink::WireBytes> Companion::poll_packet() {

@@ -21,7 +21,7 @@ constexpr std::uint32_t kFirmwareMin = 0x0405;     ///< 4.5 is the first with th
 bool is_own(Companion::State state) {
   using State = Companion::State;
   return state == State::arming || state == State::climbing || state == State::taking_over ||
-         state == State::flying;
+         state == State::flying || state == State::landing;
 }
 
 std::string version_text(std::uint32_t version) {
@@ -146,6 +146,15 @@ void Companion::Impl::on_mode(Instant now) {
         fire(Event::disarmed, now);
       }
       break;
+    case State::landing:
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (mode_ == land_mode()) {
+        mode_confirmed_ = true;
+      } else if (mode_confirmed_ || !guided()) {
+        fire(Event::other_mode, now);
+      }
+      break;
     case State::checking:
       on_check(now);
       break;
@@ -185,6 +194,16 @@ void Companion::Impl::on_check(Instant now) {
       } else {
         const bool still = mode_ == takeoff_mode(params_.airframe);
         fire(still ? Event::still_climbing : Event::other_mode, now);
+      }
+      break;
+    case State::landing:
+      // In GUIDED it has not heard of it: where the setpoint stays, it is told again.
+      if (!armed_) {
+        fire(Event::disarmed, now);
+      } else if (mode_ == land_mode()) {
+        fire(Event::still_landing, now);
+      } else {
+        fire(guided() ? Event::guided : Event::other_mode, now);
       }
       break;
     case State::arming: {

@@ -3,6 +3,7 @@
 
 #include <bitset>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "boot_clock.hpp"
@@ -55,6 +56,11 @@ class Companion::Impl {
     setpoint_ = setpoint;
     setpoint_at_ = now;
   }
+  void command(const PositionSetpoint& setpoint, Instant now) {
+    if (params_.airframe != Airframe::copter || !setpoint.finite()) return;
+    setpoint_ = setpoint;
+    setpoint_at_ = now;
+  }
   bool give_back(Instant now, Instant issued);
   void step(Instant now);
 
@@ -86,8 +92,12 @@ class Companion::Impl {
   void ask_streams();
   void stand_by(Instant now);
   void arm(Instant now);
-  void ask_for_mode(Instant now);
+  void ask_for_mode(std::uint32_t mode, Instant now);
   void fly(Instant now);
+  void fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m, Instant now);
+  /// With the time and the autopilot's address in it, when one is due.
+  template <class Message>
+  void send_target(Message target, Instant now);
   void set_speed(const Setpoint& setpoint, Instant now);
   void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
   void keep_clock(Instant now);
@@ -169,9 +179,10 @@ class Companion::Impl {
   Instant taken_at_;
   Instant climb_by_;
   std::optional<Instant> duplicate_at_;
-  std::optional<Setpoint> setpoint_;
+  std::variant<std::monostate, Setpoint, PositionSetpoint> setpoint_;
   Instant setpoint_at_;
   Instant target_at_;
+  std::optional<Instant> on_ground_since_;  ///< the point that is flown
   std::optional<double> speed_sent_;
   Instant speed_at_;
   std::optional<double> height_sent_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,7 @@ struct Line {
   bool frames = true;    ///< the flight controller's node is on the bus
   bool commands = true;  ///< the control loop sends setpoints
   Setpoint setpoint{.heading_rad = 0.7, .airspeed_mps = 53.0, .height_m = 310.0};
+  std::optional<PositionSetpoint> point;  ///< sent instead, where there is one
   AutopilotDouble autopilot{now - std::chrono::seconds{60}};
   Companion companion;
   std::vector<std::string> notices;
@@ -57,7 +59,8 @@ struct Line {
       down_.pop_front();
     }
     if (frames && !cut) companion.on_frame_heard(now);
-    if (commands) companion.command(setpoint, now);
+    if (commands && point) companion.command(*point, now);
+    if (commands && !point) companion.command(setpoint, now);
     companion.step(now);
     while (const auto packet = companion.poll_packet()) {
       sent_at = now;

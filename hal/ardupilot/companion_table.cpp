@@ -12,9 +12,9 @@ using Event = Companion::Event;
 using Entry = Companion::Entry;
 
 /// The states in which streams are expected, so that silence means something.
-constexpr std::array kLinked{State::standing_by, State::arming, State::climbing,
-                             State::taking_over, State::flying, State::piloted,
-                             State::checking};
+constexpr std::array kLinked{State::standing_by, State::arming,  State::climbing,
+                             State::taking_over, State::flying,  State::landing,
+                             State::piloted,     State::checking};
 
 constexpr std::array kOwn{
     Entry{State::searching, Event::autopilot_found, State::preparing},
@@ -45,6 +45,10 @@ constexpr std::array kOwn{
     Entry{State::taking_over, Event::disarmed, State::standing_by},
     Entry{State::flying, Event::other_mode, State::piloted},
     Entry{State::flying, Event::disarmed, State::standing_by},
+    Entry{State::flying, Event::may_land, State::landing},
+    Entry{State::landing, Event::disarmed, State::standing_by},
+    Entry{State::landing, Event::other_mode, State::piloted},
+    Entry{State::landing, Event::not_obeyed, State::piloted},
     Entry{State::piloted, Event::given_back, State::taking_over},
     Entry{State::piloted, Event::given_back_landed, State::standing_by},
     Entry{State::lost, Event::packets_back, State::checking},
@@ -57,6 +61,7 @@ constexpr std::array kOwn{
     Entry{State::silent, Event::duplicate, State::duplicated},
     Entry{State::checking, Event::guided, State::flying},
     Entry{State::checking, Event::still_climbing, State::climbing},
+    Entry{State::checking, Event::still_landing, State::landing},
     Entry{State::checking, Event::not_ours, State::standing_by},
     Entry{State::checking, Event::other_mode, State::piloted},
     Entry{State::checking, Event::disarmed, State::standing_by},
@@ -77,14 +82,15 @@ constexpr auto kTable = [] {
 }();
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(State::count)> kStateNames{
-    "searching", "refused", "preparing", "standing_by", "arming",   "climbing",  "taking_over",
-    "flying",    "piloted", "lost",      "silent",      "checking", "duplicated"};
+    "searching", "refused", "preparing", "standing_by", "arming", "climbing", "taking_over",
+    "flying",    "landing", "piloted",   "lost",        "silent", "checking", "duplicated"};
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Event::count)> kEventNames{
-    "autopilot_found", "wrong_autopilot",  "ready",        "may_launch", "armed",
-    "climbed",         "may_take",         "guided",       "other_mode", "disarmed",
-    "not_obeyed",      "still_climbing",   "not_ours",     "given_back", "given_back_landed",
-    "link_lost",       "autopilot_silent", "packets_back", "rebooted",   "duplicate"};
+    "autopilot_found", "wrong_autopilot",   "ready",          "may_launch",       "armed",
+    "climbed",         "may_take",          "guided",         "may_land",         "other_mode",
+    "disarmed",        "not_obeyed",        "still_climbing", "still_landing",    "not_ours",
+    "given_back",      "given_back_landed", "link_lost",      "autopilot_silent", "packets_back",
+    "rebooted",        "duplicate"};
 
 }  // namespace
 

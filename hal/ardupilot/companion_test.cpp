@@ -255,6 +255,136 @@ TEST(Companion, FliesACopterByVelocity) {
   EXPECT_NEAR(target.vz, -2.0, 0.02);
 }
 
+/// Hovers 5 m above home, and home is 295 m above the origin.
+struct CopterLine : Line {
+  explicit CopterLine(double geoid_m = 0.0)
+      : Line{copter_params(geoid_m)}, geoid_height_m{geoid_m} {
+    autopilot.type = 13;
+    autopilot.mode = 5;
+    autopilot.truth.groundspeed_mps = 0.0;
+    autopilot.relative_height_m = 5.0;
+  }
+  static CompanionParams copter_params(double geoid_m) {
+    CompanionParams p = params(TakeOver::in_flight, Airframe::copter);
+    p.geoid_height_m = geoid_m;
+    return p;
+  }
+  static PositionSetpoint place(double x_m, double z_m) {
+    PositionSetpoint s;
+    s.x_m = x_m;
+    s.y_m = -50.0;
+    s.z_m = z_m;
+    return s;
+  }
+  [[nodiscard]] Position<MissionEnu> sent() const {
+    const auto& t = autopilot.points.back();
+    return MissionOrigin::make(kTestOrigin)
+        .value()
+        .to_enu({t.lat_int * 1e-7, t.lon_int * 1e-7, static_cast<double>(t.alt) + geoid_height_m});
+  }
+  static constexpr std::uint32_t kLand = 9;
+  double geoid_height_m;
+};
+
+TEST(Companion, FliesACopterToAPoint) {
+  CopterLine line{-30.0};
+  auto& fc = line.autopilot;
+  line.point = CopterLine::place(110.0, 305.0);
+  line.point->vx_mps = 1.0;
+  line.point->vy_mps = 2.0;
+  line.point->vz_mps = -0.5;
+  line.point->ay_mps2 = 0.7;
+  line.point->yaw_rad = kPi;
+  line.until(State::flying, 10.0);
+  EXPECT_GE(line.targets_within(1.0), 20U);
+  EXPECT_TRUE(fc.velocities.empty());
+  const auto target = fc.points.back();
+  EXPECT_EQ(target.type_mask, 0x800);  // all but the rate of yaw
+  EXPECT_EQ(target.coordinate_frame, 5);
+  EXPECT_LT((line.sent().metres() - line.point->position_m()).norm(), 0.03);
+  EXPECT_EQ(target.vx, 2.0F);
+  EXPECT_EQ(target.vy, 1.0F);
+  EXPECT_EQ(target.vz, 0.5F);
+  EXPECT_EQ(target.afx, 0.7F);
+  EXPECT_EQ(target.afy, 0.0F);
+  EXPECT_NEAR(target.yaw, -kPi / 2.0, 1e-6);
+  // It moves on until the next one comes, and not for ever.
+  line.commands = false;
+  line.run(0.2);
+  EXPECT_NEAR(line.sent().x(), 110.19, 0.03);
+  line.run(0.2);
+  EXPECT_EQ(line.targets_within(1.0), 0U);
+  // By velocity again.
+  line.commands = true;
+  line.point.reset();
+  line.run(0.2);
+  EXPECT_FALSE(fc.velocities.empty());
+}
+
+TEST(Companion, FliesNoPlaneToAPoint) {
+  Line line;
+  line.point = CopterLine::place(110.0, 305.0);
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.targets_within(1.0), 0U);
+}
+
+TEST(Companion, LandsACopterWhereItsPointStaysOnTheGround) {
+  CopterLine line;
+  auto& fc = line.autopilot;
+  line.point = CopterLine::place(104.0, 295.0);
+  line.until(State::flying, 10.0);
+  line.run(3.0);
+  EXPECT_EQ(line.companion.state(), State::flying);  // its place is 4 m away
+  EXPECT_NEAR(line.sent().z(), 296.0, 0.03);         // never into the ground
+  line.point = CopterLine::place(101.0, 295.0);
+  line.run(0.5);
+  line.point = CopterLine::place(101.0, 299.0);  // not yet
+  line.run(0.8);
+  EXPECT_EQ(line.companion.state(), State::flying);
+  line.point = CopterLine::place(101.0, 290.0);
+  fc.deaf_to[static_cast<std::uint16_t>(mavlink::Command::do_set_mode)] = 1;
+  EXPECT_NEAR(to_seconds(line.until(State::landing, 3.0)), 1.0, 0.05);
+  line.run(0.2);
+  EXPECT_EQ(line.targets_within(2.0), 0U);
+  EXPECT_EQ(fc.mode, CopterLine::kLand);  // asked again
+  line.cut = true;
+  line.until(State::lost, 1.0);
+  line.cut = false;
+  line.until(State::landing, 1.0);
+  EXPECT_EQ(line.companion.state(), State::landing);
+  fc.armed = false;
+  fc.landed = 1;
+  fc.relative_height_m = 0.0;
+  line.run(1.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  line.run(5.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  EXPECT_EQ(line.companion.protocol_errors(), 0U);
+}
+
+TEST(Companion, ThePilotWinsWhileItLands) {
+  CopterLine line;
+  line.point = CopterLine::place(100.0, 295.0);
+  line.until(State::landing, 10.0);
+  line.run(0.5);
+  ASSERT_EQ(line.autopilot.mode, CopterLine::kLand);
+  line.autopilot.mode = 5;
+  EXPECT_LE(line.until(State::piloted, 1.0), milliseconds{100});
+}
+
+TEST(Companion, FliesOnWhereALandingWasNotHeardOfInALoss) {
+  CopterLine line;
+  line.point = CopterLine::place(100.0, 295.0);
+  line.until(State::flying, 10.0);
+  line.autopilot.deaf_to[static_cast<std::uint16_t>(mavlink::Command::do_set_mode)] = 9;
+  line.until(State::landing, 3.0);
+  line.cut = true;
+  line.until(State::lost, 1.0);
+  line.point = CopterLine::place(100.0, 300.0);
+  line.cut = false;
+  EXPECT_LE(line.until(State::flying, 1.0), milliseconds{300});
+}
+
 TEST(Companion, ThePilotWinsAtOnceUntilTheOperatorResumes) {
   Line line;
   line.until(State::flying, 10.0);
@@ -478,7 +608,13 @@ TEST(Companion, SendsNoSetpointThatIsOld) {
 TEST(Companion, SurvivesAnyBytesAndAnyOrderOfEvents) {
   Random random{11};
   for (int round = 0; round < 20; ++round) {
-    Line line{params(static_cast<TakeOver>(round % 3))};
+    const bool copter = round % 2 != 0;
+    Line line{
+        params(static_cast<TakeOver>(round % 3), copter ? Airframe::copter : Airframe::plane)};
+    if (copter) {
+      line.autopilot.type = 2;
+      line.point = CopterLine::place(100.0, -1e3);  // it lands whenever it can
+    }
     for (int i = 0; i < 400; ++i) {
       switch (random.index(12)) {
         case 0:

@@ -57,6 +57,8 @@ std::uint32_t takeoff_mode(Airframe airframe) {
                                       : static_cast<std::uint32_t>(PlaneMode::takeoff);
 }
 
+std::uint32_t land_mode() { return static_cast<std::uint32_t>(CopterMode::land); }
+
 std::string name_of_mode(Airframe airframe, std::uint32_t mode) {
   const std::span<const NamedMode> names = airframe == Airframe::copter
                                                ? std::span<const NamedMode>{kCopterModes}

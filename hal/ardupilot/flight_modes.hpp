@@ -13,6 +13,8 @@ namespace skein::ardupilot {
 /// In which the aircraft leaves the ground.
 [[nodiscard]] std::uint32_t takeoff_mode(Airframe airframe);
 /// "GUIDED"; the number of one that has no name here.
+/// Of a copter: it comes down where it is.
+[[nodiscard]] std::uint32_t land_mode();
 [[nodiscard]] std::string name_of_mode(Airframe airframe, std::uint32_t mode);
 /// Whether HEARTBEAT's `type` is of the airframe.
 [[nodiscard]] bool is_of(Airframe airframe, std::uint8_t vehicle_type);

@@ -31,7 +31,7 @@ VehicleState moved(const MotionSample& sample, Duration by) {
   state.time += by;
   state.x_m += way.x();
   state.y_m += way.y();
-  state.z_m += sample.climb_mps * seconds;
+  state.z_m += state.climb_mps * seconds;
   state.heading_rad = wrap_pi(state.heading_rad + turned);
   state.course_rad = wrap_pi(state.course_rad + turned);
   state.distance_flown_m += metres;
@@ -78,12 +78,13 @@ void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant mea
   state_.y_m = enu.y();
   state_.z_m = enu.z();
   state_.groundspeed_mps = over_ground.norm();
-  if (state_.groundspeed_mps > kCourseKnownAbove_mps) {
+  const double known_above_mps = hovers_ ? 0.0 : kCourseKnownAbove_mps;
+  if (state_.groundspeed_mps > known_above_mps) {
     state_.course_rad = std::atan2(over_ground.y(), over_ground.x());
   } else {
     state_.course_rad = heading_rad_;
   }
-  climb_mps_ = -position.vz * 0.01;
+  state_.climb_mps = -position.vz * 0.01;
   relative_height_m_ = position.relative_alt * 1e-3;
 }
 
@@ -102,9 +103,10 @@ void Motion::forget() {
 
 std::optional<MotionSample> Motion::sample() const {
   if (!has_attitude_ || !has_position_ || !has_hud_) return std::nullopt;
-  MotionSample sample{state_, turn_rate_radps_, climb_mps_};
+  MotionSample sample{state_, turn_rate_radps_};
   if (hovers_) {
-    sample.state.heading_rad = state_.course_rad;
+    const bool moves = state_.groundspeed_mps > kCourseKnownAbove_mps;
+    sample.state.heading_rad = moves ? state_.course_rad : heading_rad_;
     sample.state.airspeed_mps = state_.groundspeed_mps;
     // Its body may turn as it likes.
     sample.turn_rate_radps = 0.0;

@@ -143,7 +143,7 @@ TEST(CarriedTo, GoesOnAlongTheArcAndNoFurtherThanItMay) {
                   .airspeed_mps = 48.0,
                   .distance_flown_m = 1000.0};
   sample.turn_rate_radps = 0.5;
-  sample.climb_mps = 2.0;
+  sample.state.climb_mps = 2.0;
   const auto state = carried_to(sample, at_seconds(10.2));
   EXPECT_EQ(state.time, at_seconds(10.2));
   const double radius = 50.0 / 0.5;
@@ -201,6 +201,28 @@ TEST(Motion, IsAsOldAsTheOldestOfItsParts) {
   heard.attitude(11.5);
   heard.position(11.5);
   EXPECT_EQ(heard.motion.sample()->state.time, at_seconds(10.0));
+}
+
+TEST(Motion, KnowsWhereACopterDriftsThoughNotWhereItIsHeaded) {
+  Motion motion{MissionOrigin::make({31.0, 105.0, 0.0}).value(), 0.0, true};
+  mavlink::Attitude attitude;
+  attitude.yaw = 0.0F;  // north
+  motion.on_attitude(attitude, at_seconds(10.0));
+  motion.on_hud({}, at_seconds(10.0));
+  mavlink::GlobalPositionInt p;
+  p.lat = 310'000'000;
+  p.lon = 1'050'000'000;
+  p.vx = -50;  // south
+  p.vz = -80;  // up
+  motion.on_position(p, at_seconds(10.0));
+  VehicleState state = motion.sample()->state;
+  EXPECT_NEAR(state.heading_rad, kPi / 2.0, 1e-6);
+  EXPECT_LT((state.velocity_mps() - Eigen::Vector3d{0.0, -0.5, 0.8}).norm(), 1e-9);
+  p.vx = -300;
+  motion.on_position(p, at_seconds(10.1));
+  state = motion.sample()->state;
+  EXPECT_NEAR(state.heading_rad, -kPi / 2.0, 1e-6);
+  EXPECT_NEAR(carried_to(*motion.sample(), at_seconds(10.2)).z_m - state.z_m, 0.08, 1e-9);
 }
 
 TEST(Motion, TakesNothingThatIsNoNumber) {

@@ -58,4 +58,24 @@ mavlink::SetPositionTargetLocalNed velocity_target(const Setpoint& setpoint,
   return target;
 }
 
+mavlink::SetPositionTargetGlobalInt point_target(const PositionSetpoint& setpoint,
+                                                 const MissionOrigin& origin,
+                                                 double geoid_height_m) {
+  const Wgs84 place = origin.to_wgs84({setpoint.x_m, setpoint.y_m, setpoint.z_m});
+  mavlink::SetPositionTargetGlobalInt target;
+  target.lat_int = static_cast<std::int32_t>(std::lround(place.latitude_deg * 1e7));
+  target.lon_int = static_cast<std::int32_t>(std::lround(place.longitude_deg * 1e7));
+  target.alt = static_cast<float>(place.height_m - geoid_height_m);
+  target.vx = static_cast<float>(setpoint.vy_mps);
+  target.vy = static_cast<float>(setpoint.vx_mps);
+  target.vz = static_cast<float>(-setpoint.vz_mps);
+  target.afx = static_cast<float>(setpoint.ay_mps2);
+  target.afy = static_cast<float>(setpoint.ax_mps2);
+  target.afz = static_cast<float>(-setpoint.az_mps2);
+  target.yaw = static_cast<float>(wrap_pi(kPi / 2.0 - setpoint.yaw_rad));
+  target.type_mask = mavlink::ignore_yaw_rate;
+  target.coordinate_frame = static_cast<std::uint8_t>(mavlink::Frame::global_int);
+  return target;
+}
+
 }  // namespace skein::ardupilot

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "skein/base/frames.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/messages.hpp"
@@ -21,5 +22,12 @@ namespace skein::ardupilot {
 /// Velocity over the ground, of an aircraft that hovers.
 [[nodiscard]] mavlink::SetPositionTargetLocalNed velocity_target(const Setpoint& setpoint,
                                                                  const VehicleState& state);
+
+/// The point of a copter's setpoint, with its velocity and acceleration. It goes by latitude,
+/// longitude and height above the sea: a local position counts from where the autopilot's filter
+/// began, which the mission does not know.
+[[nodiscard]] mavlink::SetPositionTargetGlobalInt point_target(const PositionSetpoint& setpoint,
+                                                               const MissionOrigin& origin,
+                                                               double geoid_height_m);
 
 }  // namespace skein::ardupilot

@@ -38,7 +38,6 @@ struct ArdupilotConfig {
   std::uint8_t companion_node_id = 42;
   std::uint8_t system_id = 1;
   std::int8_t serial_id = 0;
-  AirframeKind airframe = AirframeKind::plane;
   TakeOverKind take_over = TakeOverKind::when_guided;
   double takeoff_height_m = 40.0;
   double geoid_height_m = 0.0;
@@ -47,6 +46,7 @@ struct ArdupilotConfig {
 
 struct FlightControllerConfig {
   FlightControllerKind kind = FlightControllerKind::simulated;
+  AirframeKind airframe = AirframeKind::plane;
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
 

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <variant>
 
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/hal/flight_controller.hpp"
@@ -24,8 +25,8 @@ class CanFlightController final : public hal::FlightController {
 
   // Of the control thread.
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
-  using FlightController::command;
   void command(const Setpoint& setpoint, Instant now) override;
+  void command(const PositionSetpoint& setpoint, Instant now) override;
 
   // Of the CAN thread.
   void step(Instant now);
@@ -41,7 +42,7 @@ class CanFlightController final : public hal::FlightController {
 
  private:
   struct Command {
-    Setpoint setpoint;
+    std::variant<Setpoint, PositionSetpoint> setpoint;
     Instant at;
   };
   LatestValue<ardupilot::MotionSample> sample_;  ///< CAN to control

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -86,6 +87,10 @@ struct PositionSetpoint {
   [[nodiscard]] Eigen::Vector3d position_m() const { return {x_m, y_m, z_m}; }
   [[nodiscard]] Eigen::Vector3d velocity_mps() const { return {vx_mps, vy_mps, vz_mps}; }
   [[nodiscard]] Eigen::Vector3d acceleration_mps2() const { return {ax_mps2, ay_mps2, az_mps2}; }
+  [[nodiscard]] bool finite() const {
+    return position_m().allFinite() && velocity_mps().allFinite() &&
+           acceleration_mps2().allFinite() && std::isfinite(yaw_rad);
+  }
   /// The point so much later, its acceleration unchanged.
   [[nodiscard]] PositionSetpoint carried_on(double seconds) const {
     const Eigen::Vector3d velocity = velocity_mps() + seconds * acceleration_mps2();

@@ -67,6 +67,7 @@ class Companion {
     climbing,     ///< armed by the companion; the autopilot takes off
     taking_over,  ///< has asked for GUIDED
     flying,       ///< GUIDED: setpoints go out
+    landing,      ///< LAND, asked for by the companion, until the autopilot disarms
     piloted,      ///< others have the aircraft until give_back(), whatever happens in between
     lost,         ///< no frame of the flight controller comes
     silent,       ///< frames come, MAVLink does not
@@ -83,10 +84,12 @@ class Companion {
     climbed,     ///< high enough to be taken
     may_take,    ///< in the air, and the companion shall ask for it
     guided,      ///< HEARTBEAT says GUIDED
+    may_land,    ///< the setpoint stays at the ground, and the copter is there
     other_mode,  ///< HEARTBEAT says a mode that the companion did not ask for
     disarmed,
     not_obeyed,         ///< was asked several times, or does not climb
     still_climbing,     ///< after a loss: as before it
+    still_landing,      ///< after a loss: as before it
     not_ours,           ///< after a loss: it was not the companion's before either
     given_back,         ///< by the operator, in the air
     given_back_landed,  ///< by the operator, disarmed on the ground
@@ -116,6 +119,13 @@ class Companion {
 
   /// Flown while the state is `flying`; the last one stands until it is too old.
   void command(const Setpoint& setpoint, Instant now);
+  /// Likewise, of a copter: the newest of both counts. GUIDED flies it no lower than kLandFrom_m
+  /// above home; where the point stays at home's height or below it for kLandAfter, and the copter
+  /// is within kLandWithin_m of it, the autopilot lands it there. Has no effect on a plane.
+  void command(const PositionSetpoint& setpoint, Instant now);
+  static constexpr double kLandFrom_m = 1.0;
+  static constexpr double kLandWithin_m = 2.0;  ///< horizontally
+  static constexpr Duration kLandAfter = std::chrono::seconds{1};
   /// The operator gives the aircraft (back) to the companion: in the air, to be flown; disarmed on
   /// the ground, to stand by and, where it takes off by itself, to be launched (again). False where
   /// it cannot be given, and where it was taken after the operator's word was `issued`. In

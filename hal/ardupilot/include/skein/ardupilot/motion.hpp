@@ -14,7 +14,6 @@ namespace skein::ardupilot {
 struct MotionSample {
   VehicleState state;
   double turn_rate_radps = 0.0;  ///< of heading and course, counter-clockwise
-  double climb_mps = 0.0;
 };
 
 /// How far a state is carried on. Older ones stay as old as they then are: who asks sees it.
@@ -29,7 +28,8 @@ class Motion {
  public:
   /// `geoid_height_m`: of the geoid above the ellipsoid at the origin; autopilots count heights
   /// from it. `hovers`: an aircraft that flies where it is pushed, not where its nose points; its
-  /// heading and airspeed are those of its motion over the ground.
+  /// heading and airspeed are those of its motion over the ground, the heading its nose's while it
+  /// hardly moves.
   Motion(const MissionOrigin& origin, double geoid_height_m, bool hovers)
       : origin_{origin}, geoid_height_m_{geoid_height_m}, hovers_{hovers} {}
 
@@ -60,7 +60,6 @@ class Motion {
   Instant hud_at_;
   double relative_height_m_ = 0.0;
   VehicleState state_;  ///< its heading and airspeed stand above
-  double climb_mps_ = 0.0;
 };
 
 }  // namespace skein::ardupilot
