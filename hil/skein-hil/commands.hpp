@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace skein::hil {
 
@@ -45,6 +46,22 @@ struct SweepArguments {
   std::size_t jobs = 0;             ///< 0: one for each core
 };
 int sweep(const SweepArguments& arguments);
+
+struct SwapArguments {
+  std::vector<std::string> methods{"passage"};
+  std::vector<std::size_t> agents{32};
+  std::size_t seeds = 10;
+  std::uint64_t first_seed = 1;
+  double radius_m = 0.0;  ///< 0: by the number of agents
+  double noise_m = 0.1;   ///< of the starts
+  double delay_s = 0.2;   ///< of messages
+  double loss = 0.2;      ///< share of messages
+  double separation_m = 3.0;
+  std::filesystem::path csv;    ///< empty: none is written
+  std::filesystem::path plots;  ///< folder; empty: none
+  std::size_t jobs = 0;         ///< 0: one for each core
+};
+int swap(const SwapArguments& arguments);
 
 struct CanDumpArguments {
   std::string bus;            ///< as can::open() takes it

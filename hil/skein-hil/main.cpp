@@ -96,6 +96,54 @@ int main(int argc, char** argv) {
       "Examples: skein-hil sweep experiments/mission-32.yaml\n"
       "          skein-hil sweep experiments/radio.yaml --runs 10 --out runs/radio-10");
 
+  skein::hil::SwapArguments swap;
+  auto* swap_command = app.add_subcommand(
+      "swap",
+      "Compare methods of avoidance: agents on a circle change to the opposite side at once");
+  swap_command
+      ->add_option("--method", swap.methods,
+                   "passage, field, orca, orca-limited; several with commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  swap_command->add_option("--agents", swap.agents, "How many; several numbers with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  swap_command->add_option("--seeds", swap.seeds, "Runs of each method and number")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  swap_command->add_option("--first-seed", swap.first_seed, "Of the first run; then + 1")
+      ->capture_default_str();
+  swap_command
+      ->add_option("--radius", swap.radius_m,
+                   "Of the circle, m (default: 10 for 5 agents, 40 for 32, 100 for 100, 200 for "
+                   "250)")
+      ->check(CLI::Range(3.0, 10'000.0));
+  swap_command->add_option("--noise", swap.noise_m, "Starts are so far off their places at most, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  swap_command->add_option("--delay", swap.delay_s, "Of messages, s")
+      ->check(CLI::Range(0.0, 5.0))
+      ->capture_default_str();
+  swap_command->add_option("--loss", swap.loss, "Share of the messages that are lost")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  swap_command->add_option("--separation", swap.separation_m, "Least distance wanted, m")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  swap_command->add_option("--csv", swap.csv, "File to write, a row for each run");
+  swap_command->add_option("--plots", swap.plots,
+                           "Folder for the tracks of the first seed, as SVG");
+  swap_command->add_option("--jobs", swap.jobs, "Runs at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  swap_command->footer(
+      "t/T is the time until all are there over that of a straight way without others. Distances\n"
+      "are judged in continuous time. The same seed gives the same run. Ends with status 0 if no\n"
+      "pair came nearer than the separation and all arrived, 1 if not, 2 for bad input.\n"
+      "Examples: skein-hil swap --agents 32 --seeds 100 --method orca\n"
+      "          skein-hil swap --agents 5,32,100 --method field,orca --csv swap.csv\n"
+      "          skein-hil swap --agents 5 --delay 0 --loss 0 --seeds 1 --plots .");
+
   skein::hil::CanDumpArguments dump;
   skein::hil::CanReplayArguments replay;
   auto* can_command = app.add_subcommand("can", "Look at a CAN bus, record it, replay a record");
@@ -123,5 +171,6 @@ int main(int argc, char** argv) {
   if (dump_command->parsed()) return skein::hil::dump_can(dump);
   if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
+  if (swap_command->parsed()) return skein::hil::swap(swap);
   return sweep_command->parsed() ? skein::hil::sweep(sweep) : skein::hil::simulate(simulate);
 }
