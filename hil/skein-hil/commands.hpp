@@ -63,6 +63,14 @@ struct SwapArguments {
 };
 int swap(const SwapArguments& arguments);
 
+struct ShapesArguments {
+  std::vector<std::string> shapes;  ///< names, or files
+  std::vector<std::size_t> vehicles{5};
+  double spacing_m = 5.0;
+  std::filesystem::path picture;  ///< empty: the places are printed
+};
+int shapes(const ShapesArguments& arguments);
+
 struct CanDumpArguments {
   std::string bus;            ///< as can::open() takes it
   std::filesystem::path log;  ///< empty: none is written

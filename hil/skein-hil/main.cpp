@@ -144,6 +144,28 @@ int main(int argc, char** argv) {
       "          skein-hil swap --agents 5,32,100 --method field,orca --csv swap.csv\n"
       "          skein-hil swap --agents 5 --delay 0 --loss 0 --seeds 1 --plots .");
 
+  skein::hil::ShapesArguments shapes;
+  auto* shapes_command =
+      app.add_subcommand("shapes", "Print or draw the places of a formation's shapes");
+  shapes_command
+      ->add_option("shapes", shapes.shapes,
+                   "line_abreast, column, echelon, wedge, pentagon, or a file (YAML)")
+      ->required();
+  shapes_command->add_option("--vehicles", shapes.vehicles, "How many; several numbers with commas")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  shapes_command->add_option("--spacing", shapes.spacing_m, "Least distance of two places, m")
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  shapes_command->add_option("--svg", shapes.picture, "Picture to write, in place of the numbers");
+  shapes_command->footer(
+      "Places are around the shape's centre, in the order in which they are filled: dx along the\n"
+      "track, dy to its left, dz up. The shapes are explained in docs/formation.md.\n"
+      "Examples: skein-hil shapes wedge --vehicles 15\n"
+      "          skein-hil shapes shapes/heart.yaml --vehicles 5,12,32 --spacing 4 --svg "
+      "heart.svg");
+
   skein::hil::CanDumpArguments dump;
   skein::hil::CanReplayArguments replay;
   auto* can_command = app.add_subcommand("can", "Look at a CAN bus, record it, replay a record");
@@ -171,6 +193,7 @@ int main(int argc, char** argv) {
   if (dump_command->parsed()) return skein::hil::dump_can(dump);
   if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
+  if (shapes_command->parsed()) return skein::hil::shapes(shapes);
   if (swap_command->parsed()) return skein::hil::swap(swap);
   return sweep_command->parsed() ? skein::hil::sweep(sweep) : skein::hil::simulate(simulate);
 }

@@ -200,9 +200,8 @@ TEST(Swap, WhoNeverMovesIsADeadlock) {
   };
   SwapOptions options;
   options.agents = 3;
-  const SwapRun run = fly_swap(
-      options, [](const Setting&, std::size_t, std::uint64_t) { return std::make_unique<Stuck>(); },
-      1);
+  const auto stuck = each([](const Setting&, std::size_t) { return std::make_unique<Stuck>(); });
+  const SwapRun run = flown(options, stuck, 1);
   EXPECT_FALSE(run.arrived_s.has_value());
   EXPECT_EQ(run.not_arrived, 3U);
   EXPECT_EQ(run.breached_pairs, 0U);
