@@ -61,6 +61,15 @@ void run(Input input) {
       companion.on_duplicate(10, now);
     } else if (what < 235) {
       (void)companion.give_back(now, now - std::chrono::milliseconds{input.byte()});
+    } else if (what < 245) {
+      // A copter lands where this is: at its place, below its home.
+      PositionSetpoint point;
+      if (const auto sample = companion.sample()) {
+        point.x_m = sample->state.x_m;
+        point.y_m = sample->state.y_m;
+        point.z_m = sample->state.z_m - 10.0 * (what - 235);
+      }
+      companion.command(point, now);
     } else {
       companion.command({.heading_rad = 0.1 * what, .airspeed_mps = 50.0, .height_m = 300.0}, now);
     }
