@@ -203,6 +203,9 @@ Result<Avoiders> passages(const Setting& setting, std::uint64_t) {
   formation::ChangeRequest request;
   request.limits = setting.limits;
   request.separation = setting.separation;
+  // What others fly until a message that follows a lost one is there, so that nobody waits for it.
+  request.reserve_m =
+      setting.limits.speed_mps * (setting.message_delay_s + 2.0 * setting.message_period_s);
   for (std::size_t i = 0; i < setting.starts.size(); ++i) {
     request.transfers.push_back(
         {VehicleId{static_cast<std::uint16_t>(i + 1)}, setting.starts[i], setting.goals[i]});
