@@ -243,7 +243,7 @@ MakeAvoiders orca(bool limited) {
 }  // namespace
 
 const std::vector<Method>& methods() {
-  static const std::vector<Method> kMethods{
+  static const std::vector<Method> known{
       {"passage", "a planned change, flown so that who is late is waited for", passages},
       {"field", "the potential field with the order of ids of Zheng (2020)", fields},
       {"orca", "van den Berg et al. (2011); its velocities are flown as they are, at once",
@@ -251,7 +251,7 @@ const std::vector<Method>& methods() {
       {"orca-limited", "the same, its velocities followed within acceleration and jerk",
        orca(true)},
   };
-  return kMethods;
+  return known;
 }
 
 Result<const Method*> find_method(std::string_view name) {

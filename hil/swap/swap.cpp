@@ -41,12 +41,14 @@ std::size_t ticks_of(double seconds, double period_s) {
 class SwapFlight {
  public:
   SwapFlight(const SwapOptions& options, std::uint64_t seed)
-      : options_{options}, setting_{options.setting}, random_{seed} {
+      : options_{options},
+        setting_{options.setting},
+        random_{seed},
+        message_every_{ticks_of(setting_.message_period_s, setting_.control_period_s)},
+        delay_{ticks_of(setting_.message_delay_s, setting_.control_period_s)},
+        start_{ticks_of(setting_.start_s, setting_.control_period_s)} {
     place_agents();
     const std::size_t n = options.agents;
-    message_every_ = ticks_of(setting_.message_period_s, setting_.control_period_s);
-    delay_ = ticks_of(setting_.message_delay_s, setting_.control_period_s);
-    start_ = ticks_of(setting_.start_s, setting_.control_period_s);
     for (std::size_t i = 0; i < n; ++i) first_tick_.push_back(random_.index(message_every_));
     positions_ = setting_.starts;
     velocities_.assign(n, Vec3::Zero());
@@ -156,9 +158,9 @@ class SwapFlight {
   Setting setting_;
   Random random_;
   std::vector<std::size_t> first_tick_;
-  std::size_t message_every_ = 1;
-  std::size_t delay_ = 0;
-  std::size_t start_ = 0;
+  std::size_t message_every_;
+  std::size_t delay_;
+  std::size_t start_;
   std::deque<std::pair<std::size_t, Message>> sent_;  ///< with the tick when they arrive
   std::size_t delivered_ = 0;                         ///< of them; all are kept for the avoiders
   std::vector<std::unique_ptr<Avoider>> avoiders_;
