@@ -77,7 +77,14 @@ Result<GroundConfig> parse_ground_config(std::string_view yaml, const std::strin
 }
 std::string to_yaml(const GroundConfig& config) { return written(config); }
 
-Result<Scenario> load_scenario(const std::filesystem::path& file) { return load<Scenario>(file); }
+Result<Scenario> load_scenario(const std::filesystem::path& file) {
+  auto scenario = load<Scenario>(file);
+  if (!scenario) return scenario;
+  for (NamedShape& shape : scenario->formation.shapes) {
+    shape.file = std::filesystem::absolute(file.parent_path() / shape.file).lexically_normal();
+  }
+  return scenario;
+}
 Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name) {
   return parse<Scenario>(yaml, name);
 }

@@ -79,6 +79,8 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     for (const ScenarioHazard& hazard : scenario.hazards) {
       if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
     }
+    config.formation = scenario.formation;
+    config.formation.script.clear();
     config.time = deployment.time;
     config.recording_folder = folder_of(deployment, vehicle_folder(vehicle.spec.id));
     config.seed = seeds.next() >> 2U;  // the file holds numbers up to 9e18
@@ -96,6 +98,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
     config.vehicles.push_back(vehicle.spec.id);
   }
   config.operator_decisions = scenario.operator_decisions;
+  config.formation = scenario.formation;
   config.recording_folder = folder_of(deployment, "ground");
   return config;
 }

@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "skein/formation/change.hpp"
+
 namespace skein::configuration {
 namespace {
 
@@ -189,6 +191,66 @@ void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
           {0.0, 600.0, "s"}, p.authorisation_lead);
 }
 
+namespace {
+
+/// Of the shapes that need no points.
+void rally_fields(FieldVisitor& v, formation::ShapeSpec& rally) {
+  std::array<std::string_view, static_cast<std::size_t>(formation::ShapeKind::free)> kinds;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    kinds.at(i) = formation::to_string(static_cast<formation::ShapeKind>(i));
+  }
+  auto kind = static_cast<std::size_t>(rally.kind);
+  v.choice({"shape", "in which vehicles gather"}, kinds, kind);
+  rally.kind = static_cast<formation::ShapeKind>(kind);
+  v.number({"spacing_m", "between neighbours"}, {0.5, 1000.0, "m"}, rally.spacing_m);
+  compass(v, {"heading_deg", "compass direction that it faces"}, rally.heading_rad);
+  v.number({"east_m", "centre"}, kMetres, rally.centre.x());
+  v.number({"north_m", "centre"}, kMetres, rally.centre.y());
+  v.number({"height_m", "centre, above the origin"}, {1.0, 1000.0, "m"}, rally.centre.z());
+}
+
+void formation_fields(FieldVisitor& v, FormationConfig& f) {
+  v.section({"rally", "where vehicles gather, and wait that have no place"},
+            [&f](FieldVisitor& inner) { rally_fields(inner, f.rally); });
+  v.number({"speed_mps", "of whoever has the longest way"}, {0.1, 30.0, "m/s"}, f.limits.speed_mps);
+  v.number({"acceleration_mps2", "greatest, at starts, stops and turns"}, {0.1, 20.0, "m/s2"},
+           f.limits.acceleration_mps2);
+  v.number({"jerk_mps3", "greatest, at starts and stops"}, {0.1, 100.0, "m/s3"},
+           f.limits.jerk_mps3);
+  v.require(f.limits.speed_mps <= formation::kStopWithin_s * f.limits.acceleration_mps2,
+            "speed_mps", "could not be braked from in 6 s; lower it or raise acceleration_mps2");
+  v.number({"separation_m", "least distance of two vehicles, to the side"}, {0.2, 100.0, "m"},
+           f.separation.horizontal_m);
+  v.number({"vertical_separation_m", "and straight above each other: a rotor's wake goes down"},
+           {0.2, 100.0, "m"}, f.separation.vertical_m);
+  v.number({"tracking_m", "how far a vehicle may be from where it is to be, in gusts"},
+           {0.05, 20.0, "m"}, f.tracking_m);
+  v.number({"reserve_m", "planned beyond separation and tracking, for vehicles that are late"},
+           {0.1, 50.0, "m"}, f.reserve_m);
+  v.number({"ceiling_m", "nobody is led above it"}, {1.0, 1000.0, "m"}, f.ceiling_m);
+  v.number({"place_tolerance_m", "to be in place"}, {0.01, 10.0, "m"}, f.place_tolerance_m);
+  std::array<std::string_view, static_cast<std::size_t>(formation::PlaceMethod::count)> methods;
+  for (std::size_t i = 0; i < methods.size(); ++i) {
+    methods.at(i) = formation::to_string(static_cast<formation::PlaceMethod>(i));
+  }
+  auto method = static_cast<std::size_t>(f.assignment);
+  v.choice({"assignment", "method by which vehicles are given places"}, methods, method);
+  f.assignment = static_cast<formation::PlaceMethod>(method);
+  v.list({"shapes", "free shapes that orders can name"},
+         groups_of(f.shapes, kListMax, [](FieldVisitor& inner, NamedShape& shape) {
+           inner.text({"name", "as in `form NAME`", kRequired}, shape.name);
+           inner.text({"file", "its points; in a scenario relative to the scenario", kRequired},
+                      shape.file);
+         }));
+  v.list({"script",
+          "orders as the operator would type them, one after the other; without any the "
+          "operator types them"},
+         list_of(f.script, kListMax,
+                 [](FieldVisitor& inner, std::string& line) { inner.text({}, line); }));
+}
+
+}  // namespace
+
 void planning_fields(FieldVisitor& v, planning::AllocationParams& p) {
   const Range weight{0.0, 1000.0};
   std::array<std::string_view, static_cast<std::size_t>(planning::AllocationMethod::count)> methods;
@@ -208,6 +270,11 @@ void planning_fields(FieldVisitor& v, planning::AllocationParams& p) {
            weight, p.weights.timing);
   seconds(v, {"timing_reference_s", "timing error of a task that counts as 1"},
           {0.001, 3600.0, "s"}, p.weights.timing_reference);
+}
+
+void formation_section(FieldVisitor& v, FormationConfig& formation) {
+  v.section({"formation", "how multirotors fly in formation; the same for the whole team"},
+            [&formation](FieldVisitor& inner) { formation_fields(inner, formation); });
 }
 
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions) {
@@ -279,6 +346,7 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
+  formation_section(v, config.formation);
   process_fields(v, config.network, config.time, config.recording_folder);
   whole(v, {"seed", "of the vehicle's generators"}, {0.0, 9e18}, config.seed);
 }
@@ -288,6 +356,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   origin_section(v, config.origin);
   ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
   operator_decisions_list(v, config.operator_decisions);
+  formation_section(v, config.formation);
   process_fields(v, config.network, config.time, config.recording_folder);
 }
 

@@ -7,6 +7,7 @@
 #include "field_types.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/formation_config.hpp"
 #include "skein/planning/allocation.hpp"
 
 /// The parts that several tables share.
@@ -25,6 +26,7 @@ void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);
 void planning_fields(FieldVisitor& v, planning::AllocationParams& planning);
+void formation_section(FieldVisitor& v, FormationConfig& formation);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 
 }  // namespace skein::configuration

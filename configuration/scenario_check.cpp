@@ -31,6 +31,7 @@ class Check {
     check_numbers();
     for (const ScenarioVehicle& vehicle : s_.vehicles) check_vehicle(vehicle);
     check_heights();
+    check_formation();
     check_buses();
     for (const Site& site : s_.sites) check_site(site);
     check_names();
@@ -47,7 +48,8 @@ class Check {
 
   void check_numbers() {
     if (s_.vehicles.empty()) problem("the fleet has no vehicle; add one under vehicles");
-    if (s_.sites.empty()) problem("the mission has no site; add one under sites");
+    if (s_.sites.empty() && !s_.flies_formation())
+      problem("the mission has no site; add one under sites");
     const Duration slowest = s_.radio.delay_mean + s_.radio.delay_jitter;
     if (slowest > s_.protocol.message_delay) {
       problem("the radio delays messages by up to " + milliseconds(slowest) +
@@ -57,6 +59,22 @@ class Check {
     if (s_.expect.coalitions > static_cast<int>(s_.sites.size())) {
       problem("expect.coalitions is " + std::to_string(s_.expect.coalitions) +
               ", but there are only " + counted(s_.sites.size(), "site", "sites") + "; lower it");
+    }
+  }
+
+  void check_formation() {
+    const auto multirotors = static_cast<std::size_t>(
+        std::count_if(s_.vehicles.begin(), s_.vehicles.end(), is_multirotor));
+    if (multirotors != 0 && multirotors != s_.vehicles.size()) {
+      problem("the fleet has multirotors and fixed wings; fly them in two missions");
+    }
+    if (s_.flies_formation() && !s_.sites.empty()) {
+      problem("multirotors fly in formation and do no tasks at sites; take the sites away");
+    }
+    if (!s_.flies_formation() && !s_.formation.script.empty()) {
+      problem(
+          "formation.script has orders, but no vehicle is a multirotor; give vehicles "
+          "flight_controller: {airframe: copter}");
     }
   }
 
@@ -73,7 +91,7 @@ class Check {
     if (spec.capabilities.has(TaskKind::deliver) && spec.loads == 0) {
       problem(name(v) + " can deliver but has no loads; give it loads or take the capability away");
     }
-    if (s_.wind.speed_mps + s_.wind.gust_mps >= spec.speed_min_mps) {
+    if (!is_multirotor(v) && s_.wind.speed_mps + s_.wind.gust_mps >= spec.speed_min_mps) {
       problem(name(v) + " cannot hold its course: the wind of " +
               rounded(s_.wind.speed_mps + s_.wind.gust_mps) +
               " m/s with gusts reaches its speed_min_mps " + rounded(spec.speed_min_mps) +
@@ -95,6 +113,7 @@ class Check {
   void check_heights() {
     for (std::size_t i = 0; i < s_.vehicles.size(); ++i) {
       for (std::size_t j = i + 1; j < s_.vehicles.size(); ++j) {
+        if (is_multirotor(s_.vehicles[i]) || is_multirotor(s_.vehicles[j])) continue;
         const double apart = std::abs(s_.vehicles[i].spec.height_m - s_.vehicles[j].spec.height_m);
         if (apart >= s_.expect.separation_vertical_m) continue;
         problem(name(s_.vehicles[i]) + " and " + name(s_.vehicles[j]) + " fly only " +
@@ -251,6 +270,14 @@ class Check {
 };
 
 }  // namespace
+
+bool is_multirotor(const ScenarioVehicle& vehicle) {
+  return vehicle.flight_controller.is_multirotor();
+}
+
+bool Scenario::flies_formation() const {
+  return std::any_of(vehicles.begin(), vehicles.end(), is_multirotor);
+}
 
 Result<void> check(const Scenario& scenario) { return Check{scenario}.run(); }
 

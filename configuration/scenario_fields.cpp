@@ -154,6 +154,12 @@ void expect_fields(FieldVisitor& v, Expectations& e) {
   v.number({"miss_distance_m", "most between the site and a delivery"}, limit_m, e.miss_distance_m);
   v.number({"assess_start_error_s", "most from the start of an assessment to its time"}, kSeconds,
            e.assess_start_error_s);
+  v.number(
+      {"place_rms_m",
+       "root mean square of the distance from its place, of any vehicle while a formation holds"},
+      limit_m, e.place_rms_m);
+  v.number({"arrival_spread_s", "most between the first and the last vehicle to reach its place"},
+           kSeconds, e.arrival_spread_s);
   v.number({"separation_horizontal_m", "two vehicles closer than this ..."}, limit_m,
            e.separation_horizontal_m);
   v.number({"separation_vertical_m", "... are at least that far apart in height"}, limit_m,
@@ -197,13 +203,14 @@ void fields(FieldVisitor& v, Scenario& s) {
   whole(v, {"seed", "of everything random in the run"}, {0.0, 9e18}, s.seed);
   world_fields(v, s);
   v.fleet(s.vehicles);
-  v.list({"sites", "places with tasks; a vehicle finds one within its sensor radius", kRequired},
+  v.list({"sites", "places with tasks; a vehicle finds one within its sensor radius"},
          unique_groups_of(s.sites, kListMax, site_fields, "site",
                           [](const Site& site) { return site.id.value; }));
   v.list({"hazards", "circles to keep out of"},
          unique_groups_of(s.hazards, kListMax, scenario_hazard_fields, "hazard",
                           [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));
   operator_decisions_list(v, s.operator_decisions);
+  formation_section(v, s.formation);
   v.list({"faults", "things that go wrong, on the time line"},
          groups_of(s.faults, kListMax, fault_fields));
   v.list({"reference", "published values, printed beside the run's"},

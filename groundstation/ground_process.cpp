@@ -12,6 +12,7 @@
 #include <thread>
 #include <utility>
 
+#include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/views.hpp"
@@ -55,7 +56,7 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& node, process::Wake& wake,
-             std::optional<recording::Writer> writer)
+             std::optional<recording::Writer> writer, FormationDesk formation)
       : agent_config_{agent_config(config)},
         origin_{origin},
         operator_name_{std::move(operator_name)},
@@ -64,7 +65,8 @@ class GroundLoop {
         node_{node},
         wake_{wake},
         writer_{std::move(writer)},
-        agent_{agent_config_, clock.now()} {}
+        agent_{agent_config_, clock.now()},
+        formation_{std::move(formation)} {}
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
@@ -72,9 +74,11 @@ class GroundLoop {
       const Instant now = clock_.now();
       while (const auto received = node_.poll()) {
         agent_.on_message(received->message, received->sender, now);
+        formation_.on_message(received->message, received->sender, now);
       }
       while (const auto line = prompt.next()) answer(*line, now);
       agent_.on_timeout(now);
+      formation_.on_timeout(now);
       hand_out(now);
       const Instant soonest = now + kStepSpacing;
       clock_.sleep_until(soonest);
@@ -101,6 +105,11 @@ class GroundLoop {
                            : agent_.refuse(decision->site, operator_name_, now));
     } else if (const auto* order = std::get_if<Order>(&*input)) {
       tell(agent_.command(order->vehicle, order->kind, now));
+    } else if (const auto* typed = std::get_if<Formation>(&*input)) {
+      const auto answered = formation_.answer(*typed, now);
+      print(answered ? *answered : "error: " + answered.error().message + "\n");
+    } else if (std::holds_alternative<Wait>(*input)) {
+      print("error: 'wait' is for scripts\n");
     } else if (std::holds_alternative<Quit>(*input)) {
       shutdown_.request();
     }
@@ -120,6 +129,9 @@ class GroundLoop {
       case View::pending:
         print(pending_text(agent_.authorisations(), origin_, now));
         break;
+      case View::places:
+        print(formation_.places_table(now));
+        break;
     }
   }
 
@@ -129,11 +141,14 @@ class GroundLoop {
 
   void hand_out(Instant now) {
     while (const auto message = agent_.poll_message()) node_.publish(*message);
+    while (const auto message = formation_.poll_message()) node_.publish(*message);
+    while (const auto event = formation_.poll_event()) {
+      node_.publish(mission::Message{*event});
+      tell_of(*event);
+    }
     while (const auto event = agent_.poll_event()) {
-      const bool warning = event->kind == mission::EventKind::warning;
-      spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(*event));
       sites_.on_event(*event);
-      if (writer_) writer_->write(*event);
+      tell_of(*event);
     }
     for (const auto& pending : agent_.authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
@@ -144,6 +159,12 @@ class GroundLoop {
       next_flush_ = now + kFlushPeriod;
       flush();
     }
+  }
+
+  void tell_of(const mission::MissionEvent& event) {
+    const bool warning = event.kind == mission::EventKind::warning;
+    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(event));
+    if (writer_) writer_->write(event);
   }
 
   void flush() {
@@ -168,6 +189,7 @@ class GroundLoop {
   process::Wake& wake_;
   std::optional<recording::Writer> writer_;
   mission::GroundAgent agent_;
+  FormationDesk formation_;
   SiteBoard sites_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};
@@ -184,6 +206,11 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   const auto origin = MissionOrigin::make(config.origin);
   if (!origin) {
     spdlog::critical("the mission origin is unusable: {}", origin.error().message);
+    return process::kExitBadInput;
+  }
+  auto formation = FormationDesk::open(config.formation, config.vehicles, clock.now());
+  if (!formation) {
+    spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
   }
   std::optional<recording::Writer> writer;
@@ -207,7 +234,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                config.operator_decisions.empty()
                    ? "decisions by " + operator_name
                    : std::string{"with decisions scripted by the scenario"});
-  GroundLoop loop{config, *origin, operator_name, clock, shutdown, **node, wake, std::move(writer)};
+  GroundLoop loop{config, *origin,           operator_name,        clock, shutdown, **node,
+                  wake,   std::move(writer), std::move(*formation)};
   std::thread thread{[&loop] { loop.run(); }};
   spdlog::info("{}: stopping", shutdown.wait());
   loop.stop();

@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <vector>
+
+#include "skein/base/angles.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -63,6 +66,112 @@ Result<Input> give_back(const std::vector<std::string_view>& words) {
   return Input{Order{{*vehicle}, mission::CommandKind::give_back}};
 }
 
+/// A number after a keyword.
+Result<double> number_after(std::string_view keyword, std::string_view word, double low,
+                            double high) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size() ||
+      !(value >= low && value <= high)) {
+    return Error{
+        fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, low, high, word)};
+  }
+  return value;
+}
+
+std::optional<formation::ShapeKind> shape_kind(std::string_view word) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
+    const auto kind = static_cast<formation::ShapeKind>(i);
+    std::string name{formation::to_string(kind)};
+    std::replace(name.begin(), name.end(), '_', '-');
+    if (word == name) return kind;
+  }
+  return std::nullopt;
+}
+
+/// What follows the shape, in any order.
+Result<Formation> with_options(Formation input, const std::vector<std::string_view>& words) {
+  std::size_t next = 0;
+  const auto take = [&](std::string_view keyword, double low, double high) -> Result<double> {
+    if (next == words.size()) return Error{fmt::format("'{}' needs a number after it", keyword)};
+    return number_after(keyword, words[next++], low, high);
+  };
+  formation::ShapeSpec& shape = input.order.shape;
+  while (next < words.size()) {
+    const auto keyword = words[next++];
+    if (keyword == "spacing") {
+      const auto metres = take(keyword, 0.5, 1000.0);
+      if (!metres) return metres.error();
+      shape.spacing_m = *metres;
+      input.has_spacing = true;
+    } else if (keyword == "heading") {
+      const auto degrees = take(keyword, -360.0, 360.0);
+      if (!degrees) return degrees.error();
+      shape.heading_rad = heading_from_compass_deg(*degrees);
+      input.has_heading = true;
+    } else if (keyword == "places") {
+      const auto count = take(keyword, 1.0, 1000.0);
+      if (!count) return count.error();
+      input.order.places = static_cast<std::size_t>(*count);
+    } else if (keyword == "at") {
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto metres = take("at EAST NORTH HEIGHT", -1e5, 1e5);
+        if (!metres) return metres.error();
+        shape.centre[axis] = *metres;
+      }
+      input.has_centre = true;
+    } else {
+      return Error{fmt::format(
+          "'{}' is none of spacing M, heading DEG, at EAST NORTH HEIGHT, places N", keyword)};
+    }
+  }
+  return input;
+}
+
+Result<Input> formation_order(const std::vector<std::string_view>& words, bool preview) {
+  Formation input;
+  input.preview = preview;
+  const auto verb = words[0];
+  if (verb != "form") {
+    if (words.size() > 1) return Error{fmt::format("'{}' stands alone", verb)};
+    input.order.kind = verb == "take-off" ? mission::OrderKind::take_off
+                       : verb == "land"   ? mission::OrderKind::land
+                                          : mission::OrderKind::rally;
+    return Input{input};
+  }
+  if (words.size() < 2) {
+    return Error{
+        "'form' needs a shape: line-abreast, column, echelon, wedge, pentagon, or the name "
+        "or file of a free one, as in 'form wedge spacing 5'"};
+  }
+  input.order.kind = mission::OrderKind::form;
+  const auto kind = shape_kind(words[1]);
+  input.order.shape.kind = kind.value_or(formation::ShapeKind::free);
+  if (!kind) input.shape = words[1];
+  auto complete = with_options(input, {words.begin() + 2, words.end()});
+  if (!complete) return complete.error();
+  return Input{*std::move(complete)};
+}
+
+bool is_formation_verb(std::string_view word) {
+  return word == "take-off" || word == "rally" || word == "form" || word == "land";
+}
+
+Result<Input> preview(std::vector<std::string_view> words) {
+  words.erase(words.begin());
+  if (words.empty() || !is_formation_verb(words[0])) {
+    return Error{"'preview' needs an order to the formation, as in 'preview form wedge spacing 5'"};
+  }
+  return formation_order(words, true);
+}
+
+Result<Input> wait(const std::vector<std::string_view>& words) {
+  if (words.size() != 2) return Error{"'wait' needs seconds, as in 'wait 10'"};
+  const auto seconds = number_after("wait", words[1], 0.0, 86400.0);
+  if (!seconds) return seconds.error();
+  return Input{Wait{from_seconds(*seconds)}};
+}
+
 }  // namespace
 
 Result<Input> parse_input(std::string_view line) {
@@ -78,6 +187,10 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
   if (verb == "return") return order(mission::CommandKind::return_home, words);
+  if (is_formation_verb(verb)) return formation_order(words, false);
+  if (verb == "preview") return preview(words);
+  if (verb == "wait") return wait(words);
+  if (verb == "places") return view(View::places, words);
   if (verb == "give-back") return give_back(words);
   if (verb == "quit") {
     if (words.size() > 1) return Error{"'quit' stands alone"};
@@ -98,6 +211,15 @@ std::string help_text() {
          "give-back ID      its pilot gives the aircraft (back) to the companion: in the air to "
          "be\n"
          "                  flown, on the ground to be launched where it takes off by itself\n"
+         "take-off          the formation rises to the rally's height\n"
+         "rally             it gathers at the rally\n"
+         "form SHAPE ...    it takes a shape: line-abreast, column, echelon, wedge, pentagon, or "
+         "the\n"
+         "                  name or file of a free one; then, as wanted, spacing M, heading DEG,\n"
+         "                  at EAST NORTH HEIGHT, places N\n"
+         "land              it comes straight down\n"
+         "preview ORDER     what one of these four would do, and whether it is safe\n"
+         "places            where each vehicle of the formation is, and how far from its place\n"
          "quit              end the ground station; the vehicles go on\n";
 }
 

@@ -86,6 +86,10 @@ auto with_type(Topic topic, F f) {
       return f(std::type_identity<wire::SiteReport>{});
     case Topic::hazard_report:
       return f(std::type_identity<wire::HazardReport>{});
+    case Topic::formation_change:
+      return f(std::type_identity<wire::FormationChange>{});
+    case Topic::formation_status:
+      return f(std::type_identity<wire::FormationStatus>{});
     case Topic::telemetry:
     case Topic::count:
       break;

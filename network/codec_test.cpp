@@ -17,11 +17,24 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::array<const char*, kMessageKinds> kKindNames{
-    "announcement",  "bid",           "award",       "confirmation",          "cancel",
-    "lease_renewal", "member_status", "telemetry",   "authorisation_request", "authorisation",
-    "mission_event", "command",       "site_report", "hazard_report",         "leadership_claim",
-    "allegiance"};
+constexpr std::array<const char*, kMessageKinds> kKindNames{"announcement",
+                                                            "bid",
+                                                            "award",
+                                                            "confirmation",
+                                                            "cancel",
+                                                            "lease_renewal",
+                                                            "member_status",
+                                                            "telemetry",
+                                                            "authorisation_request",
+                                                            "authorisation",
+                                                            "mission_event",
+                                                            "command",
+                                                            "site_report",
+                                                            "hazard_report",
+                                                            "leadership_claim",
+                                                            "formation_change",
+                                                            "formation_status",
+                                                            "allegiance"};
 
 std::string hex(const Bytes& bytes) {
   constexpr const char* kDigits = "0123456789abcdef";

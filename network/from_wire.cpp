@@ -15,9 +15,11 @@ namespace {
 static_assert(wire::kTasksPerKindMax == kTasksPerKindMax);
 static_assert(wire::kTasksMax == coalition::kTasksMax);
 static_assert(wire::kMembersMax == coalition::kMembersMax);
+static_assert(wire::kMoversMax == formation::kMoversMax);
+static_assert(wire::kMoverPointsMax == formation::kStagesMax + 1);
 static_assert(wire::ASSESS + 1 == static_cast<int>(TaskKind::count));
 static_assert(wire::UNKNOWN + 1 == static_cast<int>(coalition::TaskState::count));
-static_assert(wire::HOLDING + 1 == static_cast<int>(mission::Activity::count));
+static_assert(wire::FORMING + 1 == static_cast<int>(mission::Activity::count));
 static_assert(wire::SURVEYING == static_cast<int>(mission::Activity::surveying));
 static_assert(wire::EXECUTING == static_cast<int>(mission::Activity::executing));
 static_assert(wire::WARNING + 1 == static_cast<int>(mission::EventKind::count));
@@ -100,6 +102,14 @@ class Check {
 
 Vec2 point(Check& c, const wire::Point& w) {
   return {c.coordinate(w.x_m()), c.coordinate(w.y_m())};
+}
+
+Vec3 point3(Check& c, const wire::Point3& w) {
+  return {c.coordinate(w.x_m()), c.coordinate(w.y_m()), c.coordinate(w.z_m())};
+}
+
+formation::Mover mover(Check& c, const wire::Mover& w) {
+  return {VehicleId{w.vehicle()}, c.each(w.points(), wire::kMoverPointsMax, point3), w.around()};
 }
 
 TaskId task_id(Check& c, const wire::TaskId& w) {
@@ -219,7 +229,8 @@ coalition::Message body(Check& c, const wire::LeadershipClaim& w) {
 
 coalition::Message body(Check& c, const wire::Allegiance& w) {
   return coalition::Allegiance{coalition_id(w.coalition()), VehicleId{w.elector()},
-                               InstanceId{w.instance()}, VehicleId{w.follows()}, c.instant(w.acknowledges_ns())};
+                               InstanceId{w.instance()}, VehicleId{w.follows()},
+                               c.instant(w.acknowledges_ns())};
 }
 
 coalition::Message body(Check& c, const wire::MemberStatus& w) {
@@ -337,6 +348,33 @@ mission::Message from_wire(const wire::SiteReport& w, bool& ok) {
 mission::Message from_wire(const wire::HazardReport& w, bool& ok) {
   Check c{ok};
   return mission::HazardReport{{HazardId{w.id()}, point(c, w.centre()), c.distance(w.radius_m())}};
+}
+
+mission::Message from_wire(const wire::FormationChange& w, bool& ok) {
+  Check c{ok};
+  formation::Change m;
+  m.number = w.number();
+  m.start = c.instant(w.start_ns());
+  m.limits = {c.speed(w.speed_mps()), c.amount(w.acceleration_mps2()), c.amount(w.jerk_mps3())};
+  m.separation = {c.distance(w.separation_m()), c.distance(w.vertical_separation_m())};
+  c.require(w.stages() >= 1 && w.stages() < wire::kMoverPointsMax);
+  m.stages = w.stages();
+  const formation::Roundabout roundabout{point(c, w.centre()), c.distance(w.radius_m())};
+  if (w.has_roundabout()) m.roundabout = roundabout;
+  m.movers = c.each(w.movers(), wire::kMoversMax, mover);
+  return m;
+}
+
+mission::Message from_wire(const wire::FormationStatus& w, bool& ok) {
+  Check c{ok};
+  mission::FormationStatus m;
+  m.vehicle = VehicleId{w.vehicle()};
+  m.progress = {w.change(), c.instant(w.progress_at_ns()), w.progress(), w.rate(),
+                c.distance(w.off_m())};
+  m.position_m = point3(c, w.position());
+  m.reference_m = point3(c, w.reference());
+  m.at_rest = w.at_rest();
+  return m;
 }
 
 }  // namespace skein::network

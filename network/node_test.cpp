@@ -73,8 +73,10 @@ std::vector<std::string> some_of_every_kind(Role writer, std::uint64_t seed,
   for (std::size_t i = 0; i < 2 * kMessageKinds; ++i) {
     auto message = random_message(i, random);
     const Topic topic = topic_of(message);
+    const Role reader = writer == Role::ground ? Role::vehicle : Role::ground;
+    if (!info(topic).writers.has(writer) || !info(topic).readers.has(reader)) continue;
     // Best effort promises nothing, and only the last of a burst is kept: one is enough.
-    if (!info(topic).writers.has(writer) || (topic == Topic::telemetry && i > kMessageKinds)) {
+    if (!info(topic).reliable && i > kMessageKinds) {
       continue;
     }
     encoded.push_back(bytes_of(message));

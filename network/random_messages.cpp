@@ -310,6 +310,42 @@ mission::Message hazard_report(Random& random) {
   return m;
 }
 
+Vec3 point3(Random& random) {
+  const Vec2 flat = point(random);
+  return {flat.x(), flat.y(), point(random).x()};
+}
+
+mission::Message formation_change(Random& random) {
+  formation::Change m;
+  m.number = integer<std::uint32_t>(random);
+  m.start = instant(random);
+  m.limits = {random.uniform(0.0, kSpeedMaxMps), random.uniform(0.0, kNumberMax),
+              random.uniform(0.0, kNumberMax)};
+  m.separation = {distance(random), distance(random)};
+  m.stages = 1 + random.index(3);
+  if (random.chance(0.5)) m.roundabout = formation::Roundabout{point(random), distance(random)};
+  m.movers.resize(random.index(formation::kMoversMax + 1));
+  for (formation::Mover& mover : m.movers) {
+    mover.vehicle = vehicle(random);
+    mover.around = random.chance(0.5);
+    for (std::size_t i = random.index(formation::kStagesMax + 2); i > 0; --i) {
+      mover.points.push_back(point3(random));
+    }
+  }
+  return m;
+}
+
+mission::Message formation_status(Random& random) {
+  mission::FormationStatus m;
+  m.vehicle = vehicle(random);
+  m.progress = {integer<std::uint32_t>(random), instant(random), integer<std::uint32_t>(random),
+                integer<std::uint16_t>(random), distance(random)};
+  m.position_m = point3(random);
+  m.reference_m = point3(random);
+  m.at_rest = random.chance(0.5);
+  return m;
+}
+
 }  // namespace
 
 mission::Message random_message(std::size_t kind, Random& random) {
@@ -344,6 +380,10 @@ mission::Message random_message(std::size_t kind, Random& random) {
       return hazard_report(random);
     case 14:
       return leadership_claim(random);
+    case 15:
+      return formation_change(random);
+    case 16:
+      return formation_status(random);
     default:
       return allegiance(random);
   }

@@ -9,7 +9,7 @@
 namespace skein::network {
 
 /// The seven of the coalition, then the others of mission::Message in their order.
-inline constexpr std::size_t kMessageKinds = 16;
+inline constexpr std::size_t kMessageKinds = 18;
 
 /// A message of that kind with every field random within its limits, for tests of the network.
 [[nodiscard]] mission::Message random_message(std::size_t kind, Random& random);

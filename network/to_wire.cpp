@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -40,6 +41,22 @@ wire::Point point(const Vec2& p) {
   wire::Point w;
   w.x_m(p.x());
   w.y_m(p.y());
+  return w;
+}
+
+wire::Point3 point3(const Vec3& p) {
+  wire::Point3 w;
+  w.x_m(p.x());
+  w.y_m(p.y());
+  w.z_m(p.z());
+  return w;
+}
+
+wire::Mover mover(const formation::Mover& m) {
+  wire::Mover w;
+  w.vehicle(m.vehicle.value);
+  w.points(each<wire::Point3>(m.points, point3));
+  w.around(m.around);
   return w;
 }
 
@@ -316,6 +333,40 @@ wire::HazardReport to_wire(const mission::HazardReport& m) {
   w.id(m.hazard.id.value);
   w.centre(point(m.hazard.centre));
   w.radius_m(m.hazard.radius_m);
+  return w;
+}
+
+wire::FormationChange to_wire(const formation::Change& m) {
+  wire::FormationChange w;
+  w.version(wire::kVersion);
+  w.number(m.number);
+  w.start_ns(ns(m.start));
+  w.speed_mps(m.limits.speed_mps);
+  w.acceleration_mps2(m.limits.acceleration_mps2);
+  w.jerk_mps3(m.limits.jerk_mps3);
+  w.separation_m(m.separation.horizontal_m);
+  w.vertical_separation_m(m.separation.vertical_m);
+  w.stages(static_cast<std::uint8_t>(std::min<std::size_t>(m.stages, 255)));
+  w.has_roundabout(m.roundabout.has_value());
+  const formation::Roundabout roundabout = m.roundabout.value_or(formation::Roundabout{});
+  w.centre(point(roundabout.centre));
+  w.radius_m(roundabout.radius_m);
+  w.movers(each<wire::Mover>(m.movers, mover));
+  return w;
+}
+
+wire::FormationStatus to_wire(const mission::FormationStatus& m) {
+  wire::FormationStatus w;
+  w.version(wire::kVersion);
+  w.vehicle(m.vehicle.value);
+  w.change(m.progress.change);
+  w.progress_at_ns(ns(m.progress.at));
+  w.progress(m.progress.done);
+  w.rate(m.progress.rate);
+  w.off_m(m.progress.off_m);
+  w.position(point3(m.position_m));
+  w.reference(point3(m.reference_m));
+  w.at_rest(m.at_rest);
   return w;
 }
 

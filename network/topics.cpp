@@ -25,6 +25,8 @@ struct TopicOf {
   Topic operator()(const mission::Command&) const { return Topic::command; }
   Topic operator()(const mission::SiteReport&) const { return Topic::site_report; }
   Topic operator()(const mission::HazardReport&) const { return Topic::hazard_report; }
+  Topic operator()(const formation::Change&) const { return Topic::formation_change; }
+  Topic operator()(const mission::FormationStatus&) const { return Topic::formation_status; }
 };
 
 std::string_view words(Roles roles) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "skein/mission/messages.hpp"
+#include "skein/wire/formation.h"
 #include "skein/wire/mission.h"
 
 /// Between the messages of core and the generated types of idl/.
@@ -15,6 +16,8 @@ namespace skein::network {
 [[nodiscard]] wire::Command to_wire(const mission::Command& m);
 [[nodiscard]] wire::SiteReport to_wire(const mission::SiteReport& m);
 [[nodiscard]] wire::HazardReport to_wire(const mission::HazardReport& m);
+[[nodiscard]] wire::FormationChange to_wire(const formation::Change& m);
+[[nodiscard]] wire::FormationStatus to_wire(const mission::FormationStatus& m);
 
 /// Each sets `ok` to false, and is then of no use, where a field is out of its range.
 [[nodiscard]] mission::Message from_wire(const wire::CoalitionMessage& w, bool& ok);
@@ -25,5 +28,7 @@ namespace skein::network {
 [[nodiscard]] mission::Message from_wire(const wire::Command& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::SiteReport& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::HazardReport& w, bool& ok);
+[[nodiscard]] mission::Message from_wire(const wire::FormationChange& w, bool& ok);
+[[nodiscard]] mission::Message from_wire(const wire::FormationStatus& w, bool& ok);
 
 }  // namespace skein::network

@@ -11,14 +11,14 @@
 
 namespace skein::onboard {
 
-AgentLoop::AgentLoop(const mission::VehicleAgentConfig& config, AgentLink link,
+AgentLoop::AgentLoop(std::unique_ptr<mission::OnboardAgent> agent, VehicleId self, AgentLink link,
                      ControlPorts& control, Planner& planner, EventRing& events, Instant now)
-    : agent_{config, now},
+    : agent_{std::move(agent)},
       link_{std::move(link)},
       control_{&control},
       planner_{&planner},
       events_{&events},
-      self_{config.vehicle.id},
+      self_{self},
       stepped_at_{now},
       next_telemetry_{now} {}
 
@@ -29,7 +29,7 @@ void AgentLoop::step(Instant now) {
     state_ = *newer;
     has_state_ = true;
     if (flying && state_.time >= Instant{}) {
-      agent_.on_state(state_, now);
+      agent_->on_state(state_, now);
       hand_out();
     }
   }
@@ -37,11 +37,11 @@ void AgentLoop::step(Instant now) {
     const auto received = link_.receive();
     if (!received) break;
     if (const auto* command = std::get_if<mission::Command>(&received->message)) pass_on(*command);
-    agent_.on_message(received->message, received->sender, now);
+    agent_->on_message(received->message, received->sender, now);
     hand_out();
   }
   while (const auto result = planner_->result()) {
-    agent_.on_planning_result(*result, now);
+    agent_->on_planning_result(*result, now);
     hand_out();
   }
   if (link_.flight_event) {
@@ -51,17 +51,18 @@ void AgentLoop::step(Instant now) {
     }
   }
   if (flying) {
-    agent_.on_timeout(now);
+    agent_->on_timeout(now);
     hand_out();
   }
   send_telemetry(now);
 }
 
 void AgentLoop::hand_out() {
-  while (const auto plan = agent_.poll_plan()) control_->plan.write(*plan);
-  while (const auto message = agent_.poll_message()) link_.send(*message);
-  while (auto request = agent_.poll_planning_request()) planner_->request(std::move(*request));
-  while (auto event = agent_.poll_event()) report(std::move(*event));
+  while (const auto plan = agent_->poll_plan()) control_->plan.write(*plan);
+  while (const auto track = agent_->poll_track()) control_->motion.write(*track);
+  while (const auto message = agent_->poll_message()) link_.send(*message);
+  while (auto request = agent_->poll_planning_request()) planner_->request(std::move(*request));
+  while (auto event = agent_->poll_event()) report(std::move(*event));
 }
 
 void AgentLoop::report(mission::MissionEvent event) {
@@ -80,18 +81,18 @@ void AgentLoop::pass_on(const mission::Command& command) {
 void AgentLoop::send_telemetry(Instant now) {
   if (now < next_telemetry_ || !has_state_) return;
   next_telemetry_ = Instant{(now.time_since_epoch() / kTelemetryPeriod + 1) * kTelemetryPeriod};
-  mission::Telemetry telemetry = agent_.telemetry();
+  mission::Telemetry telemetry = agent_->telemetry();
   telemetry.state = state_;
   telemetry.control_overruns = control_->overruns.load(std::memory_order_relaxed);
   std::uint64_t dropped = link_.dropped() + events_->dropped() + planner_->dropped();
-  for (const auto& [name, count] : agent_.counters()) dropped += count;
+  for (const auto& [name, count] : agent_->counters()) dropped += count;
   telemetry.messages_dropped = static_cast<std::uint32_t>(dropped);
   link_.send(mission::Message{telemetry});
 }
 
 Instant AgentLoop::next_step() const {
   const Instant period = stepped_at_ + spec_of(ThreadRole::agent).period;
-  const Instant next = std::min({period, next_telemetry_, agent_.next_timeout()});
+  const Instant next = std::min({period, next_telemetry_, agent_->next_timeout()});
   return std::max(next, stepped_at_ + kStepSpacing);
 }
 

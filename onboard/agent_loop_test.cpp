@@ -5,10 +5,12 @@
 
 #include <deque>
 #include <limits>
+#include <memory>
 #include <semaphore>
 #include <thread>
 #include <vector>
 
+#include "skein/mission/vehicle_agent.hpp"
 #include "skein/onboard/threads.hpp"
 
 namespace skein::onboard {
@@ -28,6 +30,10 @@ mission::VehicleAgentConfig config() {
   c.instance = {99};
   c.search = {{3000.0, 0.0}};
   return c;
+}
+
+std::unique_ptr<mission::OnboardAgent> agent() {
+  return std::make_unique<mission::VehicleAgent>(config(), at_seconds(-5.0));
 }
 
 struct Cabin {
@@ -60,7 +66,7 @@ struct Cabin {
   ControlPorts control;
   Planner planner{[] {}};
   EventRing events;
-  AgentLoop loop{config(), link(), control, planner, events, at_seconds(-5.0)};
+  AgentLoop loop{agent(), {4}, link(), control, planner, events, at_seconds(-5.0)};
 };
 
 TEST(AgentLoop, IsOnTheNetworkBeforeTheMissionButDoesNotFly) {
@@ -107,7 +113,7 @@ TEST(AgentLoop, PassesTheOperatorsCommandsOnOnceEachAndAsTheyWere) {
   std::vector<mission::Command> heard;
   AgentLink link = cabin.link();
   link.on_command = [&heard](const mission::Command& command) { heard.push_back(command); };
-  AgentLoop loop{config(), link, cabin.control, cabin.planner, cabin.events, at_seconds(-5.0)};
+  AgentLoop loop{agent(), {4}, link, cabin.control, cabin.planner, cabin.events, at_seconds(-5.0)};
   using mission::CommandKind;
   for (const auto& command : {mission::Command{{4}, 10, CommandKind::give_back},
                               mission::Command{{4}, 10, CommandKind::give_back},

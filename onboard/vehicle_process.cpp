@@ -13,6 +13,8 @@
 #include "skein/can/bus.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
+#include "skein/mission/formation_agent.hpp"
+#include "skein/mission/vehicle_agent.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
@@ -79,7 +81,7 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
     return made;
   }
   const auto& wind = config.flight_controller.wind;
-  if (config.flight_controller.airframe == configuration::AirframeKind::copter) {
+  if (config.flight_controller.is_multirotor()) {
     hal::SimulatedMultirotorParams params;
     params.start = {config.start.x_m, config.start.y_m, 0.0};
     params.yaw_rad = config.start.heading_rad;
@@ -97,8 +99,20 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
   return made;
 }
 
-mission::VehicleAgentConfig agent_config(const configuration::VehicleConfig& config,
-                                         InstanceId instance) {
+std::unique_ptr<mission::OnboardAgent> formation_agent(const configuration::VehicleConfig& config,
+                                                       InstanceId instance, Instant now) {
+  mission::FormationAgentConfig agent;
+  agent.vehicle = config.vehicle.id;
+  agent.instance = instance;
+  agent.limits = config.formation.limits;
+  agent.passage.tolerance_m = config.formation.tracking_m;
+  return std::make_unique<mission::FormationAgent>(agent, now);
+}
+
+/// A multirotor flies in formation, a fixed wing in coalitions.
+std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleConfig& config,
+                                                  InstanceId instance, Instant now) {
+  if (config.flight_controller.is_multirotor()) return formation_agent(config, instance, now);
   mission::VehicleAgentConfig agent;
   agent.vehicle = config.vehicle;
   agent.instance = instance;
@@ -106,7 +120,7 @@ mission::VehicleAgentConfig agent_config(const configuration::VehicleConfig& con
   agent.planning = config.planning;
   agent.search = config.search;
   agent.hazards = config.hazards;
-  return agent;
+  return std::make_unique<mission::VehicleAgent>(agent, now);
 }
 
 AgentLink link_to(network::Node& node) {
@@ -158,7 +172,8 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{agent_config(config, instance),
+        agent_{make_agent(config, instance, clock.now()),
+               config.vehicle.id,
                link_to(node, flight_controllers_.on_can, config.vehicle.id),
                ports_,
                planner_,

@@ -229,12 +229,13 @@ double ChangeMotion::least_between(const Leg& first, const Leg& second, double f
 
 bool valid(const Change& change) {
   const auto good = [](double number) { return std::isfinite(number) && number > 0.0; };
-  if (change.stages == 0 || change.movers.empty()) return false;
+  if (change.stages == 0 || change.stages > kStagesMax || change.movers.empty()) return false;
   if (!good(change.limits.speed_mps) || !good(change.limits.acceleration_mps2) ||
       !good(change.limits.jerk_mps3) || !good(change.separation.horizontal_m) ||
       !good(change.separation.vertical_m)) {
     return false;
   }
+  if (change.limits.speed_mps > kStopWithin_s * change.limits.acceleration_mps2) return false;
   if (change.roundabout &&
       (!good(change.roundabout->radius_m) || !change.roundabout->centre.allFinite())) {
     return false;

@@ -48,7 +48,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
   const double slot_s = to_seconds(kSlot);
   const double slots_to_stop =
       std::ceil(change.limits.speed_mps / (change.limits.acceleration_mps2 * slot_s));
-  full_ = static_cast<std::uint16_t>(std::clamp(slots_to_stop, 1.0, 2000.0));
+  full_ = static_cast<std::uint16_t>(std::max(slots_to_stop, 1.0));
   grain_s_ = slot_s / (2.0 * full_);
   end_ = static_cast<Grains>(std::ceil(to_seconds(motion_.duration()) / grain_s_));
   clock_error_ = static_cast<Grains>(std::ceil(to_seconds(params.clock_error) / grain_s_));
@@ -213,7 +213,7 @@ Progress Passage::progress() const {
           .rate = static_cast<std::uint16_t>(finished() ? 0 : next_rate_)};
 }
 
-Passage::Reference Passage::reference(Instant now) const {
+MotionTrack::Moment Passage::reference(Instant now) const {
   const double t =
       std::clamp(to_seconds(now - Instant{kSlot * slot_}) / to_seconds(kSlot), 0.0, 1.0);
   const auto begin = static_cast<double>(rate_);
@@ -225,6 +225,28 @@ Passage::Reference Passage::reference(Instant now) const {
   const auto point = motion_.at(self_, from_seconds(plan_s));
   return {point.position_m, rate * point.velocity_mps,
           rate * rate * point.acceleration_mps2 + gain * point.velocity_mps};
+}
+
+MotionTrack Passage::track() const {
+  MotionTrack track;
+  track.number = number_;
+  track.start = Instant{kSlot * slot_};
+  const Future future{done_, rate_, next_rate_};
+  const std::int64_t last =
+      std::min<std::int64_t>(future.stops_after(), MotionTrack::kPointsMax - 1);
+  for (std::int64_t slot = 0; slot <= last; ++slot) {
+    const Grains rate = slot == 0 ? rate_ : next_rate_ - (slot - 1);
+    const Grains done = future.at(slot);
+    const auto point = motion_.at(self_, from_seconds(seconds(std::min(done, end_))));
+    const double pace = done < end_ ? static_cast<double>(rate) / full_ : 0.0;
+    auto& out = track.points.at(static_cast<std::size_t>(slot));
+    for (int axis = 0; axis < 3; ++axis) {
+      out.position_m.at(static_cast<std::size_t>(axis)) = point.position_m[axis];
+      out.velocity_mps.at(static_cast<std::size_t>(axis)) = pace * point.velocity_mps[axis];
+    }
+  }
+  track.count = static_cast<std::uint16_t>(last + 1);
+  return track;
 }
 
 Duration Passage::delay(Instant now) const {

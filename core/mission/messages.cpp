@@ -6,15 +6,16 @@
 namespace skein::mission {
 
 std::string_view to_string(Activity activity) {
-  static constexpr std::array<std::string_view, 7> kNames{
-      "searching", "surveying", "leading", "bidding", "executing", "monitoring", "holding"};
+  static constexpr std::array<std::string_view, 8> kNames{"searching", "surveying", "leading",
+                                                          "bidding",   "executing", "monitoring",
+                                                          "holding",   "forming"};
   static_assert(kNames.size() == static_cast<std::size_t>(Activity::count));
   const auto i = static_cast<std::size_t>(activity);
   return i < kNames.size() ? kNames[i] : "unknown";
 }
 
 std::string_view to_string(EventKind kind) {
-  static constexpr std::array<std::string_view, 30> kNames{"site_detected",
+  static constexpr std::array<std::string_view, 34> kNames{"site_detected",
                                                            "survey_started",
                                                            "survey_done",
                                                            "announced",
@@ -43,6 +44,10 @@ std::string_view to_string(EventKind kind) {
                                                            "monitoring",
                                                            "leader_replaced",
                                                            "site_done",
+                                                           "change_begun",
+                                                           "place_reached",
+                                                           "formation_held",
+                                                           "script_done",
                                                            "warning"};
   static_assert(kNames.size() == static_cast<std::size_t>(EventKind::count));
   const auto i = static_cast<std::size_t>(kind);

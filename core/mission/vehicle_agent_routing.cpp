@@ -61,7 +61,8 @@ void VehicleAgent::Impl::on_message(const Message& message, VehicleId /*sender*/
                                  "another vehicle uses this id; this one bids and leads no more",
                                  now);
                         },
-                        [](const AuthorisationRequest&) {}, [](const MissionEvent&) {}},
+                        [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
+                        [](const formation::Change&) {}, [](const FormationStatus&) {}},
              message);
   step(now);
 }

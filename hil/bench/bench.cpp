@@ -186,7 +186,7 @@ class Bench {
       say({});
     }
     outcome_.ended_at = progress_.now;
-    outcome_.sites_finished = sites_done_.size() == scenario_.sites.size();
+    outcome_.finished = mission_done();
     outcome_.interrupted = g_interrupted != 0;
     return stop();
   }
@@ -267,6 +267,7 @@ class Bench {
             sites_done_.insert(event->task.site).second) {
           progress_.sites_done = sites_done_.size();
         }
+        script_done_ = script_done_ || event->kind == mission::EventKind::script_done;
         news(*event);
       }
     }
@@ -368,10 +369,15 @@ class Bench {
     }
   }
 
+  [[nodiscard]] bool mission_done() const {
+    return scenario_.flies_formation() ? script_done_
+                                       : sites_done_.size() == scenario_.sites.size();
+  }
+
   [[nodiscard]] bool finished() {
     if (g_interrupted != 0 || !outcome_.deaths.empty()) return true;
     if (progress_.now >= Instant{} + scenario_.duration_max) return true;
-    if (sites_done_.size() < scenario_.sites.size()) return false;
+    if (!mission_done()) return false;
     if (!stop_at_) stop_at_ = progress_.now + kAfterwards;
     return progress_.now >= *stop_at_;
   }
@@ -413,6 +419,9 @@ class Bench {
       case EventKind::authorisation_requested:
       case EventKind::authorisation_late:
       case EventKind::site_done:
+      case EventKind::change_begun:
+      case EventKind::formation_held:
+      case EventKind::script_done:
       case EventKind::task_failed:
       case EventKind::warning:
         break;
@@ -424,6 +433,7 @@ class Bench {
     if (event.task.site != SiteId{}) line += ", site " + std::to_string(event.task.site.value);
     if (event.kind == EventKind::coalition_formed)
       line += ", " + std::to_string(std::lround(event.value)) + " vehicles";
+    if (event.kind == EventKind::change_begun && event.vehicle != kGroundStation) return;
     if (!event.text.empty()) line += ": " + event.text;
     say(line);
   }
@@ -458,6 +468,7 @@ class Bench {
   steady_clock::time_point epoch_;
   std::map<VehicleId, mission::Telemetry> last_;
   std::set<SiteId> sites_done_;
+  bool script_done_ = false;  ///< of a formation
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;

@@ -8,6 +8,7 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
+#include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 
 namespace skein::configuration {
@@ -20,6 +21,7 @@ struct GroundConfig {
   std::vector<VehicleId> vehicles;  ///< the fleet that is expected
   /// Empty: the operator types at the prompt.
   std::vector<OperatorDecision> operator_decisions;
+  FormationConfig formation;
   std::string recording_folder;  ///< empty: nothing is recorded
 };
 

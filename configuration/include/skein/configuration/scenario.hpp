@@ -77,6 +77,8 @@ struct Expectations {
   double bearing_error_rad = radians(5.0);
   double miss_distance_m = 30.0;  ///< horizontal, passing over the site
   double assess_start_error_s = 1.0;
+  double place_rms_m = 0.3;                 ///< of any vehicle while a formation holds
+  double arrival_spread_s = 0.3;            ///< from the first vehicle in its place to the last
   double separation_horizontal_m = 20.0;    ///< two vehicles closer than this ...
   double separation_vertical_m = 5.0;       ///< ... are at least that far apart in height
   int coalitions = 0;                       ///< that form and finish
@@ -99,10 +101,16 @@ struct Scenario {
   std::vector<Site> sites;
   std::vector<ScenarioHazard> hazards;
   std::vector<OperatorDecision> operator_decisions;
+  FormationConfig formation;
   std::vector<Fault> faults;
   std::vector<ReferenceSite> reference;
   Expectations expect;
+
+  /// Multirotors, by orders of the ground station.
+  [[nodiscard]] bool flies_formation() const;
 };
+
+[[nodiscard]] bool is_multirotor(const ScenarioVehicle& vehicle);
 
 /// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
 /// Call check() too: it finds what is well written and cannot be flown.

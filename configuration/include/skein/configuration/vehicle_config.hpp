@@ -12,6 +12,7 @@
 #include "skein/base/geometry.hpp"
 #include "skein/base/result.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -50,6 +51,7 @@ struct FlightControllerConfig {
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
 
+  [[nodiscard]] bool is_multirotor() const { return airframe == AirframeKind::copter; }
   [[nodiscard]] double turn_lead_s() const {
     return kind == FlightControllerKind::ardupilot ? ardupilot.turn_lead_s : 0.0;
   }
@@ -66,6 +68,7 @@ struct VehicleConfig {
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
   std::vector<Hazard> hazards;  ///< known before the mission
+  FormationConfig formation;    ///< of a multirotor
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded
   std::uint64_t seed = 1;

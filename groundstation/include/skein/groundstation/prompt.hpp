@@ -7,12 +7,13 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
+#include "skein/mission/formation_ground.hpp"
 #include "skein/mission/messages.hpp"
 
 /// What the operator can type.
 namespace skein::groundstation {
 
-enum class View { help, status, sites, pending };
+enum class View { help, status, sites, pending, places };
 /// The operator's decision on the deliveries at a site.
 struct Decision {
   SiteId site;
@@ -23,9 +24,22 @@ struct Order {
   VehicleId vehicle;
   mission::CommandKind kind = mission::CommandKind::hold;
 };
+/// To the formation. A free shape has its name or file, and no points yet.
+struct Formation {
+  mission::FormationOrder order;
+  std::string shape;         ///< of a free shape
+  bool preview = false;      ///< only show what it would do
+  bool has_centre = false;   ///< otherwise where the formation is
+  bool has_spacing = false;  ///< otherwise the rally's
+  bool has_heading = false;  ///< otherwise the rally's
+};
+/// Of a script: the formation stays so long before the next order.
+struct Wait {
+  Duration duration{};
+};
 struct Quit {};
 /// monostate: an empty line.
-using Input = std::variant<std::monostate, View, Decision, Order, Quit>;
+using Input = std::variant<std::monostate, View, Decision, Order, Formation, Wait, Quit>;
 
 /// Fails with what is wrong and what would be right.
 [[nodiscard]] Result<Input> parse_input(std::string_view line);

@@ -23,6 +23,8 @@ enum class Topic : std::uint8_t {
   command,
   site_report,
   hazard_report,
+  formation_change,
+  formation_status,
   count
 };
 inline constexpr std::size_t kTopicCount = static_cast<std::size_t>(Topic::count);
@@ -62,13 +64,13 @@ inline constexpr Duration kHeartbeatPeriod = std::chrono::milliseconds{100};
 inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
     {Topic::telemetry, "skein/telemetry", "skein::wire::Telemetry", kVehicles, kAll, false, 1, 64,
      Duration{}},
-    {Topic::coalition, "skein/coalition", "skein::wire::CoalitionMessage", kAll, kAll, true,
-     64, 256, kHeartbeatPeriod},
+    {Topic::coalition, "skein/coalition", "skein::wire::CoalitionMessage", kAll, kAll, true, 64,
+     256, kHeartbeatPeriod},
     {Topic::authorisation_request, "skein/authorisation_request",
      "skein::wire::AuthorisationRequest", kVehicles, kGround, true, 16, 64, kHeartbeatPeriod},
     {Topic::authorisation, "skein/authorisation", "skein::wire::Authorisation", kGround, kVehicles,
      true, 16, 64, kHeartbeatPeriod},
-    {Topic::mission_event, "skein/mission_event", "skein::wire::MissionEvent", kVehicles, kGround,
+    {Topic::mission_event, "skein/mission_event", "skein::wire::MissionEvent", kAll, kGround,
      true, 128, 256, kHeartbeatPeriod},
     {Topic::command, "skein/command", "skein::wire::Command", kGround, kVehicles, true, 16, 64,
      kHeartbeatPeriod},
@@ -76,6 +78,10 @@ inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
      kHeartbeatPeriod},
     {Topic::hazard_report, "skein/hazard_report", "skein::wire::HazardReport", kAll, kAll, true, 32,
      64, kHeartbeatPeriod},
+    {Topic::formation_change, "skein/formation_change", "skein::wire::FormationChange", kGround,
+     kVehicles, true, 4, 4, kHeartbeatPeriod},
+    {Topic::formation_status, "skein/formation_status", "skein::wire::FormationStatus", kVehicles,
+     kAll, false, 1, 64, Duration{}},
 }};
 
 [[nodiscard]] constexpr const TopicInfo& info(Topic topic) {

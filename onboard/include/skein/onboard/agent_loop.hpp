@@ -3,10 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "skein/base/time.hpp"
-#include "skein/mission/vehicle_agent.hpp"
+#include "skein/mission/onboard_agent.hpp"
 #include "skein/onboard/control_loop.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/spsc_ring.hpp"
@@ -44,13 +45,13 @@ class AgentLoop {
   static constexpr int kMessagesPerStep = 256;
 
   /// All references must outlive this object.
-  AgentLoop(const mission::VehicleAgentConfig& config, AgentLink link, ControlPorts& control,
-            Planner& planner, EventRing& events, Instant now);
+  AgentLoop(std::unique_ptr<mission::OnboardAgent> agent, VehicleId self, AgentLink link,
+            ControlPorts& control, Planner& planner, EventRing& events, Instant now);
 
   void step(Instant now);
   /// When step() wants to be called again, at the latest; kStepSpacing from the last one or later.
   [[nodiscard]] Instant next_step() const;
-  [[nodiscard]] const mission::VehicleAgent& agent() const { return agent_; }
+  [[nodiscard]] const mission::OnboardAgent& agent() const { return *agent_; }
 
  private:
   void hand_out();
@@ -58,7 +59,7 @@ class AgentLoop {
   void pass_on(const mission::Command& command);
   void send_telemetry(Instant now);
 
-  mission::VehicleAgent agent_;
+  std::unique_ptr<mission::OnboardAgent> agent_;
   AgentLink link_;
   ControlPorts* control_;
   Planner* planner_;

@@ -7,7 +7,7 @@
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/hal/flight_controller.hpp"
-#include "skein/mission/vehicle_agent.hpp"
+#include "skein/mission/onboard_agent.hpp"
 #include "skein/onboard/latest_value.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 #include "skein/planning/path_follower.hpp"
@@ -17,7 +17,8 @@ namespace skein::onboard {
 
 /// What control shares with the other threads. Every slot and ring has one writer and one reader.
 struct ControlPorts {
-  LatestValue<mission::FlightPlan> plan;  ///< agent to control
+  LatestValue<mission::FlightPlan> plan;  ///< agent to control, of a fixed wing
+  LatestValue<MotionTrack> motion;        ///< the same, of a multirotor
   LatestValue<VehicleState> state;        ///< control to agent
   /// Control to recorder: how it flies, 20 times a second from mission time 0, and every plan at
   /// the moment that it is first followed.
@@ -65,6 +66,8 @@ class ControlLoop {
   ControlPorts* ports_;
   mission::FlightPlan plan_;
   bool has_plan_ = false;
+  MotionTrack motion_;
+  bool has_motion_ = false;
   Instant next_track_{};
   Instant recorded_ = Instant::min();
 };

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "skein/mission/vehicle_agent.hpp"
+#include "skein/mission/onboard_agent.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 #include "skein/process/wake.hpp"
 

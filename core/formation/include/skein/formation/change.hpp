@@ -104,8 +104,14 @@ class ChangeMotion {
   Duration duration_{};
 };
 
+inline constexpr std::size_t kMoversMax = 128;  ///< that a message can carry
+inline constexpr std::size_t kStagesMax = 3;
+/// From full speed at the full acceleration: what a MotionTrack has room for.
+inline constexpr double kStopWithin_s = 6.0;
+
 /// That a change from outside can be flown at all: finite numbers, points for every stage, legs
-/// that go around start and end outside the rim, limits above 0, no vehicle twice.
+/// that go around start and end outside the rim, limits above 0 that stop within kStopWithin_s, no
+/// vehicle twice, at most kStagesMax stages.
 [[nodiscard]] bool valid(const Change& change);
 
 }  // namespace skein::formation

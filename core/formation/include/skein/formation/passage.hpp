@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "skein/base/time.hpp"
+#include "skein/domain/motion_track.hpp"
 #include "skein/formation/change.hpp"
 
 namespace skein::formation {
 
 /// Progress is decided anew at every multiple of it in mission time.
-inline constexpr Duration kSlot = std::chrono::milliseconds{50};
+inline constexpr Duration kSlot = MotionTrack::kStep;
 
 /// How far a vehicle is in its change, in grains of plan time (Passage::grain()).
 struct Progress {
@@ -45,12 +46,6 @@ struct PassageParams {
 /// Deterministic; step() and reference() allocate nothing.
 class Passage {
  public:
-  struct Reference {
-    Vec3 position_m{0.0, 0.0, 0.0};
-    Vec3 velocity_mps{0.0, 0.0, 0.0};
-    Vec3 acceleration_mps2{0.0, 0.0, 0.0};
-  };
-
   Passage() = default;
   /// Precondition: valid(change), self < movers.
   Passage(const Change& change, std::size_t self, const PassageParams& params, Instant now);
@@ -68,7 +63,9 @@ class Passage {
   /// To be told to the others, with Progress::off_m filled in.
   [[nodiscard]] Progress progress() const;
   /// At a moment of the slot that step() has reached.
-  [[nodiscard]] Reference reference(Instant now) const;
+  [[nodiscard]] MotionTrack::Moment reference(Instant now) const;
+  /// From the slot that step() has reached on: as decided, then braking.
+  [[nodiscard]] MotionTrack track() const;
 
   [[nodiscard]] bool finished() const { return done_ >= end_; }
   [[nodiscard]] bool at_rest() const { return finished() || (rate_ == 0 && next_rate_ == 0); }

@@ -13,6 +13,8 @@
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/formation/change.hpp"
+#include "skein/formation/passage.hpp"
 
 /// What crosses the mission network besides the coalition's own messages.
 namespace skein::mission {
@@ -26,6 +28,7 @@ enum class Activity : std::uint8_t {
   executing,
   monitoring,
   holding,
+  forming,  ///< on its way to a place in a formation
   count
 };
 [[nodiscard]] std::string_view to_string(Activity activity);
@@ -95,6 +98,10 @@ enum class EventKind : std::uint8_t {
   monitoring,
   leader_replaced,
   site_done,
+  change_begun,    ///< of a formation; value: its number
+  place_reached,   ///< by a vehicle; value: the change's number
+  formation_held,  ///< all are in their places; value: seconds from the first there to the last
+  script_done,     ///< the ground station's orders are all flown
   warning,
   count
 };
@@ -146,7 +153,18 @@ struct HazardReport {
   Hazard hazard;
 };
 
-using Message = std::variant<coalition::Message, Telemetry, AuthorisationRequest, Authorisation,
-                             MissionEvent, Command, SiteReport, HazardReport>;
+/// Where a vehicle of a formation is, and how far in its change. Best effort, every slot or so
+/// (formation::kSlot): the others keep clear of it by what they have heard last.
+struct FormationStatus {
+  VehicleId vehicle;
+  formation::Progress progress;  ///< of change 0 while it has been given none
+  Vec3 position_m = Vec3::Zero();
+  Vec3 reference_m = Vec3::Zero();  ///< where it is to be; its position before the first change
+  bool at_rest = true;
+};
+
+using Message =
+    std::variant<coalition::Message, Telemetry, AuthorisationRequest, Authorisation, MissionEvent,
+                 Command, SiteReport, HazardReport, formation::Change, FormationStatus>;
 
 }  // namespace skein::mission

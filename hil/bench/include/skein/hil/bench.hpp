@@ -41,7 +41,7 @@ struct BenchProgress {
 
 /// What happened on the bench besides what the processes recorded.
 struct BenchOutcome {
-  bool sites_finished = false;
+  bool finished = false;               ///< all sites done, or the script of a formation
   Instant ended_at{};                  ///< mission time
   std::optional<double> all_heard_s;   ///< real seconds from the first start until all were heard
   std::vector<VehicleId> killed;       ///< on purpose, by the scenario's faults

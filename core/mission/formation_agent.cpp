@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/formation_agent.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace skein::mission {
+namespace {
+
+using formation::Change;
+
+/// An index into movers; its size where the vehicle is not among them.
+std::size_t index_of(const Change& change, VehicleId vehicle) {
+  const auto& movers = change.movers;
+  const auto found = std::find_if(movers.begin(), movers.end(), [vehicle](const auto& mover) {
+    return mover.vehicle == vehicle;
+  });
+  return static_cast<std::size_t>(found - movers.begin());
+}
+
+Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m}; }
+
+Instant slot_after(Instant t, Duration period) {
+  return Instant{(t.time_since_epoch() / period + 1) * period};
+}
+
+}  // namespace
+
+FormationAgent::FormationAgent(const FormationAgentConfig& config, Instant now)
+    : config_{config}, next_slot_{now}, next_status_{now} {}
+
+void FormationAgent::on_state(const VehicleState& state, Instant now) {
+  state_ = state;
+  on_timeout(now);
+}
+
+void FormationAgent::on_message(const Message& message, VehicleId sender, Instant now) {
+  if (const auto* change = std::get_if<Change>(&message)) {
+    if (sender == kGroundStation) on_change(*change, now);
+  } else if (const auto* status = std::get_if<FormationStatus>(&message)) {
+    if (status->vehicle == sender) on_status(*status, now);
+  } else if (const auto* command = std::get_if<Command>(&message)) {
+    if (sender == kGroundStation) on_command(*command);
+  }
+}
+
+void FormationAgent::on_change(const Change& change, Instant now) {
+  const std::uint32_t known = change_ ? change_->number : 0;
+  if (change.number <= known || change.number == refused_ || !state_) return;
+  if (!valid(change)) {
+    ++bad_changes_;
+    return;
+  }
+  const std::size_t self = index_of(change, config_.vehicle);
+  if (self == change.movers.size()) return;
+  if (const auto why = why_not(change, self)) {
+    refused_ = change.number;
+    report(EventKind::warning, 0.0,
+           "change " + std::to_string(change.number) + " is not flown: " + *why, now);
+    return;
+  }
+  change_ = change;
+  passage_ = formation::Passage{change, self, config_.passage, now};
+  passage_.hold(held_);
+  arrived_ = false;
+  report(EventKind::change_begun, change.number, "", now);
+  step(now);
+}
+
+std::optional<std::string> FormationAgent::why_not(const Change& change, std::size_t self) const {
+  if (change_ && !passage_.at_rest()) return "the one before is still flown";
+  const auto& limits = change.limits;
+  if (limits.speed_mps > config_.limits.speed_mps ||
+      limits.acceleration_mps2 > config_.limits.acceleration_mps2) {
+    return "it is faster than this vehicle";
+  }
+  const Vec3 from = change_ ? passage_.reference(next_slot_).position_m : here(*state_);
+  const Vec3 apart = from - change.movers[self].points.front();
+  if (apart.norm() > config_.start_tolerance_m) return "it begins somewhere else";
+  return std::nullopt;
+}
+
+void FormationAgent::on_status(const FormationStatus& status, Instant now) {
+  if (!change_) return;
+  const std::size_t mover = index_of(*change_, status.vehicle);
+  if (mover == change_->movers.size()) return;
+  if (status.progress.change == change_->number) {
+    passage_.on_progress(mover, status.progress);
+  } else if (status.progress.change < change_->number) {
+    // It has not taken up the change, and stays where it is: perhaps not where the change begins.
+    const Vec3 from = change_->movers[mover].points.front();
+    passage_.on_progress(mover,
+                         {.change = change_->number,
+                          .at = now,
+                          .off_m = (status.reference_m - from).norm() + status.progress.off_m});
+  }
+}
+
+void FormationAgent::on_command(const Command& command) {
+  const bool ours = command.vehicle == config_.vehicle || command.vehicle == kGroundStation;
+  if (!ours || command.number <= command_number_) return;
+  command_number_ = command.number;
+  if (command.kind == CommandKind::hold) held_ = true;
+  if (command.kind == CommandKind::resume) held_ = false;
+  passage_.hold(held_);
+}
+
+void FormationAgent::on_timeout(Instant now) {
+  if (now >= next_slot_) step(now);
+}
+
+double FormationAgent::off_m(Instant now) const {
+  if (!change_ || !state_) return 0.0;
+  // Where it was when the state was measured.
+  const Instant then = std::min(now, std::max(state_->time, now - formation::kSlot));
+  return (here(*state_) - passage_.reference(then).position_m).norm();
+}
+
+void FormationAgent::step(Instant now) {
+  next_slot_ = slot_after(now, formation::kSlot);
+  const double off = off_m(now);
+  if (change_) {
+    passage_.set_off(off);
+    passage_.step(now);
+    track_ = passage_.track();
+    if (!arrived_ && passage_.finished()) {
+      arrived_ = true;
+      report(EventKind::place_reached, change_->number, "", now);
+    }
+  }
+  if (!state_ || now < next_status_) return;
+  next_status_ = slot_after(now, config_.status_period);
+  FormationStatus status;
+  status.vehicle = config_.vehicle;
+  status.position_m = here(*state_);
+  status.reference_m = status.position_m;
+  if (change_) {
+    status.progress = passage_.progress();
+    status.reference_m = passage_.reference(now).position_m;
+    status.at_rest = passage_.at_rest();
+  }
+  status.progress.off_m = off;
+  messages_.push(status);
+}
+
+std::optional<MotionTrack> FormationAgent::poll_track() { return std::exchange(track_, {}); }
+
+Telemetry FormationAgent::telemetry() const {
+  Telemetry telemetry;
+  telemetry.vehicle = config_.vehicle;
+  telemetry.instance = config_.instance;
+  if (state_) telemetry.state = *state_;
+  const bool moving = change_ && !passage_.finished();
+  telemetry.activity = moving ? Activity::forming : Activity::holding;
+  telemetry.plan_number = change_ ? change_->number : 0;
+  return telemetry;
+}
+
+std::map<std::string, std::uint64_t> FormationAgent::counters() const {
+  return {{"bad_changes", bad_changes_},
+          {"messages_dropped", messages_.dropped()},
+          {"events_dropped", events_.dropped()}};
+}
+
+void FormationAgent::report(EventKind kind, double value, std::string text, Instant now) {
+  MissionEvent event;
+  event.vehicle = config_.vehicle;
+  event.time = now;
+  event.kind = kind;
+  event.value = value;
+  event.text = std::move(text);
+  events_.push(event);
+  messages_.push(std::move(event));
+}
+
+}  // namespace skein::mission

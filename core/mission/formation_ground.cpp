@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/formation_ground.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "skein/base/contains.hpp"
+
+namespace skein::mission {
+namespace {
+
+using formation::ChangeMotion;
+using formation::Transfer;
+
+constexpr Duration kRepeat = std::chrono::milliseconds{500};
+constexpr Duration kPeriod = std::chrono::milliseconds{100};
+/// At rest for so long without having arrived: nothing will move any more.
+constexpr Duration kStuck = std::chrono::seconds{2};
+/// Drift is what is left of gusts over so long.
+constexpr double kDriftTime_s = 5.0;
+constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
+constexpr double kTrimMax_m = 1.0;
+
+std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
+
+std::string names_of(const std::vector<VehicleId>& vehicles) {
+  std::string text;
+  for (const VehicleId vehicle : vehicles) {
+    if (!text.empty()) text += ", ";
+    text += std::to_string(vehicle.value);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string_view to_string(OrderKind kind) {
+  static constexpr std::array<std::string_view, 4> kNames{"take_off", "rally", "form", "land"};
+  static_assert(kNames.size() == static_cast<std::size_t>(OrderKind::count));
+  const auto i = static_cast<std::size_t>(kind);
+  return i < kNames.size() ? kNames[i] : "unknown";
+}
+
+FormationGround::FormationGround(const FormationGroundConfig& config, Instant now)
+    : config_{config}, next_{now} {}
+
+// --- orders --------------------------------------------------------------------------------------
+
+Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& order) const {
+  std::vector<Transfer> transfers;
+  for (const auto& [vehicle, member] : members_) {  // in the order of their numbers
+    if (member.lost) continue;
+    // A place is corrected for drift by its trim, and asked for without it.
+    transfers.push_back({vehicle, member.status.reference_m, member.status.reference_m});
+  }
+  if (transfers.empty()) return Error{"no vehicle is heard; is the team switched on and in range?"};
+  if (order.kind == OrderKind::take_off || order.kind == OrderKind::land) {
+    const double height = order.kind == OrderKind::take_off ? config_.rally.centre.z() : 0.0;
+    for (Transfer& transfer : transfers) transfer.to.z() = height;
+    return transfers;
+  }
+  const std::size_t wanted =
+      order.kind == OrderKind::form
+          ? std::min(order.places.value_or(transfers.size()), transfers.size())
+          : 0;
+  // The lowest numbers take the places.
+  const auto assign = [&](const formation::ShapeSpec& shape, std::size_t first,
+                          std::size_t count) -> Result<void> {
+    if (count == 0) return {};
+    const auto places = formation::places(shape, count);
+    if (!places) return places.error();
+    std::vector<Vec3> from;
+    for (std::size_t i = first; i < first + count; ++i) from.push_back(transfers[i].from);
+    const auto assigned =
+        formation::assign_places(config_.assignment, from, *places, Random{config_.seed + number_});
+    if (!assigned) return assigned.error();
+    for (std::size_t i = 0; i < count; ++i) {
+      transfers[first + i].to = (*places)[static_cast<std::size_t>(assigned->place_of[i])];
+    }
+    return {};
+  };
+  if (auto done = assign(order.shape, 0, wanted); !done) return done.error();
+  if (auto done = assign(config_.rally, wanted, transfers.size() - wanted); !done)
+    return done.error();
+  return transfers;
+}
+
+Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
+                                               std::vector<Transfer> transfers) const {
+  formation::ChangeRequest request;
+  request.transfers = std::move(transfers);
+  request.limits = config_.limits;
+  // References are so much further apart as both vehicles may be beside them.
+  request.separation = config_.separation;
+  request.separation.horizontal_m += 2.0 * config_.tracking_m;
+  request.separation.vertical_m += 2.0 * config_.tracking_m;
+  request.reserve_m = config_.reserve_m;
+  request.ceiling_m = config_.ceiling_m;
+  std::vector<VehicleId> lost;
+  for (const auto& [vehicle, member] : members_) {
+    if (!member.lost) continue;
+    lost.push_back(vehicle);
+    const Vec3 seen = member.status.reference_m;
+    request.keep_outs.push_back({vehicle, seen, goal_of(vehicle).value_or(seen)});
+  }
+  auto planned = formation::plan_change(request);
+  if (!planned) return planned.error();
+  return FormationPreview{order, std::move(*planned), std::move(lost)};
+}
+
+Result<FormationPreview> FormationGround::preview(const FormationOrder& order,
+                                                  Instant /*now*/) const {
+  if (moving()) return Error{"vehicles are still moving; wait until they are in place"};
+  auto wanted = transfers(order);
+  if (!wanted) return wanted.error();
+  return plan(order, std::move(*wanted));
+}
+
+Result<FormationPreview> FormationGround::command(const FormationOrder& order, Instant now) {
+  auto preview = this->preview(order, now);
+  if (!preview) return preview;
+  correcting_ = false;
+  for (auto& [vehicle, member] : members_) member.trim_m = Vec3::Zero();
+  begin(*preview, now);
+  return preview;
+}
+
+void FormationGround::begin(FormationPreview preview, Instant now) {
+  order_ = preview.order;
+  change_ = std::move(preview.planned.change);
+  // Above whatever a ground station before this one has sent.
+  number_ = std::max(number_ + 1, static_cast<std::uint32_t>(to_seconds(now) + 1.0));
+  for (const auto& [vehicle, member] : members_) {
+    number_ = std::max(number_, member.status.progress.change + 1);
+  }
+  change_->number = number_;
+  change_->start = now + config_.lead;
+  for (auto& [vehicle, member] : members_) member.arrived_at.reset();
+  give_again_ = false;
+  near_since_.reset();
+  held_since_.reset();
+  rest_since_.reset();
+  messages_.push(*change_);
+  send_next_ = now + kRepeat;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
+                std::string{to_string(preview.order.kind)}.c_str(),
+                std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
+                to_seconds(preview.planned.duration), preview.planned.least_separation_m);
+  report(EventKind::change_begun, kGroundStation, number_, text.data(), now);
+}
+
+// --- what is heard -------------------------------------------------------------------------------
+
+void FormationGround::on_message(const Message& message, VehicleId sender, Instant now) {
+  if (const auto* status = std::get_if<FormationStatus>(&message)) {
+    if (status->vehicle == sender && contains(config_.vehicles, sender)) on_status(*status, now);
+  }
+}
+
+std::optional<Vec3> FormationGround::goal_of(VehicleId vehicle) const {
+  if (!change_) return std::nullopt;
+  for (const auto& mover : change_->movers) {
+    if (mover.vehicle == vehicle) return mover.points.back();
+  }
+  return std::nullopt;
+}
+
+void FormationGround::on_status(const FormationStatus& status, Instant now) {
+  const auto [found, is_new] = members_.try_emplace(status.vehicle);
+  Member& member = found->second;
+  if (!is_new && member.lost) {
+    report(EventKind::warning, status.vehicle, 0.0,
+           name_of(status.vehicle) + " is heard again; the next order takes it along", now);
+  }
+  member.lost = false;
+  member.status = status;
+  member.heard_at = now;
+  const auto goal = goal_of(status.vehicle);
+  if (!goal || status.progress.change != number_) return;
+  member.place_error_m = (*goal - member.trim_m - status.position_m).norm();
+  // A first-order filter of kDriftTime_s over a status in every slot.
+  const double share = to_seconds(formation::kSlot) / kDriftTime_s;
+  member.drift_m += share * (*goal - member.trim_m - status.position_m - member.drift_m);
+  if (!member.arrived_at && member.place_error_m <= config_.place_tolerance_m && status.at_rest) {
+    member.arrived_at = status.progress.at;
+    member.drift_m = Vec3::Zero();
+  }
+}
+
+bool FormationGround::moving() const {
+  return std::any_of(members_.begin(), members_.end(), [this](const auto& entry) {
+    const Member& member = entry.second;
+    const bool begun = member.status.progress.change == number_ || !goal_of(entry.first);
+    return !member.lost && (!member.status.at_rest || !begun);
+  });
+}
+
+// --- what is due ---------------------------------------------------------------------------------
+
+void FormationGround::on_timeout(Instant now) {
+  if (now < next_) return;
+  next_ = now + kPeriod;
+  find_lost(now);
+  if (!change_) return;
+  const bool all_know = std::all_of(change_->movers.begin(), change_->movers.end(),
+                                    [this](const formation::Mover& mover) {
+                                      const auto found = members_.find(mover.vehicle);
+                                      return found == members_.end() || found->second.lost ||
+                                             found->second.status.progress.change >= number_;
+                                    });
+  if (!all_know && now >= send_next_) {
+    send_next_ = now + kRepeat;
+    messages_.push(*change_);
+  }
+  judge_places(now);
+  if (give_again_) give_again(now);
+  if (held_since_ && now - *held_since_ >= kDriftKnownAfter) correct_drift(now);
+}
+
+void FormationGround::find_lost(Instant now) {
+  for (auto& [vehicle, member] : members_) {
+    if (member.lost || now - member.heard_at < config_.silence) continue;
+    member.lost = true;
+    const bool on_way = change_ && !held_since_ && goal_of(vehicle);
+    give_again_ = give_again_ || on_way;
+    report(EventKind::warning, vehicle, 0.0,
+           name_of(vehicle) + " is silent: its way is kept clear" +
+               (on_way ? ", and the order is given again to the others once they rest" : ""),
+           now);
+  }
+}
+
+void FormationGround::give_again(Instant now) {
+  if (moving()) {
+    rest_since_.reset();
+    return;
+  }
+  if (!rest_since_) rest_since_ = now;
+  if (now - *rest_since_ < kStuck) return;
+  give_again_ = false;
+  auto again = preview(*order_, now);
+  if (!again) {
+    report(EventKind::warning, kGroundStation, 0.0,
+           "the order cannot be flown without the lost vehicle: " + again.error().message, now);
+    return;
+  }
+  begin(std::move(*again), now);
+}
+
+void FormationGround::judge_places(Instant now) {
+  std::optional<Instant> first;
+  std::optional<Instant> last;
+  for (const auto& mover : change_->movers) {
+    const auto found = members_.find(mover.vehicle);
+    if (found == members_.end() || found->second.lost) continue;
+    const Member& member = found->second;
+    if (!member.arrived_at || member.place_error_m > config_.place_tolerance_m) {
+      if (!held_since_) near_since_.reset();
+      return;
+    }
+    first = std::min(first.value_or(*member.arrived_at), *member.arrived_at);
+    last = std::max(last.value_or(*member.arrived_at), *member.arrived_at);
+  }
+  if (!first || held_since_) return;
+  if (!near_since_) near_since_ = now;
+  if (now - *near_since_ < config_.settle) return;
+  held_since_ = now;
+  if (correcting_) return;
+  report(EventKind::formation_held, kGroundStation, to_seconds(*last - *first), "", now);
+}
+
+void FormationGround::correct_drift(Instant now) {
+  const double allowed_m = config_.place_tolerance_m / 2.0;
+  std::vector<VehicleId> drifting;
+  std::vector<Transfer> transfers;
+  for (auto& [vehicle, member] : members_) {
+    if (member.lost) continue;
+    const auto goal = goal_of(vehicle);
+    if (!goal) return;  // it has come since: the next order places it
+    Transfer transfer{vehicle, *goal, *goal};
+    if (member.drift_m.norm() > allowed_m) {
+      drifting.push_back(vehicle);
+      Vec3 trim = member.trim_m + member.drift_m;
+      if (trim.norm() > kTrimMax_m) trim *= kTrimMax_m / trim.norm();
+      transfer.to += trim - member.trim_m;
+    }
+    transfers.push_back(transfer);
+  }
+  if (drifting.empty()) return;
+  held_since_ = now;  // again after as long
+  auto again = plan(*order_, transfers);
+  if (!again) return;
+  for (const Transfer& transfer : transfers) {
+    members_[transfer.vehicle].trim_m += transfer.to - transfer.from;
+    members_[transfer.vehicle].drift_m = Vec3::Zero();
+  }
+  correcting_ = true;
+  report(EventKind::warning, kGroundStation, 0.0, "corrected for drift: " + names_of(drifting),
+         now);
+  begin(std::move(*again), now);
+}
+
+void FormationGround::report(EventKind kind, VehicleId vehicle, double value, std::string text,
+                             Instant now) {
+  MissionEvent event;
+  event.vehicle = vehicle;
+  event.time = now;
+  event.kind = kind;
+  event.value = value;
+  event.text = std::move(text);
+  events_.push(std::move(event));
+}
+
+}  // namespace skein::mission

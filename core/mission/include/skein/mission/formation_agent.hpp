@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/formation/passage.hpp"
+#include "skein/mission/onboard_agent.hpp"
+
+namespace skein::mission {
+
+struct FormationAgentConfig {
+  VehicleId vehicle;
+  InstanceId instance;
+  formation::MotionLimits limits;  ///< of the vehicle; a change that asks for more is refused
+  formation::PassageParams passage{};
+  double start_tolerance_m = 0.5;  ///< a change must begin where the vehicle is, to this
+  Duration status_period = formation::kSlot;
+};
+
+/// All decisions of one multirotor in a formation. The ground station's changes say where to fly;
+/// when, is decided here in every slot, from what the others say of theirs (formation::Passage). A
+/// change is taken up at rest only, and only where the vehicle is. Whatever falls silent, ground or
+/// neighbours, separation holds: the vehicle goes on as far as it may, and waits there.
+class FormationAgent final : public OnboardAgent {
+ public:
+  FormationAgent(const FormationAgentConfig& config, Instant now);
+
+  void on_state(const VehicleState& state, Instant now) override;
+  void on_message(const Message& message, VehicleId sender, Instant now) override;
+  void on_timeout(Instant now) override;
+
+  [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
+  /// A new one in every slot, once there is a change.
+  [[nodiscard]] std::optional<MotionTrack> poll_track() override;
+  [[nodiscard]] std::optional<MissionEvent> poll_event() override { return events_.pop(); }
+  [[nodiscard]] Instant next_timeout() const override { return next_slot_; }
+  [[nodiscard]] Telemetry telemetry() const override;
+  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+
+  /// How it flies the newest change; none before the first.
+  [[nodiscard]] const formation::Passage* passage() const { return change_ ? &passage_ : nullptr; }
+
+ private:
+  void on_change(const formation::Change& change, Instant now);
+  [[nodiscard]] std::optional<std::string> why_not(const formation::Change& change,
+                                                   std::size_t self) const;
+  void on_status(const FormationStatus& status, Instant now);
+  void on_command(const Command& command);
+  void step(Instant now);
+  [[nodiscard]] double off_m(Instant now) const;
+  void report(EventKind kind, double value, std::string text, Instant now);
+
+  FormationAgentConfig config_;
+  std::optional<formation::Change> change_;
+  formation::Passage passage_;
+  std::optional<VehicleState> state_;
+  std::optional<MotionTrack> track_;
+  Instant next_slot_;
+  Instant next_status_;
+  std::uint32_t refused_ = 0;  ///< number of the newest change that it could not take
+  std::uint32_t command_number_ = 0;
+  bool held_ = false;
+  bool arrived_ = false;
+  std::uint64_t bad_changes_ = 0;
+  BoundedQueue<Message> messages_{64};
+  BoundedQueue<MissionEvent> events_{256};
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/base/random.hpp"
+#include "skein/base/result.hpp"
+#include "skein/formation/change_planner.hpp"
+#include "skein/formation/place_assignment.hpp"
+#include "skein/formation/shapes.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+struct FormationGroundConfig {
+  std::vector<VehicleId> vehicles;
+  formation::ShapeSpec rally;  ///< where vehicles gather, and wait that have no place
+  formation::MotionLimits limits;
+  formation::Separation separation{};  ///< of the vehicles themselves
+  double tracking_m = 0.5;             ///< how far a vehicle may be from its reference
+  double reserve_m = 1.0;              ///< see formation::ChangeRequest
+  double ceiling_m = 120.0;
+  double place_tolerance_m = 0.3;              ///< to be in place
+  Duration settle = std::chrono::seconds{1};   ///< in place for so long, all: the formation holds
+  Duration lead = std::chrono::seconds{1};     ///< from an order to the start of its change
+  Duration silence = std::chrono::seconds{3};  ///< then a vehicle is lost
+  formation::PlaceParams assignment{};
+  std::uint64_t seed = 1;  ///< of the ant colony
+};
+
+/// What an operator can ask for. Every order moves all vehicles that are heard.
+enum class OrderKind : std::uint8_t {
+  take_off,  ///< from the ground straight up to the rally's height
+  rally,     ///< to the rally
+  form,      ///< a shape; low ids take the places where they are few, the others wait at the rally
+  land,      ///< straight down
+  count
+};
+[[nodiscard]] std::string_view to_string(OrderKind kind);
+
+struct FormationOrder {
+  OrderKind kind = OrderKind::rally;
+  formation::ShapeSpec shape{};         ///< of `form`
+  std::optional<std::size_t> places{};  ///< of `form`; none: one for every vehicle
+};
+
+/// What an order would do, before anybody moves.
+struct FormationPreview {
+  FormationOrder order;
+  formation::PlannedChange planned;
+  std::vector<VehicleId> lost;  ///< of whom the change keeps clear
+};
+
+/// The ground station's side of formations, without I/O: turns orders into changes that were
+/// checked in continuous time, sends them until they are flown, watches places, corrects drift, and
+/// gives an order again to those that are left when a vehicle is lost in it. Same calling rules as
+/// OnboardAgent.
+class FormationGround {
+ public:
+  FormationGround(const FormationGroundConfig& config, Instant now);
+
+  /// Fails with a reason where the order cannot be flown safely, where vehicles still move, or none
+  /// is heard.
+  [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order, Instant now) const;
+  Result<FormationPreview> command(const FormationOrder& order, Instant now);
+
+  void on_message(const Message& message, VehicleId sender, Instant now);
+  void on_timeout(Instant now);
+  [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
+  [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }
+  [[nodiscard]] Instant next_timeout() const { return next_; }
+
+  struct Member {
+    FormationStatus status;
+    Instant heard_at{};
+    bool lost = false;
+    std::optional<Instant> arrived_at;  ///< in the newest change
+    double place_error_m = 0.0;         ///< from its place; of no meaning on the way
+    Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds
+    Vec3 trim_m = Vec3::Zero();         ///< what was added to its places against drift
+  };
+  [[nodiscard]] const std::map<VehicleId, Member>& members() const { return members_; }
+  /// The order of the newest change, and whether everybody is in place.
+  [[nodiscard]] const std::optional<FormationOrder>& order() const { return order_; }
+  [[nodiscard]] bool in_place() const { return held_since_.has_value(); }
+  [[nodiscard]] bool moving() const;
+
+ private:
+  [[nodiscard]] Vec3 place_of(const FormationOrder& order, VehicleId vehicle) const;
+  [[nodiscard]] Result<std::vector<formation::Transfer>> transfers(
+      const FormationOrder& order) const;
+  [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
+                                              std::vector<formation::Transfer> transfers) const;
+  void begin(FormationPreview preview, Instant now);
+  void on_status(const FormationStatus& status, Instant now);
+  void watch(Instant now);
+  void find_lost(Instant now);
+  void give_again(Instant now);
+  void judge_places(Instant now);
+  void correct_drift(Instant now);
+  [[nodiscard]] std::optional<Vec3> goal_of(VehicleId vehicle) const;
+  void report(EventKind kind, VehicleId vehicle, double value, std::string text, Instant now);
+
+  FormationGroundConfig config_;
+  std::map<VehicleId, Member> members_;
+  std::optional<FormationOrder> order_;
+  std::optional<formation::Change> change_;
+  std::uint32_t number_ = 0;
+  Instant send_next_{};
+  bool correcting_ = false;            ///< the newest change is against drift only
+  bool give_again_ = false;            ///< somebody was lost in the change
+  std::optional<Instant> near_since_;  ///< all within tolerance
+  std::optional<Instant> held_since_;
+  std::optional<Instant> rest_since_;
+  Instant filtered_at_{};
+  Instant next_;
+  BoundedQueue<Message> messages_{64};
+  BoundedQueue<MissionEvent> events_{256};
+};
+
+}  // namespace skein::mission

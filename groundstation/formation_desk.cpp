@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/formation_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/configuration/shape_file.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+/// After an order of the script that could not be given.
+constexpr Duration kTryAgain = std::chrono::seconds{1};
+
+mission::FormationGroundConfig ground_config(const configuration::FormationConfig& config,
+                                             const std::vector<VehicleId>& vehicles) {
+  mission::FormationGroundConfig ground;
+  ground.vehicles = vehicles;
+  ground.rally = config.rally;
+  ground.limits = config.limits;
+  ground.separation = config.separation;
+  ground.tracking_m = config.tracking_m;
+  ground.reserve_m = config.reserve_m;
+  ground.ceiling_m = config.ceiling_m;
+  ground.place_tolerance_m = config.place_tolerance_m;
+  ground.assignment.method = config.assignment;
+  return ground;
+}
+
+std::string text_of(const mission::FormationPreview& preview) {
+  const auto& planned = preview.planned;
+  std::string text = fmt::format("{} vehicles, {}, {:.1f} s, separation {:.2f} m at least\n",
+                                 planned.change.movers.size(), formation::to_string(planned.way),
+                                 to_seconds(planned.duration), planned.least_separation_m);
+  for (const auto& mover : planned.change.movers) {
+    const Vec3& from = mover.points.front();
+    const Vec3& to = mover.points.back();
+    text += fmt::format("  vehicle {:<3} ({:7.1f} {:7.1f} {:6.1f}) to ({:7.1f} {:7.1f} {:6.1f})\n",
+                        mover.vehicle.value, from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
+  }
+  for (const VehicleId vehicle : preview.lost) {
+    text += fmt::format("  vehicle {} is silent; its way is kept clear\n", vehicle.value);
+  }
+  return text;
+}
+
+}  // namespace
+
+FormationDesk::FormationDesk(const configuration::FormationConfig& config,
+                             const std::vector<VehicleId>& vehicles, Instant now)
+    : config_{config}, vehicles_{vehicles}, ground_{ground_config(config, vehicles), now} {}
+
+Result<FormationDesk> FormationDesk::open(const configuration::FormationConfig& config,
+                                          const std::vector<VehicleId>& vehicles, Instant now) {
+  FormationDesk desk{config, vehicles, now};
+  for (const configuration::NamedShape& shape : config.shapes) {
+    if (auto loaded = desk.load(shape.name, shape.file); !loaded) return loaded.error();
+  }
+  for (std::size_t i = 0; i < config.script.size(); ++i) {
+    const std::string where = fmt::format("formation.script, line {}: ", i + 1);
+    auto input = parse_input(config.script[i]);
+    if (!input) return Error{where + input.error().message};
+    if (const auto* order = std::get_if<Formation>(&*input)) {
+      if (order->preview) return Error{where + "a script gives orders; take 'preview' away"};
+      if (!order->shape.empty() && !desk.shapes_.contains(order->shape)) {
+        if (auto loaded = desk.load(order->shape, order->shape); !loaded) {
+          return Error{where + loaded.error().message};
+        }
+      }
+    } else if (!std::holds_alternative<Wait>(*input)) {
+      return Error{where + "'" + config.script[i] +
+                   "' is neither an order to the formation nor 'wait SECONDS'"};
+    }
+    desk.script_.push_back(*std::move(input));
+  }
+  return desk;
+}
+
+Result<void> FormationDesk::load(const std::string& name, const std::string& file) {
+  const auto read = configuration::load_shape(file);
+  if (!read) return read.error();
+  formation::ShapeSpec shape;
+  shape.kind = formation::ShapeKind::free;
+  shape.points = read->points;
+  shape.closed = read->closed;
+  shapes_[name] = std::move(shape);
+  return {};
+}
+
+Result<mission::FormationOrder> FormationDesk::completed(const Formation& input) const {
+  mission::FormationOrder order = input.order;
+  if (order.kind != mission::OrderKind::form) return order;
+  if (!input.shape.empty()) {
+    const auto known = shapes_.find(input.shape);
+    if (known == shapes_.end()) {
+      return Error{
+          fmt::format("'{}' is no shape: line-abreast, column, echelon, wedge, pentagon{}; "
+                      "or name a file of points",
+                      input.shape, [this] {
+                        std::string names;
+                        for (const auto& [name, shape] : shapes_) names += ", " + name;
+                        return names;
+                      }())};
+    }
+    order.shape.points = known->second.points;
+    order.shape.closed = known->second.closed;
+  }
+  if (!input.has_spacing) order.shape.spacing_m = config_.rally.spacing_m;
+  if (!input.has_heading) order.shape.heading_rad = config_.rally.heading_rad;
+  if (!input.has_centre) order.shape.centre = config_.rally.centre;
+  return order;
+}
+
+Result<std::string> FormationDesk::answer(const Formation& input, Instant now) {
+  if (!input.shape.empty() && !shapes_.contains(input.shape) &&
+      input.shape.find('.') != std::string::npos) {
+    if (auto loaded = load(input.shape, input.shape); !loaded) return loaded.error();
+  }
+  const auto order = completed(input);
+  if (!order) return order.error();
+  const auto result = input.preview ? ground_.preview(*order, now) : ground_.command(*order, now);
+  if (!result) return result.error();
+  return (input.preview ? "preview: " : "begun: ") + text_of(*result);
+}
+
+std::string FormationDesk::places_table(Instant now) const {
+  if (ground_.members().empty()) return "no vehicle of the formation is heard\n";
+  std::string text = "vehicle  heard     east    north   height  from its place  change\n";
+  for (const auto& [vehicle, member] : ground_.members()) {
+    const Vec3& at = member.status.position_m;
+    text += fmt::format("{:>7}  {:>5.1f}  {:7.1f}  {:7.1f}  {:7.1f}  {:>12.2f} m  {}{}\n",
+                        vehicle.value, to_seconds(now - member.heard_at), at.x(), at.y(), at.z(),
+                        member.place_error_m, member.status.progress.change,
+                        member.lost             ? ", silent"
+                        : member.status.at_rest ? ""
+                                                : ", moving");
+  }
+  text += ground_.in_place() ? "in formation\n" : "not in formation\n";
+  return text;
+}
+
+void FormationDesk::on_timeout(Instant now) {
+  ground_.on_timeout(now);
+  if (next_line_ < script_.size()) work_off_script(now);
+}
+
+void FormationDesk::work_off_script(Instant now) {
+  if (now < Instant{} || now < try_again_) return;
+  // The first order is for the whole team.
+  if (next_line_ == 0 && !given_ && ground_.members().size() < vehicles_.size()) return;
+  if (given_) {
+    if (!ground_.in_place()) return;
+    given_ = false;
+    ++next_line_;
+  } else if (wait_until_) {
+    if (now < *wait_until_) return;
+    wait_until_.reset();
+    ++next_line_;
+  }
+  if (next_line_ == script_.size()) {
+    report(mission::EventKind::script_done, "", now);
+    return;
+  }
+  const Input& line = script_[next_line_];
+  if (const auto* wait = std::get_if<Wait>(&line)) {
+    wait_until_ = now + wait->duration;
+    return;
+  }
+  const auto given = answer(std::get<Formation>(line), now);
+  given_ = given.ok();
+  if (given_) {
+    said_.clear();
+    return;
+  }
+  try_again_ = now + kTryAgain;
+  if (given.error().message == said_) return;
+  said_ = given.error().message;
+  report(mission::EventKind::warning,
+         "the script waits at '" + config_.script[next_line_] + "': " + said_, now);
+}
+
+std::optional<mission::MissionEvent> FormationDesk::poll_event() {
+  take_events();
+  if (events_.empty()) return std::nullopt;
+  mission::MissionEvent first = std::move(events_.front());
+  events_.erase(events_.begin());
+  return first;
+}
+
+void FormationDesk::take_events() {
+  while (auto event = ground_.poll_event()) events_.push_back(std::move(*event));
+}
+
+void FormationDesk::report(mission::EventKind kind, std::string text, Instant now) {
+  take_events();  // which were before this one
+  mission::MissionEvent event;
+  event.vehicle = kGroundStation;
+  event.time = now;
+  event.kind = kind;
+  event.text = std::move(text);
+  events_.push_back(std::move(event));
+}
+
+}  // namespace skein::groundstation
