@@ -68,7 +68,8 @@ std::vector<Problem> degenerate_problems(std::size_t count) {
   problems.push_back({circle(count, 20.0, 0.0), circle(count, 30.0, 0.1)});
   Points grid;
   for (std::size_t i = 0; i < count; ++i) {
-    grid.emplace_back(static_cast<double>(i % 7) * 4.0, static_cast<double>(i / 7) * 4.0, 0.0);
+    grid.emplace_back(static_cast<double>(i % 7) * 4.0,
+                      4.0 * std::floor(static_cast<double>(i) / 7.0), 0.0);
   }
   problems.push_back({grid, line});
   Points twice = grid;
@@ -429,7 +430,7 @@ TEST(PlaceColony, FindsTheOptimumOfFive) {
   EXPECT_EQ(crossing, 0);
 }
 
-TEST(PlaceColony, IsNearTheLeastSumAtThirtyTwo) {
+TEST(PlaceColony, IsWithinOnePercentAtThirtyTwo) {
   Random random{62};
   for (int i = 0; i < 4; ++i) {
     const Problem problem = random_problem(random, 32, 0.0);
@@ -438,7 +439,7 @@ TEST(PlaceColony, IsNearTheLeastSumAtThirtyTwo) {
     const auto cost = colony_cost({}, place_of, problem.vehicles, problem.places);
     EXPECT_EQ(cost.crossings, 0);
     EXPECT_GE(cost.total, least * (1.0 - 1e-12));
-    EXPECT_LE(cost.total, least * 1.02);
+    EXPECT_LE(cost.total, least * 1.01);
   }
 }
 

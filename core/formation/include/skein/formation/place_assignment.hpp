@@ -24,7 +24,14 @@ enum class PlaceMethod : std::uint8_t {
   least_squares,
   least_sum,      ///< the least sum of straight lengths; legs do not cross, but may come close
   least_longest,  ///< the least longest leg, and the least sum of squares among those
-  colony,         ///< ant colony with a term for nearness (Zheng 2020, eq. 1-5)
+  /// Ant colony with a term for nearness (Zheng 2020, eq. 1-5). It can weigh how near pairs of
+  /// paths
+  /// come, which the exact ones cannot; but no gain was measured: with 5 vehicles and all points 3
+  /// m
+  /// apart in a square of 15 m, straight flight under common timing came nearer than 3 m in 20 to
+  /// 24
+  /// of 150 problems with k1 = 0.5 to 0.999, and in 13 with least_squares. Kept as the paper's.
+  colony,
   count
 };
 [[nodiscard]] std::string_view to_string(PlaceMethod method);
@@ -99,7 +106,7 @@ struct PlaceColonyParams {
   double crossing_height_m = 3.0;
   int iterations = 150;            ///< at most
   int ants = 16;                   ///< of an iteration
-  double alpha = 1.0;              ///< weight of the pheromone
+  double alpha = 0.5;              ///< weight of the pheromone
   double beta = 3.0;               ///< weight of 1 / J of a node
   double q0 = 0.2;                 ///< how often the best node is taken without drawing
   double local_evaporation = 0.1;  ///< zeta
