@@ -141,7 +141,10 @@ class GroundLoop {
 
   void hand_out(Instant now) {
     while (const auto message = agent_.poll_message()) node_.publish(*message);
-    while (const auto message = formation_.poll_message()) node_.publish(*message);
+    while (const auto message = formation_.poll_message()) {
+      node_.publish(*message);
+      if (const auto* change = std::get_if<formation::Change>(&*message)) record(*change);
+    }
     while (const auto event = formation_.poll_event()) {
       node_.publish(mission::Message{*event});
       tell_of(*event);
@@ -158,6 +161,16 @@ class GroundLoop {
     if (now >= next_flush_) {
       next_flush_ = now + kFlushPeriod;
       flush();
+    }
+  }
+
+  /// Each change once, however often it is sent.
+  void record(const formation::Change& change) {
+    if (!writer_ || change.number == recorded_change_) return;
+    recorded_change_ = change.number;
+    for (const formation::Mover& mover : change.movers) {
+      writer_->write(
+          recording::PlaceRecord{change.number, change.start, mover.vehicle, mover.points.back()});
     }
   }
 
@@ -190,6 +203,7 @@ class GroundLoop {
   std::optional<recording::Writer> writer_;
   mission::GroundAgent agent_;
   FormationDesk formation_;
+  std::uint32_t recorded_change_ = 0;
   SiteBoard sites_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};

@@ -24,6 +24,8 @@ inline constexpr std::string_view kPlansHeader =
     "plan_number,since_ns,start_time_ns,speed_mps,tail_curvature_per_m,x_m,y_m,heading_rad,"
     "segments";
 
+inline constexpr std::string_view kPlacesHeader = "change,start_ns,vehicle,x_m,y_m,z_m";
+
 /// The shortest decimal that reads back as the same double.
 void append_exact(std::string& line, double value);
 void append_fixed(std::string& line, double value, int decimals);

@@ -160,6 +160,15 @@ PlanRecord read_plan(FieldReader& in) {
   return record;
 }
 
+PlaceRecord read_place(FieldReader& in) {
+  PlaceRecord record;
+  record.change = in.number<std::uint32_t>("change");
+  record.start = in.time_ns("start_ns");
+  record.vehicle.value = in.number<std::uint16_t>("vehicle");
+  for (int axis = 0; axis < 3; ++axis) record.place_m[axis] = in.number<double>("place");
+  return record;
+}
+
 /// The node of a folder's name, where it is one that folder_name() gives.
 std::optional<VehicleId> node_of(const std::string& name) {
   if (name == folder_name(kGroundStation)) return kGroundStation;
@@ -191,6 +200,13 @@ Result<Recording> read(const std::filesystem::path& folder, VehicleId vehicle) {
   });
   if (!plans) return plans.error();
   recording.truncated_lines = *track + *events + *plans;
+  if (std::error_code none; std::filesystem::exists(folder / "places.csv", none)) {
+    const auto places = for_each_line(folder / "places.csv", kPlacesHeader, [&](FieldReader& in) {
+      recording.places.push_back(read_place(in));
+    });
+    if (!places) return places.error();
+    recording.truncated_lines += *places;
+  }
   return recording;
 }
 

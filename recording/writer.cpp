@@ -56,6 +56,8 @@ Result<Writer> Writer::open(const std::filesystem::path& folder) {
   writer.track_ = std::move(*track);
   writer.events_ = std::move(*events);
   writer.plans_ = std::move(*plans);
+  writer.folder_ = folder;
+  std::filesystem::remove(folder / "places.csv", failure);
   const auto flushed = writer.flush();  // a reader finds the headers even if the process is killed
   if (!flushed) return flushed.error();
   return writer;
@@ -116,11 +118,30 @@ void Writer::write(const PlanRecord& record) {
   plans_.put(line_ += '\n');
 }
 
+void Writer::write(const PlaceRecord& record) {
+  if (places_.path.empty()) {
+    auto opened = open_file(folder_ / "places.csv", std::string{kPlacesHeader} + "\n");
+    if (opened) {
+      places_ = std::move(*opened);
+    } else {
+      places_.path = (folder_ / "places.csv").string();
+      places_.error = EIO;
+    }
+  }
+  line_.clear();
+  append_unsigned(line_, record.change);
+  append_integer(line_ += ',', record.start.time_since_epoch().count());
+  append_unsigned(line_ += ',', record.vehicle.value);
+  for (int axis = 0; axis < 3; ++axis) append_exact(line_ += ',', record.place_m[axis]);
+  places_.put(line_ += '\n');
+}
+
 Result<void> Writer::flush() {
-  for (File* file : {&track_, &events_, &plans_}) {
+  for (File* file : {&track_, &events_, &plans_, &places_}) {
+    if (file->handle == nullptr) continue;
     if (file->error == 0 && std::fflush(file->handle.get()) != 0) file->error = errno;
   }
-  for (const File* file : {&track_, &events_, &plans_}) {
+  for (const File* file : {&track_, &events_, &plans_, &places_}) {
     if (file->error != 0) {
       return Error{"cannot write " + file->path + ": " + std::strerror(file->error)};
     }

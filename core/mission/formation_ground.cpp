@@ -145,11 +145,11 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   messages_.push(*change_);
   send_next_ = now + kRepeat;
   std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
-                std::string{to_string(preview.order.kind)}.c_str(),
-                std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
-                to_seconds(preview.planned.duration), preview.planned.least_separation_m);
+  std::snprintf(
+      text.data(), text.size(), "%s%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
+      correcting_ ? "correction of " : "", std::string{to_string(preview.order.kind)}.c_str(),
+      std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
+      to_seconds(preview.planned.duration), preview.planned.least_separation_m);
   report(EventKind::change_begun, kGroundStation, number_, text.data(), now);
 }
 
@@ -299,8 +299,8 @@ void FormationGround::correct_drift(Instant now) {
     members_[transfer.vehicle].drift_m = Vec3::Zero();
   }
   correcting_ = true;
-  report(EventKind::warning, kGroundStation, 0.0, "corrected for drift: " + names_of(drifting),
-         now);
+  report(EventKind::warning, kGroundStation, 0.0,
+         "drift is corrected of vehicles " + names_of(drifting), now);
   begin(std::move(*again), now);
 }
 

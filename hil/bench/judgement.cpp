@@ -29,6 +29,7 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
   for (auto& r : *recordings) {
     if (r.vehicle == kGroundStation) {
       record.ground_events = std::move(r.events);
+      record.places = std::move(r.places);
     } else {
       record.recordings.push_back(std::move(r));
     }
@@ -60,7 +61,9 @@ CheckResult bench_check(std::string name, std::string requirement, std::size_t j
 
 std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                    const checks::RunRecord& record, const BenchOutcome& outcome) {
-  auto results = checks::judge(record, limits_of(scenario.expect));
+  const checks::Limits limits = limits_of(scenario.expect);
+  auto results = scenario.flies_formation() ? checks::judge_formation(record, limits)
+                                            : checks::judge(record, limits);
 
   const std::size_t vehicles = scenario.vehicles.size();
   const double found = outcome.all_heard_s.value_or(0.0);
@@ -81,6 +84,12 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                   "processes", "", outcome.deaths.empty() && outcome.stopped_cleanly,
                   deaths.empty() ? "a process did not end cleanly when it was asked to" : deaths));
 
+  if (scenario.flies_formation()) {
+    results.push_back(bench_check("script", "every order is flown",
+                                  scenario.formation.script.size(), "orders", "", outcome.finished,
+                                  "the script was not done when the run ended"));
+    return results;
+  }
   std::set<SiteId> formed;
   std::set<SiteId> waited;
   for (const auto& event : events_of(record)) {

@@ -21,7 +21,9 @@ CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
     const auto* recorded = recording_of(record, vehicle.id);
     const bool lost =
         std::find(record.lost.begin(), record.lost.end(), vehicle.id) != record.lost.end();
-    if (recorded == nullptr || recorded->track.empty() || recorded->plans.empty()) {
+    const bool planned =
+        recorded != nullptr && (!recorded->plans.empty() || !record.places.empty());
+    if (recorded == nullptr || recorded->track.empty() || !planned) {
       const char* what = recorded == nullptr       ? " left no recording"
                          : recorded->track.empty() ? " left no track"
                                                    : " left no plan";
@@ -58,6 +60,15 @@ std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
         check_precedence, check_capabilities, check_loads, check_leases, check_authorisation,
         check_single_delivery, check_completion, check_separation, check_deliveries, check_surveys,
         check_assessments}) {
+    results.push_back(check(record, limits));
+  }
+  return results;
+}
+
+std::vector<CheckResult> judge_formation(const RunRecord& record, const Limits& limits) {
+  std::vector<CheckResult> results;
+  for (const auto check :
+       {check_recordings, check_separation, check_orders, check_arrivals, check_places}) {
     results.push_back(check(record, limits));
   }
   return results;

@@ -44,6 +44,8 @@ checks::Limits limits_of(const configuration::Expectations& expect) {
   limits.miss_m = expect.miss_distance_m;
   limits.separation_horizontal_m = expect.separation_horizontal_m;
   limits.separation_vertical_m = expect.separation_vertical_m;
+  limits.place_rms_m = expect.place_rms_m;
+  limits.arrival_spread_s = expect.arrival_spread_s;
   return limits;
 }
 

@@ -23,6 +23,7 @@ class Writer {
   void write(const TrackPoint& point);
   void write(const mission::MissionEvent& event);
   void write(const PlanRecord& plan);
+  void write(const PlaceRecord& place);
 
   /// To the disk. Fails if this or any earlier write failed.
   [[nodiscard]] Result<void> flush();
@@ -46,6 +47,8 @@ class Writer {
   File track_;
   File events_;
   File plans_;
+  File places_;  ///< begun with the first
+  std::filesystem::path folder_;
   std::string line_;
 };
 

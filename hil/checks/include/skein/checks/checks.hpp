@@ -75,7 +75,18 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_surveys(const RunRecord& record, const Limits& limits);
 [[nodiscard]] CheckResult check_assessments(const RunRecord& record, const Limits& limits);
 
-/// All of them, in the order above.
+/// Every order to a formation ends with all in their places, unless vehicles were lost.
+[[nodiscard]] CheckResult check_orders(const RunRecord& record, const Limits& limits);
+/// In each change the vehicles reach their places within Limits::arrival_spread_s of each other.
+[[nodiscard]] CheckResult check_arrivals(const RunRecord& record, const Limits& limits);
+/// While a formation holds, root mean square distance of each vehicle's track from its place.
+[[nodiscard]] CheckResult check_places(const RunRecord& record, const Limits& limits);
+
+/// Those of a formation: recordings, separation, and the three above.
+[[nodiscard]] std::vector<CheckResult> judge_formation(const RunRecord& record,
+                                                       const Limits& limits);
+
+/// Those of a coalition: all but the three above, in their order.
 [[nodiscard]] std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits);
 
 }  // namespace skein::checks

@@ -43,6 +43,7 @@ struct RunRecord {
   std::vector<VehicleSpec> vehicles;
   std::vector<recording::Recording> recordings;  ///< of vehicles, in any order
   std::vector<mission::MissionEvent> ground_events;
+  std::vector<recording::PlaceRecord> places = {};  ///< of a formation, by the ground station
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
   std::vector<AgentEnd> agent_ends;  ///< in the order of time
   std::vector<Excuse> excused;
@@ -64,6 +65,8 @@ struct Limits {
   double arc_radius_share = 0.10;
   double separation_horizontal_m = 30.0;  ///< below both of these at once is a breach
   double separation_vertical_m = 20.0;
+  double place_rms_m = 0.3;       ///< from its place, of any vehicle while a formation holds
+  double arrival_spread_s = 0.3;  ///< from the first vehicle in its place to the last
   double track_gap_s = 1.0;  ///< a longer gap in a track cannot be judged
 };
 

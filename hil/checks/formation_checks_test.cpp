@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skein/checks/checks.hpp"
+
+namespace skein::checks {
+namespace {
+
+using mission::EventKind;
+using ::testing::HasSubstr;
+
+mission::MissionEvent event(std::uint16_t vehicle, double seconds, EventKind kind, double value) {
+  mission::MissionEvent e;
+  e.vehicle = {vehicle};
+  e.time = at_seconds(seconds);
+  e.kind = kind;
+  e.value = value;
+  return e;
+}
+
+/// Two vehicles, one order that holds from 10 s to 20 s; each hovers `off_m` east of its place.
+RunRecord flown(double off_m, double second_reaches_s) {
+  RunRecord record;
+  record.ground_events = {
+      event(0, 1.0, EventKind::change_begun, 7.0), event(0, 10.0, EventKind::formation_held, 0.0),
+      event(0, 20.0, EventKind::change_begun, 8.0), event(0, 30.0, EventKind::formation_held, 0.0)};
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+    VehicleSpec spec;
+    spec.id = {id};
+    record.vehicles.push_back(spec);
+    record.places.push_back({7, at_seconds(2.0), {id}, {10.0 * id, 0.0, 20.0}});
+    recording::Recording recording;
+    recording.vehicle = {id};
+    for (int i = 0; i <= 220; ++i) {
+      recording::TrackPoint point;
+      point.state.time = at_seconds(0.1 * i);
+      point.state.x_m = 10.0 * id + off_m;
+      point.state.z_m = 20.0;
+      recording.track.push_back(point);
+    }
+    recording.events = {event(id, id == 1 ? 9.0 : second_reaches_s, EventKind::place_reached, 7.0)};
+    record.recordings.push_back(recording);
+  }
+  return record;
+}
+
+TEST(FormationChecks, HoldWhereAllIsWell) {
+  const auto results = judge_formation(flown(0.1, 9.2), {});
+  for (const auto& result : results) {
+    EXPECT_TRUE(result.held()) << result.name << ": " << result.violations[0].sentence;
+    EXPECT_GT(result.judged, 0U) << result.name;
+  }
+}
+
+TEST(FormationChecks, FindWhoIsNotInItsPlace) {
+  const auto result = check_places(flown(0.4, 9.2), {});
+  ASSERT_EQ(result.violations.size(), 2U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("vehicle 1 was 0.40 m rms"));
+  EXPECT_THAT(result.measured, HasSubstr("0.40"));
+}
+
+TEST(FormationChecks, FindWhoArrivesLate) {
+  const auto result = check_arrivals(flown(0.0, 9.5), {});
+  ASSERT_EQ(result.violations.size(), 1U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("0.50 s after the first"));
+}
+
+TEST(FormationChecks, FindTheOrderThatNeverHeld) {
+  RunRecord record = flown(0.0, 9.0);
+  record.ground_events.pop_back();
+  const auto result = check_orders(record, {});
+  ASSERT_EQ(result.violations.size(), 1U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("change 8"));
+}
+
+TEST(FormationChecks, FindThoseThatComeTooNear) {
+  RunRecord record = flown(0.0, 9.0);
+  for (auto& point : record.recordings[1].track) point.state.x_m = 11.0;
+  Limits limits;
+  limits.separation_horizontal_m = 2.0;
+  limits.separation_vertical_m = 2.0;
+  EXPECT_FALSE(check_separation(record, limits).held());
+}
+
+TEST(FormationChecks, ACorrectionOfDriftKeepsThePlaces) {
+  RunRecord record = flown(0.0, 9.0);
+  record.ground_events[2].text = "correction of form, straight: 2 vehicles";
+  record.places.push_back({8, at_seconds(20.0), {1}, {10.5, 0.0, 20.0}});  // with its trim
+  EXPECT_TRUE(check_places(record, {}).held());
+}
+
+}  // namespace
+}  // namespace skein::checks
