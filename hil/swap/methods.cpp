@@ -211,6 +211,11 @@ Result<Avoiders> passages(const Setting& setting, std::uint64_t) {
         {VehicleId{static_cast<std::uint16_t>(i + 1)}, setting.starts[i], setting.goals[i]});
   }
   auto planned = formation::plan_change(request);
+  // Or as much of it as there is room for.
+  for (int i = 0; i < 3 && !planned; ++i) {
+    request.reserve_m *= 0.5;
+    planned = formation::plan_change(request);
+  }
   if (!planned) return planned.error();
   planned->change.number = 1;
   planned->change.start = at_seconds(setting.start_s);

@@ -19,8 +19,8 @@
 namespace skein::swap {
 namespace {
 
-/// A rounding of the positions is no breach.
-constexpr double kRounding = 1e-6;
+/// A path under 2 m/s2 leaves the chord of one control period by 0.1 mm: that is no breach.
+constexpr double kChord = 1e-3;
 
 /// From rest, until `way` is behind it, where acceleration is only limited by jerk and its limit.
 double start_time_s(double way, const formation::MotionLimits& limits) {
@@ -225,7 +225,7 @@ void SeparationJudge::step(std::span<const Vec3> from, std::span<const Vec3> to)
       const double when = change2 > 0.0 ? std::clamp(-apart.dot(change) / change2, 0.0, 1.0) : 0.0;
       const double distance = (apart + when * change).norm();
       least_m_ = std::min(least_m_, distance);
-      if (distance >= separation_.horizontal_m - kRounding) continue;
+      if (distance >= separation_.horizontal_m - kChord) continue;
       if (!breached_[i * agents_ + k]) ++breached_pairs_;
       breached_[i * agents_ + k] = true;
     }

@@ -40,7 +40,7 @@ class SeparationJudge {
 
   /// All agents flew from `from` to `to`, straight and evenly.
   void step(std::span<const Vec3> from, std::span<const Vec3> to);
-  /// Pairs that were once nearer than the separation.
+  /// Pairs that were once nearer than the separation, by more than 1 mm.
   [[nodiscard]] std::size_t breached_pairs() const { return breached_pairs_; }
   /// The least distance of any pair, heights stretched as Separation says; infinity before a step.
   [[nodiscard]] double least_m() const { return least_m_; }
