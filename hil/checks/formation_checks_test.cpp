@@ -46,7 +46,9 @@ RunRecord flown(double off_m, double second_reaches_s) {
 }
 
 TEST(FormationChecks, HoldWhereAllIsWell) {
-  const auto results = judge_formation(flown(0.1, 9.2), {});
+  Limits limits;
+  limits.separation_horizontal_m = limits.separation_vertical_m = 2.0;
+  const auto results = judge_formation(flown(0.1, 9.2), limits);
   for (const auto& result : results) {
     EXPECT_TRUE(result.held()) << result.name << ": " << result.violations[0].sentence;
     EXPECT_GT(result.judged, 0U) << result.name;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "charts.hpp"
+#include "formation_charts.hpp"
 #include "skein/report/drawing.hpp"
 #include "story.hpp"
 #include "style.hpp"
@@ -77,6 +78,23 @@ std::string check_table(const std::vector<CheckResult>& checks) {
   return html + "</tbody></table>";
 }
 
+std::string formation_section(const Contents& contents) {
+  if (contents.record.places.empty()) return "";
+  std::string html =
+      "<h2>Distance of the two nearest vehicles</h2><p>Dashed: the limit. Shaded: a formation "
+      "holds.</p><div class=\"wide\">" +
+      separation_chart(contents.record, contents.limits) +
+      "</div>\n<h2>Distance from the places</h2><p>Dashed: the limit of the root mean square. A "
+      "line each vehicle.</p><div class=\"wide\">" +
+      place_chart(contents.record, contents.limits) +
+      "</div>\n<h2>Formations from above</h2><p>Rings: the places. Lines: what was flown while the "
+      "formation held.</p><div class=\"many\">";
+  for (const auto& [title, picture] : formation_pictures(contents.record)) {
+    html += fmt::format("<section><h3>{}</h3>\n{}</section>\n", escaped(title), picture);
+  }
+  return html + "</div>\n";
+}
+
 }  // namespace
 
 std::string html(const Contents& contents) {
@@ -91,8 +109,12 @@ std::string html(const Contents& contents) {
                       escaped(contents.title), escaped(contents.summary), verdict(contents.checks));
   page += "<div class=\"two\"><section><h2>Flown tracks</h2>\n";
   page += map(contents.record, told, "", "");
-  page += "</section><section><h2>Ours beside the published mission</h2>\n" +
-          comparison_table(contents) + "</section></div>\n";
+  page += "</section>";
+  if (!contents.comparison.empty()) {
+    page += "<section><h2>Ours beside the published mission</h2>\n" + comparison_table(contents) +
+            "</section>";
+  }
+  page += "</div>\n" + formation_section(contents);
   page += "<h2>Checks</h2><div class=\"wide\">" + check_table(contents.checks) + "</div>\n";
 
   std::string curves;

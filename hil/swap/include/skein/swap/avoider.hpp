@@ -20,14 +20,14 @@ namespace skein::swap {
 
 /// What is the same for all agents of a run. Positions: mission frame.
 struct Setting {
-  formation::MotionLimits limits;
+  formation::MotionLimits limits{.speed_mps = 3.0};
   formation::Separation separation;
   double control_period_s = 0.02;
-  double message_period_s = 0.1;
-  double message_delay_s = 0.2;  ///< of every message
-  double message_loss = 0.2;     ///< share of them, independently for each receiver
-  double start_s = 1.0;          ///< nobody moves before; messages are exchanged from 0 s on
-  std::vector<Vec3> starts;      ///< of agent i, whose id is i + 1
+  double message_period_s = 0.06;  ///< a little more than formation::kSlot, in which all is decided
+  double message_delay_s = 0.2;    ///< of every message
+  double message_loss = 0.2;       ///< share of them, independently for each receiver
+  double start_s = 1.0;            ///< nobody moves before; messages are exchanged from 0 s on
+  std::vector<Vec3> starts;        ///< of agent i, whose id is i + 1
   std::vector<Vec3> goals;
 };
 
