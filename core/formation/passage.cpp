@@ -59,6 +59,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
     if (i != self_) others_[i].least_m = motion_.least_distance_m(self_, i, height_factor_);
   }
   look_at_[self_] = std::numeric_limits<std::int32_t>::max();
+  block_look_at_.assign((look_at_.size() + kBlock - 1) / kBlock, 0);
   due_.reserve(others_.size());
 }
 
@@ -74,14 +75,17 @@ void Passage::on_progress(std::size_t mover, const Progress& progress) {
   other.done = progress.done;
   other.rate = progress.rate;
   other.off_m = std::max(0.0, progress.off_m - params_.tolerance_m);
-  if (other.off_m > 0.0) look_at_[mover] = 0;
+  if (other.off_m > 0.0) look_at_[mover] = block_look_at_[mover / kBlock] = 0;
 }
 
 void Passage::set_off(double off_m) {
   const double beyond = std::max(0.0, off_m - params_.tolerance_m);
-  if (beyond > off_m_) std::fill(look_at_.begin(), look_at_.end(), 0);
+  if (beyond > off_m_) {
+    std::fill(look_at_.begin(), look_at_.end(), 0);
+    std::fill(block_look_at_.begin(), block_look_at_.end(), 0);
+    look_at_[self_] = std::numeric_limits<std::int32_t>::max();
+  }
   off_m_ = beyond;
-  look_at_[self_] = std::numeric_limits<std::int32_t>::max();
 }
 
 Passage::Grains Passage::at_least(const Other& other, std::int64_t slot) const {
@@ -157,6 +161,19 @@ void Passage::look_again(std::size_t mover, Grains at_least_now) {
       slot_ - start_ + static_cast<std::int64_t>(std::clamp(free_s / to_seconds(kSlot), 0.0, 1e6)));
 }
 
+void Passage::look_at_block(std::size_t block, std::int32_t current) {
+  const std::size_t end = std::min(look_at_.size(), (block + 1) * kBlock);
+  std::int32_t next = std::numeric_limits<std::int32_t>::max();
+  for (std::size_t i = block * kBlock; i < end; ++i) {
+    if (look_at_[i] <= current) {
+      look_again(i, at_least(others_[i], slot_));
+      if (look_at_[i] <= current) due_.push_back(static_cast<std::uint32_t>(i));
+    }
+    next = std::min(next, look_at_[i]);
+  }
+  block_look_at_[block] = next;
+}
+
 bool Passage::clear_of_all(const Future& future) {
   for (const std::uint32_t mover : due_) {
     if (clear_of(mover, future)) continue;
@@ -176,10 +193,8 @@ void Passage::decide() {
   }
   due_.clear();
   const auto current = static_cast<std::int32_t>(slot_ - start_);
-  for (std::uint32_t i = 0; i < look_at_.size(); ++i) {
-    if (look_at_[i] > current) continue;
-    look_again(i, at_least(others_[i], slot_));
-    if (look_at_[i] <= current) due_.push_back(i);
+  for (std::size_t block = 0; block < block_look_at_.size(); ++block) {
+    if (block_look_at_[block] <= current) look_at_block(block, current);
   }
   const auto fits = [this](Grains rate) {
     if (!clear_of_all({done_, rate_, rate})) return false;

@@ -144,12 +144,16 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   rest_since_.reset();
   messages_.push(*change_);
   send_next_ = now + kRepeat;
+  std::string what{to_string(preview.order.kind)};
+  if (preview.order.kind == OrderKind::form) {
+    what += " " + std::string{formation::to_string(preview.order.shape.kind)};
+  }
   std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(), "%s%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
-      correcting_ ? "correction of " : "", std::string{to_string(preview.order.kind)}.c_str(),
-      std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
-      to_seconds(preview.planned.duration), preview.planned.least_separation_m);
+  std::snprintf(text.data(), text.size(),
+                "%s%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
+                correcting_ ? "correction of " : "", what.c_str(),
+                std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
+                to_seconds(preview.planned.duration), preview.planned.least_separation_m);
   report(EventKind::change_begun, kGroundStation, number_, text.data(), now);
 }
 

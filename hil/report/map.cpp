@@ -100,9 +100,12 @@ std::string draw_track(const checks::RunRecord& record, const recording::Recordi
     }
     (site ? work : free) += fmt::format(
         R"~(<polyline class="track {}s{}" points="{}"><title>vehicle {}{}</title></polyline>)~",
-        site ? "" : "free ", colour_of(record, site), points_text(thinned(line, kThinning)),
-        recorded.vehicle.value,
-        site ? fmt::format(", working for site {}", site->value) : ", searching");
+        site ? "" : "free ",
+        record.places.empty() ? colour_of(record, site) : 1 + (recorded.vehicle.value - 1U) % 6U,
+        points_text(thinned(line, kThinning)), recorded.vehicle.value,
+        site                    ? fmt::format(", working for site {}", site->value)
+        : record.places.empty() ? ", searching"
+                                : "");
     first = i;
     site = here;
   }
@@ -153,7 +156,9 @@ std::string draw_legend(const checks::RunRecord& record, const View& view) {
     entry(fmt::format(R"~(<path class="track s{}" d="M0 0H22"/>)~", colour_of(record, site.id)),
           fmt::format("coalition of site {}", site.id.value));
   }
-  entry(R"~(<path class="track free s0" d="M0 0H22"/>)~", "searching");
+  if (record.places.empty()) {
+    entry(R"~(<path class="track free s0" d="M0 0H22"/>)~", "searching");
+  }
   entry(R"~(<circle class="start" cx="14" cy="0" r="3.2"/>)~", "start");
   entry(R"~(<path class="end" d="M5 0L-4 3.5V-3.5Z" transform="translate(14 0)"/>)~", "end");
   if (!record.hazards.empty()) {

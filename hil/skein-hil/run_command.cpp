@@ -59,7 +59,10 @@ int run(const RunArguments& arguments) {
   if (const auto flyable = configuration::check(*scenario); !flyable)
     return complain(flyable.error().message);
   if (arguments.seed) scenario->seed = *arguments.seed;
-  if (arguments.prompt) scenario->operator_decisions.clear();
+  if (arguments.prompt) {
+    scenario->operator_decisions.clear();
+    scenario->formation.script.clear();
+  }
 
   BenchOptions options;
   options.programs = arguments.programs;

@@ -79,6 +79,7 @@ class Passage {
 
  private:
   using Grains = std::int64_t;
+  static constexpr std::size_t kBlock = 32;
 
   struct Other {
     std::int64_t slot = 0;  ///< of what is known
@@ -102,6 +103,7 @@ class Passage {
   [[nodiscard]] bool clear_of(std::size_t mover, const Future& future) const;
   [[nodiscard]] bool keeps_clear(std::size_t mover, Grains own_from, Grains own_to, Grains from,
                                  Grains to, double apart_m) const;
+  void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
   void decide();
   [[nodiscard]] double seconds(Grains grains) const {
@@ -122,8 +124,9 @@ class Passage {
   std::int64_t start_ = 0;             ///< slots; plan time begins
   std::vector<Other> others_;          ///< and this vehicle itself, of whom only the speed counts
   std::vector<std::int32_t> look_at_;  ///< slots since start_, before which each cannot matter
-  std::vector<std::uint32_t> due_;     ///< who can, now
-  double off_m_ = 0.0;                 ///< beyond what is allowed for
+  std::vector<std::int32_t> block_look_at_;  ///< the least of each kBlock of them
+  std::vector<std::uint32_t> due_;           ///< who can, now
+  double off_m_ = 0.0;                       ///< beyond what is allowed for
 
   std::int64_t slot_ = 0;  ///< since mission time 0
   Grains done_ = 0;        ///< at its begin
