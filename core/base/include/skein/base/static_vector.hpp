@@ -10,7 +10,7 @@
 namespace skein {
 
 /// A vector of at most `Capacity` trivially copyable elements, stored in place: it can be handed
-/// between threads by value and never allocates. Being a contiguous range, it converts to std::span.
+/// between threads by value and never allocates. As a contiguous range it becomes a std::span.
 template <class T, std::size_t Capacity>
 class StaticVector {
   static_assert(std::is_trivially_copyable_v<T>);
