@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "loader.hpp"
 #include "skein/configuration/experiment.hpp"
@@ -26,7 +26,8 @@ Result<std::string> read_file(const std::filesystem::path& file) {
   errno = 0;
   std::ifstream in{file, std::ios::binary};
   if (!in) {
-    return Error{name + ": cannot be opened: " + std::strerror(errno) + "; check the path"};
+    return Error{name + ": cannot be opened: " + std::generic_category().message(errno) +
+                 "; check the path"};
   }
   std::string text(kFileSizeMax + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));

@@ -539,6 +539,7 @@ TEST(MutatedFiles, AreNotFollowedIntoTheDeep) {
 }
 
 void expect_page(const std::filesystem::path& file, const std::string& page) {
+  // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
   if (std::getenv("SKEIN_UPDATE_DOCS") != nullptr) std::ofstream{file, std::ios::binary} << page;
   EXPECT_EQ(read(file), page) << "run configuration_test with SKEIN_UPDATE_DOCS=1 to print "
                               << file;

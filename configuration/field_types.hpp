@@ -29,7 +29,7 @@ void angle(FieldVisitor& v, const Field& field, const Range& range, double& rad)
 
 template <class T>
 void whole(FieldVisitor& v, const Field& field, const Range& range, T& value) {
-  std::int64_t shown = static_cast<std::int64_t>(value);
+  auto shown = static_cast<std::int64_t>(value);  // a number: NOLINT(bugprone-signed-char-misuse)
   v.integer(field, range, shown);
   value = static_cast<T>(shown);
 }

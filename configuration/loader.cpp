@@ -119,7 +119,9 @@ std::vector<Loader::Entry> Loader::entries_of(const YAML::Node& node, const std:
   for (const auto& pair : node) {
     const std::string key = pair.first.IsScalar() ? pair.first.Scalar() : "";
     const int line = line_of(pair.first);
-    const std::string full = path.empty() ? key : path + "." + key;
+    std::string full = path;
+    if (!full.empty()) full += '.';
+    full += key;
     if (key.empty()) {
       fail(line, path, "has a key that is no word; write \"key: value\" lines");
     } else if (const auto first = line_of_key.find(key); first != line_of_key.end()) {

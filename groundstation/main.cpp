@@ -19,6 +19,7 @@ int main(int argc, char** argv) {
       "SIGINT, SIGTERM or `quit` with exit code 0; 2 means bad arguments or configuration, 3\n"
       "that it could not start.");
   std::string file;
+  // One thread so far. NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* user = std::getenv("USER");
   std::string operator_name = user != nullptr && *user != '\0' ? user : "operator";
   bool check_only = false;

@@ -250,11 +250,11 @@ class Threads {
     }
   }
 
-  const process::MissionClock& clock_;
-  process::Wake& wake_agent_;
   ControlPorts ports_;
   EventRing events_;
   Planner planner_{[this] { wake_agent_.notify(); }, [this] { return clock_.now(); }};
+  const process::MissionClock& clock_;
+  process::Wake& wake_agent_;
   FlightControllers flight_controllers_;
   ControlLoop control_;
   AgentLoop agent_;

@@ -2,7 +2,6 @@
 #include "skein/recording/writer.hpp"
 
 #include <cerrno>
-#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -34,7 +33,7 @@ Result<Writer::File> Writer::open_file(const std::filesystem::path& path,
   file.path = path.string();
   file.handle.reset(std::fopen(file.path.c_str(), "wbe"));
   if (file.handle == nullptr) {
-    return Error{"cannot write " + file.path + ": " + std::strerror(errno)};
+    return Error{"cannot write " + file.path + ": " + std::generic_category().message(errno)};
   }
   file.put(header);
   return file;
@@ -143,7 +142,8 @@ Result<void> Writer::flush() {
   }
   for (const File* file : {&track_, &events_, &plans_, &places_}) {
     if (file->error != 0) {
-      return Error{"cannot write " + file->path + ": " + std::strerror(file->error)};
+      return Error{"cannot write " + file->path + ": " +
+                   std::generic_category().message(file->error)};
     }
   }
   return {};

@@ -15,7 +15,7 @@ constexpr VehicleId kNobody{};
 }  // namespace
 
 Elector::Elector(const ProtocolParams& params, VehicleId self, InstanceId instance)
-    : params_{params}, self_{self}, instance_{instance} {}
+    : params_{params}, instance_{instance}, self_{self} {}
 
 void Elector::accepted(const Award& award) {
   const bool goes_on = plan_ && plan_->round.coalition == award.round.coalition;

@@ -29,7 +29,8 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
                      bool authorised, const Vec2& leader_at_formation, Instant now)
     : params_{params},
       machine_{kTable, State::awarding},
-      leader_at_formation_{leader_at_formation} {
+      leader_at_formation_{leader_at_formation},
+      majority_{won.majority} {
   announcement_.round = {id, 1};
   announcement_.site = won.plan.site;
   announcement_.announced_at = now;
@@ -38,7 +39,6 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
   announcement_.leader_at_formation = leader_at_formation;
   make_ledger(won.done);
   promised_until_ = won.promised_from + params_.lease;
-  majority_ = won.majority;
   for (const auto& [elector, instance] : won.supporters) {
     electors_[elector] = {won.promised_from, instance};
     heard_[elector] = now;

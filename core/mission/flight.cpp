@@ -60,6 +60,7 @@ WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const H
   WayOut best;
   double turned_inside_m = 0.0;
   const double turn_step_m = kTwoPi * radius_m / kTurns;
+  const int steps = static_cast<int>(std::ceil(turn_step_m / kStepM));
   for (int i = 0; i < kTurns; ++i) {
     const Pose2 begin = advance(from, curvature_per_m, i * turn_step_m);
     const Vec2 forward = unit_vector(begin.heading_rad);
@@ -74,8 +75,8 @@ WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const H
     }
     const bool shorter = way.inside_m == best.inside_m && way.length_m() < best.length_m();
     if (way.straight_m < kStraightMaxM && (way.inside_m < best.inside_m || shorter)) best = way;
-    for (double s = 0.0; s < turn_step_m; s += kStepM) {
-      const Pose2 along = advance(begin, curvature_per_m, s);
+    for (int step = 0; step < steps; ++step) {
+      const Pose2 along = advance(begin, curvature_per_m, step * kStepM);
       if (is_inside(along.position(), hazards)) turned_inside_m += kStepM;
     }
   }

@@ -101,20 +101,22 @@ class VehicleAgent::Impl {
   [[nodiscard]] double spare_range(Instant now) const;
 
   VehicleAgentConfig config_;
+  std::uint32_t last_command_ = 0;
+  std::uint32_t coalitions_led_ = 0;
+  std::uint8_t loads_ = 0;
+  bool held_by_operator_ = false;
+  bool spent_ = false;  ///< what is left of its range is for the way home
+  bool duplicate_id_ = false;
   VehicleState state_;
   Flight flight_;
   std::vector<Hazard> hazards_;
-  std::uint8_t loads_ = 0;
-  bool held_by_operator_ = false;
   Instant range_again_{};  ///< when its range is looked at next
-  bool spent_ = false;     ///< what is left of its range is for the way home
-  std::uint32_t last_command_ = 0;
-  bool duplicate_id_ = false;
 
   coalition::Participant participant_;
   std::optional<TaskFlight> task_;
   Instant time_again_{};  ///< when the task's time is looked at next
 
+  Instant survey_again_{};
   std::optional<SurveyFlight> survey_;
   std::vector<Site> surveyed_;  ///< surveyed here, waiting to be led
   struct FoundSite {
@@ -122,9 +124,8 @@ class VehicleAgent::Impl {
     bool told = false;  ///< that it cannot be surveyed now
   };
   std::vector<FoundSite> found_;  ///< found here, waiting to be surveyed
-  Instant survey_again_{};
-  std::set<SiteId> known_;  ///< found or announced by anybody
-  SiteBook sites_;          ///< as others lead them
+  std::set<SiteId> known_;        ///< found or announced by anybody
+  SiteBook sites_;                ///< as others lead them
   std::optional<coalition::Initiator> initiator_;
   struct Farewell {
     coalition::LeaseRenewal last;
@@ -134,7 +135,6 @@ class VehicleAgent::Impl {
   std::vector<Farewell> farewells_;  ///< of the coalitions that were led here to the end
   Instant relief_again_{};
   std::uint64_t protocol_errors_led_ = 0;  ///< of coalitions that were led here before
-  std::uint32_t coalitions_led_ = 0;
   std::vector<coalition::Round> granted_;  ///< rounds that the operator has authorised, newest last
   std::map<VehicleId, coalition::Bid> bids_;  ///< of the round being allocated or flown
 

@@ -257,8 +257,9 @@ void VehicleAgent::Impl::fly_task(Instant now) {
 /// have been flown later than its round had them.
 bool VehicleAgent::Impl::deliveries_over(const TaskFlight& assessment) const {
   const Site& site = assessment.site;
-  for (std::uint8_t i = 0; i < site.deliveries.size(); ++i) {
-    const auto since = participant_.over_since({site.id, TaskKind::deliver, i});
+  for (std::size_t i = 0; i < site.deliveries.size(); ++i) {
+    const TaskId delivery{site.id, TaskKind::deliver, static_cast<std::uint8_t>(i)};
+    const auto since = participant_.over_since(delivery);
     if (!since || *since > assessment.begin_time() + kNewsMayTake - site.assess_wait) return false;
   }
   return true;

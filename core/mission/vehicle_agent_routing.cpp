@@ -32,9 +32,9 @@ Overloaded(Fs...) -> Overloaded<Fs...>;
 
 VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
     : config_{with_margin(config)},
+      loads_{config.vehicle.loads},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
-      loads_{config.vehicle.loads},
       participant_{config.protocol, config.vehicle.id, config.instance} {}
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {

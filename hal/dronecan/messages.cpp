@@ -21,8 +21,8 @@ bool text_of(const Transfer& transfer, std::string& text) {
 
 struct Entry {
   TypeInfo info;
-  TextOf text;      ///< of a message or a request
-  TextOf response;  ///< of a service's response
+  TextOf text = nullptr;      ///< of a message or a request
+  TextOf response = nullptr;  ///< of a service's response
 };
 
 template <class Message, class Response = Message>

@@ -228,7 +228,7 @@ const Transfer* Reassembler::on_frame(const can::Frame& frame, std::uint8_t inte
   session.heard = now;
   session.toggle = !session.toggle;
   Payload& payload = session.transfer.payload;
-  if (payload.size() + size - from > payload.capacity()) {
+  if (payload.size() + size - from > Payload::capacity()) {
     session.assembling = false;
     ++statistics_.too_long;
     return nullptr;

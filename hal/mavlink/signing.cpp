@@ -14,7 +14,7 @@ constexpr SigningTime kTimeMask = (SigningTime{1} << 48U) - 1;
 /// Of everything up to the signature's hash: packet, link id and timestamp.
 std::array<std::uint8_t, kHashBytes> hash(const SigningKey& key,
                                           std::span<const std::uint8_t> signed_part) {
-  sha256_ctx context;
+  sha256_ctx context{};
   sha256_init(&context);
   sha256_update(&context, key.size(), key.data());
   sha256_update(&context, signed_part.size(), signed_part.data());
@@ -26,7 +26,7 @@ std::array<std::uint8_t, kHashBytes> hash(const SigningKey& key,
 }  // namespace
 
 SigningKey key_of(std::string_view passphrase) {
-  sha256_ctx context;
+  sha256_ctx context{};
   sha256_init(&context);
   for (const char c : passphrase) {
     const auto byte = static_cast<std::uint8_t>(c);

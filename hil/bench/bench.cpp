@@ -7,8 +7,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -444,9 +446,9 @@ class Bench {
   }
 
   static std::string seconds_text(double s) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f s", s);
-    return text;
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.1f s", s);
+    return text.data();
   }
   static std::string name_of(VehicleId id) {
     return id == kGroundStation ? "the ground station" : "vehicle " + std::to_string(id.value);

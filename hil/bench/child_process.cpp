@@ -12,9 +12,8 @@
 #include <algorithm>
 #include <csignal>
 #include <cstring>
+#include <system_error>
 #include <utility>
-
-extern char** environ;
 
 namespace skein::hil {
 
@@ -29,7 +28,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
   const int output =
       terminal ? -1 : ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (!terminal && output < 0)
-    return Error{log.string() + ": cannot be written: " + std::strerror(errno)};
+    return Error{log.string() + ": cannot be written: " + std::generic_category().message(errno)};
   const int input = terminal ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC);
 
   // Everything is made ready before the fork: the child may only call async-signal-safe functions.
@@ -39,12 +38,15 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
     if (!environment.contains(variable.substr(0, variable.find('='))))
       variables.push_back(variable);
   }
-  for (const auto& [name, value] : environment) variables.push_back(name + "=" + value);
+  for (const auto& [name, value] : environment)
+    variables.emplace_back(name).append("=").append(value);
   std::vector<char*> environment_pointers;
+  environment_pointers.reserve(variables.size() + 1);
   for (auto& v : variables) environment_pointers.push_back(v.data());
   environment_pointers.push_back(nullptr);
   std::vector<std::string> words = argv;
   std::vector<char*> word_pointers;
+  word_pointers.reserve(words.size() + 1);
   for (auto& w : words) word_pointers.push_back(w.data());
   word_pointers.push_back(nullptr);
 
@@ -64,7 +66,8 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
   }
   if (output >= 0) ::close(output);
   if (input >= 0) ::close(input);
-  if (pid < 0) return Error{argv[0] + ": cannot be started: " + std::strerror(errno)};
+  if (pid < 0)
+    return Error{argv[0] + ": cannot be started: " + std::generic_category().message(errno)};
   return ChildProcess{pid};
 }
 
@@ -96,7 +99,9 @@ std::optional<std::string> ChildProcess::ended() {
   if (!status_) return std::nullopt;
   if (WIFSIGNALED(*status_)) {
     const int number = WTERMSIG(*status_);
-    return "signal " + std::to_string(number) + " (" + ::strsignal(number) + ")";
+    const char* const meaning = ::sigdescr_np(number);
+    return "signal " + std::to_string(number) +
+           (meaning != nullptr ? std::string{" ("} + meaning + ")" : "");
   }
   return "exit status " + std::to_string(WEXITSTATUS(*status_));
 }
@@ -122,7 +127,7 @@ bool ChildProcess::wait(std::chrono::milliseconds at_most) {
   return ended().has_value();
 }
 
-bool stop_all(std::vector<ChildProcess*> processes, std::chrono::milliseconds at_most) {
+bool stop_all(const std::vector<ChildProcess*>& processes, std::chrono::milliseconds at_most) {
   for (auto* p : processes) p->signal(SIGTERM);
   const auto deadline = std::chrono::steady_clock::now() + at_most;
   bool clean = true;

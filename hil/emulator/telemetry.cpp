@@ -12,7 +12,7 @@
 namespace skein::hil {
 namespace {
 
-using namespace mavlink;
+using namespace mavlink;  // half of what it has: NOLINT(google-build-using-namespace)
 
 /// ArduPlane 4.6.3, an official release.
 constexpr std::uint32_t kFirmwareVersion = 0x040603FF;
@@ -236,14 +236,14 @@ struct Producer {
   bool unasked;
   WireBytes (*make)(Encoder& encoder, const Situation& situation);
 };
-template <auto kMake>
+template <auto Make>
 WireBytes encoded(Encoder& encoder, const Situation& situation) {
-  return encoder.encode(kMake(situation));
+  return encoder.encode(Make(situation));
 }
-template <auto kMake>
+template <auto Make>
 constexpr Producer producer(bool unasked) {
-  using Message = std::invoke_result_t<decltype(kMake), const Situation&>;
-  return {Message::kDefinition.id, unasked, &encoded<kMake>};
+  using Message = std::invoke_result_t<decltype(Make), const Situation&>;
+  return {Message::kDefinition.id, unasked, &encoded<Make>};
 }
 
 constexpr std::array kProducers{

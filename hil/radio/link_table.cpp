@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <system_error>
 #include <utility>
 
 namespace skein::hil::radio {
@@ -22,7 +22,7 @@ Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
   const int flags = create ? O_CREAT | O_EXCL | O_RDWR : O_RDWR;
   const int descriptor = ::shm_open(name.c_str(), flags, 0600);
   if (descriptor < 0) {
-    return Error{"radio table " + name + ": " + std::strerror(errno) +
+    return Error{"radio table " + name + ": " + std::generic_category().message(errno) +
                  (create ? "" : "; it is made by skein-hil, which must be running")};
   }
   const bool sized = !create || ::ftruncate(descriptor, sizeof(Table)) == 0;
@@ -33,7 +33,7 @@ Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
   ::close(descriptor);
   if (memory == MAP_FAILED) {
     if (create) ::shm_unlink(name.c_str());
-    return Error{"radio table " + name + ": " + std::strerror(reason)};
+    return Error{"radio table " + name + ": " + std::generic_category().message(reason)};
   }
   LinkTable table{name, static_cast<Table*>(memory), create};
   if (create) {  // fresh pages are zero: every link down

@@ -18,8 +18,8 @@ Link link_between(const RadioParams& params, VehicleId from, VehicleId to,
                   const std::vector<std::vector<VehicleId>>& groups) {
   Link link{true, params.loss, params.delay, params.jitter};
   const auto place = [&](VehicleId node) -> const Vec2* {
-    static const Vec2 kOrigin{0.0, 0.0};
-    if (node == kGroundStation) return &kOrigin;
+    static const Vec2 origin{0.0, 0.0};
+    if (node == kGroundStation) return &origin;
     const auto it = positions.find(node);
     return it == positions.end() ? nullptr : &it->second;
   };

@@ -195,6 +195,12 @@ void draw_decisions(Random& random, TeamMission& mission, const FaultParams& par
   }
 }
 
+Error no_profile(const std::string& name) {
+  std::string message = "there is no fault profile '" + name + "'; write one of ";
+  for (const auto& known : fault_profiles()) message.append(known).append(", ");
+  return Error{message + "or several with commas"};
+}
+
 }  // namespace
 
 FaultParams& FaultParams::add(const FaultParams& other) {
@@ -237,13 +243,7 @@ Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed
     } else if (name == "mixed") {
       all.add(mixed(seed));
     } else if (name != "none") {
-      std::string names;
-      for (const auto& known : fault_profiles()) {
-        names += names.empty() ? "" : ", ";
-        names += known;
-      }
-      return Error{"there is no fault profile '" + name + "'; write one of " + names +
-                   ", or several with commas"};
+      return no_profile(name);
     }
   }
   return all;

@@ -8,6 +8,7 @@ namespace skein::hil {
 std::vector<mission::ScriptedDecision> scripted_decisions(
     const std::vector<configuration::OperatorDecision>& decisions) {
   std::vector<mission::ScriptedDecision> scripted;
+  scripted.reserve(decisions.size());
   for (const auto& d : decisions) scripted.push_back({d.site, d.grant, d.reaction, d.not_before});
   return scripted;
 }

@@ -14,20 +14,20 @@ namespace {
 namespace fs = std::filesystem;
 
 bool is_text(const fs::path& path) {
-  static const std::array<std::string, 16> kExtensions{
+  static const std::array<std::string, 16> extensions{
       ".cpp", ".hpp",  ".idl", ".cmake", ".txt", ".md",  ".yaml", ".json",
       ".sh",  ".html", ".css", ".js",    ".ts",  ".csv", ".svg",  ".py"};
   if (path.filename() == "dev" || path.filename() == "run") return true;
-  return std::find(kExtensions.begin(), kExtensions.end(), path.extension().string()) !=
-         kExtensions.end();
+  return std::find(extensions.begin(), extensions.end(), path.extension().string()) !=
+         extensions.end();
 }
 
 std::vector<skein::tidy::File> read_tree(const fs::path& root) {
-  static const std::array<std::string, 4> kNotOurs{".git", "build", "runs", "node_modules"};
+  static const std::array<std::string, 4> not_ours{".git", "build", "runs", "node_modules"};
   std::vector<skein::tidy::File> files;
   for (fs::recursive_directory_iterator it{root}, end; it != end; ++it) {
     const std::string name = it->path().filename().string();
-    if (it->is_directory() && std::find(kNotOurs.begin(), kNotOurs.end(), name) != kNotOurs.end()) {
+    if (it->is_directory() && std::find(not_ours.begin(), not_ours.end(), name) != not_ours.end()) {
       it.disable_recursion_pending();
     } else if (it->is_regular_file() && is_text(it->path())) {
       std::ifstream in{it->path(), std::ios::binary};

@@ -196,9 +196,9 @@ class Checker {
   void check_scope(const std::vector<std::string>& lines) {
     const bool applies = is_source(file_->path) || file_->path.ends_with(".yaml");
     if (!applies || is_tidy(file_->path)) return;
-    static const std::regex kIdentifier{R"([A-Za-z_]\w*)"};
+    static const std::regex identifier{R"([A-Za-z_]\w*)"};
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      for (std::sregex_iterator it{lines[i].begin(), lines[i].end(), kIdentifier}, end; it != end;
+      for (std::sregex_iterator it{lines[i].begin(), lines[i].end(), identifier}, end; it != end;
            ++it) {
         const std::string words = " " + words_of(it->str()) + " ";
         const bool out = std::any_of(kOutOfScope.begin(), kOutOfScope.end(), [&](const char* w) {
@@ -211,8 +211,8 @@ class Checker {
 
   void check_file(const std::vector<std::string>& lines) {
     const std::string& path = file_->path;
-    static const std::regex kVague{R"((^|/|_)(utils?|common|managers?|helpers?|misc)(/|_|\.))"};
-    if (is_source(path) && std::regex_search(path, kVague)) {
+    static const std::regex vague{R"((^|/|_)(utils?|common|managers?|helpers?|misc)(/|_|\.))"};
+    if (is_source(path) && std::regex_search(path, vague)) {
       report(1, "vague-name", "name the file after the one thing that it holds");
     }
     if (is_cpp(path) && lines.size() > kLinesMax) {

@@ -12,7 +12,7 @@ namespace skein::onboard {
 /// wait-free, never allocate, and never see half a value; values that nobody read in time are lost,
 /// which is what "latest" means.
 template <class T>
-class LatestValue {
+class LatestValue {  // NOLINT(clang-analyzer-optin.performance.Padding): cache lines of their own
   static_assert(std::is_trivially_copyable_v<T>);
 
  public:

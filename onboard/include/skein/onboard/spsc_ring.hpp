@@ -13,7 +13,7 @@ namespace skein::onboard {
 /// A queue from one pushing thread to one popping thread. Both sides are wait-free; the ring itself
 /// never allocates after construction. When full, the newest is refused and counted.
 template <class T, std::size_t Capacity>
-class SpscRing {
+class SpscRing {  // NOLINT(clang-analyzer-optin.performance.Padding): cache lines of their own
   static_assert(Capacity > 0 && (Capacity & (Capacity - 1)) == 0, "a power of two");
 
  public:

@@ -72,15 +72,15 @@ class Elector {
   void count_supporters(Instant now);
 
   ProtocolParams params_;
-  VehicleId self_;
   InstanceId instance_;
+  VehicleId self_;
+  VehicleId follows_;  ///< the leader, or a claimant
   bool may_lead_ = true;
+  bool elector_ = false;  ///< of plan_'s coalition
+  bool strayed_ = false;  ///< it has followed a claimant in that coalition
   std::optional<Award> plan_;
-  bool elector_ = false;                ///< of plan_'s coalition
-  std::vector<VehicleId> electors_;     ///< of it, the leader among them
+  std::vector<VehicleId> electors_;     ///< of plan_'s coalition, the leader among them
   Instant renewed_at_{Instant::min()};  ///< by the leader's clock: the newest renewal
-  VehicleId follows_;                   ///< the leader, or a claimant
-  bool strayed_ = false;                ///< it has followed a claimant in that coalition
   Instant promised_until_{};
   std::vector<TaskId> done_;
   std::map<VehicleId, Support> supporters_;  ///< of this vehicle's claim

@@ -50,6 +50,6 @@ class ChildProcess {
 };
 
 /// SIGTERM to all, then SIGKILL to those that have not ended in time. True when all ended cleanly.
-bool stop_all(std::vector<ChildProcess*> processes, std::chrono::milliseconds at_most);
+bool stop_all(const std::vector<ChildProcess*>& processes, std::chrono::milliseconds at_most);
 
 }  // namespace skein::hil
