@@ -131,6 +131,7 @@ double judge_slots(const std::vector<const DeliveryFlown*>& group, const Limits&
   if (group.size() < 2) return 0.0;
   const auto slot = [](const DeliveryFlown* d, Instant time) { return time - d->offset; };
   std::vector<Instant> planned;
+  planned.reserve(group.size());
   for (const DeliveryFlown* d : group) planned.push_back(slot(d, *d->run.planned));
   std::sort(planned.begin(), planned.end());
   const Instant base = planned[planned.size() / 2];

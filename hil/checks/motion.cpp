@@ -55,8 +55,8 @@ void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
   Pose2 pose = plan.path.start;
   double begin = 0.0;
   std::size_t piece = 0;
-  double skipped = 0.0;
-  for (double i = 0.0; i <= steps; i += 1.0 + skipped) {
+  double i = 0.0;
+  while (i <= steps) {
     const double distance = from_m + (to_m - from_m) * i / steps;
     const auto& segments = plan.path.segments;
     while (piece < segments.size() && distance > begin + segments[piece].length_m) {
@@ -67,7 +67,9 @@ void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
     const double curvature =
         piece < segments.size() ? segments[piece].curvature_per_m : plan.tail_curvature_per_m;
     const double idle = see(distance, along_piece(pose, curvature, distance - begin).position());
-    skipped = to_m > from_m ? std::floor(std::max(0.0, idle) * steps / (to_m - from_m)) : 0.0;
+    const double skipped =
+        to_m > from_m ? std::floor(std::max(0.0, idle) * steps / (to_m - from_m)) : 0.0;
+    i += 1.0 + skipped;
   }
 }
 

@@ -16,7 +16,8 @@ recording::Recording straight(VehicleId id, const Vec2& start, const Vec2& veloc
                               double rate_hz = 20.0, double offset_s = 0.0) {
   recording::Recording recorded;
   recorded.vehicle = id;
-  for (double t = offset_s; t <= until_s; t += 1.0 / rate_hz) {
+  for (int i = 0; offset_s + i / rate_hz <= until_s; ++i) {
+    const double t = offset_s + i / rate_hz;
     recording::TrackPoint point;
     point.state.time = at_seconds(t);
     const Vec2 here = start + t * velocity;

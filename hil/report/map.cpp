@@ -60,12 +60,12 @@ View view_of(const checks::RunRecord& record) {
 std::string draw_grid(const View& view) {
   std::string svg;
   const double step = round_below((view.high.x() - view.low.x()) / 4.0);
-  for (double x = std::ceil(view.low.x() / step) * step; x < view.high.x(); x += step) {
-    const double px = view({x, 0.0}).x();
+  for (double i = std::ceil(view.low.x() / step); i * step < view.high.x(); i += 1.0) {
+    const double px = view({i * step, 0.0}).x();
     svg += fmt::format(R"~(<path class="grid" d="M{0:.1f} 0V{1:.1f}"/>)~", px, view.height());
   }
-  for (double y = std::ceil(view.low.y() / step) * step; y < view.high.y(); y += step) {
-    const double py = view({0.0, y}).y();
+  for (double i = std::ceil(view.low.y() / step); i * step < view.high.y(); i += 1.0) {
+    const double py = view({0.0, i * step}).y();
     svg += fmt::format(R"~(<path class="grid" d="M0 {0:.1f}H{1:.1f}"/>)~", py, kWidth);
   }
   return svg;
