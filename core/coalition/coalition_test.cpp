@@ -603,13 +603,20 @@ void fly_with_random_faults(std::uint64_t seed) {
   }
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr std::uint64_t kFaultRuns = 10;  ///< sanitizers are slow
+#else
+constexpr std::uint64_t kFaultRuns = 150;
+#endif
+
 TEST(Coalition, RandomFaultsBreakNoInvariantAndAllIsDoneOnceTheyEnd) {
   const auto from_environment = [](const char* name, std::uint64_t otherwise) {
+    // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
     const char* const text = std::getenv(name);
     return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
   };
   const std::uint64_t first = from_environment("SKEIN_FAULT_SEED", 1);
-  const std::uint64_t last = first + from_environment("SKEIN_FAULT_RUNS", 150);
+  const std::uint64_t last = first + from_environment("SKEIN_FAULT_RUNS", kFaultRuns);
   for (std::uint64_t seed = first; seed < last && !testing::Test::HasFailure(); ++seed) {
     fly_with_random_faults(seed);
   }
