@@ -35,7 +35,11 @@ function(_skein_tests name)
   target_link_libraries(${name}_test PRIVATE ${T_DEPS} GTest::gtest GTest::gmock GTest::gtest_main skein_warnings)
   target_compile_definitions(${name}_test PRIVATE SKEIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   add_test(NAME ${name} COMMAND ${name}_test)
-  set_tests_properties(${name} PROPERTIES TIMEOUT 300)
+  set(seconds 300)
+  if(SKEIN_SANITIZE)
+    set(seconds 1800)  # Eigen is slow without optimisation, slower yet on a busy machine
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${seconds})
 endfunction()
 
 function(skein_module name)
