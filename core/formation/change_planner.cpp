@@ -18,6 +18,7 @@ namespace {
 /// From its least disc on: a larger one may be shorter in time, since tight turns are slow.
 constexpr double kDiscGrowth = 1.03;
 constexpr int kDiscsMax = 60;
+constexpr double kRounding_m = 1e-6;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -54,8 +55,9 @@ class Planner {
   [[nodiscard]] std::vector<int> layers_for(const Nearness& straight) const;
   /// Of all pairs; where it need not be complete it ends with the first conflict.
   [[nodiscard]] Nearness nearness(const Change& change, bool complete) const;
+  [[nodiscard]] double distance_to(const KeepOut& keep_out, const Vec3& position) const;
   [[nodiscard]] double keep_out_distance(const ChangeMotion& motion, std::size_t mover,
-                                         const KeepOut& keep_out) const;
+                                         const KeepOut& keep_out, double enough_m) const;
   [[nodiscard]] PlannedChange planned(Change change, Way way, double least_m) const;
   [[nodiscard]] Error too_near(const Nearness& nearness) const;
   [[nodiscard]] Vec3 stretched(Vec3 v) const {
@@ -79,21 +81,25 @@ Change Planner::straight() const {
   return change;
 }
 
-double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
-                                  const KeepOut& keep_out) const {
+double Planner::distance_to(const KeepOut& keep_out, const Vec3& position) const {
+  const Vec3 at = stretched(position);
   const Vec3 from = stretched(keep_out.from);
   const Vec3 way = stretched(keep_out.to) - from;
   const double squared = way.squaredNorm();
+  const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
+  return (from + share * way - at).norm();
+}
+
+double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
+                                  const KeepOut& keep_out, double enough_m) const {
   const double pace = motion.speed_max_mps(mover) * std::max(1.0, height_factor_);
   const double end_s = to_seconds(motion.duration());
   double least = std::numeric_limits<double>::infinity();
   for (double t = 0.0;;) {
-    const Vec3 at = stretched(motion.position(mover, from_seconds(t)));
-    const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
-    const double d = (from + share * way - at).norm();
+    const double d = distance_to(keep_out, motion.position(mover, from_seconds(t)));
     least = std::min(least, d);
-    if (t >= end_s || least < apart_m_) return least;
-    t = std::min(end_s, t + std::max(0.01, (d - apart_m_) / std::max(pace, 1e-3)));
+    if (t >= end_s || least < enough_m) return least;
+    t = std::min(end_s, t + std::max(0.01, (d - enough_m) / std::max(pace, 1e-3)));
   }
 }
 
@@ -113,7 +119,12 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
       if (!complete && !result.conflicts.empty()) return result;
     }
     for (std::size_t k = 0; k < request_.keep_outs.size(); ++k) {
-      see(keep_out_distance(motion, a, request_.keep_outs[k]), {a, count_ + k});
+      // Nobody there is late, so no reserve is needed; and who is nearer already may leave.
+      const KeepOut& keep_out = request_.keep_outs[k];
+      const double enough = std::min(request_.separation.horizontal_m,
+                                     distance_to(keep_out, motion.position(a, {})) - kRounding_m);
+      const double d = keep_out_distance(motion, a, keep_out, enough);
+      if (d < enough) see(d, {a, count_ + k});
       if (!complete && !result.conflicts.empty()) return result;
     }
   }

@@ -160,8 +160,20 @@ TEST(PlanChange, KeepsAwayFromWhoIsSilent) {
   for (double t = 0.0; t < to_seconds(motion.duration()); t += 0.05) {
     const Vec3 at = motion.position(0, from_seconds(t));
     const double y = std::clamp(at.y(), -5.0, 4.0);
-    EXPECT_GE((at - Vec3{20.0, y, 14.0}).norm(), 4.0 - 1e-6);
+    EXPECT_GE((at - Vec3{20.0, y, 14.0}).norm(), 3.0 - 1e-6);
   }
+}
+
+TEST(PlanChange, LetsGoWhoIsNearSomebodySilentAlready) {
+  ChangeRequest request;
+  request.limits = kLimits;
+  request.transfers = {{{1}, {0, 0, 14}, {40, 0, 14}}};
+  request.keep_outs = {{{9}, {-1, -5, 14}, {-1, 5, 14}}};  // 1 m from where it starts
+  EXPECT_TRUE(plan_change(request).ok());
+  request.transfers[0].to = {-40, 0, 14};  // through it: over it, straight up first
+  const auto over = plan_change(request);
+  ASSERT_TRUE(over.ok()) << over.error().message;
+  EXPECT_EQ(over->way, Way::layers);
 }
 
 }  // namespace

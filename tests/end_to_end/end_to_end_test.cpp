@@ -119,6 +119,15 @@ TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
   EXPECT_EQ(radio_tables_of(bench.pid()), "");
 }
 
+TEST_F(EndToEnd, AFormationGoesOnWithoutTheVehicleThatIsLostInAChange) {
+  const std::string mission = SKEIN_SOURCE_DIR "/tests/end_to_end/formation-loss.yaml";
+  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder / "run").string()}),
+            "exit status 0")
+      << output();
+  EXPECT_NE(output().find("vehicle 2 is silent"), std::string::npos) << output();
+  EXPECT_TRUE(fs::exists(folder / "run" / "ground" / "places.csv"));
+}
+
 TEST_F(EndToEnd, CtrlCStopsEverything) {
   auto bench = start({"run", kSmall, "--headless", "--out", (folder / "run").string()});
   ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();

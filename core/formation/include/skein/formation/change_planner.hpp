@@ -50,13 +50,14 @@ struct PlannedChange {
   Duration duration{};
 };
 
-/// A change in which no two vehicles, and no vehicle and no keep-out, come nearer than separation
-/// and reserve; checked in continuous time. Straight lines under common timing suffice for every
-/// assignment of least squares whose starts and places are 2 sqrt(2) R apart, R half the separation
-/// (Turpin, Mohta, Michael and Kumar 2014, theorem 3.3, "CAPT"). The disc of a roundabout is the
-/// least on whose rim N vehicles evenly spread are apart, d / (2 sin(pi / N)), or as much larger as
-/// it takes. Layers need N heights at most. Fails, with the two that come nearest, where the starts
-/// or the places themselves are too near, or the ceiling too low. Cost: of n^2 pairs.
+/// A change in which no two vehicles come nearer than separation and reserve, and none to a
+/// keep-out than separation, or than it is already; checked in continuous time. Straight lines
+/// under common timing suffice for every assignment of least squares whose starts and places are 2
+/// sqrt(2) R apart, R half the separation (Turpin, Mohta, Michael and Kumar 2014, theorem 3.3,
+/// "CAPT"). The disc of a roundabout is the least on whose rim N vehicles evenly spread are apart,
+/// d / (2 sin(pi / N)), or as much larger as it takes. Layers need N heights at most. Fails, with
+/// the two that come nearest, where the starts or the places themselves are too near, or the
+/// ceiling too low. Cost: of n^2 pairs.
 [[nodiscard]] Result<PlannedChange> plan_change(const ChangeRequest& request);
 
 }  // namespace skein::formation
