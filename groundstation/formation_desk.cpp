@@ -13,6 +13,8 @@ namespace {
 
 /// After an order of the script that could not be given.
 constexpr Duration kTryAgain = std::chrono::seconds{1};
+/// Who is not heard by then is told of.
+constexpr Duration kTeamWait = std::chrono::seconds{10};
 
 mission::FormationGroundConfig ground_config(const configuration::FormationConfig& config,
                                              const std::vector<VehicleId>& vehicles) {
@@ -149,7 +151,16 @@ void FormationDesk::on_timeout(Instant now) {
 void FormationDesk::work_off_script(Instant now) {
   if (now < Instant{} || now < try_again_) return;
   // The first order is for the whole team.
-  if (next_line_ == 0 && !given_ && ground_.members().size() < vehicles_.size()) return;
+  if (next_line_ == 0 && !given_ && ground_.members().size() < vehicles_.size()) {
+    if (!team_by_) team_by_ = now + kTeamWait;
+    if (now < *team_by_ || !said_.empty()) return;
+    for (const VehicleId vehicle : vehicles_) {
+      if (!ground_.members().contains(vehicle)) said_ += fmt::format(" {}", vehicle.value);
+    }
+    report(mission::EventKind::warning, "the script waits for vehicles not heard yet:" + said_,
+           now);
+    return;
+  }
   if (given_) {
     if (!ground_.in_place()) return;
     given_ = false;

@@ -18,7 +18,8 @@ namespace {
 /// From its least disc on: a larger one may be shorter in time, since tight turns are slow.
 constexpr double kDiscGrowth = 1.03;
 constexpr int kDiscsMax = 60;
-constexpr double kRounding_m = 1e-6;
+/// Vehicles that waited for each other rest as near as they may, and start from there.
+constexpr double kRounding_m = 1e-3;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -55,9 +56,13 @@ class Planner {
   [[nodiscard]] std::vector<int> layers_for(const Nearness& straight) const;
   /// Of all pairs; where it need not be complete it ends with the first conflict.
   [[nodiscard]] Nearness nearness(const Change& change, bool complete) const;
-  [[nodiscard]] double distance_to(const KeepOut& keep_out, const Vec3& position) const;
   [[nodiscard]] double keep_out_distance(const ChangeMotion& motion, std::size_t mover,
                                          const KeepOut& keep_out, double enough_m) const;
+  [[nodiscard]] double to_keep_out(const Vec3& position, const KeepOut& keep_out) const;
+  /// Of two vehicles that start so far apart.
+  [[nodiscard]] double wanted_m(double at_start_m) const {
+    return std::clamp(at_start_m - kRounding_m, request_.separation.horizontal_m, apart_m_);
+  }
   [[nodiscard]] PlannedChange planned(Change change, Way way, double least_m) const;
   [[nodiscard]] Error too_near(const Nearness& nearness) const;
   [[nodiscard]] Vec3 stretched(Vec3 v) const {
@@ -81,7 +86,7 @@ Change Planner::straight() const {
   return change;
 }
 
-double Planner::distance_to(const KeepOut& keep_out, const Vec3& position) const {
+double Planner::to_keep_out(const Vec3& position, const KeepOut& keep_out) const {
   const Vec3 at = stretched(position);
   const Vec3 from = stretched(keep_out.from);
   const Vec3 way = stretched(keep_out.to) - from;
@@ -96,7 +101,7 @@ double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
   const double end_s = to_seconds(motion.duration());
   double least = std::numeric_limits<double>::infinity();
   for (double t = 0.0;;) {
-    const double d = distance_to(keep_out, motion.position(mover, from_seconds(t)));
+    const double d = to_keep_out(motion.position(mover, from_seconds(t)), keep_out);
     least = std::min(least, d);
     if (t >= end_s || least < enough_m) return least;
     t = std::min(end_s, t + std::max(0.01, (d - enough_m) / std::max(pace, 1e-3)));
@@ -106,25 +111,27 @@ double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
 Nearness Planner::nearness(const Change& change, bool complete) const {
   const ChangeMotion motion{change};
   Nearness result;
-  const auto see = [&](double distance, Pair pair) {
+  const auto see = [&](double distance, double wanted, Pair pair) {
     if (distance < result.least_m) {
       result.least_m = distance;
       result.nearest = pair;
     }
-    if (distance < apart_m_) result.conflicts.push_back(pair);
+    if (distance < wanted) result.conflicts.push_back(pair);
   };
   for (std::size_t a = 0; a < count_; ++a) {
+    const Vec3& from = request_.transfers[a].from;
     for (std::size_t b = a + 1; b < count_; ++b) {
-      see(motion.least_distance_m(a, b, height_factor_, complete ? 0.0 : apart_m_), {a, b});
+      const double wanted = wanted_m(stretched(from - request_.transfers[b].from).norm());
+      see(motion.least_distance_m(a, b, height_factor_, complete ? 0.0 : wanted), wanted, {a, b});
       if (!complete && !result.conflicts.empty()) return result;
     }
     for (std::size_t k = 0; k < request_.keep_outs.size(); ++k) {
-      // Nobody there is late, so no reserve is needed; and who is nearer already may leave.
       const KeepOut& keep_out = request_.keep_outs[k];
-      const double enough = std::min(request_.separation.horizontal_m,
-                                     distance_to(keep_out, motion.position(a, {})) - kRounding_m);
-      const double d = keep_out_distance(motion, a, keep_out, enough);
-      if (d < enough) see(d, {a, count_ + k});
+      // Nobody there is late, so no reserve is needed; and who is nearer already may leave.
+      const double wanted =
+          std::min(request_.separation.horizontal_m, to_keep_out(from, keep_out) - kRounding_m);
+      const double d = keep_out_distance(motion, a, keep_out, wanted);
+      if (d < wanted) see(d, wanted, {a, count_ + k});
       if (!complete && !result.conflicts.empty()) return result;
     }
   }

@@ -20,6 +20,9 @@ std::size_t index_of(const Change& change, VehicleId vehicle) {
 
 Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m}; }
 
+/// Who waits for longer says so.
+constexpr Duration kLongWait = std::chrono::seconds{3};
+
 Instant slot_after(Instant t, Duration period) {
   return Instant{(t.time_since_epoch() / period + 1) * period};
 }
@@ -46,7 +49,7 @@ void FormationAgent::on_message(const Message& message, VehicleId sender, Instan
 
 void FormationAgent::on_change(const Change& change, Instant now) {
   const std::uint32_t known = change_ ? change_->number : 0;
-  if (change.number <= known || change.number == refused_ || !state_) return;
+  if (change.number <= known || !state_) return;
   if (!valid(change)) {
     ++bad_changes_;
     return;
@@ -54,15 +57,21 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   const std::size_t self = index_of(change, config_.vehicle);
   if (self == change.movers.size()) return;
   if (const auto why = why_not(change, self)) {
-    refused_ = change.number;
+    // It is sent again, and may fit then.
+    if (change.number == std::exchange(refused_, change.number)) return;
     report(EventKind::warning, 0.0,
            "change " + std::to_string(change.number) + " is not flown: " + *why, now);
     return;
   }
   change_ = change;
   passage_ = formation::Passage{change, self, config_.passage, now};
-  passage_.hold(held_);
+  not_begun_.clear();
+  for (const formation::Mover& mover : change.movers) {
+    if (mover.vehicle != config_.vehicle) not_begun_.insert(mover.vehicle);
+  }
+  passage_.hold(held_ || !not_begun_.empty());
   arrived_ = false;
+  waits_since_.reset();
   report(EventKind::change_begun, change.number, "", now);
   step(now);
 }
@@ -85,6 +94,7 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   const std::size_t mover = index_of(*change_, status.vehicle);
   if (mover == change_->movers.size()) return;
   if (status.progress.change == change_->number) {
+    if (not_begun_.erase(status.vehicle) > 0) passage_.hold(held_ || !not_begun_.empty());
     passage_.on_progress(mover, status.progress);
   } else if (status.progress.change < change_->number) {
     // It has not taken up the change, and stays where it is: perhaps not where the change begins.
@@ -102,7 +112,7 @@ void FormationAgent::on_command(const Command& command) {
   command_number_ = command.number;
   if (command.kind == CommandKind::hold) held_ = true;
   if (command.kind == CommandKind::resume) held_ = false;
-  passage_.hold(held_);
+  passage_.hold(held_ || !not_begun_.empty());
 }
 
 void FormationAgent::on_timeout(Instant now) {
@@ -127,6 +137,7 @@ void FormationAgent::step(Instant now) {
       arrived_ = true;
       report(EventKind::place_reached, change_->number, "", now);
     }
+    tell_of_wait(now);
   }
   if (!state_ || now < next_status_) return;
   next_status_ = slot_after(now, config_.status_period);
@@ -141,6 +152,25 @@ void FormationAgent::step(Instant now) {
   }
   status.progress.off_m = off;
   messages_.push(status);
+}
+
+void FormationAgent::tell_of_wait(Instant now) {
+  const bool waits = !passage_.finished() && passage_.at_rest() && now >= change_->start;
+  if (!waits) {
+    waits_since_.reset();
+    return;
+  }
+  if (!waits_since_) waits_since_ = now;
+  if (now - *waits_since_ < kLongWait) return;
+  waits_since_ = Instant::max();  // it is said once
+  std::string why = "it is told to hold";
+  if (!not_begun_.empty()) {
+    why = "vehicle " + std::to_string(not_begun_.begin()->value) + " has not begun";
+  } else if (const auto other = passage_.waits_for()) {
+    why = "vehicle " + std::to_string(change_->movers[*other].vehicle.value) + " has yet to pass";
+  }
+  report(EventKind::warning, to_seconds(kLongWait),
+         "waits in change " + std::to_string(change_->number) + ": " + why, now);
 }
 
 std::optional<MotionTrack> FormationAgent::poll_track() { return std::exchange(track_, {}); }

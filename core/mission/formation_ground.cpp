@@ -11,6 +11,7 @@
 namespace skein::mission {
 namespace {
 
+using formation::Change;
 using formation::ChangeMotion;
 using formation::Transfer;
 
@@ -18,6 +19,11 @@ constexpr Duration kRepeat = std::chrono::milliseconds{500};
 constexpr Duration kPeriod = std::chrono::milliseconds{100};
 /// At rest for so long without having arrived: nothing will move any more.
 constexpr Duration kStuck = std::chrono::seconds{2};
+/// A change that is not sent any more is not taken up after so long: no copy is on its way.
+constexpr Duration kMessageLife = std::chrono::seconds{3};
+constexpr Duration kTryAgain = std::chrono::seconds{5};
+/// Where a silent vehicle may be is looked at in such steps.
+constexpr double kLook_m = 0.5;
 /// Drift is what is left of gusts over so long.
 constexpr double kDriftTime_s = 5.0;
 constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
@@ -98,16 +104,76 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   request.separation.vertical_m += 2.0 * config_.tracking_m;
   request.reserve_m = config_.reserve_m;
   request.ceiling_m = config_.ceiling_m;
+  if (order.kind != OrderKind::land) {
+    if (auto stranger = unknown(); !stranger.empty()) {
+      return Error{stranger + " and may be in the way; land, or wait until it is heard"};
+    }
+  }
   std::vector<VehicleId> lost;
   for (const auto& [vehicle, member] : members_) {
     if (!member.lost) continue;
     lost.push_back(vehicle);
-    const Vec3 seen = member.status.reference_m;
-    request.keep_outs.push_back({vehicle, seen, goal_of(vehicle).value_or(seen)});
+    for (const Vec3& place : may_be(vehicle, member)) {
+      // Whoever flies it no more comes down sooner or later.
+      request.keep_outs.push_back({vehicle, place, {place.x(), place.y(), 0.0}});
+    }
   }
   auto planned = formation::plan_change(request);
   if (!planned) return planned.error();
   return FormationPreview{order, std::move(*planned), std::move(lost)};
+}
+
+bool FormationGround::may_fly(const Change& change, VehicleId vehicle, const Member& member) const {
+  return change.number >= member.status.progress.change &&
+         std::any_of(change.movers.begin(), change.movers.end(),
+                     [vehicle](const auto& mover) { return mover.vehicle == vehicle; });
+}
+
+/// On its way to the goal of the change that it was heard in, or of one that it may have taken up
+/// since.
+std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& member) const {
+  const Vec3& seen = member.status.reference_m;
+  std::vector<Vec3> places{seen};
+  for (const Change& change : sent_) {
+    if (!may_fly(change, vehicle, member)) continue;
+    std::size_t mover = 0;
+    while (change.movers[mover].vehicle != vehicle) ++mover;
+    const ChangeMotion motion{change};
+    std::vector<Vec3> way{change.movers[mover].points.front()};
+    const double step_s = kLook_m / std::max(0.1, motion.speed_max_mps(mover));
+    for (double t = 0.0; t < to_seconds(motion.duration()); t += step_s) {
+      const Vec3 at = motion.position(mover, from_seconds(t));
+      if ((at - way.back()).norm() >= kLook_m / 2.0) way.push_back(at);
+    }
+    way.push_back(change.movers[mover].points.back());
+    auto from = way.begin();
+    if (change.number == member.status.progress.change) {
+      from = std::min_element(way.begin(), way.end(), [&](const Vec3& a, const Vec3& b) {
+        return (a - seen).squaredNorm() < (b - seen).squaredNorm();
+      });
+    }
+    places.insert(places.end(), from, way.end());
+  }
+  return places;
+}
+
+/// Of whom this ground station cannot say where it may be, because another has commanded it.
+std::string FormationGround::unknown() const {
+  if (!succeeds_) return "";
+  for (const VehicleId vehicle : config_.vehicles) {
+    const auto found = members_.find(vehicle);
+    if (found == members_.end()) {
+      return name_of(vehicle) + " was not heard since this ground station started";
+    }
+    const std::uint32_t number = found->second.status.progress.change;
+    const bool ours = number == 0 || std::any_of(sent_.begin(), sent_.end(), [&](const auto& sent) {
+                        return sent.number == number;
+                      });
+    if (found->second.lost && !ours) {
+      return name_of(vehicle) + " is silent, where it flew to is not known,";
+    }
+  }
+  return "";
 }
 
 Result<FormationPreview> FormationGround::preview(const FormationOrder& order,
@@ -138,7 +204,14 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   change_->number = number_;
   change_->start = now + config_.lead;
   for (auto& [vehicle, member] : members_) member.arrived_at.reset();
+  std::erase_if(sent_, [this](const Change& old) {
+    return std::none_of(members_.begin(), members_.end(),
+                        [&](const auto& entry) { return may_fly(old, entry.first, entry.second); });
+  });
+  sent_.push_back(*change_);
   give_again_ = false;
+  withdrawn_ = false;
+  stuck_since_.reset();
   near_since_.reset();
   held_since_.reset();
   rest_since_.reset();
@@ -180,6 +253,8 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
     report(EventKind::warning, status.vehicle, 0.0,
            name_of(status.vehicle) + " is heard again; the next order takes it along", now);
   }
+  // A ground station before this one has commanded it.
+  succeeds_ = succeeds_ || status.progress.change > number_;
   member.lost = false;
   member.status = status;
   member.heard_at = now;
@@ -198,7 +273,8 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
 bool FormationGround::moving() const {
   return std::any_of(members_.begin(), members_.end(), [this](const auto& entry) {
     const Member& member = entry.second;
-    const bool begun = member.status.progress.change == number_ || !goal_of(entry.first);
+    const bool begun =
+        withdrawn_ || member.status.progress.change == number_ || !goal_of(entry.first);
     return !member.lost && (!member.status.at_rest || !begun);
   });
 }
@@ -216,7 +292,8 @@ void FormationGround::on_timeout(Instant now) {
                                       return found == members_.end() || found->second.lost ||
                                              found->second.status.progress.change >= number_;
                                     });
-  if (!all_know && now >= send_next_) {
+  find_stuck(now);
+  if (!all_know && !give_again_ && now >= send_next_) {
     send_next_ = now + kRepeat;
     messages_.push(*change_);
   }
@@ -238,6 +315,30 @@ void FormationGround::find_lost(Instant now) {
   }
 }
 
+/// Nobody moves, and somebody has not taken the change up: it started anew on its way, or is
+/// somewhere else.
+void FormationGround::find_stuck(Instant now) {
+  VehicleId who;
+  const bool rest = std::all_of(members_.begin(), members_.end(), [&](const auto& entry) {
+    const auto& [vehicle, member] = entry;
+    if (member.lost) return true;
+    if (member.status.progress.change < number_ && goal_of(vehicle)) who = vehicle;
+    return member.status.at_rest;
+  });
+  if (!rest || who == kGroundStation || now < change_->start) {
+    stuck_since_.reset();
+    withdrawn_ = false;
+    return;
+  }
+  if (!stuck_since_) stuck_since_ = now;
+  if (now - *stuck_since_ >= kStuck && !give_again_) {
+    give_again_ = true;
+    report(EventKind::warning, who, 0.0,
+           name_of(who) + " has not begun the change: the order is given again", now);
+  }
+  withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;
+}
+
 void FormationGround::give_again(Instant now) {
   if (moving()) {
     rest_since_.reset();
@@ -245,13 +346,16 @@ void FormationGround::give_again(Instant now) {
   }
   if (!rest_since_) rest_since_ = now;
   if (now - *rest_since_ < kStuck) return;
-  give_again_ = false;
   auto again = preview(*order_, now);
   if (!again) {
-    report(EventKind::warning, kGroundStation, 0.0,
-           "the order cannot be flown without the lost vehicle: " + again.error().message, now);
+    rest_since_ = now + kTryAgain;
+    if (!refused_.empty()) return;  // said before, and where others rest differs a little
+    refused_ = again.error().message;
+    report(EventKind::warning, kGroundStation, 0.0, "the order cannot be given again: " + refused_,
+           now);
     return;
   }
+  refused_.clear();
   begin(std::move(*again), now);
 }
 

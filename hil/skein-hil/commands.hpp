@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "skein/configuration/scenario.hpp"
+
 namespace skein::hil {
 
 inline constexpr int kExitHeld = 0;      ///< every check held
@@ -38,6 +40,16 @@ struct SimulateArguments {
   std::size_t jobs = 0;             ///< 0: one for each core
 };
 int simulate(const SimulateArguments& arguments);
+/// What simulate() does with a scenario of a formation.
+int simulate_formation(const configuration::Scenario& scenario, const SimulateArguments& arguments);
+
+struct ChangesArguments {
+  std::string program;  ///< as it was called
+  std::size_t runs = 10'000;
+  std::uint64_t first_seed = 1;
+  std::size_t jobs = 0;  ///< 0: one for each core
+};
+int changes(const ChangesArguments& arguments);
 
 struct SweepArguments {
   std::filesystem::path experiment;

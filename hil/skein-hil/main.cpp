@@ -62,7 +62,10 @@ int main(int argc, char** argv) {
   simulate_command
       ->add_option("--faults", simulate.faults,
                    "What goes wrong, drawn from the seed: none, lossy, partition, crash, clocks,\n"
-                   "hazards, operator, joining, several of them with commas, or mixed")
+                   "hazards, operator, joining, several of them with commas, or mixed; of a "
+                   "formation\n"
+                   "none, vehicle, leader, ground, loss, silence, partition, restart, clocks or "
+                   "mixed")
       ->capture_default_str();
   simulate_command
       ->add_option("--runs", simulate.runs,
@@ -76,7 +79,24 @@ int main(int argc, char** argv) {
       "The same file and seed print the same bytes. Every mission is judged; ends with status 0\n"
       "only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil simulate scenarios/coalition-32.yaml --seed 7 --trace\n"
-      "          skein-hil simulate scenarios/faults-8.yaml --runs 1000 --faults mixed");
+      "          skein-hil simulate scenarios/faults-8.yaml --runs 1000 --faults mixed\n"
+      "          skein-hil simulate scenarios/formation-5.yaml --runs 1000 --faults mixed");
+
+  skein::hil::ChangesArguments changes;
+  changes.program = argv[0];
+  auto* changes_command = app.add_subcommand(
+      "changes", "Plan random changes of formation, and judge their separation in continuous time");
+  changes_command->add_option("--runs", changes.runs, "How many changes, of 5 to 100 vehicles")
+      ->check(CLI::Range(1, 10'000'000))
+      ->capture_default_str();
+  changes_command->add_option("--first-seed", changes.first_seed, "Of the first; then + 1")
+      ->capture_default_str();
+  changes_command
+      ->add_option("--jobs", changes.jobs, "Changes at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  changes_command->footer(
+      "Ends with status 0 if nobody comes nearer than separation and reserve, 1 if somebody does.\n"
+      "Example: skein-hil changes --runs 10000");
 
   skein::hil::SweepArguments sweep;
   auto* sweep_command = app.add_subcommand(
@@ -193,6 +213,7 @@ int main(int argc, char** argv) {
   if (dump_command->parsed()) return skein::hil::dump_can(dump);
   if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
+  if (changes_command->parsed()) return skein::hil::changes(changes);
   if (shapes_command->parsed()) return skein::hil::shapes(shapes);
   if (swap_command->parsed()) return skein::hil::swap(swap);
   return sweep_command->parsed() ? skein::hil::sweep(sweep) : skein::hil::simulate(simulate);

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "commands.hpp"
+#include "progress_line.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/faults.hpp"
 #include "skein/hil/judged_runs.hpp"
@@ -38,36 +37,6 @@ bool of_interest(mission::EventKind kind) {
                                      EventKind::warning};
   return std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
-
-/// One line on a terminal that is written over: how far, and how long still.
-class ProgressLine {
- public:
-  explicit ProgressLine(std::size_t runs) : runs_{runs}, shown_{::isatty(STDERR_FILENO) != 0} {}
-
-  void count(bool held) {
-    ++done_;
-    if (!held) ++broken_;
-    const auto now = Clock::now();
-    if (!shown_ || (now < next_ && done_ < runs_)) return;
-    next_ = now + std::chrono::milliseconds{200};
-    const double passed = std::chrono::duration<double>(now - start_).count();
-    const double left = passed * static_cast<double>(runs_ - done_) / static_cast<double>(done_);
-    fmt::print(stderr, "\r{}/{} runs, {} violated, {:.0f} s left   ", done_, runs_, broken_, left);
-    std::fflush(stderr);
-  }
-  void clear() const {
-    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::size_t runs_;
-  bool shown_;
-  std::size_t done_ = 0;
-  std::size_t broken_ = 0;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point next_ = start_;
-};
 
 std::string who(VehicleId vehicle) {
   return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
@@ -172,11 +141,12 @@ int simulate(const SimulateArguments& arguments) {
     fmt::print(stderr, "{}\n", flyable.error().message);
     return kExitBadInput;
   }
+  if (arguments.seed) scenario->seed = *arguments.seed;
+  if (scenario->flies_formation()) return simulate_formation(*scenario, arguments);
   if (const auto faults = fault_params(arguments.faults, scenario->seed); !faults) {
     fmt::print(stderr, "{}\n", faults.error().message);
     return kExitBadInput;
   }
-  if (arguments.seed) scenario->seed = *arguments.seed;
   return arguments.runs ? fly_many(*scenario, arguments) : fly_one(*scenario, arguments);
 }
 

@@ -33,6 +33,8 @@ class FormationDesk {
   void on_timeout(Instant now);
   [[nodiscard]] std::optional<mission::Message> poll_message() { return ground_.poll_message(); }
   [[nodiscard]] std::optional<mission::MissionEvent> poll_event();
+  /// Lines of the script that are done.
+  [[nodiscard]] std::size_t script_line() const { return next_line_; }
 
  private:
   FormationDesk(const configuration::FormationConfig& config,
@@ -51,6 +53,7 @@ class FormationDesk {
   std::size_t next_line_ = 0;
   bool given_ = false;  ///< an order of the script, that is not in place yet
   std::optional<Instant> wait_until_;
+  std::optional<Instant> team_by_;
   Instant try_again_{};
   std::string said_;  ///< why the script's next order waits
   std::vector<mission::MissionEvent> events_;

@@ -51,13 +51,14 @@ struct PlannedChange {
 };
 
 /// A change in which no two vehicles come nearer than separation and reserve, and none to a
-/// keep-out than separation, or than it is already; checked in continuous time. Straight lines
-/// under common timing suffice for every assignment of least squares whose starts and places are 2
-/// sqrt(2) R apart, R half the separation (Turpin, Mohta, Michael and Kumar 2014, theorem 3.3,
-/// "CAPT"). The disc of a roundabout is the least on whose rim N vehicles evenly spread are apart,
-/// d / (2 sin(pi / N)), or as much larger as it takes. Layers need N heights at most. Fails, with
-/// the two that come nearest, where the starts or the places themselves are too near, or the
-/// ceiling too low. Cost: of n^2 pairs.
+/// keep-out than separation; checked in continuous time. Who starts nearer than that, as vehicles
+/// do that had to wait for each other, comes no nearer than there: two vehicles never below the
+/// separation. Straight lines under common timing suffice for every assignment of least squares
+/// whose starts and places are 2 sqrt(2) R apart, R half the separation (Turpin, Mohta, Michael and
+/// Kumar 2014, theorem 3.3, "CAPT"). The disc of a roundabout is the least on whose rim N vehicles
+/// evenly spread are apart, d / (2 sin(pi / N)), or as much larger as it takes. Layers need N
+/// heights at most. Fails, with the two that come nearest, where the starts or the places
+/// themselves are too near, or the ceiling too low. Cost: of n^2 pairs.
 [[nodiscard]] Result<PlannedChange> plan_change(const ChangeRequest& request);
 
 }  // namespace skein::formation

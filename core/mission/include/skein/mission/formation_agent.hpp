@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "skein/base/bounded_queue.hpp"
@@ -51,6 +52,7 @@ class FormationAgent final : public OnboardAgent {
   void on_status(const FormationStatus& status, Instant now);
   void on_command(const Command& command);
   void step(Instant now);
+  void tell_of_wait(Instant now);
   [[nodiscard]] double off_m(Instant now) const;
   void report(EventKind kind, double value, std::string text, Instant now);
 
@@ -61,6 +63,8 @@ class FormationAgent final : public OnboardAgent {
   std::optional<MotionTrack> track_;
   Instant next_slot_;
   Instant next_status_;
+  std::set<VehicleId> not_begun_;  ///< movers not heard of in the change
+  std::optional<Instant> waits_since_;
   std::uint32_t refused_ = 0;  ///< number of the newest change that it could not take
   std::uint32_t command_number_ = 0;
   bool held_ = false;

@@ -59,8 +59,9 @@ struct FormationPreview {
 
 /// The ground station's side of formations, without I/O: turns orders into changes that were
 /// checked in continuous time, sends them until they are flown, watches places, corrects drift, and
-/// gives an order again to those that are left when a vehicle is lost in it. Same calling rules as
-/// OnboardAgent.
+/// gives an order again to those that are left when a vehicle is lost in it, and to all when one of
+/// them cannot take its change up. Keeps the others clear of wherever a silent vehicle may be, and
+/// of the air below. Same calling rules as OnboardAgent.
 class FormationGround {
  public:
   FormationGround(const FormationGroundConfig& config, Instant now);
@@ -97,10 +98,15 @@ class FormationGround {
       const FormationOrder& order) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
+  [[nodiscard]] bool may_fly(const formation::Change& change, VehicleId vehicle,
+                             const Member& member) const;
+  [[nodiscard]] std::vector<Vec3> may_be(VehicleId vehicle, const Member& member) const;
+  [[nodiscard]] std::string unknown() const;
   void begin(FormationPreview preview, Instant now);
   void on_status(const FormationStatus& status, Instant now);
   void watch(Instant now);
   void find_lost(Instant now);
+  void find_stuck(Instant now);
   void give_again(Instant now);
   void judge_places(Instant now);
   void correct_drift(Instant now);
@@ -113,8 +119,13 @@ class FormationGround {
   std::optional<formation::Change> change_;
   std::uint32_t number_ = 0;
   Instant send_next_{};
-  bool correcting_ = false;            ///< the newest change is against drift only
-  bool give_again_ = false;            ///< somebody was lost in the change
+  bool correcting_ = false;              ///< the newest change is against drift only
+  std::vector<formation::Change> sent_;  ///< that somebody may fly yet
+  bool succeeds_ = false;                ///< another ground station commanded before
+  bool give_again_ = false;              ///< somebody was lost in the change, or has not begun it
+  bool withdrawn_ = false;               ///< nobody begins the newest change any more
+  std::optional<Instant> stuck_since_;
+  std::string refused_;                ///< why the order was not given again
   std::optional<Instant> near_since_;  ///< all within tolerance
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;

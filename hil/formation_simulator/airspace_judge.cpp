@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "airspace_judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace skein::hil {
+
+AirspaceJudge::AirspaceJudge(const Limits& limits, std::vector<VehicleId> vehicles)
+    : limits_{limits},
+      vehicles_{std::move(vehicles)},
+      least_m_{std::numeric_limits<double>::infinity()} {}
+
+std::string AirspaceJudge::name(std::size_t i) const {
+  return fmt::format("U{}", vehicles_[i].value);
+}
+
+void AirspaceJudge::step(const std::vector<Body>& bodies, Instant now) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    farthest_m_ = std::max(farthest_m_, body.off_m);
+    if (body.position_m.z() > limits_.ceiling_m + limits_.tracking_m &&
+        told_.insert({i, i}).second) {
+      violations_.push_back({now, "ceiling",
+                             fmt::format("{} is {:.2f} m high; the ceiling is {:g} m", name(i),
+                                         body.position_m.z(), limits_.ceiling_m)});
+    }
+    for (std::size_t k = 0; k < i && !before_.empty(); ++k) see_pair(k, i, bodies, now);
+  }
+  before_ = bodies;
+}
+
+void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<Body>& bodies,
+                             Instant now) {
+  if (!bodies[a].airborne || !bodies[b].airborne) return;
+  const Vec3 stretch{1.0, 1.0, limits_.separation.height_factor()};
+  const Vec3 begin = (before_[a].position_m - before_[b].position_m).cwiseProduct(stretch);
+  const Vec3 end = (bodies[a].position_m - bodies[b].position_m).cwiseProduct(stretch);
+  const Vec3 way = end - begin;
+  const double squared = way.squaredNorm();
+  const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
+  const double apart = (begin + share * way).norm();
+  least_m_ = std::min(least_m_, apart);
+  if (apart >= limits_.separation.horizontal_m || !told_.insert({a, b}).second) return;
+  violations_.push_back(
+      {now, "separation",
+       fmt::format("{} at ({:.2f} {:.2f} {:.2f}) and {} at ({:.2f} {:.2f} {:.2f}) are {:.2f} m "
+                   "apart; {:g} m are wanted",
+                   name(a), bodies[a].position_m.x(), bodies[a].position_m.y(),
+                   bodies[a].position_m.z(), name(b), bodies[b].position_m.x(),
+                   bodies[b].position_m.y(), bodies[b].position_m.z(), apart,
+                   limits_.separation.horizontal_m)});
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/change_trials.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
+#include "skein/base/random.hpp"
+#include "skein/formation/place_assignment.hpp"
+#include "skein/formation/shapes.hpp"
+
+namespace skein::hil {
+namespace {
+
+using formation::ChangeRequest;
+
+constexpr std::uint64_t kTrialStream = 0x6368616e67657301;
+constexpr Duration kLook = std::chrono::milliseconds{20};
+/// Speeding up and turning at once.
+constexpr double kAccelerationMore = 1.5;
+constexpr double kRounding_m = 1e-6;
+
+/// Anywhere on a square, at least so far apart seen from above.
+std::vector<Vec3> free_places(std::size_t n, double apart_m, Random& random) {
+  double width = 1.6 * apart_m * std::sqrt(static_cast<double>(n));
+  std::vector<Vec3> places;
+  for (std::size_t tries = 0; places.size() < n; ++tries) {
+    if (tries > 200 * n) {
+      width *= 1.1;  // it was too small for all
+      tries = 0;
+    }
+    const Vec3 p{random.uniform(-width / 2.0, width / 2.0),
+                 random.uniform(-width / 2.0, width / 2.0), random.uniform(15.0, 25.0)};
+    const bool room = std::all_of(places.begin(), places.end(), [&](const Vec3& other) {
+      return std::hypot(p.x() - other.x(), p.y() - other.y()) >= apart_m;
+    });
+    if (room) places.push_back(p);
+  }
+  return places;
+}
+
+std::vector<Vec3> some_places(std::size_t n, double apart_m, Random& random) {
+  if (random.chance(0.4)) return free_places(n, apart_m, random);
+  formation::ShapeSpec shape;
+  shape.kind = static_cast<formation::ShapeKind>(
+      random.index(static_cast<std::uint64_t>(formation::ShapeKind::free)));
+  shape.spacing_m = apart_m * random.uniform(1.0, 2.0);
+  shape.heading_rad = random.uniform(-kPi, kPi);
+  shape.centre = {random.uniform(-30.0, 30.0), random.uniform(-30.0, 30.0),
+                  random.uniform(15.0, 25.0)};
+  const auto places = formation::places(shape, n);
+  SKEIN_ASSERT(places.ok());
+  return *places;
+}
+
+std::vector<int> shuffled(std::size_t n, Random& random) {
+  std::vector<int> order(n);
+  for (std::size_t i = 0; i < n; ++i) order[i] = static_cast<int>(i);
+  for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[random.index(i)]);
+  return order;
+}
+
+}  // namespace
+
+ChangeTrial draw_change(std::uint64_t seed) {
+  Random random{seed ^ kTrialStream};
+  ChangeTrial trial;
+  trial.seed = seed;
+  ChangeRequest& request = trial.request;
+  request.limits.speed_mps = random.uniform(1.0, 8.0);
+  request.limits.acceleration_mps2 = random.uniform(1.5, 4.0);
+  request.limits.jerk_mps3 = random.uniform(2.0, 10.0);
+  request.separation.horizontal_m = random.uniform(1.5, 4.0);
+  request.separation.vertical_m = random.uniform(1.0, 2.0) * request.separation.horizontal_m;
+  request.reserve_m = random.uniform(0.0, 1.5);
+  request.ceiling_m = 120.0;
+  const std::size_t n = 5 + random.index(96);
+  const double apart_m = request.separation.horizontal_m + request.reserve_m + 0.05;
+  const auto from = some_places(n, apart_m, random);
+  const auto to = some_places(n, apart_m, random);
+  trial.random_assignment = random.chance(0.2);
+  std::vector<int> place_of;
+  if (trial.random_assignment) {
+    place_of = shuffled(n, random);
+  } else {
+    const auto assigned = formation::assign_places({}, from, to, Random{seed});
+    SKEIN_ASSERT(assigned.ok());
+    place_of = assigned->place_of;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    request.transfers.push_back({VehicleId{static_cast<std::uint16_t>(i + 1)}, from[i],
+                                 to[static_cast<std::size_t>(place_of[i])]});
+  }
+  return trial;
+}
+
+JudgedChange judge_change(const ChangeRequest& request, const formation::PlannedChange& planned) {
+  JudgedChange judged;
+  judged.vehicles = request.transfers.size();
+  judged.way = planned.way;
+  judged.wanted_m = request.separation.horizontal_m + request.reserve_m;
+  const auto wrong = [&](const std::string& sentence) {
+    if (judged.violation.empty()) judged.violation = sentence;
+  };
+  if (!formation::valid(planned.change)) {
+    wrong("the change is not valid");
+    return judged;
+  }
+  const formation::ChangeMotion motion{planned.change};
+  const std::size_t n = request.transfers.size();
+  if (motion.movers() != n) {
+    wrong("vehicles are missing");
+    return judged;
+  }
+  const double factor = request.separation.horizontal_m / request.separation.vertical_m;
+  const double look_s = to_seconds(kLook);
+  // A way bends by a t^2 / 8 from its chord; both of two can.
+  const double bend_m = 2.0 * kAccelerationMore * request.limits.acceleration_mps2 *
+                        std::max(1.0, factor) * look_s * look_s / 8.0;
+  double ceiling = request.ceiling_m;
+  for (const auto& transfer : request.transfers) ceiling = std::max(ceiling, transfer.from.z());
+  // Nobody is faster, heights stretched; so who is far away need not be looked at for a while.
+  const double step_m = 2.0 * request.limits.speed_mps * std::max(1.0, factor) * look_s;
+  double least = std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> look_at(n * n, 1);
+  std::vector<Vec3> before(n);
+  std::vector<Vec3> now(n);
+  for (std::size_t look = 0;; ++look) {
+    const Duration t = std::min(kLook * static_cast<Duration::rep>(look), motion.duration());
+    for (std::size_t i = 0; i < n; ++i) {
+      now[i] = motion.position(i, t);
+      if (now[i].z() > std::max(ceiling, request.transfers[i].to.z()) + kRounding_m) {
+        wrong(fmt::format("vehicle {} flies above the ceiling", i + 1));
+      }
+      now[i].z() *= factor;
+      const Vec3 start = request.transfers[i].from;
+      const Vec3 at{now[i].x(), now[i].y(), now[i].z() / factor};
+      if (look == 0 && (at - start).norm() > kRounding_m) wrong("it starts elsewhere");
+    }
+    for (std::size_t i = 0; i < n && look > 0; ++i) {
+      const Vec3 own = now[i] - before[i];
+      if (Vec3{own.x(), own.y(), own.z() / factor}.norm() >
+          request.limits.speed_mps * look_s * (1.0 + 1e-6)) {
+        wrong(fmt::format("vehicle {} is faster than allowed", i + 1));
+      }
+      for (std::size_t k = 0; k < i; ++k) {
+        if (look_at[i * n + k] > look) continue;
+        const Vec3 begin = before[i] - before[k];
+        const Vec3 way = own - (now[k] - before[k]);
+        const double squared = way.squaredNorm();
+        const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
+        const double apart = (begin + share * way).norm();
+        least = std::min(least, apart);
+        look_at[i * n + k] = look + static_cast<std::size_t>((apart - least) / step_m);
+      }
+    }
+    std::swap(before, now);
+    if (t >= motion.duration()) break;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3 at{before[i].x(), before[i].y(), before[i].z() / factor};
+    if ((at - request.transfers[i].to).norm() > kRounding_m) wrong("it ends elsewhere");
+  }
+  judged.least_m = least - bend_m;
+  if (judged.least_m < judged.wanted_m - bend_m - kRounding_m) {
+    wrong(fmt::format("two vehicles come within {:.3f} m; {:.3f} m are wanted", judged.least_m,
+                      judged.wanted_m));
+  }
+  if (planned.least_separation_m > judged.least_m + 2.0 * bend_m + kRounding_m) {
+    wrong(fmt::format("{:.3f} m are promised, and {:.3f} m flown", planned.least_separation_m,
+                      judged.least_m));
+  }
+  return judged;
+}
+
+JudgedChange try_change(std::uint64_t seed) {
+  const ChangeTrial trial = draw_change(seed);
+  const auto planned = formation::plan_change(trial.request);
+  JudgedChange judged;
+  if (planned) {
+    judged = judge_change(trial.request, *planned);
+  } else {
+    judged.refused = planned.error().message;
+    judged.vehicles = trial.request.transfers.size();
+  }
+  judged.seed = seed;
+  judged.random_assignment = trial.random_assignment;
+  return judged;
+}
+
+std::vector<JudgedChange> try_changes(std::uint64_t first_seed, std::size_t runs, std::size_t jobs,
+                                      const std::function<void(const JudgedChange&)>& on_done) {
+  std::vector<JudgedChange> all(runs);
+  std::atomic<std::size_t> next{0};
+  std::mutex telling;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < runs; i = next++) {
+      all[i] = try_change(first_seed + i);
+      if (!on_done) continue;
+      const std::lock_guard lock{telling};
+      on_done(all[i]);
+    }
+  };
+  std::vector<std::jthread> others;
+  for (std::size_t i = 1; i < std::min(jobs, runs); ++i) others.emplace_back(work);
+  work();
+  others.clear();  // joins them
+  return all;
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/change_trials.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+namespace skein::hil {
+namespace {
+
+void expect_separation(std::size_t changes, std::size_t jobs) {
+  std::size_t planned = 0;
+  for (const JudgedChange& change : try_changes(1, changes, jobs)) {
+    EXPECT_TRUE(change.violation.empty())
+        << "skein-hil changes --runs 1 --first-seed " << change.seed << ": " << change.violation;
+    planned += change.refused.empty() ? 1 : 0;
+  }
+  // Some have to be refused, where places are given out at random below a ceiling.
+  EXPECT_GT(planned, changes * 8 / 10);
+}
+
+TEST(ChangeTrials, FiveHundredRandomChangesKeepTheirSeparation) { expect_separation(500, 1); }
+
+/// Minutes long: the test formation_changes, labelled slow.
+TEST(ChangeTrials, DISABLED_TenThousandRandomChangesKeepTheirSeparation) {
+  expect_separation(10'000, 2);
+}
+
+TEST(ChangeTrials, TheJudgeFindsWhatThePlannerWouldHaveToFind) {
+  formation::ChangeRequest request;
+  request.limits = {.speed_mps = 3.0};
+  request.separation = {2.0, 2.0};
+  request.reserve_m = 0.0;
+  request.transfers = {{{1}, {0.0, 0.0, 20.0}, {20.0, 0.0, 20.0}},
+                       {{2}, {20.0, 1.0, 20.0}, {0.0, 1.0, 20.0}}};
+  formation::PlannedChange planned;
+  planned.change.limits = request.limits;
+  planned.change.separation = request.separation;
+  for (const auto& transfer : request.transfers) {
+    planned.change.movers.push_back({transfer.vehicle, {transfer.from, transfer.to}, false});
+  }
+  planned.least_separation_m = 2.0;
+  const auto judged = judge_change(request, planned);
+  EXPECT_NEAR(judged.least_m, 1.0, 0.01);
+  EXPECT_NE(judged.violation.find("come within"), std::string::npos) << judged.violation;
+
+  planned.change.movers[1].points.back().y() = 5.0;
+  EXPECT_EQ(judge_change(request, planned).violation, "it ends elsewhere");
+  planned.change.movers[1].points.back().y() = 1.0;
+  planned.change.limits.speed_mps = 4.0;
+  EXPECT_NE(judge_change(request, planned).violation.find("faster"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skein::hil

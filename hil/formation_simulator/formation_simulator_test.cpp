@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/formation_simulator.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace skein::hil {
+namespace {
+
+configuration::Scenario five() {
+  auto scenario =
+      configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/formation-5.yaml");
+  EXPECT_TRUE(scenario) << scenario.error().message;
+  return *scenario;
+}
+
+std::string text_of(const FormationRun& run) {
+  std::string text;
+  for (const auto& v : run.violations) {
+    text += fmt::format("seed {}: {:.2f} s, {}: {}\n", run.seed, to_seconds(v.time), v.check,
+                        v.sentence);
+  }
+  return text;
+}
+
+TEST(FormationSimulator, ThePapersFlightComesToItsEnd) {
+  const auto mission = formation_mission(five(), 1, "none");
+  ASSERT_TRUE(mission) << mission.error().message;
+  const auto run = fly_formation(*mission);
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_TRUE(run->held()) << text_of(*run);
+  EXPECT_TRUE(run->script_done);
+  EXPECT_GT(run->least_m, 2.0);
+  EXPECT_LT(run->farthest_m, 0.5);
+  EXPECT_GE(run->changes, 10U);
+}
+
+TEST(FormationSimulator, AHundredTeamsWithFaultsHold) {
+  const auto runs = fly_formations(five(), {"mixed", 1, 100, 1});
+  ASSERT_TRUE(runs) << runs.error().message;
+  std::size_t done = 0;
+  for (const FormationRun& run : *runs) {
+    EXPECT_TRUE(run.held()) << text_of(run) << "  skein-hil simulate scenarios/formation-5.yaml"
+                            << " --faults mixed --trace --seed " << run.seed;
+    done += run.script_done ? 1 : 0;
+  }
+  EXPECT_GT(done, 40U);
+}
+
+TEST(FormationSimulator, TheSameSeedGivesTheSameBytes) {
+  const auto mission = formation_mission(five(), 3, "mixed");
+  ASSERT_TRUE(mission);
+  const auto trace = [&] {
+    std::string text;
+    FormationObserver observer;
+    observer.event = [&](const mission::MissionEvent& event) {
+      text += fmt::format("{} {} {}\n", event.time.time_since_epoch().count(),
+                          mission::to_string(event.kind), event.text);
+    };
+    observer.body = [&](Instant, VehicleId, const Vec3& p) {
+      text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    };
+    EXPECT_TRUE(fly_formation(*mission, observer));
+    return text;
+  };
+  const std::string first = trace();
+  EXPECT_GT(first.size(), 10'000U);
+  EXPECT_TRUE(first == trace());
+}
+
+FormationFault fault(FormationFault::Kind kind, std::size_t change, double after_s, double lasts_s,
+                     std::vector<VehicleId> who) {
+  FormationFault fault;
+  fault.kind = kind;
+  fault.change = change;
+  fault.after = from_seconds(after_s);
+  fault.lasts = from_seconds(lasts_s);
+  fault.who = std::move(who);
+  return fault;
+}
+
+FormationRun fly(const std::vector<FormationFault>& faults) {
+  auto mission = formation_mission(five(), 1, "none");
+  EXPECT_TRUE(mission);
+  mission->formation.script = {"take-off", "rally", "form column spacing 5 at 0 60 20", "rally",
+                               "land"};
+  mission->faults.faults = faults;
+  auto run = fly_formation(*mission);
+  EXPECT_TRUE(run);
+  EXPECT_TRUE(run->held()) << text_of(*run);
+  return *run;
+}
+
+TEST(FormationSimulator, WhoStartsAnewOnItsWayIsTakenAlong) {
+  const auto run = fly({fault(FormationFault::Kind::restarted, 2, 4.0, 1.0, {VehicleId{3}})});
+  EXPECT_TRUE(run.script_done) << run.reason;
+}
+
+TEST(FormationSimulator, WhoStartsAnewInItsPlaceIsTakenAlong) {
+  const auto run = fly({fault(FormationFault::Kind::restarted, 2, 25.0, 1.0, {VehicleId{3}})});
+  EXPECT_TRUE(run.script_done) << run.reason;
+}
+
+TEST(FormationSimulator, ANewGroundStationGoesOnOnceAllAreHeard) {
+  const auto run = fly({fault(FormationFault::Kind::ground, 2, 4.0, 6.0, {})});
+  EXPECT_TRUE(run.script_done) << run.reason;
+}
+
+TEST(FormationSimulator, ANewGroundStationGivesNoOrderWhileOneMayBeInTheWay) {
+  auto lost = fault(FormationFault::Kind::lost, 2, 5.0, 0.0, {VehicleId{4}});
+  lost.for_good = true;
+  const auto run = fly({fault(FormationFault::Kind::ground, 2, 4.0, 6.0, {}), lost});
+  EXPECT_FALSE(run.script_done);
+  EXPECT_NE(run.reason.find("not heard yet: 4"), std::string::npos) << run.reason;
+}
+
+TEST(FormationSimulator, WithoutGroundStationEverybodyComesToItsPlace) {
+  auto gone = fault(FormationFault::Kind::ground, 2, 4.0, 0.0, {});
+  gone.for_good = true;
+  const auto run = fly({gone});
+  EXPECT_EQ(run.reason, "the ground station is lost");
+}
+
+TEST(FormationSimulator, TheJudgeSeesWhoComesTooNear) {
+  auto mission = formation_mission(five(), 1, "none");
+  ASSERT_TRUE(mission);
+  // Two vehicles that no ground station asks to keep apart.
+  mission->vehicles[1].start = mission->vehicles[0].start + Vec3{1.0, 0.0, 0.0};
+  mission->formation.script = {"take-off"};
+  mission->formation.separation = {0.5, 0.5};
+  mission->formation.tracking_m = 0.1;
+  mission->formation.reserve_m = 0.1;
+  auto run = fly_formation(*mission);
+  ASSERT_TRUE(run);
+  EXPECT_NEAR(run->least_m, 1.0, 0.5);
+  mission->formation.separation = {2.0, 2.0};
+  run = fly_formation(*mission);
+  ASSERT_TRUE(run);
+  EXPECT_FALSE(run->script_done);
+  EXPECT_NE(run->reason.find("of each other"), std::string::npos) << run->reason;
+}
+
+TEST(FormationSimulator, FaultsThatThereAreNotAreRefused) {
+  EXPECT_FALSE(formation_mission(five(), 1, "lossy"));
+}
+
+}  // namespace
+}  // namespace skein::hil

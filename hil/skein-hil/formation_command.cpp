@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <thread>
+
+#include "commands.hpp"
+#include "progress_line.hpp"
+#include "skein/hil/change_trials.hpp"
+#include "skein/hil/formation_simulator.hpp"
+
+namespace skein::hil {
+namespace {
+
+/// Failing seeds that are told of in full.
+constexpr std::size_t kFailuresShown = 20;
+
+std::size_t jobs_of(std::size_t asked) {
+  return asked > 0 ? asked : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+}
+
+std::string who(VehicleId vehicle) {
+  return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
+}
+
+void print_violations(const FormationRun& run) {
+  for (const FormationViolation& violation : run.violations) {
+    fmt::print("  {}: {:.2f} s, {}\n", violation.check, to_seconds(violation.time),
+               violation.sentence);
+  }
+}
+
+int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+  const auto mission = formation_mission(scenario, scenario.seed, arguments.faults);
+  if (!mission) {
+    fmt::print(stderr, "{}\n", mission.error().message);
+    return kExitBadInput;
+  }
+  if (arguments.trace) {
+    for (const auto& line : mission->formation.script) fmt::print("script: {}\n", line);
+    for (const auto& [node, off] : mission->faults.clocks) {
+      fmt::print("clock of {}: {:+.1f} ms\n", who(node), 1e3 * to_seconds(off));
+    }
+    for (const auto& fault : mission->faults.faults) fmt::print("{}\n", describe(fault));
+  }
+  FormationObserver watcher;
+  watcher.event = [&](const mission::MissionEvent& event) {
+    using mission::EventKind;
+    const bool news = event.vehicle == kGroundStation || event.kind == EventKind::warning;
+    if (!arguments.trace && !news) return;
+    fmt::print("{:8.2f} {:<4} {} {:g} {}\n", to_seconds(event.time), who(event.vehicle),
+               mission::to_string(event.kind), event.value, event.text);
+  };
+  watcher.fault = [](Instant now, const std::string& text) {
+    fmt::print("{:8.2f} FAULT {}\n", to_seconds(now), text);
+  };
+  const auto run = fly_formation(*mission, watcher);
+  if (!run) {
+    fmt::print(stderr, "{}\n", run.error().message);
+    return kExitBadInput;
+  }
+  fmt::print(
+      "{} after {:.1f} s of mission time: {} changes, {:.2f} m between two vehicles at least, "
+      "{} messages\n",
+      run->script_done ? "DONE" : "HELD", to_seconds(run->ended_at), run->changes, run->least_m,
+      run->messages);
+  if (!run->script_done) fmt::print("why: {}\n", run->reason);
+  if (!run->held()) fmt::print("VIOLATED:\n");
+  print_violations(*run);
+  return run->held() ? kExitHeld : kExitViolated;
+}
+
+/// Numbers taken out: what differs only in them is one reason.
+std::string kind_of(const std::string& reason) {
+  std::string text;
+  for (const char c : reason) {
+    const bool digit = (c >= '0' && c <= '9') || c == '.';
+    if (!digit) text += c;
+    if (digit && (text.empty() || text.back() != '#')) text += '#';
+  }
+  return text;
+}
+
+int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+  FormationSeries series{arguments.faults, scenario.seed, *arguments.runs, jobs_of(arguments.jobs)};
+  ProgressLine line{series.runs};
+  const auto runs =
+      fly_formations(scenario, series, [&](const FormationRun& run) { line.count(run.held()); });
+  line.clear();
+  if (!runs) {
+    fmt::print(stderr, "{}\n", runs.error().message);
+    return kExitBadInput;
+  }
+  std::size_t violated = 0;
+  std::size_t done = 0;
+  std::size_t lost = 0;
+  double least = 1e9;
+  double time_s = 0.0;
+  std::map<std::string, std::size_t> reasons;
+  for (const FormationRun& run : *runs) {
+    least = std::min(least, run.least_m);
+    time_s += to_seconds(run.ended_at);
+    lost += run.lost;
+    if (run.script_done) ++done;
+    if (!run.script_done) ++reasons[kind_of(run.reason)];
+    if (run.held() || ++violated > kFailuresShown) continue;
+    fmt::print("seed {} VIOLATED\n", run.seed);
+    print_violations(run);
+    fmt::print("  again: {} simulate {} --seed {}{} --trace\n", arguments.program,
+               arguments.scenario.string(), run.seed,
+               arguments.faults == "none" ? "" : " --faults " + arguments.faults);
+  }
+  fmt::print("runs       {}, seeds {} to {}, {:.0f} s of mission time each on average\n",
+             runs->size(), runs->front().seed, runs->back().seed,
+             time_s / static_cast<double>(runs->size()));
+  fmt::print("violated   {}\n", violated);
+  fmt::print("separation {:.2f} m at least; {:g} m are wanted\n", least,
+             scenario.formation.separation.horizontal_m);
+  fmt::print("lost       {} vehicles\n", lost);
+  fmt::print("script     done in {} runs\n", done);
+  for (const auto& [reason, count] : reasons) fmt::print("held       {}: {}\n", count, reason);
+  fmt::print("{}\n", violated == 0 ? "PASS" : "FAIL");
+  return violated == 0 ? kExitHeld : kExitViolated;
+}
+
+}  // namespace
+
+int simulate_formation(const configuration::Scenario& scenario,
+                       const SimulateArguments& arguments) {
+  return arguments.runs ? fly_many(scenario, arguments) : fly_one(scenario, arguments);
+}
+
+int changes(const ChangesArguments& arguments) {
+  ProgressLine line{arguments.runs};
+  const auto all =
+      try_changes(arguments.first_seed, arguments.runs, jobs_of(arguments.jobs),
+                  [&](const JudgedChange& change) { line.count(change.violation.empty()); });
+  line.clear();
+  std::map<std::string, std::size_t> ways;
+  std::size_t violated = 0;
+  std::size_t refused_exact = 0;
+  std::size_t refused_random = 0;
+  double least_beyond = 1e9;
+  for (const JudgedChange& change : all) {
+    if (!change.refused.empty()) {
+      ++(change.random_assignment ? refused_random : refused_exact);
+      continue;
+    }
+    ++ways[std::string{formation::to_string(change.way)}];
+    least_beyond = std::min(least_beyond, change.least_m - change.wanted_m);
+    if (change.violation.empty() || ++violated > kFailuresShown) continue;
+    fmt::print("seed {} VIOLATED: {}\n  again: {} changes --first-seed {} --runs 1\n", change.seed,
+               change.violation, arguments.program, change.seed);
+  }
+  fmt::print("changes    {}, seeds {} to {}\n", all.size(), all.front().seed, all.back().seed);
+  for (const auto& [way, count] : ways) fmt::print("{:<10} {}\n", way, count);
+  fmt::print("refused    {} with places given out at random, {} by least squares\n", refused_random,
+             refused_exact);
+  fmt::print("violated   {}\n", violated);
+  fmt::print("separation and reserve: {:+.4f} m at least beyond them\n", least_beyond);
+  fmt::print("{}\n", violated == 0 ? "PASS" : "FAIL");
+  return violated == 0 ? kExitHeld : kExitViolated;
+}
+
+}  // namespace skein::hil
