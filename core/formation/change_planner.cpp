@@ -20,6 +20,9 @@ constexpr double kDiscGrowth = 1.03;
 constexpr int kDiscsMax = 60;
 /// Vehicles that waited for each other rest as near as they may, and start from there.
 constexpr double kRounding_m = 1e-3;
+/// With less reserve than the way of so long at full speed they would wait for each other for ever:
+/// more than the error of clocks and a slot.
+constexpr double kCreep_s = 0.1;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -61,7 +64,8 @@ class Planner {
   [[nodiscard]] double to_keep_out(const Vec3& position, const KeepOut& keep_out) const;
   /// Of two vehicles that start so far apart.
   [[nodiscard]] double wanted_m(double at_start_m) const {
-    return std::clamp(at_start_m - kRounding_m, request_.separation.horizontal_m, apart_m_);
+    const double least = request_.separation.horizontal_m + kCreep_s * request_.limits.speed_mps;
+    return std::clamp(at_start_m - kRounding_m, std::min(least, apart_m_), apart_m_);
   }
   [[nodiscard]] PlannedChange planned(Change change, Way way, double least_m) const;
   [[nodiscard]] Error too_near(const Nearness& nearness) const;
