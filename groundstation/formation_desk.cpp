@@ -31,6 +31,11 @@ mission::FormationGroundConfig ground_config(const configuration::FormationConfi
   return ground;
 }
 
+std::string without_numbers(std::string text) {
+  std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
+  return text;
+}
+
 std::string text_of(const mission::FormationPreview& preview) {
   const auto& planned = preview.planned;
   std::string text = fmt::format("{} vehicles, {}, {:.1f} s, separation {:.2f} m at least\n",
@@ -186,8 +191,10 @@ void FormationDesk::work_off_script(Instant now) {
     return;
   }
   try_again_ = now + kTryAgain;
-  if (given.error().message == said_) return;
-  said_ = given.error().message;
+  // Where gusts move vehicles that rest, its numbers change all the time.
+  const std::string why = without_numbers(given.error().message);
+  if (why == said_) return;
+  said_ = why;
   report(mission::EventKind::warning,
          "the script waits at '" + config_.script[next_line_] + "': " + said_, now);
 }
