@@ -196,7 +196,7 @@ void FormationDesk::work_off_script(Instant now) {
   if (why == said_) return;
   said_ = why;
   report(mission::EventKind::warning,
-         "the script waits at '" + config_.script[next_line_] + "': " + said_, now);
+         "the script waits at '" + config_.script[next_line_] + "': " + given.error().message, now);
 }
 
 std::optional<mission::MissionEvent> FormationDesk::poll_event() {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/formation_desk.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
+  configuration::FormationConfig config;
+  config.script = {"take-off"};
+  auto desk = FormationDesk::open(config, {{1}, {2}}, Instant{});
+  ASSERT_TRUE(desk.ok()) << desk.error().message;
+  std::vector<mission::MissionEvent> warnings;
+  for (int i = 1; i <= 30; ++i) {
+    const Instant now = at_seconds(0.5 * i);
+    for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+      mission::FormationStatus status;
+      status.vehicle = {id};
+      status.reference_m.x() = id == 1 ? 0.0 : 1.0 + 0.01 * i;  // gusts move it, and it is too near
+      desk->on_message(status, {id}, now);
+    }
+    desk->on_timeout(now);
+    while (const auto event = desk->poll_event()) {
+      if (event->kind == mission::EventKind::warning) warnings.push_back(*event);
+    }
+  }
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0].text, HasSubstr("the script waits at 'take-off': vehicle 1 and vehicle 2 "
+                                          "would come within 1.01 m of each other"));
+}
+
+}  // namespace
+}  // namespace skein::groundstation
