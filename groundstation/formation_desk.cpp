@@ -127,7 +127,7 @@ Result<std::string> FormationDesk::answer(const Formation& input, Instant now) {
   }
   const auto order = completed(input);
   if (!order) return order.error();
-  const auto result = input.preview ? ground_.preview(*order, now) : ground_.command(*order, now);
+  const auto result = input.preview ? ground_.preview(*order) : ground_.command(*order, now);
   if (!result) return result.error();
   return (input.preview ? "preview: " : "begun: ") + text_of(*result);
 }
@@ -203,7 +203,7 @@ std::optional<mission::MissionEvent> FormationDesk::poll_event() {
   take_events();
   if (events_.empty()) return std::nullopt;
   mission::MissionEvent first = std::move(events_.front());
-  events_.erase(events_.begin());
+  events_.pop_front();
   return first;
 }
 
@@ -213,12 +213,7 @@ void FormationDesk::take_events() {
 
 void FormationDesk::report(mission::EventKind kind, std::string text, Instant now) {
   take_events();  // which were before this one
-  mission::MissionEvent event;
-  event.vehicle = kGroundStation;
-  event.time = now;
-  event.kind = kind;
-  event.text = std::move(text);
-  events_.push_back(std::move(event));
+  events_.push_back({kGroundStation, now, kind, {}, {}, 0.0, std::move(text)});
 }
 
 }  // namespace skein::groundstation

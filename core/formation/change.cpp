@@ -39,6 +39,14 @@ double distance_to_segment(const Vec2& point, const Vec2& from, const Vec2& to) 
 
 }  // namespace
 
+std::optional<std::size_t> mover_of(const Change& change, VehicleId vehicle) {
+  const auto& movers = change.movers;
+  const auto found = std::find_if(movers.begin(), movers.end(),
+                                  [vehicle](const Mover& m) { return m.vehicle == vehicle; });
+  if (found == movers.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - movers.begin());
+}
+
 ChangeMotion::ChangeMotion(const Change& change)
     : movers_{change.movers.size()}, roundabout_{change.roundabout}, speed_max_(movers_, 0.0) {
   SKEIN_ASSERT(valid(change));

@@ -264,10 +264,4 @@ MotionTrack Passage::track() const {
   return track;
 }
 
-Duration Passage::delay(Instant now) const {
-  const Duration planned =
-      std::clamp(now - Instant{kSlot * start_}, Duration{}, motion_.duration());
-  return std::max(Duration{}, planned - from_seconds(seconds(done_)));
-}
-
 }  // namespace skein::formation

@@ -9,15 +9,6 @@ namespace {
 
 using formation::Change;
 
-/// An index into movers; its size where the vehicle is not among them.
-std::size_t index_of(const Change& change, VehicleId vehicle) {
-  const auto& movers = change.movers;
-  const auto found = std::find_if(movers.begin(), movers.end(), [vehicle](const auto& mover) {
-    return mover.vehicle == vehicle;
-  });
-  return static_cast<std::size_t>(found - movers.begin());
-}
-
 Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m}; }
 
 /// Who waits for longer says so.
@@ -54,9 +45,9 @@ void FormationAgent::on_change(const Change& change, Instant now) {
     ++bad_changes_;
     return;
   }
-  const std::size_t self = index_of(change, config_.vehicle);
-  if (self == change.movers.size()) return;
-  if (const auto why = why_not(change, self)) {
+  const auto self = formation::mover_of(change, config_.vehicle);
+  if (!self) return;
+  if (const auto why = why_not(change, *self)) {
     // It is sent again, and may fit then.
     if (change.number == std::exchange(refused_, change.number)) return;
     report(EventKind::warning, 0.0,
@@ -64,7 +55,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
     return;
   }
   change_ = change;
-  passage_ = formation::Passage{change, self, config_.passage, now};
+  passage_ = formation::Passage{change, *self, config_.passage, now};
   not_begun_.clear();
   for (const formation::Mover& mover : change.movers) {
     if (mover.vehicle != config_.vehicle) not_begun_.insert(mover.vehicle);
@@ -91,15 +82,15 @@ std::optional<std::string> FormationAgent::why_not(const Change& change, std::si
 
 void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   if (!change_) return;
-  const std::size_t mover = index_of(*change_, status.vehicle);
-  if (mover == change_->movers.size()) return;
+  const auto mover = formation::mover_of(*change_, status.vehicle);
+  if (!mover) return;
   if (status.progress.change == change_->number) {
     if (not_begun_.erase(status.vehicle) > 0) passage_.hold(held_ || !not_begun_.empty());
-    passage_.on_progress(mover, status.progress);
+    passage_.on_progress(*mover, status.progress);
   } else if (status.progress.change < change_->number) {
     // It has not taken up the change, and stays where it is: perhaps not where the change begins.
-    const Vec3 from = change_->movers[mover].points.front();
-    passage_.on_progress(mover,
+    const Vec3 from = change_->movers[*mover].points.front();
+    passage_.on_progress(*mover,
                          {.change = change_->number,
                           .at = now,
                           .off_m = (status.reference_m - from).norm() + status.progress.off_m});
@@ -193,12 +184,7 @@ std::map<std::string, std::uint64_t> FormationAgent::counters() const {
 }
 
 void FormationAgent::report(EventKind kind, double value, std::string text, Instant now) {
-  MissionEvent event;
-  event.vehicle = config_.vehicle;
-  event.time = now;
-  event.kind = kind;
-  event.value = value;
-  event.text = std::move(text);
+  MissionEvent event{config_.vehicle, now, kind, {}, {}, value, std::move(text)};
   events_.push(event);
   messages_.push(std::move(event));
 }

@@ -123,10 +123,10 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   return FormationPreview{order, std::move(*planned), std::move(lost)};
 }
 
-bool FormationGround::may_fly(const Change& change, VehicleId vehicle, const Member& member) const {
-  return change.number >= member.status.progress.change &&
-         std::any_of(change.movers.begin(), change.movers.end(),
-                     [vehicle](const auto& mover) { return mover.vehicle == vehicle; });
+std::optional<std::size_t> FormationGround::may_fly(const Change& change, VehicleId vehicle,
+                                                    const Member& member) {
+  if (change.number < member.status.progress.change) return std::nullopt;
+  return mover_of(change, vehicle);
 }
 
 /// On its way to the goal of the change that it was heard in, or of one that it may have taken up
@@ -135,17 +135,16 @@ std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& membe
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
   for (const Change& change : sent_) {
-    if (!may_fly(change, vehicle, member)) continue;
-    std::size_t mover = 0;
-    while (change.movers[mover].vehicle != vehicle) ++mover;
+    const auto mover = may_fly(change, vehicle, member);
+    if (!mover) continue;
     const ChangeMotion motion{change};
-    std::vector<Vec3> way{change.movers[mover].points.front()};
-    const double step_s = kLook_m / std::max(0.1, motion.speed_max_mps(mover));
+    std::vector<Vec3> way{change.movers[*mover].points.front()};
+    const double step_s = kLook_m / std::max(0.1, motion.speed_max_mps(*mover));
     for (double t = 0.0; t < to_seconds(motion.duration()); t += step_s) {
-      const Vec3 at = motion.position(mover, from_seconds(t));
+      const Vec3 at = motion.position(*mover, from_seconds(t));
       if ((at - way.back()).norm() >= kLook_m / 2.0) way.push_back(at);
     }
-    way.push_back(change.movers[mover].points.back());
+    way.push_back(change.movers[*mover].points.back());
     auto from = way.begin();
     if (change.number == member.status.progress.change) {
       from = std::min_element(way.begin(), way.end(), [&](const Vec3& a, const Vec3& b) {
@@ -176,8 +175,7 @@ std::string FormationGround::unknown() const {
   return "";
 }
 
-Result<FormationPreview> FormationGround::preview(const FormationOrder& order,
-                                                  Instant /*now*/) const {
+Result<FormationPreview> FormationGround::preview(const FormationOrder& order) const {
   if (moving()) return Error{"vehicles are still moving; wait until they are in place"};
   auto wanted = transfers(order);
   if (!wanted) return wanted.error();
@@ -185,7 +183,7 @@ Result<FormationPreview> FormationGround::preview(const FormationOrder& order,
 }
 
 Result<FormationPreview> FormationGround::command(const FormationOrder& order, Instant now) {
-  auto preview = this->preview(order, now);
+  auto preview = this->preview(order);
   if (!preview) return preview;
   correcting_ = false;
   for (auto& [vehicle, member] : members_) member.trim_m = Vec3::Zero();
@@ -205,8 +203,9 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   change_->start = now + config_.lead;
   for (auto& [vehicle, member] : members_) member.arrived_at.reset();
   std::erase_if(sent_, [this](const Change& old) {
-    return std::none_of(members_.begin(), members_.end(),
-                        [&](const auto& entry) { return may_fly(old, entry.first, entry.second); });
+    return std::none_of(members_.begin(), members_.end(), [&](const auto& entry) {
+      return may_fly(old, entry.first, entry.second).has_value();
+    });
   });
   sent_.push_back(*change_);
   give_again_ = false;
@@ -239,11 +238,9 @@ void FormationGround::on_message(const Message& message, VehicleId sender, Insta
 }
 
 std::optional<Vec3> FormationGround::goal_of(VehicleId vehicle) const {
-  if (!change_) return std::nullopt;
-  for (const auto& mover : change_->movers) {
-    if (mover.vehicle == vehicle) return mover.points.back();
-  }
-  return std::nullopt;
+  const auto mover = change_ ? mover_of(*change_, vehicle) : std::nullopt;
+  if (!mover) return std::nullopt;
+  return change_->movers[*mover].points.back();
 }
 
 void FormationGround::on_status(const FormationStatus& status, Instant now) {
@@ -346,7 +343,7 @@ void FormationGround::give_again(Instant now) {
   }
   if (!rest_since_) rest_since_ = now;
   if (now - *rest_since_ < kStuck) return;
-  auto again = preview(*order_, now);
+  auto again = preview(*order_);
   if (!again) {
     rest_since_ = now + kTryAgain;
     if (!refused_.empty()) return;  // said before, and where others rest differs a little
@@ -414,13 +411,7 @@ void FormationGround::correct_drift(Instant now) {
 
 void FormationGround::report(EventKind kind, VehicleId vehicle, double value, std::string text,
                              Instant now) {
-  MissionEvent event;
-  event.vehicle = vehicle;
-  event.time = now;
-  event.kind = kind;
-  event.value = value;
-  event.text = std::move(text);
-  events_.push(std::move(event));
+  events_.push({vehicle, now, kind, {}, {}, value, std::move(text)});
 }
 
 }  // namespace skein::mission

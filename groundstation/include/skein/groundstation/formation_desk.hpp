@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -56,7 +57,7 @@ class FormationDesk {
   std::optional<Instant> team_by_;
   Instant try_again_{};
   std::string said_;  ///< why the script's next order waits
-  std::vector<mission::MissionEvent> events_;
+  std::deque<mission::MissionEvent> events_;
 };
 
 }  // namespace skein::groundstation

@@ -42,6 +42,9 @@ struct Change {
   std::vector<Mover> movers;
 };
 
+/// Which of the movers the vehicle is.
+[[nodiscard]] std::optional<std::size_t> mover_of(const Change& change, VehicleId vehicle);
+
 /// The motion of a change, in plan time: 0 at its start, no vehicle ahead of the others or behind.
 /// Immutable; position() allocates nothing.
 class ChangeMotion {

@@ -71,8 +71,6 @@ class Passage {
   [[nodiscard]] bool at_rest() const { return finished() || (rate_ == 0 && next_rate_ == 0); }
   /// The mover for whom it slowed down or waited in the last slot.
   [[nodiscard]] std::optional<std::size_t> waits_for() const { return waits_for_; }
-  /// How late it is against the change's own timing.
-  [[nodiscard]] Duration delay(Instant now) const;
 
   [[nodiscard]] const ChangeMotion& motion() const { return motion_; }
   [[nodiscard]] std::uint16_t full_rate() const { return full_; }

@@ -68,7 +68,7 @@ class FormationGround {
 
   /// Fails with a reason where the order cannot be flown safely, where vehicles still move, or none
   /// is heard.
-  [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order, Instant now) const;
+  [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order) const;
   Result<FormationPreview> command(const FormationOrder& order, Instant now);
 
   void on_message(const Message& message, VehicleId sender, Instant now);
@@ -87,24 +87,21 @@ class FormationGround {
     Vec3 trim_m = Vec3::Zero();         ///< what was added to its places against drift
   };
   [[nodiscard]] const std::map<VehicleId, Member>& members() const { return members_; }
-  /// The order of the newest change, and whether everybody is in place.
-  [[nodiscard]] const std::optional<FormationOrder>& order() const { return order_; }
+  /// All have held their places since the newest change.
   [[nodiscard]] bool in_place() const { return held_since_.has_value(); }
   [[nodiscard]] bool moving() const;
 
  private:
-  [[nodiscard]] Vec3 place_of(const FormationOrder& order, VehicleId vehicle) const;
   [[nodiscard]] Result<std::vector<formation::Transfer>> transfers(
       const FormationOrder& order) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
-  [[nodiscard]] bool may_fly(const formation::Change& change, VehicleId vehicle,
-                             const Member& member) const;
+  [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,
+                                                          VehicleId vehicle, const Member& member);
   [[nodiscard]] std::vector<Vec3> may_be(VehicleId vehicle, const Member& member) const;
   [[nodiscard]] std::string unknown() const;
   void begin(FormationPreview preview, Instant now);
   void on_status(const FormationStatus& status, Instant now);
-  void watch(Instant now);
   void find_lost(Instant now);
   void find_stuck(Instant now);
   void give_again(Instant now);
@@ -129,7 +126,6 @@ class FormationGround {
   std::optional<Instant> near_since_;  ///< all within tolerance
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;
-  Instant filtered_at_{};
   Instant next_;
   BoundedQueue<Message> messages_{64};
   BoundedQueue<MissionEvent> events_{256};
