@@ -247,5 +247,11 @@ TEST(Plots, HaveAnIntervalForEachValueAndNoneWhereThereIsNoValue) {
   }
 }
 
+TEST(Plots, OfMeansThatDifferByRoundingAreDrawn) {
+  const double next = std::nextafter(1.0, 2.0);
+  const Plot plot{"A", "x", "y", {"1", "2"}, {{"one", {{3, 1.0, 0.0, 0.0}, {3, next, 0.0, 0.0}}}}};
+  EXPECT_THAT(svg(plot, false), HasSubstr(">1</text>"));
+}
+
 }  // namespace
 }  // namespace skein::experiments

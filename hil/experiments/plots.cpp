@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -44,7 +45,9 @@ report::Axis value_axis(const Plot& plot, bool bars) {
     }
   }
   if (low > high) low = high = 0.0;  // no value at all
-  const double room = high - low > 0.0 ? 0.06 * (high - low) : 1.0;
+  // All the same, but for the rounding of their means.
+  const bool flat = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
+  const double room = flat ? 1.0 : 0.06 * (high - low);
   return {low < 0.0 || !bars ? low - room : low, high + room, kBottom, kTop};
 }
 

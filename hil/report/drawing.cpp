@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -79,6 +80,8 @@ double round_below(double value) {
 }
 
 std::vector<double> Axis::ticks(int count) const {
+  // Values that differ by rounding only have no round values between them.
+  if (to - from <= 1e-12 * std::max(std::abs(from), std::abs(to))) return {};
   const double step = round_below((to - from) / count * 1.5);
   std::vector<double> values;
   for (double i = std::ceil(from / step - 1e-9); i * step <= to + 1e-9 * step; i += 1.0) {

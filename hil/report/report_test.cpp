@@ -183,5 +183,10 @@ TEST(Drawing, TicksAreRoundAndWithin) {
   EXPECT_EQ(ticks.back(), 220.0);
 }
 
+TEST(Drawing, AnAxisOfRoundingErrorsHasNoTicks) {
+  const double next = std::nextafter(1.0, 2.0);
+  EXPECT_TRUE((Axis{1.0, next, 0.0, 100.0}.ticks(6)).empty());
+}
+
 }  // namespace
 }  // namespace skein::report

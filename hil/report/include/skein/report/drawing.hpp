@@ -29,7 +29,7 @@ struct Axis {
   [[nodiscard]] double operator()(double value) const {
     return pixel_from + (value - from) / (to - from) * (pixel_to - pixel_from);
   }
-  /// About `count` round values within.
+  /// About `count` round values within; none where from and to differ by no more than rounding.
   [[nodiscard]] std::vector<double> ticks(int count) const;
 };
 
