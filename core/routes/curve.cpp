@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/routes/curve.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "curve_lanes.hpp"
+#include "skein/base/assert.hpp"
+
+namespace skein::routes {
+namespace {
+
+/// Values at `samples` equal steps of the natural cubic spline through `knots` at 0, 1, 2, ...
+std::vector<double> natural_spline(const std::vector<double>& knots, std::size_t samples) {
+  const std::size_t last = knots.size() - 1;
+  // Second derivatives, by elimination of the tridiagonal system 1 4 1.
+  std::vector<double> second(knots.size());
+  std::vector<double> factor(knots.size());
+  for (std::size_t i = 1; i < last; ++i) {
+    const double below = 4.0 - factor[i - 1];
+    factor[i] = 1.0 / below;
+    const double right = 6.0 * (knots[i + 1] - 2.0 * knots[i] + knots[i - 1]);
+    second[i] = (right - second[i - 1]) / below;
+  }
+  for (std::size_t i = last; i-- > 1;) second[i] -= factor[i] * second[i + 1];
+  std::vector<double> values(samples);
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double at =
+        static_cast<double>(k) * static_cast<double>(last) / static_cast<double>(samples - 1);
+    const std::size_t i = std::min(static_cast<std::size_t>(at), last - 1);
+    const double b = at - static_cast<double>(i);
+    const double a = 1.0 - b;
+    values[k] = a * knots[i] + b * knots[i + 1] +
+                ((a * a * a - a) * second[i] + (b * b * b - b) * second[i + 1]) / 6.0;
+  }
+  return values;
+}
+
+int kind_number(HazardKind kind) {
+  switch (kind) {
+    case HazardKind::detection:
+      return 0;
+    case HazardKind::ramp:
+      return 1;
+    default:
+      return 2;
+  }
+}
+
+}  // namespace
+
+struct CurveEvaluator::Tables {
+  CurveForm form = CurveForm::free_points;
+  Width width = Width::baseline;
+  CostWeights weights;
+  double straight_m = 0.0;
+  double exposure_scale = 0.0;
+  double turning_scale = 0.0;
+  // The frame: origin and direction of its x axis.
+  Vec2 origin{0.0, 0.0};
+  Vec2 along{1.0, 0.0};
+  Box box;
+  std::size_t samples = 0;
+  std::size_t stride = 0;
+  std::size_t waypoints = 0;
+  std::vector<double> station_m;  ///< of the waypoints, along the line
+  std::vector<double> basis, base_x, base_y, mask, x, y, dx, dy, turn;
+  std::vector<double> hazard_x, hazard_y, radius, inner, peak, slope;
+  std::vector<int> kind;
+
+  [[nodiscard]] Vec2 local(const Vec2& p) const {
+    const Vec2 d = p - origin;
+    return {d.dot(along), cross(along, d)};
+  }
+  [[nodiscard]] Vec2 mission(double px, double py) const {
+    return origin + px * along + py * left_of(along);
+  }
+  [[nodiscard]] CurveTable table() {
+    return {samples,     stride,   waypoints, basis.data(), base_x.data(), base_y.data(),
+            mask.data(), x.data(), y.data(),  dx.data(),    dy.data(),     turn.data()};
+  }
+  [[nodiscard]] CurveHazards hazards() const {
+    return {hazard_x.size(), hazard_x.data(), hazard_y.data(), radius.data(),
+            inner.data(),    peak.data(),     slope.data(),    kind.data()};
+  }
+  CurveSums evaluate(std::span<const double> point) {
+    SKEIN_ASSERT(point.size() == box.dimension());
+    const bool is_free = form == CurveForm::free_points;
+    const double* const px = is_free ? point.data() : nullptr;
+    const double* const py = is_free ? point.data() + waypoints : point.data();
+    CurveSums sums{};
+#if defined(__x86_64__)
+    if (width == Width::avx2) {
+      curve_evaluate_avx2(table(), hazards(), px, py, sums);
+      return sums;
+    }
+#endif
+    CurveLanes<2>::evaluate(table(), hazards(), px, py, sums);
+    return sums;
+  }
+  void add_hazard(const RouteHazard& hazard) {
+    const Vec2 centre = local(hazard.centre);
+    hazard_x.push_back(centre.x());
+    hazard_y.push_back(centre.y());
+    radius.push_back(hazard.radius_m);
+    inner.push_back(hazard.inner_radius_m);
+    peak.push_back(hazard.peak);
+    slope.push_back(hazard.peak / (hazard.radius_m - hazard.inner_radius_m));
+    kind.push_back(kind_number(hazard.kind));
+  }
+  void add_samples(const Vec2& from, const Vec2& to);
+};
+
+void CurveEvaluator::Tables::add_samples(const Vec2& from, const Vec2& to) {
+  const std::size_t column = stride + kCurveBlock;
+  for (std::vector<double>* v : {&base_x, &base_y, &mask, &x, &y, &dx, &dy, &turn}) {
+    v->assign(column, 0.0);
+  }
+  std::fill_n(mask.begin(), samples, 1.0);
+  const auto spread = [&](const std::vector<double>& knots, std::vector<double>& to_column) {
+    const std::vector<double> values = natural_spline(knots, samples);
+    std::copy(values.begin(), values.end(), to_column.begin());
+  };
+  std::vector<double> knots(waypoints + 2);
+  for (std::size_t j = 0; j < waypoints; ++j) {
+    std::fill(knots.begin(), knots.end(), 0.0);
+    knots[j + 1] = 1.0;
+    std::vector<double> one(column);
+    spread(knots, one);
+    basis.insert(basis.end(), one.begin(), one.end());
+  }
+  std::fill(knots.begin(), knots.end(), 0.0);
+  knots.front() = from.x();
+  knots.back() = to.x();
+  if (form == CurveForm::lateral_offsets) {
+    for (std::size_t j = 0; j < waypoints; ++j) knots[j + 1] = station_m[j];
+  }
+  spread(knots, base_x);
+  knots.assign(waypoints + 2, 0.0);
+  knots.front() = from.y();
+  knots.back() = to.y();
+  spread(knots, base_y);
+  if (form == CurveForm::lateral_offsets) {
+    x = base_x;
+    CurveLanes<2>::pad(x.data(), samples, stride);
+  }
+}
+
+std::span<const CurveEvaluator::Width> CurveEvaluator::widths() {
+  static constexpr std::array<Width, 2> kWidths = {Width::baseline, Width::avx2};
+#if defined(__x86_64__)
+  static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
+#else
+  static const std::size_t count = 1;
+#endif
+  return {kWidths.data(), count};
+}
+
+CurveEvaluator::CurveEvaluator(const CurveProblem& problem, CurveForm form, Width width)
+    : tables_{std::make_unique<Tables>()} {
+  SKEIN_ASSERT(problem.waypoints >= 1 && problem.samples >= 4);
+  Tables& t = *tables_;
+  t.form = form;
+  t.width = width;
+  t.weights = problem.weights;
+  t.samples = problem.samples;
+  t.stride = (problem.samples + kCurveBlock - 1) / kCurveBlock * kCurveBlock;
+  t.waypoints = problem.waypoints;
+  const Vec2 straight = problem.site - problem.start;
+  t.straight_m = straight.norm();
+  SKEIN_ASSERT(t.straight_m > 0.0);
+  const auto n = static_cast<double>(problem.samples);
+  t.exposure_scale = 1.0 / n;
+  if (problem.exposure_per_hazard && !problem.hazards.empty()) {
+    t.exposure_scale /= static_cast<double>(problem.hazards.size());
+  }
+  t.turning_scale = 1.0 / (n - 3.0);
+  if (form == CurveForm::lateral_offsets) {
+    t.origin = problem.start;
+    t.along = straight / t.straight_m;
+    t.box.low.assign(t.waypoints, -0.5 * t.straight_m);
+    t.box.high.assign(t.waypoints, 0.5 * t.straight_m);
+  } else {
+    for (const int axis : {0, 1}) {
+      t.box.low.insert(t.box.low.end(), t.waypoints, problem.world_low[axis]);
+      t.box.high.insert(t.box.high.end(), t.waypoints, problem.world_high[axis]);
+    }
+  }
+  for (std::size_t j = 1; j <= t.waypoints; ++j) {
+    t.station_m.push_back(t.straight_m * static_cast<double>(j) /
+                          static_cast<double>(t.waypoints + 1));
+  }
+  t.add_samples(t.local(problem.start), t.local(problem.site));
+  for (const RouteHazard& hazard : problem.hazards) {
+    SKEIN_ASSERT(hazard.radius_m > 0.0 && hazard.inner_radius_m < hazard.radius_m);
+    t.add_hazard(hazard);
+  }
+}
+
+CurveEvaluator::~CurveEvaluator() = default;
+CurveEvaluator::CurveEvaluator(CurveEvaluator&&) noexcept = default;
+CurveEvaluator& CurveEvaluator::operator=(CurveEvaluator&&) noexcept = default;
+
+const Box& CurveEvaluator::box() const { return tables_->box; }
+
+RouteCosts CurveEvaluator::costs(std::span<const double> point) {
+  Tables& t = *tables_;
+  const CurveSums sums = t.evaluate(point);
+  RouteCosts costs{.exposure = sums.exposure * t.exposure_scale,
+                   .length_ratio = sums.length / t.straight_m,
+                   .turning = sums.turning * t.turning_scale,
+                   .total = 0.0};
+  costs.total = t.weights.exposure * costs.exposure + t.weights.length * costs.length_ratio +
+                t.weights.turning * costs.turning;
+  return costs;
+}
+
+std::vector<Vec2> CurveEvaluator::curve(std::span<const double> point) {
+  Tables& t = *tables_;
+  t.evaluate(point);
+  std::vector<Vec2> points;
+  points.reserve(t.samples);
+  for (std::size_t k = 0; k < t.samples; ++k) points.push_back(t.mission(t.x[k], t.y[k]));
+  return points;
+}
+
+std::vector<Vec2> CurveEvaluator::waypoints(std::span<const double> point) const {
+  const Tables& t = *tables_;
+  SKEIN_ASSERT(point.size() == t.box.dimension());
+  std::vector<Vec2> points;
+  for (std::size_t j = 0; j < t.waypoints; ++j) {
+    points.push_back(t.form == CurveForm::free_points ? Vec2{point[j], point[t.waypoints + j]}
+                                                      : t.mission(t.station_m[j], point[j]));
+  }
+  return points;
+}
+
+std::vector<double> CurveEvaluator::point_of(std::span<const Vec2> free_waypoints) const {
+  const Tables& t = *tables_;
+  SKEIN_ASSERT(free_waypoints.size() == t.waypoints);
+  std::vector<double> point(t.box.dimension());
+  for (std::size_t j = 0; j < t.waypoints; ++j) {
+    if (t.form == CurveForm::free_points) {
+      point[j] = free_waypoints[j].x();
+      point[t.waypoints + j] = free_waypoints[j].y();
+    } else {
+      point[j] = t.local(free_waypoints[j]).y();
+    }
+  }
+  t.box.clamp(point);
+  return point;
+}
+
+}  // namespace skein::routes

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/routes/curve.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "skein/base/random.hpp"
+#include "skein/routes/fly_by.hpp"
+
+namespace skein::routes {
+namespace {
+
+CurveProblem random_problem(Random& random) {
+  CurveProblem problem{.start = {random.uniform(0, 200), random.uniform(0, 200)},
+                       .site = {random.uniform(800, 1000), random.uniform(800, 1000)},
+                       .hazards = {},
+                       .waypoints = 1 + random.index(11),
+                       .samples = 20 + random.index(300),
+                       .weights = {random.uniform(), random.uniform(), random.uniform()}};
+  for (int i = 0; i < 10; ++i) {
+    RouteHazard hazard{.kind = static_cast<HazardKind>(random.index(3)),
+                       .centre = {random.uniform(0, 1000), random.uniform(0, 1000)},
+                       .radius_m = random.uniform(50, 250),
+                       .peak = random.uniform(0.5, 1.0)};
+    hazard.inner_radius_m = hazard.radius_m * random.uniform(0.01, 0.9);
+    problem.hazards.push_back(hazard);
+  }
+  return problem;
+}
+
+std::vector<double> random_point(const Box& box, Random& random) {
+  std::vector<double> point(box.dimension());
+  for (std::size_t j = 0; j < point.size(); ++j) {
+    point[j] = random.uniform(box.low[j], box.high[j]);
+  }
+  return point;
+}
+
+/// By the definitions, from the samples.
+RouteCosts plain_costs(const CurveProblem& problem, const std::vector<Vec2>& curve) {
+  RouteCosts costs;
+  for (const Vec2& point : curve) {
+    for (const RouteHazard& hazard : problem.hazards) costs.exposure += hazard.value_at(point);
+  }
+  costs.exposure /= static_cast<double>(curve.size());
+  double before = 0.0;
+  for (std::size_t k = 1; k < curve.size(); ++k) {
+    costs.length_ratio += (curve[k] - curve[k - 1]).norm();
+    if (k + 1 == curve.size()) continue;
+    const double turn = turn_at(curve[k - 1], curve[k], curve[k + 1]);
+    if (k > 1) costs.turning += std::abs(turn - before);
+    before = turn;
+  }
+  costs.length_ratio /= (problem.site - problem.start).norm();
+  costs.turning /= static_cast<double>(curve.size() - 3);
+  costs.total = problem.weights.exposure * costs.exposure +
+                problem.weights.length * costs.length_ratio +
+                problem.weights.turning * costs.turning;
+  return costs;
+}
+
+TEST(Curve, CostsAreTheirDefinitionsWithEveryWidth) {
+  Random random{2};
+  for (int k = 0; k < 60; ++k) {
+    const CurveProblem problem = random_problem(random);
+    for (const CurveForm form : {CurveForm::free_points, CurveForm::lateral_offsets}) {
+      CurveEvaluator evaluator{problem, form, CurveEvaluator::Width::baseline};
+      const std::vector<double> point = random_point(evaluator.box(), random);
+      const RouteCosts costs = evaluator.costs(point);
+      const std::vector<Vec2> curve = evaluator.curve(point);
+      ASSERT_EQ(curve.size(), problem.samples);
+      EXPECT_NEAR((curve.front() - problem.start).norm(), 0.0, 1e-9);
+      EXPECT_NEAR((curve.back() - problem.site).norm(), 0.0, 1e-9);
+      const RouteCosts plain = plain_costs(problem, curve);
+      EXPECT_NEAR(costs.exposure, plain.exposure, 1e-9);
+      EXPECT_NEAR(costs.length_ratio, plain.length_ratio, 1e-9);
+      EXPECT_NEAR(costs.turning, plain.turning, 1e-9);
+      EXPECT_NEAR(costs.total, plain.total, 1e-9);
+      for (const CurveEvaluator::Width width : CurveEvaluator::widths()) {
+        CurveEvaluator wide{problem, form, width};
+        const RouteCosts same = wide.costs(point);
+        EXPECT_EQ(costs.exposure, same.exposure);
+        EXPECT_EQ(costs.length_ratio, same.length_ratio);
+        EXPECT_EQ(costs.turning, same.turning);
+      }
+    }
+  }
+}
+
+TEST(Curve, GoesThroughItsWaypoints) {
+  Random random{3};
+  CurveProblem problem = random_problem(random);
+  problem.waypoints = 4;
+  problem.samples = 1 + 5 * 40;
+  for (const CurveForm form : {CurveForm::free_points, CurveForm::lateral_offsets}) {
+    CurveEvaluator evaluator{problem, form};
+    const std::vector<double> point = random_point(evaluator.box(), random);
+    const std::vector<Vec2> curve = evaluator.curve(point);
+    const std::vector<Vec2> waypoints = evaluator.waypoints(point);
+    for (std::size_t j = 0; j < 4; ++j) {
+      EXPECT_NEAR((curve[40 * (j + 1)] - waypoints[j]).norm(), 0.0, 1e-9);
+    }
+    const std::vector<double> back = evaluator.point_of(waypoints);
+    for (std::size_t j = 0; j < point.size(); ++j) EXPECT_NEAR(back[j], point[j], 1e-9);
+  }
+}
+
+TEST(Curve, AStraightLineCostsItsLengthAndWhatItCrosses) {
+  CurveProblem problem{.start = {0, 0}, .site = {900, 0}, .hazards = {}, .samples = 10};
+  problem.hazards = {
+      {.kind = HazardKind::keep_out, .centre = {500, 0}, .radius_m = 150},
+      {.kind = HazardKind::detection, .centre = {0, 100}, .radius_m = 120, .inner_radius_m = 50},
+      {.kind = HazardKind::ramp,
+       .centre = {900, 0},
+       .radius_m = 150,
+       .inner_radius_m = 50,
+       .peak = 0.8}};
+  CurveEvaluator evaluator{problem, CurveForm::lateral_offsets};
+  const std::vector<double> straight(5, 0.0);
+  const RouteCosts costs = evaluator.costs(straight);
+  // Samples every 100 m: 400, 500, 600 are kept out; 0 lies at 100 m of 50; 800 and 900 on the
+  // ramp.
+  EXPECT_NEAR(costs.exposure, (3.0 + 0.5 + 0.4 + 0.8) / 10.0, 1e-12);
+  EXPECT_NEAR(costs.length_ratio, 1.0, 1e-12);
+  EXPECT_NEAR(costs.turning, 0.0, 1e-12);
+  problem.exposure_per_hazard = true;
+  EXPECT_NEAR((CurveEvaluator{problem, CurveForm::lateral_offsets}.costs(straight).exposure),
+              costs.exposure / 3.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace skein::routes
