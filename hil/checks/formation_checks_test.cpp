@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "skein/checks/checks.hpp"
+#include "skein/checks/formation_changes.hpp"
 
 namespace skein::checks {
 namespace {
@@ -43,6 +44,28 @@ RunRecord flown(double off_m, double second_reaches_s) {
     record.recordings.push_back(recording);
   }
   return record;
+}
+
+TEST(FormationChanges, AreToldByTheGroundStationsEvents) {
+  RunRecord record = flown(0.0, 9.0);
+  record.ground_events[0].text = "form, straight: 2 vehicles";
+  record.ground_events[2].text = "correction of form, straight: 1 vehicle";
+  record.ground_events.pop_back();  // a correction does not hold anew
+  record.ground_events.push_back(event(1, 21.0, EventKind::change_begun, 8.0));
+  record.places.push_back({8, at_seconds(21.0), {1}, {10.5, 0.0, 20.0}});
+  const auto changes = formation_changes(record);
+  ASSERT_EQ(changes.size(), 2U);
+  EXPECT_EQ(changes[0].number, 7U);
+  EXPECT_EQ(changes[0].order, "form, straight");
+  EXPECT_FALSE(changes[0].correction);
+  EXPECT_EQ(changes[0].begun, at_seconds(1.0));
+  EXPECT_EQ(changes[0].held, at_seconds(10.0));
+  EXPECT_EQ(changes[0].until, at_seconds(20.0));
+  EXPECT_EQ(changes[0].places.at({2}), Vec3(20.0, 0.0, 20.0));
+  EXPECT_TRUE(changes[1].correction);
+  EXPECT_FALSE(changes[1].held);
+  EXPECT_EQ(changes[1].until, Instant::max());
+  EXPECT_EQ(changes[1].places, changes[0].places);
 }
 
 TEST(FormationChecks, HoldWhereAllIsWell) {

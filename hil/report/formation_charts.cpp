@@ -9,12 +9,13 @@
 #include <map>
 
 #include "skein/base/attitude.hpp"
+#include "skein/checks/formation_changes.hpp"
 #include "skein/report/drawing.hpp"
 
 namespace skein::report {
 namespace {
 
-using mission::EventKind;
+using checks::FormationChange;
 
 constexpr double kWidth = 860.0;
 constexpr double kHeight = 240.0;
@@ -23,37 +24,11 @@ constexpr double kBottom = kHeight - 26.0;
 
 Vec3 position(const VehicleState& s) { return {s.x_m, s.y_m, s.z_m}; }
 
-/// A stretch of time in which a formation held.
-struct Held {
-  std::string order;
-  Instant from{};
-  Instant until{};
-  std::map<VehicleId, Vec3> places;
-};
-
-std::vector<Held> held_of(const checks::RunRecord& record) {
-  std::vector<Held> all;
-  std::map<VehicleId, Vec3> places;
-  std::string order;
-  const auto end_before = [&](Instant t) {
-    if (!all.empty() && all.back().until == Instant::max()) all.back().until = t;
-  };
-  for (const auto& event : record.ground_events) {
-    if (event.vehicle != kGroundStation) continue;
-    if (event.kind == EventKind::change_begun) {
-      end_before(event.time);
-      if (event.text.starts_with("correction")) continue;
-      order = event.text.substr(0, event.text.find(':'));
-      places.clear();
-      for (const auto& place : record.places) {
-        if (place.change == static_cast<std::uint32_t>(event.value))
-          places[place.vehicle] = place.place_m;
-      }
-    } else if (event.kind == EventKind::formation_held) {
-      all.push_back({order, event.time, Instant::max(), places});
-    }
-  }
-  return all;
+/// Those that held; what is between is flown.
+std::vector<FormationChange> held_of(const checks::RunRecord& record) {
+  auto changes = checks::formation_changes(record);
+  std::erase_if(changes, [](const FormationChange& change) { return !change.held; });
+  return changes;
 }
 
 const recording::Recording* recording_of(const checks::RunRecord& record, VehicleId vehicle) {
@@ -79,11 +54,11 @@ Span span_of(const checks::RunRecord& record) {
 
 /// The frame of a chart over time: bands where formations held, grid, the limit's line.
 std::string frame(std::string_view label, const Axis& time, const Axis& value, double limit,
-                  const std::vector<Held>& held) {
+                  const std::vector<FormationChange>& held) {
   std::string svg = fmt::format(R"~(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">)~",
                                 kWidth, kHeight, label);
-  for (const Held& h : held) {
-    const double from = time(to_seconds(h.from));
+  for (const FormationChange& h : held) {
+    const double from = time(to_seconds(*h.held));
     const double until = std::min(time(time.to), time(to_seconds(h.until)));
     svg += fmt::format(
         R"~(<rect class="allowed" x="{:.1f}" y="10" width="{:.1f}" height="{:.1f}"><title>{} holds</title></rect>)~",
@@ -149,20 +124,20 @@ std::string separation_chart(const checks::RunRecord& record, const checks::Limi
 }
 
 std::string place_chart(const checks::RunRecord& record, const checks::Limits& limits) {
-  const std::vector<Held> held = held_of(record);
+  const std::vector<FormationChange> held = held_of(record);
   if (held.empty()) return "";
   const Span span = span_of(record);
   const Axis time{span.begin_s, span.end_s, kLeft, kWidth - 10.0};
   const Axis value{0.0, 2.0 * limits.place_rms_m, kBottom, 10.0};
   std::string svg =
       frame("Distance of each vehicle from its place", time, value, limits.place_rms_m, held);
-  for (const Held& h : held) {
+  for (const FormationChange& h : held) {
     for (const auto& [vehicle, place] : h.places) {
       const auto* recorded = recording_of(record, vehicle);
       if (recorded == nullptr) continue;
       std::vector<Vec2> errors;
       for (const auto& point : recorded->track) {
-        if (point.state.time < h.from || point.state.time >= h.until) continue;
+        if (point.state.time < *h.held || point.state.time >= h.until) continue;
         errors.emplace_back(to_seconds(point.state.time), (position(point.state) - place).norm());
       }
       svg += line(errors, time, value, 1 + (vehicle.value - 1U) % 6U,
@@ -177,7 +152,7 @@ std::vector<std::pair<std::string, std::string>> formation_pictures(
   constexpr double kSide = 260.0;
   constexpr double kMargin = 26.0;
   std::vector<std::pair<std::string, std::string>> pictures;
-  for (const Held& h : held_of(record)) {
+  for (const FormationChange& h : held_of(record)) {
     if (h.places.empty()) continue;
     Vec2 low{1e12, 1e12};
     Vec2 high{-1e12, -1e12};
@@ -197,7 +172,7 @@ std::vector<std::pair<std::string, std::string>> formation_pictures(
       std::vector<Vec2> pixels;
       if (const auto* recorded = recording_of(record, vehicle)) {
         for (const auto& point : recorded->track) {
-          if (point.state.time < h.from || point.state.time >= h.until) continue;
+          if (point.state.time < *h.held || point.state.time >= h.until) continue;
           pixels.emplace_back(east(point.state.x_m), north(point.state.y_m));
         }
       }
@@ -206,7 +181,7 @@ std::vector<std::pair<std::string, std::string>> formation_pictures(
           colour, east(place.x()), north(place.y()), points_text(thinned(pixels, 0.1)),
           north(place.y()) - 13.0, vehicle.value);
     }
-    pictures.emplace_back(fmt::format("{}, from {:.1f} s", h.order, to_seconds(h.from)),
+    pictures.emplace_back(fmt::format("{}, from {:.1f} s", h.order, to_seconds(*h.held)),
                           svg + "</svg>");
   }
   return pictures;
