@@ -102,10 +102,6 @@ const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle) {
 const Site* site_of(const RunRecord& record, SiteId site) {
   return find_by_id(record.sites, [&](const Site& s) { return s.id == site; });
 }
-const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle) {
-  return find_by_id(record.recordings,
-                    [&](const recording::Recording& r) { return r.vehicle == vehicle; });
-}
 
 std::string fixed(double value, int decimals) {
   std::array<char, 64> text{};

@@ -37,7 +37,6 @@ struct TrackPosition {
 
 [[nodiscard]] const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle);
 [[nodiscard]] const Site* site_of(const RunRecord& record, SiteId site);
-[[nodiscard]] const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle);
 
 /// Words of the sentences.
 [[nodiscard]] std::string fixed(double value, int decimals);

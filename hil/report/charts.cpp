@@ -61,15 +61,10 @@ std::vector<Curve> members_of(const std::vector<Story>& stories, SiteId site) {
   return curves;
 }
 
-const recording::Recording& recording_of(const checks::RunRecord& record, VehicleId vehicle) {
-  return *std::find_if(record.recordings.begin(), record.recordings.end(),
-                       [&](const auto& r) { return r.vehicle == vehicle; });
-}
-
 /// Time and distance from the site, in seconds and metres.
 std::vector<Vec2> distances(const checks::RunRecord& record, const Curve& curve, const Site& site) {
   std::vector<Vec2> line;
-  for (const auto& point : recording_of(record, curve.vehicle).track) {
+  for (const auto& point : recording_of(record, curve.vehicle)->track) {
     const VehicleState& s = point.state;
     if (s.time < curve.from || s.time > curve.until) continue;
     line.emplace_back(to_seconds(s.time), (Vec2{s.x_m, s.y_m} - site.position).norm());

@@ -11,6 +11,7 @@
 #include "skein/base/attitude.hpp"
 #include "skein/checks/formation_changes.hpp"
 #include "skein/report/drawing.hpp"
+#include "story.hpp"
 
 namespace skein::report {
 namespace {
@@ -31,19 +32,13 @@ std::vector<FormationChange> held_of(const checks::RunRecord& record) {
   return changes;
 }
 
-const recording::Recording* recording_of(const checks::RunRecord& record, VehicleId vehicle) {
-  const auto found = std::find_if(record.recordings.begin(), record.recordings.end(),
-                                  [&](const auto& r) { return r.vehicle == vehicle; });
-  return found == record.recordings.end() ? nullptr : &*found;
-}
-
-struct Span {
+struct TimeSpan {
   double begin_s = 0.0;
   double end_s = 1.0;
 };
 
-Span span_of(const checks::RunRecord& record) {
-  Span span{1e12, 0.0};
+TimeSpan span_of(const checks::RunRecord& record) {
+  TimeSpan span{1e12, 0.0};
   for (const auto& r : record.recordings) {
     if (r.track.empty()) continue;
     span.begin_s = std::min(span.begin_s, to_seconds(r.track.front().state.time));
@@ -115,7 +110,7 @@ std::string separation_chart(const checks::RunRecord& record, const checks::Limi
   if (least.empty()) return "";
   double most = 2.0 * limits.separation_horizontal_m;
   for (const Vec2& p : least) most = std::max(most, p.y());
-  const Span span = span_of(record);
+  const TimeSpan span = span_of(record);
   const Axis time{span.begin_s, span.end_s, kLeft, kWidth - 10.0};
   const Axis value{0.0, 1.05 * most, kBottom, 10.0};
   return frame("Least distance of any two vehicles over time", time, value,
@@ -126,7 +121,7 @@ std::string separation_chart(const checks::RunRecord& record, const checks::Limi
 std::string place_chart(const checks::RunRecord& record, const checks::Limits& limits) {
   const std::vector<FormationChange> held = held_of(record);
   if (held.empty()) return "";
-  const Span span = span_of(record);
+  const TimeSpan span = span_of(record);
   const Axis time{span.begin_s, span.end_s, kLeft, kWidth - 10.0};
   const Axis value{0.0, 2.0 * limits.place_rms_m, kBottom, 10.0};
   std::string svg =
@@ -140,8 +135,8 @@ std::string place_chart(const checks::RunRecord& record, const checks::Limits& l
         if (point.state.time < *h.held || point.state.time >= h.until) continue;
         errors.emplace_back(to_seconds(point.state.time), (position(point.state) - place).norm());
       }
-      svg += line(errors, time, value, 1 + (vehicle.value - 1U) % 6U,
-                  fmt::format("vehicle {}", vehicle.value));
+      svg +=
+          line(errors, time, value, colour_of(vehicle), fmt::format("vehicle {}", vehicle.value));
     }
   }
   return svg + "</svg>";
@@ -168,7 +163,7 @@ std::vector<std::pair<std::string, std::string>> formation_pictures(
         R"~(<svg viewBox="0 0 {0:.0f} {0:.0f}" role="img" aria-label="{1} from above"><rect class="ground" width="{0:.0f}" height="{0:.0f}"/>)~",
         kSide, escaped(h.order));
     for (const auto& [vehicle, place] : h.places) {
-      const std::size_t colour = 1 + (vehicle.value - 1U) % 6U;
+      const std::size_t colour = colour_of(vehicle);
       std::vector<Vec2> pixels;
       if (const auto* recorded = recording_of(record, vehicle)) {
         for (const auto& point : recorded->track) {

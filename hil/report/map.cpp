@@ -101,7 +101,7 @@ std::string draw_track(const checks::RunRecord& record, const recording::Recordi
     (site ? work : free) += fmt::format(
         R"~(<polyline class="track {}s{}" points="{}"><title>vehicle {}{}</title></polyline>)~",
         site ? "" : "free ",
-        record.places.empty() ? colour_of(record, site) : 1 + (recorded.vehicle.value - 1U) % 6U,
+        record.places.empty() ? colour_of(record, site) : colour_of(recorded.vehicle),
         points_text(thinned(line, kThinning)), recorded.vehicle.value,
         site                    ? fmt::format(", working for site {}", site->value)
         : record.places.empty() ? ", searching"

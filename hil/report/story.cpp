@@ -102,4 +102,6 @@ std::size_t colour_of(const checks::RunRecord& record, std::optional<SiteId> sit
   return 0;
 }
 
+std::size_t colour_of(VehicleId vehicle) { return (vehicle.value - 1U) % kColours + 1; }
+
 }  // namespace skein::report

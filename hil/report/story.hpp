@@ -43,5 +43,7 @@ struct Story {
 
 /// The place of a site among the record's, from 1: the number of its colour. 0 for none.
 [[nodiscard]] std::size_t colour_of(const checks::RunRecord& record, std::optional<SiteId> site);
+/// That of a vehicle, where vehicles are told apart and not sites. From 1.
+[[nodiscard]] std::size_t colour_of(VehicleId vehicle);
 
 }  // namespace skein::report

@@ -49,6 +49,9 @@ struct RunRecord {
   std::vector<Excuse> excused;
 };
 
+/// Of this vehicle; null where there is none.
+[[nodiscard]] const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle);
+
 /// What a mission is held to.
 struct Limits {
   double turn_share = 0.03;    ///< flown tighter than the turn radius by at most this share
@@ -67,7 +70,7 @@ struct Limits {
   double separation_vertical_m = 20.0;
   double place_rms_m = 0.3;       ///< from its place, of any vehicle while a formation holds
   double arrival_spread_s = 0.3;  ///< from the first vehicle in its place to the last
-  double track_gap_s = 1.0;  ///< a longer gap in a track cannot be judged
+  double track_gap_s = 1.0;       ///< a longer gap in a track cannot be judged
 };
 
 }  // namespace skein::checks
