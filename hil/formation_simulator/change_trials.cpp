@@ -4,11 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -16,6 +13,7 @@
 #include "skein/base/random.hpp"
 #include "skein/formation/place_assignment.hpp"
 #include "skein/formation/shapes.hpp"
+#include "skein/hil/run_parallel.hpp"
 
 namespace skein::hil {
 namespace {
@@ -198,22 +196,10 @@ JudgedChange try_change(std::uint64_t seed) {
 
 std::vector<JudgedChange> try_changes(std::uint64_t first_seed, std::size_t runs, std::size_t jobs,
                                       const std::function<void(const JudgedChange&)>& on_done) {
-  std::vector<JudgedChange> all(runs);
-  std::atomic<std::size_t> next{0};
-  std::mutex telling;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs; i = next++) {
-      all[i] = try_change(first_seed + i);
-      if (!on_done) continue;
-      const std::lock_guard lock{telling};
-      on_done(all[i]);
-    }
-  };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(jobs, runs); ++i) others.emplace_back(work);
-  work();
-  others.clear();  // joins them
-  return all;
+  const auto fly = [&](std::size_t i) { return try_change(first_seed + i); };
+  auto all = run_parallel<JudgedChange>(runs, jobs, fly, on_done);
+  SKEIN_ASSERT(all.ok());
+  return std::move(*all);
 }
 
 }  // namespace skein::hil

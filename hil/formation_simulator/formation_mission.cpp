@@ -2,15 +2,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <atomic>
-#include <mutex>
-#include <optional>
-#include <thread>
 #include <utility>
 
 #include "skein/base/random.hpp"
 #include "skein/hil/formation_simulator.hpp"
+#include "skein/hil/run_parallel.hpp"
 
 namespace skein::hil {
 namespace {
@@ -76,31 +72,12 @@ Result<FormationMission> formation_mission(const configuration::Scenario& scenar
 Result<std::vector<FormationRun>> fly_formations(
     const configuration::Scenario& scenario, const FormationSeries& series,
     const std::function<void(const FormationRun&)>& on_done) {
-  std::vector<FormationRun> runs(series.runs);
-  std::optional<Error> failed;
-  std::atomic<std::size_t> next{0};
-  std::mutex telling;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size(); i = next++) {
-      const auto mission = formation_mission(scenario, series.first_seed + i, series.faults);
-      auto run = mission ? fly_formation(*mission) : Result<FormationRun>{mission.error()};
-      const std::lock_guard lock{telling};
-      if (!run) {
-        failed = run.error();
-        next = runs.size();
-        return;
-      }
-      runs[i] = std::move(*run);
-      if (on_done) on_done(runs[i]);
-    }
+  const auto fly = [&](std::size_t i) -> Result<FormationRun> {
+    const auto mission = formation_mission(scenario, series.first_seed + i, series.faults);
+    if (!mission) return mission.error();
+    return fly_formation(*mission);
   };
-  {
-    std::vector<std::jthread> others;
-    for (std::size_t i = 1; i < std::min(series.jobs, series.runs); ++i) others.emplace_back(work);
-    work();
-  }
-  if (failed) return *failed;
-  return runs;
+  return run_parallel<FormationRun>(series.runs, series.jobs, fly, on_done);
 }
 
 }  // namespace skein::hil

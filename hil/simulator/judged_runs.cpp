@@ -2,13 +2,11 @@
 #include "skein/hil/judged_runs.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <map>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hil/team_record.hpp"
 
@@ -72,25 +70,15 @@ JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
 
 std::vector<JudgedRun> fly_series(const configuration::Scenario& scenario, const RunSeries& series,
                                   const std::function<void(const JudgedRun&)>& on_done) {
-  std::vector<JudgedRun> runs(series.runs);
-  std::atomic<std::size_t> next{0};
-  std::mutex telling;
   const checks::Limits limits = limits_of(scenario.expect);
-  const auto work = [&] {
-    for (std::size_t i = next++; i < runs.size(); i = next++) {
-      const auto mission = seeded_mission(scenario, series.first_seed + i, series.faults);
-      SKEIN_ASSERT(mission.ok());
-      runs[i] = fly_judged(*mission, limits);
-      if (!on_done) continue;
-      const std::lock_guard lock{telling};
-      on_done(runs[i]);
-    }
+  const auto fly = [&](std::size_t i) -> Result<JudgedRun> {
+    const auto mission = seeded_mission(scenario, series.first_seed + i, series.faults);
+    if (!mission) return mission.error();
+    return fly_judged(*mission, limits);
   };
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(series.jobs, series.runs); ++i) others.emplace_back(work);
-  work();
-  others.clear();  // joins them
-  return runs;
+  auto runs = run_parallel<JudgedRun>(series.runs, series.jobs, fly, on_done);
+  SKEIN_ASSERT(runs.ok());
+  return std::move(*runs);
 }
 
 SeriesSummary summarise(const std::vector<JudgedRun>& runs) {

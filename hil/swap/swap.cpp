@@ -3,18 +3,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <deque>
 #include <limits>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/geometry.hpp"
 #include "skein/base/random.hpp"
+#include "skein/hil/run_parallel.hpp"
 
 namespace skein::swap {
 namespace {
@@ -241,30 +239,8 @@ Result<std::vector<SwapRun>> fly_swaps(const SwapOptions& options, const MakeAvo
                                        std::uint64_t first_seed, std::size_t seeds,
                                        std::size_t jobs,
                                        const std::function<void(const SwapRun&)>& on_done) {
-  std::vector<SwapRun> runs(seeds);
-  std::optional<Error> failed;
-  std::atomic<std::size_t> next{0};
-  std::mutex telling;
-  const auto work = [&] {
-    for (std::size_t i = next++; i < seeds; i = next++) {
-      auto run = fly_swap(options, make, first_seed + i);
-      const std::lock_guard lock{telling};
-      if (!run) {
-        failed = run.error();
-        next = seeds;
-        return;
-      }
-      runs[i] = std::move(*run);
-      if (on_done) on_done(runs[i]);
-    }
-  };
-  {
-    std::vector<std::jthread> workers;
-    for (std::size_t i = 1; i < std::min(jobs, seeds); ++i) workers.emplace_back(work);
-    work();
-  }
-  if (failed) return *failed;
-  return runs;
+  const auto fly = [&](std::size_t i) { return fly_swap(options, make, first_seed + i); };
+  return hil::run_parallel<SwapRun>(seeds, jobs, fly, on_done);
 }
 
 SwapSummary summarise(std::span<const SwapRun> runs) {
