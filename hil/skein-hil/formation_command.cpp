@@ -4,22 +4,18 @@
 #include <algorithm>
 #include <map>
 #include <string>
-#include <thread>
 
 #include "commands.hpp"
 #include "progress_line.hpp"
 #include "skein/hil/change_trials.hpp"
 #include "skein/hil/formation_simulator.hpp"
+#include "skein/hil/run_parallel.hpp"
 
 namespace skein::hil {
 namespace {
 
 /// Failing seeds that are told of in full.
 constexpr std::size_t kFailuresShown = 20;
-
-std::size_t jobs_of(std::size_t asked) {
-  return asked > 0 ? asked : std::max<std::size_t>(1, std::thread::hardware_concurrency());
-}
 
 std::string who(VehicleId vehicle) {
   return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdio>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "commands.hpp"
@@ -13,6 +12,7 @@
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/faults.hpp"
 #include "skein/hil/judged_runs.hpp"
+#include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
 
 namespace skein::hil {
@@ -103,8 +103,7 @@ int fly_many(const configuration::Scenario& scenario, const SimulateArguments& a
   series.faults = arguments.faults;
   series.first_seed = scenario.seed;
   series.runs = *arguments.runs;
-  series.jobs = arguments.jobs > 0 ? arguments.jobs
-                                   : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  series.jobs = jobs_of(arguments.jobs);
   ProgressLine line{series.runs};
   const auto runs =
       fly_series(scenario, series, [&](const JudgedRun& run) { line.count(run.held()); });

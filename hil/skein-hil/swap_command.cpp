@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "commands.hpp"
+#include "skein/hil/run_parallel.hpp"
 #include "skein/swap/swap.hpp"
 
 namespace skein::hil {
@@ -84,9 +83,6 @@ int swap(const SwapArguments& arguments) {
     if (!method) return complain(method.error().message);
     methods.push_back(*method);
   }
-  const std::size_t jobs = arguments.jobs > 0
-                               ? arguments.jobs
-                               : std::max<std::size_t>(1, std::thread::hardware_concurrency());
   std::string csv =
       "method,agents,seed,ideal_s,arrived_s,not_arrived,breached_pairs,least_m,way_ratio,"
       "messages\n";
@@ -112,7 +108,7 @@ int swap(const SwapArguments& arguments) {
         show_progress(name, agents, ++done, arguments.seeds);
       };
       const auto runs = swap::fly_swaps(options, method->make, arguments.first_seed,
-                                        arguments.seeds, jobs, on_done);
+                                        arguments.seeds, jobs_of(arguments.jobs), on_done);
       if (!runs) return complain(name + ": " + runs.error().message);
       const auto summary = swap::summarise(*runs);
       held = held && summary.runs_breached == 0 && summary.deadlocked == 0;

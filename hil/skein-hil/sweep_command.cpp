@@ -2,19 +2,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <string>
-#include <thread>
 
 #include "commands.hpp"
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/experiments/run_table.hpp"
 #include "skein/experiments/sweep.hpp"
+#include "skein/hil/run_parallel.hpp"
 
 namespace skein::hil {
 namespace {
@@ -83,8 +82,7 @@ int sweep(const SweepArguments& arguments) {
   options.folder = !arguments.folder.empty()
                        ? arguments.folder
                        : std::filesystem::path{"runs"} / arguments.experiment.stem();
-  options.jobs = arguments.jobs > 0 ? arguments.jobs
-                                    : std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  options.jobs = jobs_of(arguments.jobs);
   auto table = experiments::RunTable::open(options.folder, *experiment, *base);
   if (!table) return complain(table.error().message);
 
