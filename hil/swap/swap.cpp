@@ -12,6 +12,7 @@
 #include "skein/base/assert.hpp"
 #include "skein/base/geometry.hpp"
 #include "skein/base/random.hpp"
+#include "skein/formation/motion_profile.hpp"
 #include "skein/hil/run_parallel.hpp"
 
 namespace skein::swap {
@@ -19,17 +20,6 @@ namespace {
 
 /// A path under 2 m/s2 leaves the chord of one control period by 0.1 mm: that is no breach.
 constexpr double kChord = 1e-3;
-
-/// From rest, until `way` is behind it, where acceleration is only limited by jerk and its limit.
-double start_time_s(double way, const formation::MotionLimits& limits) {
-  const double a = limits.acceleration_mps2;
-  const double j = limits.jerk_mps3;
-  const double ramp_s = a / j;
-  const double ramp_m = a * ramp_s * ramp_s / 6.0;
-  if (way <= ramp_m) return std::cbrt(6.0 * way / j);
-  const double speed = 0.5 * a * ramp_s;
-  return ramp_s + (std::sqrt(speed * speed + 2.0 * a * (way - ramp_m)) - speed) / a;
-}
 
 /// Ticks of the control period in a time, at least that long.
 std::size_t ticks_of(double seconds, double period_s) {
@@ -183,20 +173,16 @@ double default_radius_m(std::size_t agents) {
 }
 
 double ideal_time_s(double way_m, const formation::MotionLimits& limits) {
-  const double v = limits.speed_mps;
-  const double a = limits.acceleration_mps2;
-  const double j = limits.jerk_mps3;
-  double whole_s = 0.0;
-  const double to_speed_s = v * j >= a * a ? v / a + a / j : 2.0 * std::sqrt(v / j);
-  if (way_m >= v * to_speed_s) {
-    whole_s = way_m / v + to_speed_s;
-  } else {
-    // Symmetric about the middle; its halves begin and end without acceleration.
-    const double ramp_s = a / j;
-    const double peak = 0.5 * (std::sqrt(a * a * ramp_s * ramp_s + 4.0 * a * way_m) - a * ramp_s);
-    whole_s = peak >= a * ramp_s ? 2.0 * (peak / a + ramp_s) : 4.0 * std::cbrt(way_m / (2.0 * j));
+  const formation::MotionProfile profile{way_m, limits};
+  // It comes to rest as it set out: the last metres take as long as the first.
+  const double last_m = std::min(kArrived, 0.5 * way_m);
+  double early_s = 0.0;
+  double late_s = 0.5 * profile.duration_s();
+  for (int i = 0; i < 60; ++i) {
+    const double middle_s = 0.5 * (early_s + late_s);
+    (profile.at(middle_s).distance_m < last_m ? early_s : late_s) = middle_s;
   }
-  return whole_s - start_time_s(std::min(kArrived, 0.5 * way_m), limits);
+  return profile.duration_s() - late_s;
 }
 
 SeparationJudge::SeparationJudge(std::size_t agents, const formation::Separation& separation)
