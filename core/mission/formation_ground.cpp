@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "names.hpp"
 #include "skein/base/contains.hpp"
 
 namespace skein::mission {
@@ -28,8 +29,6 @@ constexpr double kLook_m = 0.5;
 constexpr double kDriftTime_s = 5.0;
 constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
 constexpr double kTrimMax_m = 1.0;
-
-std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
 
 std::string names_of(const std::vector<VehicleId>& vehicles) {
   std::string text;

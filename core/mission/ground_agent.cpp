@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "names.hpp"
 #include "skein/base/contains.hpp"
 
 namespace skein::mission {
@@ -24,9 +25,6 @@ constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
 constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
 constexpr int kClosedTimes = 5;
 constexpr Duration kLeaderLost = std::chrono::seconds{75};
-
-std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
-std::string name_of(SiteId site) { return "site " + std::to_string(site.value); }
 
 Instant last_delivery(const AuthorisationRequest& request) {
   Instant last = request.decide_by;
