@@ -7,17 +7,12 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/base/shortened.hpp"
 
 namespace skein::autopilot {
 namespace {
 
 constexpr std::size_t kRotors = RotorCommand::kRotors;
-
-template <class Vector>
-Vector limited(const Vector& v, double norm_max) {
-  const double norm = v.norm();
-  return norm > norm_max ? Vector{v * (norm_max / norm)} : v;
-}
 
 double bearing(std::size_t rotor) { return radians(30.0 + 60.0 * static_cast<double>(rotor)); }
 
@@ -95,24 +90,24 @@ RotorCommand HexarotorLoops::fly(const Estimate& estimate, const MotionDemand& d
     const double off = *demand.down_m - estimate.position_m.z();
     velocity.z() += std::copysign(closing_speed(std::abs(off), t.position_gain_per_s, 1.5), off);
   }
-  velocity.head<2>() = limited(Vec2{velocity.head<2>()}, t.speed_max_mps);
+  velocity.head<2>() = shortened(Vec2{velocity.head<2>()}, t.speed_max_mps);
   velocity.z() = std::clamp(velocity.z(), -t.climb_max_mps, t.sink_max_mps);
 
   const Vec3 error = velocity - estimate.velocity_mps;
   Vec3 acceleration = demand.acceleration_mps2 + t.velocity_gain_per_s * error + velocity_integral_;
   const Vec2 horizontal = acceleration.head<2>();
-  acceleration.head<2>() = limited(horizontal, t.acceleration_max_mps2);
+  acceleration.head<2>() = shortened(horizontal, t.acceleration_max_mps2);
   acceleration.z() = std::clamp(acceleration.z(), -6.0, 6.0);
   // Integrates what the limits let through.
   Vec3 integral = velocity_integral_ + t.velocity_integral_per_s2 * seconds * error;
   if (horizontal.norm() > t.acceleration_max_mps2)
     integral.head<2>() = velocity_integral_.head<2>();
-  velocity_integral_.head<2>() = limited(Vec2{integral.head<2>()}, 3.0);
+  velocity_integral_.head<2>() = shortened(Vec2{integral.head<2>()}, 3.0);
   velocity_integral_.z() = std::clamp(integral.z(), -4.0, 6.0);
 
   Vec3 thrust = acceleration - kGravity_mps2 * Vec3::UnitZ();  // per mass
   const double sideways = std::max(-thrust.z(), 0.5) * std::tan(t.tilt_max_rad);
-  thrust.head<2>() = limited(Vec2{thrust.head<2>()}, sideways);
+  thrust.head<2>() = shortened(Vec2{thrust.head<2>()}, sideways);
   thrust.z() = std::min(thrust.z(), -0.5);  // up, always: it shall not turn over
   const Vec3 down = -thrust.normalized();
   const Vec3 body_down = estimate.attitude * Vec3::UnitZ();
@@ -145,7 +140,7 @@ RotorCommand HexarotorLoops::turn_to(const Estimate& estimate, const Eigen::Quat
   const double yaw_error = 2.0 * std::atan2(twist.z(), twist.w());
   Vec3 rate = 2.0 * tilt.vec().cwiseProduct(t.angle_gain_per_s);
   rate.z() = t.angle_gain_per_s.z() * wrap_pi(yaw_error) + yaw_rate_radps;
-  rate.head<2>() = limited(Vec2{rate.head<2>()}, t.tilt_rate_max_radps);
+  rate.head<2>() = shortened(Vec2{rate.head<2>()}, t.tilt_rate_max_radps);
   rate.z() = std::clamp(rate.z(), -t.yaw_rate_max_radps, t.yaw_rate_max_radps);
 
   const Vec3& w = estimate.rates_radps;

@@ -9,6 +9,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/geometry.hpp"
 #include "skein/base/random.hpp"
+#include "skein/base/shortened.hpp"
 #include "skein/base/time.hpp"
 
 namespace skein {
@@ -121,6 +122,12 @@ TEST(Geometry, DistanceToPieceAgreesWithSampling) {
     }
     EXPECT_NEAR(distance_to_piece(point, start, curvature, length), least, 0.011);
   }
+}
+
+TEST(Shortened, IsNoLongerThanAsked) {
+  EXPECT_EQ(shortened(Vec2{3.0, 4.0}, 5.0), Vec2(3.0, 4.0));
+  EXPECT_TRUE(shortened(Vec2{6.0, -8.0}, 5.0).isApprox(Vec2(3.0, -4.0), 1e-15));
+  EXPECT_EQ(shortened(Vec2{0.0, 0.0}, 0.0), Vec2(0.0, 0.0));
 }
 
 TEST(BoundedQueue, RefusesAndCountsWhenFull) {

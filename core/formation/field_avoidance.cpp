@@ -4,15 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "skein/base/shortened.hpp"
+
 namespace skein::formation {
 namespace {
 
 constexpr double kNearest = 0.01;  // the force has no direction nearer than that
-
-Vec3 shortened(const Vec3& v, double length_max) {
-  const double length = v.norm();
-  return length > length_max ? Vec3{v * (length_max / length)} : v;
-}
 
 /// As fast as the limits let it stop in, with half of the deceleration kept for the push.
 Vec3 attraction(const FieldParams& params, const MotionLimits& limits, const FieldSelf& self,

@@ -8,6 +8,7 @@
 
 #include "names.hpp"
 #include "skein/base/contains.hpp"
+#include "skein/base/shortened.hpp"
 
 namespace skein::mission {
 namespace {
@@ -388,8 +389,7 @@ void FormationGround::correct_drift(Instant now) {
     Transfer transfer{vehicle, *goal, *goal};
     if (member.drift_m.norm() > allowed_m) {
       drifting.push_back(vehicle);
-      Vec3 trim = member.trim_m + member.drift_m;
-      if (trim.norm() > kTrimMax_m) trim *= kTrimMax_m / trim.norm();
+      const Vec3 trim = shortened(Vec3{member.trim_m + member.drift_m}, kTrimMax_m);
       transfer.to += trim - member.trim_m;
     }
     transfers.push_back(transfer);

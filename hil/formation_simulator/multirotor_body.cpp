@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "skein/base/shortened.hpp"
+
 namespace skein::hil {
 namespace {
 
@@ -14,11 +16,6 @@ constexpr double kGustErrorMax_m = 0.3;
 constexpr double kAccelerationMax_mps2 = 8.0;
 constexpr double kSink_mps = 1.0;
 
-Vec3 at_most(const Vec3& v, double length) {
-  const double norm = v.norm();
-  return norm > length ? Vec3{v * (length / norm)} : v;
-}
-
 }  // namespace
 
 void MultirotorBody::gust(double seconds) {
@@ -27,7 +24,7 @@ void MultirotorBody::gust(double seconds) {
   for (int axis = 0; axis < 3; ++axis) {
     gust_[axis] += -seconds / kGustTime_s * gust_[axis] + random_.normal(0.0, deviation);
   }
-  gust_ = at_most(gust_, spring * kGustErrorMax_m);
+  gust_ = shortened(gust_, spring * kGustErrorMax_m);
 }
 
 void MultirotorBody::step(const MotionTrack::Moment& reference, Duration step) {
@@ -41,7 +38,7 @@ void MultirotorBody::step(const MotionTrack::Moment& reference, Duration step) {
   const Vec3 wanted = reference.acceleration_mps2 +
                       2.0 * kDamping * kStiffness_radps * (reference.velocity_mps - velocity_) +
                       kStiffness_radps * kStiffness_radps * (reference.position_m - position_);
-  velocity_ += seconds * (at_most(wanted, kAccelerationMax_mps2) + gust_);
+  velocity_ += seconds * (shortened(wanted, kAccelerationMax_mps2) + gust_);
   position_ += seconds * velocity_;
   if (position_.z() >= 0.0) return;
   position_.z() = 0.0;

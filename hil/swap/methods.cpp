@@ -6,6 +6,7 @@
 
 #include "orca.hpp"
 #include "skein/base/random.hpp"
+#include "skein/base/shortened.hpp"
 #include "skein/formation/change_planner.hpp"
 #include "skein/formation/field_avoidance.hpp"
 #include "skein/formation/passage.hpp"
@@ -88,12 +89,8 @@ class LimitedVelocity {
           {limits_.acceleration_mps2, std::sqrt(2.0 * limits_.jerk_mps3 * size), size / period_s_});
       acceleration = lacking * (least_time / size);
     }
-    Vec3 change = acceleration - acceleration_;
-    const double change_max = limits_.jerk_mps3 * period_s_;
-    if (change.norm() > change_max) change *= change_max / change.norm();
-    acceleration_ += change;
-    velocity_ += acceleration_ * period_s_;
-    if (velocity_.norm() > limits_.speed_mps) velocity_ *= limits_.speed_mps / velocity_.norm();
+    acceleration_ += shortened(Vec3{acceleration - acceleration_}, limits_.jerk_mps3 * period_s_);
+    velocity_ = shortened(Vec3{velocity_ + acceleration_ * period_s_}, limits_.speed_mps);
     return velocity_;
   }
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "skein/base/shortened.hpp"
+
 namespace skein::swap {
 namespace {
 
@@ -26,9 +28,7 @@ struct Aim {
   }
   /// The best in the disc.
   [[nodiscard]] Vec2 in_disc(double radius) const {
-    if (farthest) return radius * vector;
-    const double length = vector.norm();
-    return length > radius ? Vec2{vector * (radius / length)} : vector;
+    return farthest ? Vec2{radius * vector} : shortened(vector, radius);
   }
 };
 
