@@ -225,6 +225,7 @@ faults:
   - {at_s: 50, kill_vehicle: 3}
   - {at_s: 60, for_s: 5, partition: [[0, 1], [2, 3]]}
   - {at_s: 70, for_s: 5, loss_ratio: 0.5}
+  - {at_s: 80, kill_vehicle: 0}
 reference:
   - {site: 1, found_by: 1, survey_done_s: 43.92, delivery_times_s: [101.44, 106.44]}
 expect: {coalitions: 1, vehicles_lost: [3]}
@@ -259,10 +260,12 @@ TEST(ScenarioFile, HoldsSitesAndFaults) {
   EXPECT_EQ(site.deliveries[1].offset, std::chrono::seconds{5});
   EXPECT_EQ(site.deliveries[1].bearing_rad, heading_from_compass_deg(30));
   EXPECT_EQ(site.assessments.at(0).start_angle_rad, heading_from_compass_deg(90));
-  ASSERT_EQ(s.faults.size(), 3U);
+  ASSERT_EQ(s.faults.size(), 4U);
   EXPECT_EQ(s.faults[0].kind, FaultKind::kill_vehicle);
   EXPECT_EQ(s.faults[1].groups.at(1).at(1), VehicleId{3});
   EXPECT_EQ(s.faults[2].kind, FaultKind::loss);
+  EXPECT_EQ(s.faults[3].kind, FaultKind::kill_vehicle);
+  EXPECT_EQ(s.faults[3].vehicle, kGroundStation);
   EXPECT_EQ(s.reference.at(0).found_by, VehicleId{1});
   EXPECT_TRUE(check(s).ok()) << check(s).error().message;
 }
@@ -301,7 +304,7 @@ TEST(ScenarioFile, NamesEveryMistake) {
        "one "
        "of these"},
       {"[101.44, 106.44]", "[101.44, -1]",
-       "s.yaml:30: reference[1].delivery_times_s[2]: is -1, outside 0 to 1000000 s; choose a "
+       "s.yaml:31: reference[1].delivery_times_s[2]: is -1, outside 0 to 1000000 s; choose a "
        "number "
        "inside"},
   };

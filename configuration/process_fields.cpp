@@ -357,6 +357,10 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
   operator_decisions_list(v, config.operator_decisions);
   formation_section(v, config.formation);
+  v.text({"control_socket",
+          "name of the Unix socket where `skein-ground tell` reaches it; empty: "
+          "skein-ground-PORT"},
+         config.control_socket);
   process_fields(v, config.network, config.time, config.recording_folder);
 }
 

@@ -251,7 +251,9 @@ class Check {
       if (to_seconds(fault.at) >= to_seconds(s_.duration_max)) {
         problem(at + " comes after duration_max_s; move one of them");
       }
-      if (fault.kind == FaultKind::kill_vehicle) need_vehicle(fault.vehicle, at);
+      if (fault.kind == FaultKind::kill_vehicle && fault.vehicle != kGroundStation) {
+        need_vehicle(fault.vehicle, at);
+      }
       std::set<VehicleId> seen;
       for (const std::vector<VehicleId>& group : fault.groups) {
         for (const VehicleId id : group) {

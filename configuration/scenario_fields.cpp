@@ -107,12 +107,12 @@ void partition_list(FieldVisitor& v, std::vector<std::vector<VehicleId>>& groups
 void fault_fields(FieldVisitor& v, Fault& fault) {
   std::optional<std::uint16_t> killed;
   std::optional<double> loss;
-  if (fault.kind == FaultKind::kill_vehicle && fault.vehicle.value != 0)
-    killed = fault.vehicle.value;
+  if (fault.kind == FaultKind::kill_vehicle) killed = fault.vehicle.value;
   if (fault.kind == FaultKind::loss) loss = fault.loss_ratio;
   seconds(v, {"at_s", "mission time", kRequired}, kSeconds, fault.at);
   seconds(v, {"for_s", "how long a partition or loss lasts"}, kSeconds, fault.duration);
-  whole(v, {"kill_vehicle", "id of the vehicle whose process is killed"}, {1.0, 65535.0}, killed);
+  whole(v, {"kill_vehicle", "id of the vehicle whose process is killed; 0: the ground station's"},
+        {0.0, 65535.0}, killed);
   partition_list(v, fault.groups);
   v.number({"loss_ratio", "share of the messages that are lost meanwhile"}, {0.0, 1.0}, loss);
   const int kinds = (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0);

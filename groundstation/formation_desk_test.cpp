@@ -33,5 +33,20 @@ TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
                                           "would come within 1.01 m of each other"));
 }
 
+TEST(FormationDesk, RefusesOrdersBeforeTheMissionBegins) {
+  auto desk = FormationDesk::open({}, {{1}}, at_seconds(-5.0));
+  ASSERT_TRUE(desk.ok()) << desk.error().message;
+  mission::FormationStatus status;
+  status.vehicle = {1};
+  desk->on_message(status, {1}, at_seconds(-4.0));
+  Formation order;
+  order.order.kind = mission::OrderKind::take_off;
+  const auto early = desk->answer(order, at_seconds(-3.0));
+  ASSERT_FALSE(early.ok());
+  EXPECT_THAT(early.error().message, HasSubstr("the mission has not begun"));
+  desk->on_message(status, {1}, at_seconds(1.0));
+  EXPECT_TRUE(desk->answer(order, at_seconds(1.0)).ok());
+}
+
 }  // namespace
 }  // namespace skein::groundstation

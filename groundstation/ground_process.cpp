@@ -7,17 +7,20 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <memory>
 #include <optional>
 #include <set>
 #include <thread>
 #include <utility>
 
+#include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/network/node.hpp"
+#include "skein/process/close_limit.hpp"
 #include "skein/process/event_text.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
@@ -56,7 +59,8 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& node, process::Wake& wake,
-             std::optional<recording::Writer> writer, FormationDesk formation)
+             std::optional<recording::Writer> writer, FormationDesk formation,
+             std::unique_ptr<ControlSocket> control)
       : agent_config_{agent_config(config)},
         origin_{origin},
         operator_name_{std::move(operator_name)},
@@ -66,7 +70,8 @@ class GroundLoop {
         wake_{wake},
         writer_{std::move(writer)},
         agent_{agent_config_, clock.now()},
-        formation_{std::move(formation)} {}
+        formation_{std::move(formation)},
+        control_{std::move(control)} {}
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
@@ -76,7 +81,14 @@ class GroundLoop {
         agent_.on_message(received->message, received->sender, now);
         formation_.on_message(received->message, received->sender, now);
       }
-      while (const auto line = prompt.next()) answer(*line, now);
+      while (const auto line = prompt.next()) {
+        const Answer given = answer(*line, now);
+        print((given.done ? "" : "error: ") + given.text);
+      }
+      while (const auto request = control_->next()) {
+        spdlog::info("told by another program: {}", request->line);
+        request->reply(answer(request->line, now));
+      }
       agent_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
@@ -94,49 +106,46 @@ class GroundLoop {
   }
 
  private:
-  void answer(const std::string& line, Instant now) {
+  Answer answer(const std::string& line, Instant now) {
     const auto input = parse_input(line);
-    if (!input) {
-      print("error: " + input.error().message + "\n");
-    } else if (const auto* view = std::get_if<View>(&*input)) {
-      show(*view, now);
-    } else if (const auto* decision = std::get_if<Decision>(&*input)) {
-      tell(decision->grant ? agent_.authorise(decision->site, operator_name_, now)
-                           : agent_.refuse(decision->site, operator_name_, now));
-    } else if (const auto* order = std::get_if<Order>(&*input)) {
-      tell(agent_.command(order->vehicle, order->kind, now));
-    } else if (const auto* typed = std::get_if<Formation>(&*input)) {
-      const auto answered = formation_.answer(*typed, now);
-      print(answered ? *answered : "error: " + answered.error().message + "\n");
-    } else if (std::holds_alternative<Wait>(*input)) {
-      print("error: 'wait' is for scripts\n");
-    } else if (std::holds_alternative<Quit>(*input)) {
-      shutdown_.request();
+    if (!input) return refusal(input.error());
+    if (const auto* view = std::get_if<View>(&*input)) return {true, text_of(*view, now)};
+    if (const auto* decision = std::get_if<Decision>(&*input)) {
+      return answer_to(decision->grant ? agent_.authorise(decision->site, operator_name_, now)
+                                       : agent_.refuse(decision->site, operator_name_, now));
     }
+    if (const auto* order = std::get_if<Order>(&*input)) {
+      return answer_to(agent_.command(order->vehicle, order->kind, now));
+    }
+    if (const auto* typed = std::get_if<Formation>(&*input)) {
+      auto answered = formation_.answer(*typed, now);
+      if (!answered) return refusal(answered.error());
+      return {true, std::move(*answered)};
+    }
+    if (std::holds_alternative<Wait>(*input)) return {false, "'wait' is for scripts\n"};
+    if (std::holds_alternative<Quit>(*input)) shutdown_.request();
+    return {true, ""};
   }
 
-  void show(View view, Instant now) const {
+  [[nodiscard]] std::string text_of(View view, Instant now) const {
     switch (view) {
       case View::help:
-        print(help_text());
-        break;
+        return help_text();
       case View::status:
-        print(fleet_table(agent_.fleet(), agent_config_.expected, now));
-        break;
+        return fleet_table(agent_.fleet(), agent_config_.expected, now);
       case View::sites:
-        print(sites_.text());
-        break;
+        return sites_.text();
       case View::pending:
-        print(pending_text(agent_.authorisations(), origin_, now));
-        break;
+        return pending_text(agent_.authorisations(), origin_, now);
       case View::places:
-        print(formation_.places_table(now));
-        break;
+        return formation_.places_table(now);
     }
+    return "";
   }
 
-  static void tell(const Result<void>& outcome) {
-    print(outcome ? "done\n" : "error: " + outcome.error().message + "\n");
+  static Answer refusal(const Error& error) { return {false, error.message + "\n"}; }
+  static Answer answer_to(const Result<void>& outcome) {
+    return outcome ? Answer{true, "done\n"} : refusal(outcome.error());
   }
 
   void hand_out(Instant now) {
@@ -203,6 +212,7 @@ class GroundLoop {
   std::optional<recording::Writer> writer_;
   mission::GroundAgent agent_;
   FormationDesk formation_;
+  std::unique_ptr<ControlSocket> control_;
   std::uint32_t recorded_change_ = 0;
   SiteBoard sites_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
@@ -212,10 +222,16 @@ class GroundLoop {
 
 }  // namespace
 
+std::string control_socket_of(const configuration::GroundConfig& config) {
+  return config.control_socket.empty() ? control_socket_name(config.network.port)
+                                       : config.control_socket;
+}
+
 int run(const configuration::GroundConfig& config, const std::string& operator_name) {
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
+  process::CloseLimit close_limit;
 
   const auto origin = MissionOrigin::make(config.origin);
   if (!origin) {
@@ -244,12 +260,26 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     return process::kExitCannotStart;
   }
 
+  auto control = ControlSocket::open(control_socket_of(config), [&wake] { wake.notify(); });
+  if (!control) {
+    spdlog::critical("cannot take orders from other programs: {}", control.error().message);
+    return process::kExitCannotStart;
+  }
+
   spdlog::info("ground station of {} vehicles, {}; type help", config.vehicles.size(),
                config.operator_decisions.empty()
                    ? "decisions by " + operator_name
                    : std::string{"with decisions scripted by the scenario"});
-  GroundLoop loop{config, *origin,           operator_name,        clock, shutdown, **node,
-                  wake,   std::move(writer), std::move(*formation)};
+  GroundLoop loop{config,
+                  *origin,
+                  operator_name,
+                  clock,
+                  shutdown,
+                  **node,
+                  wake,
+                  std::move(writer),
+                  std::move(*formation),
+                  std::move(*control)};
   std::thread thread{[&loop] { loop.run(); }};
   spdlog::info("{}: stopping", shutdown.wait());
   loop.stop();
@@ -257,6 +287,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   const auto traffic = process::traffic_of(**node);
   spdlog::info("ended: messages sent {}, received {}, dropped {}", traffic.sent, traffic.received,
                traffic.dropped);
+  close_limit.start(process::kCloseWithin);
   return 0;
 }
 

@@ -2,45 +2,136 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "skein/configuration/ground_config.hpp"
+#include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
+#include "skein/groundstation/prompt.hpp"
 #include "skein/process/log.hpp"
+
+namespace {
+
+namespace groundstation = skein::groundstation;
+using skein::configuration::GroundConfig;
+
+constexpr int kExitRefused = 1;
+constexpr std::chrono::seconds kAnswerWithin{20};  // a change of a thousand vehicles takes its time
+
+struct Arguments {
+  std::string config;
+  std::string operator_name;
+  bool check_only = false;
+  std::string socket;
+};
+
+skein::Result<GroundConfig> load(const std::string& file) {
+  return skein::configuration::load_ground_config(file);
+}
+
+int fail(const std::string& why, int status) {
+  std::fprintf(stderr, "skein-ground: %s\n", why.c_str());
+  return status;
+}
+
+int run(const Arguments& arguments) {
+  if (arguments.config.empty()) {
+    return fail("--config is required; --help has examples", skein::process::kExitBadInput);
+  }
+  const auto config = load(arguments.config);
+  if (!config) return fail(config.error().message, skein::process::kExitBadInput);
+  if (arguments.check_only) {
+    std::printf("%s: good, a fleet of %zu vehicles\n", arguments.config.c_str(),
+                config->vehicles.size());
+    return 0;
+  }
+  return groundstation::run(*config, arguments.operator_name);
+}
+
+/// Gives a running ground station a line of its prompt.
+int tell(const Arguments& arguments, const std::string& line) {
+  if (auto input = groundstation::parse_input(line); !input) {
+    return fail(input.error().message, skein::process::kExitBadInput);
+  }
+  GroundConfig config;
+  if (!arguments.config.empty()) {
+    auto loaded = load(arguments.config);
+    if (!loaded) return fail(loaded.error().message, skein::process::kExitBadInput);
+    config = *std::move(loaded);
+  }
+  if (!arguments.socket.empty()) config.control_socket = arguments.socket;
+  const auto answer =
+      groundstation::ask(groundstation::control_socket_of(config), line, kAnswerWithin);
+  if (!answer) return fail(answer.error().message, skein::process::kExitCannotStart);
+  std::fputs(answer->text.c_str(), answer->done ? stdout : stderr);
+  return answer->done ? 0 : kExitRefused;
+}
+
+CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,
+                   const char* footer) {
+  CLI::App& command = *app.add_subcommand(name, description);
+  command.add_option("--config", arguments.config,
+                     "The running ground station's configuration; without it, the one of the "
+                     "default port is told");
+  command.add_option("--socket", arguments.socket, "The name of its control socket, instead");
+  command.footer(footer);
+  command.prefix_command();
+  return command;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app{
       "The ground station: shows the fleet and its mission, and is where an operator\n"
-      "authorises or refuses deliveries."};
+      "authorises or refuses deliveries and gives a formation its orders."};
   app.footer(
-      "Example:\n  skein-ground --config ground.yaml\n\n"
+      "Examples:\n"
+      "  skein-ground --config ground.yaml\n"
+      "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
+      "  skein-ground tell --config ground.yaml status\n\n"
       "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
-      "SIGINT, SIGTERM or `quit` with exit code 0; 2 means bad arguments or configuration, 3\n"
-      "that it could not start.");
-  std::string file;
+      "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
+      "arguments or configuration, 3 that it could not start or that none answers.");
+  Arguments arguments;
   // One thread so far. NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* user = std::getenv("USER");
-  std::string operator_name = user != nullptr && *user != '\0' ? user : "operator";
-  bool check_only = false;
-  app.add_option("--config", file, "The ground station's configuration, YAML")->required();
-  app.add_option("--operator", operator_name, "Who decides at the prompt")->capture_default_str();
-  app.add_flag("--check-config", check_only, "Read the configuration, say whether it is good, end");
+  arguments.operator_name = user != nullptr && *user != '\0' ? user : "operator";
+  app.add_option("--config", arguments.config, "The ground station's configuration, YAML");
+  app.add_option("--operator", arguments.operator_name, "Who decides at the prompt")
+      ->capture_default_str();
+  app.add_flag("--check-config", arguments.check_only,
+               "Read the configuration, say whether it is good, end");
   app.set_version_flag("--version", "skein-ground " SKEIN_VERSION);
+  const CLI::App& formation =
+      add_tell(app, arguments, "formation",
+               "Gives the formation of a running ground station an order, as at its prompt",
+               "Examples:\n"
+               "  skein-ground formation take-off\n"
+               "  skein-ground formation preview form wedge spacing 5 heading 90\n"
+               "  skein-ground formation --config runs/formation-5/ground.yaml form heart\n"
+               "  skein-ground formation places");
+  const CLI::App& any =
+      add_tell(app, arguments, "tell", "Gives a running ground station any line of its prompt",
+               "Examples:\n"
+               "  skein-ground tell status\n"
+               "  skein-ground tell --socket skein-ground-7400 hold all");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
   }
-
-  const auto config = skein::configuration::load_ground_config(file);
-  if (!config) {
-    std::fprintf(stderr, "skein-ground: %s\n", config.error().message.c_str());
-    return skein::process::kExitBadInput;
+  if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
+  if (!formation.parsed()) return run(arguments);
+  const std::string line = CLI::detail::join(formation.remaining(), " ");
+  if (!groundstation::is_of_formation(line)) {
+    return fail("'" + line +
+                    "' is no order to the formation: take-off, rally, form SHAPE, land, preview "
+                    "and one of these, or places",
+                skein::process::kExitBadInput);
   }
-  if (check_only) {
-    std::printf("%s: good, a fleet of %zu vehicles\n", file.c_str(), config->vehicles.size());
-    return 0;
-  }
-  return skein::groundstation::run(*config, operator_name);
+  return tell(arguments, line);
 }

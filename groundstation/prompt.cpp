@@ -199,6 +199,12 @@ Result<Input> parse_input(std::string_view line) {
   return Error{fmt::format("there is no command '{}'; 'help' lists them", verb)};
 }
 
+bool is_of_formation(std::string_view line) {
+  const auto words = words_of(line);
+  return !words.empty() &&
+         (is_formation_verb(words[0]) || words[0] == "preview" || words[0] == "places");
+}
+
 std::string help_text() {
   return "status            the fleet: what each vehicle does, when it was last heard, its health\n"
          "sites             the sites and what was done there\n"

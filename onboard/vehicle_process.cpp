@@ -22,6 +22,7 @@
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/recorder.hpp"
 #include "skein/onboard/threads.hpp"
+#include "skein/process/close_limit.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
@@ -273,6 +274,7 @@ int fly(const configuration::VehicleConfig& config) {
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
+  process::CloseLimit close_limit;
 
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
@@ -305,6 +307,7 @@ int fly(const configuration::VehicleConfig& config) {
   spdlog::info("{}: stopping", shutdown.wait());
   threads->stop();
   threads->log_summary(**node);
+  close_limit.start(process::kCloseWithin);
   return 0;
 }
 

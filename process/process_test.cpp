@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "skein/base/assert.hpp"
+#include "skein/process/close_limit.hpp"
 #include "skein/process/event_text.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
@@ -69,6 +70,23 @@ TEST(LogDeathTest, ABrokenInvariantIsLoggedAndEndsTheProcess) {
         SKEIN_ASSERT(1 + 1 == 3);
       },
       ::testing::ExitedWithCode(kExitBrokenInvariant), "");
+}
+
+TEST(CloseLimitDeathTest, EndsAProcessThatWouldNotEnd) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        CloseLimit limit;
+        limit.start(std::chrono::milliseconds{10});
+        std::this_thread::sleep_until(std::chrono::steady_clock::time_point::max());
+      },
+      ::testing::ExitedWithCode(0), "");
+}
+
+TEST(CloseLimit, IsNotWaitedForWhereAllIsClosed) {
+  CloseLimit started;
+  started.start(std::chrono::hours{1});
+  const CloseLimit never_started;
 }
 
 TEST(Log, WritesAnInstantForPeople) { EXPECT_EQ(text_of(at_seconds(12.3456)), "12.346 s"); }

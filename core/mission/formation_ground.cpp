@@ -183,6 +183,7 @@ Result<FormationPreview> FormationGround::preview(const FormationOrder& order) c
 }
 
 Result<FormationPreview> FormationGround::command(const FormationOrder& order, Instant now) {
+  if (now < Instant{}) return Error{"the mission has not begun; vehicles wait for its start"};
   auto preview = this->preview(order);
   if (!preview) return preview;
   correcting_ = false;

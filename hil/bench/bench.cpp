@@ -269,10 +269,18 @@ class Bench {
             sites_done_.insert(event->task.site).second) {
           progress_.sites_done = sites_done_.size();
         }
-        script_done_ = script_done_ || event->kind == mission::EventKind::script_done;
+        on_formation_event(*event);
         news(*event);
       }
     }
+  }
+
+  void on_formation_event(const mission::MissionEvent& event) {
+    using mission::EventKind;
+    script_done_ = script_done_ || event.kind == EventKind::script_done;
+    if (event.vehicle == kGroundStation) return;
+    if (event.kind == EventKind::change_begun) moving_.insert(event.vehicle);
+    if (event.kind == EventKind::place_reached) moving_.erase(event.vehicle);
   }
 
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
@@ -372,8 +380,12 @@ class Bench {
   }
 
   [[nodiscard]] bool mission_done() const {
-    return scenario_.flies_formation() ? script_done_
-                                       : sites_done_.size() == scenario_.sites.size();
+    if (!scenario_.flies_formation()) return sites_done_.size() == scenario_.sites.size();
+    // Without a ground station the change that it has sent is flown to its end, and held.
+    const bool left_alone = killed_.contains(kGroundStation) &&
+                            std::all_of(moving_.begin(), moving_.end(),
+                                        [this](VehicleId id) { return killed_.contains(id); });
+    return script_done_ || left_alone;
   }
 
   [[nodiscard]] bool finished() {
@@ -401,8 +413,9 @@ class Bench {
       if (!killed_.contains(id)) controllers.push_back(&process);
     }
     const bool controllers_clean = stop_all(controllers, kStopWithin);
-    outcome_.stopped_cleanly =
-        stop_all({&processes_.at(kGroundStation)}, kStopWithin) && clean && controllers_clean;
+    std::vector<ChildProcess*> ground;
+    if (!killed_.contains(kGroundStation)) ground.push_back(&processes_.at(kGroundStation));
+    outcome_.stopped_cleanly = stop_all(ground, kStopWithin) && clean && controllers_clean;
     for (auto& [id, process] : processes_) {
       const auto how = process.ended();
       if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
@@ -470,7 +483,8 @@ class Bench {
   steady_clock::time_point epoch_;
   std::map<VehicleId, mission::Telemetry> last_;
   std::set<SiteId> sites_done_;
-  bool script_done_ = false;  ///< of a formation
+  bool script_done_ = false;    ///< of a formation
+  std::set<VehicleId> moving_;  ///< in a change of the formation
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;

@@ -85,7 +85,12 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                   deaths.empty() ? "a process did not end cleanly when it was asked to" : deaths));
 
   if (scenario.flies_formation()) {
-    results.push_back(bench_check("script", "every order is flown",
+    const bool left_alone = std::find(outcome.killed.begin(), outcome.killed.end(),
+                                      kGroundStation) != outcome.killed.end();
+    results.push_back(bench_check("script",
+                                  left_alone
+                                      ? "what was ordered before the ground station's end is flown"
+                                      : "every order is flown",
                                   scenario.formation.script.size(), "orders", "", outcome.finished,
                                   "the script was not done when the run ended"));
     return results;

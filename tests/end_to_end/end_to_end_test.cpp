@@ -41,11 +41,12 @@ class EndToEnd : public testing::Test {
     auto child = start(arguments);
     return child.wait(240s) ? *child.ended() : "still running";
   }
-  [[nodiscard]] std::string output() const {
+  [[nodiscard]] static std::string text_of(const fs::path& file) {
     std::stringstream text;
-    text << std::ifstream{log}.rdbuf();
+    text << std::ifstream{file}.rdbuf();
     return text.str();
   }
+  [[nodiscard]] std::string output() const { return text_of(log); }
   bool wait_for_output(const std::string& words) const {
     for (int i = 0; i < 3000; ++i) {
       if (output().find(words) != std::string::npos) return true;
@@ -53,11 +54,10 @@ class EndToEnd : public testing::Test {
     }
     return false;
   }
-  /// A copy of the small scenario with one piece of text replaced.
-  [[nodiscard]] std::string scenario_with(const std::string& from, const std::string& to) const {
-    std::stringstream text;
-    text << std::ifstream{kSmall}.rdbuf();
-    std::string yaml = text.str();
+  /// A copy of a scenario with one piece of text replaced.
+  [[nodiscard]] std::string scenario_with(const std::string& from, const std::string& to,
+                                          const fs::path& base = kSmall) const {
+    std::string yaml = text_of(base);
     const auto at = yaml.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     yaml.replace(at, from.size(), to);
@@ -90,10 +90,14 @@ class EndToEnd : public testing::Test {
     return found;
   }
 
-  const std::string kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
+  static constexpr const char* kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
   const fs::path folder =
-      fs::temp_directory_path() / ("skein-end-to-end-" + std::to_string(::getpid()));
+      fs::temp_directory_path() /
+      ("skein-end-to-end-" + std::to_string(::getpid()) + "-" + std::to_string(++tests_));
   const fs::path log = folder / "log";
+
+ private:
+  static inline int tests_ = 0;
 };
 
 TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
@@ -126,6 +130,46 @@ TEST_F(EndToEnd, AFormationGoesOnWithoutTheVehicleThatIsLostInAChange) {
       << output();
   EXPECT_NE(output().find("vehicle 2 is silent"), std::string::npos) << output();
   EXPECT_TRUE(fs::exists(folder / "run" / "ground" / "places.csv"));
+}
+
+TEST_F(EndToEnd, AFormationIsSafeThroughLossSilenceAndWithoutLeaderAndGroundStation) {
+  const std::string mission = SKEIN_SOURCE_DIR "/tests/end_to_end/formation-faults.yaml";
+  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder / "run").string()}),
+            "exit status 0")
+      << output();
+  EXPECT_NE(output().find("fault: vehicle 1 is killed"), std::string::npos) << output();
+  EXPECT_NE(output().find("fault: the ground station is killed"), std::string::npos) << output();
+}
+
+TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
+  const fs::path run_folder = folder / "run";
+  const std::string unscripted =
+      scenario_with("script: [take-off, form wedge spacing 5 at 0 40 12, rally, land]",
+                    "script: []", SKEIN_SOURCE_DIR "/tests/end_to_end/formation-loss.yaml");
+  auto bench = start({"run", unscripted, "--headless", "--out", run_folder.string()});
+  ASSERT_TRUE(wait_for_output("the mission begins")) << output();
+  const fs::path told = folder / "told";
+  const auto tell = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {SKEIN_PROGRAMS "/skein-ground", "formation", "--config",
+                                 (run_folder / "ground.yaml").string()});
+    fs::remove(told);
+    auto child = ChildProcess::start(words, told, {});
+    EXPECT_TRUE(child);
+    EXPECT_TRUE(child->wait(60s));
+    return child->ended().value_or("still running");
+  };
+  // Refused until the mission begins and everybody is heard.
+  const auto until = std::chrono::steady_clock::now() + 60s;
+  while (tell({"preview", "take-off"}) != "exit status 0" &&
+         std::chrono::steady_clock::now() < until) {
+    ::usleep(100'000);
+  }
+  EXPECT_NE(text_of(told).find("preview: "), std::string::npos) << text_of(told);
+  EXPECT_EQ(tell({"form", "wedge", "spacing", "0.6"}), "exit status 1") << text_of(told);
+  EXPECT_EQ(tell({"take-off"}), "exit status 0") << text_of(told);
+  EXPECT_TRUE(wait_for_output("formation_held")) << output();
+  bench.signal(SIGINT);
+  EXPECT_TRUE(bench.wait(60s));
 }
 
 TEST_F(EndToEnd, CtrlCStopsEverything) {

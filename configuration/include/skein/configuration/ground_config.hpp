@@ -22,6 +22,7 @@ struct GroundConfig {
   /// Empty: the operator types at the prompt.
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
+  std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded
 };
 

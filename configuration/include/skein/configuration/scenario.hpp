@@ -51,9 +51,9 @@ enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss };
 /// Something that goes wrong.
 struct Fault {
   Instant at{};
-  FaultKind kind = FaultKind::kill_vehicle;
+  FaultKind kind = FaultKind::partition;
   Duration duration{};                         ///< of a partition or of loss
-  VehicleId vehicle;                           ///< that is killed
+  VehicleId vehicle;                           ///< that is killed; 0 = ground station
   std::vector<std::vector<VehicleId>> groups;  ///< that hear themselves only; 0 = ground station
   double loss_ratio = 0.0;                     ///< in place of the radio's
 };

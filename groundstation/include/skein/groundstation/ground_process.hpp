@@ -13,4 +13,7 @@ namespace skein::groundstation {
 /// `operator_name` is who decides at the prompt.
 [[nodiscard]] int run(const configuration::GroundConfig& config, const std::string& operator_name);
 
+/// Where that ground station takes orders from other programs.
+[[nodiscard]] std::string control_socket_of(const configuration::GroundConfig& config);
+
 }  // namespace skein::groundstation

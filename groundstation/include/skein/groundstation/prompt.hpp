@@ -44,6 +44,9 @@ using Input = std::variant<std::monostate, View, Decision, Order, Formation, Wai
 /// Fails with what is wrong and what would be right.
 [[nodiscard]] Result<Input> parse_input(std::string_view line);
 
+/// Whether the line is an order to the formation, its preview, or a question about its places.
+[[nodiscard]] bool is_of_formation(std::string_view line);
+
 /// The answer to "help".
 [[nodiscard]] std::string help_text();
 

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/control_socket.hpp"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <boost/asio.hpp>
+#include <mutex>
+#include <set>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "skein/base/bounded_queue.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+namespace asio = boost::asio;
+using asio::local::stream_protocol;
+using boost::system::error_code;
+
+constexpr std::size_t kLineMax = 1000;
+constexpr std::size_t kConnectionsMax = 16;
+constexpr auto kConnectionLasts = std::chrono::seconds{30};
+constexpr auto kLastWords = std::chrono::milliseconds{200};
+constexpr std::string_view kDone = "done\n";
+constexpr std::string_view kRefused = "refused\n";
+
+/// Who holds the other end.
+std::optional<uid_t> user_of(stream_protocol::socket& socket) {
+  ucred peer{};
+  socklen_t size = sizeof peer;
+  if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
+    return std::nullopt;
+  return peer.uid;
+}
+
+bool is_trusted(stream_protocol::socket& socket) {
+  const auto user = user_of(socket);
+  return user == ::geteuid() || user == uid_t{0};
+}
+
+Result<stream_protocol::endpoint> endpoint_of(const std::string& name) {
+  constexpr std::size_t kNameMax = sizeof(sockaddr_un::sun_path) - 1;
+  if (name.size() > kNameMax) {
+    return Error{name + ": longer than a socket's name may be, " + std::to_string(kNameMax) +
+                 " bytes; choose a shorter control_socket"};
+  }
+  return stream_protocol::endpoint{std::string(1, '\0') + name};
+}
+
+}  // namespace
+
+std::string control_socket_name(std::uint16_t port) {
+  return "skein-ground-" + std::to_string(port);
+}
+
+class ControlSocket::Impl {
+ public:
+  explicit Impl(std::function<void()> on_line) : on_line_{std::move(on_line)} {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  ~Impl() {
+    io_.stop();
+    if (thread_.joinable()) thread_.join();
+    // What was answered still goes out, as to `quit`.
+    io_.restart();
+    io_.poll();
+    error_code ignored;
+    acceptor_.close(ignored);
+    const auto open_ones = connections_;
+    for (const auto& connection : open_ones) {
+      if (connection->text.empty()) connection->end();
+    }
+    io_.run_for(kLastWords);
+  }
+
+  Result<void> open(const std::string& name) {
+    const auto endpoint = endpoint_of(name);
+    if (!endpoint) return endpoint.error();
+    error_code failed;
+    acceptor_.open(endpoint->protocol(), failed);
+    if (!failed) acceptor_.bind(*endpoint, failed);
+    if (!failed) acceptor_.listen(asio::socket_base::max_listen_connections, failed);
+    if (failed) {
+      return Error{name + ": " + failed.message() +
+                   "; end the ground station that has this name, or choose another control_socket"};
+    }
+    accept();
+    thread_ = std::thread{[this] { io_.run(); }};
+    return {};
+  }
+
+  std::optional<Request> next() {
+    const std::lock_guard lock{mutex_};
+    return requests_.pop();
+  }
+
+ private:
+  struct Connection : std::enable_shared_from_this<Connection> {
+    Connection(Impl& owner, stream_protocol::socket&& accepted)
+        : impl{owner}, socket{std::move(accepted)}, patience{socket.get_executor()} {}
+
+    void start() {
+      patience.expires_after(kConnectionLasts);
+      patience.async_wait([self = weak_from_this()](const error_code& cancelled) {
+        const auto alive = self.lock();
+        if (!cancelled && alive) alive->end();
+      });
+      asio::async_read_until(
+          socket, asio::dynamic_buffer(line, kLineMax), '\n',
+          [self = shared_from_this()](const error_code& failed, std::size_t size) {
+            if (failed) return self->end();
+            self->line.resize(size - 1);
+            self->impl.offer(self);
+          });
+    }
+
+    void answer(const Answer& given) {
+      text = (given.done ? kDone : kRefused);
+      text += given.text;
+      asio::async_write(
+          socket, asio::buffer(text),
+          [self = shared_from_this()](const error_code&, std::size_t) { self->end(); });
+    }
+
+    void end() {
+      error_code ignored;
+      patience.cancel(ignored);
+      socket.close(ignored);
+      impl.connections_.erase(shared_from_this());
+    }
+
+    Impl& impl;
+    stream_protocol::socket socket;
+    asio::steady_timer patience;
+    std::string line;
+    std::string text;
+  };
+
+  void accept() {
+    acceptor_.async_accept([this](const error_code& failed, stream_protocol::socket accepted) {
+      if (failed == asio::error::operation_aborted) return;
+      if (!failed && connections_.size() < kConnectionsMax && is_trusted(accepted)) {
+        const auto connection = std::make_shared<Connection>(*this, std::move(accepted));
+        connections_.insert(connection);
+        connection->start();
+      }
+      accept();
+    });
+  }
+
+  void offer(const std::shared_ptr<Connection>& connection) {
+    Request request{connection->line,
+                    [this, from = std::weak_ptr{connection}](const Answer& answer) {
+                      asio::post(io_, [from, answer] {
+                        const auto waiting = from.lock();
+                        if (waiting && waiting->socket.is_open()) waiting->answer(answer);
+                      });
+                    }};
+    {
+      const std::lock_guard lock{mutex_};
+      requests_.push(std::move(request));
+    }
+    on_line_();
+  }
+
+  std::function<void()> on_line_;
+  asio::io_context io_{1};
+  stream_protocol::acceptor acceptor_{io_};
+  std::set<std::shared_ptr<Connection>> connections_;  ///< of the thread only
+  std::mutex mutex_;
+  BoundedQueue<Request> requests_{kConnectionsMax};  ///< under mutex_
+  std::thread thread_;
+};
+
+Result<std::unique_ptr<ControlSocket>> ControlSocket::open(const std::string& name,
+                                                           std::function<void()> on_line) {
+  auto impl = std::make_unique<Impl>(std::move(on_line));
+  if (auto opened = impl->open(name); !opened) return opened.error();
+  return std::unique_ptr<ControlSocket>{new ControlSocket{std::move(impl)}};
+}
+
+ControlSocket::ControlSocket(std::unique_ptr<Impl> impl) : impl_{std::move(impl)} {}
+ControlSocket::~ControlSocket() = default;
+
+std::optional<ControlSocket::Request> ControlSocket::next() { return impl_->next(); }
+
+Result<Answer> ask(const std::string& name, const std::string& line,
+                   std::chrono::milliseconds at_most) {
+  const auto endpoint = endpoint_of(name);
+  if (!endpoint) return endpoint.error();
+  asio::io_context io{1};
+  stream_protocol::socket socket{io};
+  error_code failed;
+  socket.connect(*endpoint, failed);
+  if (failed) {
+    return Error{"no ground station has the control socket " + name + " (" + failed.message() +
+                 "); start one, or give its configuration with --config"};
+  }
+  if (!is_trusted(socket)) {
+    return Error{"the program that has the control socket " + name + " is of another user"};
+  }
+  const std::string request = line + "\n";
+  std::string reply;
+  bool ended = false;
+  asio::async_write(socket, asio::buffer(request), [&](const error_code& error, std::size_t) {
+    if (error) return;
+    asio::async_read(socket, asio::dynamic_buffer(reply),
+                     [&](const error_code& end, std::size_t) { ended = end == asio::error::eof; });
+  });
+  io.run_for(at_most);
+  const bool done = reply.starts_with(kDone);
+  if (!ended || !(done || reply.starts_with(kRefused))) {
+    return Error{"the ground station at the control socket " + name + " does not answer"};
+  }
+  return Answer{done, reply.substr((done ? kDone : kRefused).size())};
+}
+
+}  // namespace skein::groundstation
