@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
                "Examples:\n"
                "  skein-ground formation take-off\n"
                "  skein-ground formation preview form wedge spacing 5 heading 90\n"
-               "  skein-ground formation --config runs/formation-5/ground.yaml form heart\n"
+               "  skein-ground formation --config runs/mine/ground.yaml form heart\n"
                "  skein-ground formation places");
   const CLI::App& any =
       add_tell(app, arguments, "tell", "Gives a running ground station any line of its prompt",
