@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -24,7 +25,9 @@ double least_by_sampling(const Change& change) {
   constexpr double kStep_s = 0.02;
   double least = std::numeric_limits<double>::infinity();
   std::vector<Vec3> before;
-  for (double t = 0.0; t < end + kStep_s; t += kStep_s) {
+  const auto steps = static_cast<int>(std::ceil(end / kStep_s));
+  for (int step = 0; step <= steps; ++step) {
+    const double t = step * kStep_s;
     std::vector<Vec3> at;
     for (std::size_t i = 0; i < motion.movers(); ++i) {
       at.push_back(motion.position(i, from_seconds(t)));
@@ -61,7 +64,7 @@ std::vector<Vec3> spread(std::size_t n, double apart_m, double width_m, Random& 
 
 TEST(PlanChange, WhatItSaysOfSeparationIsTrue) {
   Random random{7};
-  int ways[3] = {0, 0, 0};
+  std::array<int, 3> ways{};
   for (int i = 0; i < 150; ++i) {
     const std::size_t n = 2 + random.index(19);
     const double width = 12.0 * std::sqrt(static_cast<double>(n));
@@ -77,7 +80,7 @@ TEST(PlanChange, WhatItSaysOfSeparationIsTrue) {
     }
     const auto planned = plan_change(request);
     ASSERT_TRUE(planned.ok()) << planned.error().message;
-    ++ways[static_cast<int>(planned->way)];
+    ++ways.at(static_cast<std::size_t>(planned->way));
     EXPECT_GE(planned->least_separation_m, 4.0);
     const double sampled = least_by_sampling(planned->change);
     EXPECT_LE(planned->least_separation_m, sampled + 1e-3);
@@ -104,8 +107,10 @@ TEST(PlanChange, PointsAreDerivativesOfEachOther) {
   ASSERT_TRUE(planned.ok());
   ASSERT_EQ(planned->way, Way::roundabout);
   const ChangeMotion motion{planned->change};
-  for (double t = 0.05; t < to_seconds(motion.duration()); t += 0.0503) {
-    constexpr double kH = 1e-4;
+  constexpr double kH = 1e-4;
+  constexpr double kStep_s = 0.0503;
+  for (int step = 1; step * kStep_s < to_seconds(motion.duration()); ++step) {
+    const double t = step * kStep_s;
     for (std::size_t i = 0; i < 6; ++i) {
       const auto before = motion.at(i, from_seconds(t - kH));
       const auto now = motion.at(i, from_seconds(t));
@@ -157,8 +162,9 @@ TEST(PlanChange, KeepsAwayFromWhoIsSilent) {
   ASSERT_TRUE(planned.ok()) << planned.error().message;
   EXPECT_EQ(planned->way, Way::layers);
   const ChangeMotion motion{planned->change};
-  for (double t = 0.0; t < to_seconds(motion.duration()); t += 0.05) {
-    const Vec3 at = motion.position(0, from_seconds(t));
+  constexpr double kStep_s = 0.05;
+  for (int step = 0; step * kStep_s < to_seconds(motion.duration()); ++step) {
+    const Vec3 at = motion.position(0, from_seconds(step * kStep_s));
     const double y = std::clamp(at.y(), -5.0, 4.0);
     EXPECT_GE((at - Vec3{20.0, y, 14.0}).norm(), 3.0 - 1e-6);
   }

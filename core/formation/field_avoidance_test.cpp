@@ -80,7 +80,7 @@ bool fly(std::vector<FieldSelf>& vehicles, double seconds, double& least_m) {
   constexpr double kPeriod = 0.02;
   const MotionLimits limits;
   const auto at_goal = [](const FieldSelf& v) { return (v.goal_m - v.position_m).norm() < 0.05; };
-  for (double t = 0.0; t < seconds; t += kPeriod) {
+  for (int step = 0; step * kPeriod < seconds; ++step) {
     std::vector<Vec3> velocities;
     for (const FieldSelf& self : vehicles) {
       std::vector<FieldNeighbour> others;

@@ -150,7 +150,7 @@ bool Passage::clear_of(std::size_t mover, const Future& future) const {
 void Passage::look_again(std::size_t mover, Grains at_least_now) {
   const Other& other = others_[mover];
   const double own_speed = others_[self_].speed_mps;
-  const double stop_s = seconds(Grains{full_} * full_ + 2 * full_);
+  const double stop_s = seconds(Grains{full_} * full_ + Grains{2} * full_);
   const double behind_s = std::max(0.0, seconds(done_ - at_least_now));
   const double free_m = (place(self_, done_) - place(mover, at_least_now)).norm() - separation_m_ -
                         other.off_m - off_m_ - own_speed * stop_s -

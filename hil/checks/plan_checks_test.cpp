@@ -4,7 +4,7 @@
 namespace skein::checks {
 namespace {
 
-using namespace checks::testing;
+using namespace checks::testing;  // most of it: NOLINT(google-build-using-namespace)
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;

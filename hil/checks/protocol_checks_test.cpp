@@ -5,7 +5,7 @@
 namespace skein::checks {
 namespace {
 
-using namespace checks::testing;
+using namespace checks::testing;  // most of it: NOLINT(google-build-using-namespace)
 using mission::EventKind;
 using ::testing::Contains;
 using ::testing::ElementsAre;

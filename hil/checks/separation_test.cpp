@@ -7,7 +7,7 @@
 namespace skein::checks {
 namespace {
 
-using namespace checks::testing;
+using namespace checks::testing;  // most of it: NOLINT(google-build-using-namespace)
 using ::testing::HasSubstr;
 
 /// Straight flight at constant velocity, `rate_hz` points a second.

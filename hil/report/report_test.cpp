@@ -71,7 +71,7 @@ Contents small_contents() {
 
 /// The first fault in the nesting of tags; empty when there is none.
 std::string fault_of_tags(const std::string& text) {
-  static const std::set<std::string> kNeverClosed{"meta", "br", "hr", "!DOCTYPE", "?xml"};
+  static const std::set<std::string> never_closed{"meta", "br", "hr", "!DOCTYPE", "?xml"};
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
     const std::size_t end = text.find('>', at);
@@ -79,7 +79,7 @@ std::string fault_of_tags(const std::string& text) {
     const bool closing = text[at + 1] == '/';
     const std::size_t name_at = at + (closing ? 2 : 1);
     const std::string name = text.substr(name_at, text.find_first_of(" />\n", name_at) - name_at);
-    if (kNeverClosed.contains(name) || text[end - 1] == '/') continue;
+    if (never_closed.contains(name) || text[end - 1] == '/') continue;
     if (!closing) {
       open.push_back(name);
     } else if (open.empty() || open.back() != name) {
@@ -168,7 +168,7 @@ TEST(Drawing, ThinningKeepsCornersAndEnds) {
 
 TEST(Drawing, ThinningStaysWithinItsTolerance) {
   std::vector<Vec2> circle;
-  for (int i = 0; i <= 360; ++i) circle.push_back(100.0 * unit_vector(radians(i)));
+  for (int i = 0; i <= 360; ++i) circle.emplace_back(100.0 * unit_vector(radians(i)));
   const auto thin = thinned(circle, 0.5);
   EXPECT_LT(thin.size(), 60U);
   for (std::size_t i = 1; i < thin.size(); ++i) {

@@ -88,6 +88,7 @@ std::string documented_shapes() {
 TEST(ShapesPicture, OfTheDocumentationIsWhatTheShapesAre) {
   const auto file = std::filesystem::path{SKEIN_SOURCE_DIR} / "docs" / "images" / "shapes.svg";
   const std::string picture = documented_shapes();
+  // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
   if (std::getenv("SKEIN_UPDATE_DOCS") != nullptr) {
     std::ofstream{file, std::ios::binary} << picture;
   }
