@@ -139,9 +139,9 @@ std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& membe
     if (!mover) continue;
     const ChangeMotion motion{change};
     std::vector<Vec3> way{change.movers[*mover].points.front()};
-    const double step_s = kLook_m / std::max(0.1, motion.speed_max_mps(*mover));
-    for (double t = 0.0; t < to_seconds(motion.duration()); t += step_s) {
-      const Vec3 at = motion.position(*mover, from_seconds(t));
+    const Duration step = from_seconds(kLook_m / std::max(0.1, motion.speed_max_mps(*mover)));
+    for (Duration t{}; t < motion.duration(); t += step) {
+      const Vec3 at = motion.position(*mover, t);
       if ((at - way.back()).norm() >= kLook_m / 2.0) way.push_back(at);
     }
     way.push_back(change.movers[*mover].points.back());

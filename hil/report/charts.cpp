@@ -115,6 +115,7 @@ std::string distance_curves(const checks::RunRecord& record, const checks::Limit
         distance(d), kWidth - 10.0, distance(d) + 4.0, d, d > 0.0 ? " m" : "");
   }
   std::vector<double> label_heights;
+  label_heights.reserve(lines.size());
   for (const auto& line : lines)
     label_heights.push_back(distance(line.empty() ? 0.0 : line.front().y()));
   label_heights = spread(label_heights, 10.0, kHeight - 26.0);

@@ -78,6 +78,7 @@ std::string frame(std::string_view label, const Axis& time, const Axis& value, d
 std::string line(const std::vector<Vec2>& points, const Axis& time, const Axis& value,
                  std::size_t colour, const std::string& title) {
   std::vector<Vec2> pixels;
+  pixels.reserve(points.size());
   for (const Vec2& p : points) pixels.emplace_back(time(p.x()), value(std::min(p.y(), value.to)));
   return fmt::format(R"~(<polyline class="curve s{}" points="{}"><title>{}</title></polyline>)~",
                      colour, points_text(thinned(pixels, 0.3)), escaped(title));

@@ -82,9 +82,11 @@ std::string shapes_svg(const std::vector<ShapePanel>& panels, double spacing_m,
       R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/>)",
       width, height, kShapeStyle);
   for (std::size_t i = 0; i < panels.size(); ++i) {
+    const std::size_t row = i / columns;
+    const std::size_t column = i % columns;
     svg += "\n" + draw_panel(panels[i], spacing_m,
-                             {kSide * static_cast<double>(i % columns),
-                              panel_height * static_cast<double>(i / columns)});
+                             {kSide * static_cast<double>(column),
+                              panel_height * static_cast<double>(row)});
   }
   return svg + "</svg>\n";
 }
