@@ -23,7 +23,7 @@ constexpr Duration kChange = seconds{9};
 
 struct Draw {
   const std::vector<VehicleId>& vehicles;
-  std::size_t changes;
+  std::size_t changes = 1;
   Random random;
 
   Duration between(Duration low, Duration high) {
@@ -144,6 +144,7 @@ std::string names(const std::vector<VehicleId>& who) {
 
 std::vector<std::string_view> formation_fault_profiles() {
   std::vector<std::string_view> names;
+  names.reserve(kProfiles.size());
   for (const Profile& profile : kProfiles) names.push_back(profile.name);
   return names;
 }

@@ -31,7 +31,7 @@ std::vector<std::string> random_script(const configuration::FormationConfig& for
     if (random.chance(0.3)) {
       script.back() += fmt::format(" places {}", 1 + random.index(vehicles));
     }
-    script.push_back("wait 1");
+    script.emplace_back("wait 1");
   }
   script.emplace_back("rally");
   script.emplace_back("land");
