@@ -7,6 +7,7 @@
 
 #include "curve_lanes.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/routes/fly_by.hpp"
 
 namespace skein::routes {
 namespace {
@@ -37,6 +38,18 @@ std::vector<double> natural_spline(const std::vector<double>& knots, std::size_t
   return values;
 }
 
+/// What a difference of turns is beyond the step that counts as none, and back.
+double beyond_step(double rad) {
+  return rad > kTurnStep_rad ? rad - kTurnStep_rad : std::min(rad + kTurnStep_rad, 0.0);
+}
+double with_step(double rad) { return rad == 0.0 ? 0.0 : rad + std::copysign(kTurnStep_rad, rad); }
+
+/// Bounds of turns_and_legs.
+constexpr double kFirstTurnMax_rad = 1.2;
+constexpr double kTurnDifferenceMax_rad = 1.2;
+constexpr double kLegMin = 0.1;
+constexpr double kLegMax = 2.0;
+
 int kind_number(HazardKind kind) {
   switch (kind) {
     case HazardKind::detection:
@@ -56,7 +69,6 @@ struct CurveEvaluator::Tables {
   CostWeights weights;
   double straight_m = 0.0;
   double exposure_scale = 0.0;
-  double turning_scale = 0.0;
   // The frame: origin and direction of its x axis.
   Vec2 origin{0.0, 0.0};
   Vec2 along{1.0, 0.0};
@@ -65,7 +77,9 @@ struct CurveEvaluator::Tables {
   std::size_t stride = 0;
   std::size_t waypoints = 0;
   std::vector<double> station_m;  ///< of the waypoints, along the line
-  std::vector<double> basis, base_x, base_y, mask, x, y, dx, dy, turn;
+  std::vector<double> basis, base_x, base_y, mask, x, y;
+  std::vector<Vec2> polygon;  ///< start, waypoints and site in this frame, of the last point
+  std::vector<double> waypoint_x, waypoint_y;
   std::vector<double> hazard_x, hazard_y, radius, inner, peak, slope;
   std::vector<int> kind;
 
@@ -77,27 +91,38 @@ struct CurveEvaluator::Tables {
     return origin + px * along + py * left_of(along);
   }
   [[nodiscard]] CurveTable table() {
-    return {samples,     stride,   waypoints, basis.data(), base_x.data(), base_y.data(),
-            mask.data(), x.data(), y.data(),  dx.data(),    dy.data(),     turn.data()};
+    return {samples,       stride,      waypoints, basis.data(), base_x.data(),
+            base_y.data(), mask.data(), x.data(),  y.data()};
   }
   [[nodiscard]] CurveHazards hazards() const {
     return {hazard_x.size(), hazard_x.data(), hazard_y.data(), radius.data(),
             inner.data(),    peak.data(),     slope.data(),    kind.data()};
   }
+  void place(std::span<const double> point);
+  void place_by_shape(std::span<const double> point);
   CurveSums evaluate(std::span<const double> point) {
-    SKEIN_ASSERT(point.size() == box.dimension());
-    const bool is_free = form == CurveForm::free_points;
-    const double* const px = is_free ? point.data() : nullptr;
-    const double* const py = is_free ? point.data() + waypoints : point.data();
+    place(point);
+    const double* const px = form == CurveForm::lateral_offsets ? nullptr : waypoint_x.data();
     CurveSums sums{};
 #if defined(__x86_64__)
     if (width == Width::avx2) {
-      curve_evaluate_avx2(table(), hazards(), px, py, sums);
+      curve_evaluate_avx2(table(), hazards(), px, waypoint_y.data(), sums);
       return sums;
     }
 #endif
-    CurveLanes<2>::evaluate(table(), hazards(), px, py, sums);
+    CurveLanes<2>::evaluate(table(), hazards(), px, waypoint_y.data(), sums);
     return sums;
+  }
+  [[nodiscard]] double turning() const {
+    if (waypoints < 2) return 0.0;
+    double sum = 0.0;
+    double before = 0.0;
+    for (std::size_t j = 1; j <= waypoints; ++j) {
+      const double turn = turn_at(polygon[j - 1], polygon[j], polygon[j + 1]);
+      if (j > 1) sum += std::abs(turn - before);
+      before = turn;
+    }
+    return sum / static_cast<double>(waypoints - 1);
   }
   void add_hazard(const RouteHazard& hazard) {
     const Vec2 centre = local(hazard.centre);
@@ -112,9 +137,50 @@ struct CurveEvaluator::Tables {
   void add_samples(const Vec2& from, const Vec2& to);
 };
 
+void CurveEvaluator::Tables::place(std::span<const double> point) {
+  SKEIN_ASSERT(point.size() == box.dimension());
+  if (form == CurveForm::turns_and_legs) {
+    place_by_shape(point);
+  } else {
+    for (std::size_t j = 0; j < waypoints; ++j) {
+      const bool is_free = form == CurveForm::free_points;
+      polygon[j + 1] =
+          is_free ? Vec2{point[j], point[waypoints + j]} : Vec2{station_m[j], point[j]};
+    }
+  }
+  for (std::size_t j = 0; j < waypoints; ++j) {
+    waypoint_x[j] = polygon[j + 1].x();
+    waypoint_y[j] = polygon[j + 1].y();
+  }
+}
+
+void CurveEvaluator::Tables::place_by_shape(std::span<const double> point) {
+  const Vec2 from = polygon.front();
+  const Vec2 to = polygon.back();
+  double heading = 0.0;
+  double turn = point[0];
+  Vec2 at{0.0, 0.0};
+  for (std::size_t j = 0; j <= waypoints; ++j) {
+    at += point[waypoints + j] * unit_vector(heading);
+    polygon[j + 1] = at;
+    heading += turn;
+    if (j + 1 < waypoints) turn += beyond_step(point[j + 1]);
+  }
+  // A similarity takes (0, 0) and `at` to the ends: a product of complex numbers.
+  const double reach_sq = std::max(at.squaredNorm(), 1e-12);
+  const Vec2 span = to - from;
+  const double re = span.dot(at) / reach_sq;
+  const double im = cross(at, span) / reach_sq;
+  for (std::size_t j = 1; j <= waypoints; ++j) {
+    const Vec2 p = polygon[j];
+    polygon[j] = from + Vec2{re * p.x() - im * p.y(), im * p.x() + re * p.y()};
+  }
+  polygon.back() = to;
+}
+
 void CurveEvaluator::Tables::add_samples(const Vec2& from, const Vec2& to) {
   const std::size_t column = stride + kCurveBlock;
-  for (std::vector<double>* v : {&base_x, &base_y, &mask, &x, &y, &dx, &dy, &turn}) {
+  for (std::vector<double>* v : {&base_x, &base_y, &mask, &x, &y}) {
     v->assign(column, 0.0);
   }
   std::fill_n(mask.begin(), samples, 1.0);
@@ -175,12 +241,19 @@ CurveEvaluator::CurveEvaluator(const CurveProblem& problem, CurveForm form, Widt
   if (problem.exposure_per_hazard && !problem.hazards.empty()) {
     t.exposure_scale /= static_cast<double>(problem.hazards.size());
   }
-  t.turning_scale = 1.0 / (n - 3.0);
+  t.waypoint_x.resize(t.waypoints);
+  t.waypoint_y.resize(t.waypoints);
   if (form == CurveForm::lateral_offsets) {
     t.origin = problem.start;
     t.along = straight / t.straight_m;
     t.box.low.assign(t.waypoints, -0.5 * t.straight_m);
     t.box.high.assign(t.waypoints, 0.5 * t.straight_m);
+  } else if (form == CurveForm::turns_and_legs) {
+    t.box.high.assign(t.waypoints, kTurnDifferenceMax_rad);
+    t.box.high.front() = kFirstTurnMax_rad;
+    for (const double high : t.box.high) t.box.low.push_back(-high);
+    t.box.low.insert(t.box.low.end(), t.waypoints + 1, kLegMin);
+    t.box.high.insert(t.box.high.end(), t.waypoints + 1, kLegMax);
   } else {
     for (const int axis : {0, 1}) {
       t.box.low.insert(t.box.low.end(), t.waypoints, problem.world_low[axis]);
@@ -191,7 +264,10 @@ CurveEvaluator::CurveEvaluator(const CurveProblem& problem, CurveForm form, Widt
     t.station_m.push_back(t.straight_m * static_cast<double>(j) /
                           static_cast<double>(t.waypoints + 1));
   }
-  t.add_samples(t.local(problem.start), t.local(problem.site));
+  t.polygon.resize(t.waypoints + 2);
+  t.polygon.front() = t.local(problem.start);
+  t.polygon.back() = t.local(problem.site);
+  t.add_samples(t.polygon.front(), t.polygon.back());
   for (const RouteHazard& hazard : problem.hazards) {
     SKEIN_ASSERT(hazard.radius_m > 0.0 && hazard.inner_radius_m < hazard.radius_m);
     t.add_hazard(hazard);
@@ -209,7 +285,7 @@ RouteCosts CurveEvaluator::costs(std::span<const double> point) {
   const CurveSums sums = t.evaluate(point);
   RouteCosts costs{.exposure = sums.exposure * t.exposure_scale,
                    .length_ratio = sums.length / t.straight_m,
-                   .turning = sums.turning * t.turning_scale,
+                   .turning = t.turning(),
                    .total = 0.0};
   costs.total = t.weights.exposure * costs.exposure + t.weights.length * costs.length_ratio +
                 t.weights.turning * costs.turning;
@@ -225,13 +301,12 @@ std::vector<Vec2> CurveEvaluator::curve(std::span<const double> point) {
   return points;
 }
 
-std::vector<Vec2> CurveEvaluator::waypoints(std::span<const double> point) const {
-  const Tables& t = *tables_;
-  SKEIN_ASSERT(point.size() == t.box.dimension());
+std::vector<Vec2> CurveEvaluator::waypoints(std::span<const double> point) {
+  Tables& t = *tables_;
+  t.place(point);
   std::vector<Vec2> points;
-  for (std::size_t j = 0; j < t.waypoints; ++j) {
-    points.push_back(t.form == CurveForm::free_points ? Vec2{point[j], point[t.waypoints + j]}
-                                                      : t.mission(t.station_m[j], point[j]));
+  for (std::size_t j = 1; j <= t.waypoints; ++j) {
+    points.push_back(t.mission(t.polygon[j].x(), t.polygon[j].y()));
   }
   return points;
 }
@@ -240,6 +315,26 @@ std::vector<double> CurveEvaluator::point_of(std::span<const Vec2> free_waypoint
   const Tables& t = *tables_;
   SKEIN_ASSERT(free_waypoints.size() == t.waypoints);
   std::vector<double> point(t.box.dimension());
+  if (t.form == CurveForm::turns_and_legs) {
+    std::vector<Vec2> polygon = t.polygon;
+    for (std::size_t j = 0; j < t.waypoints; ++j) polygon[j + 1] = t.local(free_waypoints[j]);
+    double before = 0.0;
+    double length = 0.0;
+    for (std::size_t j = 0; j <= t.waypoints; ++j) {
+      point[t.waypoints + j] = (polygon[j + 1] - polygon[j]).norm();
+      length += point[t.waypoints + j];
+      if (j == t.waypoints) break;
+      const double turn = turn_at(polygon[j], polygon[j + 1], polygon[j + 2]);
+      point[j] = j == 0 ? turn : with_step(turn - before);
+      before = turn;
+    }
+    const double scale = static_cast<double>(t.waypoints + 1) / length;
+    for (std::size_t j = 0; j <= t.waypoints; ++j) {
+      point[t.waypoints + j] *= scale;
+    }
+    t.box.clamp(point);
+    return point;
+  }
   for (std::size_t j = 0; j < t.waypoints; ++j) {
     if (t.form == CurveForm::free_points) {
       point[j] = free_waypoints[j].x();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -36,15 +35,11 @@ struct CurveTable {
   const double* mask;  ///< 1, and 0 in the padding
   double* x;
   double* y;
-  double* dx;  ///< legs
-  double* dy;
-  double* turn;
 };
 
 struct CurveSums {
   double exposure;  ///< over samples and hazards
   double length;
-  double turning;  ///< absolute differences of successive turns
 };
 
 template <int Lanes>
@@ -60,7 +55,7 @@ struct CurveVectors<4> {
   using Bits = decltype(Real{} < Real{});
 };
 
-/// Length, turning and exposure of a sampled curve. Additions, multiplications, divisions and
+/// Length and exposure of a sampled curve. Additions, multiplications, divisions and
 /// square roots in one order, without fused operations: the same bits with every width. Each width
 /// is instantiated in one source only, which is compiled for processors that have it; hence no
 /// other header is included.
@@ -78,8 +73,6 @@ struct CurveLanes {
   }
   static void store(double* to, Real value) { __builtin_memcpy(to, &value, sizeof value); }
   static Real select(Bits mask, Real yes, Real no) { return mask ? yes : no; }
-  static Real magnitude(Real a) { return Real(Bits(a) & INT64_MAX); }
-  static Real sign_by(Real a, Real b) { return Real(Bits(a) ^ (Bits(b) & INT64_MIN)); }
   static Real root(Real a) {
 #if defined(__AVX2__)
     if constexpr (Lanes == 4) return Real(_mm256_sqrt_pd(__m256d(a)));
@@ -90,18 +83,6 @@ struct CurveLanes {
     for (int i = 0; i < Lanes; ++i) a[i] = __builtin_sqrt(a[i]);
     return a;
   }
-  static bool any(Bits mask) {
-#if defined(__AVX2__)
-    if constexpr (Lanes == 4) return _mm256_movemask_pd(__m256d(mask)) != 0;
-#endif
-#if defined(__x86_64__)
-    if constexpr (Lanes == 2) return _mm_movemask_pd(__m128d(mask)) != 0;
-#endif
-    std::int64_t all = 0;
-    for (int i = 0; i < Lanes; ++i) all |= mask[i];
-    return all != 0;
-  }
-
   /// kCurveBlock partial sums.
   struct Sum {
     Real part[kParts] = {};  // NOLINT(modernize-avoid-c-arrays): no header but intrinsics here
@@ -112,50 +93,6 @@ struct CurveLanes {
       return ((all[0] + all[4]) + (all[2] + all[6])) + ((all[1] + all[5]) + (all[3] + all[7]));
     }
   };
-
-  /// atan t for |t| <= tan(pi / 8): interpolation of atan(t) / t in t^2 at the Chebyshev nodes,
-  /// within 4e-18.
-  static Real small_angle(Real t) {
-    constexpr double kC1 = -0.3333333333333312;
-    constexpr double kC2 = 0.19999999999940893;
-    constexpr double kC3 = -0.14285714279250245;
-    constexpr double kC4 = 0.11111110744919658;
-    constexpr double kC5 = -0.09090896809064027;
-    constexpr double kC6 = 0.07692045330902225;
-    constexpr double kC7 = -0.06662951813629191;
-    constexpr double kC8 = 0.05846878297330872;
-    constexpr double kC9 = -0.05035102456601552;
-    constexpr double kC10 = 0.03796525745386593;
-    constexpr double kC11 = -0.017805397205419446;
-    const Real z = t * t;
-    const Real zz = z * z;
-    const Real even = ((((zz * kC10 + kC8) * zz + kC6) * zz + kC4) * zz + kC2) * zz;
-    const Real odd = ((((zz * kC11 + kC9) * zz + kC7) * zz + kC5) * zz + kC3) * zz + kC1;
-    return t + t * (even + odd * z);
-  }
-
-  /// atan2, 0 at the origin. Turns of a smooth curve are small: the rest is done only where a lane
-  /// needs it, and gives the others the same bits.
-  static Real angle(Real y, Real x) {
-    constexpr double kPi = 0x1.921fb54442d18p+1;
-    constexpr double kTanEighth = 0.41421356237309503;
-    const Real ay = magnitude(y);
-    if (!any(ay > kTanEighth * x)) {
-      return small_angle(y / select(x == 0.0, splat(1.0), x));
-    }
-    const Real ax = magnitude(x);
-    const Bits steep = ay > ax;
-    const Real low = select(steep, ax, ay);
-    const Real high = select(steep, ay, ax);
-    const Bits wide = low > kTanEighth * high;
-    const Real below = select(wide, low + high, high);
-    Real turn =
-        small_angle(select(wide, low - high, low) / select(below == 0.0, splat(1.0), below));
-    turn = turn + select(wide, splat(kPi / 4.0), Real{});
-    turn = select(steep, kPi / 2.0 - turn, turn);
-    turn = select(x < 0.0, kPi - turn, turn);
-    return sign_by(turn, y);
-  }
 
   static void place(const CurveTable& t, const double* base, const double* weights, double* to) {
     for (std::size_t k = 0; k < t.stride; k += Lanes) {
@@ -184,33 +121,12 @@ struct CurveLanes {
         const Real dx = load(t.x + k + 1) - load(t.x + k);
         const Real dy = load(t.y + k + 1) - load(t.y + k);
         const Real length = root(dx * dx + dy * dy);
-        store(t.dx + k, dx);
-        store(t.dy + k, dy);
         sum.part[p] = sum.part[p] + length;
         most = select(most < length, length, most);
       }
     }
     longest = 0.0;
     for (int i = 0; i < Lanes; ++i) longest = most[i] > longest ? most[i] : longest;
-    return sum.total();
-  }
-
-  static double turning(const CurveTable& t) {
-    for (std::size_t k = 0; k < t.stride; k += Lanes) {
-      const Real ax = load(t.dx + k);
-      const Real ay = load(t.dy + k);
-      const Real bx = load(t.dx + k + 1);
-      const Real by = load(t.dy + k + 1);
-      store(t.turn + k, angle(ax * by - ay * bx, ax * bx + ay * by));
-    }
-    pad(t.turn, t.samples - 2, t.stride);
-    Sum sum;
-    for (std::size_t block = 0; block < t.stride; block += kCurveBlock) {
-      for (std::size_t p = 0; p < kParts; ++p) {
-        const double* const at = t.turn + block + p * Lanes;
-        sum.part[p] = sum.part[p] + magnitude(load(at + 1) - load(at));
-      }
-    }
     return sum.total();
   }
 
@@ -261,7 +177,6 @@ struct CurveLanes {
     place(t, t.base_y, y, t.y);
     double longest = 0.0;
     sums.length = legs(t, longest);
-    sums.turning = turning(t);
     sums.exposure = exposure(t, h, longest);
   }
 };

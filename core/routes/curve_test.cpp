@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,6 +12,9 @@
 
 namespace skein::routes {
 namespace {
+
+constexpr std::array kForms = {CurveForm::free_points, CurveForm::lateral_offsets,
+                               CurveForm::turns_and_legs};
 
 CurveProblem random_problem(Random& random) {
   CurveProblem problem{.start = {random.uniform(0, 200), random.uniform(0, 200)},
@@ -38,23 +42,26 @@ std::vector<double> random_point(const Box& box, Random& random) {
   return point;
 }
 
-/// By the definitions, from the samples.
-RouteCosts plain_costs(const CurveProblem& problem, const std::vector<Vec2>& curve) {
+/// By the definitions, from the samples and the waypoints.
+RouteCosts plain_costs(const CurveProblem& problem, const std::vector<Vec2>& curve,
+                       const std::vector<Vec2>& waypoints) {
   RouteCosts costs;
   for (const Vec2& point : curve) {
     for (const RouteHazard& hazard : problem.hazards) costs.exposure += hazard.value_at(point);
   }
   costs.exposure /= static_cast<double>(curve.size());
-  double before = 0.0;
   for (std::size_t k = 1; k < curve.size(); ++k) {
     costs.length_ratio += (curve[k] - curve[k - 1]).norm();
-    if (k + 1 == curve.size()) continue;
-    const double turn = turn_at(curve[k - 1], curve[k], curve[k + 1]);
-    if (k > 1) costs.turning += std::abs(turn - before);
-    before = turn;
   }
   costs.length_ratio /= (problem.site - problem.start).norm();
-  costs.turning /= static_cast<double>(curve.size() - 3);
+  std::vector<Vec2> polygon = {problem.start};
+  polygon.insert(polygon.end(), waypoints.begin(), waypoints.end());
+  polygon.push_back(problem.site);
+  for (std::size_t j = 2; j + 1 < polygon.size(); ++j) {
+    costs.turning += std::abs(turn_at(polygon[j - 1], polygon[j], polygon[j + 1]) -
+                              turn_at(polygon[j - 2], polygon[j - 1], polygon[j]));
+  }
+  if (waypoints.size() > 1) costs.turning /= static_cast<double>(waypoints.size() - 1);
   costs.total = problem.weights.exposure * costs.exposure +
                 problem.weights.length * costs.length_ratio +
                 problem.weights.turning * costs.turning;
@@ -65,7 +72,7 @@ TEST(Curve, CostsAreTheirDefinitionsWithEveryWidth) {
   Random random{2};
   for (int k = 0; k < 60; ++k) {
     const CurveProblem problem = random_problem(random);
-    for (const CurveForm form : {CurveForm::free_points, CurveForm::lateral_offsets}) {
+    for (const CurveForm form : kForms) {
       CurveEvaluator evaluator{problem, form, CurveEvaluator::Width::baseline};
       const std::vector<double> point = random_point(evaluator.box(), random);
       const RouteCosts costs = evaluator.costs(point);
@@ -73,7 +80,7 @@ TEST(Curve, CostsAreTheirDefinitionsWithEveryWidth) {
       ASSERT_EQ(curve.size(), problem.samples);
       EXPECT_NEAR((curve.front() - problem.start).norm(), 0.0, 1e-9);
       EXPECT_NEAR((curve.back() - problem.site).norm(), 0.0, 1e-9);
-      const RouteCosts plain = plain_costs(problem, curve);
+      const RouteCosts plain = plain_costs(problem, curve, evaluator.waypoints(point));
       EXPECT_NEAR(costs.exposure, plain.exposure, 1e-9);
       EXPECT_NEAR(costs.length_ratio, plain.length_ratio, 1e-9);
       EXPECT_NEAR(costs.turning, plain.turning, 1e-9);
@@ -94,7 +101,7 @@ TEST(Curve, GoesThroughItsWaypoints) {
   CurveProblem problem = random_problem(random);
   problem.waypoints = 4;
   problem.samples = 1 + 5 * 40;
-  for (const CurveForm form : {CurveForm::free_points, CurveForm::lateral_offsets}) {
+  for (const CurveForm form : kForms) {
     CurveEvaluator evaluator{problem, form};
     const std::vector<double> point = random_point(evaluator.box(), random);
     const std::vector<Vec2> curve = evaluator.curve(point);
@@ -103,7 +110,10 @@ TEST(Curve, GoesThroughItsWaypoints) {
       EXPECT_NEAR((curve[40 * (j + 1)] - waypoints[j]).norm(), 0.0, 1e-9);
     }
     const std::vector<double> back = evaluator.point_of(waypoints);
-    for (std::size_t j = 0; j < point.size(); ++j) EXPECT_NEAR(back[j], point[j], 1e-9);
+    const std::vector<Vec2> again = evaluator.waypoints(back);
+    for (std::size_t j = 0; j < again.size(); ++j) {
+      EXPECT_NEAR((again[j] - waypoints[j]).norm(), 0.0, 1e-6);
+    }
   }
 }
 

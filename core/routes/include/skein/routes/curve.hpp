@@ -25,7 +25,7 @@ struct CostWeights {
 struct RouteCosts {
   double exposure = 0.0;      ///< f_t: hazard values, averaged over the samples
   double length_ratio = 0.0;  ///< f_line: length over the straight distance, >= 1
-  double turning = 0.0;       ///< f_s: mean absolute difference of successive turns, rad
+  double turning = 0.0;       ///< f_s: mean absolute difference of successive waypoints' turns, rad
   double total = 0.0;         ///< weighted
 };
 
@@ -47,14 +47,22 @@ struct CurveProblem {
   Vec2 world_high{1000.0, 1000.0};
 };
 
+inline constexpr double kTurnStep_rad = 0.02;
+
 /// What the optimiser's numbers are.
 enum class CurveForm : std::uint8_t {
   free_points,      ///< x of all waypoints, then y of all, mission frame (the paper's)
   lateral_offsets,  ///< metres to the left of the straight line, at equal distances along it
+  /// The polygon of start, waypoints and site by its shape, which is then turned and scaled to fit:
+  /// the first turn and the D - 1 differences of successive turns, rad; D + 1 relative
+  /// legs, 1 on average. Differences below kTurnStep_rad are none. What f_s adds up are these
+  /// numbers, so that its kinks lie along the axes, and routes of even turning are not a needle in
+  /// a haystack.
+  turns_and_legs,
   count
 };
 
-/// Costs of curves, fast: length, turning and exposure are linear algebra over all samples at once.
+/// Costs of curves, fast: length and exposure are linear algebra over all samples at once.
 /// Keeps buffers, so one thread uses one. The same bits on every processor.
 class CurveEvaluator {
  public:
@@ -77,9 +85,8 @@ class CurveEvaluator {
   /// The sampled curve, mission frame.
   [[nodiscard]] std::vector<Vec2> curve(std::span<const double> point);
   /// The free waypoints, mission frame.
-  [[nodiscard]] std::vector<Vec2> waypoints(std::span<const double> point) const;
-  /// The point whose free waypoints are nearest to these: all of them (free points), or their
-  /// lateral parts.
+  [[nodiscard]] std::vector<Vec2> waypoints(std::span<const double> point);
+  /// The point that gives these free waypoints; of lateral offsets, their lateral parts.
   [[nodiscard]] std::vector<double> point_of(std::span<const Vec2> free_waypoints) const;
 
  private:

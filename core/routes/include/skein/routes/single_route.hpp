@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "skein/base/random.hpp"
+#include "skein/base/result.hpp"
+#include "skein/routes/curve.hpp"
+
+namespace skein::routes {
+
+/// How one vehicle's curve is planned: every way round the hazards is a seed, and differential
+/// evolution goes on from them over the shape of the polygon (CurveForm::turns_and_legs). A polish
+/// by CMA-ES gained nothing (docs/routes.md).
+struct SingleRouteParams {
+  std::uint64_t evaluations = 7'500;  ///< in all, those of the seeds included
+  std::size_t population = 50;
+  std::size_t corridors = 12;  ///< by each reading of the hazards: all closed, cores, keep-outs
+  std::function<bool(const SearchProgress&)> go_on;  ///< as in SearchBudget
+};
+
+struct SingleRoute {
+  std::vector<Vec2> waypoints{};  ///< the free ones
+  std::vector<Vec2> curve{};      ///< sampled, start and site included
+  RouteCosts costs{};
+  bool clear = false;  ///< no sample lies in a keep-out
+  std::uint64_t evaluations = 0;
+  bool cancelled = false;
+};
+
+/// Fails for a start at the site, fewer than 1 waypoint or 4 samples, hazards without a radius, a
+/// start or site within a keep-out, and a budget of 0.
+[[nodiscard]] Result<SingleRoute> plan_route(const CurveProblem& problem,
+                                             const SingleRouteParams& params, Random random);
+
+}  // namespace skein::routes

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/routes/single_route.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "skein/routes/paper_world.hpp"
+
+namespace skein::routes {
+namespace {
+
+/// The best known of the paper's world, by start; found with 100 times the budget and more.
+constexpr std::array kBestKnown = {1.0195, 1.0003, 1.0452};
+
+TEST(SingleRoute, IsWithinOnePercentOfTheBestKnown) {
+  for (std::size_t i = 0; i < kBestKnown.size(); ++i) {
+    const CurveProblem problem = paper_curve(paper_starts()[i]);
+    for (std::uint64_t seed = 0; seed < 5; ++seed) {
+      const auto route = plan_route(problem, {}, Random{seed});
+      ASSERT_TRUE(route.ok());
+      EXPECT_LT(route->costs.total, 1.01 * kBestKnown[i]) << i << " " << seed;
+      EXPECT_TRUE(route->clear);
+      EXPECT_EQ(route->evaluations, 7'500U);
+      EXPECT_EQ(route->waypoints.size(), 5U);
+      EXPECT_EQ(route->curve.size(), 200U);
+    }
+  }
+}
+
+TEST(SingleRoute, TheSameSeedGivesTheSameRouteAndSmallBudgetsHold) {
+  const CurveProblem problem = random_curve(Random{4});
+  for (const std::uint64_t budget : {1u, 10u, 500u}) {
+    SingleRouteParams params;
+    params.evaluations = budget;
+    const auto a = plan_route(problem, params, Random{1});
+    const auto b = plan_route(problem, params, Random{1});
+    ASSERT_TRUE(a.ok() && b.ok());
+    EXPECT_EQ(a->evaluations, budget);
+    EXPECT_EQ(a->waypoints, b->waypoints);
+    EXPECT_EQ(a->costs.total, b->costs.total);
+  }
+}
+
+TEST(SingleRoute, GoesRoundAWallOfKeepOuts) {
+  CurveProblem problem{.start = {0, 500}, .site = {1000, 500}};
+  for (int i = 0; i < 5; ++i) {
+    problem.hazards.push_back({.kind = HazardKind::keep_out,
+                               .centre = {500, 150.0 + 150.0 * i},
+                               .radius_m = 80,
+                               .peak = 100});
+  }
+  const auto route = plan_route(problem, {}, Random{1});
+  ASSERT_TRUE(route.ok());
+  EXPECT_TRUE(route->clear);
+  EXPECT_LT(route->costs.length_ratio, 1.6);
+}
+
+TEST(SingleRoute, RefusesWhatCannotBePlanned) {
+  CurveProblem problem{.start = {0, 0}, .site = {0, 0}};
+  EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());
+  problem.site = {100, 0};
+  EXPECT_TRUE(plan_route(problem, {}, Random{1}).ok());
+  problem.hazards = {{.id = HazardId{3}, .centre = {100, 0}, .radius_m = 5}};
+  const auto inside = plan_route(problem, {}, Random{1});
+  ASSERT_FALSE(inside.ok());
+  EXPECT_NE(inside.error().message.find("hazard 3"), std::string::npos);
+  problem.hazards = {{.centre = {50, 0}, .radius_m = 0}};
+  EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());
+  problem.hazards.clear();
+  problem.waypoints = 0;
+  EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());
+}
+
+}  // namespace
+}  // namespace skein::routes
