@@ -236,6 +236,16 @@ void formation_fields(FieldVisitor& v, FormationConfig& f) {
   auto method = static_cast<std::size_t>(f.assignment);
   v.choice({"assignment", "method by which vehicles are given places"}, methods, method);
   f.assignment = static_cast<formation::PlaceMethod>(method);
+  std::array<std::string_view, static_cast<std::size_t>(formation::Avoidance::count)> avoidances;
+  for (std::size_t i = 0; i < avoidances.size(); ++i) {
+    avoidances.at(i) = formation::to_string(static_cast<formation::Avoidance>(i));
+  }
+  auto avoidance = static_cast<std::size_t>(f.avoidance);
+  v.choice({"avoidance",
+            "how vehicles keep clear of each other in a change; the field is the published one, "
+            "to compare with, and guarantees nothing"},
+           avoidances, avoidance);
+  f.avoidance = static_cast<formation::Avoidance>(avoidance);
   v.list({"shapes", "free shapes that orders can name"},
          groups_of(f.shapes, kListMax, [](FieldVisitor& inner, NamedShape& shape) {
            inner.text({"name", "as in `form NAME`", kRequired}, shape.name);

@@ -106,6 +106,7 @@ std::unique_ptr<mission::OnboardAgent> formation_agent(const configuration::Vehi
   agent.vehicle = config.vehicle.id;
   agent.instance = instance;
   agent.limits = config.formation.limits;
+  agent.avoidance = config.formation.avoidance;
   agent.passage.tolerance_m = config.formation.tracking_m;
   return std::make_unique<mission::FormationAgent>(agent, now);
 }

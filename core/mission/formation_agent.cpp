@@ -55,12 +55,16 @@ void FormationAgent::on_change(const Change& change, Instant now) {
     return;
   }
   change_ = change;
-  passage_ = formation::Passage{change, *self, config_.passage, now};
+  if (config_.avoidance == formation::Avoidance::field) {
+    execution_ = std::make_unique<formation::FieldFlight>(change, *self, config_.field, now);
+  } else {
+    execution_ = std::make_unique<formation::Passage>(change, *self, config_.passage, now);
+  }
   not_begun_.clear();
   for (const formation::Mover& mover : change.movers) {
     if (mover.vehicle != config_.vehicle) not_begun_.insert(mover.vehicle);
   }
-  passage_.hold(held_ || !not_begun_.empty());
+  execution_->hold(held_ || !not_begun_.empty());
   arrived_ = false;
   waits_since_.reset();
   report(EventKind::change_begun, change.number, "", now);
@@ -68,13 +72,13 @@ void FormationAgent::on_change(const Change& change, Instant now) {
 }
 
 std::optional<std::string> FormationAgent::why_not(const Change& change, std::size_t self) const {
-  if (change_ && !passage_.at_rest()) return "the one before is still flown";
+  if (change_ && !execution_->at_rest()) return "the one before is still flown";
   const auto& limits = change.limits;
   if (limits.speed_mps > config_.limits.speed_mps ||
       limits.acceleration_mps2 > config_.limits.acceleration_mps2) {
     return "it is faster than this vehicle";
   }
-  const Vec3 from = change_ ? passage_.reference(next_slot_).position_m : here(*state_);
+  const Vec3 from = change_ ? execution_->reference(next_slot_).position_m : here(*state_);
   const Vec3 apart = from - change.movers[self].points.front();
   if (apart.norm() > config_.start_tolerance_m) return "it begins somewhere else";
   return std::nullopt;
@@ -85,15 +89,16 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   const auto mover = formation::mover_of(*change_, status.vehicle);
   if (!mover) return;
   if (status.progress.change == change_->number) {
-    if (not_begun_.erase(status.vehicle) > 0) passage_.hold(held_ || !not_begun_.empty());
-    passage_.on_progress(*mover, status.progress);
+    if (not_begun_.erase(status.vehicle) > 0) execution_->hold(held_ || !not_begun_.empty());
+    execution_->on_progress(*mover, status.progress, status.reference_m);
   } else if (status.progress.change < change_->number) {
     // It has not taken up the change, and stays where it is: perhaps not where the change begins.
     const Vec3 from = change_->movers[*mover].points.front();
-    passage_.on_progress(*mover,
-                         {.change = change_->number,
-                          .at = now,
-                          .off_m = (status.reference_m - from).norm() + status.progress.off_m});
+    execution_->on_progress(*mover,
+                            {.change = change_->number,
+                             .at = now,
+                             .off_m = (status.reference_m - from).norm() + status.progress.off_m},
+                            status.reference_m);
   }
 }
 
@@ -103,7 +108,7 @@ void FormationAgent::on_command(const Command& command) {
   command_number_ = command.number;
   if (command.kind == CommandKind::hold) held_ = true;
   if (command.kind == CommandKind::resume) held_ = false;
-  passage_.hold(held_ || !not_begun_.empty());
+  if (execution_) execution_->hold(held_ || !not_begun_.empty());
 }
 
 void FormationAgent::on_timeout(Instant now) {
@@ -114,17 +119,17 @@ double FormationAgent::off_m(Instant now) const {
   if (!change_ || !state_) return 0.0;
   // Where it was when the state was measured.
   const Instant then = std::min(now, std::max(state_->time, now - formation::kSlot));
-  return (here(*state_) - passage_.reference(then).position_m).norm();
+  return (here(*state_) - execution_->reference(then).position_m).norm();
 }
 
 void FormationAgent::step(Instant now) {
   next_slot_ = slot_after(now, formation::kSlot);
   const double off = off_m(now);
   if (change_) {
-    passage_.set_off(off);
-    passage_.step(now);
-    track_ = passage_.track();
-    if (!arrived_ && passage_.finished()) {
+    execution_->set_off(off);
+    execution_->step(now);
+    track_ = execution_->track();
+    if (!arrived_ && execution_->finished()) {
       arrived_ = true;
       report(EventKind::place_reached, change_->number, "", now);
     }
@@ -137,16 +142,16 @@ void FormationAgent::step(Instant now) {
   status.position_m = here(*state_);
   status.reference_m = status.position_m;
   if (change_) {
-    status.progress = passage_.progress();
-    status.reference_m = passage_.reference(now).position_m;
-    status.at_rest = passage_.at_rest();
+    status.progress = execution_->progress();
+    status.reference_m = execution_->reference(now).position_m;
+    status.at_rest = execution_->at_rest();
   }
   status.progress.off_m = off;
   messages_.push(status);
 }
 
 void FormationAgent::tell_of_wait(Instant now) {
-  const bool waits = !passage_.finished() && passage_.at_rest() && now >= change_->start;
+  const bool waits = !execution_->finished() && execution_->at_rest() && now >= change_->start;
   if (!waits) {
     waits_since_.reset();
     return;
@@ -157,7 +162,7 @@ void FormationAgent::tell_of_wait(Instant now) {
   std::string why = "it is told to hold";
   if (!not_begun_.empty()) {
     why = "vehicle " + std::to_string(not_begun_.begin()->value) + " has not begun";
-  } else if (const auto other = passage_.waits_for()) {
+  } else if (const auto other = execution_->waits_for()) {
     why = "vehicle " + std::to_string(change_->movers[*other].vehicle.value) + " has yet to pass";
   }
   report(EventKind::warning, to_seconds(kLongWait),
@@ -171,7 +176,7 @@ Telemetry FormationAgent::telemetry() const {
   telemetry.vehicle = config_.vehicle;
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;
-  const bool moving = change_ && !passage_.finished();
+  const bool moving = change_ && !execution_->finished();
   telemetry.activity = moving ? Activity::forming : Activity::holding;
   telemetry.plan_number = change_ ? change_->number : 0;
   return telemetry;

@@ -98,6 +98,7 @@ class FormationFlight {
     config.vehicle = flyer.what.id;
     config.instance = {++flyer.lives << 32U | flyer.what.id.value};
     config.limits = mission_.formation.limits;
+    config.avoidance = mission_.formation.avoidance;
     config.passage.tolerance_m = mission_.formation.tracking_m;
     flyer.agent = std::make_unique<mission::FormationAgent>(config, now_ + flyer.clock);
     flyer.said.clear();
@@ -300,8 +301,8 @@ class FormationFlight {
     // Without a ground station everybody comes to its place, or says what it waits for.
     run_.reason = "the ground station is lost";
     for (const Flyer& flyer : flyers_) {
-      if (!flyer.agent || flyer.agent->passage() == nullptr) continue;
-      if (flyer.agent->passage()->finished()) continue;
+      if (!flyer.agent || flyer.agent->execution() == nullptr) continue;
+      if (flyer.agent->execution()->finished()) continue;
       if (flyer.said.empty()) {
         stuck(fmt::format("U{} neither comes to its place nor says why", flyer.what.id.value));
       } else {

@@ -39,6 +39,17 @@ TEST(FormationSimulator, ThePapersFlightComesToItsEnd) {
   EXPECT_GE(run->changes, 10U);
 }
 
+TEST(FormationSimulator, ThePapersFieldComesToItsEndMoreSlowly) {
+  configuration::Scenario scenario = five();
+  const auto passage = fly_formation(*formation_mission(scenario, 1, "none"));
+  scenario.formation.avoidance = formation::Avoidance::field;
+  const auto field = fly_formation(*formation_mission(scenario, 1, "none"));
+  ASSERT_TRUE(passage && field);
+  EXPECT_TRUE(field->held()) << text_of(*field);
+  EXPECT_TRUE(field->script_done);
+  EXPECT_GT(field->ended_at, passage->ended_at);
+}
+
 TEST(FormationSimulator, AHundredTeamsWithFaultsHold) {
   const auto runs = fly_formations(five(), {"mixed", 1, 100, 1});
   ASSERT_TRUE(runs) << runs.error().message;

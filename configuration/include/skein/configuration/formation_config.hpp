@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/formation/execution.hpp"
 #include "skein/formation/limits.hpp"
 #include "skein/formation/place_assignment.hpp"
 #include "skein/formation/shapes.hpp"
@@ -26,6 +27,7 @@ struct FormationConfig {
   double ceiling_m = 120.0;
   double place_tolerance_m = 0.3;  ///< to be in place
   formation::PlaceMethod assignment = formation::PlaceMethod::least_squares;
+  formation::Avoidance avoidance = formation::Avoidance::passage;
   std::vector<NamedShape> shapes;
   /// Orders as the operator would type them, each given when the one before is done.
   std::vector<std::string> script;

@@ -7,23 +7,10 @@
 #include <vector>
 
 #include "skein/base/time.hpp"
-#include "skein/domain/motion_track.hpp"
 #include "skein/formation/change.hpp"
+#include "skein/formation/execution.hpp"
 
 namespace skein::formation {
-
-/// Progress is decided anew at every multiple of it in mission time.
-inline constexpr Duration kSlot = MotionTrack::kStep;
-
-/// How far a vehicle is in its change, in grains of plan time (Passage::grain()).
-struct Progress {
-  std::uint32_t change = 0;
-  Instant at{};            ///< a multiple of kSlot; up to one slot ahead
-  std::uint32_t done = 0;  ///< grains, at `at`
-  std::uint16_t rate = 0;  ///< of plan time by time, at `at`: full_rate() is 1
-  double off_m = 0.0;      ///< how far the vehicle itself is from its reference
-  friend bool operator==(const Progress&, const Progress&) = default;
-};
 
 struct PassageParams {
   Duration clock_error = std::chrono::milliseconds{20};  ///< between any two vehicles
@@ -43,8 +30,8 @@ struct PassageParams {
 /// that the plan has in plan time, so there is no deadlock once messages come through;
 /// ChangeRequest::reserve_m is what the others may be late by without anybody slowing down.
 ///
-/// Deterministic; step() and reference() allocate nothing.
-class Passage {
+/// step() and reference() allocate nothing.
+class Passage final : public Execution {
  public:
   Passage() = default;
   /// Precondition: valid(change), self < movers.
@@ -53,24 +40,23 @@ class Passage {
   /// Of another mover, in any order, any number of times. What is impossible or of another change
   /// is ignored.
   void on_progress(std::size_t mover, const Progress& progress);
-  /// How far the vehicle itself is from its reference.
-  void set_off(double off_m);
-  /// Brakes, and stays where it then is until it may go on.
-  void hold(bool held) { held_ = held; }
-  /// Decides all slots up to `now`, which never decreases.
-  void step(Instant now);
+  void on_progress(std::size_t mover, const Progress& progress,
+                   const Vec3& /*reference_m*/) override {
+    on_progress(mover, progress);
+  }
+  void set_off(double off_m) override;
+  void hold(bool held) override { held_ = held; }
+  void step(Instant now) override;
 
-  /// To be told to the others, with Progress::off_m filled in.
-  [[nodiscard]] Progress progress() const;
-  /// At a moment of the slot that step() has reached.
-  [[nodiscard]] MotionTrack::Moment reference(Instant now) const;
-  /// From the slot that step() has reached on: as decided, then braking.
-  [[nodiscard]] MotionTrack track() const;
+  [[nodiscard]] Progress progress() const override;
+  [[nodiscard]] MotionTrack::Moment reference(Instant now) const override;
+  [[nodiscard]] MotionTrack track() const override;
 
-  [[nodiscard]] bool finished() const { return done_ >= end_; }
-  [[nodiscard]] bool at_rest() const { return finished() || (rate_ == 0 && next_rate_ == 0); }
-  /// The mover for whom it slowed down or waited in the last slot.
-  [[nodiscard]] std::optional<std::size_t> waits_for() const { return waits_for_; }
+  [[nodiscard]] bool finished() const override { return done_ >= end_; }
+  [[nodiscard]] bool at_rest() const override {
+    return finished() || (rate_ == 0 && next_rate_ == 0);
+  }
+  [[nodiscard]] std::optional<std::size_t> waits_for() const override { return waits_for_; }
 
   [[nodiscard]] const ChangeMotion& motion() const { return motion_; }
   [[nodiscard]] std::uint16_t full_rate() const { return full_; }

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/formation/field_flight.hpp"
 #include "skein/formation/passage.hpp"
 #include "skein/mission/onboard_agent.hpp"
 
@@ -17,15 +19,18 @@ struct FormationAgentConfig {
   VehicleId vehicle;
   InstanceId instance;
   formation::MotionLimits limits;  ///< of the vehicle; a change that asks for more is refused
+  formation::Avoidance avoidance = formation::Avoidance::passage;
   formation::PassageParams passage{};
+  formation::FieldParams field{};
   double start_tolerance_m = 0.5;  ///< a change must begin where the vehicle is, to this
   Duration status_period = formation::kSlot;
 };
 
 /// All decisions of one multirotor in a formation. The ground station's changes say where to fly;
-/// when, is decided here in every slot, from what the others say of theirs (formation::Passage). A
-/// change is taken up at rest only, and only where the vehicle is. Whatever falls silent, ground or
-/// neighbours, separation holds: the vehicle goes on as far as it may, and waits there.
+/// when, is decided here in every slot, from what the others say of theirs (formation::Execution).
+/// A change is taken up at rest only, and only where the vehicle is. Whatever falls silent, ground
+/// or neighbours, by passage separation holds: the vehicle goes on as far as it may, and waits
+/// there.
 class FormationAgent final : public OnboardAgent {
  public:
   FormationAgent(const FormationAgentConfig& config, Instant now);
@@ -43,7 +48,7 @@ class FormationAgent final : public OnboardAgent {
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
 
   /// How it flies the newest change; none before the first.
-  [[nodiscard]] const formation::Passage* passage() const { return change_ ? &passage_ : nullptr; }
+  [[nodiscard]] const formation::Execution* execution() const { return execution_.get(); }
 
  private:
   void on_change(const formation::Change& change, Instant now);
@@ -58,7 +63,7 @@ class FormationAgent final : public OnboardAgent {
 
   FormationAgentConfig config_;
   std::optional<formation::Change> change_;
-  formation::Passage passage_;
+  std::unique_ptr<formation::Execution> execution_;  ///< of change_; none before the first
   std::optional<VehicleState> state_;
   std::optional<MotionTrack> track_;
   Instant next_slot_;

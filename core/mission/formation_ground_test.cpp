@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/formation_ground.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "skein/mission/formation_agent.hpp"
+
+namespace skein::mission {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A ground station and its vehicles, which hear each other at once and fly beside their references
+/// by what each is pushed aside.
+class Team {
+ public:
+  explicit Team(std::vector<Vec3> starts) : ground_{config_of(starts.size()), Instant{}} {
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const VehicleId id{static_cast<std::uint16_t>(i + 1)};
+      FormationAgentConfig config;
+      config.vehicle = id;
+      vehicles_.push_back({id, starts[i], Vec3::Zero(), {config, Instant{}}});
+    }
+  }
+  void push_aside(std::size_t index, const Vec3& aside) { vehicles_.at(index).aside = aside; }
+  void step() {
+    now += formation::kSlot;
+    for (Vehicle& v : vehicles_) {
+      if (v.agent.execution() != nullptr) {
+        v.position = v.agent.execution()->reference(now).position_m + v.aside;
+      }
+      VehicleState state;
+      state.time = now;
+      state.x_m = v.position.x();
+      state.y_m = v.position.y();
+      state.z_m = v.position.z();
+      v.agent.on_state(state, now);
+      while (const auto message = v.agent.poll_message()) hear(*message, v.id);
+      static_cast<void>(v.agent.poll_track());
+      while (v.agent.poll_event()) {
+      }
+    }
+    ground_.on_timeout(now);
+    while (const auto message = ground_.poll_message()) hear(*message, kGroundStation);
+    while (const auto event = ground_.poll_event()) events.push_back(*event);
+  }
+  /// False where it did not happen within a minute.
+  bool until(const std::function<bool()>& done) {
+    for (int i = 0; i < 1200 && !done(); ++i) step();
+    return done();
+  }
+  bool take_off() {
+    FormationOrder order;
+    order.kind = OrderKind::take_off;
+    return ground_.command(order, now).ok();
+  }
+  [[nodiscard]] const FormationGround& ground() const { return ground_; }
+  [[nodiscard]] const Vec3& position(std::size_t index) const {
+    return vehicles_.at(index).position;
+  }
+  [[nodiscard]] std::size_t count(EventKind kind) const {
+    return static_cast<std::size_t>(std::count_if(
+        events.begin(), events.end(), [kind](const auto& event) { return event.kind == kind; }));
+  }
+
+  Instant now{};
+  std::vector<MissionEvent> events;
+
+ private:
+  struct Vehicle {
+    VehicleId id;
+    Vec3 position;
+    Vec3 aside;
+    FormationAgent agent;
+  };
+  static FormationGroundConfig config_of(std::size_t vehicles) {
+    FormationGroundConfig config;
+    for (std::size_t i = 0; i < vehicles; ++i) {
+      config.vehicles.push_back({static_cast<std::uint16_t>(i + 1)});
+    }
+    config.rally.spacing_m = 6.0;
+    config.rally.centre = {0.0, 0.0, 10.0};
+    return config;
+  }
+  void hear(const Message& message, VehicleId sender) {
+    if (sender != kGroundStation) ground_.on_message(message, sender, now);
+    for (Vehicle& v : vehicles_) {
+      if (v.id != sender) v.agent.on_message(message, sender, now);
+    }
+  }
+
+  FormationGround ground_;
+  std::vector<Vehicle> vehicles_;
+};
+
+TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
+  Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  EXPECT_EQ(team.count(EventKind::warning), 0U);
+  const Vec3 place = team.position(1);
+  team.push_aside(1, {0.25, 0.0, 0.0});  // within the tolerance of 0.3 m
+  ASSERT_TRUE(team.until([&] { return team.count(EventKind::warning) > 0; }));
+  const auto warning = std::find_if(team.events.begin(), team.events.end(), [](const auto& event) {
+    return event.kind == EventKind::warning;
+  });
+  EXPECT_THAT(warning->text, HasSubstr("drift is corrected of vehicles 2"));
+  for (int i = 0; i < 600; ++i) team.step();
+  EXPECT_LT((team.position(1) - place).norm(), 0.08);
+  EXPECT_EQ(team.count(EventKind::warning), 1U);
+  EXPECT_TRUE(team.ground().in_place());
+  EXPECT_EQ(team.count(EventKind::formation_held), 1U);  // it is no new formation
+}
+
+TEST(FormationGround, LeavesASmallDriftAlone) {
+  Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  team.push_aside(1, {0.1, 0.0, 0.0});
+  for (int i = 0; i < 1200; ++i) team.step();
+  EXPECT_EQ(team.count(EventKind::warning), 0U);
+}
+
+}  // namespace
+}  // namespace skein::mission
