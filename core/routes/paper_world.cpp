@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/routes/paper_world.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -92,6 +94,44 @@ RouteProblem paper_team() {
     vehicle.turn_radius_m = 20.0;
     vehicle.range_m = 2500.0;
     vehicle.approach_heading_rad = wrap_pi(radians(entry_deg) + kPi);
+    problem.vehicles.push_back(vehicle);
+  }
+  return problem;
+}
+
+RouteProblem random_team(std::size_t vehicles, std::size_t hazards, Random random) {
+  constexpr double kFree_m = 300.0;
+  constexpr double kStartsApart_m = 40.0;
+  const double side = 1000.0 * std::sqrt(static_cast<double>(hazards) / 10.0);
+  RouteProblem problem;
+  problem.site = {0.8 * side, 0.8 * side};
+  problem.rules.last_leg_m = 150.0;
+  problem.rules.separation_m = 20.0;
+  while (problem.hazards.size() < hazards) {
+    RouteHazard hazard =
+        keep_out(random.uniform(0.0, side), random.uniform(0.0, side), random.uniform(50.0, 150.0));
+    const bool near_edge = hazard.centre.minCoeff() < hazard.radius_m + kStartsApart_m;
+    if ((hazard.centre - problem.site).norm() > hazard.radius_m + kFree_m && !near_edge) {
+      problem.hazards.push_back(hazard);
+    }
+  }
+  number(problem.hazards);
+  const double first = random.uniform(-kPi, kPi);
+  while (problem.vehicles.size() < vehicles) {
+    const double along = random.uniform(0.0, side);
+    RouteVehicle vehicle;
+    vehicle.start = random.chance(0.5) ? Vec2{0.0, along} : Vec2{along, 0.0};
+    const bool crowded = std::any_of(problem.vehicles.begin(), problem.vehicles.end(),
+                                     [&](const RouteVehicle& other) {
+                                       return (other.start - vehicle.start).norm() < kStartsApart_m;
+                                     });
+    if (crowded) continue;
+    const auto k = static_cast<double>(problem.vehicles.size());
+    vehicle.id = VehicleId{static_cast<std::uint16_t>(problem.vehicles.size() + 1)};
+    vehicle.speed_mps = 20.0;
+    vehicle.turn_radius_m = 20.0;
+    vehicle.range_m = 4.0 * side;
+    vehicle.approach_heading_rad = wrap_pi(first + k * kTwoPi / static_cast<double>(vehicles));
     problem.vehicles.push_back(vehicle);
   }
   return problem;

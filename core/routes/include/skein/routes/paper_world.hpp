@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "skein/base/geometry.hpp"
@@ -28,5 +29,11 @@ namespace skein::routes {
 /// 270 and 390 deg, of the point of entry as seen from the site; last leg 100. The paper gives
 /// neither speed, turn radius nor separation: 20 m/s, 20 m and 30 m.
 [[nodiscard]] RouteProblem paper_team();
+
+/// A team of that many in a square world with as dense hazards as table 4's (ten in 1000 by 1000
+/// m), all of them closed: starts along the left and the lower edge, the site towards the far
+/// corner and free of hazards for 300 m around, bearings evenly spread from any first one, 20 m/s,
+/// turn radius 20 m, last legs of 150 m, separation 20 m, a range of four times the world's side.
+[[nodiscard]] RouteProblem random_team(std::size_t vehicles, std::size_t hazards, Random random);
 
 }  // namespace skein::routes

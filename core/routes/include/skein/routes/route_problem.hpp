@@ -23,7 +23,7 @@ struct RouteVehicle {
   /// pi: any direction.
   double start_cone_rad = kPi;
   double speed_mps = 0.0;      ///< constant, over the ground; > 0
-  double turn_radius_m = 0.0;  ///< of every fly-by turn; >= 0
+  double turn_radius_m = 0.0;  ///< of every fly-by turn; > 0, small for one that turns on the spot
   double range_m = std::numeric_limits<double>::infinity();
   /// Direction of travel over the site, mathematical. The paper's approach angle is that of the
   /// point of entry as seen from the site: pi more.

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/routes/cooperative.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "skein/routes/fly_by.hpp"
+#include "skein/routes/optimiser.hpp"
+#include "team_route.hpp"
+
+namespace skein::routes {
+namespace {
+
+/// Common times that are tried, over the earliest by which every vehicle alone could arrive.
+constexpr std::array kDelays = {0.0, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.035, 0.05, 0.075,
+                                0.1, 0.15,   0.2,   0.3,   0.4,   0.5,  0.7,  1.0,   1.5,  2.0};
+constexpr int kRefinements = 2;
+/// A base route so near to its length needs no detour.
+constexpr double kExact_m = 1e-6;
+/// Corridors that gave a route, after which no other is tried.
+constexpr std::size_t kEnough = 2;
+/// Once a route keeps to the rules, this share of the evaluations is enough to smooth it.
+constexpr double kSmoothShare = 0.4;
+
+std::string name(const RouteVehicle& vehicle) {
+  return "vehicle " + std::to_string(vehicle.id.value);
+}
+
+Result<void> validate_vehicle(const RouteProblem& problem, const RouteVehicle& v) {
+  const bool finite = v.start.allFinite() && std::isfinite(v.start_heading_rad) &&
+                      std::isfinite(v.approach_heading_rad) && std::isfinite(v.arrival_offset_s);
+  if (!finite) return Error{name(v) + ": start, headings and offset must be finite"};
+  if (!(v.speed_mps > 0.0)) return Error{name(v) + ": the speed must be above 0"};
+  if (!(v.turn_radius_m > 0.0)) return Error{name(v) + ": the turn radius must be above 0"};
+  if (!(v.range_m > 0.0)) return Error{name(v) + ": the range must be above 0"};
+  if (!(v.start_cone_rad >= 0.0)) return Error{name(v) + ": the start cone must not be negative"};
+  for (const RouteHazard& h : problem.hazards) {
+    if (problem.closed(h) && (h.centre - v.start).norm() < h.radius_m + problem.rules.clearance_m) {
+      return Error{name(v) + " starts within hazard " + std::to_string(h.id.value)};
+    }
+  }
+  return {};
+}
+
+Result<void> validate(const RouteProblem& problem) {
+  const RouteRules& rules = problem.rules;
+  if (problem.vehicles.empty()) return Error{"there is no vehicle to plan for"};
+  if (!(rules.last_leg_m > 0.0)) return Error{"the last leg must be longer than 0"};
+  if (!(rules.turn_max_rad > 0.0) || rules.turn_max_rad >= kPi) {
+    return Error{"the largest turn must be above 0 and below half a turn"};
+  }
+  if (rules.waypoints_max < 10 || rules.waypoints_max > kWaypointsMax) {
+    return Error{"a route may have 10 to " + std::to_string(kWaypointsMax) + " waypoints"};
+  }
+  for (const RouteHazard& h : problem.hazards) {
+    if (!(h.radius_m > 0.0))
+      return Error{"hazard " + std::to_string(h.id.value) + " has no radius"};
+    if (problem.closed(h) && (h.centre - problem.site).norm() < h.radius_m + rules.clearance_m) {
+      return Error{"the site lies within hazard " + std::to_string(h.id.value)};
+    }
+  }
+  for (std::size_t i = 0; i < problem.vehicles.size(); ++i) {
+    const RouteVehicle& v = problem.vehicles[i];
+    if (const auto valid = validate_vehicle(problem, v); !valid) return valid;
+    for (std::size_t j = 0; j < i; ++j) {
+      const RouteVehicle& w = problem.vehicles[j];
+      if (v.id == w.id) return Error{"two vehicles are called " + std::to_string(v.id.value)};
+      if ((v.start - w.start).norm() < rules.separation_m) {
+        return Error{name(v) + " and " + name(w) + " start nearer than the separation"};
+      }
+    }
+  }
+  return {};
+}
+
+class Planner {
+ public:
+  Planner(const RouteProblem& problem, const RoutePlannerParams& params, Random random)
+      : problem_{problem}, params_{params}, random_{random}, circles_{closed_circles(problem)} {}
+
+  Result<CooperativePlan> run() {
+    if (const auto valid = validate(problem_); !valid) return valid.error();
+    if (const auto ready = prepare(); !ready) return ready.error();
+    double late = -1.0;
+    double tried = earliest_s_;
+    for (const double delay : kDelays) {
+      tried = earliest_s_ * (1.0 + delay);
+      if (tried > plan_.latest_s) break;
+      if (plan_at(tried)) {
+        if (delay > 0.0) refine(late, tried);
+        return finish();
+      }
+      if (cancelled_) return Error{"the planning was cancelled"};
+      late = tried;
+    }
+    return Error{"no routes that keep to all rules were found: " + name(vehicle(stuck_)) +
+                 " had none clear of the others for a common time of " +
+                 std::to_string(earliest_s_) + " to " +
+                 std::to_string(std::max(late, earliest_s_)) + " s"};
+  }
+
+ private:
+  [[nodiscard]] const RouteVehicle& vehicle(std::size_t i) const { return problem_.vehicles[i]; }
+  [[nodiscard]] std::size_t count() const { return problem_.vehicles.size(); }
+
+  Result<void> prepare() {
+    plan_.latest_s = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < count(); ++i) {
+      const RouteVehicle& v = vehicle(i);
+      bounds_.push_back(length_bound_m(problem_, v));
+      if (std::isinf(bounds_.back())) {
+        return Error{name(v) + " has no way to the site past the closed hazards"};
+      }
+      if (bounds_.back() > v.range_m) {
+        return Error{name(v) + " needs at least " + std::to_string(bounds_.back()) +
+                     " m, beyond its range"};
+      }
+      bases_.push_back(base_routes(problem_, v, params_.corridors));
+      if (bases_.back().empty()) {
+        return Error{name(v) +
+                     " has no route to the site that its turns, waypoints and range allow"};
+      }
+      const double offset = v.arrival_offset_s;
+      plan_.bound_s = std::max(plan_.bound_s, bounds_.back() / v.speed_mps - offset);
+      plan_.latest_s = std::min(plan_.latest_s, v.range_m / v.speed_mps - offset);
+      earliest_s_ = std::max(earliest_s_, bases_.back().front().length_m / v.speed_mps - offset);
+    }
+    if (earliest_s_ > plan_.latest_s) {
+      return Error{"the slowest vehicle arrives after " + std::to_string(earliest_s_) +
+                   " s, when another's range is used up (" + std::to_string(plan_.latest_s) +
+                   " s)"};
+    }
+    return {};
+  }
+
+  [[nodiscard]] double spare_s(std::size_t i, double arrival_s) const {
+    return arrival_s + vehicle(i).arrival_offset_s -
+           bases_[i].front().length_m / vehicle(i).speed_mps;
+  }
+
+  /// Routes of everybody at that common time, in `found_`.
+  bool plan_at(double arrival_s) {
+    std::vector<std::size_t> order(count());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return spare_s(a, arrival_s) < spare_s(b, arrival_s);
+    });
+    for (std::size_t attempt = 0; attempt <= params_.reorders; ++attempt) {
+      const std::size_t failed = plan_in_order(order, arrival_s);
+      if (failed == count()) return true;
+      stuck_ = order[failed];
+      if (failed == 0 || cancelled_) return false;
+      std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(failed),
+                  order.begin() + static_cast<std::ptrdiff_t>(failed) + 1);
+    }
+    return false;
+  }
+
+  /// How many of the order found a route.
+  std::size_t plan_in_order(const std::vector<std::size_t>& order, double arrival_s) {
+    std::vector<TimedRoute> others;
+    std::vector<std::vector<Vec2>> routes(count());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+      const std::size_t i = order[k];
+      auto waypoints = plan_vehicle(i, arrival_s, others);
+      if (params_.go_on && !params_.go_on({arrival_s, k, plan_.evaluations})) cancelled_ = true;
+      if (!waypoints || cancelled_) return k;
+      const auto path = fly_by_path(*waypoints, vehicle(i).turn_radius_m);
+      SKEIN_ASSERT(path.ok());
+      others.emplace_back(*path, vehicle(i).speed_mps);
+      routes[i] = std::move(*waypoints);
+    }
+    found_ = std::move(routes);
+    found_s_ = arrival_s;
+    return order.size();
+  }
+
+  std::optional<std::vector<Vec2>> plan_vehicle(std::size_t i, double arrival_s,
+                                                const std::vector<TimedRoute>& others) {
+    const RouteVehicle& v = vehicle(i);
+    const double target = v.speed_mps * (arrival_s + v.arrival_offset_s);
+    const RouteJudge judge{problem_, v, circles_, others};
+    std::vector<Vec2> best;
+    double value = RouteJudge::kInfeasible;
+    std::size_t good = 0;
+    std::size_t tried = 0;
+    // Those that need to be lengthened least come first.
+    for (std::size_t b = bases_[i].size(); b-- > 0;) {
+      const BaseRoute& base = bases_[i][b];
+      if (base.length_m > target + kExact_m) continue;
+      if (tried++ == params_.corridors_tried || good == kEnough) break;
+      if (lengthen(base, v, target, judge, value, best)) ++good;
+    }
+    // The shortest has the most room to choose where.
+    if (good == 0 && tried > params_.corridors_tried) {
+      lengthen(bases_[i].front(), v, target, judge, value, best);
+    }
+    if (best.empty()) return std::nullopt;
+    return best;
+  }
+
+  /// True where the base route could be lengthened within all rules; a better one than `value` is
+  /// kept.
+  bool lengthen(const BaseRoute& base, const RouteVehicle& v, double target,
+                const RouteJudge& judge, double& value, std::vector<Vec2>& best) {
+    const bool exact = target - base.length_m <= kExact_m;
+    const Extension extension{base, v.turn_radius_m, exact ? base.length_m : target};
+    std::vector<Vec2> waypoints;
+    std::vector<char> fresh;
+    const Objective objective = [&](std::span<const double> point) {
+      if (!extension.apply(point, waypoints, fresh)) return 10.0 * RouteJudge::kInfeasible;
+      return judge.judge(waypoints, fresh);
+    };
+    const SearchSpace space{Extension::box(), {}};
+    DifferentialEvolutionParams evolution;
+    evolution.population = params_.population;
+    const std::uint64_t evaluations = exact ? 1 : params_.evaluations;
+    const auto smooth =
+        static_cast<std::uint64_t>(kSmoothShare * static_cast<double>(params_.evaluations));
+    const SearchBudget budget{evaluations, [&](const SearchProgress& progress) {
+                                return progress.best >= RouteJudge::kInfeasible ||
+                                       progress.evaluations < smooth;
+                              }};
+    const SearchResult found =
+        differential_evolution(objective, space, evolution, budget, random_.fork());
+    plan_.evaluations += found.evaluations;
+    if (found.value >= RouteJudge::kInfeasible) return false;
+    if (found.value < value) {
+      value = found.value;
+      SKEIN_ASSERT(extension.apply(found.best, waypoints, fresh));
+      best = waypoints;
+    }
+    return true;
+  }
+
+  /// An earlier time between one that failed and one that did not.
+  void refine(double late_s, double found_s) {
+    for (int k = 0; k < kRefinements && !cancelled_; ++k) {
+      const double middle = 0.5 * (late_s + found_s);
+      (plan_at(middle) ? found_s : late_s) = middle;
+    }
+    cancelled_ = false;  // there is a plan already
+  }
+
+  CooperativePlan finish() {
+    plan_.arrival_s = found_s_;
+    std::vector<TimedRoute> timed;
+    for (std::size_t i = 0; i < count(); ++i) {
+      const RouteVehicle& v = vehicle(i);
+      const auto path = fly_by_path(found_[i], v.turn_radius_m);
+      SKEIN_ASSERT(path.ok());
+      PlannedRoute route;
+      route.id = v.id;
+      route.waypoints = found_[i];
+      route.length_m = fly_by_length_m(found_[i], v.turn_radius_m);
+      route.arrival_s = route.length_m / v.speed_mps;
+      route.bound_m = bounds_[i];
+      route.costs = route_costs(problem_, found_[i], *path);
+      plan_.total_cost += route.costs.total;
+      for (const TimedRoute& other : timed) {
+        plan_.spacing_cost += spacing_cost(other, TimedRoute{*path, v.speed_mps},
+                                           problem_.rules.separation_m, problem_.rules.contact_m);
+      }
+      timed.emplace_back(*path, v.speed_mps);
+      plan_.routes.push_back(std::move(route));
+    }
+    plan_.total_cost += problem_.spacing_weight * plan_.spacing_cost;
+    return plan_;
+  }
+
+  const RouteProblem& problem_;
+  const RoutePlannerParams& params_;
+  Random random_;
+  std::vector<Hazard> circles_;
+  std::vector<std::vector<BaseRoute>> bases_;
+  std::vector<double> bounds_;
+  double earliest_s_ = 0.0;
+  std::vector<std::vector<Vec2>> found_;
+  double found_s_ = 0.0;
+  std::size_t stuck_ = 0;
+  bool cancelled_ = false;
+  CooperativePlan plan_;
+};
+
+}  // namespace
+
+Result<CooperativePlan> plan_routes(const RouteProblem& problem, const RoutePlannerParams& params,
+                                    Random random) {
+  return Planner{problem, params, random}.run();
+}
+
+}  // namespace skein::routes

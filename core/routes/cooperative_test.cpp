@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/routes/cooperative.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "skein/routes/paper_world.hpp"
+#include "skein/routes/route_check.hpp"
+
+namespace skein::routes {
+namespace {
+
+std::string complaints(const CheckReport& report) {
+  std::string all;
+  for (const Violation& v : report.violations) {
+    all += "vehicle " + std::to_string(v.vehicle.value) + " " + v.message + "\n";
+  }
+  return all;
+}
+
+CooperativePlan planned(const RouteProblem& problem, std::uint64_t seed = 1) {
+  auto plan = plan_routes(problem, {}, Random{seed});
+  EXPECT_TRUE(plan.ok()) << plan.error().message;
+  if (!plan) return {};
+  const CheckReport report = check_routes(problem, *plan);
+  EXPECT_TRUE(report.ok()) << complaints(report);
+  EXPECT_GE(plan->arrival_s, plan->bound_s - 1e-9);
+  EXPECT_LE(plan->arrival_s, plan->latest_s + 1e-9);
+  return *std::move(plan);
+}
+
+TEST(Cooperative, ThePapersThreeVehiclesArriveTogetherAlmostAtTheBound) {
+  const RouteProblem problem = paper_team();
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    const CooperativePlan plan = planned(problem, seed);
+    ASSERT_EQ(plan.routes.size(), 3U);
+    EXPECT_NEAR(plan.bound_s * 20.0, 1745.0, 0.05);
+    EXPECT_LT(plan.arrival_s, 1.005 * plan.bound_s);
+    const CheckReport report = check_routes(problem, plan);
+    EXPECT_LT(report.arrival_spread_s, 0.01);
+    for (const RouteMeasures& m : report.routes) EXPECT_LT(m.bearing_error_rad, radians(0.1));
+  }
+}
+
+TEST(Cooperative, SpeedsOffsetsConesAndOpenHazardsAreKeptTo) {
+  const std::vector<std::function<void(RouteProblem&)>> changes = {
+      [](RouteProblem& p) {
+        p.vehicles[0].speed_mps = 16;
+        p.vehicles[1].speed_mps = 25;
+      },
+      [](RouteProblem& p) {
+        p.vehicles[1].arrival_offset_s = 5;
+        p.vehicles[2].arrival_offset_s = 10;
+      },
+      [](RouteProblem& p) {
+        for (RouteVehicle& v : p.vehicles) {
+          v.start_cone_rad = radians(20);
+          v.start_heading_rad = radians(120);
+        }
+      },
+      [](RouteProblem& p) { p.rules.detections_closed = false; },
+      [](RouteProblem& p) { p.rules.detections_closed = p.rules.ramps_closed = false; },
+      [](RouteProblem& p) { p.rules.clearance_m = 3; },
+      [](RouteProblem& p) { p.rules.separation_m = 150; },
+      [](RouteProblem& p) {
+        for (RouteVehicle& v : p.vehicles) v.turn_radius_m = 60;
+      },
+      [](RouteProblem& p) {
+        for (RouteVehicle& v : p.vehicles) v.turn_radius_m = 0.5;
+      }};
+  for (const auto& change : changes) {
+    RouteProblem problem = paper_team();
+    change(problem);
+    planned(problem);
+  }
+}
+
+TEST(Cooperative, RandomTeamsPassTheChecker) {
+  for (std::uint64_t world = 0; world < 4; ++world) planned(random_team(5, 30, Random{world}));
+}
+
+TEST(Cooperative, TheSameSeedGivesTheSamePlan) {
+  const RouteProblem problem = random_team(4, 15, Random{3});
+  const CooperativePlan a = planned(problem, 5);
+  const CooperativePlan b = planned(problem, 5);
+  EXPECT_EQ(a.evaluations, b.evaluations);
+  EXPECT_EQ(a.total_cost, b.total_cost);
+  for (std::size_t i = 0; i < a.routes.size(); ++i) {
+    EXPECT_EQ(a.routes[i].waypoints, b.routes[i].waypoints);
+  }
+}
+
+TEST(Cooperative, SaysWhatIsWrong) {
+  const auto message = [](const std::function<void(RouteProblem&)>& change) {
+    RouteProblem problem = paper_team();
+    change(problem);
+    const auto plan = plan_routes(problem, {}, Random{1});
+    return plan ? std::string{} : plan.error().message;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles.clear(); }), "no vehicle"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[1].speed_mps = 0; }), "vehicle 2: the speed"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[1].turn_radius_m = 0; }), "turn radius"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[1].range_m = 1700; }), "vehicle 2 needs"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[0].range_m = 1500; }), "range is used up"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[0].start = p.hazards[0].centre; }),
+                  "starts within hazard 1"));
+  EXPECT_TRUE(has(message([](auto& p) { p.site = p.hazards[2].centre; }), "site lies within"));
+  EXPECT_TRUE(has(message([](auto& p) { p.vehicles[2].start = p.vehicles[1].start; }), "nearer"));
+  EXPECT_TRUE(has(message([](auto& p) { p.rules.waypoints_max = 3; }), "waypoints"));
+  EXPECT_TRUE(has(message([](auto& p) {
+                    // A ring around the site.
+                    for (int i = 0; i < 12; ++i) {
+                      p.hazards.push_back(
+                          {.centre = p.site + 300.0 * unit_vector(i * kPi / 6.0), .radius_m = 90});
+                    }
+                  }),
+                  "has no way"));
+}
+
+TEST(Cooperative, CanBeCancelled) {
+  RoutePlannerParams params;
+  std::size_t asked = 0;
+  params.go_on = [&](const RoutePlanProgress& progress) {
+    EXPECT_GT(progress.arrival_s, 0.0);
+    return ++asked < 2;
+  };
+  const auto plan = plan_routes(paper_team(), params, Random{1});
+  ASSERT_FALSE(plan.ok());
+  EXPECT_EQ(asked, 2U);
+  EXPECT_NE(plan.error().message.find("cancelled"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skein::routes
