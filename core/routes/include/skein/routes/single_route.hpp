@@ -17,7 +17,8 @@ namespace skein::routes {
 /// by CMA-ES gained nothing (docs/routes.md).
 struct SingleRouteParams {
   std::uint64_t evaluations = 7'500;  ///< in all, those of the seeds included
-  std::size_t population = 50;
+  /// 0: by the evaluations, of which a generation takes one in 115, but 16 to 300.
+  std::size_t population = 0;
   std::size_t corridors = 12;  ///< by each reading of the hazards: all closed, cores, keep-outs
   std::function<bool(const SearchProgress&)> go_on;  ///< as in SearchBudget
 };
