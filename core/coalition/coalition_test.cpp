@@ -36,7 +36,7 @@ class Team {
       std::function<int(const Message&, VehicleId to)>;  ///< copies that arrive; 1 is perfect
   using Cut = std::function<bool(VehicleId from, VehicleId to)>;
 
-  Team(std::size_t vehicles, Site site) : site_{std::move(site)} {
+  Team(std::uint16_t vehicles, Site site) : site_{std::move(site)} {
     for (std::uint16_t i = 1; i <= vehicles; ++i) {
       members_.emplace(VehicleId{i},
                        Member{Participant{params, VehicleId{i}, InstanceId{1}}, InstanceId{1}});
@@ -240,7 +240,7 @@ class Team {
     }
   }
 
-  void allocate(Initiator& leader, const Initiator::AllocationWanted& wanted, Instant at) {
+  void allocate(Initiator& leader, const Initiator::AllocationWanted& wanted, Instant at) const {
     if (wanted.bids.empty() || (all_or_none && wanted.bids.size() < wanted.tasks.size())) {
       leader.allocation_failed(wanted.round, "too few bids", at);
       return;

@@ -96,7 +96,7 @@ TEST(ArrivalForecast, IsWhatTheFollowerMakesOfIt) {
     VehicleState state;
     constexpr double kPeriod_s = 0.02;
     double t = 10.0;
-    for (; t < to_seconds(plan.end_time()); t += kPeriod_s) {
+    while (t < to_seconds(plan.end_time())) {
       const Vec2 gusts{0.5 * std::sin(gust * t), 0.5 * std::sin(1.3 * gust * t)};
       const Vec2 ground = airspeed * unit_vector(heading) + steady + gusts;
       state.x_m = position.x();
@@ -113,6 +113,7 @@ TEST(ArrivalForecast, IsWhatTheFollowerMakesOfIt) {
                  kPeriod_s;
       airspeed += (s.airspeed_mps - airspeed) * kPeriod_s;
       position += ground * kPeriod_s;
+      t += kPeriod_s;
     }
     const auto forecast =
         forecast_arrival({}, spec, plan, 0.0, steady, plan.start_time, plan.end_time());

@@ -14,17 +14,17 @@
 #include "skein/base/random.hpp"
 
 namespace {
-std::atomic<long> allocations{0};
+std::atomic<long> g_allocations{0};
 }  // namespace
 
 // Every allocation of this program is counted.
 void* operator new(std::size_t size) {
-  ++allocations;
+  ++g_allocations;
   if (void* memory = std::malloc(size)) return memory;  // NOLINT(cppcoreguidelines-no-malloc)
   throw std::bad_alloc{};
 }
 void* operator new(std::size_t size, const std::nothrow_t& /*none*/) noexcept {
-  ++allocations;
+  ++g_allocations;
   return std::malloc(size);  // NOLINT(cppcoreguidelines-no-malloc)
 }
 void operator delete(void* memory) noexcept {
@@ -232,13 +232,13 @@ TEST(PathFollower, AllocatesNothing) {
   const VehicleSpec vehicle = vehicle_of(50.0, 1.0);
   const TimedPath plan = course_of(165.0, 50.0);
   const VehicleState state;
-  const long before = allocations;
+  const long before = g_allocations;
   double sum = 0.0;
   for (int i = 0; i < 100; ++i) {
     sum += follow_path({}, vehicle, plan, state, at_seconds(100.0 + i)).heading_rad;
     sum += follow_error(plan, state, at_seconds(100.0 + i)).cross_m;
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(g_allocations, before);
   EXPECT_TRUE(std::isfinite(sum));
 }
 
