@@ -23,8 +23,10 @@ VehicleSpec vehicle_with(Recovery recovery) {
 }
 
 std::vector<Vec2> random_route(Random& random) {
+  constexpr std::size_t kPoints = 12;
   std::vector<Vec2> route;
-  for (int i = 0; i < 12; ++i) {
+  route.reserve(kPoints);
+  while (route.size() < kPoints) {
     route.emplace_back(random.uniform(-4000.0, 4000.0), random.uniform(-4000.0, 4000.0));
   }
   return route;

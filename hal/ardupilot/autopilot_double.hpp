@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -47,7 +48,7 @@ class AutopilotDouble {
   std::uint32_t health = 0xFFFFFFFF;
   bool mute = false;
   struct Refusal {
-    std::uint8_t result;
+    std::uint8_t result = 0;
     std::string text;  ///< said after the answer
   };
   std::map<std::uint16_t, Refusal> refuses;  ///< by command
@@ -102,10 +103,10 @@ class AutopilotDouble {
     return n;
   }
   [[nodiscard]] std::optional<mavlink::CommandLong> last(mavlink::Command command) const {
-    for (auto c = commands.rbegin(); c != commands.rend(); ++c) {
-      if (c->command == static_cast<std::uint16_t>(command)) return *c;
-    }
-    return std::nullopt;
+    const auto found = std::find_if(commands.rbegin(), commands.rend(), [&](const auto& c) {
+      return c.command == static_cast<std::uint16_t>(command);
+    });
+    return found != commands.rend() ? std::optional{*found} : std::nullopt;
   }
 
  private:

@@ -133,7 +133,7 @@ TEST(Node, SilenceIsSeenAfterThreeSeconds) {
 TEST(Node, UnansweredQuestionsAreRepeatedAFewTimes) {
   Node node{companion(), at_ms(0)};
   std::size_t requests = 0;
-  for (int s = 0; s < 20; ++s) {
+  for (std::int64_t s = 0; s < 20; ++s) {
     can::Frame status = frame_of(kStatusOfAutopilot);
     status.data[0] = static_cast<std::uint8_t>(s + 1);
     status.data[7] = static_cast<std::uint8_t>(0xC0 | s);
@@ -182,7 +182,7 @@ TEST(Node, TwoOthersWithOneIdAreFoundByTheirUniqueIds) {
 TEST(Node, TwoOthersWithOneIdAreFoundByTheirUptimesAndToldWhileTheyAreThere) {
   Node node{companion(), at_ms(0)};
   std::vector<std::int64_t> told_s;
-  for (int s = 0; s < 40; ++s) {
+  for (std::int64_t s = 0; s < 40; ++s) {
     const bool two = s < 20;
     can::Frame status = frame_of(kStatusOfAutopilot);
     status.data[0] = static_cast<std::uint8_t>(two && s % 2 == 0 ? 200 : s);

@@ -274,7 +274,7 @@ TEST(Reassembler, TwoInterfacesDeliverEveryTransferOnce) {
       if (reassembler.on_frame(frame, interface, at_ms(ms)) != nullptr) ++delivered;
     }
   };
-  for (int i = 0; i < 40; ++i) {
+  for (std::int64_t i = 0; i < 40; ++i) {
     const auto id = static_cast<std::uint8_t>(i);
     send(id, 0, i * 100);
     send(id, 1, i * 100 + 3);
@@ -284,7 +284,7 @@ TEST(Reassembler, TwoInterfacesDeliverEveryTransferOnce) {
   EXPECT_EQ(reassembler.statistics().broken(), 0U);
 
   // Interface 0 is unplugged: after a second of its silence the other is taken.
-  for (int i = 40; i < 60; ++i) send(static_cast<std::uint8_t>(i), 1, i * 100);
+  for (std::int64_t i = 40; i < 60; ++i) send(static_cast<std::uint8_t>(i), 1, i * 100);
   EXPECT_EQ(delivered, 40U + 10U);
   EXPECT_EQ(reassembler.statistics().broken(), 0U);
 }
