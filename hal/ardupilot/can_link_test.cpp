@@ -27,6 +27,8 @@ struct Wire {
 class WireBus final : public can::Bus {
  public:
   explicit WireBus(Wire& wire) : wire_{&wire} { wire.ears.push_back(&heard_); }
+  WireBus(const WireBus&) = delete;
+  WireBus& operator=(const WireBus&) = delete;
   ~WireBus() override { std::erase(wire_->ears, &heard_); }
 
   using Bus::send;

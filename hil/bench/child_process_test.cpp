@@ -15,18 +15,18 @@ using namespace std::chrono_literals;
 
 class ChildProcessTest : public testing::Test {
  protected:
-  std::filesystem::path log = std::filesystem::temp_directory_path() /
-                              ("skein-child-" + std::to_string(::getpid()) + ".log");
-  ~ChildProcessTest() override { std::filesystem::remove(log); }
+  std::filesystem::path log_ = std::filesystem::temp_directory_path() /
+                               ("skein-child-" + std::to_string(::getpid()) + ".log");
+  void TearDown() override { std::filesystem::remove(log_); }
   [[nodiscard]] std::string output() const {
     std::stringstream text;
-    text << std::ifstream{log}.rdbuf();
+    text << std::ifstream{log_}.rdbuf();
     return text.str();
   }
 };
 
 TEST_F(ChildProcessTest, RunsWithItsEnvironmentAndTellsHowItEnded) {
-  auto child = ChildProcess::start({"/bin/sh", "-c", "echo $SKEIN_WORD; exit 3"}, log,
+  auto child = ChildProcess::start({"/bin/sh", "-c", "echo $SKEIN_WORD; exit 3"}, log_,
                                    {{"SKEIN_WORD", "hello"}});
   ASSERT_TRUE(child);
   ASSERT_TRUE(child->wait(10s));
@@ -36,7 +36,7 @@ TEST_F(ChildProcessTest, RunsWithItsEnvironmentAndTellsHowItEnded) {
 }
 
 TEST_F(ChildProcessTest, AMissingProgramIsASentence) {
-  const auto child = ChildProcess::start({"/no/such/program"}, log, {});
+  const auto child = ChildProcess::start({"/no/such/program"}, log_, {});
   ASSERT_FALSE(child);
   EXPECT_EQ(child.error().message,
             "/no/such/program: not an executable program; build it with ./dev build");
@@ -44,9 +44,9 @@ TEST_F(ChildProcessTest, AMissingProgramIsASentence) {
 
 TEST_F(ChildProcessTest, WhoDoesNotStopIsKilled) {
   auto deaf = ChildProcess::start(
-      {"/bin/sh", "-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, log, {});
+      {"/bin/sh", "-c", "trap '' TERM; echo ready; while :; do sleep 1; done"}, log_, {});
   auto good = ChildProcess::start(
-      {"/bin/sh", "-c", "trap 'exit 0' TERM; echo ready; while :; do sleep 0.1; done"}, log, {});
+      {"/bin/sh", "-c", "trap 'exit 0' TERM; echo ready; while :; do sleep 0.1; done"}, log_, {});
   ASSERT_TRUE(deaf && good);
   for (int i = 0; i < 1000 && output().size() < 12; ++i) ::usleep(10'000);
   ASSERT_EQ(output().size(), 12U) << "both have set their traps";
@@ -58,7 +58,7 @@ TEST_F(ChildProcessTest, WhoDoesNotStopIsKilled) {
 TEST_F(ChildProcessTest, EndsWithItsObject) {
   pid_t pid = 0;
   {
-    auto child = ChildProcess::start({"/bin/sleep", "1000"}, log, {});
+    auto child = ChildProcess::start({"/bin/sleep", "1000"}, log_, {});
     ASSERT_TRUE(child);
     pid = child->pid();
     EXPECT_EQ(::kill(pid, 0), 0);

@@ -107,8 +107,8 @@ class Companion {
   /// The newest of a kind, or nothing.
   template <class Message>
   [[nodiscard]] std::optional<Message> last() const {
-    for (auto p = packets_.rbegin(); p != packets_.rend(); ++p) {
-      if (const auto message = mavlink::decode<Message>(*p)) return message;
+    for (std::size_t i = packets_.size(); i > 0; --i) {
+      if (const auto message = mavlink::decode<Message>(packets_[i - 1])) return message;
     }
     return std::nullopt;
   }

@@ -44,6 +44,7 @@ class Process {
     EXPECT_EQ(::pipe2(from.data(), O_CLOEXEC), 0);
     arguments.insert(arguments.begin(), SKEIN_FC);
     std::vector<char*> words;
+    words.reserve(arguments.size() + 1);
     for (std::string& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
     pid_ = ::fork();
@@ -135,8 +136,8 @@ class RealCompanion {
   }
   template <class Message>
   [[nodiscard]] std::optional<Message> last() const {
-    for (auto p = packets_.rbegin(); p != packets_.rend(); ++p) {
-      if (const auto message = mavlink::decode<Message>(*p)) return message;
+    for (std::size_t i = packets_.size(); i > 0; --i) {
+      if (const auto message = mavlink::decode<Message>(packets_[i - 1])) return message;
     }
     return std::nullopt;
   }

@@ -71,7 +71,7 @@ class CanFaults : public ::testing::Test {
     std::filesystem::create_directories(folder_);
     EXPECT_EQ(::mkfifo(fifo().c_str(), 0600), 0);
   }
-  ~CanFaults() override {
+  void TearDown() override {
     if (input_ >= 0) ::close(input_);
     if (HasFailure()) std::printf("%s\n", log().c_str());
     flight_controller_.reset();

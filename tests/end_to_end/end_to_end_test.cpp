@@ -22,17 +22,19 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
+int g_tests = 0;
+
 class EndToEnd : public testing::Test {
  protected:
-  EndToEnd() { fs::create_directories(folder); }
-  ~EndToEnd() override {
-    if (!HasFailure()) fs::remove_all(folder);
+  EndToEnd() { fs::create_directories(folder_); }
+  void TearDown() override {
+    if (!HasFailure()) fs::remove_all(folder_);
   }
 
   ChildProcess start(const std::vector<std::string>& arguments) {
     std::vector<std::string> argv{SKEIN_PROGRAMS "/skein-hil"};
     argv.insert(argv.end(), arguments.begin(), arguments.end());
-    auto child = ChildProcess::start(argv, log, {});
+    auto child = ChildProcess::start(argv, log_, {});
     EXPECT_TRUE(child);
     return std::move(child).value();
   }
@@ -46,7 +48,7 @@ class EndToEnd : public testing::Test {
     text << std::ifstream{file}.rdbuf();
     return text.str();
   }
-  [[nodiscard]] std::string output() const { return text_of(log); }
+  [[nodiscard]] std::string output() const { return text_of(log_); }
   bool wait_for_output(const std::string& words) const {
     for (int i = 0; i < 3000; ++i) {
       if (output().find(words) != std::string::npos) return true;
@@ -61,7 +63,7 @@ class EndToEnd : public testing::Test {
     const auto at = yaml.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     yaml.replace(at, from.size(), to);
-    const auto file = folder / "changed.yaml";
+    const auto file = folder_ / "changed.yaml";
     std::ofstream{file} << yaml;
     return file.string();
   }
@@ -91,27 +93,25 @@ class EndToEnd : public testing::Test {
   }
 
   static constexpr const char* kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
-  const fs::path folder =
+  const fs::path folder_ =
       fs::temp_directory_path() /
-      ("skein-end-to-end-" + std::to_string(::getpid()) + "-" + std::to_string(++tests_));
-  const fs::path log = folder / "log";
-
- private:
-  static inline int tests_ = 0;
+      ("skein-end-to-end-" + std::to_string(::getpid()) + "-" + std::to_string(++g_tests));
+  const fs::path log_ = folder_ / "log";
 };
 
 TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
-  EXPECT_EQ(run({"run", kSmall, "--headless", "--out", (folder / "run").string()}), "exit status 0")
+  EXPECT_EQ(run({"run", kSmall, "--headless", "--out", (folder_ / "run").string()}),
+            "exit status 0")
       << output();
   const auto text = output();
   const auto last = text.rfind('\n', text.size() - 2);
   EXPECT_TRUE(text.substr(last + 1).starts_with("PASS")) << text;
-  EXPECT_TRUE(fs::exists(folder / "run" / "vehicle-01" / "track.csv"));
-  EXPECT_TRUE(fs::exists(folder / "run" / "ground" / "events.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "vehicle-01" / "track.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "ground" / "events.csv"));
 }
 
 TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
-  auto bench = start({"run", kSmall, "--headless", "--out", (folder / "run").string()});
+  auto bench = start({"run", kSmall, "--headless", "--out", (folder_ / "run").string()});
   ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
   const auto children = children_of(bench.pid());
   ASSERT_EQ(children.size(), 7U);
@@ -125,16 +125,16 @@ TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
 
 TEST_F(EndToEnd, AFormationGoesOnWithoutTheVehicleThatIsLostInAChange) {
   const std::string mission = SKEIN_SOURCE_DIR "/tests/end_to_end/formation-loss.yaml";
-  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder / "run").string()}),
+  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder_ / "run").string()}),
             "exit status 0")
       << output();
   EXPECT_NE(output().find("vehicle 2 is silent"), std::string::npos) << output();
-  EXPECT_TRUE(fs::exists(folder / "run" / "ground" / "places.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "ground" / "places.csv"));
 }
 
 TEST_F(EndToEnd, AFormationIsSafeThroughLossSilenceAndWithoutLeaderAndGroundStation) {
   const std::string mission = SKEIN_SOURCE_DIR "/tests/end_to_end/formation-faults.yaml";
-  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder / "run").string()}),
+  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "2", "--out", (folder_ / "run").string()}),
             "exit status 0")
       << output();
   EXPECT_NE(output().find("fault: vehicle 1 is killed"), std::string::npos) << output();
@@ -142,13 +142,13 @@ TEST_F(EndToEnd, AFormationIsSafeThroughLossSilenceAndWithoutLeaderAndGroundStat
 }
 
 TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
-  const fs::path run_folder = folder / "run";
+  const fs::path run_folder = folder_ / "run";
   const std::string unscripted =
       scenario_with("script: [take-off, form wedge spacing 5 at 0 40 12, rally, land]",
                     "script: []", SKEIN_SOURCE_DIR "/tests/end_to_end/formation-loss.yaml");
   auto bench = start({"run", unscripted, "--headless", "--out", run_folder.string()});
   ASSERT_TRUE(wait_for_output("the mission begins")) << output();
-  const fs::path told = folder / "told";
+  const fs::path told = folder_ / "told";
   const auto tell = [&](std::vector<std::string> words) {
     words.insert(words.begin(), {SKEIN_PROGRAMS "/skein-ground", "formation", "--config",
                                  (run_folder / "ground.yaml").string()});
@@ -173,7 +173,7 @@ TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
 }
 
 TEST_F(EndToEnd, CtrlCStopsEverything) {
-  auto bench = start({"run", kSmall, "--headless", "--out", (folder / "run").string()});
+  auto bench = start({"run", kSmall, "--headless", "--out", (folder_ / "run").string()});
   ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
   const auto children = children_of(bench.pid());
   bench.signal(SIGINT);
@@ -188,10 +188,10 @@ TEST_F(EndToEnd, TheSameSeedIsSimulatedByteForByte) {
   const std::string mission = SKEIN_SOURCE_DIR "/scenarios/coalition-32.yaml";
   EXPECT_EQ(run({"simulate", mission, "--trace"}), "exit status 0") << output();
   const std::string once = output();
-  fs::remove(log);
+  fs::remove(log_);
   EXPECT_EQ(run({"simulate", mission, "--trace"}), "exit status 0");
   EXPECT_EQ(once, output());
-  fs::remove(log);
+  fs::remove(log_);
   EXPECT_EQ(run({"simulate", mission, "--trace", "--seed", "99"}), "exit status 0");
   EXPECT_NE(once, output());
 }
@@ -237,7 +237,7 @@ TEST_F(EndToEnd, APortInUseIsNamedWithItsRemedy) {
   ASSERT_EQ(::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size), 0);
   const auto port = std::to_string(ntohs(address.sin_port));
   EXPECT_EQ(
-      run({"run", kSmall, "--headless", "--port-base", port, "--out", (folder / "run").string()}),
+      run({"run", kSmall, "--headless", "--port-base", port, "--out", (folder_ / "run").string()}),
       "exit status 2");
   EXPECT_NE(output().find("UDP port " + port + " is in use"), std::string::npos) << output();
   ::close(s);

@@ -21,21 +21,21 @@ namespace fs = std::filesystem;
 
 class Simulate : public testing::Test {
  protected:
-  Simulate() { fs::create_directories(folder); }
-  ~Simulate() override {
-    if (!HasFailure()) fs::remove_all(folder);
+  Simulate() { fs::create_directories(folder_); }
+  void TearDown() override {
+    if (!HasFailure()) fs::remove_all(folder_);
   }
   std::string run(const std::vector<std::string>& arguments) {
     std::vector<std::string> argv{SKEIN_PROGRAMS "/skein-hil", "simulate"};
     argv.insert(argv.end(), arguments.begin(), arguments.end());
-    fs::remove(log);
-    auto child = ChildProcess::start(argv, log, {});
+    fs::remove(log_);
+    auto child = ChildProcess::start(argv, log_, {});
     EXPECT_TRUE(child);
     return child->wait(240s) ? *child->ended() : "still running";
   }
   [[nodiscard]] std::string output() const {
     std::stringstream text;
-    text << std::ifstream{log}.rdbuf();
+    text << std::ifstream{log_}.rdbuf();
     return text.str();
   }
   /// The small scenario with one piece of text replaced.
@@ -46,15 +46,15 @@ class Simulate : public testing::Test {
     const auto at = yaml.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     yaml.replace(at, from.size(), to);
-    const auto file = folder / "changed.yaml";
+    const auto file = folder_ / "changed.yaml";
     std::ofstream{file} << yaml;
     return file.string();
   }
 
-  const std::string kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
-  const fs::path folder =
+  static constexpr const char* kSmall = SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml";
+  const fs::path folder_ =
       fs::temp_directory_path() / ("skein-simulate-" + std::to_string(::getpid()));
-  const fs::path log = folder / "log";
+  const fs::path log_ = folder_ / "log";
 };
 
 TEST_F(Simulate, ManySeedsAreFlownAndSummedUp) {
@@ -97,7 +97,7 @@ TEST_F(Simulate, AnotherPathKeepsTheTimeWhereSpeedCannot) {
     ASSERT_NE(at, std::string::npos) << from;
     yaml.replace(at, std::string{from}.size(), to);
   }
-  const auto file = folder / "windy.yaml";
+  const auto file = folder_ / "windy.yaml";
   std::ofstream{file} << yaml;
   EXPECT_EQ(run({file.string(), "--runs", "8", "--seed", "1"}), "exit status 0") << output();
   // A second attempt ends after 100 s.

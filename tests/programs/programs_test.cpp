@@ -71,7 +71,7 @@ class Programs : public ::testing::Test {
         std::filesystem::temp_directory_path() / ("skein-programs-" + std::to_string(device()));
     std::filesystem::create_directories(folder_);
   }
-  ~Programs() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   [[nodiscard]] configuration::NetworkConfig network_of(VehicleId self) const {
     const bool ground = self == kGroundStation;
@@ -110,7 +110,7 @@ class Programs : public ::testing::Test {
     std::ofstream{folder_ / name} << text;
     return folder_ / name;
   }
-  [[nodiscard]] hil::ChildProcess start(std::vector<std::string> words) const {
+  [[nodiscard]] hil::ChildProcess start(const std::vector<std::string>& words) const {
     auto started = hil::ChildProcess::start(words, folder_ / "log", {});
     EXPECT_TRUE(started.ok());
     return std::move(started).value();
