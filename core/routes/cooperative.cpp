@@ -35,8 +35,10 @@ std::string name(const RouteVehicle& vehicle) {
 
 Result<void> validate_vehicle(const RouteProblem& problem, const RouteVehicle& v) {
   const bool finite = v.start.allFinite() && std::isfinite(v.start_heading_rad) &&
-                      std::isfinite(v.approach_heading_rad) && std::isfinite(v.arrival_offset_s);
-  if (!finite) return Error{name(v) + ": start, headings and offset must be finite"};
+                      std::isfinite(v.approach_heading_rad) && std::isfinite(v.arrival_offset_s) &&
+                      std::isfinite(v.start_height_m) && std::isfinite(v.arrival_height_m);
+  if (!finite) return Error{name(v) + ": start, headings, heights and offset must be finite"};
+  if (!(v.climb_max > 0.0)) return Error{name(v) + ": the steepest climb must be above 0"};
   if (!(v.speed_mps > 0.0)) return Error{name(v) + ": the speed must be above 0"};
   if (!(v.turn_radius_m > 0.0)) return Error{name(v) + ": the turn radius must be above 0"};
   if (!(v.range_m > 0.0)) return Error{name(v) + ": the range must be above 0"};
@@ -130,7 +132,8 @@ class Planner {
       const double offset = v.arrival_offset_s;
       plan_.bound_s = std::max(plan_.bound_s, bounds_.back() / v.speed_mps - offset);
       plan_.latest_s = std::min(plan_.latest_s, v.range_m / v.speed_mps - offset);
-      earliest_s_ = std::max(earliest_s_, bases_.back().front().length_m / v.speed_mps - offset);
+      shortest_.push_back(std::max(bases_.back().front().length_m, climb_length_m(problem_, v)));
+      earliest_s_ = std::max(earliest_s_, shortest_.back() / v.speed_mps - offset);
     }
     if (earliest_s_ > plan_.latest_s) {
       return Error{"the slowest vehicle arrives after " + std::to_string(earliest_s_) +
@@ -141,8 +144,7 @@ class Planner {
   }
 
   [[nodiscard]] double spare_s(std::size_t i, double arrival_s) const {
-    return arrival_s + vehicle(i).arrival_offset_s -
-           bases_[i].front().length_m / vehicle(i).speed_mps;
+    return arrival_s + vehicle(i).arrival_offset_s - shortest_[i] / vehicle(i).speed_mps;
   }
 
   /// Routes of everybody at that common time, in `found_`.
@@ -152,7 +154,7 @@ class Planner {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
       return spare_s(a, arrival_s) < spare_s(b, arrival_s);
     });
-    for (std::size_t attempt = 0; attempt <= params_.reorders; ++attempt) {
+    for (std::size_t attempt = 0; attempt <= std::min(params_.reorders, count() - 1); ++attempt) {
       const std::size_t failed = plan_in_order(order, arrival_s);
       if (failed == count()) return true;
       stuck_ = order[failed];
@@ -174,7 +176,7 @@ class Planner {
       if (!waypoints || cancelled_) return k;
       const auto path = fly_by_path(*waypoints, vehicle(i).turn_radius_m);
       SKEIN_ASSERT(path.ok());
-      others.emplace_back(*path, vehicle(i).speed_mps);
+      others.emplace_back(*path, vehicle(i), problem_.rules);
       routes[i] = std::move(*waypoints);
     }
     found_ = std::move(routes);
@@ -225,8 +227,10 @@ class Planner {
     const auto smooth =
         static_cast<std::uint64_t>(kSmoothShare * static_cast<double>(params_.evaluations));
     const SearchBudget budget{evaluations, [&](const SearchProgress& progress) {
-                                return progress.best >= RouteJudge::kInfeasible ||
-                                       progress.evaluations < smooth;
+                                // Good enough, or hopeless.
+                                return progress.evaluations < smooth ||
+                                       (progress.best >= RouteJudge::kInfeasible &&
+                                        progress.best < RouteJudge::kUnflyable);
                               }};
     const SearchResult found =
         differential_evolution(objective, space, evolution, budget, random_.fork());
@@ -249,6 +253,10 @@ class Planner {
     cancelled_ = false;  // there is a plan already
   }
 
+  [[nodiscard]] double climb_of(const RouteVehicle& v, double length_m) const {
+    return (v.arrival_height_m - v.start_height_m) / (length_m - problem_.rules.last_leg_m);
+  }
+
   CooperativePlan finish() {
     plan_.arrival_s = found_s_;
     std::vector<TimedRoute> timed;
@@ -262,13 +270,14 @@ class Planner {
       route.length_m = fly_by_length_m(found_[i], v.turn_radius_m);
       route.arrival_s = route.length_m / v.speed_mps;
       route.bound_m = bounds_[i];
+      route.climb = climb_of(v, route.length_m);
       route.costs = route_costs(problem_, found_[i], *path);
       plan_.total_cost += route.costs.total;
       for (const TimedRoute& other : timed) {
-        plan_.spacing_cost += spacing_cost(other, TimedRoute{*path, v.speed_mps},
-                                           problem_.rules.separation_m, problem_.rules.contact_m);
+        plan_.spacing_cost +=
+            spacing_cost(other, TimedRoute{*path, v, problem_.rules}, problem_.rules);
       }
-      timed.emplace_back(*path, v.speed_mps);
+      timed.emplace_back(*path, v, problem_.rules);
       plan_.routes.push_back(std::move(route));
     }
     plan_.total_cost += problem_.spacing_weight * plan_.spacing_cost;
@@ -281,6 +290,7 @@ class Planner {
   std::vector<Hazard> circles_;
   std::vector<std::vector<BaseRoute>> bases_;
   std::vector<double> bounds_;
+  std::vector<double> shortest_;  ///< flyable, by vehicle
   double earliest_s_ = 0.0;
   std::vector<std::vector<Vec2>> found_;
   double found_s_ = 0.0;

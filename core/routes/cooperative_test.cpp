@@ -22,8 +22,9 @@ std::string complaints(const CheckReport& report) {
   return all;
 }
 
-CooperativePlan planned(const RouteProblem& problem, std::uint64_t seed = 1) {
-  auto plan = plan_routes(problem, {}, Random{seed});
+CooperativePlan planned(const RouteProblem& problem, std::uint64_t seed = 1,
+                        const RoutePlannerParams& params = {}) {
+  auto plan = plan_routes(problem, params, Random{seed});
   EXPECT_TRUE(plan.ok()) << plan.error().message;
   if (!plan) return {};
   const CheckReport report = check_routes(problem, *plan);
@@ -77,6 +78,46 @@ TEST(Cooperative, SpeedsOffsetsConesAndOpenHazardsAreKeptTo) {
     change(problem);
     planned(problem);
   }
+}
+
+TEST(Cooperative, ClimbsAreFlownInTimeAndHeightsSeparate) {
+  RouteProblem problem = paper_team();
+  problem.vehicles[1].arrival_height_m = 300;
+  problem.vehicles[1].climb_max = 0.15;
+  const CooperativePlan plan = planned(problem);
+  // 300 m at 15 %, and the last leg level.
+  EXPECT_NEAR(plan.bound_s * 20.0, 300 / 0.15 + 100, 1e-6);
+  ASSERT_EQ(plan.routes.size(), 3U);
+  EXPECT_LE(plan.routes[1].climb, 0.15 + 1e-9);
+  EXPECT_GT(plan.routes[1].climb, 0.14);
+
+  // Two that fly the same way, one above the other; at one height they cannot.
+  RouteProblem pair;
+  pair.site = {2000, 0};
+  pair.rules = {.last_leg_m = 100, .separation_m = 50};
+  pair.rules.separation_height_m = 25;
+  for (const double side : {1.0, -1.0}) {
+    RouteVehicle vehicle;
+    vehicle.id = VehicleId{static_cast<std::uint16_t>(side > 0 ? 1 : 2)};
+    vehicle.start = {0, 30 * side};
+    vehicle.speed_mps = 20;
+    vehicle.turn_radius_m = 20;
+    vehicle.range_m = 2010;
+    vehicle.start_height_m = vehicle.arrival_height_m = side > 0 ? 130 : 100;
+    pair.vehicles.push_back(vehicle);
+  }
+  planned(pair);
+  pair.vehicles[0].start_height_m = pair.vehicles[0].arrival_height_m = 120;
+  RoutePlannerParams quick;
+  quick.evaluations = 200;
+  quick.reorders = 0;
+  EXPECT_FALSE(plan_routes(pair, quick, Random{1}).ok());
+  // One descends past the other: they keep apart until it is below.
+  pair.vehicles[0].start_height_m = 130;
+  pair.vehicles[0].arrival_height_m = 70;
+  for (RouteVehicle& vehicle : pair.vehicles) vehicle.range_m = 2300;
+  quick.evaluations = 600;
+  planned(pair, 1, quick);
 }
 
 TEST(Cooperative, RandomTeamsPassTheChecker) {

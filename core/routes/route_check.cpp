@@ -205,6 +205,12 @@ class Checker {
                "comes to " + number(clearance) + " m of hazard " + std::to_string(hazard.id.value));
       }
     }
+    const double climbing_m = m.length_m - rules.last_leg_m;
+    const double rise_m = vehicle.arrival_height_m - vehicle.start_height_m;
+    m.climb = rise_m == 0.0 ? 0.0 : rise_m / std::max(climbing_m, 1e-9);
+    if (std::abs(rise_m) > vehicle.climb_max * climbing_m + allowed_.distance_m) {
+      broken(i, "climbs by " + number(100.0 * m.climb) + " %");
+    }
     if ((points.front() - vehicle.start).norm() > allowed_.distance_m) {
       broken(i, "does not begin at its start");
     }
@@ -286,13 +292,47 @@ class Checker {
     }
   }
 
+  [[nodiscard]] double height(std::size_t i, double t) const {
+    const RouteVehicle& v = problem_.vehicles[i];
+    const double level_at_s = level_s(i);
+    if (t >= level_at_s) return v.arrival_height_m;
+    return v.start_height_m + (v.arrival_height_m - v.start_height_m) * t / level_at_s;
+  }
+  [[nodiscard]] double level_s(std::size_t i) const {
+    return (flown_[i].length_m - problem_.rules.last_leg_m) / problem_.vehicles[i].speed_mps;
+  }
+
+  /// Moments at which two vehicles begin or cease to be apart in height: their difference is linear
+  /// between the moments at which one of them levels out.
+  void times_of_heights(std::size_t i, std::size_t j, double until,
+                        std::vector<double>& times) const {
+    const double limit = problem_.rules.separation_height_m;
+    std::vector<double> bends = {0.0, level_s(i), level_s(j), until};
+    std::sort(bends.begin(), bends.end());
+    for (std::size_t k = 1; k < bends.size(); ++k) {
+      const double from = height(i, bends[k - 1]) - height(j, bends[k - 1]);
+      const double to = height(i, bends[k]) - height(j, bends[k]);
+      for (const double level : {limit, -limit}) {
+        if ((from - level) * (to - level) >= 0.0) continue;
+        const double share = (level - from) / (to - from);
+        times.push_back(bends[k - 1] + share * (bends[k] - bends[k - 1]));
+      }
+    }
+  }
+
   void look_along(std::size_t i, std::size_t j, double until, Nearest& nearest) const {
     std::vector<double> times = {0.0, until};
     times_of_pieces(i, times);
     times_of_pieces(j, times);
+    const bool heights = std::isfinite(problem_.rules.separation_height_m);
+    if (heights) times_of_heights(i, j, until, times);
     std::sort(times.begin(), times.end());
     for (std::size_t k = 1; k < times.size() && times[k] <= until; ++k) {
       const double middle = 0.5 * (times[k - 1] + times[k]);
+      if (heights &&
+          std::abs(height(i, middle) - height(j, middle)) >= problem_.rules.separation_height_m) {
+        continue;
+      }
       const bool arcs = flown_[i].is_arc(problem_.vehicles[i].speed_mps * middle) ||
                         flown_[j].is_arc(problem_.vehicles[j].speed_mps * middle);
       if (arcs) {

@@ -103,6 +103,41 @@ TEST(RouteCheck, EveryRuleIsSeenToBeBroken) {
   }
 }
 
+TEST(RouteCheck, HeightsSeparateOnlyWhileTheyAreApart) {
+  // As below, one vehicle descending through the other's height just after or before they cross.
+  RouteProblem problem;
+  problem.site = {2000, 0};
+  problem.rules = {.last_leg_m = 100, .turn_max_rad = 3.0, .separation_m = 25};
+  problem.rules.separation_height_m = 10;
+  problem.vehicles = {{.id = VehicleId{1}, .start = {-400, 0}, .speed_mps = 25},
+                      {.id = VehicleId{2}, .start = {0, -400}, .speed_mps = 25}};
+  problem.vehicles[0].start_height_m = 100;
+  CooperativePlan plan;
+  plan.routes = {{.id = VehicleId{1}, .waypoints = {{-400, 0}, {2000, 0}}},
+                 {.id = VehicleId{2}, .waypoints = {{0, -400}, {0, 400}, {2000, 0}}}};
+  const auto too_near = [&] {
+    const CheckReport report = check_routes(problem, plan);
+    return std::any_of(report.violations.begin(), report.violations.end(), [](const Violation& v) {
+      return v.message.find("of vehicle 2") != std::string::npos;
+    });
+  };
+  // 100 m down over 2300 m: at 400 m flown it is at 82.6 m.
+  problem.vehicles[1].start_height_m = problem.vehicles[1].arrival_height_m = 95;
+  EXPECT_FALSE(too_near());
+  problem.vehicles[1].start_height_m = problem.vehicles[1].arrival_height_m = 92.5;
+  EXPECT_TRUE(too_near());  // just before they meet
+  problem.vehicles[1].start_height_m = problem.vehicles[1].arrival_height_m = 72;
+  EXPECT_TRUE(too_near());  // just after
+  problem.vehicles[1].start_height_m = problem.vehicles[1].arrival_height_m = 70;
+  EXPECT_FALSE(too_near());
+  problem.vehicles[0].climb_max = 0.04;
+  const CheckReport steep = check_routes(problem, plan);
+  EXPECT_TRUE(std::any_of(steep.violations.begin(), steep.violations.end(), [](const Violation& v) {
+    return v.message.find("climbs by") != std::string::npos;
+  }));
+  EXPECT_NEAR(steep.routes[0].climb, -100.0 / 2300.0, 1e-12);
+}
+
 TEST(RouteCheck, SeparationIsSeenBetweenAnyTwoMoments) {
   // They cross at a right angle, the second so much later that it passes 30 m / sqrt(2) away.
   RouteProblem problem;

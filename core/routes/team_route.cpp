@@ -84,7 +84,13 @@ double length_bound_m(const RouteProblem& problem, const RouteVehicle& vehicle) 
   const Vec2 entry = problem.site - last_m * unit_vector(vehicle.approach_heading_rad);
   const CorridorEnds ends{.start = vehicle.start, .goal = entry};
   const std::vector<Corridor> found = shortest_corridors(ends, discs_of(circles), 1);
-  return found.empty() ? kInfinity : found.front().length_m + last_m;
+  if (found.empty()) return kInfinity;
+  return std::max(found.front().length_m + last_m, climb_length_m(problem, vehicle));
+}
+
+double climb_length_m(const RouteProblem& problem, const RouteVehicle& vehicle) {
+  const double rise = std::abs(vehicle.arrival_height_m - vehicle.start_height_m);
+  return rise > 0.0 ? rise / vehicle.climb_max + problem.rules.last_leg_m : 0.0;
 }
 
 std::vector<BaseRoute> base_routes(const RouteProblem& problem, const RouteVehicle& vehicle,
@@ -118,17 +124,22 @@ std::vector<BaseRoute> base_routes(const RouteProblem& problem, const RouteVehic
   return routes;
 }
 
-TimedRoute::TimedRoute(const Path& path, double speed_mps) : speed_mps_{speed_mps} {
+TimedRoute::TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules)
+    : speed_mps_{vehicle.speed_mps},
+      start_height_m_{vehicle.start_height_m},
+      arrival_height_m_{vehicle.arrival_height_m},
+      level_s_{(path.length_m() - rules.last_leg_m) / vehicle.speed_mps},
+      climb_mps_{(arrival_height_m_ - start_height_m_) / std::max(level_s_, 1e-9)} {
   Pose2 pose = path.start;
   double flown = 0.0;
   for (const Segment& segment : path.segments) {
     poses_.push_back(pose);
     curvatures_.push_back(segment.curvature_per_m);
-    times_s_.push_back(flown / speed_mps);
+    times_s_.push_back(flown / speed_mps_);
     pose = advance(pose, segment.curvature_per_m, segment.length_m);
     flown += segment.length_m;
   }
-  times_s_.push_back(flown / speed_mps);
+  times_s_.push_back(flown / speed_mps_);
 }
 
 Vec2 TimedRoute::at(double t, std::size_t& piece) const {
@@ -139,7 +150,8 @@ Vec2 TimedRoute::at(double t, std::size_t& piece) const {
   return advance(pose, curvatures_[piece], distance).position();
 }
 
-double separation_deficit_m(const TimedRoute& a, const TimedRoute& b, double separation_m) {
+double separation_deficit_m(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules) {
+  const double separation_m = rules.separation_m;
   if (separation_m <= 0.0) return 0.0;
   double until = std::min(a.end_s(), b.end_s());
   const double faster = std::max(a.speed_mps(), b.speed_mps());
@@ -149,25 +161,28 @@ double separation_deficit_m(const TimedRoute& a, const TimedRoute& b, double sep
   // No distance is lost faster than both speeds allow: nothing can happen before the next look.
   const double closing = a.speed_mps() + b.speed_mps();
   const double step_min = 1e-3 * separation_m / closing;
+  const double rising = std::abs(a.climb_mps()) + std::abs(b.climb_mps());
   double least = kInfinity;
   std::size_t piece_a = 0;
   std::size_t piece_b = 0;
   double t = 0.0;
   while (true) {
     const double distance = (a.at(t, piece_a) - b.at(t, piece_b)).norm();
-    least = std::min(least, distance);
+    const double above = std::abs(a.height_m(t) - b.height_m(t)) - rules.separation_height_m;
+    if (above < 0.0) least = std::min(least, distance);
     if (t >= until) break;
     const double spare = distance - separation_m;
     // Once too near, how much nearer they come need not be exact.
-    const double step = spare > 0.0 ? spare / closing : 0.05 * separation_m / closing;
+    double step = (spare > 0.0 ? spare : separation_m) / closing;
+    if (above > 0.0) step = rising > 0.0 ? std::max(step, above / rising) : until;
     t = std::min(until, t + std::max(step, step_min));
   }
   // What a shortest step may have hidden.
   return std::max(0.0, separation_m + 1e-3 * separation_m - least);
 }
 
-double spacing_cost(const TimedRoute& a, const TimedRoute& b, double separation_m,
-                    double contact_m) {
+double spacing_cost(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules) {
+  const double separation_m = rules.separation_m;
   if (separation_m <= 0.0) return 0.0;
   const double until = std::min(a.end_s(), b.end_s());
   double sum = 0.0;
@@ -177,7 +192,9 @@ double spacing_cost(const TimedRoute& a, const TimedRoute& b, double separation_
     const double t = until * static_cast<double>(k) / static_cast<double>(kSpacingSamples);
     const double d = (a.at(t, piece_a) - b.at(t, piece_b)).norm();
     sum += 0.5 * (1.0 - std::tanh((d - separation_m) / separation_m));
-    if (contact_m < kInfinity) sum += 0.5 * (1.0 + std::tanh((d - contact_m) / separation_m));
+    if (rules.contact_m < kInfinity) {
+      sum += 0.5 * (1.0 + std::tanh((d - rules.contact_m) / separation_m));
+    }
   }
   return sum / static_cast<double>(kSpacingSamples);
 }
@@ -283,16 +300,16 @@ double RouteJudge::hazards_entered(std::span<const Vec2> waypoints,
 double RouteJudge::judge(std::span<const Vec2> waypoints, std::span<const char> fresh) const {
   const double broken = rules_broken(waypoints) + hazards_entered(waypoints, fresh);
   // Such a route may not even be a path: routes of others come last.
-  if (broken > 0.0) return 3.0 * kInfeasible * (1.0 + broken);
+  if (broken > 0.0) return kUnflyable * (1.0 + broken);
   const auto path = fly_by_path(waypoints, vehicle_.turn_radius_m);
-  if (!path) return 3.0 * kInfeasible;
-  const TimedRoute timed{*path, vehicle_.speed_mps};
+  if (!path) return kUnflyable;
+  const TimedRoute timed{*path, vehicle_, problem_.rules};
   double deficit = 0.0;
   double spacing = 0.0;
   for (const TimedRoute& other : others_) {
-    deficit += separation_deficit_m(timed, other, problem_.rules.separation_m);
+    deficit += separation_deficit_m(timed, other, problem_.rules);
     if (deficit > 0.0) continue;
-    spacing += spacing_cost(timed, other, problem_.rules.separation_m, problem_.rules.contact_m);
+    spacing += spacing_cost(timed, other, problem_.rules);
   }
   if (deficit > 0.0) return kInfeasible * (1.0 + deficit / (deficit + problem_.rules.separation_m));
   return route_costs(problem_, waypoints, *path).total + problem_.spacing_weight * spacing;

@@ -22,6 +22,9 @@ struct BaseRoute {
 /// The closed hazards as circles, with their clearance.
 [[nodiscard]] std::vector<Hazard> closed_circles(const RouteProblem& problem);
 
+/// What the climb alone asks for.
+[[nodiscard]] double climb_length_m(const RouteProblem& problem, const RouteVehicle& vehicle);
+
 /// No route of the vehicle is shorter. Infinite where there is none.
 [[nodiscard]] double length_bound_m(const RouteProblem& problem, const RouteVehicle& vehicle);
 
@@ -57,12 +60,16 @@ class Extension {
 /// A route in time, from 0 to its end.
 class TimedRoute {
  public:
-  TimedRoute(const Path& path, double speed_mps);
+  TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules);
 
   [[nodiscard]] double end_s() const { return times_s_.back(); }
   /// When its last straight leg begins.
   [[nodiscard]] double last_leg_s() const { return times_s_[times_s_.size() - 2]; }
   [[nodiscard]] double speed_mps() const { return speed_mps_; }
+  [[nodiscard]] double height_m(double t) const {
+    return t >= level_s_ ? arrival_height_m_ : start_height_m_ + climb_mps_ * t;
+  }
+  [[nodiscard]] double climb_mps() const { return climb_mps_; }
   /// `piece`: where to look first; for times that only grow.
   [[nodiscard]] Vec2 at(double t, std::size_t& piece) const;
 
@@ -71,16 +78,20 @@ class TimedRoute {
   std::vector<double> curvatures_;
   std::vector<double> times_s_;  ///< of the beginnings, and the end
   double speed_mps_;
+  double start_height_m_;
+  double arrival_height_m_;
+  double level_s_;
+  double climb_mps_;
 };
 
 /// By how much two routes come too near, metres; 0: not at all.
 [[nodiscard]] double separation_deficit_m(const TimedRoute& a, const TimedRoute& b,
-                                          double separation_m);
+                                          const RouteRules& rules);
 
 /// Spacing cost of two routes (Wu 2022, eq. 35): mean over their common time of
 /// (1 - tanh((d - d_s) / d_s)) / 2 + (1 + tanh((d - d_c) / d_s)) / 2.
-[[nodiscard]] double spacing_cost(const TimedRoute& a, const TimedRoute& b, double separation_m,
-                                  double contact_m);
+[[nodiscard]] double spacing_cost(const TimedRoute& a, const TimedRoute& b,
+                                  const RouteRules& rules);
 
 /// Costs of a route (eq. 26), exposure over equal distances flown.
 [[nodiscard]] RouteCosts route_costs(const RouteProblem& problem, std::span<const Vec2> waypoints,
@@ -93,11 +104,13 @@ class RouteJudge {
              std::span<const Hazard> circles, std::span<const TimedRoute> others)
       : problem_{problem}, vehicle_{vehicle}, circles_{circles}, others_{others} {}
 
-  /// Below kInfeasible: keeps to every rule, the value is its cost. Above: the more it breaks
-  /// them, the more. Pieces between waypoints that are not fresh are taken to be clear of hazards.
+  /// Below kInfeasible: keeps to every rule, the value is its cost. Above: comes too near to
+  /// others; from kUnflyable on: breaks other rules. The more, the more. Pieces between waypoints
+  /// that are not fresh are taken to be clear of hazards.
   [[nodiscard]] double judge(std::span<const Vec2> waypoints, std::span<const char> fresh) const;
 
   static constexpr double kInfeasible = 1e3;
+  static constexpr double kUnflyable = 3e3;
 
  private:
   [[nodiscard]] double rules_broken(std::span<const Vec2> waypoints) const;

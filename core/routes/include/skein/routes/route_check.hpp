@@ -31,6 +31,7 @@ struct RouteMeasures {
   double start_angle_rad = 0.0;   ///< of the first leg to the start heading
   double turn_largest_rad = 0.0;  ///< at one waypoint
   double turn_room_m = 0.0;  ///< least straight line left between two arcs, or before and after
+  double climb = 0.0;        ///< height over distance until the last leg
   double clearance_m = 0.0;  ///< least distance to the edge of a closed hazard
 };
 

@@ -29,6 +29,12 @@ struct RouteVehicle {
   /// point of entry as seen from the site: pi more.
   double approach_heading_rad = 0.0;
   double arrival_offset_s = 0.0;  ///< arrives so much after the common time (sequential arrival)
+  /// Heights above the mission's origin. It climbs or descends evenly from the start until the last
+  /// leg (RouteRules::last_leg_m) is left, which it flies level.
+  double start_height_m = 0.0;
+  double arrival_height_m = 0.0;
+  /// The steepest climb or descent, metres of height over metres flown over the ground.
+  double climb_max = std::numeric_limits<double>::infinity();
 };
 
 /// What every route must keep to.
@@ -42,6 +48,8 @@ struct RouteRules {
   /// Vehicles that reach the site less than d_s apart cannot keep it there: between two such, it
   /// ends as soon as both are on their last straight legs.
   double separation_m = 0.0;
+  /// Vehicles that are so far apart in height need no separation.
+  double separation_height_m = std::numeric_limits<double>::infinity();
   double contact_m = std::numeric_limits<double>::infinity();  ///< d_c, wished for (eq. 35)
   double clearance_m = 0.0;       ///< beyond the radius of a hazard that is closed
   bool detections_closed = true;  ///< else they only cost; keep-outs are always closed
@@ -76,9 +84,10 @@ struct PlannedRoute {
   std::vector<Vec2> waypoints{};  ///< start and site included
   double length_m = 0.0;          ///< eq. 1
   double arrival_s = 0.0;         ///< length over speed
-  /// No route that keeps clear of the closed hazards, with the last leg and the approach heading,
-  /// is shorter, whatever its turn radius.
+  /// No route that keeps clear of the closed hazards, with the last leg, the approach heading and
+  /// the climb, is shorter, whatever its turn radius.
   double bound_m = 0.0;
+  double climb = 0.0;  ///< height over distance until the last leg; negative: descends
   RouteCosts costs{};  ///< exposure over equal distances flown
 };
 
