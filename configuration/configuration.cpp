@@ -99,6 +99,14 @@ Result<Experiment> parse_experiment(std::string_view yaml, const std::string& na
 }
 std::string to_yaml(const Experiment& experiment) { return written(experiment); }
 
+Result<RoutePlan> load_route_plan(const std::filesystem::path& file) {
+  return load<RoutePlan>(file);
+}
+Result<RoutePlan> parse_route_plan(std::string_view yaml, const std::string& name) {
+  return parse<RoutePlan>(yaml, name);
+}
+std::string to_yaml(const RoutePlan& plan) { return written(plan); }
+
 Result<ShapeFile> load_shape(const std::filesystem::path& file) { return load<ShapeFile>(file); }
 Result<ShapeFile> parse_shape(std::string_view yaml, const std::string& name) {
   return parse<ShapeFile>(yaml, name);

@@ -67,6 +67,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     config.origin = scenario.origin;
     config.start = vehicle.start;
     config.search = vehicle.search;
+    config.route = vehicle.route;
     config.flight_controller = vehicle.flight_controller;
     config.flight_controller.wind = scenario.wind;
     ArdupilotConfig& ardupilot = config.flight_controller.ardupilot;

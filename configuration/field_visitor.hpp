@@ -13,6 +13,7 @@
 #include "skein/base/geometry.hpp"
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/shape_file.hpp"
 
@@ -82,5 +83,6 @@ void fields(FieldVisitor& v, Scenario& scenario);
 void fields(FieldVisitor& v, ScenarioVehicle& vehicle);
 void fields(FieldVisitor& v, Experiment& experiment);
 void fields(FieldVisitor& v, ShapeFile& shape);
+void fields(FieldVisitor& v, RoutePlan& plan);
 
 }  // namespace skein::configuration

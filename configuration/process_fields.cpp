@@ -345,6 +345,7 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   v.section({"start", "where it starts", kRequired},
             [&config](FieldVisitor& inner) { pose_fields(inner, config.start); });
   search_list(v, config.search);
+  flight_route_section(v, config.route);
   v.section({"flight_controller", "what flies it"}, [&config](FieldVisitor& inner) {
     flight_controller_fields(inner, config.flight_controller, true);
     wind_fields(inner, config.flight_controller.wind, "wind_");

@@ -8,6 +8,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
+#include "skein/configuration/routes_config.hpp"
 #include "skein/planning/allocation.hpp"
 
 /// The parts that several tables share.
@@ -26,6 +27,9 @@ void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);
 void planning_fields(FieldVisitor& v, planning::AllocationParams& planning);
+void flight_route_fields(FieldVisitor& v, FlightRoute& route);
+void flight_route_section(FieldVisitor& v, FlightRoute& route);
+void routes_section(FieldVisitor& v, RoutesConfig& config);
 void formation_section(FieldVisitor& v, FormationConfig& formation);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 

@@ -48,7 +48,7 @@ class Check {
 
   void check_numbers() {
     if (s_.vehicles.empty()) problem("the fleet has no vehicle; add one under vehicles");
-    if (s_.sites.empty() && !s_.flies_formation())
+    if (s_.sites.empty() && !s_.flies_formation() && !s_.flies_routes())
       problem("the mission has no site; add one under sites");
     const Duration slowest = s_.radio.delay_mean + s_.radio.delay_jitter;
     if (slowest > s_.protocol.message_delay) {
@@ -240,6 +240,8 @@ class Check {
       need_site(r.site, "reference");
       if (r.found_by) need_vehicle(*r.found_by, "reference");
     }
+    for (const RouteApproach& a : s_.routes.approaches)
+      need_vehicle(a.vehicle, "routes.approaches");
     for (const SiteId id : s_.expect.first_attempt_fails)
       need_site(id, "expect.first_attempt_fails");
     for (const VehicleId id : s_.expect.vehicles_lost) need_vehicle(id, "expect.vehicles_lost");

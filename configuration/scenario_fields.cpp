@@ -211,6 +211,7 @@ void fields(FieldVisitor& v, Scenario& s) {
                           [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));
   operator_decisions_list(v, s.operator_decisions);
   formation_section(v, s.formation);
+  routes_section(v, s.routes);
   v.list({"faults", "things that go wrong, on the time line"},
          groups_of(s.faults, kListMax, fault_fields));
   v.list({"reference", "published values, printed beside the run's"},

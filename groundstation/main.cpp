@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/scenario.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/route_planning.hpp"
 #include "skein/process/log.hpp"
 
 namespace {
@@ -19,6 +24,12 @@ using skein::configuration::GroundConfig;
 
 constexpr int kExitRefused = 1;
 constexpr std::chrono::seconds kAnswerWithin{20};  // a change of a thousand vehicles takes its time
+
+struct PlanArguments {
+  std::string scenario;
+  std::string folder;
+  std::optional<std::uint64_t> seed;
+};
 
 struct Arguments {
   std::string config;
@@ -69,6 +80,39 @@ int tell(const Arguments& arguments, const std::string& line) {
   return answer->done ? 0 : kExitRefused;
 }
 
+int plan(const PlanArguments& arguments) {
+  auto scenario = skein::configuration::load_scenario(arguments.scenario);
+  if (!scenario) return fail(scenario.error().message, skein::process::kExitBadInput);
+  if (const auto good = skein::configuration::check(*scenario); !good) {
+    return fail(good.error().message, skein::process::kExitBadInput);
+  }
+  if (arguments.seed) scenario->seed = *arguments.seed;
+  skein::routes::RoutePlannerParams params;
+  const bool shows = ::isatty(STDERR_FILENO) == 1;
+  params.go_on = [shows](const skein::routes::RoutePlanProgress& progress) {
+    if (shows) {
+      std::fprintf(stderr, "\rarrival at %.1f s: %zu vehicles, %llu routes tried ",
+                   progress.arrival_s, progress.vehicles,
+                   static_cast<unsigned long long>(progress.evaluations));
+    }
+    return true;
+  };
+  const auto planned = groundstation::plan_routes(*scenario, params);
+  if (shows) std::fputs("\r\033[K", stderr);
+  if (!planned) return fail(planned.error().message, kExitRefused);
+  std::fputs(groundstation::routes_text(*planned).c_str(), stdout);
+  const std::filesystem::path folder =
+      arguments.folder.empty()
+          ? std::filesystem::path{"runs"} / std::filesystem::path{arguments.scenario}.stem()
+          : std::filesystem::path{arguments.folder};
+  const auto files = groundstation::write_routes(*planned, *scenario, folder);
+  if (!files) return fail(files.error().message, skein::process::kExitCannotStart);
+  std::printf("into %s:", folder.c_str());
+  for (const std::string& file : *files) std::printf(" %s", file.c_str());
+  std::printf("\n");
+  return planned->check.ok() ? 0 : kExitRefused;
+}
+
 CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,
                    const char* footer) {
   CLI::App& command = *app.add_subcommand(name, description);
@@ -91,7 +135,8 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  skein-ground --config ground.yaml\n"
       "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
-      "  skein-ground tell --config ground.yaml status\n\n"
+      "  skein-ground tell --config ground.yaml status\n"
+      "  skein-ground plan scenarios/routes-3.yaml\n\n"
       "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
       "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
@@ -119,11 +164,25 @@ int main(int argc, char** argv) {
                "Examples:\n"
                "  skein-ground tell status\n"
                "  skein-ground tell --socket skein-ground-7400 hold all");
+  PlanArguments planning;
+  CLI::App& plan_command =
+      *app.add_subcommand("plan", "Plans the routes of a mission file before the mission");
+  plan_command.add_option("scenario", planning.scenario, "A mission with `routes`, YAML")
+      ->required();
+  plan_command.add_option("--out", planning.folder, "Folder for the plan (default: runs/NAME)");
+  plan_command.add_option("--seed", planning.seed, "In place of the mission's");
+  plan_command.footer(
+      "Example:\n"
+      "  skein-ground plan scenarios/routes-3.yaml\n\n"
+      "Writes plan.yaml, which `skein-hil run --routes` flies, GeoJSON, KML, a .plan for each\n"
+      "vehicle that QGroundControl reads, and a picture. Exit status 1: no plan, or a rule is\n"
+      "broken.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
   }
+  if (plan_command.parsed()) return plan(planning);
   if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
   if (!formation.parsed()) return run(arguments);
   const std::string line = CLI::detail::join(formation.remaining(), " ");

@@ -19,7 +19,7 @@ static_assert(wire::kMoversMax == formation::kMoversMax);
 static_assert(wire::kMoverPointsMax == formation::kStagesMax + 1);
 static_assert(wire::ASSESS + 1 == static_cast<int>(TaskKind::count));
 static_assert(wire::UNKNOWN + 1 == static_cast<int>(coalition::TaskState::count));
-static_assert(wire::FORMING + 1 == static_cast<int>(mission::Activity::count));
+static_assert(wire::EN_ROUTE + 1 == static_cast<int>(mission::Activity::count));
 static_assert(wire::SURVEYING == static_cast<int>(mission::Activity::surveying));
 static_assert(wire::EXECUTING == static_cast<int>(mission::Activity::executing));
 static_assert(wire::WARNING + 1 == static_cast<int>(mission::EventKind::count));

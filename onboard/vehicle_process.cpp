@@ -113,6 +113,7 @@ std::unique_ptr<mission::OnboardAgent> formation_agent(const configuration::Vehi
 
 /// A multirotor flies in formation, a fixed wing in coalitions.
 std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleConfig& config,
+                                                  std::optional<TimedPath> route,
                                                   InstanceId instance, Instant now) {
   if (config.flight_controller.is_multirotor()) return formation_agent(config, instance, now);
   mission::VehicleAgentConfig agent;
@@ -121,6 +122,7 @@ std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleCo
   agent.protocol = config.protocol;
   agent.planning = config.planning;
   agent.search = config.search;
+  agent.route = std::move(route);
   agent.hazards = config.hazards;
   return std::make_unique<mission::VehicleAgent>(agent, now);
 }
@@ -164,9 +166,10 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can, VehicleId se
 /// The threads of threads.hpp around the objects that they run, from construction to stop().
 class Threads {
  public:
-  Threads(const configuration::VehicleConfig& config, const process::MissionClock& clock,
-          network::Node& node, process::Wake& wake_agent, InstanceId instance,
-          std::optional<recording::Writer> writer, FlightControllers flight_controllers)
+  Threads(const configuration::VehicleConfig& config, std::optional<TimedPath> route,
+          const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
+          InstanceId instance, std::optional<recording::Writer> writer,
+          FlightControllers flight_controllers)
       : clock_{clock},
         wake_agent_{wake_agent},
         flight_controllers_{std::move(flight_controllers)},
@@ -174,7 +177,7 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{make_agent(config, instance, clock.now()),
+        agent_{make_agent(config, std::move(route), instance, clock.now()),
                config.vehicle.id,
                link_to(node, flight_controllers_.on_can, config.vehicle.id),
                ports_,
@@ -277,6 +280,11 @@ int fly(const configuration::VehicleConfig& config) {
   process::start_log(clock);
   process::CloseLimit close_limit;
 
+  auto route = configuration::timed_path(config.route, config.vehicle);
+  if (!route) {
+    spdlog::critical("the route cannot be flown: {}", route.error().message);
+    return process::kExitBadInput;
+  }
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
     auto opened = recording::Writer::open(config.recording_folder);
@@ -303,8 +311,9 @@ int fly(const configuration::VehicleConfig& config) {
 
   spdlog::info("vehicle {} joins the mission network, instance {:016x}", config.vehicle.id.value,
                instance.value);
-  const auto threads = std::make_unique<Threads>(config, clock, **node, wake_agent, instance,
-                                                 std::move(writer), std::move(controllers).value());
+  const auto threads =
+      std::make_unique<Threads>(config, *route, clock, **node, wake_agent, instance,
+                                std::move(writer), std::move(controllers).value());
   spdlog::info("{}: stopping", shutdown.wait());
   threads->stop();
   threads->log_summary(**node);

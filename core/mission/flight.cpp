@@ -100,6 +100,12 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double
   search(hazards, range_m, now);
 }
 
+void Flight::start_route(const TimedPath& route) {
+  home_ = route.path.start.position();
+  replace(route);
+  en_route_ = true;
+}
+
 void Flight::replace(const TimedPath& timed) {
   plan_.timed = timed;
   ++plan_.number;
@@ -125,6 +131,7 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (searching_) pass_waypoints(now);
   searching_ = false;
   homing_ = false;
+  en_route_ = false;
   replace(timed);
   return true;
 }

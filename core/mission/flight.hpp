@@ -20,6 +20,9 @@ class Flight {
 
   /// The first plan: from where the vehicle is, which is its home, along the search route.
   void start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m, Instant now);
+  /// The first plan is that path, from its own start time on; where it begins is home.
+  void start_route(const TimedPath& route);
+  [[nodiscard]] bool en_route(Instant t) const { return en_route_ && t < plan_.timed.end_time(); }
   [[nodiscard]] bool started() const { return plan_.number > 0; }
 
   /// Where the plan has the vehicle at `t`. Precondition of these: started().
@@ -81,6 +84,7 @@ class Flight {
   FlightPlan plan_;
   bool searching_ = false;
   bool homing_ = false;
+  bool en_route_ = false;
   bool fresh_ = false;
 };
 

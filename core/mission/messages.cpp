@@ -6,9 +6,9 @@
 namespace skein::mission {
 
 std::string_view to_string(Activity activity) {
-  static constexpr std::array<std::string_view, 8> kNames{"searching", "surveying", "leading",
+  static constexpr std::array<std::string_view, 9> kNames{"searching", "surveying", "leading",
                                                           "bidding",   "executing", "monitoring",
-                                                          "holding",   "forming"};
+                                                          "holding",   "forming",   "en_route"};
   static_assert(kNames.size() == static_cast<std::size_t>(Activity::count));
   const auto i = static_cast<std::size_t>(activity);
   return i < kNames.size() ? kNames[i] : "unknown";

@@ -344,6 +344,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
 /// Nothing to do: search on, or take up a site that waits.
 void VehicleAgent::Impl::idle(Instant now) {
   if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
+  if (flight_.en_route(now)) return;
   if (spent_) {
     if (comes_home() && !flight_.homing()) flight_.fly_home(hazards_, now);
     return;

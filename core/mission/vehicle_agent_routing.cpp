@@ -39,7 +39,13 @@ VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   state_ = state;
-  if (!flight_.started()) flight_.start(state.pose(), hazards_, range_to_spend(now), now);
+  if (!flight_.started()) {
+    if (config_.route) {
+      flight_.start_route(*config_.route);
+    } else {
+      flight_.start(state.pose(), hazards_, range_to_spend(now), now);
+    }
+  }
   step(now);
 }
 
@@ -214,7 +220,7 @@ Activity VehicleAgent::Impl::activity() const {
   }
   if (survey_) return Activity::surveying;
   if (!participant_.free()) return Activity::bidding;
-  return Activity::searching;
+  return flight_.en_route(state_.time) ? Activity::en_route : Activity::searching;
 }
 
 Telemetry VehicleAgent::Impl::telemetry() const {

@@ -127,6 +127,9 @@ class Bench {
     if (!table) return table.error();
     table_.emplace(std::move(table).value());
 
+    for (const auto& end : configuration::route_ends(scenario_)) {
+      routes_end_ = std::max(routes_end_, end.planned);
+    }
     // Everybody has started and found each other before mission time 0.
     const double lead_s = options_.lead_s > 0.0
                               ? options_.lead_s
@@ -380,7 +383,9 @@ class Bench {
   }
 
   [[nodiscard]] bool mission_done() const {
-    if (!scenario_.flies_formation()) return sites_done_.size() == scenario_.sites.size();
+    if (!scenario_.flies_formation()) {
+      return sites_done_.size() == scenario_.sites.size() && progress_.now > routes_end_;
+    }
     // Without a ground station the change that it has sent is flown to its end, and held.
     const bool left_alone = killed_.contains(kGroundStation) &&
                             std::all_of(moving_.begin(), moving_.end(),
@@ -483,8 +488,9 @@ class Bench {
   steady_clock::time_point epoch_;
   std::map<VehicleId, mission::Telemetry> last_;
   std::set<SiteId> sites_done_;
-  bool script_done_ = false;    ///< of a formation
-  std::set<VehicleId> moving_;  ///< in a change of the formation
+  Instant routes_end_ = Instant::min();  ///< the last planned one
+  bool script_done_ = false;             ///< of a formation
+  std::set<VehicleId> moving_;           ///< in a change of the formation
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;

@@ -65,6 +65,15 @@ std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
   return results;
 }
 
+std::vector<CheckResult> judge_routes(const RunRecord& record, const Limits& limits) {
+  std::vector<CheckResult> results;
+  for (const auto check : {check_recordings, check_turn_radius, check_continuity, check_range,
+                           check_hazards, check_separation, check_routes}) {
+    results.push_back(check(record, limits));
+  }
+  return results;
+}
+
 std::vector<CheckResult> judge_formation(const RunRecord& record, const Limits& limits) {
   std::vector<CheckResult> results;
   for (const auto check :

@@ -14,7 +14,6 @@ namespace {
 using recording::TrackPoint;
 
 // Direction of travel is taken over half a second, so that one noisy position does not decide.
-constexpr double kBearingHalfSpan = 0.25;
 // A start angle is looked for this long before and after the planned start.
 constexpr double kStartWindow = 5.0;
 
@@ -26,33 +25,12 @@ DeliveryFlown seen_delivery(const TaskRun& run, const Site& site,
   DeliveryFlown flown;
   flown.run = run;
   flown.offset = required.offset;
-  const Duration window = from_seconds(limits.delivery_window_s);
-  double nearest = 1e12;
-  for (std::size_t i = std::max<std::size_t>(first_at(track, *run.planned - window), 1);
-       i < track.size() && track[i].state.time <= *run.planned + window; ++i) {
-    const Vec2 a = position(track[i - 1]);
-    const Vec2 step = position(track[i]) - a;
-    const double length2 = step.squaredNorm();
-    const double share =
-        length2 > 0.0 ? std::clamp((site.position - a).dot(step) / length2, 0.0, 1.0) : 0.0;
-    const double miss = (a + share * step - site.position).norm();
-    if (miss >= nearest) continue;
-    nearest = miss;
-    flown.seen = true;
-    flown.miss_m = miss;
-    flown.time = track[i - 1].state.time +
-                 from_seconds(share * to_seconds(track[i].state.time - track[i - 1].state.time));
-  }
-  if (!flown.seen) return flown;
-  const Duration half = from_seconds(kBearingHalfSpan);
-  const auto before = track_at(track, flown.time - half, limits.track_gap_s);
-  const auto after = track_at(track, flown.time + half, limits.track_gap_s);
-  if (!before || !after) {
-    flown.seen = false;
-    return flown;
-  }
-  const Vec2 travel = after->horizontal - before->horizontal;
-  flown.bearing_error_rad = wrap_pi(std::atan2(travel.y(), travel.x()) - required.bearing_rad);
+  const auto pass = nearest_pass(track, site.position, *run.planned, limits);
+  if (!pass) return flown;
+  flown.seen = true;
+  flown.time = pass->time;
+  flown.miss_m = pass->miss_m;
+  flown.bearing_error_rad = wrap_pi(pass->heading_rad - required.bearing_rad);
   return flown;
 }
 

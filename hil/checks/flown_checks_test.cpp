@@ -12,16 +12,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// The same positions, `seconds` later.
-void delay(recording::Recording& recorded, double seconds) {
-  for (auto& point : recorded.track) point.state.time += from_seconds(seconds);
-}
-void shift(recording::Recording& recorded, const Vec2& by) {
-  for (auto& point : recorded.track) {
-    point.state.x_m += by.x();
-    point.state.y_m += by.y();
-  }
-}
-
 TEST(FlownChecks, ThePassIsMeasuredBetweenPoints) {
   RunRecord record = good_record();
   auto& recorded = of(record, kFromWest);

@@ -9,6 +9,8 @@
 namespace skein::checks {
 namespace {
 
+constexpr double kBearingHalfSpan = 0.25;
+
 // A piece of constant curvature by its chord: the chord of an arc turning by a points a/2 off the
 // initial heading and is s sin(a/2)/(a/2) long.
 Pose2 along_piece(const Pose2& from, double curvature_per_m, double s) {
@@ -94,6 +96,35 @@ std::optional<TrackPosition> track_at(const std::vector<recording::TrackPoint>& 
   return TrackPosition{{mix(a.x_m, b.x_m), mix(a.y_m, b.y_m)},
                        mix(a.z_m, b.z_m),
                        mix(a.distance_flown_m, b.distance_flown_m)};
+}
+
+std::optional<Pass> nearest_pass(const std::vector<recording::TrackPoint>& track, const Vec2& point,
+                                 Instant expected, const Limits& limits) {
+  const auto position = [](const recording::TrackPoint& p) {
+    return Vec2{p.state.x_m, p.state.y_m};
+  };
+  const Duration window = from_seconds(limits.delivery_window_s);
+  std::optional<Pass> pass;
+  for (std::size_t i = std::max<std::size_t>(first_at(track, expected - window), 1);
+       i < track.size() && track[i].state.time <= expected + window; ++i) {
+    const Vec2 a = position(track[i - 1]);
+    const Vec2 step = position(track[i]) - a;
+    const double length2 = step.squaredNorm();
+    const double share =
+        length2 > 0.0 ? std::clamp((point - a).dot(step) / length2, 0.0, 1.0) : 0.0;
+    const double miss = (a + share * step - point).norm();
+    if (pass && miss >= pass->miss_m) continue;
+    const double between_s = to_seconds(track[i].state.time - track[i - 1].state.time);
+    pass = Pass{track[i - 1].state.time + from_seconds(share * between_s), miss, 0.0};
+  }
+  if (!pass) return std::nullopt;
+  const Duration half = from_seconds(kBearingHalfSpan);
+  const auto before = track_at(track, pass->time - half, limits.track_gap_s);
+  const auto after = track_at(track, pass->time + half, limits.track_gap_s);
+  if (!before || !after) return std::nullopt;
+  const Vec2 travel = after->horizontal - before->horizontal;
+  pass->heading_rad = std::atan2(travel.y(), travel.x());
+  return pass;
 }
 
 const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle) {

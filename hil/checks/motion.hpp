@@ -35,6 +35,17 @@ struct TrackPosition {
 /// Index of the first point at or after `time`; size() when there is none.
 [[nodiscard]] std::size_t first_at(const std::vector<recording::TrackPoint>& track, Instant time);
 
+/// Where a track comes nearest to a point, within Limits::delivery_window_s of a time; none where
+/// it does not cover that.
+struct Pass {
+  Instant time{};
+  double miss_m = 0.0;       ///< horizontal
+  double heading_rad = 0.0;  ///< direction of travel
+};
+[[nodiscard]] std::optional<Pass> nearest_pass(const std::vector<recording::TrackPoint>& track,
+                                               const Vec2& point, Instant expected,
+                                               const Limits& limits);
+
 [[nodiscard]] const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle);
 [[nodiscard]] const Site* site_of(const RunRecord& record, SiteId site);
 

@@ -64,6 +64,17 @@ inline mission::MissionEvent event(VehicleId vehicle, double time_s, mission::Ev
   return {vehicle, at_seconds(time_s), kind, kRound, task, value, ""};
 }
 
+/// Spoil a track.
+inline void delay(recording::Recording& recorded, double seconds) {
+  for (auto& point : recorded.track) point.state.time += from_seconds(seconds);
+}
+inline void shift(recording::Recording& recorded, const Vec2& by) {
+  for (auto& point : recorded.track) {
+    point.state.x_m += by.x();
+    point.state.y_m += by.y();
+  }
+}
+
 inline recording::Recording& of(RunRecord& record, VehicleId vehicle) {
   return *std::find_if(record.recordings.begin(), record.recordings.end(),
                        [&](const auto& r) { return r.vehicle == vehicle; });

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "skein/base/assert.hpp"
+
 namespace skein::hil {
 
 std::vector<mission::ScriptedDecision> scripted_decisions(
@@ -23,7 +25,11 @@ models::WindParams wind_params(const configuration::WindConfig& wind, std::uint6
 
 TeamMission team_mission(const configuration::Scenario& scenario) {
   TeamMission team;
-  for (const auto& v : scenario.vehicles) team.vehicles.push_back({v.spec, v.start, v.search});
+  for (const auto& v : scenario.vehicles) {
+    const auto route = configuration::timed_path(v.route, v.spec);
+    SKEIN_ASSERT(route.ok());  // it was given by give_routes()
+    team.vehicles.push_back({v.spec, v.start, v.search, *route});
+  }
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.protocol = scenario.protocol;

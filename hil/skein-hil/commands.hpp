@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/base/result.hpp"
 #include "skein/configuration/scenario.hpp"
 
 namespace skein::hil {
@@ -23,11 +24,16 @@ struct RunArguments {
   double rate = 1.0;
   std::optional<std::uint64_t> seed;
   std::uint16_t port_base = 0;
-  double lead_s = 0.0;  ///< 0: by the number of vehicles
-  std::string can;      ///< bus of the flight controllers; empty: one each is looked for
+  double lead_s = 0.0;           ///< 0: by the number of vehicles
+  std::string can;               ///< bus of the flight controllers; empty: one each is looked for
+  std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
   bool prompt = false;
 };
+/// Gives the vehicles the routes of the plan's file, or of a plan that is made and printed, where
+/// the mission asks for routes.
+[[nodiscard]] Result<void> give_routes(configuration::Scenario& scenario,
+                                       const std::filesystem::path& plan);
 int run(const RunArguments& arguments);
 
 struct SimulateArguments {

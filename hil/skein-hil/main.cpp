@@ -30,6 +30,9 @@ int main(int argc, char** argv) {
   run_command->add_option("--rate", run.rate, "Mission seconds in a real second")
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
+  run_command->add_option("--routes", run.routes,
+                          "A plan of `skein-ground plan`, for a mission of routes (without it one "
+                          "is made)");
   run_command->add_option("--seed", run.seed, "In place of the scenario's");
   run_command->add_option("--out", run.folder, "Folder of the run (default: runs/NAME-TIME)");
   run_command

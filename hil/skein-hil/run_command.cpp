@@ -59,6 +59,8 @@ int run(const RunArguments& arguments) {
   if (const auto flyable = configuration::check(*scenario); !flyable)
     return complain(flyable.error().message);
   if (arguments.seed) scenario->seed = *arguments.seed;
+  if (const auto given = give_routes(*scenario, arguments.routes); !given)
+    return complain(given.error().message);
   if (arguments.prompt) {
     scenario->operator_decisions.clear();
     scenario->formation.script.clear();

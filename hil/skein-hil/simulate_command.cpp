@@ -140,6 +140,10 @@ int simulate(const SimulateArguments& arguments) {
     fmt::print(stderr, "{}\n", flyable.error().message);
     return kExitBadInput;
   }
+  if (scenario->sites.empty() && scenario->flies_routes()) {
+    fmt::print(stderr, "a mission of routes alone is flown by `skein-hil run`\n");
+    return kExitBadInput;
+  }
   if (arguments.seed) scenario->seed = *arguments.seed;
   if (scenario->flies_formation()) return simulate_formation(*scenario, arguments);
   if (const auto faults = fault_params(arguments.faults, scenario->seed); !faults) {

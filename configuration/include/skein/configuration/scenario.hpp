@@ -15,6 +15,7 @@
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
@@ -38,6 +39,7 @@ struct ScenarioVehicle {
   VehicleSpec spec;
   Pose2 start;
   std::vector<Vec2> search;                  ///< flown in order; the vehicle orbits the last point
+  FlightRoute route;                         ///< of a plan; not of the scenario's file
   FlightControllerConfig flight_controller;  ///< its wind is the scenario's
 };
 
@@ -102,12 +104,15 @@ struct Scenario {
   std::vector<ScenarioHazard> hazards;
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
+  RoutesConfig routes;
   std::vector<Fault> faults;
   std::vector<ReferenceSite> reference;
   Expectations expect;
 
   /// Multirotors, by orders of the ground station.
   [[nodiscard]] bool flies_formation() const;
+  /// Planned before the mission.
+  [[nodiscard]] bool flies_routes() const { return !routes.approaches.empty(); }
 };
 
 [[nodiscard]] bool is_multirotor(const ScenarioVehicle& vehicle);

@@ -14,6 +14,7 @@
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/configuration/routes_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
@@ -63,6 +64,7 @@ struct VehicleConfig {
   Wgs84 origin;
   Pose2 start;
   std::vector<Vec2> search;  ///< flown in order; the vehicle orbits the last point
+  FlightRoute route;         ///< flown before
   FlightControllerConfig flight_controller;
   NetworkConfig network;
   coalition::ProtocolParams protocol;

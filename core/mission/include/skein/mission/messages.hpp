@@ -28,7 +28,8 @@ enum class Activity : std::uint8_t {
   executing,
   monitoring,
   holding,
-  forming,  ///< on its way to a place in a formation
+  forming,   ///< on its way to a place in a formation
+  en_route,  ///< flies a route that was planned before the mission
   count
 };
 [[nodiscard]] std::string_view to_string(Activity activity);

@@ -9,6 +9,7 @@
 
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/onboard_agent.hpp"
 #include "skein/planning/allocation.hpp"
@@ -20,8 +21,9 @@ struct VehicleAgentConfig {
   InstanceId instance;
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
-  std::vector<Vec2> search;     ///< waypoints of the search route; the vehicle orbits the last one
-  std::vector<Hazard> hazards;  ///< known before the mission
+  std::vector<Vec2> search;  ///< waypoints of the search route; the vehicle orbits the last one
+  std::optional<TimedPath> route;  ///< flown first, to its end unless a task comes between
+  std::vector<Hazard> hazards;     ///< known before the mission
   Duration status_period = std::chrono::seconds{1};
 };
 
@@ -33,7 +35,7 @@ class VehicleAgent final : public OnboardAgent {
   VehicleAgent(const VehicleAgent&) = delete;
   VehicleAgent& operator=(const VehicleAgent&) = delete;
 
-  /// The first state starts the search; later ones judge how tasks were flown.
+  /// The first state starts the route, or the search; later ones judge how tasks were flown.
   void on_state(const VehicleState& state, Instant now) override;
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_planning_result(const PlanningResult& result, Instant now) override;

@@ -82,11 +82,19 @@ struct CheckResult {
 /// While a formation holds, root mean square distance of each vehicle's track from its place.
 [[nodiscard]] CheckResult check_places(const RunRecord& record, const Limits& limits);
 
+/// As flown: every route that was planned before the mission ends over the site on its bearing, and
+/// all do within Limits::arrival_s of each other, offsets allowed for.
+[[nodiscard]] CheckResult check_routes(const RunRecord& record, const Limits& limits);
+
+/// Those of planned routes: of recordings, turns, continuity, range, hazards, separation, and the
+/// one above.
+[[nodiscard]] std::vector<CheckResult> judge_routes(const RunRecord& record, const Limits& limits);
+
 /// Those of a formation: recordings, separation, and the three above.
 [[nodiscard]] std::vector<CheckResult> judge_formation(const RunRecord& record,
                                                        const Limits& limits);
 
-/// Those of a coalition: all but the three above, in their order.
+/// Those of a coalition: all but the four above, in their order.
 [[nodiscard]] std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits);
 
 }  // namespace skein::checks

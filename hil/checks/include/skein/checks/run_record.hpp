@@ -37,12 +37,21 @@ struct Excuse {
 };
 
 /// A finished mission: what it was to be, and what was recorded of it.
+/// Where a route that was planned before the mission is to end.
+struct RouteEnd {
+  VehicleId vehicle;
+  Vec2 site{0.0, 0.0};
+  double heading_rad = 0.0;  ///< direction of travel over it
+  Instant planned{};
+};
+
 struct RunRecord {
   std::vector<Site> sites;
   std::vector<KnownHazard> hazards;
   std::vector<VehicleSpec> vehicles;
   std::vector<recording::Recording> recordings;  ///< of vehicles, in any order
   std::vector<mission::MissionEvent> ground_events;
+  std::vector<RouteEnd> route_ends = {};
   std::vector<recording::PlaceRecord> places = {};  ///< of a formation, by the ground station
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
   std::vector<AgentEnd> agent_ends;  ///< in the order of time

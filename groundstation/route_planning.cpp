@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/route_planning.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using configuration::RoutePlan;
+using configuration::Scenario;
+
+RoutePlan file_of(const Scenario& scenario, const routes::RouteProblem& problem,
+                  const routes::CooperativePlan& plan) {
+  RoutePlan file;
+  file.title = scenario.title;
+  file.seed = scenario.seed;
+  file.site = problem.site;
+  file.arrival_s = plan.arrival_s;
+  file.bound_s = plan.bound_s;
+  for (std::size_t i = 0; i < plan.routes.size(); ++i) {
+    const routes::PlannedRoute& route = plan.routes[i];
+    const routes::RouteVehicle& vehicle = problem.vehicles[i];
+    file.routes.push_back({route.id,
+                           {route.waypoints, vehicle.turn_radius_m, vehicle.speed_mps},
+                           vehicle.approach_heading_rad,
+                           route.arrival_s,
+                           route.length_m,
+                           route.bound_m});
+  }
+  return file;
+}
+
+Result<void> write(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream out{file, std::ios::binary};
+  out << text;
+  out.close();
+  if (!out) return Error{file.string() + ": cannot be written; check the folder and the disk"};
+  return {};
+}
+
+}  // namespace
+
+Result<PlannedRoutes> plan_routes(const Scenario& scenario,
+                                  const routes::RoutePlannerParams& params) {
+  if (!scenario.flies_routes()) {
+    return Error{"the mission plans no routes; name its vehicles under routes.approaches"};
+  }
+  PlannedRoutes planned;
+  planned.problem = configuration::route_problem(scenario);
+  auto plan = routes::plan_routes(planned.problem, params, Random{scenario.seed});
+  if (!plan) return plan.error();
+  planned.plan = *std::move(plan);
+  planned.check = routes::check_routes(planned.problem, planned.plan);
+  planned.file = file_of(scenario, planned.problem, planned.plan);
+  return planned;
+}
+
+std::string routes_text(const PlannedRoutes& planned) {
+  const routes::CooperativePlan& plan = planned.plan;
+  std::string text = fmt::format(
+      "{} routes, together over the site at {:.2f} s; no plan can be there before {:.2f} s "
+      "({:+.2f} %)\n\n"
+      "vehicle  length m   bound m  waypoints  exposure  length/straight  turning  bearing off  "
+      "clear by\n",
+      plan.routes.size(), plan.arrival_s, plan.bound_s,
+      100.0 * (plan.arrival_s / plan.bound_s - 1.0));
+  for (std::size_t i = 0; i < plan.routes.size(); ++i) {
+    const routes::PlannedRoute& route = plan.routes[i];
+    const routes::RouteMeasures& measured = planned.check.routes.at(i);
+    const std::string clearance =
+        std::isfinite(measured.clearance_m) ? fmt::format("{:.1f} m", measured.clearance_m) : "-";
+    text += fmt::format(
+        "{:>7}  {:8.1f}  {:8.1f}  {:>9}  {:8.3f}  {:15.3f}  {:7.3f}  {:7.3f} deg  {:>8}\n",
+        route.id.value, route.length_m, route.bound_m, route.waypoints.size(), route.costs.exposure,
+        route.costs.length_ratio, route.costs.turning, degrees(measured.bearing_error_rad),
+        clearance);
+  }
+  text += fmt::format(
+      "\ntotal cost {:.3f}, of which spacing {:.3f}; arrivals within {:.4f} s of each other",
+      plan.total_cost, plan.spacing_cost, planned.check.arrival_spread_s);
+  if (std::isfinite(planned.check.separation_m)) {
+    text += fmt::format("; least separation {:.1f} m, at {:.1f} s", planned.check.separation_m,
+                        planned.check.separation_at_s);
+  }
+  text += fmt::format("; {} routes tried\n", plan.evaluations);
+  for (const routes::Violation& violation : planned.check.violations) {
+    text += fmt::format("broken: vehicle {}: {}\n", violation.vehicle.value, violation.message);
+  }
+  text += planned.check.ok() ? "every rule holds\n" : "";
+  return text;
+}
+
+Result<std::vector<std::string>> write_routes(const PlannedRoutes& planned,
+                                              const Scenario& scenario,
+                                              const std::filesystem::path& folder) {
+  const auto origin = MissionOrigin::make(scenario.origin);
+  if (!origin) return origin.error();
+  std::error_code failed;
+  std::filesystem::create_directories(folder, failed);
+  if (failed) return Error{folder.string() + ": cannot be made: " + failed.message()};
+  std::vector<std::pair<std::string, std::string>> files{
+      {"plan.yaml", to_yaml(planned.file)},
+      {"routes.geojson", routes_geojson(planned, scenario, *origin)},
+      {"routes.kml", routes_kml(planned, scenario, *origin)},
+      {"routes.svg", routes_svg(planned)}};
+  for (const configuration::VehicleRoute& route : planned.file.routes) {
+    files.emplace_back(fmt::format("vehicle-{}.plan", route.vehicle.value),
+                       routes_qgc(route, scenario, *origin));
+  }
+  std::vector<std::string> names;
+  for (const auto& [name, text] : files) {
+    if (auto written = write(folder / name, text); !written) return written.error();
+    names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace skein::groundstation

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/route_planning.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::HasSubstr;
+
+configuration::Scenario routes_3() {
+  auto scenario = configuration::load_scenario(SKEIN_SOURCE_DIR "/scenarios/routes-3.yaml");
+  EXPECT_TRUE(scenario.ok()) << scenario.error().message;
+  EXPECT_TRUE(configuration::check(*scenario).ok());
+  return *scenario;
+}
+
+TEST(RoutePlanning, PlansTheShippedMissionAndItsFileIsReadBack) {
+  const auto scenario = routes_3();
+  const auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_TRUE(planned->check.ok()) << routes_text(*planned);
+  EXPECT_LT(planned->plan.arrival_s, 1.005 * planned->plan.bound_s);
+  EXPECT_THAT(routes_text(*planned), HasSubstr("every rule holds"));
+
+  const auto read = configuration::parse_route_plan(to_yaml(planned->file), "plan.yaml");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  auto given = scenario;
+  ASSERT_TRUE(configuration::give_routes(*read, given).ok());
+  const auto ends = configuration::route_ends(given);
+  ASSERT_EQ(ends.size(), 3U);
+  for (const auto& end : ends) {
+    EXPECT_NEAR(to_seconds(end.planned), planned->plan.arrival_s, 0.01);
+  }
+  for (const auto& vehicle : given.vehicles) {
+    const auto path = configuration::timed_path(vehicle.route, vehicle.spec);
+    ASSERT_TRUE(path.ok() && path->has_value());
+    EXPECT_LE((*path)->path.curvature_max_per_m(), 1.0 / vehicle.spec.turn_radius_m);
+    EXPECT_NEAR((*path)->path.start.heading_rad, vehicle.start.heading_rad, 1e-9);
+  }
+  EXPECT_EQ(given.hazards.size(), scenario.hazards.size() + scenario.routes.hazards.size());
+}
+
+TEST(RoutePlanning, APlanForOthersIsRefused) {
+  const auto scenario = routes_3();
+  auto plan = plan_routes(scenario)->file;
+  auto given = scenario;
+  plan.routes[0].route.turn_radius_m = 1.0;
+  auto refused = configuration::give_routes(plan, given);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("tighter than the vehicle turns"));
+  plan.routes[0].vehicle = {77};
+  refused = configuration::give_routes(plan, given);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("vehicle 77 has a route, and is not in"));
+}
+
+TEST(RoutePlanning, AMissionWithoutRoutesIsRefusedInASentence) {
+  const auto refused = plan_routes({});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("routes.approaches"));
+}
+
+TEST(RoutePlanning, WritesWhatOthersRead) {
+  const auto scenario = routes_3();
+  const auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok());
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("skein-routes-" + std::to_string(::getpid()));
+  const auto files = write_routes(*planned, scenario, folder);
+  ASSERT_TRUE(files.ok()) << files.error().message;
+  EXPECT_EQ(files->size(), 7U);
+  const auto text_of = [&](const std::string& name) {
+    std::stringstream text;
+    text << std::ifstream{folder / name}.rdbuf();
+    return text.str();
+  };
+  const std::string geojson = text_of("routes.geojson");
+  EXPECT_EQ(std::count(geojson.begin(), geojson.end(), '{'),
+            std::count(geojson.begin(), geojson.end(), '}'));
+  EXPECT_THAT(geojson, HasSubstr("\"type\":\"LineString\""));
+  EXPECT_THAT(text_of("routes.kml"), HasSubstr("</Document></kml>"));
+  EXPECT_THAT(text_of("vehicle-1.plan"), HasSubstr("\"fileType\":\"Plan\""));
+  EXPECT_THAT(text_of("routes.svg"), HasSubstr("</svg>"));
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace skein::groundstation
