@@ -9,6 +9,8 @@
 namespace skein::configuration {
 namespace {
 
+/// What the way home from the site may be longer than straight.
+constexpr double kWayHome = 1.5;
 constexpr double kSlack = 1e-9;  // of a radius that was written and read
 
 std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
@@ -17,6 +19,12 @@ template <class Vehicles>
 auto vehicle_of(Vehicles& vehicles, VehicleId id) {
   return std::find_if(vehicles.begin(), vehicles.end(),
                       [id](const auto& vehicle) { return vehicle.spec.id == id; });
+}
+
+/// What the vehicle may fly to the site, so that it comes home where it has to.
+double range_to_the_site(const ScenarioVehicle& vehicle, const Vec2& site) {
+  if (vehicle.spec.recovery == Recovery::anywhere) return vehicle.spec.range_m;
+  return vehicle.spec.range_m - kWayHome * (site - vehicle.start.position()).norm();
 }
 
 /// Hazards of routes have numbers of their own.
@@ -63,7 +71,7 @@ routes::RouteProblem route_problem(const Scenario& scenario) {
                                 .start_cone_rad = approach.start_cone_rad,
                                 .speed_mps = found->spec.cruise_speed_mps,
                                 .turn_radius_m = found->spec.planning_radius_m(),
-                                .range_m = found->spec.range_m,
+                                .range_m = range_to_the_site(*found, config.site),
                                 .approach_heading_rad = approach.heading_rad,
                                 .arrival_offset_s = approach.offset_s});
   }

@@ -83,5 +83,25 @@ TEST(Flight, ARouteIsTakenUpWhereItWasLeft) {
   EXPECT_LT(plan.path.length_m() - flown_m, 3500.0 + 1500.0);
 }
 
+TEST(Flight, ARouteGivenBeforeTheMissionIsFlownFirst) {
+  TimedPath route;
+  route.start_time = Instant{};
+  route.speed_mps = 50.0;
+  route.tail_curvature_per_m = 1.0 / 165.0;
+  route.path.start = {100.0, 200.0, 0.0};
+  ASSERT_TRUE(route.path.append(Segment{0.0, 2000.0}));
+  Flight flight{vehicle_with(Recovery::home), {}, {{4000.0, 200.0}}};
+  flight.start_route(route);
+  EXPECT_TRUE(flight.started());
+  EXPECT_TRUE(flight.en_route(Instant{} + 39s));
+  EXPECT_FALSE(flight.en_route(Instant{} + 41s));
+  EXPECT_NEAR(flight.pose_at(Instant{} + 20s).x_m, 1100.0, 1e-9);
+  ASSERT_TRUE(flight.poll_plan());
+  // What comes between ends it, and home is where it began.
+  flight.hold({}, Instant{} + 10s);
+  EXPECT_FALSE(flight.en_route(Instant{} + 11s));
+  EXPECT_NEAR(flight.way_home_m({100.0, 1200.0, -kPi / 2.0}, {}), 1000.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -247,7 +247,7 @@ TEST_P(BadStarts, EndWithASentence) {
   (void)write("no-recording.yaml", to_yaml(config));
   std::vector<std::string> words = GetParam().words;
   for (auto& word : words) {
-    if (word.ends_with(".yaml")) word = folder_ / word;
+    if (word.ends_with(".yaml")) word = folder_ / word;  // an absolute path stays itself
   }
   auto child = start(words);
   ASSERT_TRUE(child.wait(kPatience));
@@ -266,7 +266,16 @@ INSTANTIATE_TEST_SUITE_P(
                  3,
                  "cannot record"},
         BadStart{"ground_no_file", {SKEIN_GROUND, "--config", "x.yaml"}, 2, "cannot be opened"},
-        BadStart{"ground_bad_key", {SKEIN_GROUND, "--config", "bad.yaml"}, 2, "spede_mps"}),
+        BadStart{"ground_bad_key", {SKEIN_GROUND, "--config", "bad.yaml"}, 2, "spede_mps"},
+        BadStart{"plan_no_file", {SKEIN_GROUND, "plan", "x.yaml"}, 2, "cannot be opened"},
+        BadStart{"plan_no_routes",
+                 {SKEIN_GROUND, "plan", SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml"},
+                 1,
+                 "plans no routes"},
+        BadStart{"tell_nobody",
+                 {SKEIN_GROUND, "tell", "--socket", "skein-nobody", "status"},
+                 3,
+                 "no ground station has the control socket"}),
     [](const auto& param_info) { return param_info.param.name; });
 
 TEST_F(Programs, APortInUseIsNamed) {
