@@ -26,6 +26,8 @@ constexpr int kRefinements = 2;
 constexpr double kExact_m = 1e-6;
 /// Corridors that gave a route, after which no other is tried.
 constexpr std::size_t kEnough = 2;
+/// Where none gave a route, so many times as many are tried.
+constexpr std::size_t kStubborn = 4;
 /// Once a route keeps to the rules, this share of the evaluations is enough to smooth it.
 constexpr double kSmoothShare = 0.4;
 
@@ -90,6 +92,11 @@ class Planner {
   Result<CooperativePlan> run() {
     if (const auto valid = validate(problem_); !valid) return valid.error();
     if (const auto ready = prepare(); !ready) return ready.error();
+    order_.resize(count());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+    std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
+      return spare_s(a, earliest_s_) < spare_s(b, earliest_s_);
+    });
     double late = -1.0;
     double tried = earliest_s_;
     for (const double delay : kDelays) {
@@ -147,20 +154,17 @@ class Planner {
     return arrival_s + vehicle(i).arrival_offset_s - shortest_[i] / vehicle(i).speed_mps;
   }
 
-  /// Routes of everybody at that common time, in `found_`.
+  /// Routes of everybody at that common time, in `found_`. Who finds none goes first from then on,
+  /// also at later times.
   bool plan_at(double arrival_s) {
-    std::vector<std::size_t> order(count());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-      return spare_s(a, arrival_s) < spare_s(b, arrival_s);
-    });
-    for (std::size_t attempt = 0; attempt <= std::min(params_.reorders, count() - 1); ++attempt) {
-      const std::size_t failed = plan_in_order(order, arrival_s);
+    const std::size_t attempts = 1 + std::min(params_.reorders, count() - 1);
+    for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+      const std::size_t failed = plan_in_order(order_, arrival_s);
       if (failed == count()) return true;
-      stuck_ = order[failed];
+      stuck_ = order_[failed];
       if (failed == 0 || cancelled_) return false;
-      std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(failed),
-                  order.begin() + static_cast<std::ptrdiff_t>(failed) + 1);
+      std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed),
+                  order_.begin() + static_cast<std::ptrdiff_t>(failed) + 1);
     }
     return false;
   }
@@ -192,17 +196,15 @@ class Planner {
     std::vector<Vec2> best;
     double value = RouteJudge::kInfeasible;
     std::size_t good = 0;
-    std::size_t tried = 0;
-    // Those that need to be lengthened least come first.
-    for (std::size_t b = bases_[i].size(); b-- > 0;) {
-      const BaseRoute& base = bases_[i][b];
-      if (base.length_m > target + kExact_m) continue;
-      if (tried++ == params_.corridors_tried || good == kEnough) break;
+    // Those that need to be lengthened least, and in turn those that leave most room to choose
+    // where.
+    std::size_t low = 0;
+    std::size_t high = bases_[i].size();
+    while (high > 0 && bases_[i][high - 1].length_m > target + kExact_m) --high;
+    for (std::size_t k = 0; low < high && good < kEnough; ++k) {
+      if (k >= params_.corridors_tried * (good > 0 ? 1 : kStubborn)) break;
+      const BaseRoute& base = k % 2 == 0 ? bases_[i][--high] : bases_[i][low++];
       if (lengthen(base, v, target, judge, value, best)) ++good;
-    }
-    // The shortest has the most room to choose where.
-    if (good == 0 && tried > params_.corridors_tried) {
-      lengthen(bases_[i].front(), v, target, judge, value, best);
     }
     if (best.empty()) return std::nullopt;
     return best;
@@ -294,6 +296,7 @@ class Planner {
   double earliest_s_ = 0.0;
   std::vector<std::vector<Vec2>> found_;
   double found_s_ = 0.0;
+  std::vector<std::size_t> order_;  ///< in which vehicles are planned
   std::size_t stuck_ = 0;
   bool cancelled_ = false;
   CooperativePlan plan_;
