@@ -160,13 +160,14 @@ WordLengths word_lengths(const Pose2& from, const Pose2& to, double radius_m) {
   if (Pair::any(Pair::is_here(goal, radius_m))) return result;
   const Pair::Real side{1.0, -1.0};
   goal = {goal.x, goal.y * side, goal.sin * side, goal.cos, goal.versine, goal.turn * side};
-  const Pair::Csc csc = Pair::csc(goal, radius_m);
-  result.same = csc.same;
-  result.other = csc.other;
-  result.shortest_m = least_of(Pair::least(csc.same, csc.other));
-  const auto may_win = Pair::ccc_may_win(goal, csc, radius_m, Pair::splat(result.shortest_m));
+  Pair::Centres centres;
+  result.same = Pair::lsl(goal, radius_m, centres);
+  result.other = Pair::lsr(goal, radius_m);
+  result.shortest_m = least_of(Pair::least(result.same, result.other));
+  const auto may_win =
+      Pair::ccc_may_win(goal.turn, centres.distance, radius_m, Pair::splat(result.shortest_m));
   if (Pair::any(may_win)) {
-    result.ccc = Pair::select(may_win, Pair::ccc(goal, csc, radius_m), Pair::infinity());
+    result.ccc = Pair::select(may_win, Pair::ccc(goal.turn, centres, radius_m), Pair::infinity());
     result.shortest_m = std::min(result.shortest_m, least_of(result.ccc));
   }
   return result;

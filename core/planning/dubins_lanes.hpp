@@ -74,10 +74,8 @@ struct DubinsLanes {
     Real versine;  ///< 1 - cos, without cancellation
     Real turn;
   };
-  /// Lengths of LSL and LSR (infinite where it does not exist), and c2 - c1 of LSL and LRL.
-  struct Csc {
-    Real same;
-    Real other;
+  /// c2 - c1 of LSL and LRL.
+  struct Centres {
     Real dx;
     Real dy;
     Real distance;
@@ -121,7 +119,7 @@ struct DubinsLanes {
 
   /// Multiples of pi / 2 taken off in three parts whose products are exact (Cody and Waite 1980),
   /// then the Taylor series, whose next terms are below 5e-17 up to pi / 4.
-  static SinCos sin_cos(Real rad) {
+  [[gnu::always_inline]] static SinCos sin_cos(Real rad) {
     constexpr double kToInteger = 0x1.8p+52;
     const Real shifted = rad * (2.0 / kPi) + kToInteger;
     const Bits quadrant = Bits(shifted);
@@ -148,7 +146,7 @@ struct DubinsLanes {
 
   /// In [-pi, pi], within 4e-16; not for the origin. Reduced to |t| <= tan(pi / 8) with one
   /// division; atan(t) / t by interpolation in t^2 at the Chebyshev nodes, within 4e-18.
-  static Real angle(Real y, Real x) {
+  [[gnu::always_inline]] static Real angle(Real y, Real x) {
     constexpr double kC1 = -0.3333333333333312;
     constexpr double kC2 = 0.19999999999940893;
     constexpr double kC3 = -0.14285714279250245;
@@ -179,11 +177,10 @@ struct DubinsLanes {
     return sign_by(turn, y);
   }
 
-  /// From (-4 pi, 4 pi) to [0, 2 pi); a full circle less what moves the end by no more than the
+  /// From [-2 pi, 2 pi] to [0, 2 pi); a full circle less what moves the end by no more than the
   /// slack is none at all.
   static Real turn_of(Real rad, Real reach_m) {
-    Real turn = select(rad < 0.0, rad + kTwoPi, rad);
-    turn = select(turn >= kTwoPi, turn - kTwoPi, turn);
+    const Real turn = select(rad < 0.0, rad + kTwoPi, rad);
     return select((kTwoPi - turn) * reach_m < kSlack_m, Real{}, turn);
   }
 
@@ -193,7 +190,8 @@ struct DubinsLanes {
     return ((rad - n * 0x1.921fb544p+2) - n * 0x1.0b4611a6p-32) - n * 0x1.3198a2e037073p-67;
   }
 
-  static Goal goal_of(Real dx, Real dy, Real turn, const SinCos& from, const SinCos& to) {
+  [[gnu::always_inline]] static Goal goal_of(Real dx, Real dy, Real turn, const SinCos& from,
+                                             const SinCos& to) {
     const Real s = to.sin * from.cos - to.cos * from.sin;
     const Real c = to.cos * from.cos + to.sin * from.sin;
     const Real versine = select(c > 0.0, s * s / (1.0 + c), 1.0 - c);
@@ -208,7 +206,7 @@ struct DubinsLanes {
 
   /// The turns of LSL sum to the goal's turn, and a full circle more where the line's direction is
   /// not passed on the way: signs of products tell, no angle is needed.
-  static void lsl(const Goal& g, double r, Csc& result) {
+  static Real lsl(const Goal& g, double r, Centres& centres) {
     const Real dx = g.x - r * g.sin;
     const Real dy = g.y - r * g.versine;
     const Real line = root(dx * dx + dy * dy);
@@ -227,13 +225,12 @@ struct DubinsLanes {
     Real turns = select(left, g.turn, g.turn + kTwoPi);
     turns = select(passed, turns, turns + kTwoPi);
     turns = select(no_first & no_last, Real{}, turns);
-    result.same = line + r * turns;
-    result.dx = dx;
-    result.dy = dy;
-    result.distance = line;
+    centres = {dx, dy, line};
+    return line + r * turns;
   }
 
-  static void lsr(const Goal& g, double r, Csc& result) {
+  /// Infinite where it does not exist.
+  static Real lsr(const Goal& g, double r) {
     const Real dx = g.x + r * g.sin;
     const Real dy = (g.y - 2.0 * r) + r * g.versine;
     // |c2 - c1|^2 - 4 r^2, arranged so that near poses do not cancel.
@@ -244,34 +241,27 @@ struct DubinsLanes {
     const Real first = turn_of(heading, r + line);
     const Real last = turn_of(heading - g.turn, splat(r));
     const Real length = line + r * (first + last);
-    result.other = select(line_sq >= -4.0 * r * kSlack_m, length, infinity());
-  }
-
-  static Csc csc(const Goal& g, double r) {
-    Csc result{};
-    lsl(g, r, result);
-    lsr(g, r, result);
-    return result;
+    return select(line_sq >= -4.0 * r * kSlack_m, length, infinity());
   }
 
   /// Where a CCC word with the middle arc above a half turn could be shorter than `best`. Its
   /// middle is 2 pi - 2 asin(distance / 4 r), and q <= asin(q) <= q pi / 2; its first and last turn
   /// sum to the goal's turn and the middle, but for full circles.
-  static Bits ccc_may_win(const Goal& g, const Csc& c, double r, Real best) {
-    const Real low = kTwoPi * r - (kPi / 4.0) * c.distance;
-    const Real high = kTwoPi * r - 0.5 * c.distance;
-    const Real turn = r * g.turn;
+  static Bits ccc_may_win(Real goal_turn, Real distance, double r, Real best) {
+    const Real low = kTwoPi * r - (kPi / 4.0) * distance;
+    const Real high = kTwoPi * r - 0.5 * distance;
+    const Real turn = r * goal_turn;
     const Real least_sum = turn + low;
     const Real beyond = least_sum - kTwoPi * r;
     // Next to a full circle the slack may take it for none.
     constexpr double kNearFull_rad = 1e-3;
     Real ends = select(turn + high < (kTwoPi - kNearFull_rad) * r, least_sum, beyond);
     ends = select(ends > 0.0, ends, Real{});
-    return (c.distance <= 4.0 * r + kSlack_m) & (low + ends < best);
+    return (distance <= 4.0 * r + kSlack_m) & (low + ends < best);
   }
 
   /// LRL. Halfway round the middle arc the heading is that of c2 - c1.
-  static Real ccc(const Goal& g, const Csc& c, double r) {
+  static Real ccc(Real goal_turn, const Centres& c, double r) {
     const Bits apart = c.distance > kSlack_m;
     const Real dx = select(apart, c.dx, splat(1.0));
     const Real dy = select(apart, c.dy, Real{});
@@ -280,30 +270,20 @@ struct DubinsLanes {
     const Real middle = kTwoPi - 2.0 * angle(c.distance, rest);
     const Real leave = angle(dx * c.distance - dy * rest, -(dx * rest) - dy * c.distance);
     const Real first = turn_of(leave, splat(4.0 * r));
-    const Real last = turn_of((g.turn - leave) + middle, splat(r));
+    const Real turned = (goal_turn - leave) + middle;  // from -pi to 4 pi
+    const Real last = turn_of(select(turned >= kTwoPi, turned - kTwoPi, turned), splat(r));
     return r * (first + middle + last);
   }
 
-  static Real shortest(const Goal& g, double r) {
-    const Goal m = mirrored(g);
-    const Csc left = csc(g, r);
-    const Csc right = csc(m, r);
-    Real best = least(least(left.same, left.other), least(right.same, right.other));
-    const Bits lrl = ccc_may_win(g, left, r, best);
-    const Bits rlr = ccc_may_win(m, right, r, best);
-    if (any(lrl)) best = least(best, select(lrl, ccc(g, left, r), infinity()));
-    if (any(rlr)) best = least(best, select(rlr, ccc(m, right, r), infinity()));
-    return select(is_here(g, r), Real{}, best);
-  }
-
-  static Real load(const double* column, std::size_t step, std::size_t i, std::size_t count) {
-    if (step == 0) return splat(*column);
+  static Real get(const double* lanes) {
     Real result{};
-    if (i + kLanes <= count) {
-      __builtin_memcpy(&result, column + i, sizeof result);
-    } else {
-      for (std::size_t k = 0; k < kLanes; ++k) result[k] = column[i + k < count ? i + k : i];
-    }
+    __builtin_memcpy(&result, lanes, sizeof result);
+    return result;
+  }
+  static void put(double* lanes, Real value) { __builtin_memcpy(lanes, &value, sizeof value); }
+  static Real gather(const double* column, const std::uint32_t* rows) {
+    Real result = splat(column[rows[0]]);
+    for (int k = 1; k < kLanes; ++k) result[k] = column[rows[k]];
     return result;
   }
 
@@ -314,24 +294,188 @@ struct DubinsLanes {
     return heading;
   }
 
-  static SinCos trigonometry(const DubinsColumns& poses, Real heading, std::size_t i,
-                             std::size_t count) {
-    if (poses.cos == nullptr) return sin_cos(heading);
-    return {load(poses.sin, poses.step, i, count), load(poses.cos, poses.step, i, count)};
+  /// The lanes as bits of a number, the first the lowest.
+  static unsigned set_of(Bits mask) {
+#if defined(__AVX512DQ__)
+    if constexpr (kLanes == 8) return _mm512_movepi64_mask(__m512i(mask));
+#endif
+#if defined(__AVX2__)
+    if constexpr (kLanes == 4) return static_cast<unsigned>(_mm256_movemask_pd(__m256d(mask)));
+#endif
+#if defined(__x86_64__)
+    if constexpr (kLanes == 2) return static_cast<unsigned>(_mm_movemask_pd(__m128d(mask)));
+#endif
+    unsigned set = 0;
+    for (int k = 0; k < kLanes; ++k) set |= (mask[k] != 0 ? 1U : 0U) << static_cast<unsigned>(k);
+    return set;
   }
 
+  /// Pairs that go through one stage after the other, see below. Sides: to the goal and to the
+  /// mirrored one.
+  static constexpr std::size_t kBlock = 64;
+  // NOLINTBEGIN(modernize-avoid-c-arrays): std::array would be another header.
+  using Column = double[kBlock];
+  using BothSides = double[2 * kBlock];
+  using Candidates = std::uint32_t[2 * kBlock + kLanes];
+  // NOLINTEND(modernize-avoid-c-arrays)
+  struct alignas(64) Block {
+    Column x;
+    Column y;
+    Column sin;
+    Column cos;
+    Column versine;
+    Column turn;
+    Column best;
+    BothSides dx;  ///< of the centres, side after side
+    BothSides dy;
+    BothSides distance;
+    Candidates candidates;  ///< pairs, with kBlock added for the mirrored side
+
+    [[nodiscard]] Goal goal(std::size_t i) const {
+      return {get(x + i), get(y + i), get(sin + i), get(cos + i), get(versine + i), get(turn + i)};
+    }
+    void set_goal(std::size_t i, const Goal& goal) {
+      put(x + i, goal.x);
+      put(y + i, goal.y);
+      put(sin + i, goal.sin);
+      put(cos + i, goal.cos);
+      put(versine + i, goal.versine);
+      put(turn + i, goal.turn);
+    }
+  };
+
+  static Real load(const double* column, std::size_t step, std::size_t i) {
+    return step == 0 ? splat(*column) : get(column + i);
+  }
+
+  static SinCos trigonometry(const DubinsColumns& poses, Real heading, std::size_t i) {
+    if (poses.cos == nullptr) return sin_cos(heading);
+    return {load(poses.sin, poses.step, i), load(poses.cos, poses.step, i)};
+  }
+
+  /// Of the pairs k, k + 1 ...
+  [[gnu::always_inline]] static Goal load_goal(const DubinsColumns& from, const DubinsColumns& to,
+                                               std::size_t k) {
+    const Real a = tame(load(from.heading_rad, from.step, k));
+    const Real b = tame(load(to.heading_rad, to.step, k));
+    return goal_of(load(to.x_m, to.step, k) - load(from.x_m, from.step, k),
+                   load(to.y_m, to.step, k) - load(from.y_m, from.step, k), b - a,
+                   trigonometry(from, a, k), trigonometry(to, b, k));
+  }
+
+  /// The last poses, fewer than the lanes; the first of them stands in the lanes that are left.
+  struct LastPoses {
+    Column x;
+    Column y;
+    Column heading;
+    Column cos;
+    Column sin;
+
+    DubinsColumns take(const DubinsColumns& poses, std::size_t k, std::size_t count) {
+      if (poses.step == 0) return poses;
+      const bool cached = poses.cos != nullptr;
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        const std::size_t at = i < count ? k + i : k;
+        x[i] = poses.x_m[at];
+        y[i] = poses.y_m[at];
+        heading[i] = poses.heading_rad[at];
+        cos[i] = cached ? poses.cos[at] : 0.0;
+        sin[i] = cached ? poses.sin[at] : 0.0;
+      }
+      return {x, y, heading, cached ? cos : nullptr, cached ? sin : nullptr, 1};
+    }
+  };
+
+  static void make_goals(const DubinsColumns& from, const DubinsColumns& to, std::size_t begin,
+                         std::size_t end, Block& block) {
+    std::size_t i = 0;
+    for (; i + kLanes <= end; i += kLanes) block.set_goal(i, load_goal(from, to, begin + i));
+    if (i == end) return;
+    LastPoses a;
+    LastPoses b;
+    block.set_goal(i,
+                   load_goal(a.take(from, begin + i, end - i), b.take(to, begin + i, end - i), 0));
+  }
+
+  static void try_same(double r, std::size_t end, Block& block) {
+    for (std::size_t i = 0; i < end; i += kLanes) {
+      const Goal goal = block.goal(i);
+      Real best = infinity();
+      for (std::size_t side = 0; side < 2; ++side) {
+        Centres centres{};
+        best = least(best, lsl(side == 0 ? goal : mirrored(goal), r, centres));
+        put(block.dx + side * kBlock + i, centres.dx);
+        put(block.dy + side * kBlock + i, centres.dy);
+        put(block.distance + side * kBlock + i, centres.distance);
+      }
+      put(block.best + i, best);
+    }
+  }
+
+  static void try_other(double r, std::size_t end, Block& block) {
+    for (std::size_t i = 0; i < end; i += kLanes) {
+      const Goal goal = block.goal(i);
+      const Real best = least(lsr(goal, r), lsr(mirrored(goal), r));
+      put(block.best + i, least(get(block.best + i), best));
+    }
+  }
+
+  /// Few can: they are collected, so that no lane is idle.
+  static std::size_t collect_ccc(double r, std::size_t end, Block& block) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < end; i += kLanes) {
+      const Real best = get(block.best + i);
+      const Real turn = get(block.turn + i);
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::size_t first = side * kBlock + i;
+        const unsigned set =
+            set_of(ccc_may_win(side == 0 ? turn : -turn, get(block.distance + first), r, best));
+        for (unsigned k = 0; k < kLanes; ++k) {
+          block.candidates[count] = static_cast<std::uint32_t>(first) + k;
+          count += (set >> k) & 1U;
+        }
+      }
+    }
+    return count;
+  }
+
+  static void try_ccc(double r, std::size_t count, Block& block) {
+    for (unsigned k = 0; k < kLanes; ++k) block.candidates[count + k] = block.candidates[0];
+    for (std::size_t c = 0; c < count; c += kLanes) {
+      const std::uint32_t* first = block.candidates + c;
+      const Centres centres{gather(block.dx, first), gather(block.dy, first),
+                            gather(block.distance, first)};
+      const auto turn_of_side = [&](int k) {
+        const double turn = block.turn[first[k] % kBlock];
+        return first[k] < kBlock ? turn : -turn;
+      };
+      Real turn = splat(turn_of_side(0));
+      for (int k = 1; k < kLanes; ++k) turn[k] = turn_of_side(k);
+      const Real length = ccc(turn, centres, r);
+      for (int k = 0; k < kLanes; ++k) {
+        double& best = block.best[first[k] % kBlock];
+        best = length[k] < best ? length[k] : best;
+      }
+    }
+  }
+
+  /// Block by block, and each stage for a whole block: short loops, in which the processor works at
+  /// several rounds at once, as it cannot at the long chain of roots, quotients and angles of one.
   static void lengths(const DubinsColumns& from, const DubinsColumns& to, std::size_t count,
                       double radius_m, double* lengths_m) {
-    for (std::size_t i = 0; i < count; i += kLanes) {
-      const Real a = tame(load(from.heading_rad, from.step, i, count));
-      const Real b = tame(load(to.heading_rad, to.step, i, count));
-      const Goal goal =
-          goal_of(load(to.x_m, to.step, i, count) - load(from.x_m, from.step, i, count),
-                  load(to.y_m, to.step, i, count) - load(from.y_m, from.step, i, count), b - a,
-                  trigonometry(from, a, i, count), trigonometry(to, b, i, count));
-      const Real length = shortest(goal, radius_m);
-      const std::size_t left = count - i;
-      __builtin_memcpy(lengths_m + i, &length, sizeof(double) * (left < kLanes ? left : kLanes));
+    Block block;
+    for (std::size_t begin = 0; begin < count; begin += kBlock) {
+      const std::size_t end = count - begin < kBlock ? count - begin : kBlock;
+      make_goals(from, to, begin, end, block);
+      try_same(radius_m, end, block);
+      try_other(radius_m, end, block);
+      const std::size_t candidates = collect_ccc(radius_m, end, block);
+      if (candidates > 0) try_ccc(radius_m, candidates, block);
+      for (std::size_t i = 0; i < end; i += kLanes) {
+        const Real length = select(is_here(block.goal(i), radius_m), Real{}, get(block.best + i));
+        put(block.best + i, length);
+      }
+      __builtin_memcpy(lengths_m + begin, block.best, sizeof(double) * end);
     }
   }
 };
