@@ -26,7 +26,15 @@ constexpr double kAccepted = 0.5;
 
 constexpr std::size_t kRuins = 5;
 constexpr std::size_t kSorts = 3;
-constexpr double kMeanEnd = 0.02;  ///< of the score, where the criterion is the makespan
+
+// Where the criterion is the makespan.
+constexpr double kMeanEnd = 0.1;  ///< of the score
+constexpr double kPath = 0.02;    ///< of a place: how long the path through it is
+constexpr std::uint64_t kCycleOfPaths = 200;
+constexpr int kRuinMostOfPaths = 15;    ///< tasks taken out at once, and not only a part of all
+constexpr double kAny = 0.5;            ///< chance that they are any, not near to each other
+constexpr double kCritical = 0.8;       ///< chance that the first is on a longest path
+constexpr double kOnPath = 1.0 - 1e-9;  ///< of the makespan: the length of a longest path
 
 }  // namespace
 
@@ -49,6 +57,7 @@ Search::Search(const Model& model, Random& random)
       timing_{model, Timing::Costs::approximate},
       ruins_{kRuins},
       sorts_{kSorts},
+      paths_{model},
       vehicle_of_(model.tasks.size(), kNone),
       chosen_(model.tasks.size(), 0) {
   current_.orders.assign(model_.vehicles.size(), {});
@@ -65,6 +74,7 @@ Search::Search(const Model& model, Random& random)
 
 double Search::score_of(const Orders& orders, double limit) {
   const double cost = timing_.evaluate(orders, limit);
+  timed_cost_ = cost;
   // Only the last task counts for a makespan: without more, most changes would look alike.
   return model_.criterion == Criterion::makespan ? cost + kMeanEnd * timing_.mean_end_s() : cost;
 }
@@ -82,9 +92,10 @@ void Search::accept_best() {
 }
 
 void Search::step() {
-  const std::uint64_t phase = steps_++ % kCycle;
+  const std::uint64_t cycle = model_.criterion == Criterion::makespan ? kCycleOfPaths : kCycle;
+  const std::uint64_t phase = steps_++ % cycle;
   if (phase == 0) current_ = best_;
-  const double part = static_cast<double>(phase) / static_cast<double>(kCycle);
+  const double part = static_cast<double>(phase) / static_cast<double>(cycle);
   const double heat = best_.missing.empty() ? kHot * std::pow(kCold / kHot, part) : 0.0;
   const double limit = current_.score - heat * best_.score * std::log(1.0 - random_.uniform());
   next_ = current_;
@@ -114,15 +125,29 @@ void Search::ruin(Solution& plan) {
       vehicle_of_[at(model_.task_of[at(v)])] = static_cast<Index>(i);
     }
   }
-  const int most = std::clamp(static_cast<int>(kRuinPart * model_.task_count()), 2, kRuinMost);
+  const bool by_paths = model_.criterion == Criterion::makespan;
+  const int most =
+      by_paths ? std::min(model_.task_count(), kRuinMostOfPaths)
+               : std::clamp(static_cast<int>(kRuinPart * model_.task_count()), 2, kRuinMost);
   const int count = 1 + static_cast<int>(random_.index(static_cast<std::uint64_t>(most)));
   std::fill(chosen_.begin(), chosen_.end(), 0);
+  if (by_paths) {
+    // Only a longest path can be shortened; whole sites or vehicles help less often.
+    const Index first = random_.chance(kCritical) ? critical_task(plan) : any_task();
+    if (random_.chance(kAny)) {
+      choose_any(first, count);
+    } else {
+      choose_near(first, count);
+    }
+    take_out(plan);
+    return;
+  }
   switch (ruins_.draw(random_)) {
     case 0:
-      choose_any(count);
+      choose_any(any_task(), count);
       break;
     case 1:
-      choose_near(count);
+      choose_near(any_task(), count);
       break;
     case 2:
       choose_vehicles(plan, count);
@@ -148,13 +173,24 @@ void Search::take_out(Solution& plan) {
   }
 }
 
-void Search::choose_any(int count) {
-  for (int k = 0; k < count; ++k) chosen_[at(any_task())] = 1;
+Index Search::critical_task(const Solution& plan) {
+  paths_.find(plan.orders, timing_);
+  const double longest_s = *std::max_element(end_s_.begin(), end_s_.end());
+  sorted_.clear();
+  for (Index t = 0; t < model_.task_count(); ++t) {
+    if (vehicle_of_[at(t)] == kNone) continue;
+    if (time_s_[at(t)] + paths_.tail_s(t) >= kOnPath * longest_s) sorted_.emplace_back(0.0, t);
+  }
+  return sorted_.empty() ? any_task() : sorted_[random_.index(sorted_.size())].second;
+}
+
+void Search::choose_any(Index first, int count) {
+  chosen_[at(first)] = 1;
+  for (int k = 1; k < count; ++k) chosen_[at(any_task())] = 1;
 }
 
 /// Near in time to one task, and nearer on the same vehicle or site (Shaw 1998).
-void Search::choose_near(int count) {
-  const Index seed = any_task();
+void Search::choose_near(Index seed, int count) {
   const double span_s = 1.0 + *std::max_element(end_s_.begin(), end_s_.end());
   sorted_.clear();
   for (Index t = 0; t < model_.task_count(); ++t) {
@@ -241,8 +277,54 @@ void Search::recreate(Solution& plan, double limit) {
                    : plan.score + kMissing * static_cast<double>(plan.missing.size());
 }
 
+bool Search::has_load(const Solution& plan, Index vehicle, const Task& task) const {
+  if (task.id.kind != TaskKind::deliver) return true;
+  const auto& order = plan.orders[at(vehicle)];
+  const auto used = std::count_if(order.begin(), order.end(), [&](Index v) {
+    return model_.tasks[at(model_.task_of[at(v)])].id.kind == TaskKind::deliver;
+  });
+  return used < model_.vehicles[at(vehicle)].loads;
+}
+
+/// The place where the longest path through the task is shortest, of those that can be flown.
+/// Precondition: `timing_` is that of the plan.
+Search::Place Search::best_place_by_paths(Solution& plan, Index task) {
+  const Task& its = model_.tasks[at(task)];
+  const double cost = timed_cost_;
+  paths_.find(plan.orders, timing_);
+  places_.clear();
+  for (Index i = 0; i < model_.vehicle_count(); ++i) {
+    if (!has_load(plan, i, its)) continue;
+    for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
+      for (std::size_t p = 0; p <= plan.orders[at(i)].size(); ++p) {
+        if (random_.chance(kBlink)) continue;
+        const double path_s = paths_.through_s(plan.orders[at(i)], timing_, i, p, v);
+        if (path_s == kInfinity) continue;
+        places_.push_back({i, p, v, std::max(cost, path_s) + kPath * path_s});
+      }
+    }
+  }
+  while (!places_.empty()) {
+    const auto least =
+        std::min_element(places_.begin(), places_.end(),
+                         [](const Place& a, const Place& b) { return a.score < b.score; });
+    Place place = *least;
+    auto& order = plan.orders[at(place.vehicle)];
+    const auto position = static_cast<std::ptrdiff_t>(place.position);
+    order.insert(order.begin() + position, place.visit);
+    place.score = score_of(plan.orders);
+    order.erase(order.begin() + position);
+    if (place.score < kInfinity) return place;
+    *least = places_.back();
+    places_.pop_back();
+  }
+  plan.score = score_of(plan.orders);
+  return {};
+}
+
 /// Places in the order of what they cost at least, until no better one can follow.
 Search::Place Search::best_place(Solution& plan, Index task) {
+  if (model_.criterion == Criterion::makespan) return best_place_by_paths(plan, task);
   const Task& its = model_.tasks[at(task)];
   Place best;
   timing_.evaluate(plan.orders);
@@ -250,12 +332,7 @@ Search::Place Search::best_place(Solution& plan, Index task) {
   places_.clear();
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
     const auto& order = plan.orders[at(i)];
-    if (its.id.kind == TaskKind::deliver) {
-      const auto used = std::count_if(order.begin(), order.end(), [&](Index v) {
-        return model_.tasks[at(model_.task_of[at(v)])].id.kind == TaskKind::deliver;
-      });
-      if (used >= model_.vehicles[at(i)].loads) continue;
-    }
+    if (!has_load(plan, i, its)) continue;
     for (std::size_t p = 0; p <= order.size(); ++p) {
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
         const double least = least_score_at(plan, i, p, v);
@@ -299,9 +376,7 @@ double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t p
     end_s += model_.reach_from(vehicle, last)[order[p]] + after_s[at(order[p])];
     if (end_s <= last_end_s) return score;
     if (!(end_s <= its.deadline_s)) return kInfinity;
-    score = model_.criterion == Criterion::makespan ? std::max(score, end_s)
-                                                    : score + model_.least_cost_of(next, end_s) -
-                                                          model_.least_cost_of(next, last_end_s);
+    score += model_.least_cost_of(next, end_s) - model_.least_cost_of(next, last_end_s);
     last = order[p];
   }
   return score + its.range_weight_per_s * (end_s - last_end_s);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "coupled_model.hpp"
+#include "coupled_paths.hpp"
 
 namespace skein::planning::coupled {
 
@@ -52,8 +53,9 @@ class Search {
 
   void ruin(Solution& plan);
   void take_out(Solution& plan);
-  void choose_any(int count);
-  void choose_near(int count);
+  [[nodiscard]] Index critical_task(const Solution& plan);
+  void choose_any(Index first, int count);
+  void choose_near(Index seed, int count);
   void choose_vehicles(const Solution& plan, int count);
   void choose_site();
   void choose_late(int count);
@@ -61,6 +63,8 @@ class Search {
 
   void recreate(Solution& plan, double limit);
   [[nodiscard]] Place best_place(Solution& plan, Index task);
+  [[nodiscard]] Place best_place_by_paths(Solution& plan, Index task);
+  [[nodiscard]] bool has_load(const Solution& plan, Index vehicle, const Task& task) const;
   [[nodiscard]] double least_score_at(const Solution& plan, Index vehicle, std::size_t position,
                                       Index visit) const;
 
@@ -74,6 +78,8 @@ class Search {
   std::uint64_t steps_ = 0;
   Choice ruins_;
   Choice sorts_;
+  Paths paths_;
+  double timed_cost_ = kInfinity;  ///< of the last orders that timing_ was asked for
   // While a step is made, by task.
   std::vector<Index> vehicle_of_;
   std::vector<double> time_s_;

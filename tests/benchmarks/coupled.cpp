@@ -53,15 +53,14 @@ double loss(const CoupledPlan& plan, double best) {
 class Losses {
  public:
   void add(double value) { values_.push_back(value); }
-  void report(benchmark::State& state, const std::string& who) const {
+  void report(benchmark::State& state, const std::string& who) {
+    if (values_.empty()) return;
+    std::sort(values_.begin(), values_.end());
     double sum = 0.0;
-    double worst = 0.0;
-    for (const double v : values_) {
-      sum += v;
-      worst = std::max(worst, v);
-    }
+    for (const double v : values_) sum += v;
     state.counters[who + "_mean_%"] = 100.0 * sum / static_cast<double>(values_.size());
-    state.counters[who + "_worst_%"] = 100.0 * worst;
+    state.counters[who + "_median_%"] = 100.0 * values_[values_.size() / 2];
+    state.counters[who + "_worst_%"] = 100.0 * values_.back();
   }
 
  private:
