@@ -391,8 +391,10 @@ struct DubinsLanes {
     std::size_t i = 0;
     for (; i + kLanes <= end; i += kLanes) block.set_goal(i, load_goal(from, to, begin + i));
     if (i == end) return;
+    // NOLINTBEGIN(cppcoreguidelines-pro-type-member-init): filled as far as they are read.
     LastPoses a;
     LastPoses b;
+    // NOLINTEND(cppcoreguidelines-pro-type-member-init)
     block.set_goal(i,
                    load_goal(a.take(from, begin + i, end - i), b.take(to, begin + i, end - i), 0));
   }
@@ -463,6 +465,7 @@ struct DubinsLanes {
   /// several rounds at once, as it cannot at the long chain of roots, quotients and angles of one.
   static void lengths(const DubinsColumns& from, const DubinsColumns& to, std::size_t count,
                       double radius_m, double* lengths_m) {
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled as far as it is read.
     Block block;
     for (std::size_t begin = 0; begin < count; begin += kBlock) {
       const std::size_t end = count - begin < kBlock ? count - begin : kBlock;
