@@ -89,6 +89,7 @@ TEST_F(ControlSockets, HaveANameEach) {
 TEST_F(ControlSockets, SurviveConnectionsThatSayTooMuchOrNothing) {
   const auto socket = open();
   std::vector<int> peers;
+  peers.reserve(4);
   for (int i = 0; i < 4; ++i) peers.push_back(connect_and_say(""));
   const int long_winded = connect_and_say(std::string(5000, 'x'));
   std::array<char, 8> end{};
