@@ -111,6 +111,7 @@ TEST(Cooperative, ClimbsAreFlownInTimeAndHeightsSeparate) {
   RoutePlannerParams quick;
   quick.evaluations = 200;
   quick.reorders = 0;
+  quick.corridors_tried = 1;
   EXPECT_FALSE(plan_routes(pair, quick, Random{1}).ok());
   // One descends past the other: they keep apart until it is below.
   pair.vehicles[0].start_height_m = 130;

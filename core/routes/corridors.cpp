@@ -252,12 +252,14 @@ std::vector<Vec2> corners_of(const Corridor& corridor, double corner_max_rad) {
   SKEIN_ASSERT(corner_max_rad > 0.0 && corner_max_rad < kPi);
   std::vector<Vec2> corners;
   for (const Bend& bend : corridor.bends) {
-    const double count = std::max(1.0, std::ceil(bend.turn_rad / corner_max_rad - 1e-9));
-    const double corner = bend.turn_rad / count;
+    const auto count =
+        static_cast<std::size_t>(std::max(1.0, std::ceil(bend.turn_rad / corner_max_rad - 1e-9)));
+    const double corner = bend.turn_rad / static_cast<double>(count);
     const double out_m = bend.radius_m / std::cos(0.5 * corner);
-    for (double k = 0.5; k < count; k += 1.0) {
-      const double heading = bend.heading_rad + bend.sense * k * corner;
-      corners.push_back(bend.centre - bend.sense * out_m * left_of(unit_vector(heading)));
+    for (std::size_t k = 0; k < count; ++k) {
+      const double heading =
+          bend.heading_rad + bend.sense * (static_cast<double>(k) + 0.5) * corner;
+      corners.emplace_back(bend.centre - bend.sense * out_m * left_of(unit_vector(heading)));
     }
   }
   return corners;

@@ -18,7 +18,7 @@ struct RoutePlanProgress {
 };
 
 struct RoutePlannerParams {
-  std::size_t corridors = 12;       ///< of a vehicle, for each length of its last leg
+  std::size_t corridors = 32;       ///< of a vehicle, for each length of its last leg
   std::size_t corridors_tried = 6;  ///< of those, at one arrival time; more where none will do
   /// Ways to lengthen a corridor that are tried, at most.
   std::uint64_t evaluations = 1'500;
