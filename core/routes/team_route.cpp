@@ -29,6 +29,7 @@ constexpr std::size_t kSpacingSamples = 64;
 
 std::vector<Disc> discs_of(const std::vector<Hazard>& circles) {
   std::vector<Disc> discs;
+  discs.reserve(circles.size());
   for (const Hazard& circle : circles) discs.push_back({circle.centre, circle.radius_m});
   return discs;
 }
