@@ -159,8 +159,8 @@ std::string configuration_reference() {
          "\n# `skein-ground --config FILE`\n" + page_of<GroundConfig>() +
          "\n# Shapes: `shapes/*.yaml`\n\nWhat formations make of them stands in "
          "[formation.md](formation.md).\n" +
-         page_of<ShapeFile>() +
-         "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" + page_of<RoutePlan>();
+         page_of<ShapeFile>() + "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" +
+         page_of<RoutePlan>();
 }
 
 }  // namespace skein::configuration

@@ -5,6 +5,7 @@
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/routes/fly_by.hpp"
+#include "skein/routes/route_check.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 /// What the way home from the site may be longer than straight.
 constexpr double kWayHome = 1.5;
 constexpr double kSlack = 1e-9;  // of a radius that was written and read
+constexpr double kSameSite_m = 1e-3;
+constexpr double kStep_m = 1.0;  // along a route, of what is looked at
 
 std::string name_of(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
 
@@ -38,9 +41,14 @@ HazardId free_id(const std::vector<ScenarioHazard>& hazards) {
 
 Result<std::optional<TimedPath>> timed_path(const FlightRoute& route, const VehicleSpec& vehicle) {
   if (route.waypoints.empty()) return std::optional<TimedPath>{};
-  if (route.turn_radius_m < vehicle.turn_radius_m * (1.0 - kSlack)) {
+  if (route.turn_radius_m < vehicle.planning_radius_m() * (1.0 - kSlack)) {
     return Error{"its arcs of " + std::to_string(route.turn_radius_m) +
-                 " m are tighter than the vehicle turns"};
+                 " m are tighter than paths of the vehicle are planned, " +
+                 std::to_string(vehicle.planning_radius_m()) + " m; plan it anew"};
+  }
+  if (route.speed_mps < vehicle.speed_min_mps || route.speed_mps > vehicle.speed_max_mps) {
+    return Error{"its speed of " + std::to_string(route.speed_mps) +
+                 " m/s is none that the vehicle flies; plan it anew"};
   }
   auto path = routes::fly_by_path(route.waypoints, route.turn_radius_m);
   if (!path) return path.error();
@@ -60,6 +68,13 @@ routes::RouteProblem route_problem(const Scenario& scenario) {
   routes::RouteProblem problem;
   problem.site = config.site;
   problem.hazards = config.hazards;
+  for (const ScenarioHazard& known : scenario.hazards) {
+    if (known.known_from > Instant{}) continue;
+    problem.hazards.push_back({.id = known.hazard.id,
+                               .kind = routes::HazardKind::keep_out,
+                               .centre = known.hazard.centre,
+                               .radius_m = known.hazard.radius_m});
+  }
   problem.rules = config.rules;
   problem.weights = config.weights;
   for (const RouteApproach& approach : config.approaches) {
@@ -78,25 +93,83 @@ routes::RouteProblem route_problem(const Scenario& scenario) {
   return problem;
 }
 
-Result<void> give_routes(const RoutePlan& plan, Scenario& scenario) {
+namespace {
+
+/// Beyond the site: the way on, and a lap of the hold.
+Result<void> judge_way_on(const TimedPath& timed, const routes::RouteProblem& problem,
+                          const std::string& who) {
+  const double length_m = timed.path.length_m();
+  const double lap_m = kTwoPi / timed.tail_curvature_per_m;
+  for (double at_m = 0.0; at_m <= length_m + lap_m; at_m += kStep_m) {
+    const Vec2 point = timed.pose_at_distance(at_m).position();
+    for (const routes::RouteHazard& hazard : problem.hazards) {
+      if (!problem.closed(hazard)) continue;
+      if ((point - hazard.centre).norm() >= hazard.radius_m) continue;
+      return Error{"the route of " + who + " enters hazard " + std::to_string(hazard.id.value) +
+                   (at_m > length_m ? " where it circles beyond the site" : "") +
+                   "; plan it anew, or leave more room"};
+    }
+  }
+  return {};
+}
+
+/// By the mission as it is now, whatever it was when the plan was made.
+Result<void> judge(const RoutePlan& plan, const routes::RouteProblem& problem,
+                   const Scenario& scenario) {
+  if ((plan.site - problem.site).norm() > kSameSite_m) {
+    return Error{"the plan is for another site; plan it anew"};
+  }
+  routes::CooperativePlan flown;
+  flown.arrival_s = plan.arrival_s;
   for (const VehicleRoute& planned : plan.routes) {
     const auto found = vehicle_of(scenario.vehicles, planned.vehicle);
     if (found == scenario.vehicles.end()) {
       return Error{name_of(planned.vehicle) + " has a route, and is not in the mission"};
     }
-    if (const auto path = timed_path(planned.route, found->spec); !path) {
-      return Error{"the route of " + name_of(planned.vehicle) + ": " + path.error().message};
+    const auto timed = timed_path(planned.route, found->spec);
+    if (!timed || !*timed) {
+      return Error{"the route of " + name_of(planned.vehicle) + ": " +
+                   (timed ? "it has no waypoints" : timed.error().message)};
     }
-    if (planned.route.waypoints.size() < 2) {
-      return Error{"the route of " + name_of(planned.vehicle) + " has no waypoints"};
+    if (auto clear = judge_way_on(**timed, problem, name_of(planned.vehicle)); !clear) return clear;
+  }
+  for (const routes::RouteVehicle& vehicle : problem.vehicles) {
+    const auto planned =
+        std::find_if(plan.routes.begin(), plan.routes.end(),
+                     [&vehicle](const VehicleRoute& r) { return r.vehicle == vehicle.id; });
+    if (planned == plan.routes.end()) {
+      return Error{"the plan has no route for " + name_of(vehicle.id) + "; plan it anew"};
     }
+    if (planned->route.speed_mps != vehicle.speed_mps) {
+      return Error{"the route of " + name_of(vehicle.id) +
+                   " is not for its cruise speed; plan it anew"};
+    }
+    routes::PlannedRoute route;
+    route.id = vehicle.id;
+    route.waypoints = planned->route.waypoints;
+    route.length_m = planned->length_m;
+    route.arrival_s = planned->arrival_s;
+    flown.routes.push_back(std::move(route));
+  }
+  const auto report = routes::check_routes(problem, flown);
+  if (report.ok()) return {};
+  return Error{"the plan breaks a rule of the mission: " + name_of(report.violations[0].vehicle) +
+               ": " + report.violations[0].message + "; plan it anew"};
+}
+
+}  // namespace
+
+Result<void> give_routes(const RoutePlan& plan, Scenario& scenario) {
+  const routes::RouteProblem problem = route_problem(scenario);
+  if (auto judged = judge(plan, problem, scenario); !judged) return judged;
+  for (const VehicleRoute& planned : plan.routes) {
+    const auto found = vehicle_of(scenario.vehicles, planned.vehicle);
     const Vec2 begin = planned.route.waypoints[0];
     const Vec2 leg = planned.route.waypoints[1] - begin;
     found->route = planned.route;
     found->start = {begin.x(), begin.y(), std::atan2(leg.y(), leg.x())};
   }
-  const routes::RouteProblem problem = route_problem(scenario);
-  for (const routes::RouteHazard& hazard : problem.hazards) {
+  for (const routes::RouteHazard& hazard : scenario.routes.hazards) {
     if (!problem.closed(hazard)) continue;
     scenario.hazards.push_back(
         {{free_id(scenario.hazards), hazard.centre, hazard.radius_m}, Instant{}});
@@ -111,8 +184,8 @@ std::vector<RouteEnd> route_ends(const Scenario& scenario) {
     if (found == scenario.vehicles.end() || found->route.waypoints.empty()) continue;
     const FlightRoute& route = found->route;
     const double length_m = routes::fly_by_length_m(route.waypoints, route.turn_radius_m);
-    ends.push_back(
-        {approach.vehicle, approach.heading_rad, at_seconds(length_m / route.speed_mps)});
+    ends.push_back({approach.vehicle, approach.heading_rad, at_seconds(length_m / route.speed_mps),
+                    from_seconds(approach.offset_s)});
   }
   return ends;
 }

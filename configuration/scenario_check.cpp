@@ -68,6 +68,9 @@ class Check {
     if (multirotors != 0 && multirotors != s_.vehicles.size()) {
       problem("the fleet has multirotors and fixed wings; fly them in two missions");
     }
+    if (s_.flies_formation() && s_.flies_routes()) {
+      problem("multirotors fly in formation and by no planned routes; take the routes away");
+    }
     if (s_.flies_formation() && !s_.sites.empty()) {
       problem("multirotors fly in formation and do no tasks at sites; take the sites away");
     }

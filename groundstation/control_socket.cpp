@@ -5,6 +5,8 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
 #include <boost/asio.hpp>
 #include <mutex>
 #include <set>
@@ -24,6 +26,7 @@ using boost::system::error_code;
 constexpr std::size_t kLineMax = 1000;
 constexpr std::size_t kConnectionsMax = 16;
 constexpr auto kConnectionLasts = std::chrono::seconds{30};
+constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
 constexpr auto kLastWords = std::chrono::milliseconds{200};
 constexpr std::string_view kDone = "done\n";
 constexpr std::string_view kRefused = "refused\n";
@@ -70,6 +73,7 @@ class ControlSocket::Impl {
     io_.poll();
     error_code ignored;
     acceptor_.close(ignored);
+    again_.cancel(ignored);
     const auto open_ones = connections_;
     for (const auto& connection : open_ones) {
       if (connection->text.empty()) connection->end();
@@ -95,7 +99,11 @@ class ControlSocket::Impl {
 
   std::optional<Request> next() {
     const std::lock_guard lock{mutex_};
-    return requests_.pop();
+    while (auto waiting = requests_.pop()) {
+      // Who has gone believes that nothing was done.
+      if (!waiting->gone->load()) return std::move(waiting->request);
+    }
+    return std::nullopt;
   }
 
  private:
@@ -115,7 +123,16 @@ class ControlSocket::Impl {
             if (failed) return self->end();
             self->line.resize(size - 1);
             self->impl.offer(self);
+            self->watch();
           });
+    }
+
+    /// Notices that the other end closes while it waits.
+    void watch() {
+      asio::async_read(socket, asio::buffer(more),
+                       [self = shared_from_this()](const error_code&, std::size_t) {
+                         if (self->text.empty()) self->end();
+                       });
     }
 
     void answer(const Answer& given) {
@@ -127,6 +144,7 @@ class ControlSocket::Impl {
     }
 
     void end() {
+      gone->store(true);
       error_code ignored;
       patience.cancel(ignored);
       socket.close(ignored);
@@ -138,12 +156,25 @@ class ControlSocket::Impl {
     asio::steady_timer patience;
     std::string line;
     std::string text;
+    std::array<char, 1> more{};
+    std::shared_ptr<std::atomic<bool>> gone = std::make_shared<std::atomic<bool>>(false);
+  };
+  struct Waiting {
+    Request request;
+    std::shared_ptr<std::atomic<bool>> gone;
   };
 
   void accept() {
     acceptor_.async_accept([this](const error_code& failed, stream_protocol::socket accepted) {
       if (failed == asio::error::operation_aborted) return;
-      if (!failed && connections_.size() < kConnectionsMax && is_trusted(accepted)) {
+      if (failed) {  // no descriptor is free, say
+        again_.expires_after(kAcceptAgain);
+        again_.async_wait([this](const error_code& cancelled) {
+          if (!cancelled) accept();
+        });
+        return;
+      }
+      if (connections_.size() < kConnectionsMax && is_trusted(accepted)) {
         const auto connection = std::make_shared<Connection>(*this, std::move(accepted));
         connections_.insert(connection);
         connection->start();
@@ -162,7 +193,7 @@ class ControlSocket::Impl {
                     }};
     {
       const std::lock_guard lock{mutex_};
-      requests_.push(std::move(request));
+      requests_.push({std::move(request), connection->gone});
     }
     on_line_();
   }
@@ -170,9 +201,10 @@ class ControlSocket::Impl {
   std::function<void()> on_line_;
   asio::io_context io_{1};
   stream_protocol::acceptor acceptor_{io_};
+  asio::steady_timer again_{io_};
   std::set<std::shared_ptr<Connection>> connections_;  ///< of the thread only
   std::mutex mutex_;
-  BoundedQueue<Request> requests_{kConnectionsMax};  ///< under mutex_
+  BoundedQueue<Waiting> requests_{kConnectionsMax};  ///< under mutex_
   std::thread thread_;
 };
 

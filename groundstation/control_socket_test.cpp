@@ -115,11 +115,20 @@ TEST_F(ControlSockets, WithNobodyThereSaysSo) {
   EXPECT_THAT(too_long.error().message, HasSubstr("longer than a socket's name"));
 }
 
-TEST_F(ControlSockets, DoNotWaitForEver) {
+TEST_F(ControlSockets, DoNotWaitForEverAndWhatNobodyWaitsForIsNotDone) {
   const auto socket = open();
-  const auto silent = ask(name_, "status", std::chrono::milliseconds{50});
+  const auto silent = ask(name_, "take-off", std::chrono::milliseconds{50});
   ASSERT_FALSE(silent.ok());
   EXPECT_THAT(silent.error().message, HasSubstr("does not answer"));
+  // The socket's thread has seen the one leave once it serves the next.
+  auto answer = asked("status");
+  told_.acquire();  // of take-off
+  told_.acquire();
+  const auto request = socket->next();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->line, "status");
+  request->reply({true, ""});
+  EXPECT_TRUE(answer.get().ok());
 }
 
 }  // namespace

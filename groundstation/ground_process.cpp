@@ -85,7 +85,7 @@ class GroundLoop {
         const Answer given = answer(*line, now);
         print((given.done ? "" : "error: ") + given.text);
       }
-      while (const auto request = control_->next()) {
+      while (const auto request = control_ ? control_->next() : std::nullopt) {
         spdlog::info("told by another program: {}", request->line);
         request->reply(answer(request->line, now));
       }
@@ -262,8 +262,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
 
   auto control = ControlSocket::open(control_socket_of(config), [&wake] { wake.notify(); });
   if (!control) {
-    spdlog::critical("cannot take orders from other programs: {}", control.error().message);
-    return process::kExitCannotStart;
+    spdlog::warn("takes no orders from other programs: {}", control.error().message);
   }
 
   spdlog::info("ground station of {} vehicles, {}; type help", config.vehicles.size(),
@@ -279,7 +278,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   wake,
                   std::move(writer),
                   std::move(*formation),
-                  std::move(*control)};
+                  control ? std::move(*control) : nullptr};
   std::thread thread{[&loop] { loop.run(); }};
   spdlog::info("{}: stopping", shutdown.wait());
   loop.stop();

@@ -101,6 +101,7 @@ int plan(const PlanArguments& arguments) {
   if (shows) std::fputs("\r\033[K", stderr);
   if (!planned) return fail(planned.error().message, kExitRefused);
   std::fputs(groundstation::routes_text(*planned).c_str(), stdout);
+  if (!planned->check.ok()) return fail("the plan breaks a rule; nothing is written", kExitRefused);
   const std::filesystem::path folder =
       arguments.folder.empty()
           ? std::filesystem::path{"runs"} / std::filesystem::path{arguments.scenario}.stem()
@@ -110,7 +111,7 @@ int plan(const PlanArguments& arguments) {
   std::printf("into %s:", folder.c_str());
   for (const std::string& file : *files) std::printf(" %s", file.c_str());
   std::printf("\n");
-  return planned->check.ok() ? 0 : kExitRefused;
+  return 0;
 }
 
 CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,

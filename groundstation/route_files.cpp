@@ -112,11 +112,11 @@ std::string routes_kml(const PlannedRoutes& planned, const Scenario& scenario,
     const double height = height_of(scenario, route.vehicle);
     text += fmt::format(
         "<Placemark><name>vehicle {}</name><description>over the site at {:.2f} s</description>"
-        "<LineString><altitudeMode>absolute</altitudeMode><coordinates>",
+        "<LineString><altitudeMode>relativeToGround</altitudeMode><coordinates>",
         route.vehicle.value, route.arrival_s);
     for (const Vec2& point : flown(route)) {
       const Wgs84 p = on_earth(origin, point, height);
-      text += fmt::format("{:.7f},{:.7f},{:.1f} ", p.longitude_deg, p.latitude_deg, p.height_m);
+      text += fmt::format("{:.7f},{:.7f},{:.1f} ", p.longitude_deg, p.latitude_deg, height);
     }
     text += "</coordinates></LineString></Placemark>\n";
   }

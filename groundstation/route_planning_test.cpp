@@ -51,10 +51,40 @@ TEST(RoutePlanning, APlanForOthersIsRefused) {
   const auto scenario = routes_3();
   auto plan = plan_routes(scenario)->file;
   auto given = scenario;
+  const auto good = plan;
   plan.routes[0].route.turn_radius_m = 1.0;
   auto refused = configuration::give_routes(plan, given);
   ASSERT_FALSE(refused.ok());
-  EXPECT_THAT(refused.error().message, HasSubstr("tighter than the vehicle turns"));
+  EXPECT_THAT(refused.error().message, HasSubstr("tighter than paths of the vehicle"));
+  plan = good;
+  plan.routes[0].route.speed_mps = 60.0;
+  refused = configuration::give_routes(plan, given);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("none that the vehicle flies"));
+  plan = good;
+  plan.routes.pop_back();
+  refused = configuration::give_routes(plan, given);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("no route for vehicle 3"));
+  // The world has changed since: a hazard on the way, one beyond the site, another site.
+  const auto refused_in = [&](auto&& change) {
+    auto changed = scenario;
+    change(changed);
+    const auto why = configuration::give_routes(good, changed);
+    return why ? std::string{"none"} : why.error().message;
+  };
+  EXPECT_THAT(refused_in([&](auto& s) {
+                s.hazards.push_back({{{77}, good.routes[1].route.waypoints[1], 20.0}, Instant{}});
+              }),
+              HasSubstr("enters hazard 77"));
+  EXPECT_THAT(refused_in([&](auto& s) {
+                s.hazards.push_back({{{78}, {990.0, 1040.0}, 20.0}, Instant{}});
+              }),
+              HasSubstr("enters hazard 78"));
+  EXPECT_THAT(refused_in([](auto& s) { s.routes.site.x() += 5.0; }), HasSubstr("another site"));
+  EXPECT_THAT(refused_in([](auto& s) { s.vehicles[0].start.x_m += 50.0; }),
+              HasSubstr("breaks a rule"));
+  plan = good;
   plan.routes[0].vehicle = {77};
   refused = configuration::give_routes(plan, given);
   ASSERT_FALSE(refused.ok());

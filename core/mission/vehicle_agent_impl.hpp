@@ -25,6 +25,7 @@ class VehicleAgent::Impl {
  public:
   Impl(const VehicleAgentConfig& config, Instant now);
 
+  [[nodiscard]] static bool is_there(const TimedPath& route, const VehicleState& state);
   void on_state(const VehicleState& state, Instant now);
   void on_message(const Message& message, VehicleId sender, Instant now);
   void on_planning_result(const PlanningResult& result, Instant now);

@@ -330,11 +330,12 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
     report(EventKind::plan_changed, task_->round, task_->assignment.task, 0.0,
            "around the hazard, to the same time", now);
   } else {
-    // A task or a survey is flown on where the hazard is near its way but does not bar it.
+    // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
     const auto& timed = flight_.plan().timed;
     const double ahead = timed.distance_at(now);
     const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
-    if ((task_ || survey_) && rest && planning::is_clear(*rest, hazards_)) return;
+    const bool bound = task_ || survey_ || flight_.en_route(now);
+    if (bound && rest && planning::is_clear(*rest, hazards_)) return;
     participant_.withdraw("a hazard bars its path", now);
     pump(now);
     flight_.hold(hazards_, now);

@@ -37,13 +37,25 @@ VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
       hazards_{config.hazards},
       participant_{config.protocol, config.vehicle.id, config.instance} {}
 
+/// Where a route begins, or goes on for who starts anew in the middle.
+bool VehicleAgent::Impl::is_there(const TimedPath& route, const VehicleState& state) {
+  constexpr double kNear_m = 50.0;
+  const Pose2 pose = route.pose_at(state.time);
+  return (Vec2{state.x_m, state.y_m} - pose.position()).norm() <= kNear_m &&
+         std::abs(wrap_pi(state.heading_rad - pose.heading_rad)) <= kPi / 4.0;
+}
+
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   state_ = state;
   if (!flight_.started()) {
-    if (config_.route) {
+    if (config_.route && is_there(*config_.route, state)) {
       flight_.start_route(*config_.route);
     } else {
       flight_.start(state.pose(), hazards_, range_to_spend(now), now);
+      if (config_.route) {
+        report(EventKind::warning, {}, {}, 0.0,
+               "it is not where its route has it at this time: the route is not flown", now);
+      }
     }
   }
   step(now);

@@ -282,7 +282,10 @@ class Bench {
     using mission::EventKind;
     script_done_ = script_done_ || event.kind == EventKind::script_done;
     if (event.vehicle == kGroundStation) return;
-    if (event.kind == EventKind::change_begun) moving_.insert(event.vehicle);
+    if (event.kind == EventKind::change_begun) {
+      changes_begun_ = true;
+      moving_.insert(event.vehicle);
+    }
     if (event.kind == EventKind::place_reached) moving_.erase(event.vehicle);
   }
 
@@ -387,7 +390,7 @@ class Bench {
       return sites_done_.size() == scenario_.sites.size() && progress_.now > routes_end_;
     }
     // Without a ground station the change that it has sent is flown to its end, and held.
-    const bool left_alone = killed_.contains(kGroundStation) &&
+    const bool left_alone = killed_.contains(kGroundStation) && changes_begun_ &&
                             std::all_of(moving_.begin(), moving_.end(),
                                         [this](VehicleId id) { return killed_.contains(id); });
     return script_done_ || left_alone;
@@ -490,7 +493,8 @@ class Bench {
   std::set<SiteId> sites_done_;
   Instant routes_end_ = Instant::min();  ///< the last planned one
   bool script_done_ = false;             ///< of a formation
-  std::set<VehicleId> moving_;           ///< in a change of the formation
+  bool changes_begun_ = false;
+  std::set<VehicleId> moving_;  ///< in a change of the formation
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;

@@ -20,8 +20,9 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
                                       const std::filesystem::path& run_folder,
                                       const std::vector<VehicleId>& killed) {
   checks::RunRecord record;
-  for (const auto& [vehicle, approach_rad, planned] : configuration::route_ends(scenario)) {
-    record.route_ends.push_back({vehicle, scenario.routes.site, approach_rad, planned});
+  for (const auto& end : configuration::route_ends(scenario)) {
+    record.route_ends.push_back(
+        {end.vehicle, scenario.routes.site, end.heading_rad, end.planned, end.offset});
   }
   record.sites = scenario.sites;
   for (const auto& h : scenario.hazards) record.hazards.push_back({h.hazard, h.known_from});
@@ -66,8 +67,11 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                    const checks::RunRecord& record, const BenchOutcome& outcome) {
   const checks::Limits limits = limits_of(scenario.expect);
   auto results = scenario.flies_formation() ? checks::judge_formation(record, limits)
-                 : scenario.flies_routes()  ? checks::judge_routes(record, limits)
+                 : scenario.sites.empty()   ? checks::judge_routes(record, limits)
                                             : checks::judge(record, limits);
+  if (scenario.flies_routes() && !scenario.sites.empty()) {
+    results.push_back(checks::check_routes(record, limits));
+  }
 
   const std::size_t vehicles = scenario.vehicles.size();
   const double found = outcome.all_heard_s.value_or(0.0);
@@ -99,7 +103,7 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                   "the script was not done when the run ended"));
     return results;
   }
-  if (scenario.flies_routes() && scenario.sites.empty()) return results;
+  if (scenario.sites.empty()) return results;
   std::set<SiteId> formed;
   std::set<SiteId> waited;
   for (const auto& event : events_of(record)) {

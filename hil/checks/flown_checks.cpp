@@ -13,7 +13,6 @@ namespace {
 
 using recording::TrackPoint;
 
-// Direction of travel is taken over half a second, so that one noisy position does not decide.
 // A start angle is looked for this long before and after the planned start.
 constexpr double kStartWindow = 5.0;
 

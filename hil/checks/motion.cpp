@@ -9,6 +9,7 @@
 namespace skein::checks {
 namespace {
 
+// Direction of travel is taken over half a second, so that one noisy position does not decide.
 constexpr double kBearingHalfSpan = 0.25;
 
 // A piece of constant curvature by its chord: the chord of an arc turning by a points a/2 off the

@@ -19,7 +19,7 @@ CheckResult check_routes(const RunRecord& record, const Limits& limits) {
                      {}};
   double miss = 0.0;
   double bearing = 0.0;
-  std::optional<double> early_s;  // against the plan: the earliest, and the latest
+  std::optional<double> early_s;  // offsets taken away: the earliest, and the latest
   std::optional<double> late_s;
   for (const RouteEnd& end : record.route_ends) {
     ++result.judged;
@@ -34,7 +34,7 @@ CheckResult check_routes(const RunRecord& record, const Limits& limits) {
       violate("'s route ends " + at(end.planned) + ", but the track does not show it");
       continue;
     }
-    const double off_s = to_seconds(pass->time - end.planned);
+    const double off_s = to_seconds(pass->time - end.offset);
     early_s = std::min(early_s.value_or(off_s), off_s);
     late_s = std::max(late_s.value_or(off_s), off_s);
     miss = std::max(miss, pass->miss_m);

@@ -30,6 +30,15 @@ TEST(RouteChecks, ASpreadIsFoundAndACommonDelayIsNone) {
   EXPECT_TRUE(check_routes(record, {}).held());
 }
 
+TEST(RouteChecks, APlanThatIsNotTogetherIsFoundAndOffsetsAreKept) {
+  RunRecord record = routes();
+  delay(of(record, kFromSouth), 5.0);
+  record.route_ends[1].planned = at_seconds(65.0);  // as planned, and too late
+  EXPECT_THAT(only_sentence(check_routes(record, {})), HasSubstr("5.00 s apart"));
+  record.route_ends[1].offset = std::chrono::seconds{5};
+  EXPECT_TRUE(check_routes(record, {}).held());
+}
+
 TEST(RouteChecks, AMissABearingAndAMissingTrackAreFound) {
   RunRecord record = routes();
   shift(of(record, kFromSouth), {31.0, 0.0});

@@ -60,7 +60,6 @@ void FlyingVehicle::start_agent(const std::vector<Hazard>& hazards) {
   config.protocol = mission_.protocol;
   config.planning = mission_.planning;
   config.search = what_.search;
-  if (life_ == 0) config.route = what_.route;  // who starts anew is elsewhere
   config.hazards = hazards;
   numbers_before_ = plan_.number;
   agent_ = std::make_unique<mission::VehicleAgent>(config, local(dynamics_->state().time));

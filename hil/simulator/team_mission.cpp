@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "skein/base/assert.hpp"
-
 namespace skein::hil {
 
 std::vector<mission::ScriptedDecision> scripted_decisions(
@@ -25,11 +23,7 @@ models::WindParams wind_params(const configuration::WindConfig& wind, std::uint6
 
 TeamMission team_mission(const configuration::Scenario& scenario) {
   TeamMission team;
-  for (const auto& v : scenario.vehicles) {
-    const auto route = configuration::timed_path(v.route, v.spec);
-    SKEIN_ASSERT(route.ok());  // it was given by give_routes()
-    team.vehicles.push_back({v.spec, v.start, v.search, *route});
-  }
+  for (const auto& v : scenario.vehicles) team.vehicles.push_back({v.spec, v.start, v.search});
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.protocol = scenario.protocol;

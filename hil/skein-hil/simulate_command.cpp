@@ -140,8 +140,8 @@ int simulate(const SimulateArguments& arguments) {
     fmt::print(stderr, "{}\n", flyable.error().message);
     return kExitBadInput;
   }
-  if (scenario->sites.empty() && scenario->flies_routes()) {
-    fmt::print(stderr, "a mission of routes alone is flown by `skein-hil run`\n");
+  if (scenario->flies_routes()) {
+    fmt::print(stderr, "planned routes are flown by `skein-hil run` only\n");
     return kExitBadInput;
   }
   if (arguments.seed) scenario->seed = *arguments.seed;

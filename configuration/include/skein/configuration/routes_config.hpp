@@ -74,8 +74,8 @@ struct RoutePlan {
 /// What plan_routes is asked, of the scenario's vehicles and their approaches.
 [[nodiscard]] routes::RouteProblem route_problem(const Scenario& scenario);
 /// Gives the vehicles their routes and where these begin their starts' headings; and what no route
-/// may enter to all as hazards. Fails for a vehicle that the scenario does not have, or that cannot
-/// fly its route.
+/// may enter to all as hazards. Fails for a plan that breaks a rule of the scenario as it is now,
+/// or leads into a hazard beyond the site, and for vehicles that have no route or cannot fly it.
 [[nodiscard]] Result<void> give_routes(const RoutePlan& plan, Scenario& scenario);
 
 /// When and how the vehicles that were given routes are to pass over the site.
@@ -83,6 +83,7 @@ struct RouteEnd {
   VehicleId vehicle;
   double heading_rad = 0.0;
   Instant planned{};
+  Duration offset{};  ///< of it from the common time
 };
 [[nodiscard]] std::vector<RouteEnd> route_ends(const Scenario& scenario);
 

@@ -43,6 +43,7 @@ struct RouteEnd {
   Vec2 site{0.0, 0.0};
   double heading_rad = 0.0;  ///< direction of travel over it
   Instant planned{};
+  Duration offset{};  ///< required, from the common time
 };
 
 struct RunRecord {

@@ -26,7 +26,6 @@ struct SimulatedVehicle {
   VehicleSpec spec;
   Pose2 start;
   std::vector<Vec2> search;
-  std::optional<TimedPath> route = {};  ///< flown first
 };
 
 /// A hazard and when it comes into being; everyone is told then.
