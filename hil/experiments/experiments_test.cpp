@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "csv.hpp"
-#include "plots.hpp"
 #include "skein/experiments/grid.hpp"
 #include "skein/experiments/measures.hpp"
+#include "skein/experiments/plots.hpp"
 #include "skein/experiments/statistics.hpp"
 #include "skein/hil/team_mission.hpp"
 
@@ -251,6 +251,29 @@ TEST(Plots, OfMeansThatDifferByRoundingAreDrawn) {
   const double next = std::nextafter(1.0, 2.0);
   const Plot plot{"A", "x", "y", {"1", "2"}, {{"one", {{3, 1.0, 0.0, 0.0}, {3, next, 0.0, 0.0}}}}};
   EXPECT_THAT(svg(plot, false), HasSubstr(">1</text>"));
+}
+
+TEST(Plots, LongLabelsAreSlanted) {
+  const std::vector<std::string> many(12, "intermittency");
+  const Plot plot{"A", "x", "y", many, {{"one", std::vector<Estimate>(12, {1, 1.0, 0.0, 0.0})}}};
+  EXPECT_THAT(svg(plot, true), HasSubstr("rotate"));
+  const Plot few{"A", "x", "y", {"1"}, {{"one", {{1, 1.0, 0.0, 0.0}}}}};
+  EXPECT_EQ(svg(few, true).find("rotate"), std::string::npos);
+}
+
+TEST(Plots, LinesKeepTheirCornersAndNames) {
+  const LinePlot plot{
+      "A",
+      "x",
+      "y",
+      {{"P & Q", {{0, 0}, {5, 1}, {10, 0}}}, {"none", {}}, {"R", {{0, 2}, {10, 2}}}}};
+  const std::string picture = svg(plot);
+  EXPECT_THAT(picture, HasSubstr("P &amp; Q"));
+  EXPECT_THAT(picture, HasSubstr("class=\"line c2\""));
+  EXPECT_THAT(picture, HasSubstr("62.0,"));   // from the left edge
+  EXPECT_THAT(picture, HasSubstr("276.0,"));  // the corner in the middle
+  EXPECT_EQ(picture.find("nan"), std::string::npos);
+  EXPECT_EQ(svg(LinePlot{"A", "x", "y", {}}).find("nan"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "plots.hpp"
+#include "skein/experiments/plots.hpp"
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ constexpr double kLeft = 62.0;
 constexpr double kRight = 490.0;  // right of it is the legend
 constexpr double kTop = 54.0;
 constexpr double kBottom = kHeight - 44.0;
-constexpr std::size_t kColours = 7;
+constexpr double kLetter = 6.5;  // as wide as one is, about
 
 /// Colours after Okabe and Ito (2008).
 constexpr std::string_view kStyle = R"(<style>
@@ -34,6 +34,15 @@ constexpr std::string_view kStyle = R"(<style>
 .bar+.error{stroke:var(--ink)}
 </style>)";
 
+/// With room at both ends, but for bars at 0. low > high: there is no value at all.
+report::Axis value_axis(double low, double high, bool bars) {
+  if (low > high) low = high = 0.0;
+  // All the same, but for the rounding of their means.
+  const bool flat = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
+  const double room = flat ? 1.0 : 0.06 * (high - low);
+  return {low < 0.0 || !bars ? low - room : low, high + room, kBottom, kTop};
+}
+
 report::Axis value_axis(const Plot& plot, bool bars) {
   double low = bars ? 0.0 : std::numeric_limits<double>::infinity();
   double high = bars ? 0.0 : -std::numeric_limits<double>::infinity();
@@ -44,11 +53,39 @@ report::Axis value_axis(const Plot& plot, bool bars) {
       high = std::max(high, e.mean + e.half_width);
     }
   }
-  if (low > high) low = high = 0.0;  // no value at all
-  // All the same, but for the rounding of their means.
-  const bool flat = high - low <= 1e-9 * std::max(std::abs(low), std::abs(high));
-  const double room = flat ? 1.0 : 0.06 * (high - low);
-  return {low < 0.0 || !bars ? low - room : low, high + room, kBottom, kTop};
+  return value_axis(low, high, bars);
+}
+
+/// What both kinds begin with: everything but x's labels and the values. `below` is the room that
+/// those labels take beyond their line.
+template <class AnyPlot>
+std::string frame(const AnyPlot& plot, const report::Axis& value, double below) {
+  std::string text = fmt::format(
+      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{3}</text><text x="12" y="40">{4}</text>)",
+      kWidth, kHeight + below, kStyle, report::escaped(plot.title), report::escaped(plot.y_label));
+  for (const double v : value.ticks(6)) {
+    text += fmt::format(
+        R"(<path class="grid" d="M{0:.0f} {1:.1f}H{2:.0f}"/><text class="end" x="{3:.0f}" y="{4:.1f}">{5:g}</text>)",
+        kLeft, value(v), kRight, kLeft - 6.0, value(v) + 4.0, v);
+  }
+  text +=
+      fmt::format(R"(<text class="mid" x="{:.0f}" y="{:.0f}">{}</text>)", 0.5 * (kLeft + kRight),
+                  kBottom + 36.0 + below, report::escaped(plot.x_label));
+  return text;
+}
+
+/// Names beside their colours; one series needs none.
+template <class AnySeries>
+std::string legend(const std::vector<AnySeries>& series) {
+  std::string text;
+  for (std::size_t s = 0; s < series.size() && series.size() > 1; ++s) {
+    const double y = kTop + 12.0 + 20.0 * static_cast<double>(s);
+    text += fmt::format(
+        R"(<rect class="bar c{}" x="{:.0f}" y="{:.1f}" width="12" height="12" rx="2"/><text x="{:.0f}" y="{:.1f}">{}</text>)",
+        s % kPlotColours, kRight + 14.0, y - 10.0, kRight + 32.0, y,
+        report::escaped(series[s].name));
+  }
+  return text;
 }
 
 /// The interval around a mean.
@@ -79,7 +116,7 @@ std::string lines_of(const Plot& plot, const report::Axis& value, double step) {
           e.mean, e.half_width, e.count);
     }
     text += fmt::format(R"(<g class="c{}"><polyline class="line" points="{}"/>{}</g>)",
-                        s % kColours, report::points_text(line), marks);
+                        s % kPlotColours, report::points_text(line), marks);
   }
   return text;
 }
@@ -88,7 +125,7 @@ std::string bars_of(const Plot& plot, const report::Axis& value, double step) {
   std::string text;
   const double width = 0.8 * step / static_cast<double>(plot.series.size());
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
-    text += fmt::format(R"(<g class="c{}">)", s % kColours);
+    text += fmt::format(R"(<g class="c{}">)", s % kPlotColours);
     for (std::size_t i = 0; i < plot.x.size(); ++i) {
       const Estimate& e = plot.series[s].values.at(i);
       if (e.count == 0) continue;
@@ -112,30 +149,56 @@ std::string bars_of(const Plot& plot, const report::Axis& value, double step) {
 std::string svg(const Plot& plot, bool bars) {
   const report::Axis value = value_axis(plot, bars);
   const double step = (kRight - kLeft) / static_cast<double>(plot.x.size());
-  std::string text = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{3}</text><text x="12" y="40">{4}</text>)",
-      kWidth, kHeight, kStyle, report::escaped(plot.title), report::escaped(plot.y_label));
-  for (const double v : value.ticks(6)) {
-    text += fmt::format(
-        R"(<path class="grid" d="M{0:.0f} {1:.1f}H{2:.0f}"/><text class="end" x="{3:.0f}" y="{4:.1f}">{5:g}</text>)",
-        kLeft, value(v), kRight, kLeft - 6.0, value(v) + 4.0, v);
+  double longest = 0.0;
+  for (const std::string& label : plot.x) {
+    longest = std::max(longest, kLetter * static_cast<double>(label.size()));
   }
+  const bool slanted = longest > 1.9 * step;
+  std::string text = frame(plot, value, slanted ? 0.6 * longest : 0.0);
   for (std::size_t i = 0; i < plot.x.size(); ++i) {
-    text += fmt::format(R"(<text class="mid" x="{:.1f}" y="{:.0f}">{}</text>)",
-                        kLeft + step * (static_cast<double>(i) + 0.5), kBottom + 18.0,
-                        report::escaped(plot.x[i]));
+    const double x = kLeft + step * (static_cast<double>(i) + 0.5);
+    text +=
+        slanted
+            ? fmt::format(
+                  R"svg(<text class="end" transform="translate({:.1f} {:.0f})rotate(-40)">{}</text>)svg",
+                  x + 4.0, kBottom + 14.0, report::escaped(plot.x[i]))
+            : fmt::format(R"(<text class="mid" x="{:.1f}" y="{:.0f}">{}</text>)", x, kBottom + 18.0,
+                          report::escaped(plot.x[i]));
   }
-  text += fmt::format(R"(<text class="mid" x="{:.0f}" y="{:.0f}">{}</text>)",
-                      0.5 * (kLeft + kRight), kBottom + 36.0, report::escaped(plot.x_label));
   text += bars ? bars_of(plot, value, step) : lines_of(plot, value, step);
-  for (std::size_t s = 0; s < plot.series.size() && plot.series.size() > 1; ++s) {
-    const double y = kTop + 12.0 + 20.0 * static_cast<double>(s);
-    text += fmt::format(
-        R"(<rect class="bar c{}" x="{:.0f}" y="{:.1f}" width="12" height="12" rx="2"/><text x="{:.0f}" y="{:.1f}">{}</text>)",
-        s % kColours, kRight + 14.0, y - 10.0, kRight + 32.0, y,
-        report::escaped(plot.series[s].name));
-  }
-  return text + "</svg>\n";
+  return text + legend(plot.series) + "</svg>\n";
 }
+
+std::string svg(const LinePlot& plot) {
+  constexpr double kNothing = std::numeric_limits<double>::infinity();
+  Vec2 low{kNothing, kNothing};
+  Vec2 high{-kNothing, -kNothing};
+  for (const Line& line : plot.lines) {
+    for (const Vec2& point : line.points) {
+      low = low.cwiseMin(point);
+      high = high.cwiseMax(point);
+    }
+  }
+  if (low.x() > high.x()) low = high = Vec2{0.0, 0.0};
+  const report::Axis value = value_axis(low.y(), high.y(), false);
+  const report::Axis along{low.x(), high.x() > low.x() ? high.x() : low.x() + 1.0, kLeft, kRight};
+  std::string text = frame(plot, value, 0.0);
+  for (const double x : along.ticks(6)) {
+    text += fmt::format(R"(<text class="mid" x="{:.1f}" y="{:.0f}">{:g}</text>)", along(x),
+                        kBottom + 18.0, x);
+  }
+  for (std::size_t s = 0; s < plot.lines.size(); ++s) {
+    std::vector<Vec2> line;
+    for (const Vec2& point : plot.lines[s].points) {
+      line.emplace_back(along(point.x()), value(point.y()));
+    }
+    text += fmt::format(R"(<polyline class="line c{}" points="{}"><title>{}</title></polyline>)",
+                        s % kPlotColours, report::points_text(report::thinned(line, 0.2)),
+                        report::escaped(plot.lines[s].name));
+  }
+  return text + legend(plot.lines) + "</svg>\n";
+}
+
+std::string_view plot_style() { return kStyle; }
 
 }  // namespace skein::experiments

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "csv.hpp"
-#include "plots.hpp"
 #include "skein/experiments/grid.hpp"
+#include "skein/experiments/plots.hpp"
 #include "skein/experiments/statistics.hpp"
 #include "skein/hil/team_mission.hpp"
 

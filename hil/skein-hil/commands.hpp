@@ -81,6 +81,16 @@ struct SwapArguments {
 };
 int swap(const SwapArguments& arguments);
 
+struct RoutesArguments {
+  std::vector<std::string> what{"all"};  ///< as route_figures::find_experiments() takes them
+  bool paper = false;                    ///< the paper's numbers of runs
+  std::optional<std::size_t> runs;       ///< in place of all numbers
+  std::uint64_t seed = 1;
+  std::filesystem::path folder = "runs/routes";
+  std::size_t jobs = 0;  ///< 0: one for each core
+};
+int routes(const RoutesArguments& arguments);
+
 struct ShapesArguments {
   std::vector<std::string> shapes;  ///< names, or files
   std::vector<std::size_t> vehicles{5};

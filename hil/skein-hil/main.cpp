@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
       "  skein-hil run scenarios/coalition-32.yaml         the mission of 32 vehicles\n"
       "  skein-hil simulate scenarios/coalition-32.yaml    the same in virtual time, in a second\n"
       "  skein-hil sweep experiments/radio.yaml            600 missions, means and plots\n"
+      "  skein-hil routes                                  figures of cooperative routes\n"
       "  skein-hil can dump vcan0                          what is said on a CAN bus\n"
       "Scenario files are explained in docs/scenarios.md.");
   app.require_subcommand(1);
@@ -167,6 +168,37 @@ int main(int argc, char** argv) {
       "          skein-hil swap --agents 5,32,100 --method field,orca --csv swap.csv\n"
       "          skein-hil swap --agents 5 --delay 0 --loss 0 --seeds 1 --plots .");
 
+  skein::hil::RoutesArguments routes;
+  auto* routes_command = app.add_subcommand(
+      "routes",
+      "Repeat the experiments of Wu et al. 2022 on cooperative routes, and draw their figures");
+  routes_command
+      ->add_option("--what", routes.what,
+                   "maps, convergence, weights, worlds, cooperative, quality, scale, or all;\n"
+                   "several with commas")
+      ->delimiter(',')
+      ->capture_default_str();
+  auto* paper = routes_command->add_flag(
+      "--paper", routes.paper, "The paper's numbers of runs: 200 of each map, 600 worlds");
+  routes_command
+      ->add_option("--runs", routes.runs, "Runs of everything, in place of a quick look's")
+      ->check(CLI::Range(1, 100'000))
+      ->excludes(paper);
+  routes_command->add_option("--seed", routes.seed, "Of the first run; then + 1")
+      ->capture_default_str();
+  routes_command->add_option("--out", routes.folder, "Folder of the tables and figures")
+      ->capture_default_str();
+  routes_command->add_option("--jobs", routes.jobs, "Runs at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  routes_command->footer(
+      "Prints tables beside the paper's values; writes a CSV and SVG files of each experiment. "
+      "The\n"
+      "same seed gives the same files. A quick look at all takes about a minute on one core,\n"
+      "--paper QQQ minutes. Ends with status 0, or 2 for bad input.\n"
+      "Examples: skein-hil routes\n"
+      "          skein-hil routes --what worlds,quality --paper --jobs 8\n"
+      "          skein-hil routes --what maps --runs 50 --out runs/maps");
+
   skein::hil::ShapesArguments shapes;
   auto* shapes_command =
       app.add_subcommand("shapes", "Print or draw the places of a formation's shapes");
@@ -217,6 +249,7 @@ int main(int argc, char** argv) {
   if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
   if (changes_command->parsed()) return skein::hil::changes(changes);
+  if (routes_command->parsed()) return skein::hil::routes(routes);
   if (shapes_command->parsed()) return skein::hil::shapes(shapes);
   if (swap_command->parsed()) return skein::hil::swap(swap);
   return sweep_command->parsed() ? skein::hil::sweep(sweep) : skein::hil::simulate(simulate);
