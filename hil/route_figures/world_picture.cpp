@@ -26,16 +26,26 @@ constexpr std::string_view kStyle = R"(<style>
 std::string world_svg(const std::string& title, double side_m,
                       const std::vector<routes::RouteHazard>& hazards,
                       const std::vector<Curve>& curves, const Vec2& site) {
-  const double scale = kSide / side_m;
+  Vec2 low{0.0, 0.0};
+  Vec2 high{side_m, side_m};
+  for (const Curve& curve : curves) {  // routes may leave the world
+    for (const Vec2& at : curve.points) {
+      low = low.cwiseMin(at);
+      high = high.cwiseMax(at);
+    }
+  }
+  const double scale = kSide / (high.x() - low.x());
+  const double bottom = kHead + scale * (high.y() - low.y());
   const auto pixel = [&](const Vec2& at) {
-    return Vec2{kMargin + scale * at.x(), kHead + kSide - scale * at.y()};
+    return Vec2{kMargin + scale * (at.x() - low.x()), bottom - scale * (at.y() - low.y())};
   };
+  const Vec2 corner = pixel({0.0, side_m});
   const double width = kSide + 2.0 * kMargin + kLegend;
-  const double height = kHead + kSide + kMargin;
+  const double height = bottom + kMargin;
   std::string text = fmt::format(
-      R"svg(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}{3}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{4}</text><clipPath id="world"><rect x="{5:.0f}" y="{6:.0f}" width="{7:.0f}" height="{7:.0f}"/></clipPath><rect class="world" x="{5:.0f}" y="{6:.0f}" width="{7:.0f}" height="{7:.0f}"/><g clip-path="url(#world)">)svg",
-      width, height, experiments::plot_style(), kStyle, report::escaped(title), kMargin, kHead,
-      kSide);
+      R"svg(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}{3}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{4}</text><clipPath id="world"><rect x="{5:.1f}" y="{6:.1f}" width="{7:.1f}" height="{7:.1f}"/></clipPath><rect class="world" x="{5:.1f}" y="{6:.1f}" width="{7:.1f}" height="{7:.1f}"/><g clip-path="url(#world)">)svg",
+      width, height, experiments::plot_style(), kStyle, report::escaped(title), corner.x(),
+      corner.y(), scale * side_m);
   for (const routes::RouteHazard& hazard : hazards) {
     const Vec2 at = pixel(hazard.centre);
     text += fmt::format(R"(<g class="{}"><title>{} {}</title>)",

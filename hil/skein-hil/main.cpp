@@ -194,7 +194,7 @@ int main(int argc, char** argv) {
       "Prints tables beside the paper's values; writes a CSV and SVG files of each experiment. "
       "The\n"
       "same seed gives the same files. A quick look at all takes about a minute on one core,\n"
-      "--paper QQQ minutes. Ends with status 0, or 2 for bad input.\n"
+      "--paper a quarter of an hour. Ends with status 0, or 2 for bad input.\n"
       "Examples: skein-hil routes\n"
       "          skein-hil routes --what worlds,quality --paper --jobs 8\n"
       "          skein-hil routes --what maps --runs 50 --out runs/maps");
