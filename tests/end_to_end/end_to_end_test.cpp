@@ -172,6 +172,37 @@ TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
   EXPECT_TRUE(bench.wait(60s));
 }
 
+TEST_F(EndToEnd, RoutesArePlannedThenFlownAndOnlyAsTheMissionIs) {
+  const std::string mission = SKEIN_SOURCE_DIR "/scenarios/routes-3.yaml";
+  const fs::path plan = folder_ / "plan" / "plan.yaml";
+  {
+    auto child = ChildProcess::start(
+        {SKEIN_PROGRAMS "/skein-ground", "plan", mission, "--out", plan.parent_path().string()},
+        folder_ / "planned", {});
+    ASSERT_TRUE(child);
+    ASSERT_TRUE(child->wait(60s));
+    ASSERT_EQ(child->ended(), "exit status 0") << text_of(folder_ / "planned");
+  }
+  EXPECT_NE(text_of(folder_ / "planned").find("every rule holds"), std::string::npos);
+  EXPECT_TRUE(fs::exists(plan.parent_path() / "vehicle-3.plan"));
+
+  // The mission has changed since.
+  EXPECT_EQ(run({"run", scenario_with("site_east_m: 990", "site_east_m: 995", mission), "--routes",
+                 plan.string(), "--headless", "--out", (folder_ / "refused").string()}),
+            "exit status 2");
+  EXPECT_NE(output().find("for another site; plan it anew"), std::string::npos) << output();
+  fs::remove(log_);
+
+  EXPECT_EQ(run({"run", mission, "--routes", plan.string(), "--headless", "--rate", "3", "--out",
+                 (folder_ / "run").string()}),
+            "exit status 0")
+      << output();
+  const auto text = output();
+  EXPECT_NE(text.find("ok   routes               3 routes"), std::string::npos) << text;
+  EXPECT_NE(text.find("ok   hazards"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nPASS: all"), std::string::npos) << text;
+}
+
 TEST_F(EndToEnd, CtrlCStopsEverything) {
   auto bench = start({"run", kSmall, "--headless", "--out", (folder_ / "run").string()});
   ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
