@@ -29,7 +29,7 @@
 
 #include "byte_sample.hpp"
 #include "skein/base/bounded_queue.hpp"
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
 #include "skein/network/transport_plugin.hpp"
 
 namespace skein::network {
@@ -37,6 +37,11 @@ namespace {
 
 namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
+using codec::kTopicCount;
+using codec::kTopics;
+using codec::Role;
+using codec::Topic;
+using codec::TopicInfo;
 using eprosima::fastdds::rtps::TransportDescriptorInterface;
 using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
 using eprosima::fastrtps::Duration_t;
@@ -380,7 +385,7 @@ Result<void> Node::Impl::open() {
     const bool reads = t.readers.has(config_.role);
     if (!writes && !reads) continue;
     const std::string type_name{t.type};
-    const dds::TypeSupport type{new ByteSampleType{type_name, encoded_size_max(t.topic)}};
+    const dds::TypeSupport type{new ByteSampleType{type_name, codec::encoded_size_max(t.topic)}};
     dds::Topic* topic = nullptr;
     if (type.register_type(participant_) == ReturnCode_t::RETCODE_OK) {
       topic = participant_->create_topic(std::string{t.name}, type_name, dds::TOPIC_QOS_DEFAULT);
@@ -409,12 +414,12 @@ Node::Impl::~Impl() {
 }
 
 bool Node::Impl::publish(const mission::Message& message) {
-  dds::DataWriter* writer = writers_.at(static_cast<std::size_t>(topic_of(message)));
+  dds::DataWriter* writer = writers_.at(static_cast<std::size_t>(codec::topic_of(message)));
   if (writer == nullptr) {
     count(Counter::publish_refused_role);
     return false;
   }
-  auto bytes = encode(message);
+  auto bytes = codec::encode(message);
   if (!bytes) {
     count(Counter::publish_refused_value);
     return false;
@@ -447,14 +452,14 @@ void Node::Impl::accept(Topic topic, const ByteSample& sample, const rtps::GuidP
     count(Counter::unknown_sender);
     return;
   }
-  auto decoded = decode(topic, sample.bytes);
-  if (const Fault* fault = std::get_if<Fault>(&decoded)) {
+  auto decoded = codec::decode(topic, sample.bytes);
+  if (const codec::Fault* fault = std::get_if<codec::Fault>(&decoded)) {
     switch (*fault) {
-      case Fault::malformed:
+      case codec::Fault::malformed:
         return count(Counter::malformed);
-      case Fault::bad_version:
+      case codec::Fault::bad_version:
         return count(Counter::bad_version);
-      case Fault::bad_value:
+      case codec::Fault::bad_value:
         return count(Counter::bad_value);
     }
     return;

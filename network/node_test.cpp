@@ -15,11 +15,18 @@
 #include <thread>
 
 #include "free_ports.hpp"
-#include "random_messages.hpp"
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
+#include "skein/random_messages/random_messages.hpp"
 
 namespace skein::network {
 namespace {
+
+using codec::info;
+using codec::kMessageKinds;
+using codec::random_message;
+using codec::Role;
+using codec::Topic;
+using codec::topic_of;
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
@@ -62,7 +69,7 @@ std::unique_ptr<Node> open(const NodeConfig& config) {
 }
 
 std::string bytes_of(const mission::Message& message) {
-  const auto bytes = encode(message).value();
+  const auto bytes = codec::encode(message).value();
   return {bytes.begin(), bytes.end()};
 }
 

@@ -18,7 +18,7 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, Vehi
   node.domain = config.domain_id;
   node.self = self;
   node.instance = instance;
-  node.role = self == kGroundStation ? network::Role::ground : network::Role::vehicle;
+  node.role = self == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
   node.transport_plugin = config.transport_plugin;

@@ -157,7 +157,7 @@ class Bench {
     bench.domain = deployment.domain_id;
     bench.self = kBench;
     bench.instance = InstanceId{static_cast<std::uint64_t>(deployment.time.epoch_unix_ns)};
-    bench.role = network::Role::ground;
+    bench.role = codec::Role::ground;
     bench.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(*base + 2 * (nodes - 1))};
     bench.queue_limit = 16384;
     bench.peers.push_back({kGroundStation, {ground.network.address, ground.network.port}});

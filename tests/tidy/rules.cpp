@@ -42,12 +42,13 @@ bool is_pure(std::string_view path) {
 
 bool is_cpp_outside_dds(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && !path.starts_with("network/") &&
-         !path.starts_with("hil/radio/") && !path.starts_with("idl/");
+         !path.starts_with("codec/") && !path.starts_with("hil/radio/") &&
+         !path.starts_with("idl/");
 }
 
 bool is_cpp_outside_topics(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) &&
-         !(path.starts_with("network/") && path.find("topics.") != std::string_view::npos);
+         !(path.starts_with("codec/") && path.find("topics.") != std::string_view::npos);
 }
 
 /// node.cpp turns the list of topics into QoS; nobody else has a word in it.
@@ -108,14 +109,14 @@ constexpr std::array kLineRules{
              "core depends on the standard library, Eigen and GeographicLib only"},
     LineRule{"dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
              R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
-             "DDS stays in network/ and hil/radio/: use the interface of skein::network"},
+             "DDS stays in network/ and hil/radio/, CDR in codec/: use their interfaces"},
     LineRule{"qos-outside", is_cpp_outside_node, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",
-             "a topic's name, type and QoS are one entry of the list in network (topics.hpp)"},
+             "a topic's name, type and QoS are one entry of the list in codec (topics.hpp)"},
     LineRule{"topic-name", is_cpp_outside_topics, LineRule::View::code_and_literals,
              R"x("(rt/)?skein/[a-z_]+")x",
-             "a topic's name, type and QoS are one entry of the list in network (topics.hpp)"},
+             "a topic's name, type and QoS are one entry of the list in codec (topics.hpp)"},
     LineRule{"unfinished", is_text_of_ours, LineRule::View::everything,
              R"(\b(TODO|FIXME|XXX|HACK)\b)", "finish it, or open an issue and say what is missing"},
     LineRule{"machine-path", is_text_of_ours, LineRule::View::everything,

@@ -93,7 +93,7 @@ TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
 }
 
 TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {
-  EXPECT_TRUE(findings_in("network/topics.cpp", "name = \"skein/command\";").empty());
+  EXPECT_TRUE(findings_in("codec/topics.cpp", "name = \"skein/command\";").empty());
   EXPECT_TRUE(findings_in("network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 

@@ -12,8 +12,8 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
+#include "skein/codec/topics.hpp"
 #include "skein/mission/messages.hpp"
-#include "skein/network/topics.hpp"
 
 namespace skein::network {
 
@@ -33,7 +33,7 @@ struct NodeConfig {
   std::uint32_t domain = 0;  ///< nodes of other domains are not heard; 0 to 232
   VehicleId self;
   InstanceId instance;  ///< random at each start
-  Role role = Role::vehicle;
+  codec::Role role = codec::Role::vehicle;
   Endpoint endpoint;
   /// All whom this node may meet, without itself. Discovery is by unicast to these only; a node
   /// that is not listed here still finds this one if it lists it.
@@ -55,7 +55,7 @@ struct Received {
 struct Peer {
   VehicleId id;
   InstanceId instance;  ///< two entries with one id: two processes claim it
-  Role role = Role::vehicle;
+  codec::Role role = codec::Role::vehicle;
 };
 
 /// This process on the mission network. All functions may be called from any thread, but poll()
@@ -71,7 +71,8 @@ class Node {
   Node& operator=(const Node&) = delete;
 
   /// Hands the message to the network's own thread. False, and counted, where this role does not
-  /// write the topic, a value is out of the limits of codec.hpp, or the network has no room.
+  /// write the topic, a value is out of the limits of skein/codec/codec.hpp, or the network has no
+  /// room.
   bool publish(const mission::Message& message);
 
   /// The next received message, decoded and checked; none when there is none. Own messages are not

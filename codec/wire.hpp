@@ -6,7 +6,7 @@
 #include "skein/wire/mission.h"
 
 /// Between the messages of core and the generated types of idl/.
-namespace skein::network {
+namespace skein::codec {
 
 [[nodiscard]] wire::CoalitionMessage to_wire(const coalition::Message& m);
 [[nodiscard]] wire::Telemetry to_wire(const mission::Telemetry& m);
@@ -31,4 +31,4 @@ namespace skein::network {
 [[nodiscard]] mission::Message from_wire(const wire::FormationChange& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::FormationStatus& w, bool& ok);
 
-}  // namespace skein::network
+}  // namespace skein::codec

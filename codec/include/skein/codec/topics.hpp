@@ -10,7 +10,7 @@
 #include "skein/base/time.hpp"
 #include "skein/mission/messages.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 
 /// What crosses the mission network. Few, because the cost of discovery grows with the square of
 /// the nodes times the topics.
@@ -70,8 +70,8 @@ inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
      "skein::wire::AuthorisationRequest", kVehicles, kGround, true, 16, 64, kHeartbeatPeriod},
     {Topic::authorisation, "skein/authorisation", "skein::wire::Authorisation", kGround, kVehicles,
      true, 16, 64, kHeartbeatPeriod},
-    {Topic::mission_event, "skein/mission_event", "skein::wire::MissionEvent", kAll, kGround,
-     true, 128, 256, kHeartbeatPeriod},
+    {Topic::mission_event, "skein/mission_event", "skein::wire::MissionEvent", kAll, kGround, true,
+     128, 256, kHeartbeatPeriod},
     {Topic::command, "skein/command", "skein::wire::Command", kGround, kVehicles, true, 16, 64,
      kHeartbeatPeriod},
     {Topic::site_report, "skein/site_report", "skein::wire::SiteReport", kAll, kAll, true, 32, 64,
@@ -94,4 +94,4 @@ inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
 /// docs/topics.md.
 [[nodiscard]] std::string topics_document();
 
-}  // namespace skein::network
+}  // namespace skein::codec

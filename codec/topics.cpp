@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/network/topics.hpp"
+#include "skein/codec/topics.hpp"
 
 #include <variant>
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 constexpr bool in_order() {
@@ -41,7 +41,7 @@ Topic topic_of(const mission::Message& message) { return std::visit(TopicOf{}, m
 std::string topics_document() {
   std::string text =
       "# Topics\n\n"
-      "Printed from `network/include/skein/network/topics.hpp`; a test compares them. The types "
+      "Printed from `codec/include/skein/codec/topics.hpp`; a test compares them. The types "
       "are in `idl/`.\n"
       "Durability is volatile, history is keep-last: the oldest sample gives way, so a writer "
       "never waits for a reader.\n"
@@ -68,4 +68,4 @@ std::string topics_document() {
   return text;
 }
 
-}  // namespace skein::network
+}  // namespace skein::codec

@@ -6,10 +6,10 @@
 #include <variant>
 #include <vector>
 
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
 #include "wire.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 static_assert(wire::kTasksPerKindMax == kTasksPerKindMax);
@@ -377,4 +377,4 @@ mission::Message from_wire(const wire::FormationStatus& w, bool& ok) {
   return m;
 }
 
-}  // namespace skein::network
+}  // namespace skein::codec

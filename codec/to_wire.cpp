@@ -8,7 +8,7 @@
 
 #include "wire.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 // The enumerators of idl/ stand in the order of core's: from_wire.cpp asserts it.
@@ -370,4 +370,4 @@ wire::FormationStatus to_wire(const mission::FormationStatus& m) {
   return w;
 }
 
-}  // namespace skein::network
+}  // namespace skein::codec

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
 
 #include <fastcdr/Cdr.h>
 #include <fastcdr/exceptions/Exception.h>
@@ -9,7 +9,7 @@
 
 #include "wire.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 using eprosima::fastcdr::Cdr;
@@ -116,4 +116,4 @@ std::size_t encoded_size_max(Topic topic) {
   });
 }
 
-}  // namespace skein::network
+}  // namespace skein::codec

@@ -8,10 +8,10 @@
 #include <variant>
 #include <vector>
 
+#include "skein/codec/topics.hpp"
 #include "skein/mission/messages.hpp"
-#include "skein/network/topics.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 
 /// What is accepted, in both directions; beyond it a message is a bad value. The bounds keep the
 /// arithmetic of whoever receives it free of overflow; whether a value makes sense is theirs to
@@ -41,4 +41,4 @@ enum class Fault : std::uint8_t {
 /// The most bytes that a message of the topic can have.
 [[nodiscard]] std::size_t encoded_size_max(Topic topic);
 
-}  // namespace skein::network
+}  // namespace skein::codec

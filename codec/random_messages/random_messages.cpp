@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "random_messages.hpp"
+#include "skein/random_messages/random_messages.hpp"
 
 #include <string>
 #include <vector>
 
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 /// Calls of `random` stand in separate statements: the order in which arguments are evaluated
@@ -389,4 +389,4 @@ mission::Message random_message(std::size_t kind, Random& random) {
   }
 }
 
-}  // namespace skein::network
+}  // namespace skein::codec

@@ -6,12 +6,12 @@
 #include "skein/base/random.hpp"
 #include "skein/mission/messages.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 
 /// The seven of the coalition, then the others of mission::Message in their order.
 inline constexpr std::size_t kMessageKinds = 18;
 
-/// A message of that kind with every field random within its limits, for tests of the network.
+/// A message of that kind with every field random within its limits, for tests.
 [[nodiscard]] mission::Message random_message(std::size_t kind, Random& random);
 
-}  // namespace skein::network
+}  // namespace skein::codec

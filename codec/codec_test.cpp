@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/network/codec.hpp"
+#include "skein/codec/codec.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <iterator>
 #include <limits>
 
-#include "random_messages.hpp"
+#include "skein/random_messages/random_messages.hpp"
 
-namespace skein::network {
+namespace skein::codec {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -254,4 +254,4 @@ TEST(Codec, AnyBytesAreSafe) {
 }
 
 }  // namespace
-}  // namespace skein::network
+}  // namespace skein::codec
