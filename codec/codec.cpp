@@ -90,6 +90,10 @@ auto with_type(Topic topic, F f) {
       return f(std::type_identity<wire::FormationChange>{});
     case Topic::formation_status:
       return f(std::type_identity<wire::FormationStatus>{});
+    case Topic::plan_report:
+      return f(std::type_identity<wire::PlanReport>{});
+    case Topic::health:
+      return f(std::type_identity<wire::Health>{});
     case Topic::telemetry:
     case Topic::count:
       break;

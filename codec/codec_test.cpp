@@ -34,6 +34,8 @@ constexpr std::array<const char*, kMessageKinds> kKindNames{"announcement",
                                                             "leadership_claim",
                                                             "formation_change",
                                                             "formation_status",
+                                                            "plan_report",
+                                                            "health",
                                                             "allegiance"};
 
 std::string hex(const Bytes& bytes) {

@@ -17,6 +17,9 @@ static_assert(wire::kTasksMax == coalition::kTasksMax);
 static_assert(wire::kMembersMax == coalition::kMembersMax);
 static_assert(wire::kMoversMax == formation::kMoversMax);
 static_assert(wire::kMoverPointsMax == formation::kStagesMax + 1);
+static_assert(wire::kSegmentsMax == kPathSegmentsMax);
+static_assert(wire::kProblemsMax == mission::kProblemsMax);
+static_assert(wire::kHeardMax == mission::kHeardMax);
 static_assert(wire::ASSESS + 1 == static_cast<int>(TaskKind::count));
 static_assert(wire::UNKNOWN + 1 == static_cast<int>(coalition::TaskState::count));
 static_assert(wire::EN_ROUTE + 1 == static_cast<int>(mission::Activity::count));
@@ -65,6 +68,7 @@ class Check {
   double coordinate(double m) { return within(m, -kDistanceMaxM, kDistanceMaxM); }
   double speed(double mps) { return within(mps, 0.0, kSpeedMaxMps); }
   double angle(double rad) { return within(rad, -kAngleMaxRad, kAngleMaxRad); }
+  double curvature(double per_m) { return within(per_m, -kCurvatureMaxPerM, kCurvatureMaxPerM); }
   double amount(double value) { return within(value, 0.0, kNumberMax); }
   Instant instant(std::int64_t ns) {
     require(ns >= -kTimeMax.count() && ns <= kTimeMax.count());
@@ -374,6 +378,45 @@ mission::Message from_wire(const wire::FormationStatus& w, bool& ok) {
   m.position_m = point3(c, w.position());
   m.reference_m = point3(c, w.reference());
   m.at_rest = w.at_rest();
+  return m;
+}
+
+mission::Message from_wire(const wire::PlanReport& w, bool& ok) {
+  Check c{ok};
+  mission::PlanReport m;
+  m.vehicle = VehicleId{w.vehicle()};
+  m.plan.number = w.number();
+  TimedPath& timed = m.plan.timed;
+  timed.start_time = c.instant(w.start_time_ns());
+  timed.speed_mps = c.speed(w.speed_mps());
+  c.require(timed.speed_mps > 0.0);
+  timed.tail_curvature_per_m = c.curvature(w.tail_curvature_per_m());
+  const Vec2 start = point(c, w.start());
+  timed.path.start = {start.x(), start.y(), c.angle(w.heading_rad())};
+  c.require(w.segments().size() <= kPathSegmentsMax);
+  if (!ok) return m;
+  for (const wire::Segment& segment : w.segments()) {
+    timed.path.segments.push_back(
+        {c.curvature(segment.curvature_per_m()), c.distance(segment.length_m())});
+  }
+  return m;
+}
+
+mission::Message from_wire(const wire::Health& w, bool& ok) {
+  Check c{ok};
+  mission::Health m;
+  m.vehicle = VehicleId{w.vehicle()};
+  m.instance = InstanceId{w.instance()};
+  m.time = c.instant(w.time_ns());
+  m.program = c.text(w.program().to_string());
+  m.flight_controller = c.text(w.flight_controller().to_string());
+  m.mode = c.text(w.mode().to_string());
+  m.problems = c.each(w.problems(), mission::kProblemsMax, [](Check& check, const auto& problem) {
+    return check.text(problem.to_string());
+  });
+  m.heard = c.each(w.heard(), mission::kHeardMax, [](Check& check, const wire::Heard& heard) {
+    return mission::Health::Heard{VehicleId{heard.vehicle()}, check.duration(heard.age_ns())};
+  });
   return m;
 }
 

@@ -370,4 +370,44 @@ wire::FormationStatus to_wire(const mission::FormationStatus& m) {
   return w;
 }
 
+wire::PlanReport to_wire(const mission::PlanReport& m) {
+  wire::PlanReport w;
+  w.version(wire::kVersion);
+  w.vehicle(m.vehicle.value);
+  w.number(m.plan.number);
+  const TimedPath& timed = m.plan.timed;
+  w.start_time_ns(ns(timed.start_time));
+  w.speed_mps(timed.speed_mps);
+  w.tail_curvature_per_m(timed.tail_curvature_per_m);
+  w.start(point({timed.path.start.x_m, timed.path.start.y_m}));
+  w.heading_rad(timed.path.start.heading_rad);
+  w.segments().reserve(timed.path.segments.size());
+  for (const Segment& segment : timed.path.segments) {
+    wire::Segment s;
+    s.curvature_per_m(segment.curvature_per_m);
+    s.length_m(segment.length_m);
+    w.segments().push_back(s);
+  }
+  return w;
+}
+
+wire::Health to_wire(const mission::Health& m) {
+  wire::Health w;
+  w.version(wire::kVersion);
+  w.vehicle(m.vehicle.value);
+  w.instance(m.instance.value);
+  w.time_ns(ns(m.time));
+  w.program(cut(m.program));
+  w.flight_controller(cut(m.flight_controller));
+  w.mode(cut(m.mode));
+  for (const std::string& problem : m.problems) w.problems().emplace_back(cut(problem));
+  w.heard(each<wire::Heard>(m.heard, [](const mission::Health::Heard& heard) {
+    wire::Heard h;
+    h.vehicle(heard.vehicle.value);
+    h.age_ns(heard.age.count());
+    return h;
+  }));
+  return w;
+}
+
 }  // namespace skein::codec

@@ -27,6 +27,8 @@ struct TopicOf {
   Topic operator()(const mission::HazardReport&) const { return Topic::hazard_report; }
   Topic operator()(const formation::Change&) const { return Topic::formation_change; }
   Topic operator()(const mission::FormationStatus&) const { return Topic::formation_status; }
+  Topic operator()(const mission::PlanReport&) const { return Topic::plan_report; }
+  Topic operator()(const mission::Health&) const { return Topic::health; }
 };
 
 std::string_view words(Roles roles) {

@@ -18,6 +18,8 @@ namespace skein::codec {
 [[nodiscard]] wire::HazardReport to_wire(const mission::HazardReport& m);
 [[nodiscard]] wire::FormationChange to_wire(const formation::Change& m);
 [[nodiscard]] wire::FormationStatus to_wire(const mission::FormationStatus& m);
+[[nodiscard]] wire::PlanReport to_wire(const mission::PlanReport& m);
+[[nodiscard]] wire::Health to_wire(const mission::Health& m);
 
 /// Each sets `ok` to false, and is then of no use, where a field is out of its range.
 [[nodiscard]] mission::Message from_wire(const wire::CoalitionMessage& w, bool& ok);
@@ -30,5 +32,7 @@ namespace skein::codec {
 [[nodiscard]] mission::Message from_wire(const wire::HazardReport& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::FormationChange& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::FormationStatus& w, bool& ok);
+[[nodiscard]] mission::Message from_wire(const wire::PlanReport& w, bool& ok);
+[[nodiscard]] mission::Message from_wire(const wire::Health& w, bool& ok);
 
 }  // namespace skein::codec

@@ -19,6 +19,7 @@ AgentLoop::AgentLoop(std::unique_ptr<mission::OnboardAgent> agent, VehicleId sel
       planner_{&planner},
       events_{&events},
       self_{self},
+      self_report_{self, link_.program, now},
       stepped_at_{now},
       next_telemetry_{now} {}
 
@@ -37,6 +38,7 @@ void AgentLoop::step(Instant now) {
     const auto received = link_.receive();
     if (!received) break;
     if (const auto* command = std::get_if<mission::Command>(&received->message)) pass_on(*command);
+    self_report_.on_heard(received->sender, now);
     agent_->on_message(received->message, received->sender, now);
     hand_out();
   }
@@ -55,10 +57,14 @@ void AgentLoop::step(Instant now) {
     hand_out();
   }
   send_telemetry(now);
+  send_self_report(now);
 }
 
 void AgentLoop::hand_out() {
-  while (const auto plan = agent_->poll_plan()) control_->plan.write(*plan);
+  while (const auto plan = agent_->poll_plan()) {
+    control_->plan.write(*plan);
+    self_report_.on_plan(*plan);
+  }
   while (const auto track = agent_->poll_track()) control_->motion.write(*track);
   while (const auto message = agent_->poll_message()) link_.send(*message);
   while (auto request = agent_->poll_planning_request()) planner_->request(std::move(*request));
@@ -84,15 +90,32 @@ void AgentLoop::send_telemetry(Instant now) {
   mission::Telemetry telemetry = agent_->telemetry();
   telemetry.state = state_;
   telemetry.control_overruns = control_->overruns.load(std::memory_order_relaxed);
+  telemetry.messages_dropped = static_cast<std::uint32_t>(dropped());
+  link_.send(mission::Message{telemetry});
+}
+
+void AgentLoop::send_self_report(Instant now) {
+  if (const auto plan = self_report_.plan_due(now)) link_.send(mission::Message{*plan});
+  if (!self_report_.health_due(now)) return;
+  SelfReport::Condition condition;
+  condition.instance = agent_->telemetry().instance;
+  if (link_.mode) condition.mode = link_.mode();
+  if (has_state_) condition.state_at = state_.time;
+  condition.overruns = control_->overruns.load(std::memory_order_relaxed);
+  condition.dropped = dropped();
+  link_.send(mission::Message{self_report_.health(condition, now)});
+}
+
+std::uint64_t AgentLoop::dropped() const {
   std::uint64_t dropped = link_.dropped() + events_->dropped() + planner_->dropped();
   for (const auto& [name, count] : agent_->counters()) dropped += count;
-  telemetry.messages_dropped = static_cast<std::uint32_t>(dropped);
-  link_.send(mission::Message{telemetry});
+  return dropped;
 }
 
 Instant AgentLoop::next_step() const {
   const Instant period = stepped_at_ + spec_of(ThreadRole::agent).period;
-  const Instant next = std::min({period, next_telemetry_, agent_->next_timeout()});
+  const Instant next =
+      std::min({period, next_telemetry_, self_report_.next_due(), agent_->next_timeout()});
   return std::max(next, stepped_at_ + kStepSpacing);
 }
 

@@ -27,6 +27,24 @@ void CanFlightController::on_command(const mission::Command& command, VehicleId 
                     std::memory_order_release);
 }
 
+std::string CanFlightController::mode() {
+  if (const auto* newer = mode_.read()) newest_mode_ = *newer;
+  return newest_mode_.text.data();
+}
+
+void CanFlightController::tell_mode() {
+  const ardupilot::Companion& companion = link_.companion();
+  std::string text = companion.mode();
+  if (companion.state() != ardupilot::Companion::State::flying) {
+    (text += text.empty() ? "" : ", ") += to_string(companion.state());
+  }
+  Mode mode;
+  text.copy(mode.text.data(), mode.text.size() - 1);
+  if (mode.text == told_mode_.text) return;
+  told_mode_ = mode;
+  mode_.write(mode);
+}
+
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
     std::visit(
@@ -38,6 +56,7 @@ void CanFlightController::step(Instant now) {
   link_.step(now);
   if (const auto sample = link_.companion().sample()) sample_.write(*sample);
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));
+  tell_mode();
 }
 
 void CanFlightController::wait(Duration at_most) const {

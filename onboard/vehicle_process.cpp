@@ -153,9 +153,13 @@ std::optional<mission::MissionEvent> next_warning(CanFlightController& controlle
   return std::nullopt;
 }
 
-AgentLink link_to(network::Node& node, CanFlightController* on_can, VehicleId self) {
+AgentLink link_to(network::Node& node, CanFlightController* on_can,
+                  const configuration::VehicleConfig& config) {
+  const VehicleId self = config.vehicle.id;
   AgentLink link = link_to(node);
+  link.program = {"skein-onboard " SKEIN_VERSION, on_can != nullptr ? "ardupilot" : "simulated"};
   if (on_can == nullptr) return link;
+  link.mode = [on_can] { return on_can->mode(); };
   link.flight_event = [on_can, self] { return next_warning(*on_can, self); };
   link.on_command = [on_can, self](const mission::Command& command) {
     on_can->on_command(command, self);
@@ -179,7 +183,7 @@ class Threads {
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{make_agent(config, std::move(route), instance, clock.now()),
                config.vehicle.id,
-               link_to(node, flight_controllers_.on_can, config.vehicle.id),
+               link_to(node, flight_controllers_.on_can, config),
                ports_,
                planner_,
                events_,

@@ -346,6 +346,41 @@ mission::Message formation_status(Random& random) {
   return m;
 }
 
+double curvature(Random& random) { return random.uniform(-kCurvatureMaxPerM, kCurvatureMaxPerM); }
+
+mission::Message plan_report(Random& random) {
+  mission::PlanReport m;
+  m.vehicle = vehicle(random);
+  m.plan.number = integer<std::uint32_t>(random);
+  m.plan.timed.start_time = instant(random);
+  m.plan.timed.speed_mps = random.uniform(0.1, kSpeedMaxMps);
+  m.plan.timed.tail_curvature_per_m = curvature(random);
+  const Vec2 start = point(random);
+  m.plan.timed.path.start = {start.x(), start.y(), angle(random)};
+  const std::size_t segments = random.index(kPathSegmentsMax + 1);
+  for (std::size_t i = 0; i < segments; ++i) {
+    const double turn = curvature(random);
+    m.plan.timed.path.segments.push_back({turn, distance(random)});
+  }
+  return m;
+}
+
+mission::Message health(Random& random) {
+  mission::Health m;
+  m.vehicle = vehicle(random);
+  m.instance = InstanceId{random.next()};
+  m.time = instant(random);
+  m.program = text(random);
+  m.flight_controller = text(random);
+  m.mode = text(random);
+  m.problems = several(random, mission::kProblemsMax, text);
+  m.heard = several(random, mission::kHeardMax, [](Random& r) {
+    const VehicleId heard = vehicle(r);
+    return mission::Health::Heard{heard, duration(r)};
+  });
+  return m;
+}
+
 }  // namespace
 
 mission::Message random_message(std::size_t kind, Random& random) {
@@ -384,6 +419,10 @@ mission::Message random_message(std::size_t kind, Random& random) {
       return formation_change(random);
     case 16:
       return formation_status(random);
+    case 17:
+      return plan_report(random);
+    case 18:
+      return health(random);
     default:
       return allegiance(random);
   }

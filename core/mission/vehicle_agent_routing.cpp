@@ -80,7 +80,8 @@ void VehicleAgent::Impl::on_message(const Message& message, VehicleId /*sender*/
                                  now);
                         },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
-                        [](const formation::Change&) {}, [](const FormationStatus&) {}},
+                        [](const formation::Change&) {}, [](const FormationStatus&) {},
+                        [](const PlanReport&) {}, [](const Health&) {}},
              message);
   step(now);
 }

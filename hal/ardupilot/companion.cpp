@@ -336,9 +336,9 @@ void Companion::Impl::fire(Event event, Instant now) {
 
 std::string Companion::Impl::why_piloted(State from, Event event) const {
   if (event == Event::other_mode && (from != State::arming || !armed_)) {
-    return "the mode was changed to " + mode_name() + " by the pilot or a failsafe";
+    return "the mode was changed to " + mode() + " by the pilot or a failsafe";
   }
-  if (event == Event::other_mode) return "it was armed by others, in " + mode_name();
+  if (event == Event::other_mode) return "it was armed by others, in " + mode();
   if (from != State::climbing) return "the autopilot does not obey";
   return "it has not climbed to " + std::to_string(std::lround(params_.takeoff_height_m)) +
          " m in time (TKOFF_ALT?)";
@@ -374,8 +374,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       break;
     case State::preparing:
       said_refusal_.clear();
-      say(false, "found an autopilot, system " + std::to_string(system_) + ", in " + mode_name(),
-          now);
+      say(false, "found an autopilot, system " + std::to_string(system_) + ", in " + mode(), now);
       break;
     case State::standing_by:
       if (from != State::checking) desk_.clear();  // there the streams were asked for
@@ -480,6 +479,7 @@ std::optional<mavlink::WireBytes> Companion::poll_packet() {
 std::optional<Notice> Companion::poll_notice() { return impl_->poll_notice(); }
 std::optional<MotionSample> Companion::sample() const { return impl_->sample(); }
 Companion::State Companion::state() const { return impl_->machine().state(); }
+std::string Companion::mode() const { return impl_->mode(); }
 std::uint64_t Companion::protocol_errors() const { return impl_->machine().protocol_errors(); }
 const mavlink::ParserStatistics& Companion::parser() const { return impl_->parser(); }
 

@@ -50,6 +50,9 @@ class Companion::Impl {
     frame_heard_ = now;
     if (machine_.in(State::lost)) fire(Event::autopilot_silent, now);
   }
+  [[nodiscard]] std::string mode() const {
+    return system_ == 0 ? std::string{} : name_of_mode(params_.airframe, mode_);
+  }
   void on_reboot(Instant now);
   void on_duplicate(std::uint8_t node_id, Instant now);
   void command(const Setpoint& setpoint, Instant now) {
@@ -115,7 +118,6 @@ class Companion::Impl {
     return (sensors_enabled_ & sensors_health_ & kNavigation) == kNavigation;
   }
   [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
-  [[nodiscard]] std::string mode_name() const { return name_of_mode(params_.airframe, mode_); }
   void ask(const mavlink::CommandLong& command, const Patience& patience, bool latest);
   template <class Message>
   void send(const Message& message) {

@@ -20,6 +20,7 @@ inline constexpr Duration kTimeMax = std::chrono::hours{24 * 3650};  ///< |insta
 inline constexpr double kDistanceMaxM = 1e8;                         ///< positions, radii, ranges
 inline constexpr double kSpeedMaxMps = 1e4;
 inline constexpr double kAngleMaxRad = 100.0;
+inline constexpr double kCurvatureMaxPerM = 100.0;
 inline constexpr double kNumberMax = 1e15;  ///< rewards and the values of events
 
 /// Why bytes are no message.

@@ -25,6 +25,8 @@ enum class Topic : std::uint8_t {
   hazard_report,
   formation_change,
   formation_status,
+  plan_report,
+  health,
   count
 };
 inline constexpr std::size_t kTopicCount = static_cast<std::size_t>(Topic::count);
@@ -82,6 +84,10 @@ inline constexpr std::array<TopicInfo, kTopicCount> kTopics{{
      kVehicles, true, 4, 4, kHeartbeatPeriod},
     {Topic::formation_status, "skein/formation_status", "skein::wire::FormationStatus", kVehicles,
      kAll, false, 1, 64, Duration{}},
+    {Topic::plan_report, "skein/plan_report", "skein::wire::PlanReport", kVehicles, kGround, true,
+     4, 16, kHeartbeatPeriod},
+    {Topic::health, "skein/health", "skein::wire::Health", kVehicles, kGround, false, 1, 64,
+     Duration{}},
 }};
 
 [[nodiscard]] constexpr const TopicInfo& info(Topic topic) {

@@ -10,6 +10,7 @@
 #include "skein/mission/onboard_agent.hpp"
 #include "skein/onboard/control_loop.hpp"
 #include "skein/onboard/planner.hpp"
+#include "skein/onboard/self_report.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 
 namespace skein::onboard {
@@ -30,6 +31,9 @@ struct AgentLink {
   /// Hears the operator's commands to this vehicle once each, as the agent does, those to all
   /// included; may be empty.
   std::function<void(const mission::Command&)> on_command = {};
+  /// The mode that the flight controller is in; may be empty.
+  std::function<std::string()> mode = {};
+  SelfReport::Program program = {};
 };
 
 /// Carries inputs to the vehicle's agent and its outputs away: one step() takes in the newest
@@ -58,6 +62,8 @@ class AgentLoop {
   void report(mission::MissionEvent event);
   void pass_on(const mission::Command& command);
   void send_telemetry(Instant now);
+  void send_self_report(Instant now);
+  [[nodiscard]] std::uint64_t dropped() const;
 
   std::unique_ptr<mission::OnboardAgent> agent_;
   AgentLink link_;
@@ -65,6 +71,7 @@ class AgentLoop {
   Planner* planner_;
   EventRing* events_;
   VehicleId self_;
+  SelfReport self_report_;
   std::uint32_t command_number_ = 0;
   VehicleState state_;
   bool has_state_ = false;

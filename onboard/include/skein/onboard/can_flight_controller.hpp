@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <variant>
 
 #include "skein/ardupilot/can_link.hpp"
@@ -39,8 +41,14 @@ class CanFlightController final : public hal::FlightController {
   /// vehicle: what goes to all, and any other, takes no aircraft from its pilot.
   void on_command(const mission::Command& command, VehicleId self);
   [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
+  /// The autopilot's mode, and what the companion is about where it does not fly: "LOITER,
+  /// piloted".
+  [[nodiscard]] std::string mode();
 
  private:
+  struct Mode {
+    std::array<char, 64> text{};  ///< ends with a zero
+  };
   struct Command {
     std::variant<Setpoint, PositionSetpoint> setpoint;
     Instant at;
@@ -48,6 +56,10 @@ class CanFlightController final : public hal::FlightController {
   LatestValue<ardupilot::MotionSample> sample_;  ///< CAN to control
   LatestValue<Command> command_;                 ///< control to CAN
   SpscRing<ardupilot::Notice, 64> notices_;      ///< CAN to agent
+  LatestValue<Mode> mode_;                       ///< CAN to agent
+  Mode told_mode_;                               ///< CAN's
+  Mode newest_mode_;                             ///< the agent's
+  void tell_mode();
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued
   std::optional<ardupilot::MotionSample> newest_;   ///< control's

@@ -10,6 +10,7 @@
 #include "skein/base/time.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/hazard.hpp"
+#include "skein/domain/path.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -164,8 +165,40 @@ struct FormationStatus {
   bool at_rest = true;
 };
 
-using Message =
-    std::variant<coalition::Message, Telemetry, AuthorisationRequest, Authorisation, MissionEvent,
-                 Command, SiteReport, HazardReport, formation::Change, FormationStatus>;
+/// What the control thread follows. Trivially copyable; a newer number replaces an older one.
+struct FlightPlan {
+  std::uint32_t number = 0;
+  TimedPath timed;
+};
+
+/// The plan that a fixed wing follows, for whoever watches it. Sent with each new one and every few
+/// seconds; nobody decides by it.
+struct PlanReport {
+  VehicleId vehicle;
+  FlightPlan plan;
+};
+
+inline constexpr std::size_t kProblemsMax = 8;
+inline constexpr std::size_t kHeardMax = 64;
+
+/// How a vehicle's program is, once a second, for whoever watches it; nobody decides by it.
+struct Health {
+  VehicleId vehicle;
+  InstanceId instance;
+  Instant time{};                     ///< by its clock
+  std::string program;                ///< name and version
+  std::string flight_controller;      ///< its kind
+  std::string mode;                   ///< the flight controller's own word; empty where it has none
+  std::vector<std::string> problems;  ///< what is wrong now; at most kProblemsMax
+  struct Heard {
+    VehicleId vehicle;  ///< 0: the ground station
+    Duration age{};     ///< since its newest message
+  };
+  std::vector<Heard> heard;  ///< the newest first; at most kHeardMax
+};
+
+using Message = std::variant<coalition::Message, Telemetry, AuthorisationRequest, Authorisation,
+                             MissionEvent, Command, SiteReport, HazardReport, formation::Change,
+                             FormationStatus, PlanReport, Health>;
 
 }  // namespace skein::mission

@@ -15,12 +15,6 @@
 
 namespace skein::mission {
 
-/// What the control thread follows. Trivially copyable; a newer number replaces an older one.
-struct FlightPlan {
-  std::uint32_t number = 0;
-  TimedPath timed;
-};
-
 /// Long work for the planner thread: call planning::allocate(params, problem), with a budget that
 /// ends before `answer_by` where time is real, and hand the outcome back.
 struct PlanningRequest {

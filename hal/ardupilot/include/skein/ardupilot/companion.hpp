@@ -142,6 +142,8 @@ class Companion {
   [[nodiscard]] std::optional<MotionSample> sample() const;
 
   [[nodiscard]] State state() const;
+  /// What the autopilot's newest HEARTBEAT says, as its pilots call it: "GUIDED"; empty before one.
+  [[nodiscard]] std::string mode() const;
   [[nodiscard]] bool may_send() const { return state() != State::duplicated; }
   /// Events that the table had no entry for.
   [[nodiscard]] std::uint64_t protocol_errors() const;

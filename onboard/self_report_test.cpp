@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/self_report.hpp"
+
+#include <gtest/gtest.h>
+
+namespace skein::onboard {
+namespace {
+
+SelfReport made() { return {{7}, {"skein-onboard 1.0", "ardupilot"}, at_seconds(0.0)}; }
+
+mission::FlightPlan plan(std::uint32_t number) {
+  mission::FlightPlan made;
+  made.number = number;
+  made.timed.speed_mps = 50.0;
+  return made;
+}
+
+TEST(SelfReport, SendsAPlanAtOnceAndAgainFromTimeToTime) {
+  SelfReport report = made();
+  EXPECT_FALSE(report.plan_due(at_seconds(100.0)));
+  report.on_plan(plan(1));
+  EXPECT_EQ(report.plan_due(at_seconds(100.0)).value().plan.number, 1U);
+  EXPECT_FALSE(report.plan_due(at_seconds(104.9)));
+  EXPECT_EQ(report.plan_due(at_seconds(105.0)).value().vehicle, VehicleId{7});
+  report.on_plan(plan(2));
+  EXPECT_EQ(report.plan_due(at_seconds(105.1)).value().plan.number, 2U);
+}
+
+TEST(SelfReport, SaysWhomItHearsNewestFirstAndForgetsThem) {
+  SelfReport report = made();
+  report.on_heard({3}, at_seconds(10.0));
+  report.on_heard({0}, at_seconds(12.0));
+  const auto health = report.health({}, at_seconds(13.0));
+  ASSERT_EQ(health.heard.size(), 2U);
+  EXPECT_EQ(health.heard[0].vehicle, kGroundStation);
+  EXPECT_EQ(health.heard[1].age, std::chrono::seconds{3});
+  EXPECT_EQ(report.health({}, at_seconds(71.0)).heard.size(), 1U);
+}
+
+TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
+  SelfReport report = made();
+  SelfReport::Condition condition;
+  EXPECT_EQ(report.health(condition, at_seconds(1.0)).problems,
+            std::vector<std::string>{"its flight controller has told no state yet"});
+  condition.state_at = at_seconds(2.0);
+  EXPECT_TRUE(report.health(condition, at_seconds(2.1)).problems.empty());
+  condition.overruns = 4;
+  condition.dropped = 9;
+  EXPECT_EQ(
+      report.health(condition, at_seconds(4.0)).problems,
+      (std::vector<std::string>{"no state from its flight controller for 2.0 s",
+                                "4 control periods missed", "9 messages or records dropped"}));
+  condition.state_at = at_seconds(5.0);
+  EXPECT_TRUE(report.health(condition, at_seconds(5.0)).problems.empty());
+}
+
+}  // namespace
+}  // namespace skein::onboard
