@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// One vehicle: its figures, and the orders to it alone.
+
+import { bearing, distance, ids, number, words } from "../shell/format";
+import { give } from "../shell/give";
+import { HoldButton } from "../shell/hold_button";
+import { follow, select } from "../shell/view";
+import type { Vehicle } from "../wire/protocol";
+import { may_order } from "../wire/store";
+
+function Orders({ vehicle }: { vehicle: Vehicle }) {
+  const { id } = vehicle;
+  return (
+    <div class="button-row" role="group" aria-label={`Orders to vehicle ${id}`}>
+      <button type="button" class="stop" data-testid="vehicle-hold" onClick={() => void give(`hold ${id}`)}>
+        Hold
+      </button>
+      <HoldButton testid="vehicle-resume" on_held={() => void give(`resume ${id}`)}>
+        Resume
+      </HoldButton>
+      <HoldButton testid="vehicle-return" on_held={() => void give(`return ${id}`)}>
+        Return
+      </HoldButton>
+      {vehicle.flight_controller !== null && (
+        <HoldButton testid="vehicle-give-back" on_held={() => void give(`give-back ${id}`)}>
+          Give back
+        </HoldButton>
+      )}
+    </div>
+  );
+}
+
+export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
+  const rows: [string, string][] = [
+    ["Place", vehicle.x === null ? "–" : `E ${number(vehicle.x)} N ${number(vehicle.y)} m`],
+    ["Height", distance(vehicle.z)],
+    ["Heading, course", `${bearing(vehicle.heading_deg)}, ${bearing(vehicle.course_deg)}`],
+    ["Ground, air speed", `${number(vehicle.groundspeed, 1)}, ${number(vehicle.airspeed, 1)} m/s`],
+    ["Flight controller", [vehicle.flight_controller, vehicle.mode].filter(Boolean).join(", ") || "–"],
+    ["Hears", ids(vehicle.links.map((link) => link.id)) || "nobody"],
+    ["Plan", number(vehicle.plan_number)],
+    ["Overruns, dropped", `${number(vehicle.control_overruns)}, ${number(vehicle.messages_dropped)}`],
+  ];
+  return (
+    <section class="details" aria-label={`Vehicle ${vehicle.id}`} data-testid="vehicle-details">
+      <header>
+        <h2>Vehicle {vehicle.id}</h2>
+        <span class="muted">{words(vehicle.activity)}</span>
+        <span class="grow" />
+        <button type="button" class="quiet" aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
+          Follow
+        </button>
+        <button type="button" class="quiet" aria-label="Close" onClick={() => select(null)}>
+          ✕
+        </button>
+      </header>
+      <dl class="figures">
+        {rows.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+      </dl>
+      {may_order.value && <Orders vehicle={vehicle} />}
+    </section>
+  );
+}

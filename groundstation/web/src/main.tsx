@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+import { effect } from "@preact/signals";
+import { render } from "preact";
+import "leaflet/dist/leaflet.css";
+import "uplot/dist/uPlot.min.css";
+import "./theme/colours.css";
+import "./theme/controls.css";
+import "./theme/layout.css";
+import "./theme/panels.css";
+import { App } from "./shell/app";
+import { theme } from "./shell/view";
+import { start } from "./wire/store";
+
+effect(() => void (document.documentElement.dataset["theme"] = theme.value));
+render(<App />, document.getElementById("page")!);
+void start();

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Strokes that several painters use. Lengths in pixels of the screen.
+
+import { corners } from "../theme/palette";
+import type { CoalitionSign } from "../theme/palette";
+import type { View } from "./canvas_layer";
+
+export const font = (size: number, bold = false) => `${bold ? "600 " : ""}${size}px system-ui, "DejaVu Sans", sans-serif`;
+
+/** Text that can be read over anything. */
+export function label(view: View, text: string, x: number, y: number, colour = view.colours.text): void {
+  const { context } = view;
+  context.lineJoin = "round";
+  context.lineWidth = 3;
+  context.strokeStyle = view.colours.halo;
+  context.strokeText(text, x, y);
+  context.fillStyle = colour;
+  context.fillText(text, x, y);
+}
+
+/** A line through points in metres. */
+export function trace(view: View, points: Iterable<readonly [number, number, ...unknown[]]>): void {
+  const { context } = view;
+  context.beginPath();
+  let first = true;
+  for (const [x, y] of points) {
+    if (first) context.moveTo(view.px(x), view.py(y));
+    else context.lineTo(view.px(x), view.py(y));
+    first = false;
+  }
+}
+
+/** An arrow that ends at (x, y), having come from `bearing_deg`'s opposite. */
+export function arrow(view: View, x: number, y: number, bearing_deg: number, length: number, head: number): void {
+  const { context } = view;
+  const angle = (bearing_deg * Math.PI) / 180;
+  const dx = Math.sin(angle);
+  const dy = -Math.cos(angle);
+  context.beginPath();
+  context.moveTo(x - dx * length, y - dy * length);
+  context.lineTo(x - dx * head * 0.7, y - dy * head * 0.7);
+  context.stroke();
+  context.setLineDash([]);
+  context.beginPath();
+  context.moveTo(x, y);
+  context.lineTo(x - dx * head - dy * head * 0.5, y - dy * head + dx * head * 0.5);
+  context.lineTo(x - dx * head + dy * head * 0.5, y - dy * head - dx * head * 0.5);
+  context.closePath();
+  context.fill();
+}
+
+/** The path of a coalition's shape. */
+export function shape_path(context: CanvasRenderingContext2D, sign: CoalitionSign, x: number, y: number, radius: number): void {
+  context.beginPath();
+  if (sign.shape === "circle") context.arc(x, y, radius, 0, 2 * Math.PI);
+  corners(sign.shape).forEach(([cx, cy], i) => {
+    if (i === 0) context.moveTo(x + cx * radius, y + cy * radius);
+    else context.lineTo(x + cx * radius, y + cy * radius);
+  });
+  context.closePath();
+}
+
+/** A coalition's shape with its letter. */
+export function badge(view: View, sign: CoalitionSign, x: number, y: number): void {
+  const { context } = view;
+  shape_path(context, sign, x, y, 7.5);
+  context.fillStyle = sign.colour;
+  context.fill();
+  context.lineWidth = 1;
+  context.strokeStyle = view.colours.halo;
+  context.stroke();
+  context.font = font(9, true);
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillStyle = "#10161b";
+  context.fillText(sign.letter, x, y + 0.5);
+}

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// The map: Leaflet in local metres, with our own canvases on it.
+
+import { effect } from "@preact/signals";
+import L from "leaflet";
+import { request_key } from "../mission/requests";
+import { follow, highlighted_request, layers, overlays_hidden, preview, selected, theme, tiles_shown } from "../shell/view";
+import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell/view";
+import { read_colours } from "../theme/colours";
+import type { Colours } from "../theme/colours";
+import type { Picture } from "../wire/picture";
+import { current, hello, on_picture, mission_now_s, since_state_s, tracks, tracks_version } from "../wire/store";
+import { CanvasLayer, view_of } from "./canvas_layer";
+import type { View } from "./canvas_layer";
+import { LocalFrame } from "./geodesy";
+import type { Point } from "./geodesy";
+import { paint_grid, paint_scale } from "./grid";
+import { paint_authorisation, paint_hazards, paint_sites } from "./ground";
+import { MercatorTiles } from "./mercator_tiles";
+import { load_overlay } from "./overlays";
+import { paint_tools } from "./tools_painter";
+import { paint_movers, paint_paths, paint_trails } from "./tracks_painter";
+import { memberships, needs_frames, paint_links, paint_vehicles, vehicle_near } from "./vehicles_painter";
+import type { Membership } from "./vehicles_painter";
+
+const tracks_every_ms = 500;
+
+export class MissionMap {
+  readonly leaflet: L.Map;
+  private colours: Colours = read_colours();
+  private picture: Picture = current();
+  private members: Map<number, Membership> = new Map();
+  private fitted = false;
+  private tracks_at_ms = 0;
+  private frame = 0;
+  private frame_local: LocalFrame | null = null;
+  private tiles: MercatorTiles | null = null;
+  private overlays = new Map<string, L.GeoJSON>();
+  private readonly grid;
+  private readonly ground;
+  private readonly moving;
+  private readonly undo: (() => void)[] = [];
+
+  constructor(element: HTMLElement, private readonly on_trouble: (text: string) => void) {
+    this.leaflet = L.map(element, {
+      crs: L.CRS.Simple,
+      preferCanvas: true,
+      attributionControl: true,
+      zoomControl: false,
+      // Steps are painted faster than they could be animated without a graphics processor.
+      zoomAnimation: false,
+      fadeAnimation: false,
+      markerZoomAnimation: false,
+      zoomSnap: 0.5,
+      zoomDelta: 1,
+      wheelPxPerZoomLevel: 100,
+      minZoom: -7,
+      maxZoom: 6,
+      center: [0, 0],
+      zoom: -1.5,
+    });
+    this.leaflet.attributionControl.setPrefix(false);
+    for (const [name, z] of [["grid", 250], ["ground", 450], ["moving", 460]] as const) {
+      const pane = this.leaflet.createPane(name);
+      pane.style.zIndex = String(z);
+      pane.style.pointerEvents = "none";
+    }
+    const colours = () => this.colours;
+    this.grid = new CanvasLayer("grid", colours, (view) => this.paint_grid(view)).addTo(this.leaflet);
+    this.ground = new CanvasLayer("ground", colours, (view) => this.paint_ground(view)).addTo(this.leaflet);
+    this.moving = new CanvasLayer("moving", colours, (view) => this.paint_moving(view)).addTo(this.leaflet);
+
+    const resize = new ResizeObserver(() => this.leaflet.invalidateSize({ animate: false, pan: false }));
+    resize.observe(element);
+    this.leaflet.on("dragstart", () => (follow.value = false));
+    this.undo.push(
+      () => resize.disconnect(),
+      on_picture((picture) => this.take(picture)),
+      effect(() => this.on_theme(theme.value)),
+      effect(() => this.on_choice()),
+      effect(() => this.on_hello()),
+      effect(() => this.show_overlays()),
+    );
+  }
+
+  remove(): void {
+    cancelAnimationFrame(this.frame);
+    for (const undo of this.undo) undo();
+    this.leaflet.remove();
+  }
+
+  /** Everything that the mission has, in sight. */
+  fit(): void {
+    const points = [...this.picture.vehicles, ...this.picture.sites]
+      .filter((one): one is typeof one & Point => one.x !== null && one.y !== null)
+      .map((one) => L.latLng(one.y, one.x));
+    if (points.length === 0) return;
+    const bounds = L.latLngBounds(points);
+    this.leaflet.fitBounds(bounds.pad(0.12), { animate: false, maxZoom: 3, paddingTopLeft: [24, 24], paddingBottomRight: [24, 24] });
+  }
+
+  go_to(point: Point): void {
+    this.leaflet.panTo([point.y, point.x], { animate: false });
+  }
+
+  /** The vehicle at a press, if there is one within a finger's reach. */
+  vehicle_at(x: number, y: number): number | null {
+    const context = document.createElement("canvas").getContext("2d");
+    return context ? vehicle_near(this.picture, view_of(this.leaflet, context, this.colours), x, y, 22) : null;
+  }
+
+  private take(picture: Picture): void {
+    if (picture.coalitions !== this.picture.coalitions || this.members.size === 0) this.members = memberships(picture);
+    this.picture = picture;
+    if (!this.fitted && picture.vehicles.some((vehicle) => vehicle.x !== null)) {
+      this.fitted = true;
+      this.fit();
+    }
+    this.keep_in_middle();
+    this.moving.redraw();
+    if (performance.now() - this.tracks_at_ms > tracks_every_ms) this.redraw_ground();
+    if (this.frame === 0) this.frame = requestAnimationFrame(() => this.between_states());
+  }
+
+  private redraw_ground(): void {
+    this.tracks_at_ms = performance.now();
+    this.ground.redraw();
+  }
+
+  private between_states(): void {
+    this.frame = 0;
+    if (since_state_s() <= 0 || !needs_frames(this.picture, 2 ** this.leaflet.getZoom())) return;
+    this.moving.redraw();
+    this.frame = requestAnimationFrame(() => this.between_states());
+  }
+
+  private keep_in_middle(): void {
+    if (!follow.value || selected.value === null) return;
+    const vehicle = this.picture.vehicles.find((one) => one.id === selected.value);
+    if (vehicle && vehicle.x !== null && vehicle.y !== null) this.go_to({ x: vehicle.x, y: vehicle.y });
+  }
+
+  private on_theme(_theme: string): void {
+    // The style sheet follows in an effect of its own; colours are read when it has.
+    queueMicrotask(() => {
+      this.colours = read_colours();
+      for (const overlay of this.overlays.values()) overlay.resetStyle();
+      this.redraw_all();
+    });
+  }
+
+  private on_choice(): void {
+    // Named so that a change of any of them repaints.
+    void [layers.value, preview.value, selected.value, highlighted_request.value, tracks_version.value];
+    void [measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value];
+    this.keep_in_middle();
+    this.moving.redraw();
+    if (performance.now() - this.tracks_at_ms > tracks_every_ms) this.redraw_ground();
+  }
+
+  private redraw_all(): void {
+    this.grid.redraw();
+    this.redraw_ground();
+    this.moving.redraw();
+  }
+
+  private on_hello(): void {
+    const greeting = hello.value;
+    if (!greeting) return;
+    this.frame_local = new LocalFrame(greeting.origin);
+    this.tiles?.remove();
+    this.tiles = greeting.tiles ? new MercatorTiles(greeting.tiles, this.frame_local) : null;
+    if (this.tiles && tiles_shown.value) this.tiles.addTo(this.leaflet);
+    for (const { name, url } of greeting.overlays) {
+      if (this.overlays.has(name)) continue;
+      load_overlay(url, this.frame_local, () => this.colours)
+        .then((overlay) => {
+          this.overlays.set(name, overlay);
+          this.show_overlays();
+        })
+        .catch((error: unknown) => this.on_trouble(`Overlay ${name}: ${String(error)}`));
+    }
+  }
+
+  private show_overlays(): void {
+    const hidden = overlays_hidden.value;
+    for (const [name, overlay] of this.overlays) {
+      if (hidden.has(name)) overlay.remove();
+      else overlay.addTo(this.leaflet);
+    }
+  }
+
+  private colour_of(id: number): string {
+    return this.members.get(id)?.sign.colour ?? this.colours.trail;
+  }
+
+  private paint_grid(view: View): void {
+    if (layers.value.grid) paint_grid(view);
+    paint_scale(view);
+  }
+
+  private paint_ground(view: View): void {
+    const on = layers.value;
+    const { picture } = this;
+    const now_s = mission_now_s() ?? 0;
+    const colour_of = (id: number) => this.colour_of(id);
+    if (on.hazards) paint_hazards(view, picture.hazards);
+    if (on.trails) paint_trails(view, tracks, picture.vehicles, selected.value, colour_of);
+    if (on.paths) paint_paths(view, picture.plans, now_s, selected.value, colour_of);
+  }
+
+  private paint_moving(view: View): void {
+    const on = layers.value;
+    const { picture } = this;
+    if (on.links) paint_links(view, picture);
+    if (on.sites) paint_sites(view, picture);
+    const change = picture.formation?.change;
+    if (change && picture.formation?.moving) paint_movers(view, change.movers, this.colours.path, false);
+    if (preview.value?.data) paint_movers(view, preview.value.data.movers, this.colours.preview, true);
+    for (const request of picture.authorisations) {
+      if (request.waiting || request_key(request) === highlighted_request.value) paint_authorisation(view, request);
+    }
+    paint_vehicles(view, picture, {
+      selected: selected.value,
+      labels: on.labels,
+      ahead_s: since_state_s(),
+      members: this.members,
+    });
+    paint_tools(view);
+  }
+}

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vehicles where they are, and the radio links between them.
+
+import { health_of } from "../fleet/attention";
+import { coalition_sign } from "../theme/palette";
+import type { CoalitionSign } from "../theme/palette";
+import type { Picture } from "../wire/picture";
+import type { Coalition, Vehicle } from "../wire/protocol";
+import type { View } from "./canvas_layer";
+import { badge, font, label } from "./draw";
+import { moved } from "./geodesy";
+import type { Point } from "./geodesy";
+
+export interface Membership {
+  coalition: Coalition;
+  sign: CoalitionSign;
+}
+
+/** The coalition that each vehicle is in now: the newest that has not ended. */
+export function memberships(picture: Picture): Map<number, Membership> {
+  const result = new Map<number, Membership>();
+  for (const coalition of picture.coalitions) {
+    if (coalition.state === "failed" || coalition.state === "closed") continue;
+    const sign = coalition_sign(picture.coalition_slots.get(coalition.key) ?? 0);
+    for (const id of [coalition.leader, ...coalition.members]) result.set(id, { coalition, sign });
+  }
+  return result;
+}
+
+// Beyond it a guess says less than the last known place.
+const ahead_s_max = 0.6;
+
+/** Where it is drawn: moved on by `ahead_s` where states are too rare for the scale. */
+export function drawn_at(vehicle: Vehicle, ahead_s: number): Point | null {
+  if (vehicle.x === null || vehicle.y === null) return null;
+  const at = { x: vehicle.x, y: vehicle.y };
+  if (ahead_s <= 0 || vehicle.silent || vehicle.course_deg === null || !vehicle.groundspeed) return at;
+  return moved(at, vehicle.course_deg, vehicle.groundspeed, Math.min(ahead_s, ahead_s_max));
+}
+
+/** Whether states ten times a second would be seen as steps: then frames between them are painted. */
+export function needs_frames(picture: Picture, scale: number): boolean {
+  return picture.vehicles.some((vehicle) => (vehicle.groundspeed ?? 0) * scale * 0.1 > 1.5);
+}
+
+export function paint_links(view: View, picture: Picture): void {
+  const { context } = view;
+  const at = new Map(picture.vehicles.map((vehicle) => [vehicle.id, vehicle]));
+  context.lineWidth = 1;
+  context.strokeStyle = view.colours.link;
+  for (const vehicle of picture.vehicles) {
+    if (vehicle.x === null || vehicle.y === null) continue;
+    for (const link of vehicle.links) {
+      const other = at.get(link.id);
+      if (!other || other.x === null || other.y === null) continue;
+      const back = other.links.some((one) => one.id === vehicle.id);
+      if (back && link.id < vehicle.id) continue;
+      // Old links fade; those that only one side hears are dashed.
+      context.globalAlpha = Math.max(0.12, 0.7 - link.age_s * 0.2);
+      context.setLineDash(back ? [] : [3, 4]);
+      context.beginPath();
+      context.moveTo(view.px(vehicle.x), view.py(vehicle.y));
+      context.lineTo(view.px(other.x), view.py(other.y));
+      context.stroke();
+    }
+  }
+  context.setLineDash([]);
+  context.globalAlpha = 1;
+}
+
+export interface VehicleOptions {
+  selected: number | null;
+  labels: boolean;
+  ahead_s: number;
+  members: ReadonlyMap<number, Membership>;
+}
+
+export function paint_vehicles(view: View, picture: Picture, options: VehicleOptions): void {
+  // The selected one last, over the others.
+  const order = [...picture.vehicles].sort((a, b) => Number(a.id === options.selected) - Number(b.id === options.selected));
+  for (const vehicle of order) {
+    const at = drawn_at(vehicle, options.ahead_s);
+    if (at && view.sees(at.x, at.y)) paint_vehicle(view, vehicle, view.px(at.x), view.py(at.y), options);
+  }
+}
+
+function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, options: VehicleOptions): void {
+  const { context, colours } = view;
+  const member = options.members.get(vehicle.id);
+  const health = health_of(vehicle);
+  const is_selected = vehicle.id === options.selected;
+  const leads = member?.coalition.leader === vehicle.id;
+
+  if (is_selected) {
+    context.beginPath();
+    context.arc(x, y, 17, 0, 2 * Math.PI);
+    context.strokeStyle = colours.accent;
+    context.lineWidth = 2;
+    context.stroke();
+  }
+  if (leads && member) {
+    context.beginPath();
+    context.arc(x, y, 13, 0, 2 * Math.PI);
+    context.strokeStyle = member.sign.colour;
+    context.lineWidth = 1.5;
+    context.stroke();
+  }
+
+  context.save();
+  context.translate(x, y);
+  context.rotate(((vehicle.heading_deg ?? 0) * Math.PI) / 180);
+  context.beginPath();
+  context.moveTo(0, -10);
+  context.lineTo(7, 8);
+  context.lineTo(0, 4);
+  context.lineTo(-7, 8);
+  context.closePath();
+  const lost = health === "silent" || health === "unheard";
+  context.fillStyle = lost ? colours.ground : (member?.sign.colour ?? colours.vehicle);
+  context.fill();
+  context.lineWidth = lost ? 1.5 : 1;
+  context.strokeStyle = lost ? colours.alarm : colours.halo;
+  if (lost) context.setLineDash([3, 2]);
+  context.stroke();
+  context.restore();
+
+  if (health !== "well") paint_mark(view, x - 12, y - 9, health === "warning" ? colours.warning : colours.alarm, lost ? "?" : "!");
+  if (member) badge(view, member.sign, x + 13, y - 10);
+  if (!options.labels && !is_selected) return;
+  context.textAlign = "left";
+  context.textBaseline = "top";
+  context.font = font(11, true);
+  label(view, `${vehicle.id}`, x + 9, y + 4);
+  if (!is_selected && view.scale < 1.5) return;
+  context.font = font(10);
+  const speed = vehicle.groundspeed === null ? "" : ` · ${vehicle.groundspeed.toFixed(0)} m/s`;
+  label(view, `${vehicle.z === null ? "" : `${vehicle.z.toFixed(0)} m`}${speed}`, x + 9, y + 17, colours.muted);
+}
+
+function paint_mark(view: View, x: number, y: number, colour: string, text: string): void {
+  const { context } = view;
+  context.beginPath();
+  context.arc(x, y, 6.5, 0, 2 * Math.PI);
+  context.fillStyle = colour;
+  context.fill();
+  context.font = font(10, true);
+  context.textAlign = "center";
+  context.textBaseline = "middle";
+  context.fillStyle = view.colours.halo;
+  context.fillText(text, x, y + 0.5);
+}
+
+/** What is nearest to a press at (x, y) in pixels, within a finger's reach. */
+export function vehicle_near(picture: Picture, view: Pick<View, "px" | "py">, x: number, y: number, reach: number): number | null {
+  let best: number | null = null;
+  let best_distance = reach;
+  for (const vehicle of picture.vehicles) {
+    if (vehicle.x === null || vehicle.y === null) continue;
+    const distance = Math.hypot(view.px(vehicle.x) - x, view.py(vehicle.y) - y);
+    if (distance > best_distance) continue;
+    best = vehicle.id;
+    best_distance = distance;
+  }
+  return best;
+}

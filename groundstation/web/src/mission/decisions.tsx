@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Deliveries that wait for the operator: above every panel, since the time to decide runs out.
+
+import { bearing, clock, distance, duration, latitude_longitude } from "../shell/format";
+import { give } from "../shell/give";
+import { HoldButton } from "../shell/hold_button";
+import { tick } from "../shell/ticker";
+import { highlighted_request } from "../shell/view";
+import type { Authorisation } from "../wire/protocol";
+import { authorisations, may_order, mission_now_s } from "../wire/store";
+import { distance_and_bearing } from "../map/geodesy";
+import { request_key, waiting_requests } from "./requests";
+
+function Countdown({ request }: { request: Authorisation }) {
+  void tick.value;
+  const now = mission_now_s() ?? request.asked_s;
+  const left = Math.max(0, request.decide_by_s - now);
+  const whole = Math.max(1, request.decide_by_s - request.asked_s);
+  return (
+    <div class="countdown">
+      <progress max={whole} value={Math.min(left, whole)} aria-label="Time left to decide" />
+      <span class={left < 5 ? "urgent" : ""} data-testid={`countdown-${request.site}`}>
+        {duration(left)}
+      </span>
+    </div>
+  );
+}
+
+function Request({ request }: { request: Authorisation }) {
+  const plan = { coalition: request.coalition, round: request.round };
+  const where = distance_and_bearing({ x: 0, y: 0 }, request);
+  const key = request_key(request);
+  const point_out = (on: boolean) => (highlighted_request.value = on ? key : null);
+  return (
+    <article class="request" data-testid={`request-${request.site}`} onMouseEnter={() => point_out(true)} onMouseLeave={() => point_out(false)}>
+      <header>
+        <h2>
+          Site {request.site}: {request.deliveries.length} {request.deliveries.length === 1 ? "delivery" : "deliveries"} to authorise
+        </h2>
+        <Countdown request={request} />
+      </header>
+      <p class="muted">
+        {distance(where.distance_m)} from the origin towards {bearing(where.bearing_deg)} · {latitude_longitude(request.latitude_deg, request.longitude_deg)} · led by {request.leader}, round{" "}
+        {request.round}
+      </p>
+      <table class="deliveries">
+        <thead>
+          <tr>
+            <th scope="col">Vehicle</th>
+            <th scope="col">Flies towards</th>
+            <th scope="col" class="figure">At</th>
+          </tr>
+        </thead>
+        <tbody>
+          {request.deliveries.map((delivery) => (
+            <tr key={delivery.index}>
+              <td>{delivery.vehicle}</td>
+              <td>{bearing(delivery.bearing_deg)}</td>
+              <td class="figure">{clock(delivery.time_s, 1)}</td>
+            </tr>
+          ))}
+        </tbody>
+      </table>
+      {may_order.value && (
+        <div class="button-row">
+          <HoldButton kind="go" testid={`authorise-${request.site}`} on_held={() => void give(`authorise ${request.site}`, plan)}>
+            Authorise
+          </HoldButton>
+          <HoldButton kind="stop" testid={`refuse-${request.site}`} on_held={() => void give(`refuse ${request.site}`, plan)}>
+            Refuse
+          </HoldButton>
+        </div>
+      )}
+    </article>
+  );
+}
+
+export function Decisions() {
+  const waiting = waiting_requests(authorisations.value);
+  if (waiting.length === 0) return null;
+  return (
+    <section class="decisions" aria-label="Waiting for your decision" data-testid="decisions">
+      {waiting.map((request) => (
+        // By its key: a press that has begun on one plan must not end on another.
+        <Request key={request_key(request)} request={request} />
+      ))}
+    </section>
+  );
+}

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+import { useEffect } from "preact/hooks";
+import { FleetPanel } from "../fleet/fleet_panel";
+import { LogPanel } from "../log/log_panel";
+import { MapPanel } from "../map/map_panel";
+import { Decisions } from "../mission/decisions";
+import { MissionPanel } from "../mission/mission_panel";
+import { TimelinePanel } from "../mission/timeline_panel";
+import { OrdersPanel } from "../orders/orders_panel";
+import { PlotsPanel } from "../plots/plots_panel";
+import { ReplayBar } from "../replay/replay_bar";
+import { current, in_replay, session } from "../wire/store";
+import { Banners } from "./banners";
+import { Help } from "./help";
+import { listen_to_keys } from "./keys";
+import { Login } from "./login";
+import { Notices, SpokenAlarms } from "./notices";
+import { Tabs } from "./tabs";
+import { TopBar } from "./top_bar";
+import { panel } from "./view";
+
+const panel_of = {
+  fleet: FleetPanel,
+  mission: MissionPanel,
+  orders: OrdersPanel,
+  log: LogPanel,
+  plots: PlotsPanel,
+} as const;
+
+export function App() {
+  useEffect(() => listen_to_keys(() => current().vehicles.map((vehicle) => vehicle.id)), []);
+  if (session.value === "needed") return <Login />;
+  const Panel = panel_of[panel.value];
+  return (
+    <div class="console">
+      <TopBar />
+      <Banners />
+      <main class="main">
+        <div class="map-side">
+          <MapPanel />
+          {in_replay.value && <ReplayBar />}
+          <TimelinePanel />
+        </div>
+        <aside class="panel-side" aria-label="Panels">
+          <Decisions />
+          <Tabs />
+          <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${panel.value}`} tabIndex={-1}>
+            <Panel />
+          </div>
+        </aside>
+      </main>
+      <Notices />
+      <SpokenAlarms />
+      <Help />
+    </div>
+  );
+}

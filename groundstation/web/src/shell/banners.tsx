@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What must not be overlooked: the picture is old, or a recording, or only to be looked at.
+
+import { hello, in_replay, link, lost_at_ms, shown } from "../wire/store";
+import { duration } from "./format";
+import { tick } from "./ticker";
+
+function LostBanner() {
+  void tick.value;
+  const lost = lost_at_ms.value;
+  // A page that has just begun to connect has lost nothing.
+  if (link.value === "open" || lost === null) return null;
+  const age_s = (performance.now() - lost) / 1000;
+  if (age_s < 1) return null;
+  const has_picture = shown.value.time_s !== null;
+  return (
+    <div class="banner alarm" role="status" data-testid="banner-lost">
+      <b>No connection to the ground station.</b>{" "}
+      {has_picture ? `The picture is ${duration(age_s)} old; vehicles fly on. ` : ""}
+      Trying again.
+    </div>
+  );
+}
+
+export function Banners() {
+  return (
+    <>
+      <LostBanner />
+      {in_replay.value && (
+        <div class="banner replay" role="status" data-testid="banner-replay">
+          <b>Recording</b> {hello.value?.replay?.name}: nothing here is happening now, and no orders can be given.
+        </div>
+      )}
+      {!in_replay.value && hello.value?.role === "observer" && (
+        <div class="banner observer" role="status" data-testid="banner-observer">
+          <b>Observer:</b> you see everything, and give no orders.
+        </div>
+      )}
+    </>
+  );
+}

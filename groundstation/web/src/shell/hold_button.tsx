@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A button that acts when it has been pressed for a second: by pointer, or Enter or Space kept down.
+
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+
+export const press_ms = 1000;
+
+interface Props {
+  on_held: () => void;
+  children: ComponentChildren;
+  kind?: "plain" | "go" | "stop";
+  disabled?: boolean;
+  testid: string;
+  label?: string;
+}
+
+export function HoldButton({ on_held, children, kind = "plain", disabled = false, testid, label }: Props) {
+  const [pressing, set_pressing] = useState(false);
+  const [hint, set_hint] = useState(false);
+  const timer = useRef(0);
+  const done = useRef(false);
+
+  const cancel = () => {
+    window.clearTimeout(timer.current);
+    timer.current = 0;
+    set_pressing(false);
+  };
+  const begin = () => {
+    if (disabled || timer.current !== 0) return;
+    done.current = false;
+    set_hint(false);
+    set_pressing(true);
+    timer.current = window.setTimeout(() => {
+      done.current = true;
+      cancel();
+      on_held();
+    }, press_ms);
+  };
+  const end = () => {
+    if (timer.current === 0) return;
+    cancel();
+    if (!done.current) set_hint(true);
+  };
+  useEffect(() => () => window.clearTimeout(timer.current), []);
+  useEffect(() => {
+    if (disabled) cancel();
+  }, [disabled]);
+
+  return (
+    <button
+      type="button"
+      class={`hold-button ${kind}${pressing ? " pressing" : ""}`}
+      disabled={disabled}
+      aria-label={label}
+      data-testid={testid}
+      title="Press and keep pressed for one second"
+      onPointerDown={(event) => {
+        if (event.button !== 0) return;
+        begin();
+      }}
+      onPointerUp={end}
+      onPointerLeave={end}
+      onPointerCancel={cancel}
+      onContextMenu={(event) => event.preventDefault()}
+      onKeyDown={(event) => {
+        if (event.key !== "Enter" && event.key !== " ") return;
+        event.preventDefault();
+        if (!event.repeat) begin();
+      }}
+      onKeyUp={(event) => {
+        if (event.key === "Enter" || event.key === " ") end();
+      }}
+      onBlur={cancel}
+    >
+      <span class="hold-progress" aria-hidden="true" />
+      <span class="hold-text">{children}</span>
+      <span class="hold-hint">{pressing ? "keep pressed …" : hint ? "press for 1 s" : "hold 1 s"}</span>
+    </button>
+  );
+}

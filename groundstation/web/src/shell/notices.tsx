@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+import { useEffect, useState } from "preact/hooks";
+import { current, on_picture } from "../wire/store";
+import { fresh_alarms } from "./alarms";
+import { dismiss, notices } from "./give";
+
+const marks = { sent: "…", done: "✓", refused: "✕", note: "i" } as const;
+
+export function Notices() {
+  return (
+    <div class="notices" role="log" aria-label="Answers to orders" data-testid="notices">
+      {notices.value.map((notice) => (
+        <div key={notice.id} class={`notice ${notice.state}`} data-testid={`notice-${notice.state}`}>
+          <span class="mark" aria-hidden="true">
+            {marks[notice.state]}
+          </span>
+          <span class="notice-text">
+            {notice.line && <code>{notice.line}</code>} {notice.text}
+          </span>
+          <button type="button" class="quiet" aria-label="Dismiss" onClick={() => dismiss(notice.id)}>
+            ✕
+          </button>
+        </div>
+      ))}
+    </div>
+  );
+}
+
+/** Says new alarms to a screen reader. */
+export function SpokenAlarms() {
+  const [text, set_text] = useState("");
+  useEffect(() => {
+    let before = current();
+    let first = true;
+    return on_picture((picture) => {
+      const fresh = first ? [] : fresh_alarms(before, picture);
+      if (picture.vehicles.length > 0) first = false;
+      before = picture;
+      if (fresh.length > 0) set_text(fresh.slice(0, 4).join(". "));
+    });
+  }, []);
+  return (
+    <div class="only-spoken" role="alert" aria-live="assertive" data-testid="spoken-alarms">
+      {text}
+    </div>
+  );
+}

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+import { shown } from "../wire/store";
+import { count_alarms } from "./alarms";
+import { panel, panels } from "./view";
+import type { Panel } from "./view";
+
+const names: Record<Panel, string> = { fleet: "Fleet", mission: "Mission", orders: "Orders", log: "Log", plots: "Plots" };
+
+export function Tabs() {
+  const { waiting } = count_alarms(shown.value);
+  const move = (step: number) => {
+    const next = panels[(panels.indexOf(panel.value) + step + panels.length) % panels.length]!;
+    panel.value = next;
+    document.getElementById(`tab-${next}`)?.focus();
+  };
+  return (
+    <div class="tabs" role="tablist" aria-label="Panels">
+      {panels.map((name) => (
+        <button
+          key={name}
+          type="button"
+          role="tab"
+          id={`tab-${name}`}
+          data-testid={`tab-${name}`}
+          aria-selected={panel.value === name}
+          aria-controls="panel"
+          tabIndex={panel.value === name ? 0 : -1}
+          onClick={() => (panel.value = name)}
+          onKeyDown={(event) => {
+            if (event.key === "ArrowRight") move(1);
+            else if (event.key === "ArrowLeft") move(-1);
+          }}
+        >
+          {names[name]}
+          {name === "mission" && waiting > 0 && <span class="tab-count">{waiting}</span>}
+        </button>
+      ))}
+    </div>
+  );
+}

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+import { hello, in_replay, link, log_out, may_order, mission_now_s, session, shown } from "../wire/store";
+import { count_alarms } from "./alarms";
+import { clock } from "./format";
+import { hold_all } from "./give";
+import { tick } from "./ticker";
+import { help_open, panel, switch_theme, theme } from "./view";
+
+function MissionClock() {
+  void tick.value;
+  return (
+    <span class="clock" data-testid="mission-time" aria-label="Mission time">
+      {clock(shown.value.time_s === null ? null : mission_now_s(), 1)}
+    </span>
+  );
+}
+
+const link_words = { open: "connected", connecting: "connecting", lost: "no connection" } as const;
+
+export function TopBar() {
+  const counts = count_alarms(shown.value);
+  const greeting = hello.value;
+  return (
+    <header class="top-bar">
+      <h1 class="brand" title={greeting?.program}>
+        Skein
+      </h1>
+      <MissionClock />
+      <span class={`link-state ${link.value}`} data-testid="link-state">
+        <span class="dot" aria-hidden="true" />
+        {link_words[link.value]}
+      </span>
+      <button type="button" class="count" data-testid="count-heard" onClick={() => (panel.value = "fleet")} title="Vehicles heard, of those expected">
+        <b>
+          {counts.heard}/{counts.expected}
+        </b>{" "}
+        heard
+      </button>
+      <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={() => (panel.value = "fleet")}>
+        <b>{counts.alarms}</b> {counts.alarms === 1 ? "alarm" : "alarms"}
+      </button>
+      <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={() => (panel.value = "fleet")}>
+        <b>{counts.warnings}</b> {counts.warnings === 1 ? "warning" : "warnings"}
+      </button>
+      <span class="grow" />
+      {greeting && (
+        <span class="who" data-testid="who">
+          {greeting.user || "operator"} · {in_replay.value ? "replay" : greeting.role}
+        </span>
+      )}
+      {typeof session.value === "object" && session.value.login && (
+        <button type="button" class="quiet" data-testid="log-out" onClick={() => void log_out()}>
+          Log out
+        </button>
+      )}
+      <button type="button" class="quiet" data-testid="theme" onClick={switch_theme} title="Day and night colours (N)">
+        {theme.value === "night" ? "Day" : "Night"}
+      </button>
+      <button type="button" class="quiet" data-testid="help-open" onClick={() => (help_open.value = true)} title="Keys and words (?)">
+        Help
+      </button>
+      {may_order.value && (
+        <button type="button" class="hold-all" data-testid="hold-all" onClick={hold_all} title="All vehicles hold where they are, at once (Shift+H, F9)">
+          HOLD ALL
+        </button>
+      )}
+    </header>
+  );
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the person has chosen to look at. Kept by the page, never sent.
+
+import { signal } from "@preact/signals";
+import type { Preview } from "../wire/protocol";
+
+export const panels = ["fleet", "mission", "orders", "log", "plots"] as const;
+export type Panel = (typeof panels)[number];
+
+export const panel = signal<Panel>("fleet");
+export const selected = signal<number | null>(null);
+/** The map keeps the selected vehicle in its middle. */
+export const follow = signal(false);
+export const timeline_open = signal(true);
+export const help_open = signal(false);
+
+export type Theme = "night" | "day";
+const stored_theme = localStorage.getItem("skein.theme");
+const prefers_day = window.matchMedia("(prefers-color-scheme: light)").matches;
+export const theme = signal<Theme>(
+  stored_theme === "day" || stored_theme === "night" ? stored_theme : prefers_day ? "day" : "night",
+);
+
+export function switch_theme(): void {
+  theme.value = theme.value === "night" ? "day" : "night";
+  localStorage.setItem("skein.theme", theme.value);
+}
+
+export const layer_names = ["grid", "trails", "paths", "links", "sites", "hazards", "labels"] as const;
+export type LayerName = (typeof layer_names)[number];
+export const layers = signal<Record<LayerName, boolean>>({
+  grid: true,
+  trails: true,
+  paths: true,
+  links: false,
+  sites: true,
+  hazards: true,
+  labels: true,
+});
+export const tiles_shown = signal(true);
+export const overlays_hidden = signal<ReadonlySet<string>>(new Set());
+
+/** What a press on the map means. */
+export type Tool = "select" | "measure" | "hazard" | "place";
+export const tool = signal<Tool>("select");
+export interface Spot {
+  x: number;
+  y: number;
+}
+export const measure_from = signal<Spot | null>(null);
+export const measure_to = signal<Spot | null>(null);
+/** A hazard that is being drawn; not yet the server's. */
+export const hazard_draft = signal<(Spot & { radius_m: number }) | null>(null);
+/** Where a formation shall be; of the order's form. */
+export const formation_spot = signal<Spot | null>(null);
+
+/** The preview of a formation order, and the order that it is of. */
+export const preview = signal<{ line: string; data: Preview | null; text: string; done: boolean } | null>(null);
+/** The request for authorisation that the map points out, by its key. */
+export const highlighted_request = signal<string | null>(null);
+
+export function select(id: number | null): void {
+  if (selected.value === id) return;
+  selected.value = id;
+  if (id === null) follow.value = false;
+}

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours for coalitions that people with any colour vision tell apart (Okabe and Ito, 2008), each
+// with a letter and a shape of its own, so that colour is never the only sign.
+
+export const shapes = ["circle", "square", "triangle", "diamond", "pentagon", "hexagon", "cross"] as const;
+export type Shape = (typeof shapes)[number];
+
+const colours = ["#e69f00", "#56b4e9", "#009e73", "#f0e442", "#cc79a7", "#d55e00", "#0072b2"] as const;
+
+export interface CoalitionSign {
+  letter: string;
+  colour: string;
+  shape: Shape;
+}
+
+/** Of the coalition in place `slot`. Letters go on after Z as AA, AB; colours and shapes start again,
+ *  not in step, so that a pair of them comes back after 49. */
+export function coalition_sign(slot: number): CoalitionSign {
+  const round = Math.floor(slot / colours.length);
+  const first = Math.floor(slot / 26);
+  return {
+    letter: (first > 0 ? String.fromCharCode(64 + first) : "") + String.fromCharCode(65 + (slot % 26)),
+    colour: colours[slot % colours.length]!,
+    shape: shapes[(slot + round) % shapes.length]!,
+  };
+}
+
+/** Corners of a shape around (0, 0), within a circle of radius 1, y downwards; none for a circle. */
+export function corners(shape: Shape): [number, number][] {
+  if (shape === "circle") return [];
+  if (shape === "cross") {
+    const a = 0.35;
+    const b = 1;
+    return [[-a, -b], [a, -b], [a, -a], [b, -a], [b, a], [a, a], [a, b], [-a, b], [-a, a], [-b, a], [-b, -a], [-a, -a]];
+  }
+  const count = { square: 4, triangle: 3, diamond: 4, pentagon: 5, hexagon: 6 }[shape];
+  const turn = shape === "square" ? Math.PI / 4 : 0;
+  return Array.from({ length: count }, (_, i) => {
+    const angle = turn + (2 * Math.PI * i) / count;
+    return [Math.sin(angle), -Math.cos(angle)];
+  });
+}
+
+// Fills of the time line; words stand in the bars too.
+const activities: Record<string, string> = {
+  searching: "#6f8ea8",
+  surveying: "#56b4e9",
+  leading: "#e69f00",
+  bidding: "#f0e442",
+  executing: "#009e73",
+  monitoring: "#b38b3f",
+  holding: "#cc79a7",
+  forming: "#4a9ad4",
+  en_route: "#d58a5e",
+};
+
+export function activity_colour(activity: string | null): string {
+  return (activity && activities[activity]) || "#8a949c";
+}

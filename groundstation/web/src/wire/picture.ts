@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page knows, as a pure reduction of what the server has said.
+
+import type { FromServer, Hello, MissionEvent, Sections } from "./protocol";
+
+export interface Picture extends Sections {
+  hello: Hello | null;
+  /** Mission time of the newest state; null before the first. */
+  time_s: number | null;
+  /** Ascending by seq, none twice. */
+  events: MissionEvent[];
+  /** The first event that the page has not seen. */
+  next_seq: number;
+  /** Events that the server no longer had when the page asked for them. */
+  events_missed: number;
+  /** Where a coalition stands in the palette: by its key, in the order of appearance. */
+  coalition_slots: ReadonlyMap<string, number>;
+  /** Grows when what the page holds belongs to another run: the server must be asked from event 0. */
+  generation: number;
+}
+
+// Enough for hours of a mission; the oldest are left out of memory, not of the server's log.
+export const events_kept = 20000;
+
+export const section_names = [
+  "vehicles",
+  "plans",
+  "sites",
+  "coalitions",
+  "authorisations",
+  "hazards",
+  "formation",
+  "timeline",
+  "audit",
+  "replay",
+] as const satisfies readonly (keyof Sections)[];
+
+export function empty_picture(): Picture {
+  return {
+    hello: null,
+    time_s: null,
+    vehicles: [],
+    plans: [],
+    sites: [],
+    coalitions: [],
+    authorisations: [],
+    hazards: [],
+    formation: null,
+    timeline: [],
+    audit: [],
+    replay: null,
+    events: [],
+    next_seq: 0,
+    events_missed: 0,
+    coalition_slots: new Map(),
+    generation: 0,
+  };
+}
+
+/** The picture after `message`. What has not changed is the same object as before. */
+export function reduce(picture: Picture, message: FromServer): Picture {
+  switch (message.type) {
+    case "hello":
+      return on_hello(picture, message);
+    case "history":
+      return on_history(picture, message.events);
+    case "state":
+      return on_state(picture, message);
+    case "events":
+      return on_events(picture, message.events);
+    default:
+      return picture;
+  }
+}
+
+function forget(picture: Picture, hello: Hello | null): Picture {
+  return { ...empty_picture(), hello, generation: picture.generation + 1 };
+}
+
+function on_hello(picture: Picture, hello: Hello): Picture {
+  const other_run = picture.hello !== null && picture.hello.run !== hello.run;
+  return other_run ? forget(picture, hello) : { ...picture, hello };
+}
+
+function on_history(picture: Picture, events: { first_seq: number; next_seq: number }): Picture {
+  // A server that has fewer events than we have seen has started anew.
+  if (picture.next_seq > events.next_seq) return forget(picture, picture.hello);
+  const missed = Math.max(0, events.first_seq - Math.max(picture.next_seq, 1));
+  if (missed === 0 || picture.next_seq === 0) return picture;
+  return { ...picture, events_missed: picture.events_missed + missed };
+}
+
+function on_state(picture: Picture, state: { time_s: number } & Partial<Sections>): Picture {
+  const next: Picture = { ...picture, time_s: state.time_s };
+  const into = next as unknown as Record<string, unknown>;
+  for (const name of section_names) {
+    if (state[name] !== undefined) into[name] = state[name];
+  }
+  if (state.coalitions) next.coalition_slots = with_slots(picture.coalition_slots, next.coalitions);
+  return next;
+}
+
+function with_slots(slots: ReadonlyMap<string, number>, coalitions: { key: string }[]) {
+  const unknown = coalitions.filter((coalition) => !slots.has(coalition.key));
+  if (unknown.length === 0) return slots;
+  const next = new Map(slots);
+  for (const { key } of unknown) next.set(key, next.size);
+  return next;
+}
+
+function on_events(picture: Picture, arrived: MissionEvent[]): Picture {
+  const fresh: MissionEvent[] = [];
+  let next_seq = picture.next_seq;
+  for (const event of arrived) {
+    if (event.seq < next_seq) continue;
+    fresh.push(event);
+    next_seq = event.seq + 1;
+  }
+  if (fresh.length === 0) return picture;
+  const events = picture.events.concat(fresh);
+  return { ...picture, events: events.slice(-events_kept), next_seq };
+}

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// What skein-ground and the page say to each other (docs/console-socket.md). Positions are metres
+// east, north and up of the origin, directions compass degrees, times mission seconds.
+
+export type Level = "info" | "warning";
+export type Role = "operator" | "observer";
+
+export interface Origin {
+  latitude_deg: number;
+  longitude_deg: number;
+  height_m: number;
+}
+
+export interface Tiles {
+  url: string;
+  min_zoom: number;
+  max_zoom: number;
+  attribution: string;
+}
+
+export interface Hello {
+  type: "hello";
+  program: string;
+  run?: string;
+  role: Role;
+  user: string;
+  origin: Origin;
+  expected: number[];
+  shapes: string[];
+  replay: { name: string; from_s: number; to_s: number } | null;
+  tiles: Tiles | null;
+  overlays: { name: string; url: string }[];
+}
+
+export interface Series {
+  id: number;
+  t: number[];
+  x: number[];
+  y: number[];
+  z: number[];
+  speed: number[];
+  range: number[];
+  delay: (number | null)[];
+}
+
+export interface History {
+  type: "history";
+  series: Series[];
+  events: { first_seq: number; next_seq: number };
+}
+
+export interface Problem {
+  level: "alarm" | "warning";
+  text: string;
+}
+
+export interface VehicleTask {
+  site: number;
+  kind: string;
+  index: number;
+  time_s: number | null;
+  state: string;
+}
+
+export interface Vehicle {
+  id: number;
+  expected: boolean;
+  silent: boolean;
+  duplicate: boolean;
+  x: number | null;
+  y: number | null;
+  z: number | null;
+  heading_deg: number | null;
+  course_deg: number | null;
+  groundspeed: number | null;
+  airspeed: number | null;
+  activity: string | null;
+  task: VehicleTask | null;
+  heard_age_s: number | null;
+  clock_offset_ms: number | null;
+  range_left_m: number | null;
+  loads: number | null;
+  plan_number: number | null;
+  version: string | null;
+  flight_controller: string | null;
+  mode: string | null;
+  problems: Problem[];
+  links: { id: number; age_s: number }[];
+  control_overruns: number | null;
+  messages_dropped: number | null;
+}
+
+export interface Plan {
+  id: number;
+  number: number;
+  start_s: number;
+  end_s: number;
+  points: [x: number, y: number, t_s: number][];
+  hold: [x: number, y: number][];
+}
+
+export interface SiteTask {
+  kind: string;
+  index: number;
+  bearing_deg: number | null;
+  vehicle: number | null;
+  time_s: number | null;
+  state: string;
+}
+
+export interface Site {
+  id: number;
+  x: number;
+  y: number;
+  leader: number | null;
+  status: string;
+  tasks: SiteTask[];
+  news: string | null;
+}
+
+export interface Round {
+  number: number;
+  announced_s: number | null;
+  bids_until_s: number | null;
+  reward: number | null;
+  tasks: string[];
+  bids: { vehicle: number; eta_s: number | null; range_left_m: number | null; loads: number | null }[];
+  declined: { vehicle: number; why: string }[];
+  award: { vehicle: number; task: string; time_s: number | null }[];
+  answers: { vehicle: number; accepted: boolean; why: string | null }[];
+  cancelled: string | null;
+}
+
+export interface Coalition {
+  key: string;
+  leader: number;
+  number: number;
+  site: number;
+  state: "announced" | "awarded" | "formed" | "failed" | "closed";
+  why: string | null;
+  members: number[];
+  rounds: Round[];
+  lease_until_s: number | null;
+}
+
+export interface Delivery {
+  vehicle: number;
+  index: number;
+  time_s: number;
+  bearing_deg: number;
+}
+
+export interface Authorisation {
+  site: number;
+  leader: number;
+  coalition: string | number;
+  round: number;
+  x: number;
+  y: number;
+  latitude_deg: number;
+  longitude_deg: number;
+  asked_s: number;
+  decide_by_s: number;
+  waiting: boolean;
+  decision: { granted: boolean; by: string; at_s: number } | null;
+  deliveries: Delivery[];
+}
+
+export interface Hazard {
+  id: number;
+  x: number;
+  y: number;
+  radius_m: number;
+}
+
+export interface Mover {
+  id: number;
+  points: [x: number, y: number, z: number][];
+}
+
+export interface Place {
+  id: number;
+  x: number;
+  y: number;
+  z: number;
+  reference: [x: number, y: number, z: number] | null;
+  off_m: number | null;
+  change: number;
+  at_rest: boolean;
+  lost: boolean;
+}
+
+export interface Formation {
+  in_place: boolean;
+  moving: boolean;
+  change: { number: number; start_s: number; end_s: number; movers: Mover[] } | null;
+  places: Place[];
+}
+
+export type Span = [activity: string, from_s: number, to_s: number | null, site: number | null];
+
+export interface AuditEntry {
+  seq: number;
+  time_s: number;
+  who: string;
+  from: string;
+  line: string;
+  done: boolean;
+  text: string;
+}
+
+export interface ReplayState {
+  time_s: number;
+  playing: boolean;
+  speed: number;
+}
+
+/** Sections of a state; each is only there when it has changed. */
+export interface Sections {
+  vehicles: Vehicle[];
+  plans: Plan[];
+  sites: Site[];
+  coalitions: Coalition[];
+  authorisations: Authorisation[];
+  hazards: Hazard[];
+  formation: Formation | null;
+  timeline: { id: number; spans: Span[] }[];
+  audit: AuditEntry[];
+  replay: ReplayState | null;
+}
+
+export type State = { type: "state"; time_s: number } & Partial<Sections>;
+
+export interface MissionEvent {
+  seq: number;
+  time_s: number;
+  vehicle: number;
+  kind: string;
+  level: Level;
+  site: number | null;
+  task: string | null;
+  coalition: string | null;
+  value: number | null;
+  text: string;
+}
+
+export interface Events {
+  type: "events";
+  events: MissionEvent[];
+}
+
+export interface Preview {
+  kind: "preview";
+  way: string;
+  duration_s: number;
+  least_separation_m: number | null;
+  movers: Mover[];
+  lost: number[];
+}
+
+export interface Answer {
+  type: "answer";
+  id: number;
+  done: boolean;
+  text: string;
+  data: Preview | { kind: string } | null;
+}
+
+export interface Pong {
+  type: "pong";
+  id: number;
+  time_s: number;
+}
+
+export type FromServer = Hello | History | State | Events | Answer | Pong;
+
+/** The plan that was on the screen, so that no other is decided (authorise, refuse). */
+export interface DecidedPlan {
+  coalition: string | number;
+  round: number;
+}
+
+export interface Session {
+  user: string;
+  role: Role;
+  /** Whether there is anybody to log in and out. */
+  login?: boolean;
+}

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples for the tests.
+
+import type { Coalition, Hello, MissionEvent, Vehicle } from "./protocol";
+
+export function a_hello(): Hello {
+  return {
+    type: "hello",
+    program: "skein-ground 0",
+    run: "a",
+    role: "operator",
+    user: "test",
+    origin: { latitude_deg: 31.5, longitude_deg: 105, height_m: 480 },
+    expected: [1, 2, 3],
+    shapes: [],
+    replay: null,
+    tiles: null,
+    overlays: [],
+  };
+}
+
+export function a_vehicle(id: number, other: Partial<Vehicle> = {}): Vehicle {
+  return {
+    id,
+    expected: true,
+    silent: false,
+    duplicate: false,
+    x: 0,
+    y: 0,
+    z: 100,
+    heading_deg: 90,
+    course_deg: 90,
+    groundspeed: 20,
+    airspeed: 20,
+    activity: "searching",
+    task: null,
+    heard_age_s: 0.1,
+    clock_offset_ms: 30,
+    range_left_m: 5000,
+    loads: 1,
+    plan_number: 1,
+    version: "0.1.0",
+    flight_controller: null,
+    mode: null,
+    problems: [],
+    links: [],
+    control_overruns: 0,
+    messages_dropped: 0,
+    ...other,
+  };
+}
+
+export function an_event(seq: number, other: Partial<MissionEvent> = {}): MissionEvent {
+  return {
+    seq,
+    time_s: seq,
+    vehicle: 1,
+    kind: "announced",
+    level: "info",
+    site: null,
+    task: null,
+    coalition: null,
+    value: null,
+    text: `event ${seq}`,
+    ...other,
+  };
+}
+
+export function a_coalition(key: string, other: Partial<Coalition> = {}): Coalition {
+  return {
+    key,
+    leader: 1,
+    number: 1,
+    site: 1,
+    state: "announced",
+    why: null,
+    members: [],
+    rounds: [],
+    lease_until_s: null,
+    ...other,
+  };
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture as the page holds it. The map reads it at every state; panels read signals that change
+// four times a second at most, since nobody reads faster and tables are dear to draw.
+
+import { batch, computed, signal } from "@preact/signals";
+import { empty_picture, reduce } from "./picture";
+import type { Picture } from "./picture";
+import type { Answer, DecidedPlan, FromServer, Session } from "./protocol";
+import { ConsoleSocket } from "./socket";
+import type { LinkState } from "./socket";
+import { Tracks } from "./tracks";
+
+const panels_every_ms = 250;
+
+let picture: Picture = empty_picture();
+let state_arrived_ms = 0;
+const listeners = new Set<(picture: Picture) => void>();
+
+export const tracks = new Tracks();
+export const shown = signal<Picture>(picture);
+/** Grows when `tracks` does. */
+export const tracks_version = signal(0);
+
+export const link = signal<LinkState>("connecting");
+/** When the picture stopped, in ms of performance.now(); null while the link is open. */
+export const lost_at_ms = signal<number | null>(null);
+export const session = signal<Session | "unknown" | "needed">("unknown");
+
+export const hello = computed(() => shown.value.hello);
+export const vehicles = computed(() => shown.value.vehicles);
+export const sites = computed(() => shown.value.sites);
+export const coalitions = computed(() => shown.value.coalitions);
+export const authorisations = computed(() => shown.value.authorisations);
+export const hazards = computed(() => shown.value.hazards);
+export const formation = computed(() => shown.value.formation);
+export const timeline = computed(() => shown.value.timeline);
+export const audit = computed(() => shown.value.audit);
+export const replay = computed(() => shown.value.replay);
+export const events = computed(() => shown.value.events);
+export const in_replay = computed(() => hello.value?.replay !== null && hello.value !== null);
+/** Whether this page may give orders. */
+export const may_order = computed(() => hello.value?.role === "operator" && !in_replay.value);
+
+/** The newest picture, without waiting for the panels' turn. */
+export function current(): Picture {
+  return picture;
+}
+
+export function on_picture(listener: (picture: Picture) => void): () => void {
+  listeners.add(listener);
+  return () => listeners.delete(listener);
+}
+
+/** Seconds of the mission's clock since the newest state; at most a second, lest a lost link moves. */
+export function since_state_s(): number {
+  if (picture.time_s === null) return 0;
+  const rate = picture.replay ? (picture.replay.playing ? picture.replay.speed : 0) : 1;
+  return Math.min(1, (performance.now() - state_arrived_ms) / 1000) * rate;
+}
+
+export function mission_now_s(): number | null {
+  return picture.time_s === null ? null : picture.time_s + since_state_s();
+}
+
+let panels_timer = 0;
+let panels_at = 0;
+
+function show_panels(): void {
+  panels_timer = 0;
+  panels_at = performance.now();
+  shown.value = picture;
+}
+
+function receive(message: FromServer): void {
+  const before = picture;
+  picture = reduce(picture, message);
+  if (picture.generation !== before.generation) {
+    tracks.load([]);
+    socket.restart();
+  }
+  if (message.type === "history" && picture.generation === before.generation) {
+    tracks.load(message.series);
+    tracks_version.value++;
+  }
+  if (message.type === "state") {
+    state_arrived_ms = performance.now();
+    if (message.vehicles && tracks.add(picture.vehicles, message.time_s)) tracks_version.value++;
+  }
+  if (picture === before && message.type !== "history") return;
+  for (const listener of listeners) listener(picture);
+  // What waits for a person, and what answers him, is shown at once.
+  const urgent = picture.authorisations !== before.authorisations || picture.formation !== before.formation ||
+    picture.hello !== before.hello || picture.replay !== before.replay;
+  const wait = urgent ? 0 : panels_at + panels_every_ms - performance.now();
+  if (wait <= 0) {
+    window.clearTimeout(panels_timer);
+    show_panels();
+  } else if (panels_timer === 0) {
+    panels_timer = window.setTimeout(show_panels, wait);
+  }
+}
+
+const socket = new ConsoleSocket({
+  on_message: receive,
+  on_link: (state) =>
+    batch(() => {
+      link.value = state;
+      if (state === "open") lost_at_ms.value = null;
+      else lost_at_ms.value ??= performance.now();
+    }),
+  next_seq: () => picture.next_seq,
+  on_refused: () => void ask_session(),
+});
+
+export function send(line: string, plan?: DecidedPlan): Promise<Answer> {
+  return socket.line(line, plan);
+}
+
+/** Asks who we are; connects when we may. */
+export async function ask_session(): Promise<void> {
+  try {
+    const response = await fetch("/session", { headers: { accept: "application/json" } });
+    if (response.status === 401) {
+      socket.stop();
+      session.value = "needed";
+      return;
+    }
+    if (response.ok) session.value = (await response.json()) as Session;
+  } catch {
+    // No server: the socket says so, and tries again.
+  }
+}
+
+export async function log_in(user: string, password: string): Promise<string | null> {
+  try {
+    const response = await fetch("/session", {
+      method: "POST",
+      headers: { "content-type": "application/json" },
+      body: JSON.stringify({ user, password }),
+    });
+    if (!response.ok) return response.status === 401 ? "Name or password is wrong" : `Refused (${response.status})`;
+  } catch {
+    return "The ground station does not answer";
+  }
+  await start();
+  return null;
+}
+
+export async function log_out(): Promise<void> {
+  await fetch("/session", { method: "DELETE" }).catch(() => undefined);
+  socket.stop();
+  session.value = "needed";
+}
+
+export async function start(): Promise<void> {
+  await ask_session();
+  if (session.value !== "needed") socket.start();
+}
+
