@@ -32,9 +32,13 @@ double range_to_the_site(const ScenarioVehicle& vehicle, const Vec2& site) {
 
 /// Hazards of routes have numbers of their own.
 HazardId free_id(const std::vector<ScenarioHazard>& hazards) {
-  std::uint16_t highest = 0;
-  for (const ScenarioHazard& hazard : hazards) highest = std::max(highest, hazard.hazard.id.value);
-  return {static_cast<std::uint16_t>(highest + 1)};
+  const auto taken = [&hazards](HazardId id) {
+    return std::any_of(hazards.begin(), hazards.end(),
+                       [id](const ScenarioHazard& known) { return known.hazard.id == id; });
+  };
+  HazardId id{1};  // of the 65,535 there are, a mission file takes a few hundred
+  while (taken(id)) ++id.value;
+  return id;
 }
 
 }  // namespace

@@ -17,11 +17,19 @@ using configuration::VehicleRoute;
 
 constexpr double kStep_m = 10.0;  ///< between points of what is flown
 
-double height_of(const Scenario& scenario, VehicleId id) {
+/// What is said of heights: of the vehicle's layer above the origin, and of the geoid there.
+struct Heights {
+  double layer_m = 0.0;
+  double geoid_m = 0.0;
+};
+
+Heights heights_of(const Scenario& scenario, VehicleId id) {
   for (const auto& vehicle : scenario.vehicles) {
-    if (vehicle.spec.id == id) return vehicle.spec.height_m;
+    if (vehicle.spec.id == id) {
+      return {vehicle.spec.height_m, vehicle.flight_controller.ardupilot.geoid_height_m};
+    }
   }
-  return 0.0;
+  return {};
 }
 
 /// What is flown: legs and arcs.
@@ -38,12 +46,16 @@ std::vector<Vec2> flown(const VehicleRoute& route) {
   return points;
 }
 
-Wgs84 on_earth(const MissionOrigin& origin, const Vec2& point, double height_m) {
+Wgs84 on_earth(const MissionOrigin& origin, const Vec2& point, double height_m = 0.0) {
   return origin.to_wgs84({point.x(), point.y(), height_m});
 }
 
+/// A height, where it is there, is above the ellipsoid (RFC 7946, section 4).
 std::string geojson_position(const Wgs84& p) {
   return fmt::format("[{:.7f},{:.7f},{:.1f}]", p.longitude_deg, p.latitude_deg, p.height_m);
+}
+std::string geojson_place(const Wgs84& p) {
+  return fmt::format("[{:.7f},{:.7f}]", p.longitude_deg, p.latitude_deg);
 }
 
 std::string xml_escaped(const std::string& text) {
@@ -65,7 +77,7 @@ std::string circle_ring(const routes::RouteHazard& hazard, const MissionOrigin& 
   for (int i = 0; i <= kCorners; ++i) {
     const Vec2 at =
         hazard.centre + hazard.radius_m * unit_vector(2.0 * kPi * (i % kCorners) / kCorners);
-    ring += (i > 0 ? "," : "") + geojson_position(on_earth(origin, at, 0.0));
+    ring += (i > 0 ? "," : "") + geojson_place(on_earth(origin, at));
   }
   return ring;
 }
@@ -76,16 +88,17 @@ std::string routes_geojson(const PlannedRoutes& planned, const Scenario& scenari
                            const MissionOrigin& origin) {
   std::string features;
   for (const VehicleRoute& route : planned.file.routes) {
-    const double height = height_of(scenario, route.vehicle);
+    const double layer_m = heights_of(scenario, route.vehicle).layer_m;
     std::string line;
     for (const Vec2& point : flown(route)) {
-      line += (line.empty() ? "" : ",") + geojson_position(on_earth(origin, point, height));
+      line += (line.empty() ? "" : ",") + geojson_position(on_earth(origin, point, layer_m));
     }
     features += fmt::format(
         "{{\"type\":\"Feature\",\"properties\":{{\"vehicle\":{},\"arrival_s\":{:.3f},"
-        "\"length_m\":{:.2f},\"speed_mps\":{:.2f}}},\"geometry\":{{\"type\":\"LineString\","
+        "\"length_m\":{:.2f},\"speed_mps\":{:.2f},\"height_above_origin_m\":{:.1f}}},\"geometry\":{"
+        "{\"type\":\"LineString\","
         "\"coordinates\":[{}]}}}},\n",
-        route.vehicle.value, route.arrival_s, route.length_m, route.route.speed_mps, line);
+        route.vehicle.value, route.arrival_s, route.length_m, route.route.speed_mps, layer_m, line);
   }
   for (const routes::RouteHazard& hazard : planned.problem.hazards) {
     features += fmt::format(
@@ -98,7 +111,7 @@ std::string routes_geojson(const PlannedRoutes& planned, const Scenario& scenari
   features += fmt::format(
       "{{\"type\":\"Feature\",\"properties\":{{\"site\":true}},\"geometry\":{{\"type\":\"Point\","
       "\"coordinates\":{}}}}}",
-      geojson_position(on_earth(origin, planned.problem.site, 0.0)));
+      geojson_place(on_earth(origin, planned.problem.site)));
   return "{\"type\":\"FeatureCollection\",\"features\":[\n" + features + "\n]}\n";
 }
 
@@ -109,18 +122,20 @@ std::string routes_kml(const PlannedRoutes& planned, const Scenario& scenario,
       "<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><name>{}</name>\n",
       xml_escaped(planned.file.title));
   for (const VehicleRoute& route : planned.file.routes) {
-    const double height = height_of(scenario, route.vehicle);
+    const Heights heights = heights_of(scenario, route.vehicle);
     text += fmt::format(
-        "<Placemark><name>vehicle {}</name><description>over the site at {:.2f} s</description>"
-        "<LineString><altitudeMode>relativeToGround</altitudeMode><coordinates>",
-        route.vehicle.value, route.arrival_s);
+        "<Placemark><name>vehicle {}</name><description>over the site at {:.2f} s, {:.1f} m above "
+        "the mission's origin; heights are above sea level, of a geoid {:.1f} m above the ellipsoid"
+        "</description><LineString><altitudeMode>absolute</altitudeMode><coordinates>",
+        route.vehicle.value, route.arrival_s, heights.layer_m, heights.geoid_m);
     for (const Vec2& point : flown(route)) {
-      const Wgs84 p = on_earth(origin, point, height);
-      text += fmt::format("{:.7f},{:.7f},{:.1f} ", p.longitude_deg, p.latitude_deg, height);
+      const Wgs84 p = on_earth(origin, point, heights.layer_m);
+      text += fmt::format("{:.7f},{:.7f},{:.1f} ", p.longitude_deg, p.latitude_deg,
+                          p.height_m - heights.geoid_m);
     }
     text += "</coordinates></LineString></Placemark>\n";
   }
-  const Wgs84 site = on_earth(origin, planned.problem.site, 0.0);
+  const Wgs84 site = on_earth(origin, planned.problem.site);
   text += fmt::format(
       "<Placemark><name>site</name><Point><coordinates>{:.7f},{:.7f}</coordinates></Point>"
       "</Placemark>\n</Document></kml>\n",
@@ -136,29 +151,32 @@ std::string routes_qgc(const VehicleRoute& route, const Scenario& scenario,
   constexpr int kMissionFrame = 2;
   constexpr int kFixedWing = 1;
   constexpr int kArdupilot = 3;
-  const double height = height_of(scenario, route.vehicle);
+  const Heights heights = heights_of(scenario, route.vehicle);
+  const Wgs84& home = origin.origin();
   std::string items = fmt::format(
       "{{\"type\":\"SimpleItem\",\"command\":{},\"frame\":{},\"autoContinue\":true,\"doJumpId\":1,"
       "\"params\":[1,{:.2f},-1,0,0,0,0]}}",
       kChangeSpeed, kMissionFrame, route.route.speed_mps);
   int id = 1;
   for (const Vec2& point : route.route.waypoints) {
-    const Wgs84 p = on_earth(origin, point, height);
+    const Wgs84 p = on_earth(origin, point, heights.layer_m);
+    const double above_home_m = p.height_m - home.height_m;
     items += fmt::format(
         ",\n{{\"type\":\"SimpleItem\",\"command\":{},\"frame\":{},\"autoContinue\":true,"
         "\"doJumpId\":{},\"Altitude\":{:.1f},\"AltitudeMode\":1,\"AMSLAltAboveTerrain\":null,"
         "\"params\":[0,0,0,null,{:.7f},{:.7f},{:.1f}]}}",
-        kWaypoint, kGlobalRelative, ++id, height, p.latitude_deg, p.longitude_deg, height);
+        kWaypoint, kGlobalRelative, ++id, above_home_m, p.latitude_deg, p.longitude_deg,
+        above_home_m);
   }
-  const Wgs84& home = origin.origin();
   return fmt::format(
       "{{\"fileType\":\"Plan\",\"version\":1,\"groundStation\":\"Skein\",\n"
       "\"geoFence\":{{\"circles\":[],\"polygons\":[],\"version\":2}},\n"
       "\"rallyPoints\":{{\"points\":[],\"version\":2}},\n"
       "\"mission\":{{\"version\":2,\"firmwareType\":{},\"vehicleType\":{},\"cruiseSpeed\":{:.2f},"
-      "\"hoverSpeed\":5,\"plannedHomePosition\":[{:.7f},{:.7f},{:.1f}],\"items\":[\n{}\n]}}}}\n",
+      "\"hoverSpeed\":5,\"globalPlanAltitudeMode\":1,\"plannedHomePosition\":[{:.7f},{:.7f},{:.1f}]"
+      ",\"items\":[\n{}\n]}}}}\n",
       kArdupilot, kFixedWing, route.route.speed_mps, home.latitude_deg, home.longitude_deg,
-      home.height_m, items);
+      home.height_m - heights.geoid_m, items);
 }
 
 std::string routes_svg(const PlannedRoutes& planned) {

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string_view>
+#include <system_error>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
@@ -34,6 +37,33 @@ RoutePlan file_of(const Scenario& scenario, const routes::RouteProblem& problem,
                            route.bound_m});
   }
   return file;
+}
+
+/// Is it a vehicle-N.plan, as write_routes() names them?
+bool is_vehicle_plan(const std::string& name) {
+  constexpr std::string_view kBegin = "vehicle-";
+  constexpr std::string_view kEnd = ".plan";
+  if (name.size() <= kBegin.size() + kEnd.size() || !name.starts_with(kBegin) ||
+      !name.ends_with(kEnd)) {
+    return false;
+  }
+  return std::all_of(name.begin() + kBegin.size(), name.end() - kEnd.size(),
+                     [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// Of an earlier plan into the same folder: nobody should load them.
+Result<void> delete_vehicle_plans(const std::filesystem::path& folder) {
+  std::error_code failed;
+  std::vector<std::filesystem::path> old;
+  for (const auto& entry : std::filesystem::directory_iterator{folder, failed}) {
+    if (is_vehicle_plan(entry.path().filename().string())) old.push_back(entry.path());
+  }
+  for (const auto& file : old) {
+    if (!failed) std::filesystem::remove(file, failed);
+  }
+  if (failed)
+    return Error{folder.string() + ": an old plan cannot be deleted: " + failed.message()};
+  return {};
 }
 
 Result<void> write(const std::filesystem::path& file, const std::string& text) {
@@ -104,6 +134,7 @@ Result<std::vector<std::string>> write_routes(const PlannedRoutes& planned,
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   if (failed) return Error{folder.string() + ": cannot be made: " + failed.message()};
+  if (auto deleted = delete_vehicle_plans(folder); !deleted) return deleted.error();
   std::vector<std::pair<std::string, std::string>> files{
       {"plan.yaml", to_yaml(planned.file)},
       {"routes.geojson", routes_geojson(planned, scenario, *origin)},

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 namespace skein::groundstation {
@@ -119,6 +120,75 @@ TEST(RoutePlanning, WritesWhatOthersRead) {
   EXPECT_THAT(text_of("vehicle-1.plan"), HasSubstr("\"fileType\":\"Plan\""));
   EXPECT_THAT(text_of("routes.svg"), HasSubstr("</svg>"));
   std::filesystem::remove_all(folder);
+}
+
+/// Its vehicles' layers are 100, 110 and 120 m above an origin that is 480 m above the ellipsoid.
+TEST(RoutePlanning, EveryFileSaysHeightsInItsOwnFrame) {
+  auto scenario = routes_3();
+  for (auto& vehicle : scenario.vehicles)
+    vehicle.flight_controller.ardupilot.geoid_height_m = -38.5;
+  const auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok());
+  const auto origin = MissionOrigin::make(scenario.origin);
+  ASSERT_TRUE(origin.ok());
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  // Above the ellipsoid; the earth's curvature is 1 cm at vehicle 1's start, 15 cm at the site.
+  const std::string geojson = routes_geojson(*planned, scenario, *origin);
+  EXPECT_TRUE(has(geojson, ",580.0]")) << geojson.substr(0, 400);
+  EXPECT_TRUE(has(geojson, ",600.2]]"));
+  EXPECT_TRUE(has(geojson, "\"height_above_origin_m\":120.0"));
+  EXPECT_FALSE(has(geojson, ",480.")) << "what lies on the ground has no height";
+  // Above the geoid, which lies below the ellipsoid.
+  const std::string kml = routes_kml(*planned, scenario, *origin);
+  EXPECT_TRUE(has(kml, "<altitudeMode>absolute</altitudeMode>"));
+  EXPECT_FALSE(has(kml, "relativeToGround"));
+  EXPECT_TRUE(has(kml, ",618.5 ")) << kml.substr(0, 600);
+  // Above home, which is at the origin.
+  const std::string plan = routes_qgc(planned->file.routes[2], scenario, *origin);
+  EXPECT_TRUE(has(plan, "\"plannedHomePosition\":[31.5220620,105.0443270,518.5]")) << plan;
+  EXPECT_TRUE(has(plan, "\"Altitude\":120.0,\"AltitudeMode\":1"));
+  EXPECT_TRUE(has(plan, "\"globalPlanAltitudeMode\":1"));
+  EXPECT_TRUE(has(plan, "\"command\":16,\"frame\":3"));
+  EXPECT_FALSE(has(plan, "600."));
+}
+
+TEST(RoutePlanning, APlanAnewLeavesNoRouteOfAnEarlierOneBehind) {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("skein-replan-" + std::to_string(::getpid()));
+  auto scenario = routes_3();
+  auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok());
+  ASSERT_TRUE(write_routes(*planned, scenario, folder).ok());
+  for (const char* others : {"vehicle-1.plan.old", "vehicle-x.plan", "my.plan"}) {
+    std::ofstream{folder / others} << "mine";
+  }
+  scenario.routes.approaches.erase(scenario.routes.approaches.begin());
+  planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok());
+  ASSERT_TRUE(write_routes(*planned, scenario, folder).ok());
+  EXPECT_FALSE(std::filesystem::exists(folder / "vehicle-1.plan"));
+  for (const char* kept :
+       {"vehicle-2.plan", "vehicle-1.plan.old", "vehicle-x.plan", "my.plan", "plan.yaml"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder / kept)) << kept;
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST(RoutePlanning, HazardsOfRoutesGetNumbersThatNobodyHas) {
+  auto scenario = routes_3();
+  scenario.hazards.push_back({{{65535}, {-5000.0, 0.0}, 10.0}, Instant{}});
+  scenario.hazards.push_back({{{2}, {-6000.0, 0.0}, 10.0}, Instant{}});
+  const auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok());
+  ASSERT_TRUE(configuration::give_routes(planned->file, scenario).ok());
+  std::set<std::uint16_t> numbers;
+  for (const auto& known : scenario.hazards) {
+    EXPECT_GT(known.hazard.id.value, 0U);
+    EXPECT_TRUE(numbers.insert(known.hazard.id.value).second) << known.hazard.id.value;
+  }
+  EXPECT_EQ(numbers.size(), 12U);
 }
 
 }  // namespace

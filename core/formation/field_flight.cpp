@@ -11,13 +11,39 @@ namespace skein::formation {
 namespace {
 
 constexpr double kAtGoal_m = 0.02;
+/// Nearer than that to its place it heeds nobody: pushed and pulled, it would circle it for ever.
+constexpr double kAlmost_m = 0.25;
+constexpr double kLanded_m = 1e-9;
 constexpr double kSlot_s = to_seconds(kSlot);
 constexpr Duration kTooOldForAVelocity = std::chrono::seconds{1};
+
+/// Also of times before mission time 0.
+std::int64_t slot_of(Instant t) {
+  const Duration since = t.time_since_epoch();
+  const std::int64_t slot = since / kSlot;
+  return since < slot * kSlot ? slot - 1 : slot;
+}
 
 double way_m(const Mover& mover) { return (mover.points.back() - mover.points.front()).norm(); }
 
 Vec3 braked(const Vec3& velocity_mps, const MotionLimits& limits) {
   return velocity_mps - shortened(velocity_mps, limits.acceleration_mps2 * kSlot_s);
+}
+
+/// The field pulls a vehicle with neighbours through its goal faster than it could stop there.
+/// Towards the goal it flies as fast as half its deceleration lets it stop, and at most half the
+/// way in a slot.
+Vec3 slow_enough(const FieldSelf& self, const Vec3& wanted_mps, const MotionLimits& limits) {
+  const Vec3 way_m = self.goal_m - self.position_m;
+  const double distance_m = way_m.norm();
+  if (distance_m <= 0.0) return wanted_mps;
+  const Vec3 ahead = way_m / distance_m;
+  const double fast_mps =
+      wanted_mps.dot(ahead) -
+      std::min(std::sqrt(limits.acceleration_mps2 * distance_m), 0.5 * distance_m / kSlot_s);
+  if (fast_mps <= 0.0) return wanted_mps;
+  const Vec3 change_mps = wanted_mps - fast_mps * ahead - self.velocity_mps;
+  return self.velocity_mps + shortened(change_mps, limits.acceleration_mps2 * kSlot_s);
 }
 
 }  // namespace
@@ -31,7 +57,7 @@ FieldFlight::FieldFlight(const Change& change, std::size_t self, const FieldPara
       self_index_{self},
       next_position_m_{change.movers.at(self).points.front()},
       others_(change.movers.size()),
-      slot_{now.time_since_epoch() / kSlot} {
+      slot_{slot_of(now)} {
   SKEIN_ASSERT(valid(change));
   double longest_m = 0.0;
   for (std::size_t i = 0; i < others_.size(); ++i) {
@@ -68,24 +94,42 @@ void FieldFlight::decide() {
   const Vec3 now_mps = self_.velocity_mps;
   if (held_ || finished_ || slot_begin() < start_) {
     next_velocity_mps_ = braked(now_mps, limits_);
-  } else if ((self_.goal_m - self_.position_m).norm() <= kAtGoal_m) {
-    next_position_m_ = self_.goal_m;
-    next_velocity_mps_ = Vec3::Zero();
-    return;
+  } else if (const auto landing_mps = landing_velocity()) {
+    next_velocity_mps_ = *landing_mps;
   } else {
+    const Vec3 way_m = self_.goal_m - self_.position_m;
     neighbours_.clear();
     for (const Other& other : others_) {
-      if (!other.heard) continue;
+      if (!other.heard || way_m.norm() <= kAlmost_m) continue;
       neighbours_.push_back(other.last);
       neighbours_.back().age_s = std::max(0.0, to_seconds(slot_begin() - other.at));
     }
-    next_velocity_mps_ = field_velocity(params_, limits_, self_, neighbours_, kSlot_s);
+    next_velocity_mps_ =
+        slow_enough(self_, field_velocity(params_, limits_, self_, neighbours_, kSlot_s), limits_);
   }
   next_position_m_ = self_.position_m + 0.5 * kSlot_s * (now_mps + next_velocity_mps_);
+  const bool lands =
+      next_velocity_mps_.isZero(0.0) && (self_.goal_m - next_position_m_).norm() <= kLanded_m;
+  if (lands) next_position_m_ = self_.goal_m;
+}
+
+/// The velocity at the end of this slot from which it is at rest in its place at the end of the
+/// next one; zero where it comes to rest there in this one. None where that is beyond its limits.
+std::optional<Vec3> FieldFlight::landing_velocity() const {
+  const Vec3 way_m = self_.goal_m - self_.position_m;
+  if (way_m.norm() > kAtGoal_m) return std::nullopt;
+  const Vec3& now_mps = self_.velocity_mps;
+  const double change_mps = limits_.acceleration_mps2 * kSlot_s;
+  if (now_mps.norm() <= change_mps && (way_m - 0.5 * kSlot_s * now_mps).norm() <= kLanded_m) {
+    return Vec3::Zero();
+  }
+  const Vec3 next_mps = way_m / kSlot_s - 0.5 * now_mps;
+  if (next_mps.norm() > change_mps || (next_mps - now_mps).norm() > change_mps) return std::nullopt;
+  return next_mps;
 }
 
 void FieldFlight::step(Instant now) {
-  for (const std::int64_t current = now.time_since_epoch() / kSlot; slot_ < current;) {
+  for (const std::int64_t current = slot_of(now); slot_ < current;) {
     self_.position_m = next_position_m_;
     self_.velocity_mps = next_velocity_mps_;
     finished_ = self_.position_m == self_.goal_m;

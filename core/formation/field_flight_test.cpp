@@ -94,6 +94,42 @@ TEST(FieldFlight, HoldsAndGoesOn) {
   EXPECT_TRUE(team.finished());
 }
 
+TEST(FieldFlight, ComesToRestInItsPlaceWithinItsLimits) {
+  for (const double acceleration_mps2 : {0.5, 2.0, 6.0}) {
+    Change change = change_of({{{0, 0, 10}, {7.3, 1.1, 12}}});
+    change.limits.speed_mps = 1.5;
+    change.limits.acceleration_mps2 = acceleration_mps2;
+    Team team{change};
+    const FieldFlight& flight = team.vehicles[0];
+    const double change_mps = acceleration_mps2 * to_seconds(kSlot) + 1e-9;
+    auto before = flight.reference(team.now);
+    for (int i = 0; i < 2000 && !team.finished(); ++i) {
+      team.step();
+      const auto moment = flight.reference(team.now);
+      EXPECT_LE((moment.velocity_mps - before.velocity_mps).norm(), change_mps);
+      // It is where its velocity has brought it: no jump into the place.
+      const Vec3 way = 0.5 * to_seconds(kSlot) * (moment.velocity_mps + before.velocity_mps);
+      EXPECT_LT((moment.position_m - before.position_m - way).norm(), 2e-9);
+      before = moment;
+    }
+    EXPECT_TRUE(team.finished()) << acceleration_mps2;
+    EXPECT_EQ(before.position_m, (Vec3{7.3, 1.1, 12}));
+  }
+}
+
+TEST(FieldFlight, SlotsBeforeMissionTimeZeroAreAsLongAsOthers) {
+  const Change change = change_of({{{0, 0, 10}, {30, 0, 10}}});
+  for (const double seconds : {-0.12, -0.05, -0.01, 0.0, 0.01}) {
+    const Instant now = at_seconds(seconds);
+    FieldFlight flight{change, 0, {}, now};
+    EXPECT_LE(flight.progress().at, now) << seconds;
+    EXPECT_GT(flight.progress().at, now - kSlot) << seconds;
+    flight.step(now + kSlot);
+    EXPECT_LE(flight.progress().at, now + kSlot) << seconds;
+    EXPECT_GT(flight.progress().at, now) << seconds;
+  }
+}
+
 TEST(FieldFlight, WaitsForItsStartAndIgnoresOtherChanges) {
   Change change = change_of({{{0, 0, 10}, {30, 0, 10}}, {{0, 3, 10}, {0, 3, 10}}});
   change.start = at_seconds(5.0);

@@ -211,6 +211,16 @@ Result<Scenario> scenario_of(const Experiment& experiment, const Scenario& base,
 
 Result<hil::TeamMission> mission_of(const Experiment& experiment, const Scenario& base,
                                     const Cell& cell, std::uint64_t seed) {
+  if (base.flies_routes()) {
+    return Error{
+        "scenario: its vehicles fly planned routes, which `skein-hil run` alone does; name "
+        "a mission without routes.approaches"};
+  }
+  if (base.flies_formation()) {
+    return Error{
+        "scenario: its vehicles fly a formation, and a sweep flies coalitions; name a "
+        "mission of sites"};
+  }
   const auto scenario = scenario_of(experiment, base, cell, seed);
   if (!scenario) return scenario.error();
   hil::TeamMission mission = hil::team_mission(*scenario);

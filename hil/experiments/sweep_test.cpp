@@ -115,6 +115,22 @@ TEST_F(Sweeps, AddDrawsAndCountOnlyThoseAskedFor) {
   EXPECT_EQ(text("less/cells.csv"), one);
 }
 
+TEST_F(Sweeps, RefuseMissionsOfRoutesAndOfFormations) {
+  const auto refused = [&](const std::string& scenario) {
+    const auto base =
+        configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/" + scenario);
+    EXPECT_TRUE(base);
+    auto table = RunTable::open(root_ / scenario, experiment_, *base);
+    EXPECT_TRUE(table);
+    SweepOptions options;
+    options.folder = root_ / scenario;
+    const auto outcome = sweep(experiment_, *base, options, *table);
+    return outcome ? std::string{"none"} : outcome.error().message;
+  };
+  EXPECT_THAT(refused("routes-3.yaml"), HasSubstr("planned routes, which `skein-hil run` alone"));
+  EXPECT_THAT(refused("formation-5.yaml"), HasSubstr("fly a formation"));
+}
+
 TEST_F(Sweeps, RefuseAFolderOfAnotherExperiment) {
   fly("a", 1, 1);
   experiment_.title = "Another title is the same experiment";

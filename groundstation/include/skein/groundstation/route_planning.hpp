@@ -31,22 +31,33 @@ struct PlannedRoutes {
 /// What a person reads: lengths against their bounds, costs, and what was checked.
 [[nodiscard]] std::string routes_text(const PlannedRoutes& planned);
 
-/// The plan as others read it. Heights are the vehicles' layers above the origin.
+/// The plan as others read it. A vehicle flies at its layer's height above the mission's origin,
+/// which the files say each in its own frame.
+
+/// WGS84, as RFC 7946 has it: routes with heights above the ellipsoid, and as a property above the
+/// origin; hazards and site without.
 [[nodiscard]] std::string routes_geojson(const PlannedRoutes& planned,
                                          const configuration::Scenario& scenario,
                                          const MissionOrigin& origin);
+/// Heights above sea level (altitudeMode absolute): of a geoid that lies above the ellipsoid by
+/// what the vehicle's flight controller is configured for (geoid_height_m; 0 where that is not, and
+/// heights are above the ellipsoid).
 [[nodiscard]] std::string routes_kml(const PlannedRoutes& planned,
                                      const configuration::Scenario& scenario,
                                      const MissionOrigin& origin);
-/// One vehicle's route for QGroundControl: waypoints with altitudes relative to the origin, and the
-/// ground speed. Nothing else: no payload commands.
+/// One vehicle's route for QGroundControl: waypoints and the ground speed. Nothing else: no payload
+/// commands. Altitudes are above home (MAV_FRAME_GLOBAL_RELATIVE_ALT), which needs no geoid; the
+/// planned home is the mission's origin, its altitude above sea level as in routes_kml(). An
+/// autopilot counts from where it was armed: at another height than the origin's, the route is
+/// flown too high or too low by the difference.
 [[nodiscard]] std::string routes_qgc(const configuration::VehicleRoute& route,
                                      const configuration::Scenario& scenario,
                                      const MissionOrigin& origin);
 [[nodiscard]] std::string routes_svg(const PlannedRoutes& planned);
 
 /// Writes plan.yaml, routes.geojson, routes.kml, routes.svg and vehicle-N.plan into the folder,
-/// which is made. Gives their names. Fails with the file that cannot be written.
+/// which is made; a vehicle-N.plan of a vehicle that has no route now is deleted. Gives their
+/// names. Fails with the file that cannot be written.
 [[nodiscard]] Result<std::vector<std::string>> write_routes(const PlannedRoutes& planned,
                                                             const configuration::Scenario& scenario,
                                                             const std::filesystem::path& folder);

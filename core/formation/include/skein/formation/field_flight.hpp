@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "skein/formation/change.hpp"
@@ -37,6 +38,7 @@ class FieldFlight final : public Execution {
     bool heard = false;
   };
   void decide();
+  [[nodiscard]] std::optional<Vec3> landing_velocity() const;
   [[nodiscard]] Instant slot_begin() const { return Instant{kSlot * slot_}; }
 
   std::uint32_t number_;
