@@ -16,8 +16,8 @@ const health_marks: Record<Health, string> = { alarm: "!", silent: "?", warning:
 export function task_text(vehicle: Vehicle): string {
   const { task } = vehicle;
   if (!task) return "–";
-  const what = `${words(task.kind)}${task.kind === "survey" ? "" : ` ${task.index + 1}`} at ${task.site}`;
-  return task.time_s === null ? what : `${what}, ${clock(task.time_s)}`;
+  const what = `S${task.site} ${words(task.kind)}${task.kind === "survey" ? "" : ` ${task.index + 1}`}`;
+  return task.time_s === null ? what : `${what} · ${clock(task.time_s)}`;
 }
 
 function coalition_of(id: number) {

@@ -141,7 +141,7 @@ export function paint_authorisation(view: View, request: Authorisation): void {
     context.textBaseline = "middle";
     const far = 18 + 84 + 18;
     label(view, `${delivery.vehicle} at ${clock(delivery.time_s)}`, x - far * Math.sin(angle), y + far * Math.cos(angle), colours.preview);
-    context.fillStyle = colours.preview;
+    context.strokeStyle = context.fillStyle = colours.preview;
   }
   context.restore();
 }

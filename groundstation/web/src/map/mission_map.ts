@@ -51,7 +51,7 @@ export class MissionMap {
       zoomAnimation: false,
       fadeAnimation: false,
       markerZoomAnimation: false,
-      zoomSnap: 0.5,
+      zoomSnap: 0.25,
       zoomDelta: 1,
       wheelPxPerZoomLevel: 100,
       minZoom: -7,

@@ -1,4 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
+import { give, hold_all } from "../shell/give";
+import { HoldButton } from "../shell/hold_button";
+import { hello, in_replay, may_order } from "../wire/store";
+import { FormationForm } from "./formation_form";
+import { HazardForm } from "./hazard_form";
+
+function ToAll() {
+  return (
+    <section aria-labelledby="all-title">
+      <h2 id="all-title">All vehicles</h2>
+      <div class="button-row">
+        <button type="button" class="stop" data-testid="orders-hold-all" onClick={hold_all}>
+          Hold all
+        </button>
+        <HoldButton testid="orders-resume-all" on_held={() => void give("resume all")}>
+          Resume all
+        </HoldButton>
+        <HoldButton testid="orders-return-all" on_held={() => void give("return all")}>
+          Return all
+        </HoldButton>
+      </div>
+      <p class="muted">Orders to one vehicle: select it in the fleet or on the map.</p>
+    </section>
+  );
+}
+
 export function OrdersPanel() {
-  return null;
+  if (!may_order.value) {
+    return <p class="empty">{in_replay.value ? "A recording takes no orders." : "An observer gives no orders."}</p>;
+  }
+  return (
+    <div class="scroll orders" tabIndex={0} role="region" aria-label="Orders">
+      <ToAll />
+      {(hello.value?.shapes.length ?? 0) > 0 && <FormationForm />}
+      <HazardForm />
+    </div>
+  );
 }

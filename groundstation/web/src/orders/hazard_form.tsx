@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// A circle to be kept out of: drawn on the map or typed, then sent to all.
+
+import { useEffect } from "preact/hooks";
+import { distance } from "../shell/format";
+import { give } from "../shell/give";
+import { HoldButton } from "../shell/hold_button";
+import { hazard_draft, tool } from "../shell/view";
+import { hazards } from "../wire/store";
+import { hazard_line } from "./order_lines";
+
+const empty_draft = { x: 0, y: 0, radius_m: 100 };
+
+export function HazardForm() {
+  const draft = hazard_draft.value;
+  useEffect(
+    () => () => {
+      hazard_draft.value = null;
+    },
+    [],
+  );
+  const figure = (name: "x" | "y" | "radius_m", label: string, least?: number) => (
+    <label>
+      {label}
+      <input
+        type="number"
+        step="1"
+        min={least}
+        value={draft ? Math.round(draft[name]) : ""}
+        data-testid={`hazard-${name}`}
+        onInput={(event) => {
+          const value = event.currentTarget.valueAsNumber;
+          if (Number.isFinite(value)) hazard_draft.value = { ...(hazard_draft.value ?? empty_draft), [name]: Math.max(least ?? -1e5, value) };
+        }}
+      />
+    </label>
+  );
+  const give_it = async () => {
+    if (!draft) return;
+    const answer = await give(hazard_line(draft));
+    if (answer.done) hazard_draft.value = null;
+  };
+  return (
+    <section aria-labelledby="hazard-title" data-testid="hazards">
+      <h2 id="hazard-title">Hazards</h2>
+      <ul class="rows">
+        {hazards.value.map((hazard) => (
+          <li key={hazard.id}>
+            <b>Keep out {hazard.id}</b>
+            <span>
+              E {hazard.x.toFixed(0)} N {hazard.y.toFixed(0)} m
+            </span>
+            <span class="muted">radius {distance(hazard.radius_m)}</span>
+          </li>
+        ))}
+      </ul>
+      <div class="fields">
+        <button type="button" data-testid="hazard-draw" aria-pressed={tool.value === "hazard"} onClick={() => (tool.value = tool.value === "hazard" ? "select" : "hazard")}>
+          Draw on the map …
+        </button>
+        {figure("x", "East, m")}
+        {figure("y", "North, m")}
+        {figure("radius_m", "Radius, m", 1)}
+      </div>
+      <div class="button-row">
+        <HoldButton kind="go" disabled={!draft} testid="hazard-give" on_held={() => void give_it()}>
+          Keep all out of it
+        </HoldButton>
+        {draft && (
+          <button type="button" class="quiet" onClick={() => (hazard_draft.value = null)}>
+            Clear
+          </button>
+        )}
+      </div>
+    </section>
+  );
+}
