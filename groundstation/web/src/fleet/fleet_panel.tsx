@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fleet as a table, what needs attention first.
 
-import { clock, distance, duration, number, words } from "../shell/format";
+import { age, clock, distance, number, words } from "../shell/format";
 import { select, selected } from "../shell/view";
 import { coalition_sign } from "../theme/palette";
 import { Badge } from "../theme/badge";
@@ -56,7 +56,7 @@ function Row({ vehicle, odd }: { vehicle: Vehicle; odd: ReadonlySet<string> }) {
           {sign && <Badge sign={sign} />}
         </td>
         <td class="task">{task_text(vehicle)}</td>
-        <td class="figure">{duration(vehicle.heard_age_s)}</td>
+        <td class="figure">{age(vehicle.heard_age_s)}</td>
         <td class="figure">{distance(vehicle.range_left_m)}</td>
         <td class="figure">{number(vehicle.loads)}</td>
         <td>{vehicle.mode ?? "–"}</td>

@@ -63,7 +63,9 @@ export function shape_path(context: CanvasRenderingContext2D, sign: CoalitionSig
 /** A coalition's shape with its letter. */
 export function badge(view: View, sign: CoalitionSign, x: number, y: number): void {
   const { context } = view;
-  shape_path(context, sign, x, y, 7.5);
+  // A triangle has the least room for its letter, and that low in it.
+  const low = sign.shape === "triangle" ? 1.5 : 0;
+  shape_path(context, sign, x, y, low > 0 ? 9.5 : 7.5);
   context.fillStyle = sign.colour;
   context.fill();
   context.lineWidth = 1;
@@ -73,5 +75,5 @@ export function badge(view: View, sign: CoalitionSign, x: number, y: number): vo
   context.textAlign = "center";
   context.textBaseline = "middle";
   context.fillStyle = "#10161b";
-  context.fillText(sign.letter, x, y + 0.5);
+  context.fillText(sign.letter, x, y + 0.5 + low);
 }

@@ -52,6 +52,9 @@ function sign_of_site(picture: Picture, site: number) {
   return slot === undefined ? null : coalition_sign(slot);
 }
 
+// Further out, words would cover the vehicles around the site; the mission panel has them too.
+const least_scale_of_progress = 0.12;
+
 export function paint_sites(view: View, picture: Picture): void {
   for (const site of picture.sites) {
     if (!view.sees(site.x, site.y, 200)) continue;
@@ -81,6 +84,7 @@ export function paint_sites(view: View, picture: Picture): void {
     context.textBaseline = "top";
     context.font = font(12, true);
     label(view, `Site ${site.id}`, x + 10, y + 3);
+    if (view.scale < least_scale_of_progress) continue;
     context.font = font(10);
     label(view, progress_of(site), x + 10, y + 17, view.colours.muted);
   }

@@ -2,7 +2,7 @@
 // The map with its tools.
 
 import { useEffect, useRef, useState } from "preact/hooks";
-import { bearing, distance, latitude_longitude } from "../shell/format";
+import { bearing, distance, latitude_longitude, number } from "../shell/format";
 import { note } from "../shell/give";
 import { on_fit } from "../shell/keys";
 import { follow, formation_spot, hazard_draft, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, tool } from "../shell/view";
@@ -71,7 +71,7 @@ function Cursor({ at }: { at: Spot | null }) {
   const earth = new LocalFrame(greeting.origin).to_wgs84(at);
   return (
     <div class="map-cursor" aria-hidden="true" data-testid="map-cursor">
-      E {at.x.toFixed(0)} N {at.y.toFixed(0)} m · {latitude_longitude(earth.latitude_deg, earth.longitude_deg)}
+      E {number(at.x)} N {number(at.y)} m · {latitude_longitude(earth.latitude_deg, earth.longitude_deg)}
     </div>
   );
 }

@@ -23,14 +23,14 @@ function RoundTable({ round }: { round: Round }) {
   };
   return (
     <section class="round">
-      <h4>
+      <h3>
         Round {round.number}
         <span class="muted">
           announced {clock(round.announced_s, 1)}
           {round.bids_until_s !== null && `, bids until ${clock(round.bids_until_s, 1)}`}
           {round.reward !== null && `, reward ${number(round.reward, 2)}`}
         </span>
-      </h4>
+      </h3>
       <p>
         <span class="muted">Tasks:</span> {round.tasks.join("; ") || "none"}
       </p>

@@ -31,6 +31,7 @@ export function paint_timeline(view: TimelineView, picture: Picture): void {
   const plot = width - names_px;
   const at = (time_s: number) => names_px + x_of(view.window, plot, time_s);
 
+  paint_axis(view, at);
   context.save();
   context.beginPath();
   context.rect(0, axis_px, width, height - axis_px);
@@ -59,7 +60,6 @@ export function paint_timeline(view: TimelineView, picture: Picture): void {
   paint_tasks(view, picture, at);
   context.restore();
 
-  paint_axis(view, at);
   const now = at(view.now_s);
   if (now < names_px || now > width) return;
   context.fillStyle = colours.accent;

@@ -2,7 +2,7 @@
 // A circle to be kept out of: drawn on the map or typed, then sent to all.
 
 import { useEffect } from "preact/hooks";
-import { distance } from "../shell/format";
+import { distance, number } from "../shell/format";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { hazard_draft, tool } from "../shell/view";
@@ -48,7 +48,7 @@ export function HazardForm() {
           <li key={hazard.id}>
             <b>Keep out {hazard.id}</b>
             <span>
-              E {hazard.x.toFixed(0)} N {hazard.y.toFixed(0)} m
+              E {number(hazard.x)} N {number(hazard.y)} m
             </span>
             <span class="muted">radius {distance(hazard.radius_m)}</span>
           </li>

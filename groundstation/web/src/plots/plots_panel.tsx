@@ -52,8 +52,8 @@ function Plot({ plot, chosen }: { plot: (typeof plots)[number]; chosen: readonly
         cursor: { sync: { key: "telemetry" }, drag: { x: false, y: false } },
         scales: { x: { time: false } },
         axes: [
-          { ...axis, size: 20, values: (_plot, splits) => splits.map((second) => clock(second)) },
-          { ...axis, size: 44 },
+          { ...axis, size: 20, space: 60, incrs: [1, 2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600], values: (_plot, splits) => splits.map((second) => clock(second)) },
+          { ...axis, size: 44, space: 22 },
         ],
         series: [{}, ...chosen.map((id, i) => ({ label: `${id}`, width: 1.5, spanGaps: false, points: { show: false }, ...pen(i, day) }))],
       },

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { bearing, clock, distance, duration, ids, latitude_longitude, number } from "./format";
+import { age, bearing, clock, distance, duration, ids, latitude_longitude, number } from "./format";
 
 test("clock", () => {
   assert.equal(clock(0), "00:00");
@@ -22,6 +22,10 @@ test("duration, distance, number", () => {
   assert.equal(number(-0.04, 1), "0.0");
   assert.equal(number(-12.34, 1), "−12.3");
   assert.equal(number(null), "–");
+});
+
+test("ages fit a column", () => {
+  assert.deepEqual([0.04, 12.3, 99.6, 720, 7200, null].map(age), ["0.0 s", "12 s", "2 min", "12 min", "2 h", "–"]);
 });
 
 test("bearings have three digits and 360 is 0", () => {

@@ -27,6 +27,14 @@ export function duration(seconds: number | null | undefined): string {
   return `${Math.floor(whole / 3600)} h ${Math.floor(whole / 60) % 60} min`;
 }
 
+/** How old something is, in the largest unit only: 0.4 s, 12 s, 3 min, 2 h. */
+export function age(seconds: number | null | undefined): string {
+  if (seconds === null || seconds === undefined || !Number.isFinite(seconds)) return dash;
+  if (seconds < 9.95) return `${Math.max(0, seconds).toFixed(1)} s`;
+  if (seconds < 99.5) return `${Math.round(seconds)} s`;
+  return seconds < 5970 ? `${Math.round(seconds / 60)} min` : `${Math.round(seconds / 3600)} h`;
+}
+
 export function distance(metres: number | null | undefined): string {
   if (metres === null || metres === undefined || !Number.isFinite(metres)) return dash;
   const size = Math.abs(metres);

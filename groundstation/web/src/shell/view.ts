@@ -11,7 +11,8 @@ export const panel = signal<Panel>("fleet");
 export const selected = signal<number | null>(null);
 /** The map keeps the selected vehicle in its middle. */
 export const follow = signal(false);
-export const timeline_open = signal(true);
+// On an upright tablet the map needs its room.
+export const timeline_open = signal(!window.matchMedia("(max-width: 820px)").matches);
 export const help_open = signal(false);
 
 export type Theme = "night" | "day";
