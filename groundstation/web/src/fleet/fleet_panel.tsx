@@ -11,13 +11,14 @@ import { by_attention, fleet_notes, health_of, odd_versions, problems_of } from 
 import type { Health } from "./attention";
 import { VehicleDetails } from "./vehicle_details";
 
+const columns = ["id", "state", "task", "heard", "range", "loads", "mode", "version", "clock"] as const;
 const health_marks: Record<Health, string> = { alarm: "!", silent: "?", warning: "▲", unheard: "○", well: "●" };
 
 export function task_text(vehicle: Vehicle): string {
   const { task } = vehicle;
   if (!task) return "–";
   const what = `S${task.site} ${words(task.kind)}${task.kind === "survey" ? "" : ` ${task.index + 1}`}`;
-  return task.time_s === null ? what : `${what} · ${clock(task.time_s)}`;
+  return task.time_s === null ? what : `${what} ${clock(task.time_s)}`;
 }
 
 function coalition_of(id: number) {
@@ -96,6 +97,11 @@ export function FleetPanel() {
       <div class="scroll" tabIndex={0} role="region" aria-label="Vehicles">
         <table class="fleet-table">
           <caption class="only-spoken">Vehicles, those that need attention first</caption>
+          <colgroup>
+            {columns.map((name) => (
+              <col key={name} class={`col-${name}`} />
+            ))}
+          </colgroup>
           <thead>
             <tr>
               <th scope="col">Id</th>

@@ -207,13 +207,13 @@ export class MissionMap {
     if (on.hazards) paint_hazards(view, picture.hazards);
     if (on.trails) paint_trails(view, tracks, picture.vehicles, selected.value, colour_of);
     if (on.paths) paint_paths(view, picture.plans, now_s, selected.value, colour_of);
+    if (on.sites) paint_sites(view, picture);
   }
 
   private paint_moving(view: View): void {
     const on = layers.value;
     const { picture } = this;
     if (on.links) paint_links(view, picture);
-    if (on.sites) paint_sites(view, picture);
     const change = picture.formation?.change;
     if (change && picture.formation?.moving) paint_movers(view, change.movers, this.colours.path, false);
     if (preview.value?.data) paint_movers(view, preview.value.data.movers, this.colours.preview, true);

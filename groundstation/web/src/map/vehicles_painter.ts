@@ -43,27 +43,41 @@ export function needs_frames(picture: Picture, scale: number): boolean {
   return picture.vehicles.some((vehicle) => (vehicle.groundspeed ?? 0) * scale * 0.1 > 1.5);
 }
 
+// Links fade with age, in steps: one stroke for all of a step is many times faster than one for each.
+const link_steps = [
+  { until_s: 1, alpha: 0.65 },
+  { until_s: 2, alpha: 0.35 },
+  { until_s: Infinity, alpha: 0.15 },
+];
+
+/** Radio links; those that only one side hears are dashed. */
 export function paint_links(view: View, picture: Picture): void {
   const { context } = view;
   const at = new Map(picture.vehicles.map((vehicle) => [vehicle.id, vehicle]));
-  context.lineWidth = 1;
-  context.strokeStyle = view.colours.link;
+  const heard = new Map(picture.vehicles.map((vehicle) => [vehicle.id, new Set(vehicle.links.map((link) => link.id))]));
+  const strokes = link_steps.map(() => ({ both: new Path2D(), one: new Path2D() }));
   for (const vehicle of picture.vehicles) {
     if (vehicle.x === null || vehicle.y === null) continue;
     for (const link of vehicle.links) {
       const other = at.get(link.id);
       if (!other || other.x === null || other.y === null) continue;
-      const back = other.links.some((one) => one.id === vehicle.id);
-      if (back && link.id < vehicle.id) continue;
-      // Old links fade; those that only one side hears are dashed.
-      context.globalAlpha = Math.max(0.12, 0.7 - link.age_s * 0.2);
-      context.setLineDash(back ? [] : [3, 4]);
-      context.beginPath();
-      context.moveTo(view.px(vehicle.x), view.py(vehicle.y));
-      context.lineTo(view.px(other.x), view.py(other.y));
-      context.stroke();
+      const both = heard.get(link.id)!.has(vehicle.id);
+      if (both && link.id < vehicle.id) continue;
+      const step = strokes[link_steps.findIndex(({ until_s }) => link.age_s <= until_s)] ?? strokes[0]!;
+      const path = both ? step.both : step.one;
+      path.moveTo(view.px(vehicle.x), view.py(vehicle.y));
+      path.lineTo(view.px(other.x), view.py(other.y));
     }
   }
+  context.lineWidth = 1;
+  context.strokeStyle = view.colours.link;
+  strokes.forEach(({ both, one }, i) => {
+    context.globalAlpha = link_steps[i]!.alpha;
+    context.setLineDash([]);
+    context.stroke(both);
+    context.setLineDash([3, 4]);
+    context.stroke(one);
+  });
   context.setLineDash([]);
   context.globalAlpha = 1;
 }

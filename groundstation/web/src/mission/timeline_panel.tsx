@@ -18,10 +18,17 @@ class TimelineCanvas {
   scroll = 0;
   private colours = read_colours();
   private frame = 0;
+  // Kept, since asking the element would lay the page out at every paint.
+  private width = 0;
+  private height = 0;
   private readonly undo: (() => void)[];
 
   constructor(private readonly canvas: HTMLCanvasElement) {
-    const resize = new ResizeObserver(() => this.redraw());
+    const resize = new ResizeObserver(() => {
+      this.width = canvas.clientWidth;
+      this.height = canvas.clientHeight;
+      this.redraw();
+    });
     resize.observe(canvas);
     this.undo = [
       () => resize.disconnect(),
@@ -54,8 +61,8 @@ class TimelineCanvas {
     const now_s = mission_now_s() ?? 0;
     return {
       context,
-      width: this.canvas.clientWidth,
-      height: this.canvas.clientHeight,
+      width: this.width,
+      height: this.height,
       scroll: this.scroll,
       window: window_of(now_s, this.span_s, this.pinned_s),
       now_s,
