@@ -99,6 +99,10 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
     config.vehicles.push_back(vehicle.spec.id);
   }
   config.operator_decisions = scenario.operator_decisions;
+  for (const ScenarioHazard& hazard : scenario.hazards) {
+    if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
+  }
+  config.console.port = deployment.console_port;
   config.formation = scenario.formation;
   config.recording_folder = folder_of(deployment, "ground");
   return config;

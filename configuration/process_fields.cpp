@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "process_fields.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 
 #include "skein/formation/change.hpp"
 
@@ -335,6 +337,38 @@ void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
          recording_folder);
 }
 
+bool is_plain(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '_';
+  });
+}
+
+void console_fields(FieldVisitor& v, ConsoleConfig& config) {
+  whole(v, {"port", "where it is served; 0: not at all"}, {0.0, 65535.0}, config.port);
+  v.text({"address", "any but 127.0.0.1 or ::1 needs passwords, certificate and key"},
+         config.address);
+  v.text({"passwords",
+          "file of who may use it, with lines as 'skein-ground password NAME' makes "
+          "them; empty: whoever is on this machine is the operator"},
+         config.passwords);
+  v.text({"certificate", "PEM file; with it the page is served by HTTPS"}, config.certificate);
+  v.text({"key", "PEM file of the certificate's key"}, config.key);
+  v.text({"tiles", "map: a folder z/x/y.png (jpg, webp) or an MBTiles file; empty: a metric grid"},
+         config.tiles);
+  v.list({"overlays", "drawn on the map"},
+         groups_of(
+             config.overlays, kListMax, [](FieldVisitor& inner, ConsoleConfig::Overlay& overlay) {
+               inner.text({"name", "what the map calls it; of letters, digits, - and _", kRequired},
+                          overlay.name);
+               inner.require(
+                   is_plain(overlay.name), "name",
+                   "may have letters, digits, - and _ only; it becomes part of an address");
+               inner.text({"file", "GeoJSON, WGS84", kRequired}, overlay.file);
+             }));
+  v.require(config.certificate.empty() == config.key.empty(), "key",
+            "a certificate needs its key, and a key its certificate; give both or neither");
+}
+
 }  // namespace
 
 void fields(FieldVisitor& v, VehicleConfig& config) {
@@ -367,7 +401,12 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   origin_section(v, config.origin);
   ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
   operator_decisions_list(v, config.operator_decisions);
+  v.list({"hazards", "known before the mission, for the map"},
+         unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
+                          [](const Hazard& hazard) { return hazard.id.value; }));
   formation_section(v, config.formation);
+  v.section({"console", "the page for the operator's browser"},
+            [&config](FieldVisitor& inner) { console_fields(inner, config.console); });
   v.text({"control_socket",
           "name of the Unix socket where `skein-ground tell` reaches it; empty: "
           "skein-ground-PORT"},

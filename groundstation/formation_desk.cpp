@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "skein/configuration/shape_file.hpp"
@@ -51,6 +52,23 @@ std::string text_of(const mission::FormationPreview& preview) {
     text += fmt::format("  vehicle {} is silent; its way is kept clear\n", vehicle.value);
   }
   return text;
+}
+
+std::string data_of(const mission::FormationPreview& preview, bool only_preview) {
+  const auto& planned = preview.planned;
+  nlohmann::ordered_json data{{"kind", only_preview ? "preview" : "begun"},
+                              {"way", formation::to_string(planned.way)},
+                              {"duration_s", to_seconds(planned.duration)},
+                              {"least_separation_m", planned.least_separation_m},
+                              {"movers", nlohmann::ordered_json::array()},
+                              {"lost", nlohmann::ordered_json::array()}};
+  for (const auto& mover : planned.change.movers) {
+    auto points = nlohmann::ordered_json::array();
+    for (const Vec3& p : mover.points) points.push_back({p.x(), p.y(), p.z()});
+    data["movers"].push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
+  }
+  for (const VehicleId vehicle : preview.lost) data["lost"].push_back(vehicle.value);
+  return data.dump();
 }
 
 }  // namespace
@@ -120,7 +138,7 @@ Result<mission::FormationOrder> FormationDesk::completed(const Formation& input)
   return order;
 }
 
-Result<std::string> FormationDesk::answer(const Formation& input, Instant now) {
+Result<FormationDesk::Outcome> FormationDesk::answer(const Formation& input, Instant now) {
   if (!input.shape.empty() && !shapes_.contains(input.shape) &&
       input.shape.find('.') != std::string::npos) {
     if (auto loaded = load(input.shape, input.shape); !loaded) return loaded.error();
@@ -129,7 +147,8 @@ Result<std::string> FormationDesk::answer(const Formation& input, Instant now) {
   if (!order) return order.error();
   const auto result = input.preview ? ground_.preview(*order) : ground_.command(*order, now);
   if (!result) return result.error();
-  return (input.preview ? "preview: " : "begun: ") + text_of(*result);
+  return Outcome{(input.preview ? "preview: " : "begun: ") + text_of(*result),
+                 data_of(*result, input.preview)};
 }
 
 std::string FormationDesk::places_table(Instant now) const {

@@ -8,11 +8,14 @@
 #include <atomic>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <thread>
 #include <utility>
 
+#include "skein/groundstation/audit.hpp"
+#include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/line_reader.hpp"
@@ -35,6 +38,7 @@ namespace {
 constexpr Duration kStepPeriod = std::chrono::milliseconds{50};
 constexpr Duration kStepSpacing = std::chrono::milliseconds{20};  // telemetry comes all the time
 constexpr Duration kFlushPeriod = std::chrono::seconds{1};
+constexpr std::string_view kJsonPrefix = "json ";
 
 mission::GroundAgentConfig agent_config(const configuration::GroundConfig& config) {
   mission::GroundAgentConfig agent;
@@ -53,14 +57,36 @@ void print(const std::string& text) {
   std::fflush(stdout);
 }
 
-/// Carries messages and typed lines to the agent, and its messages, events and requests away.
+/// Who gave a line.
+struct Asker {
+  std::string who;
+  std::string from;                                      ///< prompt, command line, console
+  bool may_order = true;                                 ///< otherwise may only look
+  std::optional<console::Server::Line::Seen> seen = {};  ///< the plan that was on the screen
+};
+
+bool only_looks(const Input& input) {
+  const auto* formation = std::get_if<Formation>(&input);
+  return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
+         (formation != nullptr && formation->preview);
+}
+
+/// The answer for programs: one JSON object.
+std::string json_of(const Answer& answer) {
+  nlohmann::ordered_json json{{"done", answer.done}, {"text", answer.text}};
+  json["data"] = nlohmann::ordered_json::parse(answer.data, nullptr, false);
+  if (json["data"].is_discarded()) json["data"] = nullptr;
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// Carries messages and lines to the agent, and its messages, events and requests away.
 class GroundLoop {
  public:
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& node, process::Wake& wake,
              std::optional<recording::Writer> writer, FormationDesk formation,
-             std::unique_ptr<ControlSocket> control)
+             std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
       : agent_config_{agent_config(config)},
         origin_{origin},
         operator_name_{std::move(operator_name)},
@@ -71,7 +97,9 @@ class GroundLoop {
         writer_{std::move(writer)},
         agent_{agent_config_, clock.now()},
         formation_{std::move(formation)},
-        control_{std::move(control)} {}
+        control_{std::move(control)},
+        console_{std::move(console)},
+        audit_{std::move(audit)} {}
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
@@ -80,15 +108,9 @@ class GroundLoop {
       while (const auto received = node_.poll()) {
         agent_.on_message(received->message, received->sender, now);
         formation_.on_message(received->message, received->sender, now);
+        console_.on_message(received->message, received->sender, now);
       }
-      while (const auto line = prompt.next()) {
-        const Answer given = answer(*line, now);
-        print((given.done ? "" : "error: ") + given.text);
-      }
-      while (const auto request = control_ ? control_->next() : std::nullopt) {
-        spdlog::info("told by another program: {}", request->line);
-        request->reply(answer(request->line, now));
-      }
+      take_lines(prompt, now);
       agent_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
@@ -106,25 +128,90 @@ class GroundLoop {
   }
 
  private:
-  Answer answer(const std::string& line, Instant now) {
-    const auto input = parse_input(line);
-    if (!input) return refusal(input.error());
-    if (const auto* view = std::get_if<View>(&*input)) return {true, text_of(*view, now)};
-    if (const auto* decision = std::get_if<Decision>(&*input)) {
-      return answer_to(decision->grant ? agent_.authorise(decision->site, operator_name_, now)
-                                       : agent_.refuse(decision->site, operator_name_, now));
+  void take_lines(LineReader& prompt, Instant now) {
+    while (const auto line = prompt.next()) {
+      const Answer given = answer(*line, {operator_name_, "prompt"}, now);
+      print((given.done ? "" : "error: ") + given.text);
     }
-    if (const auto* order = std::get_if<Order>(&*input)) {
+    while (const auto request = control_ ? control_->next() : std::nullopt) {
+      const bool wants_json = request->line.rfind(kJsonPrefix, 0) == 0;
+      Answer given = answer(wants_json ? request->line.substr(kJsonPrefix.size()) : request->line,
+                            {operator_name_, "command line"}, now);
+      if (wants_json) given.text = json_of(given);
+      request->reply(given);
+    }
+    while (const auto line = console_.next()) {
+      const Answer given =
+          answer(line->line, {line->user, "console", line->may_order, line->seen}, now);
+      line->reply(given.done, given.text, given.data);
+    }
+  }
+
+  /// What came of a line. Orders and decisions are noted.
+  Answer answer(const std::string& line, const Asker& asker, Instant now) {
+    const auto input = parse_input(line);
+    if (input && only_looks(*input)) return look(*input, now);
+    Answer given = !input             ? refusal(input.error())
+                   : !asker.may_order ? Answer{false, "an observer gives no orders\n"}
+                                      : order(*input, asker, now);
+    note({now, asker.who, asker.from, line, given.done, given.text});
+    return given;
+  }
+
+  Answer look(const Input& input, Instant now) {
+    if (const auto* view = std::get_if<View>(&input)) {
+      return {true, text_of(*view, now), data_of(*view, now)};
+    }
+    if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
+    return {true, ""};
+  }
+
+  Answer order(const Input& input, const Asker& asker, Instant now) {
+    if (const auto* decision = std::get_if<Decision>(&input)) {
+      if (!is_still(asker.seen, decision->site)) {
+        return {false, "another plan waits by now; look at it first\n"};
+      }
+      return answer_to(decision->grant ? agent_.authorise(decision->site, asker.who, now)
+                                       : agent_.refuse(decision->site, asker.who, now));
+    }
+    if (const auto* order = std::get_if<Order>(&input)) {
       return answer_to(agent_.command(order->vehicle, order->kind, now));
     }
-    if (const auto* typed = std::get_if<Formation>(&*input)) {
-      auto answered = formation_.answer(*typed, now);
-      if (!answered) return refusal(answered.error());
-      return {true, std::move(*answered)};
+    if (const auto* hazard = std::get_if<NewHazard>(&input)) {
+      const auto added = agent_.add_hazard(hazard->centre_m, hazard->radius_m, now);
+      if (!added) return refusal(added.error());
+      return {true, fmt::format("hazard {} is told to all\n", added->value)};
     }
-    if (std::holds_alternative<Wait>(*input)) return {false, "'wait' is for scripts\n"};
-    if (std::holds_alternative<Quit>(*input)) shutdown_.request();
+    if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
+    if (std::holds_alternative<Wait>(input)) return {false, "'wait' is for scripts\n"};
+    shutdown_.request();  // Quit
     return {true, ""};
+  }
+
+  Answer formed(const Formation& order, Instant now) {
+    auto outcome = formation_.answer(order, now);
+    if (!outcome) return refusal(outcome.error());
+    return {true, std::move(outcome->text), std::move(outcome->data)};
+  }
+
+  /// Is the plan that somebody saw still the one that a decision would be for?
+  [[nodiscard]] bool is_still(const std::optional<console::Server::Line::Seen>& seen,
+                              SiteId site) const {
+    if (!seen) return true;
+    const auto& all = agent_.authorisations();
+    const auto newest = std::find_if(all.rbegin(), all.rend(), [site](const auto& pending) {
+      return pending.request.site == site && !pending.decision;
+    });
+    return newest != all.rend() &&
+           console::key_of(newest->request.round.coalition) == seen->coalition &&
+           newest->request.round.number == seen->round;
+  }
+
+  void note(Audit::Entry entry) {
+    spdlog::info("{} ({}): {}", entry.who, entry.from, entry.line);
+    if (const auto noted = audit_.add(std::move(entry)); !noted) {
+      spdlog::error("the audit log: {}", noted.error().message);
+    }
   }
 
   [[nodiscard]] std::string text_of(View view, Instant now) const {
@@ -139,6 +226,35 @@ class GroundLoop {
         return pending_text(agent_.authorisations(), origin_, now);
       case View::places:
         return formation_.places_table(now);
+      case View::coalitions:
+        return coalitions_text(console_.picture());
+      case View::hazards:
+        return hazards_text(console_.picture());
+      case View::audit:
+        return audit_.text();
+    }
+    return "";
+  }
+
+  [[nodiscard]] std::string data_of(View view, Instant now) const {
+    using console::Section;
+    switch (view) {
+      case View::help:
+        return "";
+      case View::status:
+        return console_.section(Section::vehicles, now);
+      case View::sites:
+        return console_.section(Section::sites, now);
+      case View::pending:
+        return console_.section(Section::authorisations, now);
+      case View::places:
+        return console_.section(Section::formation, now);
+      case View::coalitions:
+        return console_.section(Section::coalitions, now);
+      case View::hazards:
+        return console_.section(Section::hazards, now);
+      case View::audit:
+        return audit_.json();
     }
     return "";
   }
@@ -148,20 +264,26 @@ class GroundLoop {
     return outcome ? Answer{true, "done\n"} : refusal(outcome.error());
   }
 
+  void send(const mission::Message& message, Instant now) {
+    node_.publish(message);
+    console_.on_message(message, kGroundStation, now);
+  }
+
   void hand_out(Instant now) {
-    while (const auto message = agent_.poll_message()) node_.publish(*message);
+    while (const auto message = agent_.poll_message()) send(*message, now);
     while (const auto message = formation_.poll_message()) {
-      node_.publish(*message);
+      send(*message, now);
       if (const auto* change = std::get_if<formation::Change>(&*message)) record(*change);
     }
     while (const auto event = formation_.poll_event()) {
-      node_.publish(mission::Message{*event});
+      send(mission::Message{*event}, now);
       tell_of(*event);
     }
     while (const auto event = agent_.poll_event()) {
       sites_.on_event(*event);
       tell_of(*event);
     }
+    console_.on_timeout(audit_.json(), now);
     for (const auto& pending : agent_.authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
       if (!shown_.emplace(pending.request.site, pending.request.round).second) continue;
@@ -187,6 +309,7 @@ class GroundLoop {
     const bool warning = event.kind == mission::EventKind::warning;
     spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(event));
     if (writer_) writer_->write(event);
+    console_.on_event(event);
   }
 
   void flush() {
@@ -213,6 +336,8 @@ class GroundLoop {
   mission::GroundAgent agent_;
   FormationDesk formation_;
   std::unique_ptr<ControlSocket> control_;
+  ConsoleDesk console_;
+  Audit audit_;
   std::uint32_t recorded_change_ = 0;
   SiteBoard sites_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
@@ -265,6 +390,20 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     spdlog::warn("takes no orders from other programs: {}", control.error().message);
   }
 
+  ConsoleDesk console{config, *origin};
+  if (config.console.port != 0) {
+    if (const auto served = console.serve(config, [&wake] { wake.notify(); }); !served) {
+      spdlog::warn("there is no console: {}", served.error().message);
+    } else {
+      spdlog::info("console: {}", console.url());
+    }
+  }
+  auto audit = Audit::open(config.recording_folder);
+  if (!audit) {
+    spdlog::critical("cannot record: {}", audit.error().message);
+    return process::kExitCannotStart;
+  }
+
   spdlog::info("ground station of {} vehicles, {}; type help", config.vehicles.size(),
                config.operator_decisions.empty()
                    ? "decisions by " + operator_name
@@ -278,7 +417,9 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   wake,
                   std::move(writer),
                   std::move(*formation),
-                  control ? std::move(*control) : nullptr};
+                  control ? std::move(*control) : nullptr,
+                  std::move(console),
+                  std::move(*audit)};
   std::thread thread{[&loop] { loop.run(); }};
   spdlog::info("{}: stopping", shutdown.wait());
   loop.stop();

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <termios.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <iostream>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/console/users.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
 #include "skein/groundstation/prompt.hpp"
@@ -23,6 +26,7 @@ namespace groundstation = skein::groundstation;
 using skein::configuration::GroundConfig;
 
 constexpr int kExitRefused = 1;
+constexpr std::size_t kPasswordMin = 8;
 constexpr std::chrono::seconds kAnswerWithin{20};  // a change of a thousand vehicles takes its time
 
 struct PlanArguments {
@@ -36,6 +40,12 @@ struct Arguments {
   std::string operator_name;
   bool check_only = false;
   std::string socket;
+  bool json = false;
+};
+
+struct PasswordArguments {
+  std::string name;
+  bool observer = false;
 };
 
 skein::Result<GroundConfig> load(const std::string& file) {
@@ -73,10 +83,10 @@ int tell(const Arguments& arguments, const std::string& line) {
     config = *std::move(loaded);
   }
   if (!arguments.socket.empty()) config.control_socket = arguments.socket;
-  const auto answer =
-      groundstation::ask(groundstation::control_socket_of(config), line, kAnswerWithin);
+  const auto answer = groundstation::ask(groundstation::control_socket_of(config),
+                                         (arguments.json ? "json " : "") + line, kAnswerWithin);
   if (!answer) return fail(answer.error().message, skein::process::kExitCannotStart);
-  std::fputs(answer->text.c_str(), answer->done ? stdout : stderr);
+  std::fputs(answer->text.c_str(), answer->done || arguments.json ? stdout : stderr);
   return answer->done ? 0 : kExitRefused;
 }
 
@@ -114,6 +124,37 @@ int plan(const PlanArguments& arguments) {
   return 0;
 }
 
+/// A line for a password file, from a password on standard input.
+int password(const PasswordArguments& arguments) {
+  using skein::console::Role;
+  if (arguments.name.empty() || arguments.name.find_first_of(":\n") != std::string::npos) {
+    return fail("a name has no colon in it", skein::process::kExitBadInput);
+  }
+  const bool terminal = ::isatty(STDIN_FILENO) == 1;
+  termios before{};
+  if (terminal) {
+    std::fprintf(stderr, "password of %s: ", arguments.name.c_str());
+    ::tcgetattr(STDIN_FILENO, &before);
+    termios silent = before;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &silent);
+  }
+  std::string typed;
+  std::getline(std::cin, typed);
+  if (terminal) {
+    ::tcsetattr(STDIN_FILENO, TCSANOW, &before);
+    std::fputs("\n", stderr);
+  }
+  if (typed.size() < kPasswordMin) {
+    return fail("a password has at least 8 characters", skein::process::kExitBadInput);
+  }
+  const Role role = arguments.observer ? Role::observer : Role::op;
+  std::printf("%s:%s:%s\n", arguments.name.c_str(),
+              std::string{skein::console::to_string(role)}.c_str(),
+              skein::console::hash_password(typed).c_str());
+  return 0;
+}
+
 CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,
                    const char* footer) {
   CLI::App& command = *app.add_subcommand(name, description);
@@ -121,6 +162,7 @@ CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const 
                      "The running ground station's configuration; without it, the one of the "
                      "default port is told");
   command.add_option("--socket", arguments.socket, "The name of its control socket, instead");
+  command.add_flag("--json", arguments.json, "Answer in JSON: done, text, data");
   command.footer(footer);
   command.prefix_command();
   return command;
@@ -136,7 +178,7 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  skein-ground --config ground.yaml\n"
       "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
-      "  skein-ground tell --config ground.yaml status\n"
+      "  skein-ground tell --config ground.yaml --json status\n"
       "  skein-ground plan scenarios/routes-3.yaml\n\n"
       "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
@@ -178,12 +220,22 @@ int main(int argc, char** argv) {
       "Writes plan.yaml, which `skein-hil run --routes` flies, GeoJSON, KML, a .plan for each\n"
       "vehicle that QGroundControl reads, and a picture. Exit status 1: no plan, or a rule is\n"
       "broken.");
+  PasswordArguments account;
+  CLI::App& password_command =
+      *app.add_subcommand("password", "Makes the line of a user for the console's password file");
+  password_command.add_option("name", account.name, "Who it is for")->required();
+  password_command.add_flag("--observer", account.observer, "May look, but give no orders");
+  password_command.footer(
+      "The password is asked for, or read from standard input.\n"
+      "Example:\n"
+      "  skein-ground password ada >> passwords");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
   }
   if (plan_command.parsed()) return plan(planning);
+  if (password_command.parsed()) return password(account);
   if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
   if (!formation.parsed()) return run(arguments);
   const std::string line = CLI::detail::join(formation.remaining(), " ");

@@ -56,16 +56,6 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
   return Input{Order{{*vehicle}, kind}};
 }
 
-Result<Input> give_back(const std::vector<std::string_view>& words) {
-  const auto vehicle = words.size() == 2 ? id_of(words[1]) : std::nullopt;
-  if (!vehicle) {
-    return Error{fmt::format(
-        "'{0}' needs the number of one vehicle, as in '{0} 7': each pilot gives his own",
-        words[0])};
-  }
-  return Input{Order{{*vehicle}, mission::CommandKind::give_back}};
-}
-
 /// A number after a keyword.
 Result<double> number_after(std::string_view keyword, std::string_view word, double low,
                             double high) {
@@ -77,6 +67,34 @@ Result<double> number_after(std::string_view keyword, std::string_view word, dou
         fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, low, high, word)};
   }
   return value;
+}
+
+Result<Input> hazard(const std::vector<std::string_view>& words) {
+  if (words.size() != 4) {
+    return Error{
+        "'hazard' needs three numbers, EAST NORTH RADIUS in metres, as in "
+        "'hazard 1200 -300 250'; 'hazards' lists those that are known"};
+  }
+  NewHazard hazard;
+  const auto east = number_after("hazard EAST", words[1], -1e5, 1e5);
+  const auto north = number_after("hazard EAST NORTH", words[2], -1e5, 1e5);
+  const auto radius = number_after("hazard EAST NORTH RADIUS", words[3], 1.0, 5e4);
+  for (const auto* number : {&east, &north, &radius}) {
+    if (!*number) return number->error();
+  }
+  hazard.centre_m = {*east, *north};
+  hazard.radius_m = *radius;
+  return Input{hazard};
+}
+
+Result<Input> give_back(const std::vector<std::string_view>& words) {
+  const auto vehicle = words.size() == 2 ? id_of(words[1]) : std::nullopt;
+  if (!vehicle) {
+    return Error{fmt::format(
+        "'{0}' needs the number of one vehicle, as in '{0} 7': each pilot gives his own",
+        words[0])};
+  }
+  return Input{Order{{*vehicle}, mission::CommandKind::give_back}};
 }
 
 std::optional<formation::ShapeKind> shape_kind(std::string_view word) {
@@ -184,6 +202,10 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "pending") return view(View::pending, words);
   if (verb == "authorise") return decision(true, words);
   if (verb == "refuse") return decision(false, words);
+  if (verb == "coalitions") return view(View::coalitions, words);
+  if (verb == "hazards") return view(View::hazards, words);
+  if (verb == "audit") return view(View::audit, words);
+  if (verb == "hazard") return hazard(words);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
   if (verb == "return") return order(mission::CommandKind::return_home, words);
@@ -211,6 +233,12 @@ std::string help_text() {
          "pending           deliveries that wait for your decision\n"
          "authorise SITE    let the deliveries at SITE be flown as planned\n"
          "refuse SITE       do not\n"
+         "coalitions        what was announced, bid and awarded, and what came of it\n"
+         "hazards           the circles to keep out of\n"
+         "hazard EAST NORTH RADIUS\n"
+         "                  tell all of another one, in metres from the origin; there is no way "
+         "back\n"
+         "audit             who gave which order, from where, and what came of it\n"
          "hold ID|all       fly a holding pattern until told otherwise\n"
          "resume ID|all     go on with the mission\n"
          "return ID|all     fly back to the start and hold there\n"

@@ -71,5 +71,17 @@ TEST(Prompt, HelpNamesEveryCommand) {
   }
 }
 
+TEST(Prompt, AHazardIsThreeNumbers) {
+  const auto input = parse_input("hazard 1200 -300.5 250");
+  ASSERT_TRUE(input.ok());
+  const auto& hazard = std::get<NewHazard>(*input);
+  EXPECT_EQ(hazard.centre_m, (Vec2{1200.0, -300.5}));
+  EXPECT_EQ(hazard.radius_m, 250.0);
+  for (const char* wrong : {"hazard", "hazard 1 2", "hazard 1 2 0", "hazard 1 2 3 4",
+                            "hazard x 2 3", "hazard 1 2 nan"}) {
+    EXPECT_FALSE(parse_input(wrong).ok()) << wrong;
+  }
+}
+
 }  // namespace
 }  // namespace skein::groundstation

@@ -102,6 +102,38 @@ std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
   return text.empty() ? "nothing waits for a decision\n" : text;
 }
 
+std::string coalitions_text(const console::Picture& picture) {
+  std::string text;
+  auto line = std::back_inserter(text);
+  for (const auto& [id, coalition] : picture.coalitions()) {
+    fmt::format_to(line, "site {}: coalition {} of {}, {}{}\n", coalition.site.value, id.number,
+                   process::text_of(id.leader), to_string(coalition.state),
+                   coalition.why.empty() ? "" : ": " + coalition.why);
+    for (const auto& round : coalition.rounds) {
+      fmt::format_to(line, "  round {}: {} tasks announced, {} bids", round.number,
+                     round.announcement ? round.announcement->tasks.size() : 0, round.bids.size());
+      for (const auto& bid : round.bids) fmt::format_to(line, " {}", bid.bidder.value);
+      text += '\n';
+      if (!round.award) continue;
+      for (const auto& assignment : round.award->assignments) {
+        fmt::format_to(line, "    {:.1f} s  vehicle {:>3}: {}\n", to_seconds(assignment.time),
+                       assignment.vehicle.value, to_string(assignment.task));
+      }
+    }
+  }
+  return text.empty() ? "no coalition is known yet\n" : text;
+}
+
+std::string hazards_text(const console::Picture& picture) {
+  std::string text;
+  for (const auto& [id, hazard] : picture.hazards()) {
+    fmt::format_to(std::back_inserter(text),
+                   "hazard {}: {:.0f} m around {:.0f} east, {:.0f} north\n", id.value,
+                   hazard.radius_m, hazard.centre.x(), hazard.centre.y());
+  }
+  return text.empty() ? "no hazard is known\n" : text;
+}
+
 void SiteBoard::on_event(const mission::MissionEvent& event) {
   if (event.task.site == SiteId{}) return;
   Entry& entry = sites_[event.task.site];

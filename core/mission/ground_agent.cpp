@@ -2,6 +2,8 @@
 #include "skein/mission/ground_agent.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "names.hpp"
@@ -11,6 +13,7 @@ namespace skein::mission {
 namespace {
 
 constexpr Duration kAuthorisationRepeat = std::chrono::milliseconds{500};
+constexpr Duration kHazardRepeat = std::chrono::seconds{5};
 constexpr Duration kCommandRepeat = std::chrono::seconds{1};
 constexpr Duration kCommandRepeatedFor = std::chrono::seconds{5};
 // What a flood from the network can make us remember.
@@ -45,6 +48,8 @@ void GroundAgent::on_message(const Message& message, VehicleId sender, Instant n
     on_request(*request, now);
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
+  } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
+    last_hazard_ = std::max(last_hazard_, hazard->hazard.id);
   } else if (const auto* said = std::get_if<coalition::Message>(&message)) {
     if (const auto* status = std::get_if<coalition::MemberStatus>(said)) on_status(*status);
     if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
@@ -373,7 +378,26 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
   return {};
 }
 
+Result<HazardId> GroundAgent::add_hazard(const Vec2& centre, double radius_m, Instant now) {
+  if (!centre.allFinite() || !(radius_m > 0.0) || !std::isfinite(radius_m)) {
+    return Error{"a hazard is a circle: a centre, and a radius above 0 m"};
+  }
+  if (hazards_.size() >= kHazardsMax ||
+      last_hazard_.value == std::numeric_limits<std::uint16_t>::max()) {
+    return Error{"there are too many hazards already"};
+  }
+  ++last_hazard_.value;
+  hazards_.push_back({last_hazard_, centre, radius_m});
+  messages_.push(Message{HazardReport{hazards_.back()}});
+  next_hazards_ = std::min(next_hazards_, now + kHazardRepeat);
+  return last_hazard_;
+}
+
 void GroundAgent::send_again(Instant now) {
+  if (now >= next_hazards_) {
+    for (const Hazard& hazard : hazards_) messages_.push(Message{HazardReport{hazard}});
+    next_hazards_ = now + kHazardRepeat;
+  }
   if (now >= next_repeat_) {
     next_repeat_ = Instant::max();
     for (const auto& pending : pending_) {
@@ -406,7 +430,7 @@ std::optional<Message> GroundAgent::poll_message() { return messages_.pop(); }
 std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
 
 Instant GroundAgent::next_timeout() const {
-  Instant next = next_repeat_;
+  Instant next = std::min(next_repeat_, next_hazards_);
   for (const auto& sent : commands_) next = std::min(next, sent.next);
   for (const auto& [site, led] : led_) {
     if (led.last.closed && led.times_closed < kClosedTimes) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace skein::mission {
 namespace {
@@ -287,6 +288,29 @@ TEST(GroundAgent, GivesAnAircraftBackAloneAndTellsWhen) {
   ASSERT_EQ(sent.size(), 1U);
   EXPECT_EQ(sent[0].kind, CommandKind::give_back);
   EXPECT_EQ(issued_at(sent[0]), at_seconds(10.25));
+}
+
+TEST(GroundAgent, TellsOfAHazardAgainAndAgain) {
+  Bench bench;
+  bench.agent.on_message(Message{HazardReport{{{50'004}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.5));
+  const auto id = bench.agent.add_hazard({100.0, -200.0}, 300.0, at_seconds(1.0));
+  ASSERT_TRUE(id.ok());
+  EXPECT_EQ(*id, HazardId{50'005});  // above what is known
+  EXPECT_EQ(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(2.0)).value(), HazardId{50'006});
+  bench.run_until(30.0);
+  const auto told = bench.sent<HazardReport>();
+  EXPECT_GE(told.size(), 10U);
+  EXPECT_EQ(std::count_if(
+                told.begin(), told.end(),
+                [&](const auto& m) { return m.hazard.id == *id && m.hazard.radius_m == 300.0; }),
+            static_cast<std::ptrdiff_t>(told.size() / 2));
+  for (const double radius : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_FALSE(bench.agent.add_hazard({0.0, 0.0}, radius, at_seconds(31.0)).ok());
+  }
+  for (std::size_t i = 2; i < GroundAgent::kHazardsMax; ++i) {
+    EXPECT_TRUE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
+  }
+  EXPECT_FALSE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
 }
 
 TEST(GroundAgent, RepeatsCommandsWithGrowingNumbers) {

@@ -148,6 +148,7 @@ class Bench {
                                         .count();
     deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
     deployment.can_buses = *buses;
+    deployment.console_port = options_.console_port;
 
     const auto ground = configuration::ground_config(scenario_, deployment);
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));

@@ -29,6 +29,7 @@ struct RunArguments {
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
   bool prompt = false;
+  std::uint16_t console_port = 0;  ///< 0: no console
 };
 /// Gives the vehicles the routes of the plan's file, or of a plan that is made and printed, where
 /// the mission asks for routes.

@@ -52,6 +52,11 @@ int main(int argc, char** argv) {
   run_command->add_flag("--prompt", run.prompt,
                         "Decide about deliveries yourself, at the ground station's prompt, in "
                         "place of the scenario's script");
+  run_command
+      ->add_option("--console", run.console_port,
+                   "Serve the ground station's console on this port of loopback (such as 7460); "
+                   "with --prompt you decide there")
+      ->check(CLI::Range(1, 65535));
   run_command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Example: skein-hil run scenarios/coalition-6.yaml --rate 2");

@@ -74,6 +74,7 @@ int run(const RunArguments& arguments) {
   options.lead_s = arguments.lead_s;
   options.can = arguments.can;
   options.prompt = arguments.prompt;
+  options.console_port = arguments.console_port;
   options.run_folder =
       !arguments.folder.empty()
           ? arguments.folder

@@ -19,7 +19,8 @@ struct Deployment {
   std::uint16_t domain_id = 0;
   std::string transport_plugin;
   TimeConfig time;
-  std::string recording_folder;  ///< each process gets its own in it; empty: no recordings
+  std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
+  std::string recording_folder;    ///< each process gets its own in it; empty: no recordings
   /// For the vehicles whose flight controller is on a CAN bus that the scenario does not name: one
   /// for each, or one for all. They get node ids of their own on it, and are taken over in flight.
   std::vector<std::string> can_buses;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -10,8 +11,24 @@
 #include "skein/base/result.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/domain/hazard.hpp"
 
 namespace skein::configuration {
+
+/// The web console.
+struct ConsoleConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 7460;  ///< 0: there is none
+  std::string passwords;      ///< file; empty: whoever reaches it is the operator
+  std::string certificate;    ///< PEM files
+  std::string key;
+  std::string tiles;  ///< folder z/x/y.png or MBTiles file; empty: none
+  struct Overlay {
+    std::string name;
+    std::string file;  ///< GeoJSON
+  };
+  std::vector<Overlay> overlays;
+};
 
 /// Everything that skein-ground needs to know (docs/configuration.md).
 struct GroundConfig {
@@ -21,7 +38,9 @@ struct GroundConfig {
   std::vector<VehicleId> vehicles;  ///< the fleet that is expected
   /// Empty: the operator types at the prompt.
   std::vector<OperatorDecision> operator_decisions;
+  std::vector<Hazard> hazards;  ///< known before the mission
   FormationConfig formation;
+  ConsoleConfig console;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded
 };

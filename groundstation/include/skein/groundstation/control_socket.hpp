@@ -16,6 +16,7 @@ namespace skein::groundstation {
 struct Answer {
   bool done = false;  ///< otherwise refused, and the text says why
   std::string text;
+  std::string data = {};  ///< the same for programs: JSON; empty where there is no more to say
 };
 
 /// The name under which a ground station with this network port listens, unless its configuration

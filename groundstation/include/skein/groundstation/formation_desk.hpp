@@ -23,8 +23,13 @@ class FormationDesk {
                                                   const std::vector<VehicleId>& vehicles,
                                                   Instant now);
 
-  /// What was done, or would be, for the operator; or why not.
-  [[nodiscard]] Result<std::string> answer(const Formation& input, Instant now);
+  /// What was done, or would be, for the operator and as JSON (docs/console-socket.md, answer).
+  struct Outcome {
+    std::string text;
+    std::string data;
+  };
+  /// Fails where the order cannot be given, with the reason.
+  [[nodiscard]] Result<Outcome> answer(const Formation& input, Instant now);
   /// Where each vehicle is and how far from its place.
   [[nodiscard]] std::string places_table(Instant now) const;
 

@@ -13,7 +13,7 @@
 /// What the operator can type.
 namespace skein::groundstation {
 
-enum class View { help, status, sites, pending, places };
+enum class View { help, status, sites, pending, places, coalitions, hazards, audit };
 /// The operator's decision on the deliveries at a site.
 struct Decision {
   SiteId site;
@@ -23,6 +23,11 @@ struct Decision {
 struct Order {
   VehicleId vehicle;
   mission::CommandKind kind = mission::CommandKind::hold;
+};
+/// A circle to keep out of, told to all. Mission frame.
+struct NewHazard {
+  Vec2 centre_m{0.0, 0.0};
+  double radius_m = 0.0;
 };
 /// To the formation. A free shape has its name or file, and no points yet.
 struct Formation {
@@ -39,7 +44,7 @@ struct Wait {
 };
 struct Quit {};
 /// monostate: an empty line.
-using Input = std::variant<std::monostate, View, Decision, Order, Formation, Wait, Quit>;
+using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, Formation, Wait, Quit>;
 
 /// Fails with what is wrong and what would be right.
 [[nodiscard]] Result<Input> parse_input(std::string_view line);

@@ -9,6 +9,7 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/time.hpp"
+#include "skein/console/picture.hpp"
 #include "skein/mission/ground_agent.hpp"
 
 /// What the operator reads. Directions are compass degrees, distances metres and kilometres, times
@@ -26,6 +27,10 @@ namespace skein::groundstation {
 /// The requests that still can be decided, newest last.
 [[nodiscard]] std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
                                        const MissionOrigin& origin, Instant now);
+
+/// What was announced, bid and awarded, and what came of it; newest last.
+[[nodiscard]] std::string coalitions_text(const console::Picture& picture);
+[[nodiscard]] std::string hazards_text(const console::Picture& picture);
 
 /// What is known of the sites, gathered from the events of the vehicles.
 class SiteBoard {

@@ -71,6 +71,13 @@ class GroundAgent {
   /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
+  /// Tells everybody of a hazard, every 5 s from now on, so that who was out of reach hears of it
+  /// too. Gives its number: one above all that are known and at least kFirstHazard. Nothing takes
+  /// it back: vehicles plan around it. Fails where the circle is no circle, or after kHazardsMax.
+  Result<HazardId> add_hazard(const Vec2& centre, double radius_m, Instant now);
+  static constexpr HazardId kFirstHazard{50'000};
+  static constexpr std::size_t kHazardsMax = 100;
+
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<MissionEvent>
   poll_event();  ///< its own and those of vehicles, once each
@@ -135,6 +142,9 @@ class GroundAgent {
   std::map<TaskId, coalition::MemberStatus::Entry> done_;
   std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
+  std::vector<Hazard> hazards_;  ///< of the operator
+  HazardId last_hazard_{static_cast<std::uint16_t>(kFirstHazard.value - 1)};
+  Instant next_hazards_ = Instant::max();
   std::uint32_t last_command_ = 0;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations
   std::set<EventKey> seen_events_;

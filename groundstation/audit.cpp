@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/audit.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace skein::groundstation {
+namespace {
+
+nlohmann::ordered_json json_of(const Audit::Entry& entry, std::uint64_t seq) {
+  return {{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
+          {"who", entry.who},   {"from", entry.from},
+          {"line", entry.line}, {"done", entry.done},
+          {"text", entry.text}};
+}
+
+std::string dump(const nlohmann::ordered_json& json) {
+  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Result<Audit> Audit::open(const std::string& folder) {
+  Audit audit;
+  if (folder.empty()) return audit;
+  audit.path_ = (std::filesystem::path{folder} / "audit.jsonl").string();
+  audit.file_.open(audit.path_, std::ios::trunc);
+  if (!audit.file_) return Error{"cannot write " + audit.path_};
+  return audit;
+}
+
+Result<void> Audit::add(Entry entry) {
+  entry.text = entry.text.substr(0, entry.text.find('\n'));
+  const auto line = json_of(entry, next_seq_++);
+  entries_.push_back(std::move(entry));
+  if (entries_.size() > kShown) entries_.pop_front();
+  auto all = nlohmann::ordered_json::array();
+  std::uint64_t seq = next_seq_ - entries_.size();
+  for (const Entry& one : entries_) all.push_back(json_of(one, seq++));
+  json_ = dump(all);
+  if (path_.empty()) return {};
+  file_ << dump(line) << '\n' << std::flush;
+  if (file_) return {};
+  file_.clear();
+  return Error{"cannot write " + path_};
+}
+
+std::string Audit::text() const {
+  std::string text;
+  for (const Entry& entry : entries_) {
+    text += fmt::format("{:.1f} s  {} ({}): {} -> {}{}\n", to_seconds(entry.time), entry.who,
+                        entry.from, entry.line, entry.done ? "" : "refused: ", entry.text);
+  }
+  return text.empty() ? "nobody has given an order yet\n" : text;
+}
+
+}  // namespace skein::groundstation

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "gate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace skein::console {
+namespace {
+
+constexpr std::string_view kName = "skein_session";
+
+/// The session that a Cookie field names; empty for none.
+std::string_view session_in(std::string_view cookies) {
+  while (!cookies.empty()) {
+    const auto end = cookies.find(';');
+    std::string_view one = cookies.substr(0, end);
+    cookies.remove_prefix(end == std::string_view::npos ? cookies.size() : end + 1);
+    while (!one.empty() && one.front() == ' ') one.remove_prefix(1);
+    if (one.substr(0, kName.size()) != kName) continue;
+    one.remove_prefix(kName.size());
+    if (!one.empty() && one.front() == '=') return one.substr(1);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<Identity> Gate::identify(std::string_view cookies, Time now) const {
+  if (!users_) return Identity{"operator", Role::op};
+  const auto session = sessions_.find(session_in(cookies));
+  if (session == sessions_.end() || now >= session->second.until) return std::nullopt;
+  return session->second.identity;
+}
+
+std::optional<Identity> Gate::check(const std::string& user, std::string_view password) const {
+  const auto role = users_ ? users_->check(user, password) : std::nullopt;
+  if (!role) return std::nullopt;
+  return Identity{user, *role};
+}
+
+std::string Gate::admit(const Identity& identity, Time now) {
+  std::erase_if(sessions_, [now](const auto& entry) { return now >= entry.second.until; });
+  if (sessions_.size() >= kSessionsMax) {
+    sessions_.erase(std::min_element(
+        sessions_.begin(), sessions_.end(),
+        [](const auto& a, const auto& b) { return a.second.until < b.second.until; }));
+  }
+  std::string id = random_hex(16);
+  std::string field = cookie(id, std::chrono::seconds{kSessionLasts}.count());
+  sessions_[std::move(id)] = {identity, now + kSessionLasts};
+  return field;
+}
+
+std::string Gate::dismiss(std::string_view cookies) {
+  const auto session = sessions_.find(session_in(cookies));
+  if (session != sessions_.end()) sessions_.erase(session);
+  return cookie("", 0);
+}
+
+std::string Gate::cookie(std::string_view value, long max_age_s) const {
+  return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/; Max-Age={}{}", kName, value,
+                     max_age_s, secure_ ? "; Secure" : "");
+}
+
+bool Gate::is_own_origin(std::string_view origin, std::string_view host) const {
+  if (origin.empty()) return true;
+  const std::string_view scheme = secure_ ? "https://" : "http://";
+  return origin.substr(0, scheme.size()) == scheme && origin.substr(scheme.size()) == host;
+}
+
+bool Gate::is_own_host(std::string_view host) const {
+  if (users_) return true;
+  const auto colon = host.rfind(':');
+  const bool has_port = colon != std::string_view::npos && host.find(']', colon) == host.npos;
+  const std::string_view name = host.substr(0, has_port ? colon : host.npos);
+  return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
+}
+
+}  // namespace skein::console

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "skein/console/users.hpp"
+
+namespace skein::console {
+
+/// Who speaks on a connection.
+struct Identity {
+  std::string user;
+  Role role = Role::observer;
+};
+
+/// Who is let in: by the cookie of a session, or everybody where there are no users. And from
+/// where: a page of another origin is not, so that no site in the operator's browser commands a
+/// fleet.
+class Gate {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  static constexpr auto kSessionLasts = std::chrono::hours{12};
+  static constexpr std::size_t kSessionsMax = 1000;
+
+  /// `users` empty: whoever reaches the port is the operator, on loopback.
+  Gate(std::optional<Users> users, bool secure) : users_{std::move(users)}, secure_{secure} {}
+
+  [[nodiscard]] std::optional<Identity> identify(std::string_view cookies, Time now) const;
+  /// The password is checked here, which takes a while; on any thread.
+  [[nodiscard]] std::optional<Identity> check(const std::string& user,
+                                              std::string_view password) const;
+  /// Makes a session; gives the Set-Cookie field.
+  [[nodiscard]] std::string admit(const Identity& identity, Time now);
+  /// Ends the cookie's session; gives the Set-Cookie field.
+  [[nodiscard]] std::string dismiss(std::string_view cookies);
+
+  [[nodiscard]] bool asks_for_password() const { return users_.has_value(); }
+  /// Does the browser say that the request comes from a page of this very server? Other programs
+  /// name no origin.
+  [[nodiscard]] bool is_own_origin(std::string_view origin, std::string_view host) const;
+  /// Without passwords only names of this machine count as Host: a name that somebody has pointed
+  /// to 127.0.0.1 would otherwise make a foreign page ours.
+  [[nodiscard]] bool is_own_host(std::string_view host) const;
+
+ private:
+  struct Session {
+    Identity identity;
+    Time until;
+  };
+  [[nodiscard]] std::string cookie(std::string_view value, long max_age_s) const;
+
+  std::optional<Users> users_;
+  bool secure_;
+  std::map<std::string, Session, std::less<>> sessions_;
+};
+
+}  // namespace skein::console

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/time.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::console {
+
+struct PictureParams {
+  std::vector<VehicleId> expected = {};  ///< the fleet
+  std::vector<Hazard> hazards = {};      ///< known before the mission
+  Duration silence = std::chrono::seconds{5};
+  Duration series_period = std::chrono::seconds{1};
+  std::size_t series_max = 600;  ///< samples of a vehicle: ten minutes
+  std::size_t spans_max = 1000;  ///< of a vehicle's activities
+  std::size_t coalitions_max = 200;
+  std::size_t rounds_max = 20;  ///< of a coalition
+  std::size_t authorisations_max = 200;
+};
+
+/// What an operator sees of one vehicle.
+struct VehiclePicture {
+  bool expected = false;
+  std::optional<mission::Telemetry> telemetry;
+  std::optional<mission::Health> health;
+  std::optional<mission::PlanReport> plan;
+  Instant heard_at{};                       ///< its newest telemetry
+  std::map<InstanceId, Instant> instances;  ///< who spoke with its id lately, and when
+  /// Arrival less sending of its telemetry: what its clock is behind ours, and the link.
+  std::deque<std::pair<Instant, Duration>> delays;
+  struct Sample {
+    Instant time{};
+    double x_m = 0.0, y_m = 0.0, z_m = 0.0;
+    double groundspeed_mps = 0.0;
+    double range_left_m = 0.0;
+    Duration delay{};
+  };
+  std::deque<Sample> series;
+  struct Span {
+    mission::Activity activity{};
+    Instant from{};
+    std::optional<SiteId> site;
+  };
+  std::vector<Span> spans;  ///< each until the next one begins
+};
+
+/// One round of a coalition: what was said.
+struct RoundPicture {
+  std::uint32_t number = 0;
+  std::optional<coalition::Announcement> announcement;
+  std::vector<coalition::Bid> bids;
+  std::map<VehicleId, std::string> declined;
+  std::optional<coalition::Award> award;
+  std::map<VehicleId, coalition::Confirmation> answers;
+  std::optional<std::string> cancelled;
+};
+
+enum class CoalitionState : std::uint8_t { announced, awarded, formed, failed, closed, count };
+[[nodiscard]] std::string_view to_string(CoalitionState state);
+
+struct CoalitionPicture {
+  SiteId site;
+  CoalitionState state = CoalitionState::announced;
+  std::string why;  ///< it failed
+  std::vector<VehicleId> members;
+  std::optional<Instant> lease_until;
+  std::deque<RoundPicture> rounds;
+};
+
+struct TaskPicture {
+  std::optional<VehicleId> vehicle;
+  std::optional<Instant> time;
+  std::optional<coalition::TaskState> state;  ///< none: nobody has it
+};
+
+struct SitePicture {
+  std::optional<Site> site;  ///< none while only its number is known
+  std::optional<VehicleId> leader;
+  bool surveyed = false;
+  bool done = false;
+  std::map<TaskId, TaskPicture> tasks;
+  std::string news;
+};
+
+struct AuthorisationPicture {
+  mission::AuthorisationRequest request;
+  Instant asked_at{};
+  std::optional<mission::Authorisation> decision;
+};
+
+struct FormationPicture {
+  std::optional<formation::Change> change;
+  Instant change_ends{};
+  struct Member {
+    mission::FormationStatus status;
+    Instant heard_at{};
+  };
+  std::map<VehicleId, Member> members;
+};
+
+/// Everything that the ground station has heard and said, put together for people. It decides
+/// nothing. Pure and copyable: of a recording, copies taken on the way make every moment quick to
+/// reach. `now` never decreases. Every container has a limit; the oldest gives way.
+class Picture {
+ public:
+  explicit Picture(PictureParams params);
+
+  /// A message of the mission network, or one that the ground station sent (sender 0).
+  void on_message(const mission::Message& message, VehicleId sender, Instant now);
+  /// An event, once.
+  void on_event(const mission::MissionEvent& event);
+  void on_timeout(Instant now);
+
+  [[nodiscard]] const PictureParams& params() const { return params_; }
+  [[nodiscard]] const std::map<VehicleId, VehiclePicture>& vehicles() const { return vehicles_; }
+  [[nodiscard]] const std::map<SiteId, SitePicture>& sites() const { return sites_; }
+  /// In the order in which they were first heard of.
+  [[nodiscard]] const std::vector<std::pair<coalition::CoalitionId, CoalitionPicture>>& coalitions()
+      const {
+    return coalitions_;
+  }
+  [[nodiscard]] const std::deque<AuthorisationPicture>& authorisations() const {
+    return authorisations_;
+  }
+  [[nodiscard]] const std::map<HazardId, Hazard>& hazards() const { return hazards_; }
+  [[nodiscard]] const FormationPicture& formation() const { return formation_; }
+
+  [[nodiscard]] bool silent(const VehiclePicture& vehicle, Instant now) const;
+  /// Two programs speak with this id.
+  [[nodiscard]] bool duplicate(const VehiclePicture& vehicle, Instant now) const;
+  /// The task that the vehicle does now or next.
+  [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> task_of(VehicleId vehicle) const;
+
+ private:
+  void on(const mission::Telemetry& telemetry, Instant now);
+  void on(const mission::AuthorisationRequest& request, Instant now);
+  void on(const mission::Authorisation& decision);
+  void on(const coalition::Announcement& m);
+  void on(const coalition::Bid& m);
+  void on(const coalition::Award& m);
+  void on(const coalition::Confirmation& m);
+  void on(const coalition::Cancel& m);
+  void on(const coalition::LeaseRenewal& m);
+  void on(const coalition::MemberStatus& m);
+  CoalitionPicture& coalition_of(const coalition::CoalitionId& id);
+  RoundPicture& round_of(const coalition::Round& round);
+  void know(const Site& site);
+
+  PictureParams params_;
+  std::map<VehicleId, VehiclePicture> vehicles_;
+  std::map<SiteId, SitePicture> sites_;
+  std::vector<std::pair<coalition::CoalitionId, CoalitionPicture>> coalitions_;
+  std::deque<AuthorisationPicture> authorisations_;
+  std::map<HazardId, Hazard> hazards_;
+  FormationPicture formation_;
+};
+
+/// The least delay lately.
+[[nodiscard]] std::optional<Duration> clock_offset(const VehiclePicture& vehicle);
+
+}  // namespace skein::console

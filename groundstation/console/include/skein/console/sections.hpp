@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "skein/base/frames.hpp"
+#include "skein/console/picture.hpp"
+
+/// The picture as JSON, by the sections of docs/console-socket.md.
+namespace skein::console {
+
+enum class Section : std::uint8_t {
+  vehicles,
+  plans,
+  sites,
+  coalitions,
+  authorisations,
+  hazards,
+  formation,
+  timeline,
+  audit,
+  replay,
+  count
+};
+inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);
+[[nodiscard]] std::string_view to_string(Section section);
+
+/// One JSON value a section; empty where there is none.
+using Sections = std::array<std::string, kSectionCount>;
+
+/// All but `audit` and `replay`, which are not of the picture. `program` is what vehicles should
+/// run, so that others are named.
+[[nodiscard]] Sections sections_of(const Picture& picture, const MissionOrigin& origin,
+                                   const std::string& version, Instant now);
+[[nodiscard]] std::string section_of(Section section, const Picture& picture,
+                                     const MissionOrigin& origin, const std::string& version,
+                                     Instant now);
+
+/// The `series` of a history message: a JSON array.
+[[nodiscard]] std::string series_of(const Picture& picture);
+
+/// One of an `events` message: a JSON object. `text` is the event as a line for people.
+[[nodiscard]] std::string event_json(const mission::MissionEvent& event, const std::string& text,
+                                     std::uint64_t seq);
+
+/// A coalition's own word.
+[[nodiscard]] std::string key_of(const coalition::CoalitionId& id);
+
+}  // namespace skein::console

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/result.hpp"
+#include "skein/console/sections.hpp"
+#include "skein/console/users.hpp"
+
+namespace skein::console {
+
+struct Overlay {
+  std::string name;
+  std::string file;  ///< GeoJSON
+};
+
+struct ServerConfig {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 7460;   ///< 0: any that is free
+  std::optional<Users> users;  ///< none: whoever reaches it is the operator; on loopback only
+  std::string certificate;     ///< PEM files; both: HTTPS, which any other address needs
+  std::string key;
+  std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none
+  std::vector<Overlay> overlays;
+  /// Fields of the hello message that the server does not know itself, as a JSON object.
+  std::string hello = "{}";
+};
+
+/// The page and its socket (docs/console-socket.md) on one address, in a thread of its own from
+/// open() to destruction. Slow, silent and hostile clients cost it bounded memory and nobody else
+/// anything: at most 64 connections; states give way to newer ones; a client whose answers pile up
+/// is let go. All functions may be called from any thread.
+class Server {
+ public:
+  /// A client has given a line.
+  struct Line {
+    std::string line;
+    std::string user;
+    bool may_order = false;  ///< otherwise an observer's: it may look only
+    /// Of the authorisation request that was on its screen; the key and round of a coalition.
+    struct Seen {
+      std::string coalition;
+      std::uint32_t round = 0;
+    };
+    std::optional<Seen> seen;
+    /// `data` is JSON, or empty.
+    std::function<void(bool done, const std::string& text, const std::string& data)> reply;
+  };
+  /// A client has come and wants the `series` of its history message.
+  struct Join {
+    std::function<void(const std::string& series)> reply;
+  };
+  using Request = std::variant<Line, Join>;
+
+  /// `on_request` is called on the server's thread when next() has something. Fails where the
+  /// address is taken, or is not loopback and has no users or no certificate, or a file cannot be
+  /// read.
+  [[nodiscard]] static Result<std::unique_ptr<Server>> open(ServerConfig config,
+                                                            std::function<void()> on_request);
+  ~Server();
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  [[nodiscard]] std::optional<Request> next();
+
+  /// The picture of this moment, to all that are connected.
+  void publish(double time_s, Sections sections);
+  /// Events as event_json() gives them, with seq 0, 1, 2...
+  void append(std::vector<std::string> events);
+  /// A replay has jumped: clients get a new history, and the events from `next_seq` on (at most as
+  /// many as there were) again when append() brings them.
+  void restart(std::uint64_t next_seq, const std::string& series);
+
+  /// Whether anybody is connected: else there is no need to publish.
+  [[nodiscard]] bool watched() const;
+  /// "http://127.0.0.1:7460/".
+  [[nodiscard]] std::string url() const;
+
+  class Impl;  ///< named by its connections too
+
+ private:
+  explicit Server(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skein::console

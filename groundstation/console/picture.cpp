@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/console/picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+
+namespace skein::console {
+namespace {
+
+constexpr Duration kDelayWindow = std::chrono::seconds{10};
+/// A speaker with a vehicle's id that has been quiet for so long is gone.
+constexpr Duration kInstanceLasts = std::chrono::seconds{5};
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+
+/// Newer knowledge of a task never makes it less done.
+int rank(const std::optional<coalition::TaskState>& state) {
+  using enum coalition::TaskState;
+  if (!state) return 0;
+  switch (*state) {
+    case planned:
+      return 1;
+    case failed:
+      return 2;
+    case started:
+      return 3;
+    case unknown:
+      return 4;
+    case done:
+    case count:
+      break;
+  }
+  return 5;
+}
+
+void advance(TaskPicture& task, coalition::TaskState state) {
+  if (rank(state) >= rank(task.state)) task.state = state;
+}
+
+}  // namespace
+
+std::string_view to_string(CoalitionState state) {
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(CoalitionState::count)>
+      kNames{"announced", "awarded", "formed", "failed", "closed"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+Picture::Picture(PictureParams params) : params_{std::move(params)} {
+  for (const VehicleId id : params_.expected) vehicles_[id].expected = true;
+  for (const Hazard& hazard : params_.hazards) hazards_[hazard.id] = hazard;
+}
+
+void Picture::on_message(const mission::Message& message, VehicleId sender, Instant now) {
+  std::visit(Overloaded{[&](const mission::Telemetry& m) {
+                          if (m.vehicle == sender) on(m, now);
+                        },
+                        [&](const mission::Health& m) {
+                          if (m.vehicle != sender) return;
+                          VehiclePicture& vehicle = vehicles_[m.vehicle];
+                          vehicle.health = m;
+                          vehicle.instances[m.instance] = now;
+                        },
+                        [&](const mission::PlanReport& m) { vehicles_[m.vehicle].plan = m; },
+                        [&](const mission::AuthorisationRequest& m) { on(m, now); },
+                        [&](const mission::Authorisation& m) { on(m); },
+                        [&](const mission::SiteReport& m) { know(m.site); },
+                        [&](const mission::HazardReport& m) { hazards_[m.hazard.id] = m.hazard; },
+                        [&](const formation::Change& m) {
+                          if (sender != kGroundStation || !formation::valid(m)) return;
+                          if (formation_.change && formation_.change->number == m.number) return;
+                          formation_.change = m;
+                          formation_.change_ends = m.start + formation::ChangeMotion{m}.duration();
+                        },
+                        [&](const mission::FormationStatus& m) {
+                          formation_.members[m.vehicle] = {m, now};
+                        },
+                        [&](const coalition::Message& m) {
+                          std::visit(Overloaded{[&](const coalition::LeadershipClaim&) {},
+                                                [&](const coalition::Allegiance&) {},
+                                                [&](const auto& said) { on(said); }},
+                                     m);
+                        },
+                        [](const mission::MissionEvent&) {}, [](const mission::Command&) {}},
+             message);
+}
+
+void Picture::on(const mission::Telemetry& telemetry, Instant now) {
+  VehiclePicture& vehicle = vehicles_[telemetry.vehicle];
+  vehicle.instances[telemetry.instance] = now;
+  const Duration delay = now - telemetry.state.time;
+  vehicle.delays.emplace_back(now, delay);
+  while (now - vehicle.delays.front().first > kDelayWindow) vehicle.delays.pop_front();
+  vehicle.telemetry = telemetry;
+  vehicle.heard_at = now;
+  if (vehicle.series.empty() || now - vehicle.series.back().time >= params_.series_period) {
+    const VehicleState& s = telemetry.state;
+    vehicle.series.push_back(
+        {now, s.x_m, s.y_m, s.z_m, s.groundspeed_mps, telemetry.range_left_m, delay});
+    if (vehicle.series.size() > params_.series_max) vehicle.series.pop_front();
+  }
+  const auto task = task_of(telemetry.vehicle);
+  const auto site = task ? std::optional{task->first.site} : std::nullopt;
+  if (vehicle.spans.empty() || vehicle.spans.back().activity != telemetry.activity) {
+    if (vehicle.spans.size() >= params_.spans_max) vehicle.spans.erase(vehicle.spans.begin());
+    vehicle.spans.push_back({telemetry.activity, now, site});
+  } else if (!vehicle.spans.back().site) {
+    vehicle.spans.back().site = site;
+  }
+}
+
+void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
+  for (auto& known : authorisations_) {
+    if (known.request.round != request.round || known.request.site != request.site) continue;
+    known.request = request;
+    return;
+  }
+  authorisations_.push_back({request, now, {}});
+  if (authorisations_.size() > params_.authorisations_max) authorisations_.pop_front();
+}
+
+void Picture::on(const mission::Authorisation& decision) {
+  for (auto& known : authorisations_) {
+    if (known.request.round == decision.round && known.request.site == decision.site) {
+      known.decision = decision;
+    }
+  }
+}
+
+CoalitionPicture& Picture::coalition_of(const coalition::CoalitionId& id) {
+  const auto known = std::find_if(coalitions_.rbegin(), coalitions_.rend(),
+                                  [&](const auto& entry) { return entry.first == id; });
+  if (known != coalitions_.rend()) return known->second;
+  if (coalitions_.size() >= params_.coalitions_max) coalitions_.erase(coalitions_.begin());
+  return coalitions_.emplace_back(id, CoalitionPicture{}).second;
+}
+
+RoundPicture& Picture::round_of(const coalition::Round& round) {
+  auto& rounds = coalition_of(round.coalition).rounds;
+  const auto at = std::lower_bound(
+      rounds.begin(), rounds.end(), round.number,
+      [](const RoundPicture& known, std::uint32_t number) { return known.number < number; });
+  if (at != rounds.end() && at->number == round.number) return *at;
+  // A late word on a round that has given way is put to the oldest that is kept.
+  if (at == rounds.begin() && rounds.size() >= params_.rounds_max) return rounds.front();
+  RoundPicture fresh;
+  fresh.number = round.number;
+  const auto index = static_cast<std::size_t>(at - rounds.begin());
+  rounds.insert(at, std::move(fresh));
+  if (rounds.size() <= params_.rounds_max) return rounds[index];
+  rounds.pop_front();
+  return rounds[index - 1];
+}
+
+void Picture::know(const Site& site) { sites_[site.id].site = site; }
+
+void Picture::on(const coalition::Announcement& m) {
+  know(m.site);
+  SitePicture& site = sites_[m.site.id];
+  site.leader = m.round.coalition.leader;
+  site.surveyed = true;  // who announces has been there
+  CoalitionPicture& coalition = coalition_of(m.round.coalition);
+  coalition.site = m.site.id;
+  RoundPicture& round = round_of(m.round);
+  if (round.announcement) return;  // the ground station repeats old ones
+  round.announcement = m;
+  coalition.state = CoalitionState::announced;
+}
+
+void Picture::on(const coalition::Bid& m) {
+  auto& bids = round_of(m.round).bids;
+  const auto known = std::find_if(bids.begin(), bids.end(),
+                                  [&](const auto& bid) { return bid.bidder == m.bidder; });
+  if (known != bids.end()) {
+    *known = m;
+  } else if (bids.size() < coalition::kMembersMax) {
+    bids.push_back(m);
+  }
+}
+
+void Picture::on(const coalition::Award& m) {
+  know(m.site);
+  sites_[m.site.id].leader = m.round.coalition.leader;
+  CoalitionPicture& coalition = coalition_of(m.round.coalition);
+  coalition.site = m.site.id;
+  coalition.lease_until = m.lease_until;
+  RoundPicture& round = round_of(m.round);
+  if (!round.award) {
+    coalition.state = CoalitionState::awarded;
+    coalition.why.clear();
+  }
+  round.award = m;
+  coalition.members.clear();
+  for (const TaskAssignment& assignment : m.assignments) {
+    coalition.members.push_back(assignment.vehicle);
+    TaskPicture& task = sites_[m.site.id].tasks[assignment.task];
+    if (task.state == coalition::TaskState::done) continue;
+    if (task.vehicle != assignment.vehicle) task.state.reset();
+    task.vehicle = assignment.vehicle;
+    task.time = assignment.time;
+    advance(task, coalition::TaskState::planned);
+  }
+  std::sort(coalition.members.begin(), coalition.members.end());
+  coalition.members.erase(std::unique(coalition.members.begin(), coalition.members.end()),
+                          coalition.members.end());
+}
+
+void Picture::on(const coalition::Confirmation& m) { round_of(m.round).answers[m.member] = m; }
+
+void Picture::on(const coalition::Cancel& m) {
+  CoalitionPicture& coalition = coalition_of(m.round.coalition);
+  round_of(m.round).cancelled = m.reason;
+  if (coalition.state == CoalitionState::closed) return;
+  coalition.state = CoalitionState::failed;
+  coalition.why = m.reason;
+}
+
+void Picture::on(const coalition::LeaseRenewal& m) {
+  CoalitionPicture& coalition = coalition_of(m.round.coalition);
+  coalition.site = m.site;
+  coalition.lease_until = m.lease_until;
+  SitePicture& site = sites_[m.site];
+  for (const TaskId& task : m.done) advance(site.tasks[task], coalition::TaskState::done);
+  for (const TaskId& task : m.unknown) advance(site.tasks[task], coalition::TaskState::unknown);
+  if (m.closed) {
+    coalition.state = CoalitionState::closed;
+    return;
+  }
+  site.leader = m.round.coalition.leader;
+  if (m.stands() && !m.members.empty()) {
+    coalition.state = CoalitionState::formed;
+    coalition.why.clear();
+    coalition.members = m.members;
+  }
+}
+
+void Picture::on(const coalition::MemberStatus& m) {
+  for (const auto& entry : m.tasks) {
+    TaskPicture& task = sites_[entry.task.site].tasks[entry.task];
+    if (!task.vehicle) task.vehicle = m.member;
+    advance(task, entry.state);
+  }
+}
+
+void Picture::on_event(const mission::MissionEvent& event) {
+  using enum mission::EventKind;
+  if (event.task.site == SiteId{}) return;
+  SitePicture& site = sites_[event.task.site];
+  if (!event.text.empty()) site.news = event.text;
+  switch (event.kind) {
+    case survey_done:
+      site.surveyed = true;
+      advance(site.tasks[{event.task.site, TaskKind::survey, 0}], coalition::TaskState::done);
+      break;
+    case task_started:
+      advance(site.tasks[event.task], coalition::TaskState::started);
+      break;
+    case task_done:
+      advance(site.tasks[event.task], coalition::TaskState::done);
+      break;
+    case task_failed:
+      advance(site.tasks[event.task], coalition::TaskState::failed);
+      break;
+    case site_done:
+      site.done = true;
+      break;
+    case bid_declined:
+      round_of(event.round).declined[event.vehicle] = event.text;
+      break;
+    case coalition_formed: {
+      CoalitionPicture& coalition = coalition_of(event.round.coalition);
+      coalition.site = event.task.site;
+      coalition.state = CoalitionState::formed;
+      coalition.why.clear();
+      break;
+    }
+    case allocation_failed: {
+      CoalitionPicture& coalition = coalition_of(event.round.coalition);
+      coalition.site = event.task.site;
+      if (coalition.state == CoalitionState::closed) break;
+      coalition.state = CoalitionState::failed;
+      coalition.why = event.text;
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+void Picture::on_timeout(Instant now) {
+  for (auto& [id, vehicle] : vehicles_) {
+    std::erase_if(vehicle.instances,
+                  [now](const auto& entry) { return now - entry.second > kInstanceLasts; });
+  }
+}
+
+bool Picture::silent(const VehiclePicture& vehicle, Instant now) const {
+  return vehicle.telemetry && now - vehicle.heard_at > params_.silence;
+}
+
+bool Picture::duplicate(const VehiclePicture& vehicle, Instant now) const {
+  return std::count_if(vehicle.instances.begin(), vehicle.instances.end(),
+                       [now](const auto& entry) { return now - entry.second <= kInstanceLasts; }) >
+         1;
+}
+
+std::optional<std::pair<TaskId, TaskPicture>> Picture::task_of(VehicleId vehicle) const {
+  std::optional<std::pair<TaskId, TaskPicture>> next;
+  for (const auto& [id, site] : sites_) {
+    for (const auto& [task, picture] : site.tasks) {
+      const bool open = picture.state == coalition::TaskState::planned ||
+                        picture.state == coalition::TaskState::started;
+      if (picture.vehicle != vehicle || !open) continue;
+      if (!next ||
+          picture.time.value_or(Instant::max()) < next->second.time.value_or(Instant::max())) {
+        next = {task, picture};
+      }
+    }
+  }
+  return next;
+}
+
+std::optional<Duration> clock_offset(const VehiclePicture& vehicle) {
+  if (vehicle.delays.empty()) return std::nullopt;
+  return std::min_element(vehicle.delays.begin(), vehicle.delays.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->second;
+}
+
+}  // namespace skein::console

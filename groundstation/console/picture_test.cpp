@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/console/picture.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "skein/base/random.hpp"
+#include "skein/console/sections.hpp"
+#include "skein/random_messages/random_messages.hpp"
+
+namespace skein::console {
+namespace {
+
+using Json = nlohmann::json;
+using coalition::TaskState;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr VehicleId kLeader{1};
+constexpr coalition::Round kRound{{kLeader, {77}, 1}, 1};
+
+MissionOrigin origin() { return *MissionOrigin::make({47.0, 8.0, 500.0}); }
+
+/// A picture, and short words for what it hears.
+struct Desk {
+  Picture picture{{.expected = {{1}, {2}, {3}}}};
+
+  void hear(const mission::Message& message, VehicleId sender, double seconds) {
+    picture.on_message(message, sender, at_seconds(seconds));
+  }
+  void telemetry(VehicleId vehicle, double sent_s, double heard_s, std::uint64_t instance = 1,
+                 mission::Activity activity = mission::Activity::searching) {
+    mission::Telemetry t;
+    t.vehicle = vehicle;
+    t.instance = {instance};
+    t.activity = activity;
+    t.state.time = at_seconds(sent_s);
+    t.state.x_m = 10.0 * sent_s;
+    t.range_left_m = 9000.0;
+    hear(t, vehicle, heard_s);
+  }
+  void say(const coalition::Message& message, VehicleId sender, double seconds) {
+    hear(mission::Message{message}, sender, seconds);
+  }
+  [[nodiscard]] Json section(Section section, double seconds) const {
+    return Json::parse(section_of(section, picture, origin(), "1.0", at_seconds(seconds)));
+  }
+  [[nodiscard]] std::vector<std::string> problems(std::size_t index, double seconds) const {
+    std::vector<std::string> all;
+    const Json vehicles = section(Section::vehicles, seconds);
+    for (const Json& problem : vehicles[index]["problems"]) all.push_back(problem["text"]);
+    return all;
+  }
+};
+
+Site site() {
+  Site site;
+  site.id = {4};
+  site.position = {100.0, 200.0};
+  site.deliveries = {{0.0, {}}, {std::numbers::pi / 2.0, {}}};
+  site.assessments = {{}};
+  return site;
+}
+
+coalition::Announcement announcement() {
+  coalition::Announcement a;
+  a.round = kRound;
+  a.site = site();
+  a.tasks = a.site.tasks_after_survey();
+  return a;
+}
+
+coalition::Award award() {
+  coalition::Award a;
+  a.round = kRound;
+  a.site = site();
+  a.assignments = {{{{4}, TaskKind::deliver, 0}, {2}, at_seconds(60.0)},
+                   {{{4}, TaskKind::deliver, 1}, {3}, at_seconds(60.0)}};
+  return a;
+}
+
+TEST(Picture, NamesWhatNeedsAttention) {
+  Desk desk;
+  desk.telemetry({1}, 10.0, 10.1);
+  desk.telemetry({2}, 10.0, 10.1);
+  desk.telemetry({2}, 10.0, 10.2, 2);
+  desk.telemetry({9}, 9.0, 10.2);
+  EXPECT_TRUE(desk.problems(0, 11.0).empty());
+  EXPECT_THAT(desk.problems(1, 11.0), ElementsAre("two programs call themselves vehicle 2"));
+  EXPECT_THAT(desk.problems(2, 11.0), ElementsAre("it was never heard"));
+  EXPECT_THAT(desk.problems(3, 11.0),
+              ElementsAre("it is not of this fleet", HasSubstr("its clock is 1.2 s off")));
+  EXPECT_THAT(desk.problems(0, 16.0), ElementsAre(HasSubstr("not heard for 6 s")));
+  mission::Health health;
+  health.vehicle = {1};
+  health.instance = {1};
+  health.program = "skein-onboard 0.9";
+  health.problems = {"no state"};
+  desk.hear(health, {1}, 11.0);
+  EXPECT_THAT(
+      desk.problems(0, 11.0),
+      ElementsAre("no state", "its program is of version 0.9, the ground station's of 1.0"));
+}
+
+TEST(Picture, NobodySpeaksForAnother) {
+  Desk desk;
+  mission::Telemetry t;
+  t.vehicle = {1};
+  desk.hear(t, {2}, 1.0);
+  EXPECT_FALSE(desk.picture.vehicles().at({1}).telemetry);
+}
+
+TEST(Picture, PutsTogetherWhatACoalitionSays) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 10.0);
+  coalition::Bid bid;
+  bid.round = kRound;
+  bid.bidder = {2};
+  desk.say(bid, {2}, 11.0);
+  desk.say(bid, {2}, 11.1);  // resent
+  EXPECT_EQ(desk.section(Section::coalitions, 11.0)[0]["state"], "announced");
+  desk.say(award(), kLeader, 12.0);
+  desk.say(coalition::Confirmation{kRound, {2}, true, ""}, {2}, 12.1);
+  Json coalition = desk.section(Section::coalitions, 12.2)[0];
+  EXPECT_EQ(coalition["state"], "awarded");
+  EXPECT_EQ(coalition["members"], Json::parse("[2, 3]"));
+  EXPECT_EQ(coalition["rounds"][0]["bids"].size(), 1U);
+  EXPECT_EQ(coalition["rounds"][0]["answers"][0]["accepted"], true);
+  coalition::LeaseRenewal renewal;
+  renewal.round = kRound;
+  renewal.site = {4};
+  renewal.members = {{2}, {3}};
+  renewal.electors = {{2}};
+  renewal.lease_until = at_seconds(99.0);
+  desk.say(renewal, kLeader, 13.0);
+  EXPECT_EQ(desk.section(Section::coalitions, 13.0)[0]["state"], "formed");
+  desk.say(announcement(), kGroundStation, 14.0);  // passed on: nothing new
+  EXPECT_EQ(desk.section(Section::coalitions, 14.0)[0]["state"], "formed");
+  renewal.closed = true;
+  desk.say(renewal, kLeader, 15.0);
+  EXPECT_EQ(desk.section(Section::coalitions, 15.0)[0]["state"], "closed");
+}
+
+TEST(Picture, SaysWhyACoalitionFailed) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 10.0);
+  mission::MissionEvent event;
+  event.kind = mission::EventKind::allocation_failed;
+  event.round = kRound;
+  event.task.site = {4};
+  event.text = "nobody can deliver from 090";
+  desk.picture.on_event(event);
+  const Json coalition = desk.section(Section::coalitions, 11.0)[0];
+  EXPECT_EQ(coalition["state"], "failed");
+  EXPECT_EQ(coalition["why"], "nobody can deliver from 090");
+}
+
+TEST(Picture, ATaskIsNeverLessDoneThanItWas) {
+  Desk desk;
+  desk.say(award(), kLeader, 12.0);
+  const TaskId task{{4}, TaskKind::deliver, 0};
+  const auto state = [&] { return desk.picture.sites().at({4}).tasks.at(task).state; };
+  EXPECT_EQ(state(), TaskState::planned);
+  desk.say(coalition::MemberStatus{kRound, {2}, {{task, TaskState::done, {}}}}, {2}, 13.0);
+  EXPECT_EQ(state(), TaskState::done);
+  desk.say(coalition::MemberStatus{kRound, {2}, {{task, TaskState::started, {}}}}, {2}, 14.0);
+  desk.say(award(), kLeader, 15.0);
+  EXPECT_EQ(state(), TaskState::done);
+  const Json tasks = desk.section(Section::sites, 15.0)[0]["tasks"];
+  EXPECT_EQ(tasks[1]["state"], "done");
+  EXPECT_EQ(tasks[1]["bearing_deg"], 90.0);  // flown towards the east
+  EXPECT_EQ(tasks[2]["bearing_deg"], 0.0);
+}
+
+TEST(Picture, AnAuthorisationWaitsUntilItIsDecidedOrLate) {
+  Desk desk;
+  mission::AuthorisationRequest request;
+  request.round = kRound;
+  request.site = {4};
+  request.decide_by = at_seconds(30.0);
+  request.deliveries.push_back({award().assignments[0], 0.0});
+  desk.hear(request, kLeader, 20.0);
+  desk.hear(request, kLeader, 21.0);  // resent
+  ASSERT_EQ(desk.section(Section::authorisations, 21.0).size(), 1U);
+  EXPECT_EQ(desk.section(Section::authorisations, 29.0)[0]["waiting"], true);
+  EXPECT_EQ(desk.section(Section::authorisations, 30.0)[0]["waiting"], false);
+  desk.hear(mission::Authorisation{kRound, {4}, true, "ada", at_seconds(25.0)}, kGroundStation,
+            25.0);
+  const Json decided = desk.section(Section::authorisations, 26.0)[0];
+  EXPECT_EQ(decided["waiting"], false);
+  EXPECT_EQ(decided["decision"]["by"], "ada");
+  EXPECT_EQ(decided["coalition"], key_of(kRound.coalition));
+}
+
+TEST(Picture, ActivitiesMakeATimeLine) {
+  Desk desk;
+  for (int t = 0; t < 30; ++t) {
+    desk.telemetry({1}, t, t, 1,
+                   t < 10 ? mission::Activity::searching : mission::Activity::surveying);
+  }
+  const Json spans = desk.section(Section::timeline, 30.0)[0]["spans"];
+  ASSERT_EQ(spans.size(), 2U);
+  EXPECT_EQ(spans[0], Json::parse(R"(["searching", 0.0, 10.0, null])"));
+  EXPECT_EQ(spans[1][2], nullptr);
+  EXPECT_EQ(Json::parse(series_of(desk.picture))[0]["t"].size(), 30U);
+}
+
+TEST(Picture, APlanIsDrawnFromItsStartToItsEnd) {
+  Desk desk;
+  mission::PlanReport report;
+  report.vehicle = {1};
+  report.plan.number = 3;
+  report.plan.timed.start_time = at_seconds(10.0);
+  report.plan.timed.speed_mps = 50.0;
+  report.plan.timed.tail_curvature_per_m = 0.01;
+  ASSERT_TRUE(report.plan.timed.path.append(Segment{0.0, 500.0}));
+  ASSERT_TRUE(report.plan.timed.path.append(Segment{0.01, 100.0 * std::numbers::pi}));
+  desk.hear(report, {1}, 10.0);
+  const Json plan = desk.section(Section::plans, 10.0)[0];
+  EXPECT_EQ(plan["points"].front(), Json::parse("[0.0, 0.0, 10.0]"));
+  EXPECT_EQ(plan["points"].back()[0], 500.0);
+  EXPECT_EQ(plan["points"].back()[1], 200.0);
+  EXPECT_GT(plan["points"].size(), 15U);
+  EXPECT_EQ(plan["hold"].front(), plan["hold"].back());
+}
+
+/// Whatever the network brings, the sections are JSON and memory is bounded.
+TEST(Picture, AnyMessagesMakeAPicture) {
+  Random random{5};
+  PictureParams params{.expected = {{1}}};
+  params.coalitions_max = 20;
+  params.rounds_max = 5;
+  params.authorisations_max = 20;
+  Picture picture{params};
+  Instant now{};
+  for (std::size_t i = 0; i < 1500; ++i) {
+    now += from_seconds(random.uniform(0.0, 0.5));
+    mission::Message message = codec::random_message(random.index(codec::kMessageKinds), random);
+    // Several words of one coalition.
+    const auto few = [&](auto& m) {
+      if constexpr (requires { m.round; }) {
+        m.round = {{{static_cast<std::uint16_t>(random.index(3))}, {1}, 1},
+                   static_cast<std::uint32_t>(random.index(8))};
+      }
+    };
+    if (auto* said = std::get_if<coalition::Message>(&message)) {
+      std::visit(few, *said);
+    } else {
+      std::visit(few, message);
+    }
+    if (const auto* event = std::get_if<mission::MissionEvent>(&message)) picture.on_event(*event);
+    picture.on_message(message, {static_cast<std::uint16_t>(random.index(4))}, now);
+    picture.on_timeout(now);
+    if (i % 300 != 0) continue;
+    for (std::size_t s = 0; s < static_cast<std::size_t>(Section::audit); ++s) {
+      const auto section = static_cast<Section>(s);
+      EXPECT_TRUE(Json::accept(section_of(section, picture, origin(), "1.0", now)))
+          << to_string(section);
+    }
+  }
+  EXPECT_LE(picture.coalitions().size(), 20U);
+  EXPECT_LE(picture.authorisations().size(), 20U);
+  for (const auto& [id, coalition] : picture.coalitions()) EXPECT_LE(coalition.rounds.size(), 5U);
+}
+
+}  // namespace
+}  // namespace skein::console

@@ -1,0 +1,492 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/console/sections.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::console {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kRangeWarningM = 2000.0;
+constexpr Duration kOffsetWarning = std::chrono::milliseconds{500};
+constexpr double kArcStepRad = 0.16;  ///< of a path's polyline
+constexpr std::size_t kPlanPointsMax = 400;
+constexpr double kHoldStepRad = 0.26;
+
+/// The shortest text of a number that was rounded.
+Json number(double value, int decimals) {
+  if (!std::isfinite(value)) return nullptr;
+  const double unit = std::pow(10.0, decimals);
+  return std::round(value * unit) / unit;
+}
+Json metres(double m) { return number(m, 2); }
+Json seconds(Instant t) { return number(to_seconds(t), 3); }
+Json degrees_of(double heading_rad) { return number(compass_deg_from_heading(heading_rad), 1); }
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? seconds(*value) : Json(nullptr);
+}
+Json id_or_null(const std::optional<VehicleId>& id) { return id ? Json(id->value) : Json(nullptr); }
+Json point(const Vec3& p) { return Json::array({metres(p.x()), metres(p.y()), metres(p.z())}); }
+
+Json task_json(const TaskId& task, const TaskPicture& picture) {
+  return {{"site", task.site.value},
+          {"kind", to_string(task.kind)},
+          {"index", task.index},
+          {"time_s", or_null(picture.time)},
+          {"state", picture.state ? to_string(*picture.state) : "open"}};
+}
+
+Json problem(std::string_view level, std::string text) {
+  return {{"level", level}, {"text", std::move(text)}};
+}
+
+/// The version is the last word of a program's name.
+std::string version_of(const std::string& program) {
+  const auto space = program.rfind(' ');
+  return space == std::string::npos ? program : program.substr(space + 1);
+}
+
+Json problems_of(const Picture& picture, VehicleId id, const VehiclePicture& vehicle,
+                 const std::string& version, Instant now) {
+  Json all = Json::array();
+  if (picture.duplicate(vehicle, now)) {
+    all.push_back(
+        problem("alarm", fmt::format("two programs call themselves vehicle {}", id.value)));
+  }
+  if (picture.silent(vehicle, now)) {
+    all.push_back(problem(
+        "alarm", fmt::format("not heard for {:.0f} s", to_seconds(now - vehicle.heard_at))));
+  }
+  if (vehicle.telemetry && vehicle.telemetry->range_left_m < 0.0) {
+    all.push_back(problem("alarm", "its range is overdrawn"));
+  }
+  if (!vehicle.expected) all.push_back(problem("alarm", "it is not of this fleet"));
+  if (!vehicle.telemetry) all.push_back(problem("warning", "it was never heard"));
+  if (vehicle.health) {
+    for (const std::string& text : vehicle.health->problems) {
+      all.push_back(problem("warning", text));
+    }
+    const std::string theirs = version_of(vehicle.health->program);
+    if (theirs != version) {
+      all.push_back(problem("warning", fmt::format("its program is of version {}, the ground "
+                                                   "station's of {}",
+                                                   theirs, version)));
+    }
+  }
+  if (vehicle.telemetry && vehicle.telemetry->range_left_m >= 0.0 &&
+      vehicle.telemetry->range_left_m < kRangeWarningM) {
+    all.push_back(problem("warning", fmt::format("{:.1f} km of range are left",
+                                                 vehicle.telemetry->range_left_m / 1000.0)));
+  }
+  const auto offset = clock_offset(vehicle);
+  if (offset && std::chrono::abs(*offset) > kOffsetWarning) {
+    all.push_back(problem("warning", fmt::format("its clock is {:.1f} s off, or its link is slow",
+                                                 to_seconds(*offset))));
+  }
+  return all;
+}
+
+Json vehicles_json(const Picture& picture, const std::string& version, Instant now) {
+  Json all = Json::array();
+  for (const auto& [id, vehicle] : picture.vehicles()) {
+    Json v{{"id", id.value},
+           {"expected", vehicle.expected},
+           {"silent", picture.silent(vehicle, now)},
+           {"duplicate", picture.duplicate(vehicle, now)}};
+    const auto& t = vehicle.telemetry;
+    const auto set = [&](const char* name, auto value) { v[name] = t ? value() : Json(nullptr); };
+    set("x", [&] { return metres(t->state.x_m); });
+    set("y", [&] { return metres(t->state.y_m); });
+    set("z", [&] { return metres(t->state.z_m); });
+    set("heading_deg", [&] { return degrees_of(t->state.heading_rad); });
+    set("course_deg", [&] { return degrees_of(t->state.course_rad); });
+    set("groundspeed", [&] { return metres(t->state.groundspeed_mps); });
+    set("airspeed", [&] { return metres(t->state.airspeed_mps); });
+    set("activity", [&] { return Json(to_string(t->activity)); });
+    const auto task = picture.task_of(id);
+    v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);
+    set("heard_age_s", [&] { return number(to_seconds(now - vehicle.heard_at), 1); });
+    const auto offset = clock_offset(vehicle);
+    v["clock_offset_ms"] = offset ? number(to_seconds(*offset) * 1e3, 0) : Json(nullptr);
+    set("range_left_m", [&] { return number(t->range_left_m, 0); });
+    set("loads", [&] { return Json(t->loads); });
+    set("plan_number", [&] { return Json(t->plan_number); });
+    const auto& h = vehicle.health;
+    v["version"] = h ? Json(version_of(h->program)) : Json(nullptr);
+    v["flight_controller"] = h ? Json(h->flight_controller) : Json(nullptr);
+    v["mode"] = h && !h->mode.empty() ? Json(h->mode) : Json(nullptr);
+    v["problems"] = problems_of(picture, id, vehicle, version, now);
+    v["links"] = Json::array();
+    if (h) {
+      for (const auto& heard : h->heard) {
+        v["links"].push_back(
+            {{"id", heard.vehicle.value}, {"age_s", number(to_seconds(heard.age), 1)}});
+      }
+    }
+    set("control_overruns", [&] { return Json(t->control_overruns); });
+    set("messages_dropped", [&] { return Json(t->messages_dropped); });
+    all.push_back(std::move(v));
+  }
+  return all;
+}
+
+Json plan_json(VehicleId id, const mission::FlightPlan& plan) {
+  const TimedPath& timed = plan.timed;
+  const Path& path = timed.path;
+  const double length = path.length_m();
+  Json points = Json::array();
+  std::size_t count = 0;
+  const auto add = [&](double distance) {
+    const Pose2 pose = path.pose_at(distance);
+    const Instant at = timed.start_time + from_seconds(distance / timed.speed_mps);
+    points.push_back(Json::array({metres(pose.x_m), metres(pose.y_m), number(to_seconds(at), 1)}));
+    ++count;
+  };
+  double begun = 0.0;
+  add(0.0);
+  for (const Segment& segment : path.segments) {
+    const double turn = std::abs(segment.curvature_per_m) * segment.length_m;
+    const auto pieces = static_cast<std::size_t>(
+        segment.curvature_per_m == 0.0 ? 1.0
+                                       : std::clamp(std::ceil(turn / kArcStepRad), 1.0, 60.0));
+    for (std::size_t i = 1; i <= pieces && count < kPlanPointsMax; ++i) {
+      add(begun + segment.length_m * static_cast<double>(i) / static_cast<double>(pieces));
+    }
+    begun += segment.length_m;
+  }
+  Json hold = Json::array();
+  if (const double curvature = timed.tail_curvature_per_m; curvature != 0.0) {
+    const double round = kTwoPi / std::abs(curvature);
+    const auto pieces = static_cast<int>(std::ceil(kTwoPi / kHoldStepRad));
+    for (int i = 0; i <= pieces; ++i) {
+      const Pose2 pose = timed.pose_at_distance(length + round * i / pieces);
+      hold.push_back(Json::array({metres(pose.x_m), metres(pose.y_m)}));
+    }
+  }
+  return {{"id", id.value},
+          {"number", plan.number},
+          {"start_s", seconds(timed.start_time)},
+          {"end_s", seconds(timed.end_time())},
+          {"points", std::move(points)},
+          {"hold", std::move(hold)}};
+}
+
+Json plans_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, vehicle] : picture.vehicles()) {
+    if (vehicle.plan) all.push_back(plan_json(id, vehicle.plan->plan));
+  }
+  return all;
+}
+
+Json site_json(SiteId id, const SitePicture& site) {
+  Json tasks = Json::array();
+  const auto add = [&](const TaskId& task, Json bearing) {
+    const auto known = site.tasks.find(task);
+    const TaskPicture picture = known != site.tasks.end() ? known->second : TaskPicture{};
+    tasks.push_back({{"kind", to_string(task.kind)},
+                     {"index", task.index},
+                     {"bearing_deg", std::move(bearing)},
+                     {"vehicle", id_or_null(picture.vehicle)},
+                     {"time_s", or_null(picture.time)},
+                     {"state", picture.state ? to_string(*picture.state)
+                               : task.kind == TaskKind::survey && site.surveyed ? "done"
+                                                                                : "open"}});
+  };
+  add({id, TaskKind::survey, 0}, nullptr);
+  if (site.site) {
+    for (const TaskId& task : site.site->tasks_after_survey()) {
+      add(task, task.kind == TaskKind::deliver
+                    ? degrees_of(site.site->deliveries[task.index].bearing_rad)
+                    : Json(nullptr));
+    }
+  }
+  return {{"id", id.value},
+          {"x", site.site ? metres(site.site->position.x()) : Json(nullptr)},
+          {"y", site.site ? metres(site.site->position.y()) : Json(nullptr)},
+          {"leader", id_or_null(site.leader)},
+          {"status", site.done       ? "done"
+                     : site.surveyed ? "surveyed"
+                                     : "found"},
+          {"tasks", std::move(tasks)},
+          {"news", site.news}};
+}
+
+Json sites_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, site] : picture.sites()) all.push_back(site_json(id, site));
+  return all;
+}
+
+Json round_json(const RoundPicture& round) {
+  Json r{{"number", round.number},
+         {"announced_s", nullptr},
+         {"bids_until_s", nullptr},
+         {"reward", nullptr}};
+  Json tasks = Json::array();
+  if (const auto& a = round.announcement) {
+    r["announced_s"] = seconds(a->announced_at);
+    r["bids_until_s"] = seconds(a->bids_until);
+    r["reward"] = number(a->reward, 2);
+    for (const TaskId& task : a->tasks) tasks.push_back(to_string(task));
+  }
+  r["tasks"] = std::move(tasks);
+  r["bids"] = Json::array();
+  for (const auto& bid : round.bids) {
+    r["bids"].push_back({{"vehicle", bid.bidder.value},
+                         {"eta_s", number(to_seconds(bid.eta), 1)},
+                         {"range_left_m", number(bid.range_left_m, 0)},
+                         {"loads", bid.loads}});
+  }
+  r["declined"] = Json::array();
+  for (const auto& [vehicle, why] : round.declined) {
+    r["declined"].push_back({{"vehicle", vehicle.value}, {"why", why}});
+  }
+  r["award"] = Json::array();
+  if (round.award) {
+    for (const auto& assignment : round.award->assignments) {
+      r["award"].push_back({{"vehicle", assignment.vehicle.value},
+                            {"task", to_string(assignment.task)},
+                            {"time_s", seconds(assignment.time)}});
+    }
+  }
+  r["answers"] = Json::array();
+  for (const auto& [member, answer] : round.answers) {
+    r["answers"].push_back(
+        {{"vehicle", member.value}, {"accepted", answer.accepted}, {"why", answer.reason}});
+  }
+  r["cancelled"] = round.cancelled ? Json(*round.cancelled) : Json(nullptr);
+  return r;
+}
+
+Json coalitions_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, coalition] : picture.coalitions()) {
+    Json members = Json::array();
+    for (const VehicleId member : coalition.members) members.push_back(member.value);
+    Json rounds = Json::array();
+    for (const RoundPicture& round : coalition.rounds) rounds.push_back(round_json(round));
+    all.push_back({{"key", key_of(id)},
+                   {"leader", id.leader.value},
+                   {"number", id.number},
+                   {"site", coalition.site.value},
+                   {"state", to_string(coalition.state)},
+                   {"why", coalition.why},
+                   {"members", std::move(members)},
+                   {"lease_until_s", or_null(coalition.lease_until)},
+                   {"rounds", std::move(rounds)}});
+  }
+  return all;
+}
+
+Json authorisation_json(const AuthorisationPicture& picture, const MissionOrigin& origin,
+                        Instant now) {
+  const auto& request = picture.request;
+  const Wgs84 place = origin.to_wgs84({request.site_position.x(), request.site_position.y(), 0.0});
+  Json deliveries = Json::array();
+  for (const auto& delivery : request.deliveries) {
+    deliveries.push_back({{"vehicle", delivery.assignment.vehicle.value},
+                          {"index", delivery.assignment.task.index},
+                          {"time_s", seconds(delivery.assignment.time)},
+                          {"bearing_deg", degrees_of(delivery.bearing_rad)}});
+  }
+  Json decision = nullptr;
+  if (const auto& d = picture.decision) {
+    decision = {{"granted", d->granted}, {"by", d->decided_by}, {"at_s", seconds(d->decided_at)}};
+  }
+  return {{"site", request.site.value},
+          {"leader", request.round.coalition.leader.value},
+          {"coalition", key_of(request.round.coalition)},
+          {"round", request.round.number},
+          {"x", metres(request.site_position.x())},
+          {"y", metres(request.site_position.y())},
+          {"latitude_deg", number(place.latitude_deg, 7)},
+          {"longitude_deg", number(place.longitude_deg, 7)},
+          {"asked_s", seconds(picture.asked_at)},
+          {"decide_by_s", seconds(request.decide_by)},
+          {"waiting", !picture.decision && now < request.decide_by},
+          {"decision", std::move(decision)},
+          {"deliveries", std::move(deliveries)}};
+}
+
+Json authorisations_json(const Picture& picture, const MissionOrigin& origin, Instant now) {
+  Json all = Json::array();
+  for (const auto& one : picture.authorisations()) {
+    all.push_back(authorisation_json(one, origin, now));
+  }
+  return all;
+}
+
+Json hazards_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, hazard] : picture.hazards()) {
+    all.push_back({{"id", id.value},
+                   {"x", metres(hazard.centre.x())},
+                   {"y", metres(hazard.centre.y())},
+                   {"radius_m", metres(hazard.radius_m)}});
+  }
+  return all;
+}
+
+Json formation_json(const Picture& picture, Instant now) {
+  const FormationPicture& formation = picture.formation();
+  if (formation.members.empty() && !formation.change) return nullptr;
+  Json change = nullptr;
+  if (const auto& c = formation.change) {
+    Json movers = Json::array();
+    for (const auto& mover : c->movers) {
+      Json points = Json::array();
+      for (const Vec3& p : mover.points) points.push_back(point(p));
+      movers.push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
+    }
+    change = {{"number", c->number},
+              {"start_s", seconds(c->start)},
+              {"end_s", seconds(formation.change_ends)},
+              {"movers", std::move(movers)}};
+  }
+  bool at_rest = true;
+  Json places = Json::array();
+  for (const auto& [id, member] : formation.members) {
+    const auto& status = member.status;
+    const bool lost = now - member.heard_at > picture.params().silence;
+    at_rest = at_rest && (status.at_rest || lost);
+    places.push_back({{"id", id.value},
+                      {"x", metres(status.position_m.x())},
+                      {"y", metres(status.position_m.y())},
+                      {"z", metres(status.position_m.z())},
+                      {"reference", point(status.reference_m)},
+                      {"off_m", metres(status.progress.off_m)},
+                      {"change", status.progress.change},
+                      {"at_rest", status.at_rest},
+                      {"lost", lost}});
+  }
+  const bool moving = !at_rest || (formation.change && now < formation.change_ends);
+  return {{"in_place", !moving},
+          {"moving", moving},
+          {"change", std::move(change)},
+          {"places", std::move(places)}};
+}
+
+Json timeline_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, vehicle] : picture.vehicles()) {
+    Json spans = Json::array();
+    for (std::size_t i = 0; i < vehicle.spans.size(); ++i) {
+      const auto& span = vehicle.spans[i];
+      const bool last = i + 1 == vehicle.spans.size();
+      spans.push_back(
+          Json::array({to_string(span.activity), number(to_seconds(span.from), 1),
+                       last ? Json(nullptr) : number(to_seconds(vehicle.spans[i + 1].from), 1),
+                       span.site ? Json(span.site->value) : Json(nullptr)}));
+    }
+    all.push_back({{"id", id.value}, {"spans", std::move(spans)}});
+  }
+  return all;
+}
+
+std::string text_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string_view to_string(Section section) {
+  static constexpr std::array<std::string_view, kSectionCount> kNames{
+      "vehicles", "plans",     "sites",    "coalitions", "authorisations",
+      "hazards",  "formation", "timeline", "audit",      "replay"};
+  return kNames.at(static_cast<std::size_t>(section));
+}
+
+std::string key_of(const coalition::CoalitionId& id) {
+  return fmt::format("{}-{:016x}-{}", id.leader.value, id.instance.value, id.number);
+}
+
+std::string section_of(Section section, const Picture& picture, const MissionOrigin& origin,
+                       const std::string& version, Instant now) {
+  switch (section) {
+    case Section::vehicles:
+      return text_of(vehicles_json(picture, version, now));
+    case Section::plans:
+      return text_of(plans_json(picture));
+    case Section::sites:
+      return text_of(sites_json(picture));
+    case Section::coalitions:
+      return text_of(coalitions_json(picture));
+    case Section::authorisations:
+      return text_of(authorisations_json(picture, origin, now));
+    case Section::hazards:
+      return text_of(hazards_json(picture));
+    case Section::formation:
+      return text_of(formation_json(picture, now));
+    case Section::timeline:
+      return text_of(timeline_json(picture));
+    case Section::audit:
+    case Section::replay:
+    case Section::count:
+      break;
+  }
+  return "";
+}
+
+Sections sections_of(const Picture& picture, const MissionOrigin& origin,
+                     const std::string& version, Instant now) {
+  Sections all;
+  for (std::size_t i = 0; i < kSectionCount; ++i) {
+    all[i] = section_of(static_cast<Section>(i), picture, origin, version, now);
+  }
+  return all;
+}
+
+std::string series_of(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [id, vehicle] : picture.vehicles()) {
+    Json t = Json::array(), x = Json::array(), y = Json::array(), z = Json::array();
+    Json speed = Json::array(), range = Json::array(), delay = Json::array();
+    for (const auto& sample : vehicle.series) {
+      t.push_back(number(to_seconds(sample.time), 2));
+      x.push_back(number(sample.x_m, 1));
+      y.push_back(number(sample.y_m, 1));
+      z.push_back(number(sample.z_m, 1));
+      speed.push_back(number(sample.groundspeed_mps, 2));
+      range.push_back(number(sample.range_left_m, 0));
+      delay.push_back(number(to_seconds(sample.delay) * 1e3, 0));
+    }
+    all.push_back({{"id", id.value},
+                   {"t", std::move(t)},
+                   {"x", std::move(x)},
+                   {"y", std::move(y)},
+                   {"z", std::move(z)},
+                   {"speed", std::move(speed)},
+                   {"range", std::move(range)},
+                   {"delay", std::move(delay)}});
+  }
+  return text_of(all);
+}
+
+std::string event_json(const mission::MissionEvent& event, const std::string& text,
+                       std::uint64_t seq) {
+  const bool warning = event.kind == mission::EventKind::warning;
+  return text_of(
+      {{"seq", seq},
+       {"time_s", seconds(event.time)},
+       {"vehicle", event.vehicle.value},
+       {"kind", to_string(event.kind)},
+       {"level", warning ? "warning" : "info"},
+       {"site", event.task.site == SiteId{} ? Json(nullptr) : Json(event.task.site.value)},
+       {"task", event.task.site == SiteId{} ? Json(nullptr) : Json(to_string(event.task))},
+       {"coalition", event.round.number == 0 ? Json(nullptr) : Json(key_of(event.round.coalition))},
+       {"value", event.value},
+       {"text", text}});
+}
+
+}  // namespace skein::console

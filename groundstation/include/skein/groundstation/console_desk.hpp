@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/frames.hpp"
+#include "skein/base/result.hpp"
+#include "skein/configuration/ground_config.hpp"
+#include "skein/console/picture.hpp"
+#include "skein/console/sections.hpp"
+#include "skein/console/server.hpp"
+
+namespace skein::groundstation {
+
+/// Where the web console meets the ground station: keeps the picture, shows it ten times a second
+/// to whoever watches, and passes the lines on that are given there. There is a picture also where
+/// no console is served: the prompt reads it too.
+class ConsoleDesk {
+ public:
+  static constexpr Duration kStatePeriod = std::chrono::milliseconds{100};
+
+  ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin);
+
+  /// Serves the page. `wake` is called on another thread when a line can be taken. Fails where it
+  /// cannot be served; the picture is kept all the same.
+  Result<void> serve(const configuration::GroundConfig& config, std::function<void()> wake);
+
+  void on_message(const mission::Message& message, VehicleId sender, Instant now) {
+    picture_.on_message(message, sender, now);
+  }
+  void on_event(const mission::MissionEvent& event);
+  /// `audit` is its section.
+  void on_timeout(const std::string& audit, Instant now);
+
+  [[nodiscard]] std::optional<console::Server::Line> next();
+  [[nodiscard]] std::string section(console::Section section, Instant now) const;
+  [[nodiscard]] const console::Picture& picture() const { return picture_; }
+  /// Empty where none is served.
+  [[nodiscard]] std::string url() const { return server_ ? server_->url() : ""; }
+
+ private:
+  MissionOrigin origin_;
+  console::Picture picture_;
+  std::unique_ptr<console::Server> server_;
+  std::vector<std::string> events_;  ///< to be shown
+  std::uint64_t next_seq_ = 0;
+  Instant next_state_{Instant::min()};
+};
+
+/// The version of this program.
+[[nodiscard]] std::string version();
+
+}  // namespace skein::groundstation
