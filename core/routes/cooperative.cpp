@@ -97,11 +97,11 @@ class Planner {
     std::stable_sort(order_.begin(), order_.end(), [&](std::size_t a, std::size_t b) {
       return spare_s(a, earliest_s_) < spare_s(b, earliest_s_);
     });
-    double late = -1.0;
-    double tried = earliest_s_;
+    failures_.resize(count());
+    double late = earliest_s_;
     for (const double delay : kDelays) {
-      tried = earliest_s_ * (1.0 + delay);
-      if (tried > plan_.latest_s) break;
+      const double tried = earliest_s_ * (1.0 + delay);
+      if (tried > plan_.latest_s || spent()) break;
       if (plan_at(tried)) {
         if (delay > 0.0) refine(late, tried);
         return finish();
@@ -109,10 +109,7 @@ class Planner {
       if (cancelled_) return Error{"the planning was cancelled"};
       late = tried;
     }
-    return Error{"no routes that keep to all rules were found: " + name(vehicle(stuck_)) +
-                 " had none clear of the others for a common time of " +
-                 std::to_string(earliest_s_) + " to " +
-                 std::to_string(std::max(late, earliest_s_)) + " s"};
+    return obstacle(late);
   }
 
  private:
@@ -150,6 +147,31 @@ class Planner {
     return {};
   }
 
+  [[nodiscard]] bool spent() const { return plan_.evaluations >= params_.evaluations_all; }
+
+  /// Who stood in the way most often, and what of.
+  [[nodiscard]] Error obstacle(double latest_tried_s) const {
+    const auto times = [](const Failures& f) { return f.near_others + f.unflyable; };
+    const auto worst =
+        std::max_element(failures_.begin(), failures_.end(),
+                         [&](const Failures& a, const Failures& b) { return times(a) < times(b); });
+    const auto seconds = [](double s) {
+      std::string text = std::to_string(s);
+      text.resize(text.size() - 4);  // to 0.01 s
+      return text;
+    };
+    std::string text = "no routes that keep to all rules were found for a common time of " +
+                       seconds(earliest_s_) + " to " + seconds(latest_tried_s) + " s";
+    if (spent()) text += ", within " + std::to_string(params_.evaluations_all) + " tries";
+    if (times(*worst) == 0) return Error{text};
+    text += ": " + name(vehicle(static_cast<std::size_t>(worst - failures_.begin())));
+    return Error{text + (worst->near_others >= worst->unflyable
+                             ? " came too near to others whatever was tried; give it another start "
+                               "or bearing, an offset, less separation or more range"
+                             : " has no way of that length past the hazards; give it more range, "
+                               "more waypoints, tighter turns or less clearance")};
+  }
+
   [[nodiscard]] double spare_s(std::size_t i, double arrival_s) const {
     return arrival_s + vehicle(i).arrival_offset_s - shortest_[i] / vehicle(i).speed_mps;
   }
@@ -161,8 +183,7 @@ class Planner {
     for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
       const std::size_t failed = plan_in_order(order_, arrival_s);
       if (failed == count()) return true;
-      stuck_ = order_[failed];
-      if (failed == 0 || cancelled_) return false;
+      if (failed == 0 || cancelled_ || spent()) return false;
       std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(failed),
                   order_.begin() + static_cast<std::ptrdiff_t>(failed) + 1);
     }
@@ -195,6 +216,7 @@ class Planner {
     const RouteJudge judge{problem_, v, circles_, others};
     std::vector<Vec2> best;
     double value = RouteJudge::kInfeasible;
+    nearest_ = std::numeric_limits<double>::infinity();
     std::size_t good = 0;
     // Those that need to be lengthened least, and in turn those that leave most room to choose
     // where.
@@ -202,12 +224,14 @@ class Planner {
     std::size_t high = bases_[i].size();
     while (high > 0 && bases_[i][high - 1].length_m > target + kExact_m) --high;
     for (std::size_t k = 0; low < high && good < kEnough; ++k) {
-      if (k >= params_.corridors_tried * (good > 0 ? 1 : kStubborn)) break;
+      if (k >= params_.corridors_tried * (good > 0 ? 1 : kStubborn) || spent()) break;
       const BaseRoute& base = k % 2 == 0 ? bases_[i][--high] : bases_[i][low++];
       if (lengthen(base, v, target, judge, value, best)) ++good;
     }
-    if (best.empty()) return std::nullopt;
-    return best;
+    if (!best.empty()) return best;
+    if (std::isinf(nearest_) && spent()) return std::nullopt;  // it was never its turn
+    ++(nearest_ < RouteJudge::kUnflyable ? failures_[i].near_others : failures_[i].unflyable);
+    return std::nullopt;
   }
 
   /// True where the base route could be lengthened within all rules; a better one than `value` is
@@ -237,6 +261,7 @@ class Planner {
     const SearchResult found =
         differential_evolution(objective, space, evolution, budget, random_.fork());
     plan_.evaluations += found.evaluations;
+    nearest_ = std::min(nearest_, found.value);
     if (found.value >= RouteJudge::kInfeasible) return false;
     if (found.value < value) {
       value = found.value;
@@ -248,7 +273,7 @@ class Planner {
 
   /// An earlier time between one that failed and one that did not.
   void refine(double late_s, double found_s) {
-    for (int k = 0; k < kRefinements && !cancelled_; ++k) {
+    for (int k = 0; k < kRefinements && !cancelled_ && !spent(); ++k) {
       const double middle = 0.5 * (late_s + found_s);
       (plan_at(middle) ? found_s : late_s) = middle;
     }
@@ -297,7 +322,13 @@ class Planner {
   std::vector<std::vector<Vec2>> found_;
   double found_s_ = 0.0;
   std::vector<std::size_t> order_;  ///< in which vehicles are planned
-  std::size_t stuck_ = 0;
+  /// How often it found no route, by what the best that was tried did wrong.
+  struct Failures {
+    std::size_t near_others = 0;
+    std::size_t unflyable = 0;
+  };
+  std::vector<Failures> failures_;  ///< by vehicle
+  double nearest_ = 0.0;            ///< to a route of the vehicle that was planned last
   bool cancelled_ = false;
   CooperativePlan plan_;
 };

@@ -166,6 +166,75 @@ TEST(Cooperative, SaysWhatIsWrong) {
                   "has no way"));
 }
 
+/// Two that start and arrive side by side, and have no range for anything else.
+RouteProblem side_by_side() {
+  RouteProblem problem;
+  problem.site = {2000, 0};
+  problem.rules = {.last_leg_m = 100, .separation_m = 50};
+  for (const double side : {1.0, -1.0}) {
+    RouteVehicle vehicle;
+    vehicle.id = VehicleId{static_cast<std::uint16_t>(side > 0 ? 1 : 2)};
+    vehicle.start = {0, 30 * side};
+    vehicle.speed_mps = 20;
+    vehicle.turn_radius_m = 20;
+    vehicle.range_m = 2010;
+    problem.vehicles.push_back(vehicle);
+  }
+  return problem;
+}
+
+TEST(Cooperative, NamesTheVehicleAndTheRuleThatStandInTheWay) {
+  const auto reason = [](const RouteProblem& problem) {
+    RoutePlannerParams quick;
+    quick.evaluations = 200;
+    const auto plan = plan_routes(problem, quick, Random{1});
+    return plan ? std::string{"none"} : plan.error().message;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  const std::string near = reason(side_by_side());
+  EXPECT_TRUE(has(near, "vehicle 1 came too near to others")) << near;
+  EXPECT_TRUE(has(near, "for a common time of 100.01 to 100.")) << near;
+  // Vehicle 1 must fly 160 m more than it has to, and its turns are too wide for a detour.
+  RouteProblem stiff = side_by_side();
+  stiff.rules.separation_m = 0;
+  stiff.vehicles[0].start = {0, 0};
+  stiff.vehicles[0].turn_radius_m = 3000;
+  stiff.vehicles[0].arrival_offset_s = 8;
+  stiff.vehicles[0].range_m = 2300;
+  const std::string long_way = reason(stiff);
+  EXPECT_TRUE(has(long_way, "vehicle 1 has no way of that length")) << long_way;
+}
+
+TEST(Cooperative, TriesNoMoreThanItMay) {
+  // Nobody can be apart at the start: every order and time would be tried.
+  RoutePlannerParams params;
+  params.evaluations_all = 20'000;
+  std::uint64_t tried = 0;
+  params.go_on = [&](const RoutePlanProgress& progress) {
+    tried = progress.evaluations;
+    return true;
+  };
+  RouteProblem problem = side_by_side();
+  for (RouteVehicle& vehicle : problem.vehicles) vehicle.range_m = 2200;
+  problem.rules.separation_m = 59.9;
+  problem.rules.last_leg_m = 1900;
+  const auto plan = plan_routes(problem, params, Random{1});
+  ASSERT_FALSE(plan.ok());
+  EXPECT_NE(plan.error().message.find("within 20000 tries: vehicle"), std::string::npos)
+      << plan.error().message;
+  EXPECT_GE(tried, params.evaluations_all);
+  EXPECT_LT(tried, params.evaluations_all + params.evaluations + params.population);
+  // What needs less is found as ever, and what is found is not thrown away for being refined.
+  const RouteProblem team = random_team(5, 30, Random{2});
+  const CooperativePlan plenty = planned(team, 2);
+  params.evaluations_all = plenty.evaluations + 1;
+  const CooperativePlan enough = planned(team, 2, params);
+  EXPECT_EQ(enough.evaluations, plenty.evaluations);
+  EXPECT_EQ(enough.total_cost, plenty.total_cost);
+}
+
 TEST(Cooperative, CanBeCancelled) {
   RoutePlannerParams params;
   std::size_t asked = 0;

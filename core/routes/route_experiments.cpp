@@ -200,6 +200,7 @@ ScaleRun run_scale(std::size_t vehicles, std::size_t hazards, bool slow, std::ui
   RoutePlannerParams params;
   if (slow) {
     params.evaluations *= 10;
+    params.evaluations_all *= 10;
     params.reorders *= 10;
     params.corridors *= 3;
     params.corridors_tried *= 3;

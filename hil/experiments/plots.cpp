@@ -153,7 +153,7 @@ std::string svg(const Plot& plot, bool bars) {
   for (const std::string& label : plot.x) {
     longest = std::max(longest, kLetter * static_cast<double>(label.size()));
   }
-  const bool slanted = longest > 1.9 * step;
+  const bool slanted = longest > step;
   std::string text = frame(plot, value, slanted ? 0.6 * longest : 0.0);
   for (std::size_t i = 0; i < plot.x.size(); ++i) {
     const double x = kLeft + step * (static_cast<double>(i) + 0.5);

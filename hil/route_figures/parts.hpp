@@ -24,7 +24,6 @@ namespace skein::route_figures {
 
 [[nodiscard]] std::size_t contenders_count();
 inline constexpr std::size_t kStarts = 3;
-inline constexpr std::size_t kTeamSizes = 3;
 
 /// For columns and legends.
 [[nodiscard]] constexpr std::string_view short_name(routes::Counting counting) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 #include "parts.hpp"
 
@@ -29,7 +30,7 @@ Result<std::vector<Experiment>> find_experiments(const std::vector<std::string>&
     const auto* const found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) {
       std::string known;
-      for (const std::string_view one : kNames) known += std::string{one} + ", ";
+      for (const std::string_view one : kNames) known.append(one).append(", ");
       return Error{"there is no experiment '" + name + "'; there are " + known + "and all"};
     }
     wanted.at(static_cast<std::size_t>(found - kNames.begin())) = true;
@@ -49,7 +50,7 @@ Runs paper_runs() {
           .known_worlds = 100,
           .quality = 200,
           .best_known = 4,
-          .teams = 40};
+          .teams = {100, 60, 30}};
 }
 
 Runs runs_of(std::size_t number) {
@@ -60,7 +61,7 @@ Runs runs_of(std::size_t number) {
           .known_worlds = number,
           .quality = number,
           .best_known = 1,
-          .teams = number};
+          .teams = {number, number, number}};
 }
 
 std::size_t steps_of(Experiment experiment, const Runs& runs) {
@@ -76,7 +77,7 @@ std::size_t steps_of(Experiment experiment, const Runs& runs) {
     case Experiment::quality:
       return kStarts * (runs.quality + runs.best_known);
     case Experiment::scale:
-      return kTeamSizes * runs.teams;
+      return std::accumulate(runs.teams.begin(), runs.teams.end(), std::size_t{0});
     default:
       return 1;
   }

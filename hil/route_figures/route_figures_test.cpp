@@ -24,7 +24,7 @@ Options small() {
                   .known_worlds = 0,
                   .quality = 2,
                   .best_known = 0,
-                  .teams = 1};
+                  .teams = {1, 1, 0}};
   return options;
 }
 
@@ -47,10 +47,10 @@ TEST(RouteFigures, ExperimentsAreFoundByName) {
   EXPECT_THAT(none.error().message, HasSubstr("maps, convergence"));
 }
 
-/// All but those that plan whole teams.
-class EverySearch : public ::testing::TestWithParam<Experiment> {};
+/// Those that are soon done.
+class QuickOnes : public ::testing::TestWithParam<Experiment> {};
 
-TEST_P(EverySearch, GivesTheSameFilesWithAnyNumberOfThreadsAndCountsItsRuns) {
+TEST_P(QuickOnes, GivesTheSameFilesWithAnyNumberOfThreadsAndCountsItsRuns) {
   Options options = small();
   std::size_t done = 0;
   options.on_done = [&done] { ++done; };
@@ -71,9 +71,9 @@ TEST_P(EverySearch, GivesTheSameFilesWithAnyNumberOfThreadsAndCountsItsRuns) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, EverySearch,
-                         ::testing::Values(Experiment::maps, Experiment::weights,
-                                           Experiment::worlds, Experiment::quality),
+INSTANTIATE_TEST_SUITE_P(All, QuickOnes,
+                         ::testing::Values(Experiment::weights, Experiment::worlds,
+                                           Experiment::quality),
                          [](const auto& one) { return std::string{to_string(one.param)}; });
 
 TEST(RouteFigures, MapsHaveARowForEachRunAndThePapersMeansBesideThem) {
@@ -135,6 +135,16 @@ TEST(RouteFigures, TheCooperativeCaseIsCheckedAndDrawn) {
   EXPECT_GT(lines(files.at("cooperative-tracks.csv")), 3U * 160U);
   EXPECT_THAT(files.at("cooperative.svg"), HasSubstr("vehicle 3: 17"));
   EXPECT_THAT(files.at("cooperative-distances.svg"), HasSubstr("asked for"));
+}
+
+TEST(RouteFigures, TeamsThatCanBePlannedArePlannedAndChecked) {
+  const auto figures = draw(Experiment::scale, small());
+  ASSERT_TRUE(figures.ok());
+  const auto files = files_of(*figures);
+  EXPECT_EQ(lines(files.at("scale.csv")), 1U + 2U);
+  EXPECT_THAT(files.at("scale.csv"), HasSubstr("\n5,1,1,1,0,0.0"));
+  EXPECT_THAT(files.at("scale.csv"), HasSubstr("\n10,1,1,1,0,0.0"));
+  EXPECT_THAT(figures->text, HasSubstr("100.0 %"));
 }
 
 }  // namespace

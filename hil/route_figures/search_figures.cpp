@@ -36,6 +36,7 @@ constexpr std::array<std::array<double, 2>, kUses> kPaperMeans{{{1.186, 1.546}, 
 /// What the results of one place say of the maps.
 std::string map_finding(std::size_t use, const std::vector<std::vector<double>>& values) {
   std::vector<experiments::Estimate> means;
+  means.reserve(values.size());
   for (const auto& of_map : values) means.push_back(experiments::estimate(of_map));
   const auto less = [](const auto& a, const auto& b) { return a.mean < b.mean; };
   const auto best = std::min_element(means.begin(), means.end(), less);

@@ -63,6 +63,7 @@ experiments::Estimate share_of(double share, std::size_t count) {
 }
 
 constexpr int kBins = 17;  // of 5 % each, the middle one around 0, the outer ones open
+constexpr int kMiddle = kBins / 2;
 constexpr double kBin = 0.05;
 
 /// Fig. 15: how the normalised differences are spread.
@@ -74,13 +75,13 @@ std::string histogram(Counting counting, std::span<const WorldRun> worlds) {
       {},
       {}};
   for (int bin = 0; bin < kBins; ++bin) {
-    plot.x.push_back(bin % 2 == 0 ? fmt::format("{:g}", 100.0 * kBin * (bin - kBins / 2)) : "");
+    plot.x.push_back(bin % 2 == 0 ? fmt::format("{:g}", 100.0 * kBin * (bin - kMiddle)) : "");
   }
   for (const Pair& pair : std::span{kPairs}.first(3)) {
     std::vector<double> shares(kBins, 0.0);
     for (const WorldRun& world : worlds) {
       const double difference = (world.*pair.one - world.*pair.other) / world.*pair.other;
-      const int bin = static_cast<int>(std::lround(difference / kBin)) + kBins / 2;
+      const int bin = static_cast<int>(std::lround(difference / kBin)) + kMiddle;
       shares.at(static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1))) +=
           100.0 / static_cast<double>(worlds.size());
     }

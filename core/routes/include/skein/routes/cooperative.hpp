@@ -22,6 +22,9 @@ struct RoutePlannerParams {
   std::size_t corridors_tried = 6;  ///< of those, at one arrival time; more where none will do
   /// Ways to lengthen a corridor that are tried, at most.
   std::uint64_t evaluations = 1'500;
+  /// Routes that are tried altogether: then it fails, or gives what it has. Deterministic, where a
+  /// time is not. See docs/routes.md for what worlds take.
+  std::uint64_t evaluations_all = 2'000'000;
   std::size_t population = 24;
   std::size_t reorders = 3;  ///< at one arrival time: who found no route goes first next time
   /// Asked after every vehicle; false ends the planning with an error. May be empty.
@@ -40,7 +43,8 @@ struct RoutePlannerParams {
 /// is found by differential evolution, which weighs turning, exposure and spacing (eq. 26, 35, 36).
 ///
 /// Fails, with the vehicle and the reason, for a problem that is not sound, for a vehicle without a
-/// way or with too little range, and where no common time within the ranges was found.
+/// way or with too little range, and where no common time within the ranges and `evaluations_all`
+/// was found: then with the vehicle that stood in the way most often, and what of.
 [[nodiscard]] Result<CooperativePlan> plan_routes(const RouteProblem& problem,
                                                   const RoutePlannerParams& params, Random random);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -39,7 +40,7 @@ struct Runs {
   std::size_t known_worlds = 6;  ///< the first of them, of which the best known is searched for
   std::size_t quality = 50;      ///< from each start
   std::size_t best_known = 1;    ///< searches with 100 times the evaluations from each start
-  std::size_t teams = 4;         ///< of each size
+  std::array<std::size_t, 3> teams{4, 4, 4};  ///< of 5, of 10 and of 20 vehicles
 };
 /// The paper's numbers, and those of our own claims.
 [[nodiscard]] Runs paper_runs();
