@@ -57,12 +57,12 @@ const least_scale_of_progress = 0.12;
 
 export function paint_sites(view: View, picture: Picture): void {
   for (const site of picture.sites) {
-    if (!view.sees(site.x, site.y, 200)) continue;
+    if (site.x === null || site.y === null || !view.sees(site.x, site.y, 200)) continue;
     const sign = sign_of_site(picture, site.id);
     const colour = sign?.colour ?? view.colours.text;
-    for (const task of site.tasks) paint_bearing(view, site, task, colour);
     const x = view.px(site.x);
     const y = view.py(site.y);
+    for (const task of site.tasks) paint_bearing(view, x, y, task, colour);
     const { context } = view;
     context.beginPath();
     context.rect(x - 7, y - 7, 14, 14);
@@ -104,12 +104,13 @@ export function progress_of(site: Site): string {
 
 const arrow_px = 54;
 
-function paint_bearing(view: View, site: Site, task: SiteTask, colour: string): void {
+/** The bearing of a delivery at the site at (site_x, site_y) on the screen. */
+function paint_bearing(view: View, site_x: number, site_y: number, task: SiteTask, colour: string): void {
   if (task.bearing_deg === null) return;
   const { context } = view;
   const angle = (task.bearing_deg * Math.PI) / 180;
-  const x = view.px(site.x) - 11 * Math.sin(angle);
-  const y = view.py(site.y) + 11 * Math.cos(angle);
+  const x = site_x - 11 * Math.sin(angle);
+  const y = site_y + 11 * Math.cos(angle);
   context.save();
   context.strokeStyle = context.fillStyle = task.state === "failed" ? view.colours.alarm : colour;
   context.globalAlpha = task.state === "done" ? 0.55 : 1;

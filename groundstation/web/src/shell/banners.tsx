@@ -8,10 +8,10 @@ import { tick } from "./ticker";
 function LostBanner() {
   void tick.value;
   const lost = lost_at_ms.value;
-  // A page that has just begun to connect has lost nothing.
   if (link.value === "open" || lost === null) return null;
+  // Of the newest state; a page that has just begun to connect, or connects again, has lost nothing.
   const age_s = (performance.now() - lost) / 1000;
-  if (age_s < 1) return null;
+  if (age_s < 1.5) return null;
   const has_picture = shown.value.time_s !== null;
   return (
     <div class="banner alarm" role="status" data-testid="banner-lost">

@@ -110,8 +110,8 @@ export interface SiteTask {
 
 export interface Site {
   id: number;
-  x: number;
-  y: number;
+  x: number | null;
+  y: number | null;
   leader: number | null;
   status: string;
   tasks: SiteTask[];
@@ -283,6 +283,6 @@ export interface DecidedPlan {
 export interface Session {
   user: string;
   role: Role;
-  /** Whether there is anybody to log in and out. */
+  /** Whether it came of a login, which can be ended. */
   login?: boolean;
 }

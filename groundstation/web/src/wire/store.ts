@@ -106,7 +106,7 @@ const socket = new ConsoleSocket({
     batch(() => {
       link.value = state;
       if (state === "open") lost_at_ms.value = null;
-      else lost_at_ms.value ??= performance.now();
+      else lost_at_ms.value ??= state_arrived_ms;
     }),
   next_seq: () => picture.next_seq,
   on_refused: () => void ask_session(),
