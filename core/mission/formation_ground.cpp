@@ -31,6 +31,12 @@ constexpr double kDriftTime_s = 5.0;
 constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
 constexpr double kTrimMax_m = 1.0;
 
+std::string metres_of(double m) {
+  std::array<char, 32> text{};
+  static_cast<void>(std::snprintf(text.data(), text.size(), "%.1f m", m));
+  return text.data();
+}
+
 std::string names_of(const std::vector<VehicleId>& vehicles) {
   std::string text;
   for (const VehicleId vehicle : vehicles) {
@@ -90,7 +96,24 @@ Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& o
   if (auto done = assign(order.shape, 0, wanted); !done) return done.error();
   if (auto done = assign(config_.rally, wanted, transfers.size() - wanted); !done)
     return done.error();
+  if (auto low_enough = within_heights(transfers); !low_enough) return low_enough.error();
   return transfers;
+}
+
+/// Nobody is sent above the ceiling, or below the ground, who is not there already.
+Result<void> FormationGround::within_heights(const std::vector<Transfer>& transfers) const {
+  for (const Transfer& transfer : transfers) {
+    const std::string name = "the place of " + name_of(transfer.vehicle);
+    if (transfer.to.z() > std::max(config_.ceiling_m, transfer.from.z())) {
+      return Error{name + " is " + metres_of(transfer.to.z()) + " high, and the ceiling is " +
+                   metres_of(config_.ceiling_m) + "; ask for a lower one"};
+    }
+    if (transfer.to.z() < std::min(0.0, transfer.from.z())) {
+      return Error{name + " is " + metres_of(-transfer.to.z()) +
+                   " below the ground; ask for a higher one"};
+    }
+  }
+  return {};
 }
 
 Result<FormationPreview> FormationGround::plan(const FormationOrder& order,

@@ -99,6 +99,26 @@ class Team {
   std::vector<Vehicle> vehicles_;
 };
 
+TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  FormationOrder order;
+  order.kind = OrderKind::form;
+  order.shape.spacing_m = 6.0;
+  order.shape.centre = {0.0, 0.0, 119.0};
+  EXPECT_TRUE(team.ground().preview(order).ok());
+  order.shape.centre.z() = 121.0;
+  const auto high = team.ground().preview(order);
+  ASSERT_FALSE(high.ok());
+  EXPECT_THAT(high.error().message, HasSubstr("121.0 m high, and the ceiling is 120.0 m"));
+  order.shape.centre.z() = -1.0;
+  const auto low = team.ground().preview(order);
+  ASSERT_FALSE(low.ok());
+  EXPECT_THAT(low.error().message, HasSubstr("1.0 m below the ground"));
+}
+
 TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
   Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));

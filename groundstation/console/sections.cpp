@@ -83,7 +83,8 @@ Json problems_of(const Picture& picture, VehicleId id, const VehiclePicture& veh
                                                    theirs, version)));
     }
   }
-  if (vehicle.telemetry && vehicle.telemetry->range_left_m >= 0.0 &&
+  // A multirotor counts none, and says 0.
+  if (vehicle.telemetry && vehicle.telemetry->range_left_m > 0.0 &&
       vehicle.telemetry->range_left_m < kRangeWarningM) {
     all.push_back(problem("warning", fmt::format("{:.1f} km of range are left",
                                                  vehicle.telemetry->range_left_m / 1000.0)));

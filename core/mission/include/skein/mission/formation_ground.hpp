@@ -94,6 +94,8 @@ class FormationGround {
  private:
   [[nodiscard]] Result<std::vector<formation::Transfer>> transfers(
       const FormationOrder& order) const;
+  [[nodiscard]] Result<void> within_heights(
+      const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// A mission on the bench with its console, and a browser that looks at it.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { once } from "node:events";
+import { mkdir, readFile } from "node:fs/promises";
+import { createServer } from "node:net";
+import { join } from "node:path";
+
+import { chromium } from "playwright-core";
+
+export const programs = process.env.SKEIN_PROGRAMS;
+export const scenarios = process.env.SKEIN_SCENARIOS;
+export const work = process.env.SKEIN_WORK;
+assert(programs && scenarios && work, "run by run.sh");
+
+/** A port of loopback that nobody has. */
+export async function free_port() {
+  const server = createServer().listen(0, "127.0.0.1");
+  await once(server, "listening");
+  const { port } = server.address();
+  server.close();
+  await once(server, "close");
+  return port;
+}
+
+export async function until(what, condition, patience_ms = 60_000) {
+  const end = Date.now() + patience_ms;
+  while (Date.now() < end) {
+    const value = await condition();
+    if (value) return value;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  assert.fail(`waited ${patience_ms / 1000} s for ${what}`);
+}
+
+/** Flies a scenario with nobody at the prompt: whoever is at the console decides. */
+export async function fly(scenario, name, more = []) {
+  const port = await free_port();
+  const folder = join(work, name);
+  const child = spawn(
+    join(programs, "skein-hil"),
+    ["run", join(scenarios, scenario), "--headless", "--prompt", "--console", String(port), "--out", folder, ...more],
+    { stdio: ["ignore", "pipe", "pipe"] },
+  );
+  let text = "";
+  child.stdout.on("data", (data) => (text += data));
+  child.stderr.on("data", (data) => (text += data));
+  const exited = once(child, "exit").then(([status]) => status);
+  const url = `http://127.0.0.1:${port}/`;
+  let running = true;
+  void exited.then(() => (running = false));
+  await until(`the console at ${url}\n${text}`, async () => {
+    assert(running, `the bench has ended:\n${text}`);
+    return fetch(url).then((answer) => answer.ok, () => false);
+  });
+  return {
+    url,
+    folder,
+    port,
+    /** Its exit status, when the mission is over. */
+    ended: () => exited,
+    text: () => text,
+    /** Ends it, whatever it does. */
+    stop: async () => {
+      if (running) child.kill("SIGTERM");
+      await exited;
+    },
+    audit: async () => (await readFile(join(folder, "ground", "audit.jsonl"), "utf8")).split("\n").filter(Boolean).map((line) => JSON.parse(line)),
+  };
+}
+
+/** A page that notes what it asks of others and what it complains about. */
+export async function browse(url, options = {}) {
+  const browser = await chromium.launch({
+    executablePath: process.env.SKEIN_CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--headless",
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
+  });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, ...options });
+  const foreign = [];
+  const complaints = [];
+  page.on("request", (request) => {
+    const asked = new URL(request.url());
+    if (asked.host !== new URL(url).host && asked.protocol !== "data:" && asked.protocol !== "blob:") foreign.push(request.url());
+  });
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error" && !/401|CONNECTION_REFUSED/.test(message.text())) complaints.push(message.text());
+  });
+  await page.goto(url);
+  return {
+    browser,
+    page,
+    foreign,
+    complaints,
+    part: (id) => page.getByTestId(id),
+    async picture(name) {
+      await mkdir(join(work, "screenshots"), { recursive: true });
+      await page.screenshot({ path: join(work, "screenshots", `${name}.png`) });
+    },
+  };
+}
+
+/** Presses a button for as long as it wants. */
+export async function hold(button, ms = 1300) {
+  await button.hover();
+  const page = button.page();
+  await page.mouse.down();
+  await page.waitForTimeout(ms);
+  await page.mouse.up();
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// The small mission: watched, authorised and finished from the page.
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { createRequire } from "node:module";
+import { after, before, test } from "node:test";
+
+import { browse, fly, hold, until } from "./bench.mjs";
+
+const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+
+let mission;
+let view;
+before(async () => {
+  mission = await fly("coalition-6.yaml", "mission");
+  view = await browse(mission.url);
+});
+after(async () => {
+  await view?.browser.close();
+  await mission?.stop();
+});
+
+const event_numbers = () =>
+  view.page.locator('[data-testid^="event-"]').evaluateAll((rows) => rows.map((row) => Number(row.dataset.testid.slice("event-".length))));
+
+/** Findings of axe-core that keep people from using the page. */
+async function barriers() {
+  await view.page.evaluate(await readFile(axe, "utf8"));
+  const { violations } = await view.page.evaluate(() => globalThis.axe.run());
+  return violations
+    .filter(({ impact }) => impact === "serious" || impact === "critical")
+    .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" ")}`);
+}
+
+test("the fleet is there, well, and accounted for", async () => {
+  await until("six vehicles", async () => (await view.part("count-heard").innerText()).includes("6/6"));
+  await view.part("tab-fleet").click();
+  await until("six rows", async () => (await view.part("fleet").locator("tbody tr").count()) === 6);
+  await view.picture("fleet");
+});
+
+test("an observer's eyes: no serious barrier in any panel", async () => {
+  for (const panel of ["fleet", "mission", "orders", "log", "plots"]) {
+    await view.part(`tab-${panel}`).click();
+    assert.deepEqual(await barriers(), [], panel);
+  }
+  await view.part("theme").click();
+  assert.deepEqual(await barriers(), [], "the other theme");
+  await view.picture("night");
+  await view.part("theme").click();
+});
+
+test("a delivery is authorised by a long press, and not by a short one", async () => {
+  await until("a request", () => view.part("request-1").isVisible());
+  await view.picture("request");
+  await hold(view.part("authorise-1"), 300);
+  assert.equal((await mission.audit()).filter(({ line }) => line.startsWith("authorise")).length, 0);
+  // The deadline may pass while we look; then the coalition asks again.
+  await until("a decision", async () => {
+    if (await view.part("authorise-1").isVisible()) await hold(view.part("authorise-1")).catch(() => {});
+    return (await mission.audit()).some(({ line, done, from }) => line === "authorise 1" && done && from === "console");
+  });
+});
+
+test("a reload in mid-mission loses nothing", async () => {
+  await view.part("tab-log").click();
+  await until("events", async () => (await event_numbers()).length > 5);
+  const seen = await event_numbers();
+  await view.page.reload();
+  await until("the connection", async () => (await view.part("link-state").innerText()).includes("connected"));
+  await view.part("tab-log").click();
+  await until("the events of before", async () => {
+    const now = await event_numbers();
+    return seen.every((number) => now.includes(number));
+  });
+  const numbers = (await event_numbers()).sort((a, b) => a - b);
+  assert.equal(new Set(numbers).size, numbers.length, "none is doubled");
+  assert.equal(numbers.at(-1) - numbers[0] + 1, numbers.length, "none is missing");
+});
+
+test("the mission is done, and every check held", async () => {
+  await view.part("tab-mission").click();
+  await until("the site's end", async () => /done/.test(await view.part("site-1").innerText().catch(() => "")), 120_000);
+  await view.picture("done");
+  assert.equal(await mission.ended(), 0, mission.text());
+  await until("the banner", () => view.part("banner-lost").isVisible());
+});
+
+test("nothing was asked of anybody else, and nothing was complained about", () => {
+  assert.deepEqual(view.foreign, []);
+  assert.deepEqual(view.complaints, []);
+});
