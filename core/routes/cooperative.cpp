@@ -99,11 +99,13 @@ class Planner {
     });
     failures_.resize(count());
     double late = earliest_s_;
-    for (const double delay : kDelays) {
-      const double tried = earliest_s_ * (1.0 + delay);
+    for (std::size_t k = 0; k < kDelays.size(); ++k) {
+      const double tried = earliest_s_ * (1.0 + kDelays[k]);
       if (tried > plan_.latest_s || spent()) break;
+      allotted_ = params_.evaluations_all / kDelays.size() * (k + 1);
       if (plan_at(tried)) {
-        if (delay > 0.0) refine(late, tried);
+        allotted_ = params_.evaluations_all;
+        if (k > 0) refine(late, tried);
         return finish();
       }
       if (cancelled_) return Error{"the planning was cancelled"};
@@ -181,6 +183,7 @@ class Planner {
   bool plan_at(double arrival_s) {
     const std::size_t attempts = 1 + std::min(params_.reorders, count() - 1);
     for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
+      if (attempt > 0 && plan_.evaluations >= allotted_) return false;
       const std::size_t failed = plan_in_order(order_, arrival_s);
       if (failed == count()) return true;
       if (failed == 0 || cancelled_ || spent()) return false;
@@ -328,6 +331,7 @@ class Planner {
     std::size_t unflyable = 0;
   };
   std::vector<Failures> failures_;  ///< by vehicle
+  std::uint64_t allotted_ = 0;      ///< to the times so far; later ones have their chance, too
   double nearest_ = 0.0;            ///< to a route of the vehicle that was planned last
   bool cancelled_ = false;
   CooperativePlan plan_;
