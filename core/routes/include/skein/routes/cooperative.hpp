@@ -22,8 +22,9 @@ struct RoutePlannerParams {
   std::size_t corridors_tried = 6;  ///< of those, at one arrival time; more where none will do
   /// Ways to lengthen a corridor that are tried, at most.
   std::uint64_t evaluations = 1'500;
-  /// Routes that are tried altogether: then it fails, or gives what it has. Deterministic, where a
-  /// time is not. See docs/routes.md for what worlds take.
+  /// Routes that are tried altogether, within `evaluations`: then it fails, or gives what it has.
+  /// Every common time has an equal share, and what earlier ones left: after that its orders are
+  /// not changed any more. What worlds take is in docs/routes.md.
   std::uint64_t evaluations_all = 2'000'000;
   std::size_t population = 24;
   std::size_t reorders = 3;  ///< at one arrival time: who found no route goes first next time
