@@ -37,6 +37,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
     ["Heading, course", `${bearing(vehicle.heading_deg)}, ${bearing(vehicle.course_deg)}`],
     ["Ground, air speed", `${number(vehicle.groundspeed, 1)}, ${number(vehicle.airspeed, 1)} m/s`],
     ["Flight controller", [vehicle.flight_controller, vehicle.mode].filter(Boolean).join(", ") || "–"],
+    ["Version, clock", `${vehicle.version ?? "–"}, ${number(vehicle.clock_offset_ms)} ms`],
     ["Hears", ids(vehicle.links.map((link) => link.id)) || "nobody"],
     ["Plan", number(vehicle.plan_number)],
     ["Overruns, dropped", `${number(vehicle.control_overruns)}, ${number(vehicle.messages_dropped)}`],

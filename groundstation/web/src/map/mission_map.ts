@@ -4,7 +4,7 @@
 import { effect } from "@preact/signals";
 import L from "leaflet";
 import { request_key } from "../mission/requests";
-import { follow, highlighted_request, layers, overlays_hidden, preview, selected, theme, tiles_shown } from "../shell/view";
+import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, selected, theme, tiles_shown } from "../shell/view";
 import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell/view";
 import { read_colours } from "../theme/colours";
 import type { Colours } from "../theme/colours";
@@ -79,6 +79,10 @@ export class MissionMap {
       effect(() => this.on_theme(theme.value)),
       effect(() => this.on_choice()),
       effect(() => this.on_hello()),
+      effect(() => this.on_preview()),
+      effect(() => {
+        if (place_to_show.value) this.go_to(place_to_show.value);
+      }),
       effect(() => this.show_overlays()),
     );
   }
@@ -91,12 +95,23 @@ export class MissionMap {
 
   /** Everything that the mission has, in sight. */
   fit(): void {
-    const points = [...this.picture.vehicles, ...this.picture.sites]
+    const known = [...this.picture.vehicles, ...this.picture.sites]
       .filter((one): one is typeof one & Point => one.x !== null && one.y !== null)
       .map((one) => L.latLng(one.y, one.x));
+    const points = [...known, ...this.previewed()];
     if (points.length === 0) return;
-    const bounds = L.latLngBounds(points);
-    this.leaflet.fitBounds(bounds.pad(0.12), { animate: false, maxZoom: 3, paddingTopLeft: [24, 24], paddingBottomRight: [24, 24] });
+    // To the right there are the tools.
+    const padding = { paddingTopLeft: L.point(40, 40), paddingBottomRight: L.point(110, 40) };
+    this.leaflet.fitBounds(L.latLngBounds(points), { animate: false, maxZoom: 4, ...padding });
+  }
+
+  private previewed(): L.LatLng[] {
+    return (preview.value?.data?.movers ?? []).flatMap((mover) => mover.points.map(([x, y]) => L.latLng(y, x)));
+  }
+
+  /** What is about to be ordered must be seen whole. */
+  private on_preview(): void {
+    if (this.previewed().some((at) => !this.leaflet.getBounds().contains(at))) this.fit();
   }
 
   go_to(point: Point): void {

@@ -65,11 +65,12 @@ export function paint_paths(view: View, plans: readonly Plan[], now_s: number, s
 /** Where each vehicle of a formation would go, or is going. */
 export function paint_movers(view: View, movers: readonly Mover[], colour: string, strong: boolean): void {
   const { context } = view;
+  const heights = new Set(movers.map((mover) => mover.points[mover.points.length - 1]?.[2].toFixed(0)));
   context.strokeStyle = context.fillStyle = colour;
-  context.lineWidth = strong ? 2 : 1.5;
   for (const mover of movers) {
     const end = mover.points[mover.points.length - 1];
     if (!end) continue;
+    context.lineWidth = strong ? 2 : 1.5;
     context.setLineDash(strong ? [] : [5, 4]);
     trace(view, mover.points);
     context.stroke();
@@ -81,7 +82,8 @@ export function paint_movers(view: View, movers: readonly Mover[], colour: strin
     context.font = font(10, true);
     context.textAlign = "left";
     context.textBaseline = "bottom";
-    label(view, `${mover.id} · ${end[2].toFixed(0)} m`, view.px(end[0]) + 8, view.py(end[1]) - 4, colour);
+    const height = heights.size > 1 ? ` · ${end[2].toFixed(0)} m` : "";
+    label(view, `${mover.id}${height}`, view.px(end[0]) + 8, view.py(end[1]) - 4, colour);
     context.strokeStyle = colour;
   }
 }

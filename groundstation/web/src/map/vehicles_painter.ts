@@ -82,6 +82,9 @@ export function paint_links(view: View, picture: Picture): void {
   context.globalAlpha = 1;
 }
 
+// Further out, height and speed stand at the selected vehicle only.
+const least_scale_of_figures = 1;
+
 export interface VehicleOptions {
   selected: number | null;
   labels: boolean;
@@ -92,13 +95,17 @@ export interface VehicleOptions {
 export function paint_vehicles(view: View, picture: Picture, options: VehicleOptions): void {
   // The selected one last, over the others.
   const order = [...picture.vehicles].sort((a, b) => Number(a.id === options.selected) - Number(b.id === options.selected));
-  for (const vehicle of order) {
+  const drawn = order.flatMap((vehicle) => {
     const at = drawn_at(vehicle, options.ahead_s);
-    if (at && view.sees(at.x, at.y)) paint_vehicle(view, vehicle, view.px(at.x), view.py(at.y), options);
+    return at && view.sees(at.x, at.y) ? [{ vehicle, x: view.px(at.x), y: view.py(at.y) }] : [];
+  });
+  for (const { vehicle, x, y } of drawn) {
+    const alone = !drawn.some((one) => one.vehicle !== vehicle && Math.abs(one.x - x) < 90 && Math.abs(one.y - y) < 26);
+    paint_vehicle(view, vehicle, x, y, alone, options);
   }
 }
 
-function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, options: VehicleOptions): void {
+function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone: boolean, options: VehicleOptions): void {
   const { context, colours } = view;
   const member = options.members.get(vehicle.id);
   const health = health_of(vehicle);
@@ -145,7 +152,7 @@ function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, optio
   context.textBaseline = "top";
   context.font = font(11, true);
   label(view, `${vehicle.id}`, x + 9, y + 4);
-  if (!is_selected && view.scale < 1.5) return;
+  if (!is_selected && (view.scale < least_scale_of_figures || !alone)) return;
   context.font = font(10);
   const speed = vehicle.groundspeed === null ? "" : ` · ${vehicle.groundspeed.toFixed(0)} m/s`;
   label(view, `${vehicle.z === null ? "" : `${vehicle.z.toFixed(0)} m`}${speed}`, x + 9, y + 17, colours.muted);

@@ -5,7 +5,7 @@ import { bearing, clock, distance, duration, latitude_longitude } from "../shell
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { tick } from "../shell/ticker";
-import { highlighted_request } from "../shell/view";
+import { highlighted_request, place_to_show } from "../shell/view";
 import type { Authorisation } from "../wire/protocol";
 import { authorisations, may_order, mission_now_s } from "../wire/store";
 import { distance_and_bearing } from "../map/geodesy";
@@ -38,6 +38,9 @@ function Request({ request }: { request: Authorisation }) {
           Site {request.site}: {request.deliveries.length} {request.deliveries.length === 1 ? "delivery" : "deliveries"} to authorise
         </h2>
         <Countdown request={request} />
+        <button type="button" class="quiet" data-testid={`show-${request.site}`} onClick={() => (place_to_show.value = { x: request.x, y: request.y })}>
+          Show
+        </button>
       </header>
       <p class="muted">
         {distance(where.distance_m)} from the origin towards {bearing(where.bearing_deg)} · {latitude_longitude(request.latitude_deg, request.longitude_deg)} · led by {request.leader}, round{" "}

@@ -3,10 +3,15 @@
 
 import { progress_of } from "../map/ground";
 import { clock, ids } from "../shell/format";
-import { highlighted_request } from "../shell/view";
+import { highlighted_request, place_to_show } from "../shell/view";
+import type { Site } from "../wire/protocol";
 import { audit, authorisations, coalitions, sites } from "../wire/store";
 import { CoalitionCard } from "./coalition_card";
 import { outcome_of, request_key } from "./requests";
+
+function show({ x, y }: Site): void {
+  if (x !== null && y !== null) place_to_show.value = { x, y };
+}
 
 function Sites() {
   return (
@@ -16,7 +21,9 @@ function Sites() {
       <ul class="rows" data-testid="sites">
         {sites.value.map((site) => (
           <li key={site.id} data-testid={`site-${site.id}`}>
-            <b>Site {site.id}</b>
+            <button type="button" class="row-button" title="Show on the map" disabled={site.x === null} onClick={() => show(site)}>
+              Site {site.id}
+            </button>
             <span>{progress_of(site)}</span>
             <span class="muted">
               {site.leader === null ? "no leader" : `led by ${site.leader}`}

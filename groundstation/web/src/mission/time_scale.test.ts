@@ -6,6 +6,8 @@ import { label_step, next_span, time_at, window_of, x_of, zoomed } from "./time_
 test("the window follows now, unless it is pinned", () => {
   assert.deepEqual(window_of(1000, 100, null), { from_s: 920, to_s: 1020 });
   assert.deepEqual(window_of(1000, 100, 5), { from_s: 5, to_s: 105 });
+  assert.deepEqual(window_of(30, 100, null, -2), { from_s: -2, to_s: 98 });
+  assert.deepEqual(window_of(1000, 100, null, -2), { from_s: 920, to_s: 1020 });
 });
 
 test("zooming keeps the time under the pointer where it is", () => {

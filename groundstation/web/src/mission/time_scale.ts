@@ -11,9 +11,10 @@ export const spans_s = [30, 60, 120, 300, 600, 1200, 3600, 7200] as const;
 // Of the width, left of the now-line when it is followed: the rest is for what is planned.
 const past_part = 0.8;
 
-/** The window of `span_s` that follows `now_s`; or the one that begins at `pinned_s`. */
-export function window_of(now_s: number, span_s: number, pinned_s: number | null): TimeWindow {
-  const from_s = pinned_s ?? now_s - past_part * span_s;
+/** The window of `span_s` that follows `now_s`, without the emptiness before `first_s`; or the one
+ *  that begins at `pinned_s`. */
+export function window_of(now_s: number, span_s: number, pinned_s: number | null, first_s = -Infinity): TimeWindow {
+  const from_s = pinned_s ?? Math.max(now_s - past_part * span_s, Math.min(first_s, now_s));
   return { from_s, to_s: from_s + span_s };
 }
 

@@ -59,12 +59,13 @@ class TimelineCanvas {
     const context = this.canvas.getContext("2d");
     if (!context) return null;
     const now_s = mission_now_s() ?? 0;
+    const first_s = Math.min(0, ...current().timeline.map(({ spans }) => spans[0]?.[1] ?? 0));
     return {
       context,
       width: this.width,
       height: this.height,
       scroll: this.scroll,
-      window: window_of(now_s, this.span_s, this.pinned_s),
+      window: window_of(now_s, this.span_s, this.pinned_s, first_s),
       now_s,
       selected: selected.value,
       colours: this.colours,

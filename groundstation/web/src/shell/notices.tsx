@@ -6,6 +6,9 @@ import { dismiss, notices } from "./give";
 
 const marks = { sent: "…", done: "✓", refused: "✕", note: "i" } as const;
 
+/** What was done is told shortly; what was not, in full. */
+const first_line = (text: string) => text.split("\n", 1)[0]!.replace(/[:,]$/, "");
+
 export function Notices() {
   return (
     <div class="notices" role="log" aria-label="Answers to orders" data-testid="notices">
@@ -14,8 +17,8 @@ export function Notices() {
           <span class="mark" aria-hidden="true">
             {marks[notice.state]}
           </span>
-          <span class="notice-text">
-            {notice.line && <code>{notice.line}</code>} {notice.text}
+          <span class="notice-text" title={notice.text}>
+            {notice.line && <code>{notice.line}</code>} {notice.state === "done" ? first_line(notice.text) : notice.text}
           </span>
           <button type="button" class="quiet" aria-label="Dismiss" onClick={() => dismiss(notice.id)}>
             ✕

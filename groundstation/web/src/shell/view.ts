@@ -55,6 +55,9 @@ export const hazard_draft = signal<(Spot & { radius_m: number }) | null>(null);
 /** Where a formation shall be; of the order's form. */
 export const formation_spot = signal<Spot | null>(null);
 
+/** A place that the map is to show; a new object each time. */
+export const place_to_show = signal<Spot | null>(null);
+
 /** The preview of a formation order, and the order that it is of. */
 export const preview = signal<{ line: string; data: Preview | null; text: string; done: boolean } | null>(null);
 /** The request for authorisation that the map points out, by its key. */
