@@ -9,6 +9,7 @@ import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell
 import { read_colours } from "../theme/colours";
 import type { Colours } from "../theme/colours";
 import type { Picture } from "../wire/picture";
+import type { Authorisation } from "../wire/protocol";
 import { current, hello, on_picture, mission_now_s, since_state_s, tracks, tracks_version } from "../wire/store";
 import { CanvasLayer, view_of } from "./canvas_layer";
 import type { View } from "./canvas_layer";
@@ -205,6 +206,10 @@ export class MissionMap {
     }
   }
 
+  private shown_requests(): Authorisation[] {
+    return this.picture.authorisations.filter((request) => request.waiting || request_key(request) === highlighted_request.value);
+  }
+
   private colour_of(id: number): string {
     return this.members.get(id)?.sign.colour ?? this.colours.trail;
   }
@@ -221,7 +226,11 @@ export class MissionMap {
     const colour_of = (id: number) => this.colour_of(id);
     if (on.hazards) paint_hazards(view, picture.hazards);
     if (on.trails) paint_trails(view, tracks, picture.vehicles, selected.value, colour_of);
-    if (on.paths) paint_paths(view, picture.plans, now_s, selected.value, colour_of);
+    // Whom the operator is asked about.
+    const asked = new Set(this.shown_requests().flatMap((request) => request.deliveries.map((delivery) => delivery.vehicle)));
+    const path_colour = (id: number) => (asked.has(id) ? this.colours.preview : colour_of(id));
+    const marked = selected.value === null ? asked : new Set([...asked, selected.value]);
+    if (on.paths) paint_paths(view, picture.plans, now_s, marked, path_colour);
     if (on.sites) paint_sites(view, picture);
   }
 
@@ -232,9 +241,7 @@ export class MissionMap {
     const change = picture.formation?.change;
     if (change && picture.formation?.moving) paint_movers(view, change.movers, this.colours.path, false);
     if (preview.value?.data) paint_movers(view, preview.value.data.movers, this.colours.preview, true);
-    for (const request of picture.authorisations) {
-      if (request.waiting || request_key(request) === highlighted_request.value) paint_authorisation(view, request);
-    }
+    for (const request of this.shown_requests()) paint_authorisation(view, request);
     paint_vehicles(view, picture, {
       selected: selected.value,
       labels: on.labels,

@@ -38,16 +38,16 @@ export function paint_trails(view: View, tracks: Tracks, vehicles: readonly Vehi
   context.globalAlpha = 1;
 }
 
-/** What is left of the planned path, dashed, with the orbit that it ends in. */
-export function paint_paths(view: View, plans: readonly Plan[], now_s: number, selected: number | null, colour_of: (id: number) => string): void {
+/** What is left of the planned paths, dashed, with the orbit that each ends in; `marked` ones bold. */
+export function paint_paths(view: View, plans: readonly Plan[], now_s: number, marked: ReadonlySet<number>, colour_of: (id: number) => string): void {
   const { context } = view;
   for (const plan of plans) {
-    const is_selected = plan.id === selected;
+    const is_marked = marked.has(plan.id);
     const next = plan.points.findIndex((point) => point[2] > now_s);
     context.strokeStyle = colour_of(plan.id);
-    context.globalAlpha = is_selected ? 1 : 0.6;
-    context.lineWidth = is_selected ? 2 : 1;
-    context.setLineDash(is_selected ? [7, 4] : [4, 5]);
+    context.globalAlpha = is_marked ? 1 : 0.6;
+    context.lineWidth = is_marked ? 2 : 1;
+    context.setLineDash(is_marked ? [7, 4] : [4, 5]);
     if (next >= 0) {
       trace(view, plan.points.slice(Math.max(0, next - 1)));
       context.stroke();
