@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "board.hpp"
+#include "foxglove.hpp"
 #include "gate.hpp"
 #include "pages.hpp"
 #include "skein/base/bounded_queue.hpp"
@@ -42,6 +43,10 @@ constexpr int kTextsPerSecond = 20;
 constexpr std::size_t kLoginsMax = 4;  ///< that wait; each takes some 0.1 s
 constexpr auto kPatience = std::chrono::seconds{30};
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
+constexpr std::size_t kFoxgloveTextMax = 1U << 18U;  ///< a subscription to every topic
+constexpr std::size_t kFoxgloveTextsMax = 65'536;    ///< that wait
+constexpr std::size_t kFoxgloveBacklogMax = 4U
+                                            << 20U;  ///< bytes that wait; then records are left out
 constexpr std::string_view kSubprotocol = "skein.console.1";
 
 std::string text_of(const Json& json) {
@@ -68,6 +73,17 @@ class Client {
   Client& operator=(const Client&) = delete;
   virtual void on_news() = 0;
   virtual void on_restart(const std::string& history, std::uint64_t next_seq) = 0;
+};
+
+/// One that speaks as Foxglove does.
+class LiveClient {
+ public:
+  LiveClient() = default;
+  virtual ~LiveClient() = default;
+  LiveClient(const LiveClient&) = delete;
+  LiveClient& operator=(const LiveClient&) = delete;
+  virtual void on_channel(const LiveChannel& channel) = 0;
+  virtual void on_record(std::uint32_t channel, const Server::LiveRecord& record) = 0;
 };
 
 }  // namespace
@@ -133,6 +149,30 @@ class Server::Impl {
     clients_.erase(&client);
     watched_ = !clients_.empty();
   }
+  void live(const LiveRecord& record) {
+    auto channel = std::find_if(channels_.begin(), channels_.end(),
+                                [&](const auto& known) { return known.topic == record.topic; });
+    const std::vector<LiveClient*> all{live_clients_.begin(), live_clients_.end()};
+    if (channel == channels_.end()) {
+      channels_.push_back({static_cast<std::uint32_t>(channels_.size() + 1), record.topic,
+                           std::string{record.schema_name}, std::string{record.schema}});
+      channel = std::prev(channels_.end());
+      for (LiveClient* client : all) client->on_channel(*channel);
+    }
+    for (LiveClient* client : all) client->on_record(channel->id, record);
+  }
+  void join(LiveClient& client) {
+    live_clients_.insert(&client);
+    live_watched_ = true;
+  }
+  void leave(LiveClient& client) {
+    live_clients_.erase(&client);
+    live_watched_ = !live_clients_.empty();
+  }
+  [[nodiscard]] const std::vector<LiveChannel>& channels() const { return channels_; }
+  [[nodiscard]] const std::string& run_id() const { return run_; }
+  [[nodiscard]] bool live_watched() const { return live_watched_; }
+
   /// Checks a password on a thread of its own. False when too many wait.
   bool log_in(std::string user, std::string password,
               std::function<void(std::optional<Identity>)> done) {
@@ -187,6 +227,9 @@ class Server::Impl {
   std::size_t connections_ = 0;
   std::set<Client*> clients_;
   std::atomic<bool> watched_{false};
+  std::vector<LiveChannel> channels_;
+  std::set<LiveClient*> live_clients_;
+  std::atomic<bool> live_watched_{false};
   std::mutex requests_mutex_;
   BoundedQueue<Request> requests_{kRequestsMax};
   asio::io_context context_{1};  // last but one: its connections use what stands above
@@ -381,6 +424,103 @@ class SocketClient final : public Client,
   int texts_ = 0;
 };
 
+/// A client that speaks as Foxglove does. Records that it does not take in time are left out.
+template <class Stream>
+class FoxgloveClient final : public LiveClient,
+                             public std::enable_shared_from_this<FoxgloveClient<Stream>> {
+ public:
+  FoxgloveClient(Server::Impl& server, Stream stream, std::string_view protocol,
+                 std::shared_ptr<Server::Impl::Place> place)
+      : server_{server},
+        socket_{std::move(stream)},
+        protocol_{protocol},
+        place_{std::move(place)} {}
+  ~FoxgloveClient() override { server_.leave(*this); }
+  FoxgloveClient(const FoxgloveClient&) = delete;
+  FoxgloveClient& operator=(const FoxgloveClient&) = delete;
+
+  void run(const HttpRequest& request) {
+    socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
+    socket_.set_option(websocket::stream_base::decorator(
+        [protocol = protocol_](websocket::response_type& response) {
+          response.set(http::field::sec_websocket_protocol, protocol);
+        }));
+    socket_.read_message_max(kFoxgloveTextMax);
+    socket_.async_accept(request, [self = this->shared_from_this()](error_code error) {
+      if (error) return;
+      self->server_.join(*self);
+      self->say(FoxgloveSession::server_info("skein-ground", self->server_.run_id()));
+      self->say(FoxgloveSession::advertise(self->server_.channels()));
+      self->read();
+    });
+  }
+
+  void on_channel(const LiveChannel& channel) override {
+    say(FoxgloveSession::advertise({&channel, 1}));
+  }
+  void on_record(std::uint32_t channel, const Server::LiveRecord& record) override {
+    if (waiting_bytes_ > kFoxgloveBacklogMax) return;
+    if (auto message = session_.record(channel, record.time_ns, record.bytes)) {
+      push({true, std::move(*message)});
+    }
+  }
+
+ private:
+  struct Text {
+    bool binary = false;
+    std::string bytes;
+  };
+
+  void read() {
+    socket_.async_read(buffer_, [self = this->shared_from_this()](error_code error, std::size_t) {
+      if (error) return self->stop();
+      const bool good = !self->socket_.got_text() ||
+                        self->session_.on_text(beast::buffers_to_string(self->buffer_.data()));
+      self->buffer_.consume(self->buffer_.size());
+      if (!good) return self->stop();
+      self->read();
+    });
+  }
+  void say(std::string text) {
+    if (texts_.size() > kFoxgloveTextsMax) return stop();
+    push({false, std::move(text)});
+  }
+  void push(Text text) {
+    waiting_bytes_ += text.bytes.size();
+    texts_.push_back(std::move(text));
+    write();
+  }
+  void write() {
+    if (writing_ || stopped_ || texts_.empty()) return;
+    writing_ = true;
+    socket_.binary(texts_.front().binary);
+    socket_.async_write(asio::buffer(texts_.front().bytes),
+                        [self = this->shared_from_this()](error_code error, std::size_t) {
+                          self->writing_ = false;
+                          self->waiting_bytes_ -= self->texts_.front().bytes.size();
+                          self->texts_.pop_front();
+                          if (error) return self->stop();
+                          self->write();
+                        });
+  }
+  void stop() {
+    stopped_ = true;
+    server_.leave(*this);
+    beast::get_lowest_layer(socket_).close();
+  }
+
+  Server::Impl& server_;
+  websocket::stream<Stream> socket_;
+  std::string protocol_;
+  std::shared_ptr<Server::Impl::Place> place_;
+  FoxgloveSession session_;
+  beast::flat_buffer buffer_;
+  std::deque<Text> texts_;
+  std::size_t waiting_bytes_ = 0;
+  bool writing_ = false;
+  bool stopped_ = false;
+};
+
 /// A connection that speaks HTTP, until it asks for the socket.
 template <class Stream>
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection<Stream>> {
@@ -441,6 +581,12 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection<
     const auto identity =
         gate.identify(view(request[http::field::cookie]), std::chrono::steady_clock::now());
     if (!identity) return refuse(http::status::unauthorized, "log in first");
+    for (const std::string_view protocol : kFoxgloveProtocols) {
+      if (!offers(request, protocol)) continue;
+      beast::get_lowest_layer(stream_).expires_never();
+      return std::make_shared<FoxgloveClient<Stream>>(server_, std::move(stream_), protocol, place_)
+          ->run(request);
+    }
     if (request.target() != "/socket" || !offers(request, kSubprotocol)) {
       return refuse(http::status::bad_request,
                     "the socket is at /socket and speaks skein.console.1");
@@ -618,6 +764,10 @@ void Server::append(std::vector<std::string> events) {
 void Server::restart(std::uint64_t next_seq, const std::string& series) {
   impl_->post([impl = impl_.get(), next_seq, series] { impl->restart(next_seq, series); });
 }
+void Server::live(LiveRecord record) {
+  impl_->post([impl = impl_.get(), record = std::move(record)] { impl->live(record); });
+}
+bool Server::live_watched() const { return impl_->live_watched(); }
 bool Server::watched() const { return impl_->watched(); }
 std::string Server::url() const { return impl_->url(); }
 

@@ -378,6 +378,43 @@ TEST(Server, GivesTilesAndOverlays) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Server, SpeaksToFoxgloveClients) {
+  Station station;
+  const Server::LiveRecord record{
+      "/vehicle_01/telemetry", "skein/msg/Telemetry", "float64 x", 7, {1, 2, 3}};
+  for (const char* protocol : {"foxglove.websocket.v1", "foxglove.sdk.v1"}) {
+    Page client{station, {.protocol = protocol, .path = "/"}};
+    ASSERT_TRUE(client.open()) << protocol;
+    EXPECT_EQ(Json::parse(client.read())["op"], "serverInfo");
+    Json channels = Json::parse(client.read())["channels"];
+    if (channels.empty()) {  // the first client, before the first record
+      station.server().live(record);
+      channels = Json::parse(client.read())["channels"];
+    }
+    ASSERT_EQ(channels.size(), 1U);
+    EXPECT_EQ(channels[0]["topic"], "/vehicle_01/telemetry");
+    EXPECT_EQ(channels[0]["schemaEncoding"], "ros2msg");
+    client.say(R"({"op":"subscribe","subscriptions":[{"id":42,"channelId":1}]})");
+    // What was sent before it subscribed does not come; so it goes on until something does.
+    std::atomic<bool> came{false};
+    std::thread sender{[&] {
+      while (!came) {
+        station.server().live(record);
+        std::this_thread::sleep_for(std::chrono::milliseconds{5});
+      }
+    }};
+    const std::string data = client.read();
+    came = true;
+    sender.join();
+    EXPECT_EQ(data, std::string("\x01\x2a\0\0\0\x07\0\0\0\0\0\0\0\x01\x02\x03", 16));
+  }
+  Page nonsense{station, {.protocol = "foxglove.sdk.v1"}};
+  nonsense.say(R"({"op":"subscribe","subscriptions":[{"id":-1}]})");
+  while (!nonsense.read().empty()) {
+  }
+  EXPECT_FALSE(nonsense.open());
+}
+
 TEST(Users, AFileThatIsWrongSaysWhere) {
   EXPECT_FALSE(Users::load("/nowhere").ok());
   EXPECT_FALSE(Users::parse("# nobody\n", "f").ok());

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mission on the bench with its console, and a browser that looks at it.
+// A mission on the bench with its console.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { once } from "node:events";
-import { mkdir, readFile } from "node:fs/promises";
+import { readFile } from "node:fs/promises";
 import { createServer } from "node:net";
 import { join } from "node:path";
-
-import { chromium } from "playwright-core";
 
 export const programs = process.env.SKEIN_PROGRAMS;
 export const scenarios = process.env.SKEIN_SCENARIOS;
@@ -68,53 +66,4 @@ export async function fly(scenario, name, more = []) {
     },
     audit: async () => (await readFile(join(folder, "ground", "audit.jsonl"), "utf8")).split("\n").filter(Boolean).map((line) => JSON.parse(line)),
   };
-}
-
-/** A page that notes what it asks of others and what it complains about. */
-export async function browse(url, options = {}) {
-  const browser = await chromium.launch({
-    executablePath: process.env.SKEIN_CHROMIUM ?? "/usr/bin/chromium",
-    args: [
-      "--headless",
-      "--no-sandbox",
-      "--disable-gpu",
-      "--disable-quic",
-      "--no-first-run",
-      "--disable-background-networking",
-      "--disable-component-update",
-      "--disable-sync",
-    ],
-  });
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, ...options });
-  const foreign = [];
-  const complaints = [];
-  page.on("request", (request) => {
-    const asked = new URL(request.url());
-    if (asked.host !== new URL(url).host && asked.protocol !== "data:" && asked.protocol !== "blob:") foreign.push(request.url());
-  });
-  page.on("pageerror", (error) => complaints.push(error.message));
-  page.on("console", (message) => {
-    if (message.type() === "error" && !/401|CONNECTION_REFUSED/.test(message.text())) complaints.push(message.text());
-  });
-  await page.goto(url);
-  return {
-    browser,
-    page,
-    foreign,
-    complaints,
-    part: (id) => page.getByTestId(id),
-    async picture(name) {
-      await mkdir(join(work, "screenshots"), { recursive: true });
-      await page.screenshot({ path: join(work, "screenshots", `${name}.png`) });
-    },
-  };
-}
-
-/** Presses a button for as long as it wants. */
-export async function hold(button, ms = 1300) {
-  await button.hover();
-  const page = button.page();
-  await page.mouse.down();
-  await page.waitForTimeout(ms);
-  await page.mouse.up();
 }

@@ -3,7 +3,8 @@
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 
-import { browse, fly, hold, until } from "./bench.mjs";
+import { fly, until } from "./bench.mjs";
+import { browse, hold } from "./browser.mjs";
 
 let mission;
 let view;

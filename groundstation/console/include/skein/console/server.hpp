@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -76,6 +77,19 @@ class Server {
   /// A replay has jumped: clients get a new history, and the events from `next_seq` on (at most as
   /// many as there were) again when append() brings them.
   void restart(std::uint64_t next_seq, const std::string& series);
+
+  /// A record for clients that speak as Foxglove does, CDR by a ros2msg schema. A topic is told to
+  /// them with its first record.
+  struct LiveRecord {
+    std::string topic;
+    std::string_view schema_name;
+    std::string_view schema;  ///< both good as long as the server
+    std::uint64_t time_ns = 0;
+    std::vector<std::uint8_t> bytes;
+  };
+  void live(LiveRecord record);
+  /// Whether any such client is connected: else there is no need for records.
+  [[nodiscard]] bool live_watched() const;
 
   /// Whether anybody is connected: else there is no need to publish.
   [[nodiscard]] bool watched() const;

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Debian's chromium on a page of ours.
+import { mkdir } from "node:fs/promises";
+import { join } from "node:path";
+
+import { chromium } from "playwright-core";
+
+/** A page that notes what it asks of others and what it complains about. */
+export async function browse(url, options = {}) {
+  const browser = await chromium.launch({
+    executablePath: process.env.SKEIN_CHROMIUM ?? "/usr/bin/chromium",
+    args: [
+      "--headless",
+      "--no-sandbox",
+      "--disable-gpu",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+    ],
+  });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, ...options });
+  const foreign = [];
+  const complaints = [];
+  page.on("request", (request) => {
+    const asked = new URL(request.url());
+    if (asked.host !== new URL(url).host && asked.protocol !== "data:" && asked.protocol !== "blob:") foreign.push(request.url());
+  });
+  page.on("pageerror", (error) => complaints.push(error.message));
+  page.on("console", (message) => {
+    if (message.type() === "error" && !/401|CONNECTION_REFUSED/.test(message.text())) complaints.push(message.text());
+  });
+  await page.goto(url);
+  return {
+    browser,
+    page,
+    foreign,
+    complaints,
+    part: (id) => page.getByTestId(id),
+    async picture(name) {
+      const folder = join(process.env.SKEIN_WORK ?? ".", "screenshots");
+      await mkdir(folder, { recursive: true });
+      await page.screenshot({ path: join(folder, `${name}.png`) });
+    },
+  };
+}
+
+/** Presses a button for as long as it wants. */
+export async function hold(button, ms = 1300) {
+  await button.hover();
+  const page = button.page();
+  await page.mouse.down();
+  await page.waitForTimeout(ms);
+  await page.mouse.up();
+}
