@@ -58,6 +58,14 @@ test("another run of the server: all is forgotten, and asked for anew", () => {
   assert.equal(reduce(before, history(0, 0)).generation, 1);
 });
 
+test("a recording that is wound back takes its events back, and gives them again", () => {
+  const hello: Hello = { ...a_hello(), replay: { name: "m", from_s: 0, to_s: 9 } };
+  const back = after(hello, events(an_event(0), an_event(1), an_event(2)), history(0, 1));
+  assert.equal(back.generation, 0);
+  assert.deepEqual(back.events.map((event) => event.seq), [0]);
+  assert.deepEqual(reduce(back, events(an_event(1))).events.map((event) => event.seq), [0, 1]);
+});
+
 test("a coalition keeps its place in the palette", () => {
   const state = (...coalitions: Coalition[]): FromServer => ({ type: "state", time_s: 1, coalitions });
   const picture = after(

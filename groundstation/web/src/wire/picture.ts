@@ -83,11 +83,18 @@ function on_hello(picture: Picture, hello: Hello): Picture {
 }
 
 function on_history(picture: Picture, events: { first_seq: number; next_seq: number }): Picture {
-  // A server that has fewer events than we have seen has started anew.
-  if (picture.next_seq > events.next_seq) return forget(picture, picture.hello);
+  if (picture.next_seq > events.next_seq) {
+    // A recording that was wound back; any other server with fewer events than we have seen has
+    // started anew.
+    return picture.hello?.replay ? wound_back(picture, events.next_seq) : forget(picture, picture.hello);
+  }
   const missed = Math.max(0, events.first_seq - Math.max(picture.next_seq, 1));
   if (missed === 0 || picture.next_seq === 0) return picture;
   return { ...picture, events_missed: picture.events_missed + missed };
+}
+
+function wound_back(picture: Picture, next_seq: number): Picture {
+  return { ...picture, events: picture.events.filter((event) => event.seq < next_seq), next_seq };
 }
 
 function on_state(picture: Picture, state: { time_s: number } & Partial<Sections>): Picture {
