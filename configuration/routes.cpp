@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
@@ -104,7 +105,9 @@ Result<void> judge_way_on(const TimedPath& timed, const routes::RouteProblem& pr
                           const std::string& who) {
   const double length_m = timed.path.length_m();
   const double lap_m = kTwoPi / timed.tail_curvature_per_m;
-  for (double at_m = 0.0; at_m <= length_m + lap_m; at_m += kStep_m) {
+  const auto steps = static_cast<std::size_t>((length_m + lap_m) / kStep_m);
+  for (std::size_t k = 0; k <= steps; ++k) {
+    const double at_m = kStep_m * static_cast<double>(k);
     const Vec2 point = timed.pose_at_distance(at_m).position();
     for (const routes::RouteHazard& hazard : problem.hazards) {
       if (!problem.closed(hazard)) continue;

@@ -60,8 +60,10 @@ class Flown {
   }
   /// Along its plans until that time.
   void fly_until(double seconds) {
-    for (double t = to_seconds(state_.time.time_since_epoch()) + kStep_s; t <= seconds;
-         t += kStep_s) {
+    const double begin_s = to_seconds(state_.time);
+    const auto steps = static_cast<int>((seconds - begin_s) / kStep_s + 1e-6);
+    for (int k = 1; k <= steps; ++k) {
+      const double t = begin_s + k * kStep_s;
       if (t > 0.0) state_.distance_flown_m += kSpeed_mps * kStep_s;
       be_at(plan.timed.pose_at(at_seconds(t)), t);
     }
@@ -160,7 +162,8 @@ TEST(VehicleWithRoute, AHazardOnTheWayEndsIt) {
   vehicle.tell(HazardReport{hazard});
   EXPECT_NE(vehicle.agent.activity(), Activity::en_route);
   EXPECT_GT(vehicle.plan.number, 1U);
-  for (double t = 10.0; t < 150.0; t += kStep_s) {
+  for (int k = 20; k < 300; ++k) {
+    const double t = k * kStep_s;
     vehicle.fly_until(t);
     ASSERT_GT((vehicle.at(t) - hazard.centre).norm(), hazard.radius_m) << t << " s";
     ASSERT_NE(vehicle.agent.activity(), Activity::en_route) << t << " s";

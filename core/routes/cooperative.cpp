@@ -72,7 +72,7 @@ Result<void> validate(const RouteProblem& problem) {
   }
   for (std::size_t i = 0; i < problem.vehicles.size(); ++i) {
     const RouteVehicle& v = problem.vehicles[i];
-    if (const auto valid = validate_vehicle(problem, v); !valid) return valid;
+    if (auto valid = validate_vehicle(problem, v); !valid) return valid;
     for (std::size_t j = 0; j < i; ++j) {
       const RouteVehicle& w = problem.vehicles[j];
       if (v.id == w.id) return Error{"two vehicles are called " + std::to_string(v.id.value)};

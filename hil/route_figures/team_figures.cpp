@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fig. 16 and 17, and larger teams: several vehicles over one site at one time.
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <ctime>
 #include <string>
 #include <utility>
 #include <vector>
