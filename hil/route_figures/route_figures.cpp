@@ -29,9 +29,9 @@ Result<std::vector<Experiment>> find_experiments(const std::vector<std::string>&
     }
     const auto* const found = std::find(kNames.begin(), kNames.end(), name);
     if (found == kNames.end()) {
-      std::string known;
-      for (const std::string_view one : kNames) known.append(one).append(", ");
-      return Error{"there is no experiment '" + name + "'; there are " + known + "and all"};
+      std::string why = "there is no experiment '" + name + "'; there are ";
+      for (const std::string_view one : kNames) why.append(one).append(", ");
+      return Error{why.append("and all")};
     }
     wanted.at(static_cast<std::size_t>(found - kNames.begin())) = true;
   }
