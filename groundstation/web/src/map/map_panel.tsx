@@ -5,11 +5,12 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { bearing, distance, latitude_longitude, number } from "../shell/format";
 import { note } from "../shell/give";
 import { on_fit } from "../shell/keys";
-import { follow, formation_spot, hazard_draft, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, tool } from "../shell/view";
+import { follow, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, tool } from "../shell/view";
 import type { LayerName, Spot } from "../shell/view";
 import { hello, sites } from "../wire/store";
 import { LocalFrame, distance_and_bearing } from "./geodesy";
 import { MissionMap } from "./mission_map";
+import { drag_edge, press } from "./tools";
 
 const layer_words: Record<LayerName, string> = {
   grid: "Grid",
@@ -21,47 +22,11 @@ const layer_words: Record<LayerName, string> = {
   labels: "Labels",
 };
 
-function press(map: MissionMap, at: Spot, x: number, y: number): void {
-  switch (tool.value) {
-    case "measure":
-      if (!measure_from.value || measure_to.value) {
-        measure_from.value = at;
-        measure_to.value = null;
-      } else {
-        measure_to.value = at;
-      }
-      return;
-    case "hazard":
-      if (!hazard_draft.value || measure_hazard_done) {
-        hazard_draft.value = { ...at, radius_m: 100 };
-        measure_hazard_done = false;
-      } else {
-        hazard_draft.value = { ...hazard_draft.value, radius_m: radius_to(at) };
-        measure_hazard_done = true;
-        tool.value = "select";
-      }
-      return;
-    case "place":
-      formation_spot.value = at;
-      tool.value = "select";
-      return;
-    case "select":
-      select(map.vehicle_at(x, y));
-  }
-}
-
-// Whether the second press, the radius, has been made.
-let measure_hazard_done = true;
-
-function radius_to(at: Spot): number {
-  const draft = hazard_draft.value!;
-  return Math.max(5, Math.round(distance_and_bearing(draft, at).distance_m));
-}
-
 const tool_words = {
   select: "",
   measure: "Press two places to measure between them. Esc ends.",
-  hazard: "Press the middle of the hazard, then its edge. Esc ends.",
+  hazard: "Press the middle of the hazard. Esc ends.",
+  hazard_edge: "Press its edge. Esc ends.",
   place: "Press where the formation shall be. Esc ends.",
 } as const;
 
@@ -118,11 +83,14 @@ export function MapPanel() {
     map.current = made;
     const fit = () => made.fit();
     on_fit.add(fit);
-    made.leaflet.on("click", (event) => press(made, { x: event.latlng.lng, y: event.latlng.lat }, event.containerPoint.x, event.containerPoint.y));
+    made.leaflet.on("click", (event) => {
+      if (tool.value === "select") select(made.vehicle_at(event.containerPoint.x, event.containerPoint.y));
+      else press({ x: event.latlng.lng, y: event.latlng.lat });
+    });
     made.leaflet.on("mousemove", (event) => {
       const at = { x: event.latlng.lng, y: event.latlng.lat };
       set_cursor(at);
-      if (tool.value === "hazard" && hazard_draft.value && !measure_hazard_done) hazard_draft.value = { ...hazard_draft.value, radius_m: radius_to(at) };
+      drag_edge(at);
     });
     made.leaflet.on("mouseout", () => set_cursor(null));
     return () => {

@@ -10,7 +10,7 @@ import { read_colours } from "../theme/colours";
 import type { Colours } from "../theme/colours";
 import type { Picture } from "../wire/picture";
 import type { Authorisation } from "../wire/protocol";
-import { current, hello, on_picture, mission_now_s, since_state_s, tracks, tracks_version } from "../wire/store";
+import { current, hello, on_picture, mission_now_s, since_state_s, tracks } from "../wire/store";
 import { CanvasLayer, view_of } from "./canvas_layer";
 import type { View } from "./canvas_layer";
 import { LocalFrame } from "./geodesy";
@@ -79,6 +79,7 @@ export class MissionMap {
       on_picture((picture) => this.take(picture)),
       effect(() => this.on_theme(theme.value)),
       effect(() => this.on_choice()),
+      effect(() => this.on_drawing()),
       effect(() => this.on_hello()),
       effect(() => this.on_preview()),
       effect(() => {
@@ -165,13 +166,16 @@ export class MissionMap {
     });
   }
 
+  // Signals are named in these two so that a change of any of them repaints.
   private on_choice(): void {
-    // Named so that a change of any of them repaints.
-    void [layers.value, preview.value, selected.value, highlighted_request.value, tracks_version.value];
-    void [measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value];
+    void [layers.value, selected.value, highlighted_request.value, follow.value];
     this.keep_in_middle();
+    this.redraw_all();
+  }
+
+  private on_drawing(): void {
+    void [preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value];
     this.moving.redraw();
-    if (performance.now() - this.tracks_at_ms > tracks_every_ms) this.redraw_ground();
   }
 
   private redraw_all(): void {

@@ -13,9 +13,11 @@ const empty_draft = { x: 0, y: 0, radius_m: 100 };
 
 export function HazardForm() {
   const draft = hazard_draft.value;
+  const drawing = tool.value === "hazard" || tool.value === "hazard_edge";
   useEffect(
     () => () => {
       hazard_draft.value = null;
+      if (tool.value !== "measure") tool.value = "select";
     },
     [],
   );
@@ -55,7 +57,7 @@ export function HazardForm() {
         ))}
       </ul>
       <div class="fields">
-        <button type="button" data-testid="hazard-draw" aria-pressed={tool.value === "hazard"} onClick={() => (tool.value = tool.value === "hazard" ? "select" : "hazard")}>
+        <button type="button" data-testid="hazard-draw" aria-pressed={drawing} onClick={() => (tool.value = drawing ? "select" : "hazard")}>
           Draw on the map …
         </button>
         {figure("x", "East, m")}

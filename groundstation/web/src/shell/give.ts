@@ -3,7 +3,8 @@
 
 import { signal } from "@preact/signals";
 import type { Answer, DecidedPlan } from "../wire/protocol";
-import { send } from "../wire/store";
+import { hold_progress, told_to_hold } from "../orders/hold_watch";
+import { current, on_picture, send } from "../wire/store";
 
 export interface Notice {
   id: number;
@@ -17,8 +18,9 @@ let next_id = 1;
 const notices_kept = 4;
 
 function put(notice: Notice): void {
-  const others = notices.value.filter((one) => one.id !== notice.id);
-  notices.value = [...others, notice].slice(-notices_kept);
+  const known = notices.value.some((one) => one.id === notice.id);
+  const all = known ? notices.value.map((one) => (one.id === notice.id ? notice : one)) : [...notices.value, notice];
+  notices.value = all.slice(-notices_kept);
 }
 
 export function dismiss(id: number): void {
@@ -37,9 +39,29 @@ export async function give(line: string, plan?: DecidedPlan): Promise<Answer> {
   put({ id, line, text: "sent", state: "sent" });
   const answer = await send(line, plan);
   put({ id, line, text: answer.text.trim() || (answer.done ? "done" : "refused"), state: answer.done ? "done" : "refused" });
+  const told = answer.done ? told_to_hold(line, current().vehicles) : null;
+  if (told) watch_hold(id, line, told);
   // A refusal stays until it is dismissed.
-  if (answer.done) window.setTimeout(() => dismiss(id), 6000);
+  else if (answer.done) window.setTimeout(() => dismiss(id), 6000);
   return answer;
+}
+
+const hold_within_ms = 6000;
+
+/** Shows who holds until all do; and if some do not in time, until it is dismissed. */
+function watch_hold(id: number, line: string, told: number[]): void {
+  const begun_ms = performance.now();
+  const stop = on_picture(({ vehicles }) => {
+    const { all, text } = hold_progress(told, vehicles);
+    const late = performance.now() - begun_ms > hold_within_ms;
+    const before = notices.value.find((notice) => notice.id === id);
+    if (!before) return stop();
+    const state = all ? "done" : late ? "refused" : "sent";
+    if (before.text !== text || before.state !== state) put({ id, line, text, state });
+    if (!all) return;
+    stop();
+    window.setTimeout(() => dismiss(id), 6000);
+  });
 }
 
 /** No confirmation: to stop where one is can always be taken back. */

@@ -42,7 +42,7 @@ export const tiles_shown = signal(true);
 export const overlays_hidden = signal<ReadonlySet<string>>(new Set());
 
 /** What a press on the map means. */
-export type Tool = "select" | "measure" | "hazard" | "place";
+export type Tool = "select" | "measure" | "hazard" | "hazard_edge" | "place";
 export const tool = signal<Tool>("select");
 export interface Spot {
   x: number;

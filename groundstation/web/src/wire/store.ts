@@ -11,6 +11,7 @@ import type { LinkState } from "./socket";
 import { Tracks } from "./tracks";
 
 const panels_every_ms = 250;
+const plots_every_ms = 1000;
 
 let picture: Picture = empty_picture();
 let state_arrived_ms = 0;
@@ -18,8 +19,9 @@ const listeners = new Set<(picture: Picture) => void>();
 
 export const tracks = new Tracks();
 export const shown = signal<Picture>(picture);
-/** Grows when `tracks` does. */
+/** Grows when `tracks` does, once a second at most. */
 export const tracks_version = signal(0);
+let tracks_shown_ms = 0;
 
 export const link = signal<LinkState>("connecting");
 /** When the picture stopped, in ms of performance.now(); null while the link is open. */
@@ -84,7 +86,10 @@ function receive(message: FromServer): void {
   }
   if (message.type === "state") {
     state_arrived_ms = performance.now();
-    if (message.vehicles && tracks.add(picture.vehicles, message.time_s)) tracks_version.value++;
+    if (message.vehicles && tracks.add(picture.vehicles, message.time_s) && state_arrived_ms - tracks_shown_ms > plots_every_ms) {
+      tracks_shown_ms = state_arrived_ms;
+      tracks_version.value++;
+    }
   }
   if (picture === before && message.type !== "history") return;
   for (const listener of listeners) listener(picture);
