@@ -2,7 +2,7 @@
 // What stands on the ground: hazards, sites and the bearings of their deliveries.
 
 import { clock } from "../shell/format";
-import { coalition_sign } from "../theme/palette";
+import { coalition_sign, line_colour } from "../theme/palette";
 import type { Authorisation, Hazard, Site, SiteTask } from "../wire/protocol";
 import type { Picture } from "../wire/picture";
 import type { View } from "./canvas_layer";
@@ -59,7 +59,7 @@ export function paint_sites(view: View, picture: Picture): void {
   for (const site of picture.sites) {
     if (site.x === null || site.y === null || !view.sees(site.x, site.y, 200)) continue;
     const sign = sign_of_site(picture, site.id);
-    const colour = sign?.colour ?? view.colours.text;
+    const colour = sign ? line_colour(sign, view.colours.day) : view.colours.text;
     const x = view.px(site.x);
     const y = view.py(site.y);
     for (const task of site.tasks) paint_bearing(view, x, y, task, colour);

@@ -7,6 +7,7 @@ import { request_key } from "../mission/requests";
 import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, selected, theme, tiles_shown } from "../shell/view";
 import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell/view";
 import { read_colours } from "../theme/colours";
+import { line_colour } from "../theme/palette";
 import type { Colours } from "../theme/colours";
 import type { Picture } from "../wire/picture";
 import type { Authorisation } from "../wire/protocol";
@@ -215,7 +216,8 @@ export class MissionMap {
   }
 
   private colour_of(id: number): string {
-    return this.members.get(id)?.sign.colour ?? this.colours.trail;
+    const sign = this.members.get(id)?.sign;
+    return sign ? line_colour(sign, this.colours.day) : this.colours.trail;
   }
 
   private paint_grid(view: View): void {

@@ -2,7 +2,7 @@
 // Vehicles where they are, and the radio links between them.
 
 import { health_of } from "../fleet/attention";
-import { coalition_sign } from "../theme/palette";
+import { coalition_sign, line_colour } from "../theme/palette";
 import type { CoalitionSign } from "../theme/palette";
 import type { Picture } from "../wire/picture";
 import type { Coalition, Vehicle } from "../wire/protocol";
@@ -122,7 +122,7 @@ function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone
   if (leads && member) {
     context.beginPath();
     context.arc(x, y, 13, 0, 2 * Math.PI);
-    context.strokeStyle = member.sign.colour;
+    context.strokeStyle = line_colour(member.sign, colours.day);
     context.lineWidth = 1.5;
     context.stroke();
   }
@@ -137,7 +137,7 @@ function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone
   context.lineTo(-7, 8);
   context.closePath();
   const lost = health === "silent" || health === "unheard";
-  context.fillStyle = lost ? colours.ground : (member?.sign.colour ?? colours.vehicle);
+  context.fillStyle = lost ? colours.ground : member ? line_colour(member.sign, colours.day) : colours.vehicle;
   context.fill();
   context.lineWidth = lost ? 1.5 : 1;
   context.strokeStyle = lost ? colours.alarm : colours.halo;

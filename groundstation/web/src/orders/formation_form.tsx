@@ -26,7 +26,7 @@ function Outcome() {
   if (!tried.done) {
     return (
       <p class="problem alarm" role="alert" data-testid="preview-refused">
-        Refused: {tried.text}
+        Not possible: {tried.text.replace(/^refused:? */i, "")}
       </p>
     );
   }

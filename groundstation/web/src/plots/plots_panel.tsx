@@ -6,7 +6,7 @@ import uPlot from "uplot";
 import { clock, ids } from "../shell/format";
 import { selected, theme } from "../shell/view";
 import { read_colours } from "../theme/colours";
-import { coalition_sign } from "../theme/palette";
+import { coalition_sign, line_colour } from "../theme/palette";
 import { tracks, tracks_version, vehicles } from "../wire/store";
 import { aligned } from "../wire/tracks";
 import type { Track } from "../wire/tracks";
@@ -22,10 +22,8 @@ const lines_max = 7;
 // With the colour, so that it is not the only sign.
 const dashes = [[], [6, 3], [2, 3], [9, 3, 2, 3], [4, 4], [12, 4], [1, 4]];
 
-/** A line's colour and dash; yellow and its like are too pale for paper. */
 function pen(index: number, day: boolean): { stroke: string; dash: number[] } {
-  const { colour } = coalition_sign(index);
-  return { stroke: day ? `color-mix(in srgb, ${colour} 70%, black)` : colour, dash: dashes[index % dashes.length]! };
+  return { stroke: line_colour(coalition_sign(index), day), dash: dashes[index % dashes.length]! };
 }
 
 function data_of(plot: (typeof plots)[number], chosen: readonly number[]): uPlot.AlignedData {

@@ -11,6 +11,7 @@ import { PlotsPanel } from "../plots/plots_panel";
 import { ReplayBar } from "../replay/replay_bar";
 import { current, in_replay, session } from "../wire/store";
 import { Banners } from "./banners";
+import { Guard } from "./guard";
 import { Help } from "./help";
 import { listen_to_keys } from "./keys";
 import { Login } from "./login";
@@ -37,15 +38,23 @@ export function App() {
       <Banners />
       <main class="main">
         <div class="map-side">
-          <MapPanel />
+          <Guard what="The map">
+            <MapPanel />
+          </Guard>
           {in_replay.value && <ReplayBar />}
-          <TimelinePanel />
+          <Guard what="The time line">
+            <TimelinePanel />
+          </Guard>
         </div>
         <aside class="panel-side" aria-label="Panels">
-          <Decisions />
+          <Guard what="The list of decisions">
+            <Decisions />
+          </Guard>
           <Tabs />
           <div class="panel" role="tabpanel" id="panel" aria-labelledby={`tab-${panel.value}`} tabIndex={-1}>
-            <Panel />
+            <Guard what="This panel" key={panel.value}>
+              <Panel />
+            </Guard>
           </div>
         </aside>
       </main>

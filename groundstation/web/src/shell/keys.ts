@@ -58,7 +58,8 @@ export function listen_to_keys(vehicle_ids: () => readonly number[]): () => void
     if (is_typing(event)) return;
     const digit = Number(event.key);
     const toggled = toggles[event.key];
-    if (Number.isInteger(digit) && panels[digit - 1]) panel.value = panels[digit - 1]!;
+    const wanted = panels[digit - 1];
+    if (wanted) panel.value = wanted === "orders" && !may_order.value ? panel.value : wanted;
     else if (toggled) layers.value = { ...layers.value, [toggled]: !layers.value[toggled] };
     else if (event.key === "[") next_vehicle(vehicle_ids(), -1);
     else if (event.key === "]") next_vehicle(vehicle_ids(), 1);

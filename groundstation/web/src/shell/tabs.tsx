@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-import { shown } from "../wire/store";
+import { may_order, shown } from "../wire/store";
 import { count_alarms } from "./alarms";
 import { panel, panels } from "./view";
 import type { Panel } from "./view";
@@ -8,14 +8,15 @@ const names: Record<Panel, string> = { fleet: "Fleet", mission: "Mission", order
 
 export function Tabs() {
   const { waiting } = count_alarms(shown.value);
+  const there = panels.filter((name) => name !== "orders" || may_order.value);
   const move = (step: number) => {
-    const next = panels[(panels.indexOf(panel.value) + step + panels.length) % panels.length]!;
+    const next = there[(there.indexOf(panel.value) + step + there.length) % there.length]!;
     panel.value = next;
     document.getElementById(`tab-${next}`)?.focus();
   };
   return (
     <div class="tabs" role="tablist" aria-label="Panels">
-      {panels.map((name) => (
+      {there.map((name) => (
         <button
           key={name}
           type="button"

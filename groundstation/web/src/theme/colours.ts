@@ -20,10 +20,11 @@ const names = [
   "preview",
 ] as const;
 
-export type Colours = Record<(typeof names)[number], string>;
+export type Colours = Record<(typeof names)[number], string> & { day: boolean };
 
 export function read_colours(): Colours {
   const style = getComputedStyle(document.documentElement);
   const entries = names.map((name) => [name, style.getPropertyValue(`--canvas-${name}`).trim()]);
-  return Object.fromEntries(entries) as Colours;
+  const colours = Object.fromEntries(entries) as Record<(typeof names)[number], string>;
+  return { ...colours, day: document.documentElement.dataset["theme"] === "day" };
 }

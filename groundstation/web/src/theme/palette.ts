@@ -25,6 +25,13 @@ export function coalition_sign(slot: number): CoalitionSign {
   };
 }
 
+/** The colour of its lines, which on white must be darker than its badges. */
+export function line_colour(sign: CoalitionSign, day: boolean): string {
+  if (!day) return sign.colour;
+  const part = (at: number) => Math.round(0.7 * parseInt(sign.colour.slice(at, at + 2), 16)).toString(16).padStart(2, "0");
+  return `#${part(1)}${part(3)}${part(5)}`;
+}
+
 /** Corners of a shape around (0, 0), within a circle of radius 1, y downwards; none for a circle. */
 export function corners(shape: Shape): [number, number][] {
   if (shape === "circle") return [];
