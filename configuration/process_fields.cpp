@@ -325,7 +325,7 @@ void network_fields(FieldVisitor& v, NetworkConfig& network) {
 }
 
 void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
-                    std::string& recording_folder) {
+                    std::string& recording_folder, std::uint32_t& recording_limit_mb) {
   v.section({"network", "the mission network", kRequired},
             [&network](FieldVisitor& inner) { network_fields(inner, network); });
   v.section({"time", "mission time"}, [&time](FieldVisitor& inner) {
@@ -335,6 +335,9 @@ void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
   });
   v.text({"recording_folder", "where the process writes what happened; empty: nowhere"},
          recording_folder);
+  whole(v,
+        {"recording_limit_mb", "size of what is kept: the newest half of it, at least, always is"},
+        {2.0, 1e6, "MB"}, recording_limit_mb);
 }
 
 bool is_plain(const std::string& name) {
@@ -392,7 +395,8 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
   formation_section(v, config.formation);
-  process_fields(v, config.network, config.time, config.recording_folder);
+  process_fields(v, config.network, config.time, config.recording_folder,
+                 config.recording_limit_mb);
   whole(v, {"seed", "of the vehicle's generators"}, {0.0, 9e18}, config.seed);
 }
 
@@ -411,7 +415,8 @@ void fields(FieldVisitor& v, GroundConfig& config) {
           "name of the Unix socket where `skein-ground tell` reaches it; empty: "
           "skein-ground-PORT"},
          config.control_socket);
-  process_fields(v, config.network, config.time, config.recording_folder);
+  process_fields(v, config.network, config.time, config.recording_folder,
+                 config.recording_limit_mb);
 }
 
 }  // namespace skein::configuration

@@ -106,6 +106,7 @@ class GroundLoop {
     while (!stopping_) {
       const Instant now = clock_.now();
       while (const auto received = node_.poll()) {
+        if (writer_) writer_->write(received->message, received->sender, now);
         agent_.on_message(received->message, received->sender, now);
         formation_.on_message(received->message, received->sender, now);
         console_.on_message(received->message, received->sender, now);
@@ -266,6 +267,7 @@ class GroundLoop {
 
   void send(const mission::Message& message, Instant now) {
     node_.publish(message);
+    if (writer_) writer_->write(message, kGroundStation, now);
     console_.on_message(message, kGroundStation, now);
   }
 
@@ -368,9 +370,14 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
   }
+  const InstanceId instance = process::new_instance();
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
-    auto opened = recording::Writer::open(config.recording_folder);
+    recording::Writer::Options options;
+    options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
+                       clock.epoch_unix_ns(), to_yaml(config)};
+    options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
+    auto opened = recording::Writer::open(config.recording_folder, options);
     if (!opened) {
       spdlog::critical("cannot record: {}", opened.error().message);
       return process::kExitCannotStart;
@@ -378,8 +385,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     writer = std::move(*opened);
   }
   process::Wake wake;
-  auto node = network::Node::open(process::node_config(
-      config.network, kGroundStation, process::new_instance(), [&wake] { wake.notify(); }));
+  auto node = network::Node::open(
+      process::node_config(config.network, kGroundStation, instance, [&wake] { wake.notify(); }));
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;

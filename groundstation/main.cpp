@@ -9,6 +9,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/configuration/ground_config.hpp"
@@ -19,6 +20,7 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/process/log.hpp"
+#include "skein/recording_export/recording_export.hpp"
 
 namespace {
 
@@ -155,6 +157,36 @@ int password(const PasswordArguments& arguments) {
   return 0;
 }
 
+struct ExportArguments {
+  std::string recording;
+  std::string csv;
+  std::string geojson;
+  std::string kml;
+};
+
+/// What is in a recording.
+int info(const std::string& recording) {
+  const auto text = skein::recording_export::summary(recording);
+  if (!text) return fail(text.error().message, skein::process::kExitBadInput);
+  std::fputs(text->c_str(), stdout);
+  return 0;
+}
+
+int export_recording(const ExportArguments& arguments) {
+  using skein::recording_export::Format;
+  for (const auto& [format, folder] : {std::pair{Format::csv, arguments.csv},
+                                       {Format::geojson, arguments.geojson},
+                                       {Format::kml, arguments.kml}}) {
+    if (folder.empty()) continue;
+    const auto files = skein::recording_export::write(arguments.recording, format, folder);
+    if (!files) return fail(files.error().message, skein::process::kExitBadInput);
+    std::printf("into %s:", folder.c_str());
+    for (const std::string& file : *files) std::printf(" %s", file.c_str());
+    std::printf("\n");
+  }
+  return 0;
+}
+
 CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,
                    const char* footer) {
   CLI::App& command = *app.add_subcommand(name, description);
@@ -179,7 +211,8 @@ int main(int argc, char** argv) {
       "  skein-ground --config ground.yaml\n"
       "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
       "  skein-ground tell --config ground.yaml --json status\n"
-      "  skein-ground plan scenarios/routes-3.yaml\n\n"
+      "  skein-ground plan scenarios/routes-3.yaml\n"
+      "  skein-ground info runs/mine/mission.mcap\n\n"
       "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
       "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
@@ -229,6 +262,23 @@ int main(int argc, char** argv) {
       "The password is asked for, or read from standard input.\n"
       "Example:\n"
       "  skein-ground password ada >> passwords");
+  std::string looked_at;
+  CLI::App& info_command = *app.add_subcommand("info", "Tells what is in a recording");
+  info_command.add_option("recording", looked_at, "An MCAP file, or a folder of a node or a run")
+      ->required();
+  ExportArguments exporting;
+  CLI::App& export_command =
+      *app.add_subcommand("export", "Writes a recording's tracks and events for other tools");
+  export_command
+      .add_option("recording", exporting.recording, "An MCAP file, or a folder of a node or a run")
+      ->required();
+  export_command.add_option("--csv", exporting.csv, "Folder for tables: all numbers, exact");
+  export_command.add_option("--geojson", exporting.geojson, "Folder for flight.geojson");
+  export_command.add_option("--kml", exporting.kml, "Folder for flight.kml");
+  export_command.require_option(2, 4);
+  export_command.footer(
+      "Example:\n"
+      "  skein-ground export runs/mine --csv tables --kml .");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -236,6 +286,8 @@ int main(int argc, char** argv) {
   }
   if (plan_command.parsed()) return plan(planning);
   if (password_command.parsed()) return password(account);
+  if (info_command.parsed()) return info(looked_at);
+  if (export_command.parsed()) return export_recording(exporting);
   if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
   if (!formation.parsed()) return run(arguments);
   const std::string line = CLI::detail::join(formation.remaining(), " ");

@@ -21,7 +21,9 @@ AgentLoop::AgentLoop(std::unique_ptr<mission::OnboardAgent> agent, VehicleId sel
       self_{self},
       self_report_{self, link_.program, now},
       stepped_at_{now},
-      next_telemetry_{now} {}
+      next_telemetry_{now} {
+  if (link_.record) note(recording::AgentStart{agent_->telemetry().instance, now});
+}
 
 void AgentLoop::step(Instant now) {
   stepped_at_ = now;
@@ -30,6 +32,7 @@ void AgentLoop::step(Instant now) {
     state_ = *newer;
     has_state_ = true;
     if (flying && state_.time >= Instant{}) {
+      note(recording::StateGiven{state_, now});
       agent_->on_state(state_, now);
       hand_out();
     }
@@ -39,20 +42,26 @@ void AgentLoop::step(Instant now) {
     if (!received) break;
     if (const auto* command = std::get_if<mission::Command>(&received->message)) pass_on(*command);
     self_report_.on_heard(received->sender, now);
+    if (link_.record) {
+      note(recording::MessageRecord{received->message, received->sender, now});
+    }
     agent_->on_message(received->message, received->sender, now);
     hand_out();
   }
   while (const auto result = planner_->result()) {
+    note(recording::PlanningGiven{result->round, result->expired_after, result->took, now});
     agent_->on_planning_result(*result, now);
     hand_out();
   }
   if (link_.flight_event) {
     while (auto event = link_.flight_event()) {
-      link_.send(mission::Message{*event});
+      if (link_.record) note(recording::FlightNotice{event->text, now});
+      send(mission::Message{*event});
       report(std::move(*event));
     }
   }
   if (flying) {
+    note(recording::TimeoutGiven{now});
     agent_->on_timeout(now);
     hand_out();
   }
@@ -63,12 +72,27 @@ void AgentLoop::step(Instant now) {
 void AgentLoop::hand_out() {
   while (const auto plan = agent_->poll_plan()) {
     control_->plan.write(*plan);
+    if (link_.record) {
+      note(recording::PlanMade{std::make_shared<const mission::FlightPlan>(*plan), stepped_at_});
+    }
     self_report_.on_plan(*plan);
   }
-  while (const auto track = agent_->poll_track()) control_->motion.write(*track);
-  while (const auto message = agent_->poll_message()) link_.send(*message);
+  while (const auto track = agent_->poll_track()) {
+    control_->motion.write(*track);
+    if (link_.record) note(recording::made(*track, stepped_at_));
+  }
+  while (const auto message = agent_->poll_message()) send(*message);
   while (auto request = agent_->poll_planning_request()) planner_->request(std::move(*request));
   while (auto event = agent_->poll_event()) report(std::move(*event));
+}
+
+void AgentLoop::send(const mission::Message& message) {
+  if (link_.record) note(recording::MessageRecord{message, self_, stepped_at_});
+  link_.send(message);
+}
+
+void AgentLoop::note(recording::AgentRecord record) {
+  if (link_.record) link_.record(std::move(record));
 }
 
 void AgentLoop::report(mission::MissionEvent event) {
@@ -91,11 +115,11 @@ void AgentLoop::send_telemetry(Instant now) {
   telemetry.state = state_;
   telemetry.control_overruns = control_->overruns.load(std::memory_order_relaxed);
   telemetry.messages_dropped = static_cast<std::uint32_t>(dropped());
-  link_.send(mission::Message{telemetry});
+  send(mission::Message{telemetry});
 }
 
 void AgentLoop::send_self_report(Instant now) {
-  if (const auto plan = self_report_.plan_due(now)) link_.send(mission::Message{*plan});
+  if (const auto plan = self_report_.plan_due(now)) send(mission::Message{*plan});
   if (!self_report_.health_due(now)) return;
   SelfReport::Condition condition;
   condition.instance = agent_->telemetry().instance;
@@ -103,7 +127,7 @@ void AgentLoop::send_self_report(Instant now) {
   if (has_state_) condition.state_at = state_.time;
   condition.overruns = control_->overruns.load(std::memory_order_relaxed);
   condition.dropped = dropped();
-  link_.send(mission::Message{self_report_.health(condition, now)});
+  send(mission::Message{self_report_.health(condition, now)});
 }
 
 std::uint64_t AgentLoop::dropped() const {

@@ -21,12 +21,19 @@ void Planner::run() {
     }
     const auto begun = std::chrono::steady_clock::now();
     planning::PlanningBudget budget;
+    std::uint64_t asked = 0;
+    std::uint64_t expired_after = 0;
     if (now_) {
-      budget.expired = [this, end = request->answer_by - kAnswerMargin] { return now_() >= end; };
+      budget.expired = [&, end = request->answer_by - kAnswerMargin] {
+        ++asked;
+        if (expired_after == 0 && now_() >= end) expired_after = asked;
+        return expired_after != 0;
+      };
     }
     auto allocation = planning::allocate(request->params, request->problem, budget);
     results_.push(
-        {request->round, std::move(allocation), std::chrono::steady_clock::now() - begun});
+        {{request->round, std::move(allocation), std::chrono::steady_clock::now() - begun},
+         expired_after});
     on_result_();
   }
 }

@@ -11,8 +11,8 @@
 namespace skein::onboard {
 
 Recorder::Recorder(std::optional<recording::Writer> writer, ControlPorts& control,
-                   EventRing& events)
-    : writer_{std::move(writer)}, control_{&control}, events_{&events} {}
+                   EventRing& events, AgentRing& agent)
+    : writer_{std::move(writer)}, control_{&control}, events_{&events}, agent_{&agent} {}
 
 void Recorder::run() {
   const auto period = spec_of(ThreadRole::recorder).period;
@@ -44,6 +44,11 @@ void Recorder::empty_rings() {
   empty(control_->track);
   empty(control_->plans);
   empty(*events_);
+  empty(*agent_);
+  const std::uint64_t lost = control_->track.dropped() + control_->plans.dropped() +
+                             events_->dropped() + agent_->dropped();
+  if (writer_ && lost > lost_) writer_->write(recording::Gap{lost - lost_});
+  lost_ = lost;
 }
 
 void Recorder::flush() {

@@ -13,12 +13,11 @@
 #include "skein/can/bus.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
-#include "skein/mission/formation_agent.hpp"
-#include "skein/mission/vehicle_agent.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
 #include "skein/onboard/control_loop.hpp"
+#include "skein/onboard/make_agent.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/recorder.hpp"
 #include "skein/onboard/threads.hpp"
@@ -100,33 +99,6 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
   return made;
 }
 
-std::unique_ptr<mission::OnboardAgent> formation_agent(const configuration::VehicleConfig& config,
-                                                       InstanceId instance, Instant now) {
-  mission::FormationAgentConfig agent;
-  agent.vehicle = config.vehicle.id;
-  agent.instance = instance;
-  agent.limits = config.formation.limits;
-  agent.avoidance = config.formation.avoidance;
-  agent.passage.tolerance_m = config.formation.tracking_m;
-  return std::make_unique<mission::FormationAgent>(agent, now);
-}
-
-/// A multirotor flies in formation, a fixed wing in coalitions.
-std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleConfig& config,
-                                                  std::optional<TimedPath> route,
-                                                  InstanceId instance, Instant now) {
-  if (config.flight_controller.is_multirotor()) return formation_agent(config, instance, now);
-  mission::VehicleAgentConfig agent;
-  agent.vehicle = config.vehicle;
-  agent.instance = instance;
-  agent.protocol = config.protocol;
-  agent.planning = config.planning;
-  agent.search = config.search;
-  agent.route = std::move(route);
-  agent.hazards = config.hazards;
-  return std::make_unique<mission::VehicleAgent>(agent, now);
-}
-
 AgentLink link_to(network::Node& node) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
@@ -154,10 +126,13 @@ std::optional<mission::MissionEvent> next_warning(CanFlightController& controlle
 }
 
 AgentLink link_to(network::Node& node, CanFlightController* on_can,
-                  const configuration::VehicleConfig& config) {
+                  const configuration::VehicleConfig& config, AgentRing* records) {
   const VehicleId self = config.vehicle.id;
   AgentLink link = link_to(node);
   link.program = {"skein-onboard " SKEIN_VERSION, on_can != nullptr ? "ardupilot" : "simulated"};
+  if (records != nullptr) {
+    link.record = [records](recording::AgentRecord record) { records->push(std::move(record)); };
+  }
   if (on_can == nullptr) return link;
   link.mode = [on_can] { return on_can->mode(); };
   link.flight_event = [on_can, self] { return next_warning(*on_can, self); };
@@ -173,7 +148,7 @@ class Threads {
   Threads(const configuration::VehicleConfig& config, std::optional<TimedPath> route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
           InstanceId instance, std::optional<recording::Writer> writer,
-          FlightControllers flight_controllers)
+          FlightControllers flight_controllers, Instant now)
       : clock_{clock},
         wake_agent_{wake_agent},
         flight_controllers_{std::move(flight_controllers)},
@@ -181,14 +156,14 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{make_agent(config, std::move(route), instance, clock.now()),
+        agent_{make_agent(config, std::move(route), instance, now),
                config.vehicle.id,
-               link_to(node, flight_controllers_.on_can, config),
+               link_to(node, flight_controllers_.on_can, config, writer ? &records_ : nullptr),
                ports_,
                planner_,
                events_,
-               clock.now()},
-        recorder_{std::move(writer), ports_, events_} {
+               now},
+        recorder_{std::move(writer), ports_, events_, records_} {
     recorder_thread_ = start_thread(ThreadRole::recorder, [this] { recorder_.run(); });
     planner_thread_ = start_thread(ThreadRole::planner, [this] { planner_.run(); });
     if (flight_controllers_.on_can != nullptr) {
@@ -221,7 +196,7 @@ class Threads {
         "dropped {}; agent errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped, errors,
-        ports_.track.dropped() + ports_.plans.dropped() + events_.dropped());
+        ports_.track.dropped() + ports_.plans.dropped() + events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;
     const auto& link = flight_controllers_.on_can->link();
     const auto& bus = link.bus().statistics();
@@ -261,6 +236,7 @@ class Threads {
 
   ControlPorts ports_;
   EventRing events_;
+  AgentRing records_;
   Planner planner_{[this] { wake_agent_.notify(); }, [this] { return clock_.now(); }};
   const process::MissionClock& clock_;
   process::Wake& wake_agent_;
@@ -289,16 +265,20 @@ int fly(const configuration::VehicleConfig& config) {
     spdlog::critical("the route cannot be flown: {}", route.error().message);
     return process::kExitBadInput;
   }
+  const InstanceId instance = process::new_instance();
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
-    auto opened = recording::Writer::open(config.recording_folder);
+    recording::Writer::Options options;
+    options.session = {config.vehicle.id,     instance,       "skein-onboard", SKEIN_VERSION,
+                       clock.epoch_unix_ns(), to_yaml(config)};
+    options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
+    auto opened = recording::Writer::open(config.recording_folder, options);
     if (!opened) {
       spdlog::critical("cannot record: {}", opened.error().message);
       return process::kExitCannotStart;
     }
     writer = std::move(*opened);
   }
-  const InstanceId instance = process::new_instance();
   process::Wake wake_agent;
   auto node = network::Node::open(process::node_config(config.network, config.vehicle.id, instance,
                                                        [&wake_agent] { wake_agent.notify(); }));
@@ -317,7 +297,7 @@ int fly(const configuration::VehicleConfig& config) {
                instance.value);
   const auto threads =
       std::make_unique<Threads>(config, *route, clock, **node, wake_agent, instance,
-                                std::move(writer), std::move(controllers).value());
+                                std::move(writer), std::move(controllers).value(), clock.now());
   spdlog::info("{}: stopping", shutdown.wait());
   threads->stop();
   threads->log_summary(**node);

@@ -29,6 +29,7 @@ MissionClock::MissionClock(std::int64_t epoch_unix_ns, double rate) : rate_{rate
   steady_start_ = before + (after - before) / 2;
   const Duration since_epoch = epoch_unix_ns == 0 ? Duration{} : unix_now - Duration{epoch_unix_ns};
   mission_start_ = Instant{scaled(since_epoch, rate_)};
+  epoch_unix_ns_ = epoch_unix_ns == 0 ? unix_now.count() : epoch_unix_ns;
 }
 
 Instant MissionClock::now() const {

@@ -14,6 +14,7 @@
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <thread>
 #include <utility>
@@ -26,6 +27,7 @@
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/network/node.hpp"
+#include "skein/recording/writer.hpp"
 
 namespace skein::hil {
 namespace {
@@ -171,6 +173,11 @@ class Bench {
           !up)
         return up;
     }
+    recording::Writer::Options recorder;
+    recorder.session = {kBench, bench.instance, "skein-hil", "", deployment.time.epoch_unix_ns, ""};
+    auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
+    if (!writer) return writer.error();
+    writer_ = std::move(writer).value();
     auto node = network::Node::open(bench);
     if (!node) return node.error();
     node_ = std::move(node).value();
@@ -376,13 +383,13 @@ class Bench {
 
   void sense(Instant now) {
     for (const auto& report : sensors_.update(positions())) {
-      node_->publish(report);
+      publish(report);
       ++progress_.sites_found;
     }
     for (const auto& h : scenario_.hazards) {
       if (h.known_from <= Instant{} || now < h.known_from || !told_.insert(h.hazard.id).second)
         continue;
-      node_->publish(mission::HazardReport{h.hazard});
+      publish(mission::HazardReport{h.hazard});
     }
   }
 
@@ -405,8 +412,15 @@ class Bench {
     return progress_.now >= *stop_at_;
   }
 
+  /// What no process of the run says, its recordings must have too.
+  void publish(const mission::Message& message) {
+    node_->publish(message);
+    if (writer_) writer_->write(message, kBench, mission_now());
+  }
+
   BenchOutcome stop() {
     hear();
+    writer_.reset();
     for (const auto& [id, telemetry] : last_) {
       outcome_.control_overruns += telemetry.control_overruns;
       outcome_.messages_dropped += telemetry.messages_dropped;
@@ -487,6 +501,7 @@ class Bench {
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
   std::unique_ptr<network::Node> node_;
+  std::optional<recording::Writer> writer_;  ///< of what the bench itself says
   SurveySensors sensors_;
   steady_clock::time_point started_;
   steady_clock::time_point epoch_;

@@ -30,10 +30,10 @@ CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
       if (!lost) result.violations.push_back({vehicle.id, Instant{}, who + what});
       continue;
     }
-    if (!lost && recorded->truncated_lines > 0) {
+    if (!lost && recorded->damaged_parts > 0) {
       result.violations.push_back({vehicle.id, recorded->track.back().state.time,
-                                   who + " left " + std::to_string(recorded->truncated_lines) +
-                                       " files that break off in a line: it did not end cleanly"});
+                                   who + " left " + std::to_string(recorded->damaged_parts) +
+                                       " parts of a recording that cannot be read"});
     }
     for (std::size_t i = 1; i < recorded->track.size(); ++i) {
       const Instant from = recorded->track[i - 1].state.time;

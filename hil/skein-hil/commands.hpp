@@ -50,6 +50,12 @@ int simulate(const SimulateArguments& arguments);
 /// What simulate() does with a scenario of a formation.
 int simulate_formation(const configuration::Scenario& scenario, const SimulateArguments& arguments);
 
+struct ReexecuteArguments {
+  std::filesystem::path run;
+  std::optional<std::uint16_t> vehicle;  ///< without: all
+};
+int reexecute(const ReexecuteArguments& arguments);
+
 struct ChangesArguments {
   std::string program;  ///< as it was called
   std::size_t runs = 10'000;

@@ -91,6 +91,19 @@ int main(int argc, char** argv) {
       "          skein-hil simulate scenarios/faults-8.yaml --runs 1000 --faults mixed\n"
       "          skein-hil simulate scenarios/formation-5.yaml --runs 1000 --faults mixed");
 
+  skein::hil::ReexecuteArguments reexecute;
+  auto* reexecute_command = app.add_subcommand(
+      "reexecute",
+      "Run a flight's agents anew from what they were given, and compare what they decide");
+  reexecute_command->add_option("run", reexecute.run, "Folder of the run, or of one vehicle in it")
+      ->required();
+  reexecute_command->add_option("--vehicle", reexecute.vehicle, "Only this one")
+      ->check(CLI::Range(1, 65535));
+  reexecute_command->footer(
+      "Every flight plan and message must be the same, byte for byte; the first that is not is\n"
+      "printed. Ends with status 0 if all are, 1 if not, 2 where there is nothing to run.\n"
+      "Example: skein-hil reexecute runs/coalition-32-20260101-120000 --vehicle 7");
+
   skein::hil::ChangesArguments changes;
   changes.program = argv[0];
   auto* changes_command = app.add_subcommand(
@@ -253,6 +266,7 @@ int main(int argc, char** argv) {
   if (dump_command->parsed()) return skein::hil::dump_can(dump);
   if (replay_command->parsed()) return skein::hil::replay_can(replay);
   if (run_command->parsed()) return skein::hil::run(run);
+  if (reexecute_command->parsed()) return skein::hil::reexecute(reexecute);
   if (changes_command->parsed()) return skein::hil::changes(changes);
   if (routes_command->parsed()) return skein::hil::routes(routes);
   if (shapes_command->parsed()) return skein::hil::shapes(shapes);

@@ -14,6 +14,8 @@
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/recording/merge.hpp"
+#include "skein/recording/recording.hpp"
 #include "skein/report/report.hpp"
 
 namespace skein::hil {
@@ -95,6 +97,8 @@ int run(const RunArguments& arguments) {
   if (!outcome) return complain(outcome.error().message);
   if (outcome->interrupted) fmt::print("interrupted; everything is stopped\n");
 
+  const auto merged = recording::merge_run(options.run_folder);
+  if (!merged) fmt::print(stderr, "{}\n", merged.error().message);
   const auto record = read_record(*scenario, options.run_folder, outcome->killed);
   if (!record) {
     for (const auto& death : outcome->deaths) fmt::print(stderr, "{}\n", death);
@@ -113,8 +117,8 @@ int run(const RunArguments& arguments) {
   const auto page = options.run_folder / "report.html";
   std::ofstream{page} << report::html(contents);
   std::ofstream{options.run_folder / "map.svg"} << report::mission_svg(*record);
-  fmt::print("\nreport: {}\ndata:   {} (tracks, events and plans of every node as CSV)\n\n{}",
-             page.string(), options.run_folder.string(),
+  fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\n\n{}", page.string(),
+             (options.run_folder / recording::kRunFileName).string(),
              report::text_table(contents.checks, contents.comparison));
 
   const bool held = std::all_of(contents.checks.begin(), contents.checks.end(),

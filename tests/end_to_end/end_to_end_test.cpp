@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "skein/hil/child_process.hpp"
+#include "skein/recording/reader.hpp"
 
 namespace skein::hil {
 namespace {
@@ -106,8 +107,9 @@ TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
   const auto text = output();
   const auto last = text.rfind('\n', text.size() - 2);
   EXPECT_TRUE(text.substr(last + 1).starts_with("PASS")) << text;
-  EXPECT_TRUE(fs::exists(folder_ / "run" / "vehicle-01" / "track.csv"));
-  EXPECT_TRUE(fs::exists(folder_ / "run" / "ground" / "events.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "run" / "mission.mcap"));
+  EXPECT_EQ(run({"reexecute", (folder_ / "run").string()}), "exit status 0") << output();
+  EXPECT_NE(output().find("vehicle 6: "), std::string::npos) << output();
 }
 
 TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
@@ -129,7 +131,10 @@ TEST_F(EndToEnd, AFormationGoesOnWithoutTheVehicleThatIsLostInAChange) {
             "exit status 0")
       << output();
   EXPECT_NE(output().find("vehicle 2 is silent"), std::string::npos) << output();
-  EXPECT_TRUE(fs::exists(folder_ / "run" / "ground" / "places.csv"));
+  const auto ground = recording::read(folder_ / "run" / "ground", kGroundStation);
+  ASSERT_TRUE(ground.ok()) << ground.error().message;
+  EXPECT_FALSE(ground->places.empty());
+  EXPECT_EQ(run({"reexecute", (folder_ / "run").string()}), "exit status 0") << output();
 }
 
 TEST_F(EndToEnd, AFormationIsSafeThroughLossSilenceAndWithoutLeaderAndGroundStation) {

@@ -42,8 +42,8 @@ bool is_pure(std::string_view path) {
 
 bool is_cpp_outside_dds(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && !path.starts_with("network/") &&
-         !path.starts_with("codec/") && !path.starts_with("hil/radio/") &&
-         !path.starts_with("idl/");
+         !path.starts_with("codec/") && !path.starts_with("recording/") &&
+         !path.starts_with("hil/radio/") && !path.starts_with("idl/");
 }
 
 bool is_cpp_outside_topics(std::string_view path) {
@@ -107,9 +107,10 @@ constexpr std::array kLineRules{
     LineRule{"core-library", is_core, kCode,
              R"(#\s*include\s*<(?!Eigen/|GeographicLib/|sys/|netinet/|arpa/|net/|linux/)[^>]*/)",
              "core depends on the standard library, Eigen and GeographicLib only"},
-    LineRule{"dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
-             R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
-             "DDS stays in network/ and hil/radio/, CDR in codec/: use their interfaces"},
+    LineRule{
+        "dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
+        R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
+        "DDS stays in network/ and hil/radio/, CDR in codec/ and recording/: use their interfaces"},
     LineRule{"qos-outside", is_cpp_outside_node, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",

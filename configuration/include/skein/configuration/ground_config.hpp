@@ -43,6 +43,7 @@ struct GroundConfig {
   ConsoleConfig console;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded
+  std::uint32_t recording_limit_mb = 1000;
 };
 
 /// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".

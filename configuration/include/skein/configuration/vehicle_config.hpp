@@ -73,6 +73,7 @@ struct VehicleConfig {
   FormationConfig formation;    ///< of a multirotor
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded
+  std::uint32_t recording_limit_mb = 1000;
   std::uint64_t seed = 1;
 };
 

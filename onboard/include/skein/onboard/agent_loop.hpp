@@ -12,10 +12,13 @@
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/self_report.hpp"
 #include "skein/onboard/spsc_ring.hpp"
+#include "skein/recording/recording.hpp"
 
 namespace skein::onboard {
 
 using EventRing = SpscRing<mission::MissionEvent, 1024>;
+/// Agent to recorder: what the agent is given and what it gives, in order.
+using AgentRing = SpscRing<recording::AgentRecord, 4096>;
 
 /// The mission network, as the agent's thread sees it. None of them blocks.
 struct AgentLink {
@@ -31,6 +34,8 @@ struct AgentLink {
   /// Hears the operator's commands to this vehicle once each, as the agent does, those to all
   /// included; may be empty.
   std::function<void(const mission::Command&)> on_command = {};
+  /// Takes down what the agent is given and gives, for its re-execution; may be empty.
+  std::function<void(recording::AgentRecord)> record = {};
   /// The mode that the flight controller is in; may be empty.
   std::function<std::string()> mode = {};
   SelfReport::Program program = {};
@@ -59,6 +64,8 @@ class AgentLoop {
 
  private:
   void hand_out();
+  void send(const mission::Message& message);
+  void note(recording::AgentRecord record);
   void report(mission::MissionEvent event);
   void pass_on(const mission::Command& command);
   void send_telemetry(Instant now);

@@ -16,6 +16,12 @@ namespace skein::onboard {
 /// thread calls request() and result().
 class Planner {
  public:
+  /// A result, and what it takes to make it again: its budget was spent when it was asked for this
+  /// time; 0: never.
+  struct Answer : mission::PlanningResult {
+    std::uint64_t expired_after = 0;
+  };
+
   /// A plan is given up improving this long before its request wants the answer.
   static constexpr Duration kAnswerMargin = std::chrono::milliseconds{100};
 
@@ -26,7 +32,7 @@ class Planner {
 
   /// False, and counted in dropped(), when four requests are waiting already.
   bool request(mission::PlanningRequest request);
-  [[nodiscard]] std::optional<mission::PlanningResult> result() { return results_.pop(); }
+  [[nodiscard]] std::optional<Answer> result() { return results_.pop(); }
 
   /// Works until stop(). A plan that is being made is finished first.
   void run();
@@ -37,7 +43,7 @@ class Planner {
   std::function<void()> on_result_;
   std::function<Instant()> now_;
   SpscRing<mission::PlanningRequest, 4> requests_;
-  SpscRing<mission::PlanningResult, 8> results_;
+  SpscRing<Answer, 8> results_;
   process::Wake wake_;
   std::atomic<bool> stopping_{false};
 };

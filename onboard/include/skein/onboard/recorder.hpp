@@ -17,7 +17,8 @@ namespace skein::onboard {
 class Recorder {
  public:
   /// The rings must outlive this object.
-  Recorder(std::optional<recording::Writer> writer, ControlPorts& control, EventRing& events);
+  Recorder(std::optional<recording::Writer> writer, ControlPorts& control, EventRing& events,
+           AgentRing& agent);
 
   /// Works until stop(), then writes what is left. Flushes every second.
   void run();
@@ -30,6 +31,8 @@ class Recorder {
   std::optional<recording::Writer> writer_;
   ControlPorts* control_;
   EventRing* events_;
+  AgentRing* agent_;
+  std::uint64_t lost_ = 0;  ///< as far as the recording says
   process::Wake wake_;
   std::atomic<bool> stopping_{false};
 };

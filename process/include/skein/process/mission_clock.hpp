@@ -17,6 +17,9 @@ class MissionClock {
   MissionClock(std::int64_t epoch_unix_ns, double rate);
 
   [[nodiscard]] Instant now() const;
+  /// Mission time 0, by the system time that was read. (At a rate other than 1, later mission times
+  /// are not so long after it.)
+  [[nodiscard]] std::int64_t epoch_unix_ns() const { return epoch_unix_ns_; }
   /// When that instant is, for waiting. Instants further away than a day are cut to a day from now.
   [[nodiscard]] std::chrono::steady_clock::time_point steady_time_of(Instant t) const;
   /// Returns at once when `t` has passed. Allocates nothing and takes no lock.
@@ -26,6 +29,7 @@ class MissionClock {
   std::chrono::steady_clock::time_point steady_start_;
   Instant mission_start_;
   double rate_;
+  std::int64_t epoch_unix_ns_;
 };
 
 }  // namespace skein::process

@@ -9,12 +9,13 @@
 
 namespace skein::recording {
 
-/// Reads one node's folder, in the order in which it was written. A last line that was cut off is
-/// left out and counted; any other damage fails with "file:line: what is wrong".
+/// Reads what one process recorded into a node's folder, in the order in which it was written; what
+/// an earlier process left there is not of it. Damaged parts are left out and counted. Fails where
+/// there is no file, or it is of another version of Skein.
 [[nodiscard]] Result<Recording> read(const std::filesystem::path& folder, VehicleId vehicle);
 
 /// Every node's recording in the folder of a run, ascending by id (the ground station, 0, first).
-/// Folders of other names are passed over. Fails where a node's folder is damaged.
+/// Folders of other names are passed over. Fails where one cannot be read.
 [[nodiscard]] Result<std::vector<Recording>> read_run(const std::filesystem::path& folder);
 
 }  // namespace skein::recording

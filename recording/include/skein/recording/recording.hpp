@@ -3,26 +3,22 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/motion_track.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/mission/onboard_agent.hpp"
 
-/// What every process writes while it flies and every judge reads afterwards: one folder a node
-/// with three CSV files, each with a header line; the ground station of a formation has a fourth.
-///
-/// track.csv   time_s,x_m,y_m,z_m,heading_rad,course_rad,groundspeed_mps,airspeed_mps,
-///             distance_flown_m,plan_number,along_error_m,cross_error_m
-/// events.csv  time_ns,vehicle,kind,leader,instance,coalition,round,site,task,index,value,text
-/// plans.csv   plan_number,since_ns,start_time_ns,speed_mps,tail_curvature_per_m,x_m,y_m,
-///             heading_rad,segments          (segments: curvature_per_m:length_m|...)
-/// places.csv  change,start_ns,vehicle,x_m,y_m,z_m
-///
-/// Times are mission time. The track is rounded (0.1 mm, 1e-7 rad); events and plans are exact.
+/// What every process writes while it runs and every judge reads afterwards: MCAP files, one folder
+/// a node (docs/recordings.md). Everything in them is exact.
 namespace skein::recording {
 
 /// How a vehicle flew, at one moment.
@@ -49,18 +45,93 @@ struct PlaceRecord {
   Vec3 place_m = Vec3::Zero();
 };
 
-/// All that one node recorded.
+/// A message of the mission network, as the node sent it, or as its agent was given it.
+struct MessageRecord {
+  mission::Message message;
+  VehicleId sender;
+  Instant now{};
+};
+
+/// So many records had no room on their way to the file, since the last that says so.
+struct Gap {
+  std::uint64_t lost = 0;
+};
+
+/// What a vehicle's agent is given besides messages, and what it gives besides them, each at the
+/// `now` of the step that it was given in.
+struct AgentStart {
+  InstanceId instance;
+  Instant now{};
+};
+struct StateGiven {
+  VehicleState state;
+  Instant now{};
+};
+struct PlanningGiven {
+  coalition::Round round;
+  std::uint64_t expired_after = 0;  ///< its budget was spent when asked this often; 0: never
+  Duration took{};
+  Instant now{};
+};
+struct TimeoutGiven {
+  Instant now{};
+};
+/// The next event that the vehicle sends is the flight controller's, not the agent's.
+struct FlightNotice {
+  std::string text;
+  Instant now{};
+};
+struct PlanMade {
+  std::shared_ptr<const mission::FlightPlan> plan;  ///< never null; large, so kept elsewhere
+  Instant now{};
+};
+/// A motion track, of which there is one in every slot, by its digest.
+struct TrackMade {
+  std::uint32_t number = 0;
+  Instant start{};
+  std::uint16_t points = 0;
+  Vec3 first_m = Vec3::Zero();
+  std::uint64_t digest = 0;  ///< FNV-1a of all its values
+  Instant now{};
+};
+[[nodiscard]] TrackMade made(const MotionTrack& track, Instant now);
+
+/// What an agent's thread leaves for the recorder, in its order.
+using AgentRecord = std::variant<AgentStart, StateGiven, MessageRecord, PlanningGiven, TimeoutGiven,
+                                 FlightNotice, PlanMade, TrackMade>;
+
+/// All that one node recorded of the flight.
 struct Recording {
   VehicleId vehicle;  ///< kGroundStation for the ground station, which has events only
   std::vector<TrackPoint> track;
   std::vector<mission::MissionEvent> events;
   std::vector<PlanRecord> plans;
-  std::size_t truncated_lines =
-      0;  ///< last lines that were cut off and left out: a process ended abruptly
+  std::size_t damaged_parts = 0;         ///< of its files, left out: a process ended abruptly
   std::vector<PlaceRecord> places = {};  ///< of the ground station
+};
+
+/// Which process wrote a file.
+struct Session {
+  VehicleId node;
+  InstanceId instance;
+  std::string program;
+  std::string version;
+  /// Mission time 0 as Unix time. Files say Unix time: mission time is it less this.
+  std::int64_t epoch_unix_ns = kEpochOfTests;
+  std::string configuration;  ///< the process's, as YAML
+
+  /// A time of which mission times before 0 can be subtracted, for records without a clock:
+  /// 2001-09-09 01:46:40 UTC.
+  static constexpr std::int64_t kEpochOfTests = 1'000'000'000'000'000'000;
 };
 
 /// The name of a node's folder within the folder of a run: "vehicle-07", "ground".
 [[nodiscard]] std::string folder_name(VehicleId vehicle);
+
+/// A node's files within its folder: the newest, and the one before it. A run's file, within its
+/// folder, when merge_run() has made it.
+inline constexpr const char* kFileName = "recording.mcap";
+inline constexpr const char* kOlderFileName = "recording.1.mcap";
+inline constexpr const char* kRunFileName = "mission.mcap";
 
 }  // namespace skein::recording

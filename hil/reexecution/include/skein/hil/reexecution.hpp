@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+
+namespace skein::hil {
+
+/// How a vehicle's agent did when it was given again what its recording says that it was given.
+struct Reexecution {
+  VehicleId vehicle;
+  std::uint64_t inputs = 0;
+  std::uint64_t plans = 0;     ///< flight plans and motion tracks that are the same
+  std::uint64_t messages = 0;  ///< that are the same
+  std::uint64_t allocations = 0;
+  Instant until{};  ///< what came before was compared
+  /// The recording lost records there; what comes after is not compared.
+  std::optional<Instant> gap;
+  /// The first thing that is not as it was, in full; empty: none.
+  std::string difference;
+  Instant differs_at{};
+};
+
+/// Makes the agent from the configuration in a vehicle's recording, gives it the recorded inputs at
+/// their times and in their order, plans anew wherever it asks for a plan, and compares each flight
+/// plan and message that it gives with the recorded one, byte for byte. Fails where there is no
+/// recording of an agent from its start.
+[[nodiscard]] Result<Reexecution> reexecute(const std::filesystem::path& node_folder);
+
+}  // namespace skein::hil
