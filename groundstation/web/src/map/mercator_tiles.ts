@@ -18,7 +18,11 @@ export class MercatorTiles extends L.Layer {
     private readonly tiles: Tiles,
     private readonly frame: LocalFrame,
   ) {
-    super({ attribution: tiles.attribution });
+    super();
+  }
+
+  override getAttribution(): string {
+    return this.tiles.attribution;
   }
 
   override onAdd(map: L.Map): this {

@@ -20,7 +20,11 @@ export async function load_overlay(url: string, frame: LocalFrame, colours: () =
       L.circleMarker(at, { radius: 3.5, color: colours().muted, weight: 1.5, fillOpacity: 0.4, interactive: false }),
     onEachFeature: (feature, layer) => {
       const name: unknown = feature.properties?.["name"];
-      if (typeof name === "string") layer.bindTooltip(name);
+      if (feature.geometry?.type !== "Point" || typeof name !== "string") return;
+      // As text: a name of a file is not trusted to be harmless HTML.
+      const text = document.createElement("span");
+      text.textContent = name;
+      layer.bindTooltip(text, { permanent: true, direction: "right", className: "overlay-label" });
     },
   });
 }

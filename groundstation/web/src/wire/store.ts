@@ -39,7 +39,7 @@ export const timeline = computed(() => shown.value.timeline);
 export const audit = computed(() => shown.value.audit);
 export const replay = computed(() => shown.value.replay);
 export const events = computed(() => shown.value.events);
-export const in_replay = computed(() => hello.value?.replay !== null && hello.value !== null);
+export const in_replay = computed(() => Boolean(hello.value?.replay));
 /** Whether this page may give orders. */
 export const may_order = computed(() => hello.value?.role === "operator" && !in_replay.value);
 
