@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/groundstation/console_desk.hpp"
 
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
 
 #include "skein/process/event_text.hpp"
+#include "skein/recording/published.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -60,6 +62,18 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
   if (!opened) return opened.error();
   server_ = std::move(*opened);
   return {};
+}
+
+void ConsoleDesk::on_message(const mission::Message& message, VehicleId sender, Instant now) {
+  picture_.on_message(message, sender, now);
+  if (!server_ || !server_->live_watched()) return;
+  auto published = recording::published(message, sender);
+  if (!published) return;
+  const auto unix_time = std::chrono::system_clock::now().time_since_epoch();
+  server_->live({std::move(published->topic), published->schema_name, published->schema,
+                 static_cast<std::uint64_t>(
+                     std::chrono::duration_cast<std::chrono::nanoseconds>(unix_time).count()),
+                 std::move(published->bytes)});
 }
 
 void ConsoleDesk::on_event(const mission::MissionEvent& event) {

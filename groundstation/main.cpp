@@ -18,6 +18,7 @@
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/replay_process.hpp"
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
@@ -43,6 +44,12 @@ struct Arguments {
   bool check_only = false;
   std::string socket;
   bool json = false;
+};
+
+struct ReplayArguments {
+  std::string recording;
+  double speed = 1.0;
+  skein::configuration::ConsoleConfig console;
 };
 
 struct PasswordArguments {
@@ -212,7 +219,8 @@ int main(int argc, char** argv) {
       "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
       "  skein-ground tell --config ground.yaml --json status\n"
       "  skein-ground plan scenarios/routes-3.yaml\n"
-      "  skein-ground info runs/mine/mission.mcap\n\n"
+      "  skein-ground info runs/mine/mission.mcap\n"
+      "  skein-ground replay runs/mine\n\n"
       "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
       "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
@@ -279,6 +287,23 @@ int main(int argc, char** argv) {
   export_command.footer(
       "Example:\n"
       "  skein-ground export runs/mine --csv tables --kml .");
+  ReplayArguments replaying;
+  CLI::App& replay_command =
+      *app.add_subcommand("replay", "Shows a recording in the console, as it was");
+  replay_command
+      .add_option("recording", replaying.recording, "An MCAP file, or a folder of a node or a run")
+      ->required();
+  replay_command.add_option("--port", replaying.console.port, "Of the console, on loopback")
+      ->capture_default_str();
+  replay_command.add_option("--speed", replaying.speed, "Recorded seconds in a second")
+      ->check(CLI::Range(0.1, 100.0))
+      ->capture_default_str();
+  replay_command.add_option("--tiles", replaying.console.tiles,
+                            "Map: a folder z/x/y.png or an MBTiles file");
+  replay_command.footer(
+      "A node's recording shows what that node heard; a run's, what every node said.\n"
+      "Example:\n"
+      "  skein-ground replay runs/mine --speed 4");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -288,6 +313,9 @@ int main(int argc, char** argv) {
   if (password_command.parsed()) return password(account);
   if (info_command.parsed()) return info(looked_at);
   if (export_command.parsed()) return export_recording(exporting);
+  if (replay_command.parsed()) {
+    return groundstation::replay(replaying.recording, replaying.console, replaying.speed);
+  }
   if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
   if (!formation.parsed()) return run(arguments);
   const std::string line = CLI::detail::join(formation.remaining(), " ");

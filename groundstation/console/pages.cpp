@@ -99,7 +99,9 @@ HttpResponse Pages::respond(const HttpRequest& request) const {
     return answer(request, http::status::unauthorized, kJson, R"({"error":"log in first"})");
   }
   if (path == "/session") {
-    const nlohmann::json who{{"user", identity->user}, {"role", to_string(identity->role)}};
+    const nlohmann::json who{{"user", identity->user},
+                             {"role", to_string(identity->role)},
+                             {"login", gate_->asks_for_password()}};
     return answer(request, http::status::ok, kJson, who.dump());
   }
   for (const Loaded& overlay : overlays_) {

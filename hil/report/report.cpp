@@ -107,6 +107,10 @@ std::string html(const Contents& contents) {
                       escaped(contents.title), kColours, kDrawing, kPage);
   page += fmt::format("<header><div><h1>{}</h1><p>{}</p></div>{}</header>\n",
                       escaped(contents.title), escaped(contents.summary), verdict(contents.checks));
+  if (!contents.replay.empty()) {
+    page += fmt::format("<p>See it again, any moment of it: <code>{}</code></p>\n",
+                        escaped(contents.replay));
+  }
   page += "<div class=\"two\"><section><h2>Flown tracks</h2>\n";
   page += map(contents.record, told, "", "");
   page += "</section>";

@@ -31,6 +31,7 @@ Contents small_contents() {
   Contents contents;
   contents.title = "Two & a <site>";
   contents.summary = "seed 1";
+  contents.replay = "skein-ground replay runs/<mine>";
   Site site;
   site.id = SiteId{3};
   site.deliveries = {{0.0, Duration{}}};
@@ -97,6 +98,7 @@ TEST(Report, ThePageIsWellFormedAndNeedsNothingElse) {
   for (const char* outside : {"http", "src=", "href=", "@import", "<script", "url(h"}) {
     EXPECT_THAT(page, Not(HasSubstr(outside)));
   }
+  EXPECT_THAT(page, HasSubstr("<code>skein-ground replay runs/&lt;mine&gt;</code>"));
   EXPECT_THAT(page, HasSubstr("Two &amp; a &lt;site&gt;"));
   EXPECT_THAT(page, HasSubstr("43.92 s"));
 }

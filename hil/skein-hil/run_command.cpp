@@ -110,6 +110,8 @@ int run(const RunArguments& arguments) {
       fmt::format("{}, seed {}, {:%Y-%m-%d %H:%M}, mission time at {} times real time",
                   arguments.scenario.filename().string(), scenario->seed,
                   fmt::localtime(std::time(nullptr)), options.rate);
+  contents.replay = fmt::format("{} replay {}", (arguments.programs / "skein-ground").string(),
+                                std::filesystem::absolute(options.run_folder).string());
   contents.limits = limits_of(scenario->expect);
   contents.checks = judge_run(*scenario, *record, *outcome);
   contents.comparison = compare(site_figures(*record, contents.limits), scenario->reference);
@@ -117,9 +119,9 @@ int run(const RunArguments& arguments) {
   const auto page = options.run_folder / "report.html";
   std::ofstream{page} << report::html(contents);
   std::ofstream{options.run_folder / "map.svg"} << report::mission_svg(*record);
-  fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\n\n{}", page.string(),
-             (options.run_folder / recording::kRunFileName).string(),
-             report::text_table(contents.checks, contents.comparison));
+  fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\nreplay: {}\n\n{}",
+             page.string(), (options.run_folder / recording::kRunFileName).string(),
+             contents.replay, report::text_table(contents.checks, contents.comparison));
 
   const bool held = std::all_of(contents.checks.begin(), contents.checks.end(),
                                 [](const auto& check) { return check.held(); });

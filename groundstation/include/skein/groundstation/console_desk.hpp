@@ -30,9 +30,7 @@ class ConsoleDesk {
   /// cannot be served; the picture is kept all the same.
   Result<void> serve(const configuration::GroundConfig& config, std::function<void()> wake);
 
-  void on_message(const mission::Message& message, VehicleId sender, Instant now) {
-    picture_.on_message(message, sender, now);
-  }
+  void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event);
   /// `audit` is its section.
   void on_timeout(const std::string& audit, Instant now);

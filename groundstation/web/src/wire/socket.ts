@@ -43,7 +43,7 @@ export class ConsoleSocket {
 
   start(): void {
     this.stopped = false;
-    this.connect();
+    this.connect_now();
   }
 
   stop(): void {

@@ -121,10 +121,15 @@ export function send(line: string, plan?: DecidedPlan): Promise<Answer> {
   return socket.line(line, plan);
 }
 
-/** Asks who we are; connects when we may. */
+let asked = 0;
+
+/** Asks who we are. */
 export async function ask_session(): Promise<void> {
+  const mine = ++asked;
   try {
     const response = await fetch("/session", { headers: { accept: "application/json" } });
+    // An answer to an earlier question may come after a login.
+    if (mine !== asked) return;
     if (response.status === 401) {
       socket.stop();
       session.value = "needed";

@@ -23,6 +23,7 @@ struct ComparisonRow {
 struct Contents {
   std::string title;    ///< of the mission
   std::string summary;  ///< a line under it: scenario, seed, date
+  std::string replay;   ///< the command that shows the mission again in the console; may be empty
   checks::RunRecord record;
   checks::Limits limits;
   std::vector<checks::CheckResult> checks;  ///< passed when every one of them held

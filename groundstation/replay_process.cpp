@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/replay_process.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <variant>
+
+#include "skein/console/sections.hpp"
+#include "skein/groundstation/console_desk.hpp"
+#include "skein/groundstation/control_socket.hpp"
+#include "skein/groundstation/line_reader.hpp"
+#include "skein/groundstation/playback.hpp"
+#include "skein/groundstation/prompt.hpp"
+#include "skein/process/log.hpp"
+#include "skein/process/shutdown.hpp"
+#include "skein/process/wake.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr auto kPeriod = std::chrono::milliseconds{50};
+constexpr double kSpeedMin = 0.1;
+constexpr double kSpeedMax = 100.0;
+constexpr const char* kOrders = "a recording takes: play, pause, speed 0.1 to 100, seek SECONDS";
+
+/// NaN where it is no number.
+double number(std::string_view word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool whole = error == std::errc{} && end == word.data() + word.size();
+  return whole ? value : std::nan("");
+}
+
+/// Moves a recording by the clock and by orders, and shows it.
+class ReplayLoop {
+ public:
+  ReplayLoop(Playback playback, double speed) : playback_{std::move(playback)}, speed_{speed} {}
+
+  Result<void> serve(const console::ServerConfig& config, const std::string& name) {
+    console::ServerConfig with_hello = config;
+    with_hello.hello = hello(name);
+    auto opened = console::Server::open(std::move(with_hello), [this] { wake_.notify(); });
+    if (!opened) return opened.error();
+    server_ = std::move(*opened);
+    return {};
+  }
+  [[nodiscard]] std::string url() const { return server_->url(); }
+
+  void run() {
+    LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
+    auto last = SteadyClock::now();
+    while (!stopping_) {
+      const auto now = SteadyClock::now();
+      if (playing_) {
+        move_to(playback_.now() +
+                from_seconds(std::chrono::duration<double>(now - last).count() * speed_));
+      }
+      last = now;
+      while (const auto line = prompt.next()) {
+        const Answer given = answer(*line);
+        std::fputs(given.text.c_str(), given.done ? stdout : stderr);
+        std::fflush(stdout);
+      }
+      take_requests();
+      show();
+      wake_.wait_until(now + kPeriod);
+    }
+  }
+  /// From another thread.
+  void stop() {
+    stopping_ = true;
+    wake_.notify();
+  }
+
+ private:
+  void take_requests() {
+    while (auto request = server_->next()) {
+      if (auto* line = std::get_if<console::Server::Line>(&*request)) {
+        const Answer given = answer(line->line);
+        line->reply(given.done, given.text, given.data);
+      } else {
+        std::get<console::Server::Join>(*request).reply(console::series_of(playback_.picture()));
+        shown_again_ = true;
+      }
+    }
+  }
+
+  Answer answer(const std::string& line) {
+    if (const auto order = parse_replay_order(line)) {
+      obey(*order);
+      return {true, fmt::format("at {:.1f} s, {} at speed {:g}\n", to_seconds(playback_.now()),
+                                playing_ ? "playing" : "paused", speed_)};
+    }
+    if (const auto input = parse_input(line)) {
+      if (const auto* view = std::get_if<View>(&*input)) return look(*view);
+      if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
+    }
+    return {false, std::string{kOrders} + "; status, sites, coalitions and the other views look\n"};
+  }
+
+  [[nodiscard]] Answer look(View view) const {
+    using console::Section;
+    const auto section = [this](Section which) {
+      return console::section_of(which, playback_.picture(), playback_.origin(),
+                                 playback_.version(), playback_.now());
+    };
+    std::string data;
+    switch (view) {
+      case View::status:
+        data = section(Section::vehicles);
+        break;
+      case View::sites:
+        data = section(Section::sites);
+        break;
+      case View::pending:
+        data = section(Section::authorisations);
+        break;
+      case View::places:
+        data = section(Section::formation);
+        break;
+      case View::coalitions:
+        data = section(Section::coalitions);
+        break;
+      case View::hazards:
+        data = section(Section::hazards);
+        break;
+      case View::help:
+      case View::audit:
+        return {true, std::string{kOrders} + "\n"};
+    }
+    return {true, data + "\n", data};
+  }
+
+  void obey(const ReplayOrder& order) {
+    switch (order.kind) {
+      case ReplayOrder::Kind::play:
+        if (playback_.now() >= playback_.end()) jump_to(playback_.begin());
+        playing_ = true;
+        break;
+      case ReplayOrder::Kind::pause:
+        playing_ = false;
+        break;
+      case ReplayOrder::Kind::speed:
+        speed_ = order.value;
+        break;
+      case ReplayOrder::Kind::seek:
+        jump_to(at_seconds(order.value));
+        break;
+    }
+    shown_again_ = true;
+  }
+
+  /// On the way: what was passed is shown.
+  void move_to(Instant time) {
+    playback_.go_to(time);
+    if (playback_.now() >= playback_.end()) playing_ = false;
+    append_events();
+    shown_again_ = true;
+  }
+
+  void jump_to(Instant time) {
+    playback_.go_to(time);
+    append_events();
+    appended_ = playback_.events_so_far();
+    server_->restart(appended_, console::series_of(playback_.picture()));
+  }
+
+  void append_events() {
+    const std::size_t so_far = playback_.events_so_far();
+    if (so_far <= appended_) return;
+    std::vector<std::string> passed;
+    for (; appended_ < so_far; ++appended_) passed.push_back(playback_.events()[appended_].json);
+    server_->append(std::move(passed));
+  }
+
+  void show() {
+    if (!shown_again_ || !server_->watched()) return;
+    shown_again_ = false;
+    auto sections = console::sections_of(playback_.picture(), playback_.origin(),
+                                         playback_.version(), playback_.now());
+    sections[static_cast<std::size_t>(console::Section::audit)] = "[]";
+    sections[static_cast<std::size_t>(console::Section::replay)] = nlohmann::ordered_json{
+        {"time_s", to_seconds(playback_.now())},
+        {"playing", playing_},
+        {"speed", speed_}}.dump();
+    server_->publish(to_seconds(playback_.now()), std::move(sections));
+  }
+
+  [[nodiscard]] std::string hello(const std::string& name) const {
+    const Wgs84& origin = playback_.origin().origin();
+    nlohmann::ordered_json hello{
+        {"program", "skein-ground " + version()},
+        {"origin",
+         {{"latitude_deg", origin.latitude_deg},
+          {"longitude_deg", origin.longitude_deg},
+          {"height_m", origin.height_m}}},
+        {"expected", nlohmann::ordered_json::array()},
+        {"shapes", nlohmann::ordered_json::array()},
+        {"replay",
+         {{"name", name},
+          {"from_s", std::floor(10.0 * to_seconds(playback_.begin())) / 10.0},
+          {"to_s", std::ceil(10.0 * to_seconds(playback_.end())) / 10.0}}}};
+    for (const VehicleId vehicle : playback_.picture().params().expected) {
+      hello["expected"].push_back(vehicle.value);
+    }
+    return hello.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  }
+
+  Playback playback_;
+  double speed_;
+  bool playing_ = true;
+  bool shown_again_ = true;   ///< something has changed since it was shown
+  std::size_t appended_ = 0;  ///< events that the server has
+  process::Wake wake_;
+  std::unique_ptr<console::Server> server_;
+  std::atomic<bool> stopping_{false};
+};
+
+}  // namespace
+
+Result<ReplayOrder> parse_replay_order(const std::string& line) {
+  const auto first = line.find_first_not_of(" \t");
+  const auto last = line.find_last_not_of(" \t\r\n");
+  const std::string_view all = first == std::string::npos
+                                   ? std::string_view{}
+                                   : std::string_view{line}.substr(first, last - first + 1);
+  const auto space = all.find(' ');
+  const std::string_view verb = all.substr(0, space);
+  const double value =
+      space == std::string_view::npos ? std::nan("") : number(all.substr(space + 1));
+  using Kind = ReplayOrder::Kind;
+  if (all == "play") return ReplayOrder{Kind::play};
+  if (all == "pause") return ReplayOrder{Kind::pause};
+  if (verb == "speed" && value >= kSpeedMin && value <= kSpeedMax) {
+    return ReplayOrder{Kind::speed, value};
+  }
+  if (verb == "seek" && std::abs(value) < 1e9) return ReplayOrder{Kind::seek, value};
+  return Error{kOrders};
+}
+
+int replay(const std::filesystem::path& path, const configuration::ConsoleConfig& console,
+           double speed) {
+  const process::Shutdown shutdown;
+  const bool shows = ::isatty(STDERR_FILENO) == 1;
+  auto playback = Playback::open(path, [shows](double share) {
+    if (shows) std::fprintf(stderr, "\rreading %s %3.0f %%", "the recording", 100.0 * share);
+  });
+  if (shows) std::fputs("\r\033[K", stderr);
+  if (!playback) {
+    std::fprintf(stderr, "skein-ground: %s\n", playback.error().message.c_str());
+    return process::kExitBadInput;
+  }
+  std::printf("%s: %.1f s to %.1f s, %zu events%s\n", path.c_str(), to_seconds(playback->begin()),
+              to_seconds(playback->end()), playback->events().size(),
+              playback->damaged() == 0
+                  ? ""
+                  : fmt::format("; {} damaged parts left out", playback->damaged()).c_str());
+  ReplayLoop loop{std::move(*playback), speed};
+  console::ServerConfig server;
+  server.address = console.address;
+  server.port = console.port;
+  server.tiles = console.tiles;
+  for (const auto& overlay : console.overlays) {
+    server.overlays.push_back({overlay.name, overlay.file});
+  }
+  if (const auto served = loop.serve(server, path.filename().string()); !served) {
+    std::fprintf(stderr, "skein-ground: %s\n", served.error().message.c_str());
+    return process::kExitCannotStart;
+  }
+  std::printf("console: %s\n%s\n", loop.url().c_str(), kOrders);
+  std::fflush(stdout);
+  std::thread thread{[&loop] { loop.run(); }};
+  shutdown.wait();
+  loop.stop();
+  thread.join();
+  return 0;
+}
+
+}  // namespace skein::groundstation
