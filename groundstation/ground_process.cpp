@@ -85,8 +85,9 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& node, process::Wake& wake,
-             std::optional<recording::Writer> writer, FormationDesk formation,
-             std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
+             recording::Writer::Options recorder, std::optional<recording::Writer> writer,
+             FormationDesk formation, std::unique_ptr<ControlSocket> control, ConsoleDesk console,
+             Audit audit)
       : agent_config_{agent_config(config)},
         origin_{origin},
         operator_name_{std::move(operator_name)},
@@ -94,6 +95,7 @@ class GroundLoop {
         shutdown_{shutdown},
         node_{node},
         wake_{wake},
+        recorder_{std::move(recorder)},
         writer_{std::move(writer)},
         agent_{agent_config_, clock.now()},
         formation_{std::move(formation)},
@@ -184,9 +186,23 @@ class GroundLoop {
       return {true, fmt::format("hazard {} is told to all\n", added->value)};
     }
     if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
+    if (const auto* record = std::get_if<Record>(&input)) return record_into(*record, asker);
     if (std::holds_alternative<Wait>(input)) return {false, "'wait' is for scripts\n"};
     shutdown_.request();  // Quit
     return {true, ""};
+  }
+
+  Answer record_into(const Record& order, const Asker& asker) {
+    // Which files it writes is for who can write them anyway.
+    if (asker.from == "console") return {false, "record is for the prompt and the command line\n"};
+    flush();
+    writer_.reset();
+    if (order.folder.empty()) return {true, "nothing is recorded now\n"};
+    auto opened = recording::Writer::open(order.folder, recorder_);
+    if (!opened) return refusal(opened.error());
+    writer_ = std::move(opened).value();
+    recorded_change_ = 0;
+    return {true, "recording into " + order.folder + "\n"};
   }
 
   Answer formed(const Formation& order, Instant now) {
@@ -334,6 +350,7 @@ class GroundLoop {
   const process::Shutdown& shutdown_;
   network::Node& node_;
   process::Wake& wake_;
+  recording::Writer::Options recorder_;
   std::optional<recording::Writer> writer_;
   mission::GroundAgent agent_;
   FormationDesk formation_;
@@ -371,12 +388,12 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     return process::kExitBadInput;
   }
   const InstanceId instance = process::new_instance();
+  recording::Writer::Options options;
+  options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
+                     clock.epoch_unix_ns(), to_yaml(config)};
+  options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
-    recording::Writer::Options options;
-    options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
-                       clock.epoch_unix_ns(), to_yaml(config)};
-    options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
     auto opened = recording::Writer::open(config.recording_folder, options);
     if (!opened) {
       spdlog::critical("cannot record: {}", opened.error().message);
@@ -422,6 +439,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   shutdown,
                   **node,
                   wake,
+                  options,
                   std::move(writer),
                   std::move(*formation),
                   control ? std::move(*control) : nullptr,

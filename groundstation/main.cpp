@@ -248,6 +248,12 @@ int main(int argc, char** argv) {
                "Examples:\n"
                "  skein-ground tell status\n"
                "  skein-ground tell --socket skein-ground-7400 hold all");
+  const CLI::App& record =
+      add_tell(app, arguments, "record",
+               "Has a running ground station record into a folder from now on, or stop",
+               "Examples:\n"
+               "  skein-ground record runs/evening\n"
+               "  skein-ground record stop");
   PlanArguments planning;
   CLI::App& plan_command =
       *app.add_subcommand("plan", "Plans the routes of a mission file before the mission");
@@ -315,6 +321,13 @@ int main(int argc, char** argv) {
   if (export_command.parsed()) return export_recording(exporting);
   if (replay_command.parsed()) {
     return groundstation::replay(replaying.recording, replaying.console, replaying.speed);
+  }
+  if (record.parsed()) {
+    const auto words = record.remaining();
+    // The ground station may have been started elsewhere.
+    const bool folder = words.size() == 1 && words[0] != "stop";
+    return tell(arguments, "record " + (folder ? std::filesystem::absolute(words[0]).string()
+                                               : CLI::detail::join(words, " ")));
   }
   if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
   if (!formation.parsed()) return run(arguments);

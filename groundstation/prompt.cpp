@@ -190,6 +190,11 @@ Result<Input> wait(const std::vector<std::string_view>& words) {
   return Input{Wait{from_seconds(*seconds)}};
 }
 
+Result<Input> record(const std::vector<std::string_view>& words) {
+  if (words.size() != 2) return Error{"'record' needs a folder, or 'stop'"};
+  return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
+}
+
 }  // namespace
 
 Result<Input> parse_input(std::string_view line) {
@@ -214,6 +219,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "wait") return wait(words);
   if (verb == "places") return view(View::places, words);
   if (verb == "give-back") return give_back(words);
+  if (verb == "record") return record(words);
   if (verb == "quit") {
     if (words.size() > 1) return Error{"'quit' stands alone"};
     return Input{Quit{}};
@@ -254,6 +260,7 @@ std::string help_text() {
          "land              it comes straight down\n"
          "preview ORDER     what one of these four would do, and whether it is safe\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
+         "record FOLDER     record all that is said into FOLDER from now on; record stop: no more\n"
          "quit              end the ground station; the vehicles go on\n";
 }
 

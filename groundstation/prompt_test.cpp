@@ -42,6 +42,8 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<Order>("return 2").kind, mission::CommandKind::return_home);
   EXPECT_EQ(parsed<Order>("give-back 7").vehicle, VehicleId{7});
   EXPECT_EQ(parsed<Order>("give-back 7").kind, mission::CommandKind::give_back);
+  EXPECT_EQ(parsed<Record>("record runs/mine").folder, "runs/mine");
+  EXPECT_EQ(parsed<Record>("record stop").folder, "");
   parsed<Quit>("quit");
   parsed<std::monostate>("   ");
   parsed<std::monostate>("");
@@ -49,6 +51,7 @@ TEST(Prompt, UnderstandsEveryCommand) {
 
 TEST(Prompt, SaysWhatIsWrong) {
   EXPECT_THAT(refusal_of("launch"), HasSubstr("no command 'launch'"));
+  EXPECT_THAT(refusal_of("record"), HasSubstr("needs a folder, or 'stop'"));
   EXPECT_THAT(refusal_of("Authorise 3"), HasSubstr("no command 'Authorise'"));
   for (const auto* line : {"authorise", "authorise all", "authorise 3 4", "authorise -1",
                            "authorise 0", "authorise 3x", "authorise 70000"}) {

@@ -174,7 +174,8 @@ class Bench {
         return up;
     }
     recording::Writer::Options recorder;
-    recorder.session = {kBench, bench.instance, "skein-hil", "", deployment.time.epoch_unix_ns, ""};
+    recorder.session = {
+        kBench, bench.instance, "skein-hil", SKEIN_VERSION, deployment.time.epoch_unix_ns, ""};
     auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
     if (!writer) return writer.error();
     writer_ = std::move(writer).value();

@@ -30,8 +30,8 @@ bool is_of_the_process(const mission::Message& message) {
 
 class Rerun {
  public:
-  Rerun(const configuration::VehicleConfig& config, std::optional<TimedPath> route)
-      : config_{config}, route_{std::move(route)} {
+  Rerun(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route)
+      : config_{config}, route_{route} {
     result_.vehicle = config.vehicle.id;
   }
 
@@ -134,7 +134,8 @@ class Rerun {
       given_.emplace_back(
           recording::PlanMade{std::make_shared<const mission::FlightPlan>(*plan), now_});
     }
-    while (const auto track = agent_->poll_track()) given_.emplace_back(recording::made(*track, now_));
+    while (const auto track = agent_->poll_track())
+      given_.emplace_back(recording::made(*track, now_));
     while (auto message = agent_->poll_message()) {
       Content content{std::in_place_type<mission::Message>, std::move(*message)};
       // One that cannot be sent is not recorded either.

@@ -149,19 +149,19 @@ void fly(const std::filesystem::path& folder) {
   for (Instant now{}; now < at_seconds(150.0); now += kStep) {
     if (now == at_seconds(5.0)) {
       for (auto& v : vehicles)
-        v->inbox.push_back({mission::SiteReport{VehicleId{1}, site}, kOther});
+        v->inbox.emplace_back(mission::SiteReport{VehicleId{1}, site}, kOther);
     }
     for (auto& v : vehicles) v->step(now);
     for (std::size_t from = 0; from < vehicles.size(); ++from) {
       const VehicleId sender{static_cast<std::uint16_t>(from + 1)};
       for (const auto& message : vehicles[from]->outbox) {
         for (std::size_t to = 0; to < vehicles.size(); ++to) {
-          if (to != from) vehicles[to]->inbox.push_back({message, sender});
+          if (to != from) vehicles[to]->inbox.emplace_back(message, sender);
         }
         if (const auto* request = std::get_if<mission::AuthorisationRequest>(&message)) {
-          vehicles[from]->inbox.push_back(
-              {mission::Authorisation{request->round, request->site, true, "test", now},
-               kGroundStation});
+          vehicles[from]->inbox.emplace_back(
+              mission::Authorisation{request->round, request->site, true, "test", now},
+              kGroundStation);
         }
       }
       vehicles[from]->outbox.clear();
@@ -169,20 +169,23 @@ void fly(const std::filesystem::path& folder) {
   }
 }
 
+std::filesystem::path g_flown;
+
 class ReexecutionTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    flown_ = std::filesystem::temp_directory_path() / ("skein-rerun-" + std::to_string(::getpid()));
-    fly(flown_);
+    g_flown =
+        std::filesystem::temp_directory_path() / ("skein-rerun-" + std::to_string(::getpid()));
+    fly(g_flown);
   }
-  static void TearDownTestSuite() { std::filesystem::remove_all(flown_); }
+  static void TearDownTestSuite() { std::filesystem::remove_all(g_flown); }
 
   /// The leader's recording with some records changed: `change` may alter an entry, or say false to
   /// leave it out. The result of running that.
   static Result<Reexecution> altered(const std::function<bool(Entry&)>& change) {
-    auto log = recording::Log::open(flown_ / "vehicle-01");
+    auto log = recording::Log::open(g_flown / "vehicle-01");
     EXPECT_TRUE(log.ok());
-    const auto folder = flown_ / "altered";
+    const auto folder = g_flown / "altered";
     {
       recording::Writer::Options options;
       options.session = log->sessions().front();
@@ -208,14 +211,12 @@ class ReexecutionTest : public ::testing::Test {
     std::filesystem::remove_all(folder);
     return result;
   }
-
-  static inline std::filesystem::path flown_;
 };
 
 TEST_F(ReexecutionTest, GivesWhatTheFlightGave) {
   std::uint64_t allocations = 0;
   for (const char* name : {"vehicle-01", "vehicle-02", "vehicle-03"}) {
-    const auto result = reexecute(flown_ / name);
+    const auto result = reexecute(g_flown / name);
     ASSERT_TRUE(result.ok()) << result.error().message;
     EXPECT_EQ(result->difference, "") << name << " at " << to_seconds(result->differs_at);
     EXPECT_GT(result->inputs, 6000U);
@@ -280,7 +281,7 @@ TEST_F(ReexecutionTest, FindsWhatTheRecordingLacks) {
 
 TEST_F(ReexecutionTest, AGapEndsTheComparison) {
   bool told = false;
-  auto log = recording::Log::open(flown_ / "vehicle-01");
+  auto log = recording::Log::open(g_flown / "vehicle-01");
   const auto result = altered([&](Entry& entry) {
     if (entry.time < at_seconds(100.0)) return true;
     if (!told) {
@@ -301,7 +302,7 @@ TEST_F(ReexecutionTest, ARecordingWithoutItsBeginningCannotBeRunAnew) {
   const auto result = altered([](Entry& entry) { return entry.time > at_seconds(10.0); });
   ASSERT_FALSE(result.ok());
   EXPECT_THAT(result.error().message, HasSubstr("has given way to what came later"));
-  EXPECT_FALSE(reexecute(flown_ / "vehicle-09").ok());
+  EXPECT_FALSE(reexecute(g_flown / "vehicle-09").ok());
 }
 
 }  // namespace

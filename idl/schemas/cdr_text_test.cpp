@@ -25,15 +25,14 @@ constexpr const char* kSchema =
     "bool set\n"
     "int32 x\n";
 
-const std::vector<std::uint8_t> kBytes{
-    0,    1, 0, 0,                          // header
-    7,    0, 0, 0, 1,    0,    0,    0,     // version, kind
-    2,    0, 0, 0,                          // points
-    1,    0, 0, 0, 5,    0,    0,    0,     //
-    0,    0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF,  //
-    4,    0, 0, 0, 'n',  '"',  'o',  0,     // text
-    0xFE, 3, 0, 0,  // pair, and up to the next multiple of 8
-    0,    0, 0, 0, 0,    0,    0xE0, 0x3F};
+const std::vector<std::uint8_t> kBytes{0,    1, 0, 0,                          // header
+                                       7,    0, 0, 0, 1,    0,    0,    0,     // version, kind
+                                       2,    0, 0, 0,                          // points
+                                       1,    0, 0, 0, 5,    0,    0,    0,     //
+                                       0,    0, 0, 0, 0xFF, 0xFF, 0xFF, 0xFF,  //
+                                       4,    0, 0, 0, 'n',  '"',  'o',  0,     // text
+                                       0xFE, 3, 0, 0,  // pair, and up to the next multiple of 8
+                                       0,    0, 0, 0, 0,    0,    0xE0, 0x3F};
 
 TEST(CdrText, SaysAllThatIsThere) {
   EXPECT_EQ(text_of(kSchema, kBytes),

@@ -205,10 +205,10 @@ class Parser {
     const bool is_unsigned = take_if("unsigned");
     std::string first = scoped_name();
     if (first == "long" && take_if("long")) first = "long long";
-    static const std::map<std::string, std::string> kSigned{
+    static const std::map<std::string, std::string> signed_names{
         {"boolean", "bool"}, {"octet", "uint8"},   {"short", "int16"},    {"long", "int32"},
         {"char", "uint8"},   {"float", "float32"}, {"double", "float64"}, {"long long", "int64"}};
-    if (const auto known = kSigned.find(first); known != kSigned.end()) {
+    if (const auto known = signed_names.find(first); known != signed_names.end()) {
       type.primitive = (is_unsigned ? "u" : "") + known->second;
       return type;
     }

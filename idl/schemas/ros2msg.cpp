@@ -46,9 +46,11 @@ class Text {
   }
 
   std::string finish() {
-    for (std::size_t i = 0; i < used_.size(); ++i) {  // grows while it goes
-      const Struct* part = definitions_.find_struct(used_[i]);
-      text_ += std::string(kSeparatorWidth, '=') + "\nMSG: " + kPackage + "/" + used_[i] + "\n";
+    std::size_t next = 0;
+    while (next < used_.size()) {  // which grows meanwhile
+      const std::string name = used_[next++];
+      const Struct* part = definitions_.find_struct(name);
+      text_ += std::string(kSeparatorWidth, '=') + "\nMSG: " + kPackage + "/" + name + "\n";
       constants_.clear();
       for (const Member& member : part->members) line(member);
     }

@@ -42,9 +42,14 @@ struct Formation {
 struct Wait {
   Duration duration{};
 };
+/// Everything is recorded into that folder from now on, in place of where it was before.
+struct Record {
+  std::string folder;  ///< empty: nothing is recorded any more
+};
 struct Quit {};
 /// monostate: an empty line.
-using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, Formation, Wait, Quit>;
+using Input =
+    std::variant<std::monostate, View, Decision, Order, NewHazard, Formation, Wait, Record, Quit>;
 
 /// Fails with what is wrong and what would be right.
 [[nodiscard]] Result<Input> parse_input(std::string_view line);
