@@ -91,7 +91,7 @@ void AgentLoop::send(const mission::Message& message) {
   link_.send(message);
 }
 
-void AgentLoop::note(recording::AgentRecord record) {
+void AgentLoop::note(recording::AgentRecord record) const {
   if (link_.record) link_.record(std::move(record));
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/onboard/make_agent.hpp"
 
-#include <utility>
-
 #include "skein/mission/formation_agent.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 
@@ -23,7 +21,7 @@ std::unique_ptr<mission::OnboardAgent> formation_agent(const configuration::Vehi
 }  // namespace
 
 std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleConfig& config,
-                                                  std::optional<TimedPath> route,
+                                                  const std::optional<TimedPath>& route,
                                                   InstanceId instance, Instant now) {
   if (config.flight_controller.is_multirotor()) return formation_agent(config, instance, now);
   mission::VehicleAgentConfig agent;
@@ -32,7 +30,7 @@ std::unique_ptr<mission::OnboardAgent> make_agent(const configuration::VehicleCo
   agent.protocol = config.protocol;
   agent.planning = config.planning;
   agent.search = config.search;
-  agent.route = std::move(route);
+  agent.route = route;
   agent.hazards = config.hazards;
   return std::make_unique<mission::VehicleAgent>(agent, now);
 }

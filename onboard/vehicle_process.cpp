@@ -145,7 +145,7 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can,
 /// The threads of threads.hpp around the objects that they run, from construction to stop().
 class Threads {
  public:
-  Threads(const configuration::VehicleConfig& config, std::optional<TimedPath> route,
+  Threads(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
           InstanceId instance, std::optional<recording::Writer> writer,
           FlightControllers flight_controllers, Instant now)
@@ -156,7 +156,7 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{make_agent(config, std::move(route), instance, now),
+        agent_{make_agent(config, route, instance, now),
                config.vehicle.id,
                link_to(node, flight_controllers_.on_can, config, writer ? &records_ : nullptr),
                ports_,

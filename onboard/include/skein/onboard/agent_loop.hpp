@@ -65,7 +65,7 @@ class AgentLoop {
  private:
   void hand_out();
   void send(const mission::Message& message);
-  void note(recording::AgentRecord record);
+  void note(recording::AgentRecord record) const;
   void report(mission::MissionEvent event);
   void pass_on(const mission::Command& command);
   void send_telemetry(Instant now);

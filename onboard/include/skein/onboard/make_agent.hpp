@@ -14,7 +14,7 @@ namespace skein::onboard {
 /// The agent that the configuration describes: a multirotor flies in formation, a fixed wing in
 /// coalitions. `route` is that of the configuration, timed.
 [[nodiscard]] std::unique_ptr<mission::OnboardAgent> make_agent(
-    const configuration::VehicleConfig& config, std::optional<TimedPath> route, InstanceId instance,
-    Instant now);
+    const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
+    InstanceId instance, Instant now);
 
 }  // namespace skein::onboard
