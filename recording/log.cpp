@@ -82,10 +82,9 @@ class Log::Impl {
     return sum;
   }
 
-  std::vector<NodeFile> files_;
-  std::vector<Session> sessions_;
-
  private:
+  friend class Log;
+
   [[nodiscard]] const KnownChannel* channel_of(std::size_t file, std::uint16_t number) const {
     const auto& channels = files_[file].channels;
     const auto known = channels.find(number);
@@ -119,6 +118,8 @@ class Log::Impl {
     return Entry{time, channel->sender, node, topic(file, message.channel), std::move(*content)};
   }
 
+  std::vector<NodeFile> files_;
+  std::vector<Session> sessions_;
   bool own_only_;
   std::optional<mcap::Cursor> cursor_;
   std::size_t bad_records_ = 0;
@@ -133,9 +134,8 @@ Result<Log> Log::open(const std::filesystem::path& path) {
   std::error_code none;
   std::vector<std::filesystem::path> paths;
   bool own_only = false;
-  if (!std::filesystem::is_directory(path, none)) {
-    paths = {path};
-  } else if (std::filesystem::exists(path / kFileName, none)) {
+  if (!std::filesystem::is_directory(path, none) ||
+      std::filesystem::exists(path / kFileName, none)) {
     paths = {path};
   } else if (std::filesystem::exists(path / kRunFileName, none)) {
     paths = {path / kRunFileName};

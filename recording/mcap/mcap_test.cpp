@@ -170,7 +170,7 @@ TEST_F(McapTest, ADiskErrorIsToldAndKept) {
 }
 
 TEST_F(McapTest, ACursorGoesThroughSeveralFilesByTime) {
-  const auto write = [&](const std::string& name, std::vector<int> times_s) {
+  const auto write = [&](const std::string& name, const std::vector<int>& times_s) {
     auto writer = Writer::open(folder_ / name, {});
     ASSERT_TRUE(writer.ok());
     const auto channel = writer->add(Channel{0, "/" + name, "", {}});

@@ -141,18 +141,9 @@ class Reader::Impl {
     return records;
   }
 
-  std::string name_;
-  Source source_;
-  std::string profile_;
-  std::string library_;
-  bool complete_ = false;
-  std::size_t damaged_ = 0;
-  std::map<std::uint16_t, Schema> schemas_;
-  std::map<std::uint16_t, Channel> channels_;
-  std::vector<Metadata> metadata_;
-  std::vector<ChunkPlace> chunks_;
-
  private:
+  friend class Reader;
+
   static std::optional<Bytes> unpack(std::span<const std::uint8_t> body) {
     const auto head = chunk_head(body, body.size());
     if (!head) return std::nullopt;
@@ -351,6 +342,17 @@ class Reader::Impl {
     }
     return std::nullopt;
   }
+
+  std::string name_;
+  Source source_;
+  std::string profile_;
+  std::string library_;
+  bool complete_ = false;
+  std::size_t damaged_ = 0;
+  std::map<std::uint16_t, Schema> schemas_;
+  std::map<std::uint16_t, Channel> channels_;
+  std::vector<Metadata> metadata_;
+  std::vector<ChunkPlace> chunks_;
 };
 
 Reader::Reader(std::unique_ptr<Impl> impl) : impl_{std::move(impl)} {}
