@@ -19,6 +19,7 @@
 #include "board.hpp"
 #include "foxglove.hpp"
 #include "gate.hpp"
+#include "page_text.hpp"
 #include "pages.hpp"
 #include "skein/base/bounded_queue.hpp"
 
@@ -301,26 +302,22 @@ class SocketClient final : public Client,
     return ++texts_ <= kTextsPerSecond;
   }
 
-  /// False for what no client of ours says.
+  /// False for what no page of ours says.
   [[nodiscard]] bool on_text(const std::string& text) {
-    const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object()) return false;
-    const auto type = json.find("type");
-    if (type == json.end() || !type->is_string()) return false;
-    if (*type == "resume") return resume(json);
-    const auto id = json.find("id");
-    if (id == json.end() || !id->is_number_integer()) return false;
-    if (*type == "ping") {
-      say(text_of({{"type", "pong"}, {"id", *id}, {"time_s", server_.board().time_s()}}));
-      return true;
-    }
-    return *type == "line" && line(json, *id);
+    auto parsed = parse_page_text(text);
+    if (!parsed) return false;
+    return std::visit([this](auto& said) { return on(said); }, *parsed);
   }
 
-  [[nodiscard]] bool resume(const Json& json) {
-    const auto next = json.find("next_seq");
-    if (resumed_ || next == json.end() || !next->is_number_unsigned()) return false;
-    seen_.next_seq = next->template get<std::uint64_t>();
+  bool on(const PingText& ping) {
+    say(text_of({{"type", "pong"}, {"id", ping.id}, {"time_s", server_.board().time_s()}}));
+    return true;
+  }
+
+  bool on(const ResumeText& resume) {
+    if (asked_) return false;
+    asked_ = true;
+    seen_.next_seq = resume.next_seq;
     // From a later time than ours: of another run.
     if (seen_.next_seq > server_.board().next_seq()) seen_.next_seq = 0;
     return server_.submit(Server::Join{[self = weak()](const std::string& series) {
@@ -337,26 +334,19 @@ class SocketClient final : public Client,
     });
   }
 
-  [[nodiscard]] bool line(const Json& json, const Json& id) {
-    const auto text = json.find("line");
-    if (text == json.end() || !text->is_string()) return false;
+  bool on(LineText& text) {
     Server::Line given;
-    given.line = text->template get<std::string>();
+    given.line = std::move(text.line);
     given.user = identity_.user;
     given.may_order = identity_.role == Role::op;
-    const auto coalition = json.find("coalition");
-    const auto round = json.find("round");
-    if (coalition != json.end() || round != json.end()) {
-      const bool both = coalition != json.end() && round != json.end();
-      if (!both || !coalition->is_string() || !round->is_number_unsigned()) return false;
-      given.seen = {coalition->template get<std::string>(), round->template get<std::uint32_t>()};
-    }
-    given.reply = [self = weak(), id](bool done, const std::string& said, const std::string& data) {
+    given.seen = std::move(text.seen);
+    given.reply = [self = weak(), id = text.id](bool done, const std::string& said,
+                                                const std::string& data) {
       const auto client = self.lock();
       if (!client) return;
       std::string answer =
-          fmt::format(R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id.dump(),
-                      done, text_of(said), data.empty() ? "null" : data);
+          fmt::format(R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id, done,
+                      text_of(said), data.empty() ? "null" : data);
       client->server_.post([client, answer = std::move(answer)] { client->say(answer); });
     };
     const auto reply = given.reply;
@@ -417,7 +407,8 @@ class SocketClient final : public Client,
   std::deque<std::string> answers_;
   std::string text_;  ///< that is being written
   Board::Seen seen_;
-  bool resumed_ = false;
+  bool asked_ = false;    ///< to resume
+  bool resumed_ = false;  ///< has its history
   bool writing_ = false;
   bool stopped_ = false;
   std::chrono::steady_clock::time_point second_begun_{};
