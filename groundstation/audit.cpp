@@ -11,11 +11,22 @@
 namespace skein::groundstation {
 namespace {
 
+constexpr std::size_t kLineMax = 200;
+
 nlohmann::ordered_json json_of(const Audit::Entry& entry, std::uint64_t seq) {
   return {{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
           {"who", entry.who},   {"from", entry.from},
           {"line", entry.line}, {"done", entry.done},
           {"text", entry.text}};
+}
+
+/// Of what somebody typed: a line's worth, without what a terminal would obey.
+std::string printable(std::string line) {
+  if (line.size() > kLineMax) line = line.substr(0, kLineMax) + "...";
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) c = '?';
+  }
+  return line;
 }
 
 std::string dump(const nlohmann::ordered_json& json) {
@@ -28,13 +39,14 @@ Result<Audit> Audit::open(const std::string& folder) {
   Audit audit;
   if (folder.empty()) return audit;
   audit.path_ = (std::filesystem::path{folder} / "audit.jsonl").string();
-  audit.file_.open(audit.path_, std::ios::trunc);
+  audit.file_.open(audit.path_, std::ios::app);
   if (!audit.file_) return Error{"cannot write " + audit.path_};
   return audit;
 }
 
 Result<void> Audit::add(Entry entry) {
   entry.text = entry.text.substr(0, entry.text.find('\n'));
+  entry.line = printable(entry.line);
   const auto line = json_of(entry, next_seq_++);
   entries_.push_back(std::move(entry));
   if (entries_.size() > kShown) entries_.pop_front();

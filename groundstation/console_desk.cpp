@@ -87,7 +87,6 @@ void ConsoleDesk::on_timeout(const std::string& audit, Instant now) {
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
   if (now < next_state_ || !server_->watched()) return;
   next_state_ = now + kStatePeriod;
-  picture_.on_timeout(now);
   auto sections = console::sections_of(picture_, origin_, version(), now);
   sections[static_cast<std::size_t>(console::Section::audit)] = audit;
   server_->publish(to_seconds(now), std::move(sections));

@@ -38,11 +38,13 @@ namespace {
 constexpr Duration kStepPeriod = std::chrono::milliseconds{50};
 constexpr Duration kStepSpacing = std::chrono::milliseconds{20};  // telemetry comes all the time
 constexpr Duration kFlushPeriod = std::chrono::seconds{1};
+constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop from its deadlines
 constexpr std::string_view kJsonPrefix = "json ";
 
 mission::GroundAgentConfig agent_config(const configuration::GroundConfig& config) {
   mission::GroundAgentConfig agent;
   agent.expected = config.vehicles;
+  for (const Hazard& hazard : config.hazards) agent.hazards.push_back(hazard.id);
   for (const auto& decision : config.operator_decisions) {
     agent.decisions.push_back({.site = decision.site,
                                .grant = decision.grant,
@@ -57,6 +59,8 @@ void print(const std::string& text) {
   std::fflush(stdout);
 }
 
+constexpr const char* kConsole = "console";
+
 /// Who gave a line.
 struct Asker {
   std::string who;
@@ -69,6 +73,10 @@ bool only_looks(const Input& input) {
   const auto* formation = std::get_if<Formation>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
          (formation != nullptr && formation->preview);
+}
+
+bool names_file(const Formation& formation) {
+  return formation.shape.find_first_of("./") != std::string::npos;
 }
 
 /// The answer for programs: one JSON object.
@@ -143,9 +151,11 @@ class GroundLoop {
       if (wants_json) given.text = json_of(given);
       request->reply(given);
     }
-    while (const auto line = console_.next()) {
+    for (int i = 0; i < kConsoleLinesPerStep; ++i) {
+      const auto line = console_.next();
+      if (!line) break;
       const Answer given =
-          answer(line->line, {line->user, "console", line->may_order, line->seen}, now);
+          answer(line->line, {line->user, kConsole, line->may_order, line->seen}, now);
       line->reply(given.done, given.text, given.data);
     }
   }
@@ -153,11 +163,16 @@ class GroundLoop {
   /// What came of a line. Orders and decisions are noted.
   Answer answer(const std::string& line, const Asker& asker, Instant now) {
     const auto input = parse_input(line);
+    const auto* formation = input ? std::get_if<Formation>(&*input) : nullptr;
+    if (formation != nullptr && asker.from == kConsole && names_file(*formation)) {
+      return {false, "the console takes shapes by their names; files are for the prompt\n"};
+    }
     if (input && only_looks(*input)) return look(*input, now);
     Answer given = !input             ? refusal(input.error())
                    : !asker.may_order ? Answer{false, "an observer gives no orders\n"}
                                       : order(*input, asker, now);
-    note({now, asker.who, asker.from, line, given.done, given.text});
+    // What an observer tries would only push the orders out of sight.
+    if (asker.may_order) note({now, asker.who, asker.from, line, given.done, given.text});
     return given;
   }
 
@@ -171,9 +186,7 @@ class GroundLoop {
 
   Answer order(const Input& input, const Asker& asker, Instant now) {
     if (const auto* decision = std::get_if<Decision>(&input)) {
-      if (!is_still(asker.seen, decision->site)) {
-        return {false, "another plan waits by now; look at it first\n"};
-      }
+      if (asker.seen) return decide_on(*asker.seen, *decision, asker.who, now);
       return answer_to(decision->grant ? agent_.authorise(decision->site, asker.who, now)
                                        : agent_.refuse(decision->site, asker.who, now));
     }
@@ -211,22 +224,25 @@ class GroundLoop {
     return {true, std::move(outcome->text), std::move(outcome->data)};
   }
 
-  /// Is the plan that somebody saw still the one that a decision would be for?
-  [[nodiscard]] bool is_still(const std::optional<console::Server::Line::Seen>& seen,
-                              SiteId site) const {
-    if (!seen) return true;
-    const auto& all = agent_.authorisations();
-    const auto newest = std::find_if(all.rbegin(), all.rend(), [site](const auto& pending) {
-      return pending.request.site == site && !pending.decision;
-    });
-    return newest != all.rend() &&
-           console::key_of(newest->request.round.coalition) == seen->coalition &&
-           newest->request.round.number == seen->round;
+  /// On the plan that was on somebody's screen.
+  Answer decide_on(const console::Server::Line::Seen& seen, const Decision& decision,
+                   const std::string& who, Instant now) {
+    for (const auto& pending : agent_.authorisations()) {
+      const coalition::Round& round = pending.request.round;
+      if (pending.request.site != decision.site || round.number != seen.round ||
+          console::key_of(round.coalition) != seen.coalition) {
+        continue;
+      }
+      return answer_to(agent_.decide_on(round, decision.site, decision.grant, who, now));
+    }
+    return {false, "that plan does not wait for a decision any more; look at what does\n"};
   }
 
   void note(Audit::Entry entry) {
-    spdlog::info("{} ({}): {}", entry.who, entry.from, entry.line);
-    if (const auto noted = audit_.add(std::move(entry)); !noted) {
+    const auto noted = audit_.add(std::move(entry));
+    const Audit::Entry& newest = audit_.newest();
+    spdlog::info("{} ({}): {}", newest.who, newest.from, newest.line);
+    if (!noted) {
       spdlog::error("the audit log: {}", noted.error().message);
     }
   }

@@ -119,7 +119,6 @@ void Playback::play_until(Instant time) {
     take(*ahead_);
     ahead_.reset();
   }
-  picture_.on_timeout(time);
   now_ = time;
 }
 

@@ -23,6 +23,7 @@ constexpr std::size_t kInstancesMax = 8;
 constexpr std::size_t kSeenEventsMax = 8192;
 constexpr std::size_t kTasksRememberedMax = 1024;
 constexpr std::size_t kSitesRememberedMax = 64;
+constexpr std::size_t kHazardsRememberedMax = 4096;
 // How often it passes on what a leader says, and that a site is closed.
 constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
 constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
@@ -39,6 +40,7 @@ Instant last_delivery(const AuthorisationRequest& request) {
 
 GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/) : config_{config} {
   for (const auto vehicle : config_.expected) fleet_[vehicle];
+  taken_hazards_.insert(config_.hazards.begin(), config_.hazards.end());
 }
 
 void GroundAgent::on_message(const Message& message, VehicleId sender, Instant now) {
@@ -49,7 +51,7 @@ void GroundAgent::on_message(const Message& message, VehicleId sender, Instant n
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
-    last_hazard_ = std::max(last_hazard_, hazard->hazard.id);
+    if (taken_hazards_.size() < kHazardsRememberedMax) taken_hazards_.insert(hazard->hazard.id);
   } else if (const auto* said = std::get_if<coalition::Message>(&message)) {
     if (const auto* status = std::get_if<coalition::MemberStatus>(said)) on_status(*status);
     if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
@@ -266,6 +268,22 @@ Result<void> GroundAgent::refuse(SiteId site, const std::string& operator_name, 
   return decide_newest(site, false, operator_name, now);
 }
 
+Result<void> GroundAgent::decide_on(const coalition::Round& round, SiteId site, bool granted,
+                                    const std::string& operator_name, Instant now) {
+  const auto plan = std::find_if(pending_.begin(), pending_.end(), [&](const auto& p) {
+    return p.request.site == site && p.request.round == round;
+  });
+  if (plan == pending_.end()) {
+    return Error{"that plan for " + name_of(site) +
+                 " does not wait for a decision any more; look at what does"};
+  }
+  if (plan->decision || now >= plan->request.decide_by) {
+    return Error{"that plan for " + name_of(site) +
+                 (plan->decision ? " was already decided by " + plan->decision->decided_by
+                                 : " has run out; the vehicles hold and will ask again")};
+  }
+  return decide(*plan, granted, operator_name, now);
+}
 Result<void> GroundAgent::decide_newest(SiteId site, bool granted, const std::string& by,
                                         Instant now) {
   const auto waiting = std::find_if(pending_.rbegin(), pending_.rend(), [&](const auto& p) {
@@ -382,15 +400,19 @@ Result<HazardId> GroundAgent::add_hazard(const Vec2& centre, double radius_m, In
   if (!centre.allFinite() || !(radius_m > 0.0) || !std::isfinite(radius_m)) {
     return Error{"a hazard is a circle: a centre, and a radius above 0 m"};
   }
-  if (hazards_.size() >= kHazardsMax ||
-      last_hazard_.value == std::numeric_limits<std::uint16_t>::max()) {
-    return Error{"there are too many hazards already"};
-  }
-  ++last_hazard_.value;
-  hazards_.push_back({last_hazard_, centre, radius_m});
+  if (hazards_.size() >= kHazardsMax) return Error{"there are too many hazards already"};
+  constexpr std::int64_t kLast = std::numeric_limits<std::uint16_t>::max();
+  const auto second = static_cast<std::int64_t>(to_seconds(std::max(now, Instant{})));
+  std::int64_t number = std::min<std::int64_t>(kFirstHazard.value + second, kLast);
+  // Down from the last one where the mission is that long.
+  const int step = number == kLast ? -1 : 1;
+  while (taken_hazards_.contains({static_cast<std::uint16_t>(number)})) number += step;
+  const HazardId id{static_cast<std::uint16_t>(number)};
+  taken_hazards_.insert(id);
+  hazards_.push_back({id, centre, radius_m});
   messages_.push(Message{HazardReport{hazards_.back()}});
   next_hazards_ = std::min(next_hazards_, now + kHazardRepeat);
-  return last_hazard_;
+  return id;
 }
 
 void GroundAgent::send_again(Instant now) {

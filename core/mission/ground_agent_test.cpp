@@ -291,12 +291,14 @@ TEST(GroundAgent, GivesAnAircraftBackAloneAndTellsWhen) {
 }
 
 TEST(GroundAgent, TellsOfAHazardAgainAndAgain) {
-  Bench bench;
-  bench.agent.on_message(Message{HazardReport{{{50'004}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.5));
+  GroundAgentConfig config = fleet_of_three();
+  config.hazards = {{10'001}};
+  Bench bench{config};
+  bench.agent.on_message(Message{HazardReport{{{10'002}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.5));
   const auto id = bench.agent.add_hazard({100.0, -200.0}, 300.0, at_seconds(1.0));
   ASSERT_TRUE(id.ok());
-  EXPECT_EQ(*id, HazardId{50'005});  // above what is known
-  EXPECT_EQ(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(2.0)).value(), HazardId{50'006});
+  EXPECT_EQ(*id, HazardId{10'003});  // none that is known
+  EXPECT_EQ(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(2.0)).value(), HazardId{10'004});
   bench.run_until(30.0);
   const auto told = bench.sent<HazardReport>();
   EXPECT_GE(told.size(), 10U);
@@ -311,6 +313,37 @@ TEST(GroundAgent, TellsOfAHazardAgainAndAgain) {
     EXPECT_TRUE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
   }
   EXPECT_FALSE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
+}
+
+TEST(GroundAgent, AHazardAfterANewStartIsANewOne) {
+  Bench before;
+  const auto first = before.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(100.0));
+  Bench after;
+  EXPECT_NE(after.agent.add_hazard({5.0, 5.0}, 1.0, at_seconds(110.0)).value(), *first);
+  // However long the mission is, and whatever others say.
+  Bench late;
+  late.agent.on_message(Message{HazardReport{{{65'535}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.0));
+  EXPECT_EQ(late.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(1e6)).value(), HazardId{65'534});
+}
+
+TEST(GroundAgent, DecidesOnThePlanThatWasSeenOrOnNone) {
+  Bench bench;
+  AuthorisationRequest other = request(1, 90.0, 120.0);
+  other.round.coalition.leader = {3};
+  bench.ask(request(7, 100.0, 120.0), 80.0);
+  bench.ask(other, 81.0);
+  EXPECT_FALSE(bench.agent.decide_on(other.round, {9}, true, "ada", at_seconds(85.0)).ok());
+  // The newer one has run out: the older one is not granted in its place.
+  EXPECT_FALSE(bench.agent.decide_on(other.round, kSite, true, "ada", at_seconds(90.5)).ok());
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  EXPECT_TRUE(
+      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, true, "ada", at_seconds(91.0)).ok());
+  const auto sent = bench.sent<Authorisation>();
+  ASSERT_FALSE(sent.empty());
+  EXPECT_EQ(sent[0].round.number, 7U);
+  EXPECT_FALSE(
+      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, false, "bob", at_seconds(92.0))
+          .ok());
 }
 
 TEST(GroundAgent, RepeatsCommandsWithGrowingNumbers) {

@@ -73,8 +73,9 @@ bool Gate::is_own_origin(std::string_view origin, std::string_view host) const {
 bool Gate::is_own_host(std::string_view host) const {
   if (users_) return true;
   const auto colon = host.rfind(':');
-  const bool has_port = colon != std::string_view::npos && host.find(']', colon) == host.npos;
-  const std::string_view name = host.substr(0, has_port ? colon : host.npos);
+  const bool has_port =
+      colon != std::string_view::npos && host.find(']', colon) == std::string_view::npos;
+  const std::string_view name = host.substr(0, has_port ? colon : std::string_view::npos);
   return name == "localhost" || name == "127.0.0.1" || name == "[::1]";
 }
 

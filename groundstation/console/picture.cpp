@@ -12,11 +12,14 @@ namespace {
 constexpr Duration kDelayWindow = std::chrono::seconds{10};
 /// A speaker with a vehicle's id that has been quiet for so long is gone.
 constexpr Duration kInstanceLasts = std::chrono::seconds{5};
+constexpr std::size_t kInstancesMax = 8;
 
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;
 };
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;  // clang 14 does not deduce it
 
 /// Newer knowledge of a task never makes it less done.
 int rank(const std::optional<coalition::TaskState>& state) {
@@ -25,9 +28,9 @@ int rank(const std::optional<coalition::TaskState>& state) {
   switch (*state) {
     case planned:
       return 1;
-    case failed:
-      return 2;
     case started:
+      return 2;
+    case failed:
       return 3;
     case unknown:
       return 4;
@@ -55,7 +58,13 @@ Picture::Picture(PictureParams params) : params_{std::move(params)} {
   for (const Hazard& hazard : params_.hazards) hazards_[hazard.id] = hazard;
 }
 
+bool Picture::is_known(VehicleId sender) const {
+  return sender == kGroundStation || vehicles_.contains(sender) ||
+         vehicles_.size() < params_.vehicles_max;
+}
+
 void Picture::on_message(const mission::Message& message, VehicleId sender, Instant now) {
+  if (!is_known(sender)) return;
   std::visit(Overloaded{[&](const mission::Telemetry& m) {
                           if (m.vehicle == sender) on(m, now);
                         },
@@ -63,13 +72,18 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                           if (m.vehicle != sender) return;
                           VehiclePicture& vehicle = vehicles_[m.vehicle];
                           vehicle.health = m;
-                          vehicle.instances[m.instance] = now;
+                          speaks(vehicle, m.instance, now);
                         },
-                        [&](const mission::PlanReport& m) { vehicles_[m.vehicle].plan = m; },
+                        [&](const mission::PlanReport& m) {
+                          if (m.vehicle == sender) vehicles_[m.vehicle].plan = m;
+                        },
                         [&](const mission::AuthorisationRequest& m) { on(m, now); },
                         [&](const mission::Authorisation& m) { on(m); },
                         [&](const mission::SiteReport& m) { know(m.site); },
-                        [&](const mission::HazardReport& m) { hazards_[m.hazard.id] = m.hazard; },
+                        [&](const mission::HazardReport& m) {
+                          if (hazards_.size() < params_.hazards_max)
+                            hazards_[m.hazard.id] = m.hazard;
+                        },
                         [&](const formation::Change& m) {
                           if (sender != kGroundStation || !formation::valid(m)) return;
                           if (formation_.change && formation_.change->number == m.number) return;
@@ -77,7 +91,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                           formation_.change_ends = m.start + formation::ChangeMotion{m}.duration();
                         },
                         [&](const mission::FormationStatus& m) {
-                          formation_.members[m.vehicle] = {m, now};
+                          if (m.vehicle == sender) formation_.members[m.vehicle] = {m, now};
                         },
                         [&](const coalition::Message& m) {
                           std::visit(Overloaded{[&](const coalition::LeadershipClaim&) {},
@@ -91,7 +105,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
 
 void Picture::on(const mission::Telemetry& telemetry, Instant now) {
   VehiclePicture& vehicle = vehicles_[telemetry.vehicle];
-  vehicle.instances[telemetry.instance] = now;
+  speaks(vehicle, telemetry.instance, now);
   const Duration delay = now - telemetry.state.time;
   vehicle.delays.emplace_back(now, delay);
   while (now - vehicle.delays.front().first > kDelayWindow) vehicle.delays.pop_front();
@@ -119,7 +133,15 @@ void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
     known.request = request;
     return;
   }
-  authorisations_.push_back({request, now, {}});
+  for (auto& known : authorisations_) {
+    const bool same = known.request.site == request.site &&
+                      known.request.round.coalition == request.round.coalition;
+    if (!same) continue;
+    // A late copy of a plan that has been replaced.
+    if (known.request.round.number > request.round.number) return;
+    known.replaced = true;
+  }
+  authorisations_.push_back({request, now, {}, false});
   if (authorisations_.size() > params_.authorisations_max) authorisations_.pop_front();
 }
 
@@ -156,7 +178,9 @@ RoundPicture& Picture::round_of(const coalition::Round& round) {
   return rounds[index - 1];
 }
 
-void Picture::know(const Site& site) { sites_[site.id].site = site; }
+void Picture::know(const Site& site) {
+  if (sites_.contains(site.id) || sites_.size() < params_.sites_max) sites_[site.id].site = site;
+}
 
 void Picture::on(const coalition::Announcement& m) {
   know(m.site);
@@ -189,7 +213,8 @@ void Picture::on(const coalition::Award& m) {
   coalition.site = m.site.id;
   coalition.lease_until = m.lease_until;
   RoundPicture& round = round_of(m.round);
-  if (!round.award) {
+  const bool first = !round.award;
+  if (first) {
     coalition.state = CoalitionState::awarded;
     coalition.why.clear();
   }
@@ -199,7 +224,7 @@ void Picture::on(const coalition::Award& m) {
     coalition.members.push_back(assignment.vehicle);
     TaskPicture& task = sites_[m.site.id].tasks[assignment.task];
     if (task.state == coalition::TaskState::done) continue;
-    if (task.vehicle != assignment.vehicle) task.state.reset();
+    if (first || task.vehicle != assignment.vehicle) task.state.reset();
     task.vehicle = assignment.vehicle;
     task.time = assignment.time;
     advance(task, coalition::TaskState::planned);
@@ -291,21 +316,27 @@ void Picture::on_event(const mission::MissionEvent& event) {
   }
 }
 
-void Picture::on_timeout(Instant now) {
-  for (auto& [id, vehicle] : vehicles_) {
-    std::erase_if(vehicle.instances,
-                  [now](const auto& entry) { return now - entry.second > kInstanceLasts; });
-  }
-}
-
 bool Picture::silent(const VehiclePicture& vehicle, Instant now) const {
   return vehicle.telemetry && now - vehicle.heard_at > params_.silence;
 }
 
+void Picture::speaks(VehiclePicture& vehicle, InstanceId instance, Instant now) {
+  std::erase_if(vehicle.instances,
+                [now](const auto& entry) { return now - entry.second.last > kInstanceLasts; });
+  if (vehicle.instances.size() >= kInstancesMax && !vehicle.instances.contains(instance)) return;
+  vehicle.instances.try_emplace(instance, VehiclePicture::Spoken{now, now}).first->second.last =
+      now;
+}
+
+/// One that has started anew is silent before its successor speaks.
 bool Picture::duplicate(const VehiclePicture& vehicle, Instant now) const {
-  return std::count_if(vehicle.instances.begin(), vehicle.instances.end(),
-                       [now](const auto& entry) { return now - entry.second <= kInstanceLasts; }) >
-         1;
+  for (const auto& [one, a] : vehicle.instances) {
+    for (const auto& [other, b] : vehicle.instances) {
+      const bool both = one < other && now - std::min(a.last, b.last) <= kInstanceLasts;
+      if (both && a.last >= b.first && b.last >= a.first) return true;
+    }
+  }
+  return false;
 }
 
 std::optional<std::pair<TaskId, TaskPicture>> Picture::task_of(VehicleId vehicle) const {

@@ -86,7 +86,8 @@ TEST(Picture, NamesWhatNeedsAttention) {
   Desk desk;
   desk.telemetry({1}, 10.0, 10.1);
   desk.telemetry({2}, 10.0, 10.1);
-  desk.telemetry({2}, 10.0, 10.2, 2);
+  desk.telemetry({2}, 10.1, 10.2, 2);
+  desk.telemetry({2}, 10.2, 10.3);
   desk.telemetry({9}, 9.0, 10.2);
   EXPECT_TRUE(desk.problems(0, 11.0).empty());
   EXPECT_THAT(desk.problems(1, 11.0), ElementsAre("two programs call themselves vehicle 2"));
@@ -175,6 +176,78 @@ TEST(Picture, ATaskIsNeverLessDoneThanItWas) {
   EXPECT_EQ(tasks[2]["bearing_deg"], 0.0);
 }
 
+TEST(Picture, ATaskThatFailedSaysSoUntilANewRound) {
+  Desk desk;
+  desk.say(award(), kLeader, 12.0);
+  const TaskId task{{4}, TaskKind::deliver, 0};
+  const auto state = [&] { return desk.picture.sites().at({4}).tasks.at(task).state; };
+  desk.say(coalition::MemberStatus{kRound, {2}, {{task, TaskState::started, {}}}}, {2}, 13.0);
+  desk.say(coalition::MemberStatus{kRound, {2}, {{task, TaskState::failed, {}}}}, {2}, 14.0);
+  EXPECT_EQ(state(), TaskState::failed);
+  EXPECT_FALSE(desk.picture.task_of({2}));
+  coalition::Award again = award();
+  again.round.number = 2;
+  desk.say(again, kLeader, 15.0);
+  EXPECT_EQ(state(), TaskState::planned);
+}
+
+TEST(Picture, AReplacedPlanDoesNotWait) {
+  Desk desk;
+  mission::AuthorisationRequest request;
+  request.round = kRound;
+  request.site = {4};
+  request.decide_by = at_seconds(30.0);
+  desk.hear(request, kLeader, 20.0);
+  request.round.number = 2;
+  desk.hear(request, kLeader, 21.0);
+  request.round.number = 1;
+  desk.hear(request, kLeader, 22.0);  // late
+  const Json all = desk.section(Section::authorisations, 23.0);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[0]["waiting"], false);
+  EXPECT_EQ(all[1]["waiting"], true);
+}
+
+TEST(Picture, WhoHasStartedAnewIsNoDuplicate) {
+  Desk desk;
+  desk.telemetry({1}, 1.0, 1.0, 1);
+  desk.telemetry({1}, 2.0, 2.0, 2);
+  EXPECT_FALSE(desk.picture.duplicate(desk.picture.vehicles().at({1}), at_seconds(2.0)));
+  desk.telemetry({1}, 2.1, 2.1, 1);  // the first one speaks still
+  EXPECT_TRUE(desk.picture.duplicate(desk.picture.vehicles().at({1}), at_seconds(2.1)));
+  EXPECT_FALSE(desk.picture.duplicate(desk.picture.vehicles().at({1}), at_seconds(9.0)));
+}
+
+TEST(Picture, AFormationIsInPlaceWhenAllAre) {
+  Desk desk;
+  formation::Change change;
+  change.number = 3;
+  change.start = at_seconds(0.0);
+  change.limits = {5.0, 2.0, 4.0};
+  change.separation = {2.0, 4.0};
+  change.movers = {{{1}, {{0.0, 0.0, 5.0}, {10.0, 0.0, 5.0}}, false},
+                   {{2}, {{0.0, 9.0, 5.0}, {10.0, 9.0, 5.0}}, false}};
+  desk.hear(change, kGroundStation, 0.0);
+  const auto status = [&](VehicleId vehicle, std::uint32_t flown, const Vec3& at, double seconds) {
+    mission::FormationStatus s;
+    s.vehicle = vehicle;
+    s.progress.change = flown;
+    s.position_m = at;
+    desk.hear(s, vehicle, seconds);
+  };
+  const auto in_place = [&](double seconds) -> bool {
+    return desk.section(Section::formation, seconds)["in_place"];
+  };
+  status({1}, 3, {10.0, 0.1, 5.0}, 60.0);
+  status({2}, 2, {10.0, 9.0, 5.0}, 60.0);  // has never taken the change
+  EXPECT_FALSE(in_place(60.0));
+  status({2}, 3, {8.0, 9.0, 5.0}, 61.0);  // stopped on its way
+  EXPECT_FALSE(in_place(61.0));
+  status({2}, 3, {10.0, 9.1, 5.0}, 62.0);
+  EXPECT_TRUE(in_place(62.0));
+  EXPECT_FALSE(in_place(70.0));  // not heard any more
+}
+
 TEST(Picture, AnAuthorisationWaitsUntilItIsDecidedOrLate) {
   Desk desk;
   mission::AuthorisationRequest request;
@@ -253,7 +326,6 @@ TEST(Picture, AnyMessagesMakeAPicture) {
     }
     if (const auto* event = std::get_if<mission::MissionEvent>(&message)) picture.on_event(*event);
     picture.on_message(message, {static_cast<std::uint16_t>(random.index(4))}, now);
-    picture.on_timeout(now);
     if (i % 300 != 0) continue;
     for (std::size_t s = 0; s < static_cast<std::size_t>(Section::audit); ++s) {
       const auto section = static_cast<Section>(s);

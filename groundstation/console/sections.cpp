@@ -20,6 +20,7 @@ constexpr double kRangeWarningM = 2000.0;
 constexpr Duration kOffsetWarning = std::chrono::milliseconds{500};
 constexpr double kArcStepRad = 0.16;  ///< of a path's polyline
 constexpr std::size_t kPlanPointsMax = 400;
+constexpr double kPlaceTolerance_m = 0.5;
 constexpr double kHoldStepRad = 0.26;
 
 /// The shortest text of a number that was rounded.
@@ -116,7 +117,8 @@ Json vehicles_json(const Picture& picture, const std::string& version, Instant n
     set("activity", [&] { return Json(to_string(t->activity)); });
     const auto task = picture.task_of(id);
     v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);
-    set("heard_age_s", [&] { return number(to_seconds(now - vehicle.heard_at), 1); });
+    set("heard_age_s",
+        [now, heard_at = vehicle.heard_at] { return number(to_seconds(now - heard_at), 1); });
     const auto offset = clock_offset(vehicle);
     v["clock_offset_ms"] = offset ? number(to_seconds(*offset) * 1e3, 0) : Json(nullptr);
     set("range_left_m", [&] { return number(t->range_left_m, 0); });
@@ -315,7 +317,7 @@ Json authorisation_json(const AuthorisationPicture& picture, const MissionOrigin
           {"longitude_deg", number(place.longitude_deg, 7)},
           {"asked_s", seconds(picture.asked_at)},
           {"decide_by_s", seconds(request.decide_by)},
-          {"waiting", !picture.decision && now < request.decide_by},
+          {"waiting", !picture.decision && !picture.replaced && now < request.decide_by},
           {"decision", std::move(decision)},
           {"deliveries", std::move(deliveries)}};
 }
@@ -339,6 +341,17 @@ Json hazards_json(const Picture& picture) {
   return all;
 }
 
+/// It has flown the newest change, and is where that leads to.
+bool is_in_place(const FormationPicture& formation, VehicleId id,
+                 const mission::FormationStatus& status) {
+  if (!formation.change) return status.at_rest;
+  const auto mover = formation::mover_of(*formation.change, id);
+  if (!mover) return status.at_rest;
+  const Vec3& place = formation.change->movers[*mover].points.back();
+  return status.progress.change == formation.change->number &&
+         (status.position_m - place).norm() < kPlaceTolerance_m;
+}
+
 Json formation_json(const Picture& picture, Instant now) {
   const FormationPicture& formation = picture.formation();
   if (formation.members.empty() && !formation.change) return nullptr;
@@ -356,11 +369,13 @@ Json formation_json(const Picture& picture, Instant now) {
               {"movers", std::move(movers)}};
   }
   bool at_rest = true;
+  bool in_place = !formation.members.empty();
   Json places = Json::array();
   for (const auto& [id, member] : formation.members) {
     const auto& status = member.status;
     const bool lost = now - member.heard_at > picture.params().silence;
     at_rest = at_rest && (status.at_rest || lost);
+    in_place = in_place && !lost && is_in_place(formation, id, status);
     places.push_back({{"id", id.value},
                       {"x", metres(status.position_m.x())},
                       {"y", metres(status.position_m.y())},
@@ -372,7 +387,7 @@ Json formation_json(const Picture& picture, Instant now) {
                       {"lost", lost}});
   }
   const bool moving = !at_rest || (formation.change && now < formation.change_ends);
-  return {{"in_place", !moving},
+  return {{"in_place", in_place && !moving},
           {"moving", moving},
           {"change", std::move(change)},
           {"places", std::move(places)}};

@@ -40,6 +40,7 @@ constexpr std::size_t kTextMax = 4096;
 constexpr std::uint32_t kHeaderMax = 8192;
 constexpr std::size_t kAnswersMax = 256;  ///< that wait for a slow client
 constexpr std::size_t kRequestsMax = 256;
+constexpr int kPublicationsMax = 4;
 constexpr int kTextsPerSecond = 20;
 constexpr std::size_t kLoginsMax = 4;  ///< that wait; each takes some 0.1 s
 constexpr auto kPatience = std::chrono::seconds{30};
@@ -127,6 +128,15 @@ class Server::Impl {
   void post(F work) {
     asio::post(context_, std::move(work));
   }
+  /// From another thread. Where the server's is behind, a state is left out: a newer one comes.
+  void publish_soon(double time_s, Sections sections) {
+    if (publications_ >= kPublicationsMax) return;
+    ++publications_;
+    post([this, time_s, sections = std::move(sections)]() mutable {
+      --publications_;
+      publish(time_s, std::move(sections));
+    });
+  }
   void publish(double time_s, Sections sections) {
     board_.publish(time_s, std::move(sections));
     tell_all();
@@ -212,6 +222,7 @@ class Server::Impl {
   void tell_all() {
     for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) client->on_news();
   }
+  void run();
   void accept();
   void serve(tcp::socket socket);
 
@@ -228,6 +239,7 @@ class Server::Impl {
   std::size_t connections_ = 0;
   std::set<Client*> clients_;
   std::atomic<bool> watched_{false};
+  std::atomic<int> publications_{0};  ///< that wait for the server's thread
   std::vector<LiveChannel> channels_;
   std::set<LiveClient*> live_clients_;
   std::atomic<bool> live_watched_{false};
@@ -265,6 +277,7 @@ class SocketClient final : public Client,
                    beast::string_view{kSubprotocol.data(), kSubprotocol.size()});
     }));
     socket_.read_message_max(kTextMax);
+    cookies_ = view(request[http::field::cookie]);
     socket_.async_accept(request, [self = this->shared_from_this()](error_code error) {
       if (error) return;
       self->server_.join(*self);
@@ -320,34 +333,38 @@ class SocketClient final : public Client,
     seen_.next_seq = resume.next_seq;
     // From a later time than ours: of another run.
     if (seen_.next_seq > server_.board().next_seq()) seen_.next_seq = 0;
-    return server_.submit(Server::Join{[self = weak()](const std::string& series) {
-      if (const auto client = self.lock()) client->begin(series);
-    }});
+    return server_.submit(
+        Server::Join{[server = &server_, self = weak()](const std::string& series) {
+          server->post([self, series] {
+            if (const auto client = self.lock()) client->begin(series);
+          });
+        }});
   }
 
-  /// From any thread.
   void begin(const std::string& series) {
-    server_.post([self = this->shared_from_this(), series] {
-      self->say(self->server_.board().history(series));
-      self->resumed_ = true;
-      self->write();
-    });
+    // A replay may have been wound back meanwhile.
+    seen_.next_seq = std::min(seen_.next_seq, server_.board().next_seq());
+    say(server_.board().history(series));
+    resumed_ = true;
+    write();
   }
 
   bool on(LineText& text) {
+    // Who has logged out gives no more orders by what is still open.
+    if (!server_.gate().identify(cookies_, std::chrono::steady_clock::now())) return false;
     Server::Line given;
     given.line = std::move(text.line);
     given.user = identity_.user;
     given.may_order = identity_.role == Role::op;
     given.seen = std::move(text.seen);
-    given.reply = [self = weak(), id = text.id](bool done, const std::string& said,
-                                                const std::string& data) {
-      const auto client = self.lock();
-      if (!client) return;
-      std::string answer =
-          fmt::format(R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id, done,
-                      text_of(said), data.empty() ? "null" : data);
-      client->server_.post([client, answer = std::move(answer)] { client->say(answer); });
+    // Called on other threads: only the server's may be the last to hold a client.
+    given.reply = [server = &server_, self = weak(), id = text.id](
+                      bool done, const std::string& said, const std::string& data) {
+      server->post([self, answer = fmt::format(
+                              R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id,
+                              done, text_of(said), data.empty() ? "null" : data)] {
+        if (const auto client = self.lock()) client->say(answer);
+      });
     };
     const auto reply = given.reply;
     if (!server_.submit(std::move(given))) reply(false, "the ground station is too busy\n", "");
@@ -402,6 +419,7 @@ class SocketClient final : public Client,
   Server::Impl& server_;
   websocket::stream<Stream> socket_;
   Identity identity_;
+  std::string cookies_;
   std::shared_ptr<Server::Impl::Place> place_;
   beast::flat_buffer buffer_;
   std::deque<std::string> answers_;
@@ -679,8 +697,19 @@ Result<void> Server::Impl::open() {
   }
   port_ = acceptor_.local_endpoint(error).port();
   accept();
-  thread_ = std::thread{[this] { context_.run(); }};
+  thread_ = std::thread{[this] { run(); }};
   return {};
+}
+
+void Server::Impl::run() {
+  while (true) {
+    try {
+      context_.run();
+      return;
+    } catch (const std::exception&) {
+      // A file that cannot be read, say: it ends one connection, not the ground station.
+    }
+  }
 }
 
 void Server::Impl::accept() {
@@ -743,9 +772,7 @@ Result<std::unique_ptr<Server>> Server::open(ServerConfig config,
 
 std::optional<Server::Request> Server::next() { return impl_->next(); }
 void Server::publish(double time_s, Sections sections) {
-  impl_->post([impl = impl_.get(), time_s, sections = std::move(sections)]() mutable {
-    impl->publish(time_s, std::move(sections));
-  });
+  impl_->publish_soon(time_s, std::move(sections));
 }
 void Server::append(std::vector<std::string> events) {
   impl_->post([impl = impl_.get(), events = std::move(events)]() mutable {

@@ -8,7 +8,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { free_port, programs, until, work } from "./bench.mjs";
-import { browse } from "./browser.mjs";
+import { browse, say } from "./browser.mjs";
 
 const folder = join(work, "gate");
 const ground = join(programs, "skein-ground");
@@ -76,6 +76,11 @@ test("an observer sees everything and orders nothing", async () => {
   await until("the fleet", async () => (await view.part("count-heard").innerText()).includes("0/2"));
   assert.equal(await view.part("banner-observer").isVisible(), true);
   assert.equal(await view.part("hold-all").count(), 0);
+  const refused = await say(view.page, { line: "hold all" });
+  assert.equal(refused.done, false);
+  assert.match(refused.text, /observer/);
+  assert.equal((await say(view.page, { line: "status" })).done, true);
+  assert.equal((await say(view.page, { line: "preview form /dev/stdin.yaml" })).done, false);
   await view.part("log-out").click();
 });
 

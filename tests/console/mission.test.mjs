@@ -6,7 +6,7 @@ import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 
 import { fly, until } from "./bench.mjs";
-import { browse, hold } from "./browser.mjs";
+import { browse, hold, say } from "./browser.mjs";
 
 const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 
@@ -52,13 +52,21 @@ test("an observer's eyes: no serious barrier in any panel", async () => {
 });
 
 test("a delivery is authorised by a long press, and not by a short one", async () => {
-  await until("a request", () => view.part("request-1").isVisible());
+  await until("a request", () => view.part("request-1").first().isVisible());
   await view.picture("request");
-  await hold(view.part("authorise-1"), 300);
-  assert.equal((await mission.audit()).filter(({ line }) => line.startsWith("authorise")).length, 0);
+  await hold(view.part("authorise-1").first(), 300);
+  // A decision on another plan than the one that waits; and by its answer all before it is told.
+  const other = await say(view.page, { line: "authorise 1", coalition: "9-0000000000000001-1", round: 1 });
+  assert.equal(other.done, false);
+  assert.match(other.text, /does not wait/);
+  assert.deepEqual(
+    (await mission.audit()).filter(({ line }) => line.startsWith("authorise")).map(({ done }) => done),
+    [false],
+  );
   // The deadline may pass while we look; then the coalition asks again.
   await until("a decision", async () => {
-    if (await view.part("authorise-1").isVisible()) await hold(view.part("authorise-1")).catch(() => {});
+    const button = view.part("authorise-1").first();
+    if (await button.isVisible()) await hold(button).catch(() => {});
     return (await mission.audit()).some(({ line, done, from }) => line === "authorise 1" && done && from === "console");
   });
 });

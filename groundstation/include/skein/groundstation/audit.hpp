@@ -27,12 +27,14 @@ class Audit {
     std::string text;  ///< the answer's first line
   };
 
-  /// `folder` empty: kept in memory only. A file of an earlier run is replaced.
+  /// `folder` empty: kept in memory only. A file of an earlier run is gone on with.
   [[nodiscard]] static Result<Audit> open(const std::string& folder);
 
   /// Fails where the file cannot be written; the entry is kept all the same.
   Result<void> add(Entry entry);
 
+  /// Precondition: one was added.
+  [[nodiscard]] const Entry& newest() const { return entries_.back(); }
   /// The newest kShown, oldest first, as a JSON array.
   [[nodiscard]] const std::string& json() const { return json_; }
   [[nodiscard]] std::string text() const;

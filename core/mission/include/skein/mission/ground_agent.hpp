@@ -28,6 +28,7 @@ struct ScriptedDecision {
 struct GroundAgentConfig {
   std::vector<VehicleId> expected;          ///< the fleet
   std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
+  std::vector<HazardId> hazards = {};       ///< numbers that are taken
   Duration silence = std::chrono::seconds{5};
 };
 
@@ -67,15 +68,20 @@ class GroundAgent {
   /// and does not grant what a vehicle id used twice is part of.
   Result<void> authorise(SiteId site, const std::string& operator_name, Instant now);
   Result<void> refuse(SiteId site, const std::string& operator_name, Instant now);
+  /// The same, for that plan and no other: one that a person has seen.
+  Result<void> decide_on(const coalition::Round& round, SiteId site, bool granted,
+                         const std::string& operator_name, Instant now);
   /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,
   /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   /// Tells everybody of a hazard, every 5 s from now on, so that who was out of reach hears of it
-  /// too. Gives its number: one above all that are known and at least kFirstHazard. Nothing takes
-  /// it back: vehicles plan around it. Fails where the circle is no circle, or after kHazardsMax.
+  /// too. Gives its number, which no hazard that is known has: kFirstHazard and the mission second,
+  /// or more. So it is not one that this process gave before it was started anew, which vehicles
+  /// would take for the old one. Nothing takes it back: vehicles plan around it. Fails where the
+  /// circle is no circle, or after kHazardsMax.
   Result<HazardId> add_hazard(const Vec2& centre, double radius_m, Instant now);
-  static constexpr HazardId kFirstHazard{50'000};
+  static constexpr HazardId kFirstHazard{10'000};
   static constexpr std::size_t kHazardsMax = 100;
 
   [[nodiscard]] std::optional<Message> poll_message();
@@ -143,7 +149,7 @@ class GroundAgent {
   std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
   std::vector<Hazard> hazards_;  ///< of the operator
-  HazardId last_hazard_{static_cast<std::uint16_t>(kFirstHazard.value - 1)};
+  std::set<HazardId> taken_hazards_;
   Instant next_hazards_ = Instant::max();
   std::uint32_t last_command_ = 0;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations

@@ -23,6 +23,9 @@ struct PictureParams {
   std::size_t coalitions_max = 200;
   std::size_t rounds_max = 20;  ///< of a coalition
   std::size_t authorisations_max = 200;
+  std::size_t vehicles_max = 1000;  ///< strangers included
+  std::size_t sites_max = 1000;     ///< whose place is known
+  std::size_t hazards_max = 1000;
 };
 
 /// What an operator sees of one vehicle.
@@ -31,8 +34,12 @@ struct VehiclePicture {
   std::optional<mission::Telemetry> telemetry;
   std::optional<mission::Health> health;
   std::optional<mission::PlanReport> plan;
-  Instant heard_at{};                       ///< its newest telemetry
-  std::map<InstanceId, Instant> instances;  ///< who spoke with its id lately, and when
+  Instant heard_at{};  ///< its newest telemetry
+  struct Spoken {
+    Instant first{};
+    Instant last{};
+  };
+  std::map<InstanceId, Spoken> instances;  ///< who spoke with its id lately, and when
   /// Arrival less sending of its telemetry: what its clock is behind ours, and the link.
   std::deque<std::pair<Instant, Duration>> delays;
   struct Sample {
@@ -93,6 +100,7 @@ struct AuthorisationPicture {
   mission::AuthorisationRequest request;
   Instant asked_at{};
   std::optional<mission::Authorisation> decision;
+  bool replaced = false;  ///< by a newer plan of that coalition
 };
 
 struct FormationPicture {
@@ -116,8 +124,6 @@ class Picture {
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   /// An event, once.
   void on_event(const mission::MissionEvent& event);
-  void on_timeout(Instant now);
-
   [[nodiscard]] const PictureParams& params() const { return params_; }
   [[nodiscard]] const std::map<VehicleId, VehiclePicture>& vehicles() const { return vehicles_; }
   [[nodiscard]] const std::map<SiteId, SitePicture>& sites() const { return sites_; }
@@ -139,6 +145,8 @@ class Picture {
   [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> task_of(VehicleId vehicle) const;
 
  private:
+  [[nodiscard]] bool is_known(VehicleId sender) const;
+  static void speaks(VehiclePicture& vehicle, InstanceId instance, Instant now);
   void on(const mission::Telemetry& telemetry, Instant now);
   void on(const mission::AuthorisationRequest& request, Instant now);
   void on(const mission::Authorisation& decision);
