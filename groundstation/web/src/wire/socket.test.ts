@@ -68,17 +68,22 @@ beforeEach(() => {
   next_seq = 0;
 });
 
+const history = { type: "history" as const, series: [], events: { first_seq: 0, next_seq: 0 } };
+
 test("a connection says first which event it wants, and again after a loss", () => {
   a_socket();
   assert.equal(newest().url, "ws://ground/socket");
   newest().open();
   assert.deepEqual(newest().sent, [{ type: "resume", next_seq: 0 }]);
+  assert.deepEqual(links, ["connecting"], "not before its history has come");
+  newest().says(history);
   next_seq = 17;
   newest().close();
   timers.forEach((then) => then());
   assert.equal(FakeSocket.all.length, 2);
   newest().open();
   assert.deepEqual(newest().sent, [{ type: "resume", next_seq: 17 }]);
+  newest().says(history);
   assert.deepEqual(links, ["connecting", "open", "lost", "lost", "open"]);
 });
 

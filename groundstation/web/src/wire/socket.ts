@@ -89,7 +89,6 @@ export class ConsoleSocket {
       this.attempt = 0;
       this.heard_at = Date.now();
       socket.send(JSON.stringify({ type: "resume", next_seq: this.handlers.next_seq() }));
-      this.handlers.on_link("open");
     };
     socket.onmessage = (event) => {
       this.heard_at = Date.now();
@@ -113,6 +112,8 @@ export class ConsoleSocket {
 
   private receive(message: FromServer): void {
     if (message.type !== "answer") {
+      // Not before: a hello of another run of the server makes us connect anew.
+      if (message.type === "history") this.handlers.on_link("open");
       this.handlers.on_message(message);
       return;
     }
