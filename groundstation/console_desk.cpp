@@ -2,6 +2,7 @@
 #include "skein/groundstation/console_desk.hpp"
 
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
@@ -19,45 +20,81 @@ console::PictureParams picture_params(const configuration::GroundConfig& config)
   return params;
 }
 
-std::string hello(const configuration::GroundConfig& config, const MissionOrigin& origin) {
-  nlohmann::ordered_json hello{{"program", "skein-ground " + version()},
-                               {"origin",
-                                {{"latitude_deg", origin.origin().latitude_deg},
-                                 {"longitude_deg", origin.origin().longitude_deg},
-                                 {"height_m", origin.origin().height_m}}},
-                               {"expected", nlohmann::ordered_json::array()},
-                               {"replay", nullptr}};
-  for (const VehicleId vehicle : config.vehicles) hello["expected"].push_back(vehicle.value);
-  hello["shapes"] = {"line-abreast", "column", "echelon", "wedge", "pentagon"};
-  for (const auto& shape : config.formation.shapes) hello["shapes"].push_back(shape.name);
-  return hello.dump();
-}
-
 }  // namespace
 
 std::string version() { return SKEIN_VERSION; }
+
+console::ServerConfig server_config(const configuration::ConsoleConfig& config) {
+  console::ServerConfig server;
+  server.address = config.address;
+  server.port = config.port;
+  server.certificate = config.certificate;
+  server.key = config.key;
+  server.tiles = config.tiles;
+  for (const auto& overlay : config.overlays) {
+    server.overlays.push_back({overlay.name, overlay.file});
+  }
+  return server;
+}
+
+std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>& expected,
+                       const std::vector<std::string>& shapes,
+                       const std::optional<ShownRecording>& recording) {
+  const Wgs84& place = origin.origin();
+  nlohmann::ordered_json hello{{"program", "skein-ground " + version()},
+                               {"origin",
+                                {{"latitude_deg", place.latitude_deg},
+                                 {"longitude_deg", place.longitude_deg},
+                                 {"height_m", place.height_m}}},
+                               {"expected", nlohmann::ordered_json::array()},
+                               {"shapes", shapes},
+                               {"replay", nullptr}};
+  for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
+  if (recording) {
+    // In steps of the page's scrubber.
+    hello["replay"] = {{"name", recording->name},
+                       {"from_s", std::floor(10.0 * to_seconds(recording->begin)) / 10.0},
+                       {"to_s", std::ceil(10.0 * to_seconds(recording->end)) / 10.0}};
+  }
+  return hello.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+std::optional<console::Section> section_of(View view) {
+  using console::Section;
+  switch (view) {
+    case View::status:
+      return Section::vehicles;
+    case View::sites:
+      return Section::sites;
+    case View::pending:
+      return Section::authorisations;
+    case View::places:
+      return Section::formation;
+    case View::coalitions:
+      return Section::coalitions;
+    case View::hazards:
+      return Section::hazards;
+    case View::help:
+    case View::audit:
+      break;
+  }
+  return std::nullopt;
+}
 
 ConsoleDesk::ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin)
     : origin_{origin}, picture_{picture_params(config)} {}
 
 Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
                                 std::function<void()> wake) {
-  const configuration::ConsoleConfig& wanted = config.console;
-  console::ServerConfig server;
-  server.address = wanted.address;
-  server.port = wanted.port;
-  if (!wanted.passwords.empty()) {
-    auto users = console::Users::load(wanted.passwords);
+  console::ServerConfig server = server_config(config.console);
+  if (!config.console.passwords.empty()) {
+    auto users = console::Users::load(config.console.passwords);
     if (!users) return users.error();
     server.users = std::move(*users);
   }
-  server.certificate = wanted.certificate;
-  server.key = wanted.key;
-  server.tiles = wanted.tiles;
-  for (const auto& overlay : wanted.overlays) {
-    server.overlays.push_back({overlay.name, overlay.file});
-  }
-  server.hello = hello(config, origin_);
+  std::vector<std::string> shapes{"line-abreast", "column", "echelon", "wedge", "pentagon"};
+  for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);
+  server.hello = hello_text(origin_, config.vehicles, shapes, {});
   auto opened = console::Server::open(std::move(server), std::move(wake));
   if (!opened) return opened.error();
   server_ = std::move(*opened);

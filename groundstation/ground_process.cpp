@@ -207,7 +207,7 @@ class GroundLoop {
 
   Answer record_into(const Record& order, const Asker& asker) {
     // Which files it writes is for who can write them anyway.
-    if (asker.from == "console") return {false, "record is for the prompt and the command line\n"};
+    if (asker.from == kConsole) return {false, "record is for the prompt and the command line\n"};
     flush();
     writer_.reset();
     if (order.folder.empty()) return {true, "nothing is recorded now\n"};
@@ -270,26 +270,9 @@ class GroundLoop {
   }
 
   [[nodiscard]] std::string data_of(View view, Instant now) const {
-    using console::Section;
-    switch (view) {
-      case View::help:
-        return "";
-      case View::status:
-        return console_.section(Section::vehicles, now);
-      case View::sites:
-        return console_.section(Section::sites, now);
-      case View::pending:
-        return console_.section(Section::authorisations, now);
-      case View::places:
-        return console_.section(Section::formation, now);
-      case View::coalitions:
-        return console_.section(Section::coalitions, now);
-      case View::hazards:
-        return console_.section(Section::hazards, now);
-      case View::audit:
-        return audit_.json();
-    }
-    return "";
+    if (view == View::audit) return audit_.json();
+    const auto section = section_of(view);
+    return section ? console_.section(*section, now) : "";
   }
 
   static Answer refusal(const Error& error) { return {false, error.message + "\n"}; }

@@ -49,10 +49,10 @@ class ReplayLoop {
  public:
   ReplayLoop(Playback playback, double speed) : playback_{std::move(playback)}, speed_{speed} {}
 
-  Result<void> serve(const console::ServerConfig& config, const std::string& name) {
-    console::ServerConfig with_hello = config;
-    with_hello.hello = hello(name);
-    auto opened = console::Server::open(std::move(with_hello), [this] { wake_.notify(); });
+  Result<void> serve(console::ServerConfig config, const std::string& name) {
+    config.hello = hello_text(playback_.origin(), playback_.picture().params().expected, {},
+                              ShownRecording{name, playback_.begin(), playback_.end()});
+    auto opened = console::Server::open(std::move(config), [this] { wake_.notify(); });
     if (!opened) return opened.error();
     server_ = std::move(*opened);
     return {};
@@ -112,35 +112,10 @@ class ReplayLoop {
   }
 
   [[nodiscard]] Answer look(View view) const {
-    using console::Section;
-    const auto section = [this](Section which) {
-      return console::section_of(which, playback_.picture(), playback_.origin(),
-                                 playback_.version(), playback_.now());
-    };
-    std::string data;
-    switch (view) {
-      case View::status:
-        data = section(Section::vehicles);
-        break;
-      case View::sites:
-        data = section(Section::sites);
-        break;
-      case View::pending:
-        data = section(Section::authorisations);
-        break;
-      case View::places:
-        data = section(Section::formation);
-        break;
-      case View::coalitions:
-        data = section(Section::coalitions);
-        break;
-      case View::hazards:
-        data = section(Section::hazards);
-        break;
-      case View::help:
-      case View::audit:
-        return {true, std::string{kOrders} + "\n"};
-    }
+    const auto section = section_of(view);
+    if (!section) return {true, std::string{kOrders} + "\n"};
+    const std::string data = console::section_of(*section, playback_.picture(), playback_.origin(),
+                                                 playback_.version(), playback_.now());
     return {true, data + "\n", data};
   }
 
@@ -199,26 +174,6 @@ class ReplayLoop {
     server_->publish(to_seconds(playback_.now()), std::move(sections));
   }
 
-  [[nodiscard]] std::string hello(const std::string& name) const {
-    const Wgs84& origin = playback_.origin().origin();
-    nlohmann::ordered_json hello{
-        {"program", "skein-ground " + version()},
-        {"origin",
-         {{"latitude_deg", origin.latitude_deg},
-          {"longitude_deg", origin.longitude_deg},
-          {"height_m", origin.height_m}}},
-        {"expected", nlohmann::ordered_json::array()},
-        {"shapes", nlohmann::ordered_json::array()},
-        {"replay",
-         {{"name", name},
-          {"from_s", std::floor(10.0 * to_seconds(playback_.begin())) / 10.0},
-          {"to_s", std::ceil(10.0 * to_seconds(playback_.end())) / 10.0}}}};
-    for (const VehicleId vehicle : playback_.picture().params().expected) {
-      hello["expected"].push_back(vehicle.value);
-    }
-    return hello.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  }
-
   Playback playback_;
   double speed_;
   bool playing_ = true;
@@ -269,14 +224,7 @@ int replay(const std::filesystem::path& path, const configuration::ConsoleConfig
                   ? ""
                   : fmt::format("; {} damaged parts left out", playback->damaged()).c_str());
   ReplayLoop loop{std::move(*playback), speed};
-  console::ServerConfig server;
-  server.address = console.address;
-  server.port = console.port;
-  server.tiles = console.tiles;
-  for (const auto& overlay : console.overlays) {
-    server.overlays.push_back({overlay.name, overlay.file});
-  }
-  if (const auto served = loop.serve(server, path.filename().string()); !served) {
+  if (const auto served = loop.serve(server_config(console), path.filename().string()); !served) {
     std::fprintf(stderr, "skein-ground: %s\n", served.error().message.c_str());
     return process::kExitCannotStart;
   }

@@ -14,6 +14,7 @@
 #include "skein/console/picture.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/console/server.hpp"
+#include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
 
@@ -52,5 +53,24 @@ class ConsoleDesk {
 
 /// The version of this program.
 [[nodiscard]] std::string version();
+
+/// Where and what a console serves, without who may use it and its hello.
+[[nodiscard]] console::ServerConfig server_config(const configuration::ConsoleConfig& config);
+
+/// A recording that is shown in place of what happens now.
+struct ShownRecording {
+  std::string name;
+  Instant begin{};
+  Instant end{};
+};
+/// The hello message's fields that the server does not know itself (docs/console-socket.md).
+[[nodiscard]] std::string hello_text(const MissionOrigin& origin,
+                                     const std::vector<VehicleId>& expected,
+                                     const std::vector<std::string>& shapes,
+                                     const std::optional<ShownRecording>& recording);
+
+/// The section that has what a view of the prompt shows; none for those that are not of the
+/// picture.
+[[nodiscard]] std::optional<console::Section> section_of(View view);
 
 }  // namespace skein::groundstation
