@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "skein/routes/paper_world.hpp"
+#include "skein/paper_routes/paper_world.hpp"
 #include "skein/routes/route_check.hpp"
 
 namespace skein::routes {

@@ -8,7 +8,7 @@
 
 #include "skein/base/random.hpp"
 #include "skein/routes/fly_by.hpp"
-#include "skein/routes/paper_world.hpp"
+#include "skein/paper_routes/paper_world.hpp"
 
 namespace skein::routes {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "skein/routes/paper_world.hpp"
+#include "skein/paper_routes/paper_world.hpp"
 
 namespace skein::routes {
 namespace {

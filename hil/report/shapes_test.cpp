@@ -74,7 +74,7 @@ std::string documented_shapes() {
   add("pentagon, 30", named(ShapeKind::pentagon), 30);
   add("pentagon, 8", named(ShapeKind::pentagon), 8);
   const auto heart =
-      configuration::load_shape(std::filesystem::path{SKEIN_SOURCE_DIR} / "shapes" / "heart.yaml");
+      configuration::load_shape(std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "shapes" / "heart.yaml");
   EXPECT_TRUE(heart.ok());
   if (!heart) return "";
   formation::ShapeSpec free = named(ShapeKind::free);

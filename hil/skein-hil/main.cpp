@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
       "  skein-hil run scenarios/coalition-6.yaml          six vehicles, a minute\n"
       "  skein-hil run scenarios/coalition-32.yaml         the mission of 32 vehicles\n"
       "  skein-hil simulate scenarios/coalition-32.yaml    the same in virtual time, in a second\n"
-      "  skein-hil sweep experiments/radio.yaml            600 missions, means and plots\n"
+      "  skein-hil sweep scenarios/experiments/radio.yaml            600 missions, means and plots\n"
       "  skein-hil routes                                  figures of cooperative routes\n"
       "  skein-hil can dump vcan0                          what is said on a CAN bus\n"
       "Scenario files are explained in docs/scenarios.md.");
@@ -135,8 +135,8 @@ int main(int argc, char** argv) {
       "add\n"
       "draws, call it again. Ends with status 0 if all was flown and every check but completion\n"
       "held, 1 if not, 2 for bad input.\n"
-      "Examples: skein-hil sweep experiments/mission-32.yaml\n"
-      "          skein-hil sweep experiments/radio.yaml --runs 10 --out runs/radio-10");
+      "Examples: skein-hil sweep scenarios/experiments/mission-32.yaml\n"
+      "          skein-hil sweep scenarios/experiments/radio.yaml --runs 10 --out runs/radio-10");
 
   skein::hil::SwapArguments swap;
   auto* swap_command = app.add_subcommand(
@@ -236,7 +236,7 @@ int main(int argc, char** argv) {
       "Places are around the shape's centre, in the order in which they are filled: dx along the\n"
       "track, dy to its left, dz up. The shapes are explained in docs/formation.md.\n"
       "Examples: skein-hil shapes wedge --vehicles 15\n"
-      "          skein-hil shapes shapes/heart.yaml --vehicles 5,12,32 --spacing 4 --svg "
+      "          skein-hil shapes scenarios/shapes/heart.yaml --vehicles 5,12,32 --spacing 4 --svg "
       "heart.svg");
 
   skein::hil::CanDumpArguments dump;

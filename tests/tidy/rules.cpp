@@ -34,26 +34,30 @@ bool is_core(std::string_view path) {
   return path.starts_with("core/") && is_cpp(path) && !path.ends_with("_test.cpp");
 }
 
-/// What does no input or output: core, and the codes of DroneCAN and MAVLink, without their tests.
+/// What does no input or output: core, the codes of DroneCAN and MAVLink, and what simulates
+/// aircraft and their autopilots, without their tests.
 bool is_pure(std::string_view path) {
-  const bool is_code = path.starts_with("hal/dronecan/") || path.starts_with("hal/mavlink/");
-  return is_core(path) || (is_code && is_cpp(path) && !path.ends_with("_test.cpp"));
+  static constexpr std::array<std::string_view, 4> kPure{"hal/dronecan/", "hal/mavlink/",
+                                                         "hal/models/", "hal/autopilot/"};
+  const bool listed = std::ranges::any_of(
+      kPure, [path](std::string_view folder) { return path.starts_with(folder); });
+  return is_core(path) || (listed && is_cpp(path) && !path.ends_with("_test.cpp"));
 }
 
 bool is_cpp_outside_dds(std::string_view path) {
-  return is_cpp(path) && !is_tidy(path) && !path.starts_with("network/") &&
-         !path.starts_with("codec/") && !path.starts_with("recording/") &&
+  return is_cpp(path) && !is_tidy(path) && !path.starts_with("runtime/network/") &&
+         !path.starts_with("runtime/codec/") && !path.starts_with("runtime/recording/") &&
          !path.starts_with("hil/radio/") && !path.starts_with("idl/");
 }
 
 bool is_cpp_outside_topics(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) &&
-         !(path.starts_with("codec/") && path.find("topics.") != std::string_view::npos);
+         !(path.starts_with("runtime/codec/") && path.find("topics.") != std::string_view::npos);
 }
 
 /// node.cpp turns the list of topics into QoS; nobody else has a word in it.
 bool is_cpp_outside_node(std::string_view path) {
-  return is_cpp(path) && !is_tidy(path) && path != "network/node.cpp";
+  return is_cpp(path) && !is_tidy(path) && path != "runtime/network/node.cpp";
 }
 
 bool is_pure_but_assert(std::string_view path) {
@@ -110,7 +114,7 @@ constexpr std::array kLineRules{
     LineRule{
         "dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
         R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
-        "DDS stays in network/ and hil/radio/, CDR in codec/ and recording/: use their interfaces"},
+        "DDS stays in runtime/network/ and hil/radio/, CDR in runtime/codec/ and runtime/recording/: use their interfaces"},
     LineRule{"qos-outside", is_cpp_outside_node, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-/// The rules of the house that no compiler checks (docs/architecture.md, docs/scope.md).
+/// The rules of the tree that no compiler checks (docs/architecture.md, docs/scope.md).
 namespace skein::tidy {
 
 struct File {

@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(
         Sample{"dds-outside", kOnboard, "#include <fastdds/dds/topic/Topic.hpp>",
                "#include \"skein/network/participant.hpp\"\n// eprosima::fastdds is elsewhere"},
         Sample{"dds-outside", kCore, "eprosima::fastrtps::Time_t t;", "int eprosima = 0;"},
-        Sample{"qos-outside", "network/participant.cpp",
+        Sample{"qos-outside", "runtime/network/participant.cpp",
                "q.reliability().kind = RELIABLE_RELIABILITY_QOS;", "q = topic.qos;"},
         Sample{"topic-name", kOnboard, "subscribe(\"skein/telemetry\");",
                "#include \"skein/network/node.hpp\"\nsubscribe(Topic::telemetry);"},
@@ -89,12 +89,12 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
   EXPECT_TRUE(findings_in("core/planning/dubins_test.cpp", "#include <random>").empty());
   EXPECT_TRUE(findings_in(kOnboard, "#include <mutex>").empty());
-  EXPECT_TRUE(findings_in("network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
+  EXPECT_TRUE(findings_in("runtime/network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
 }
 
 TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {
-  EXPECT_TRUE(findings_in("codec/topics.cpp", "name = \"skein/command\";").empty());
-  EXPECT_TRUE(findings_in("network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
+  EXPECT_TRUE(findings_in("runtime/codec/topics.cpp", "name = \"skein/command\";").empty());
+  EXPECT_TRUE(findings_in("runtime/network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 
 TEST(Rules, SourceMustBeginWithItsLicence) {
@@ -105,10 +105,10 @@ TEST(Rules, SourceMustBeginWithItsLicence) {
 }
 
 TEST(Rules, FileMustBeNamedAfterWhatItHolds) {
-  const auto found = findings_in("network/socket_utils.cpp", "");
+  const auto found = findings_in("runtime/network/socket_utils.cpp", "");
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].rule, "vague-name");
-  EXPECT_TRUE(findings_in("network/commons.cpp", "").empty());
+  EXPECT_TRUE(findings_in("runtime/network/commons.cpp", "").empty());
 }
 
 TEST(Rules, SourceMustNotBeTooLong) {
@@ -131,7 +131,7 @@ TEST(Rules, SourceMustBelongToATarget) {
       << "a folder before the name may come from a variable";
   EXPECT_EQ(rules_with("skein_module(hal SOURCES can_bus.cpp)", "hal/bus.cpp"), "no-target");
   EXPECT_EQ(rules_with("# can/bus.cpp", "hal/can/bus.cpp"), "no-target");
-  EXPECT_EQ(rules_with("skein_module(hal SOURCES bus.cpp)", "network/bus.cpp"), "no-target");
+  EXPECT_EQ(rules_with("skein_module(hal SOURCES bus.cpp)", "runtime/network/bus.cpp"), "no-target");
 }
 
 TEST(Text, CommentsAndLiteralsAreBlankedInPlace) {

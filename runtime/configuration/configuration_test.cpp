@@ -1,0 +1,619 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
+#include "skein/configuration/deployment.hpp"
+#include "skein/configuration/experiment.hpp"
+#include "skein/configuration/reference.hpp"
+
+namespace skein::configuration {
+namespace {
+
+const std::filesystem::path kSource{SKEIN_SOURCE_DIR};
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in{file, std::ios::binary};
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+constexpr const char* kVehicle = R"(version: 1
+vehicle:
+  id: 7
+  cruise_speed_mps: 50
+  speed_min_mps: 42
+  speed_max_mps: 58
+  turn_radius_m: 150
+  range_m: 18000
+  capabilities: [survey, deliver]
+  height_m: 300
+origin: {latitude_deg: 31.5, longitude_deg: 105}
+start: {east_m: 10, north_m: 20, heading_deg: 15}
+network:
+  port: 17402
+  peers:
+    - {id: 0, port: 17400}
+    - {id: 8, port: 17404}
+)";
+
+std::string vehicle_error(const std::string& from, const std::string& to) {
+  const auto result = parse_vehicle_config(replaced(kVehicle, from, to), "v.yaml");
+  return result.ok() ? "no error" : result.error().message;
+}
+
+TEST(VehicleConfigFile, HoldsCompassDegreesAndSecondsAndTheStructHeadingsAndDurations) {
+  const auto config =
+      parse_vehicle_config(std::string{kVehicle} + "protocol: {message_delay_s: 0.25}\n", "v.yaml");
+  ASSERT_TRUE(config.ok()) << config.error().message;
+  EXPECT_EQ(config->vehicle.id, VehicleId{7});
+  EXPECT_EQ(config->start.heading_rad, heading_from_compass_deg(15));
+  EXPECT_EQ(config->protocol.message_delay, std::chrono::milliseconds{250});
+  EXPECT_TRUE(config->vehicle.capabilities.has(TaskKind::deliver));
+  EXPECT_FALSE(config->vehicle.capabilities.has(TaskKind::assess));
+  ASSERT_EQ(config->network.peers.size(), 2U);
+  EXPECT_EQ(config->network.peers[1], (NetworkPeer{VehicleId{8}, "127.0.0.1", 17404}));
+}
+
+TEST(VehicleConfigFile, NamesTheMethodOfAllocation) {
+  const std::string keys = "planning: {allocation: colony, timing_weight: 0.5}\n";
+  const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
+  ASSERT_TRUE(config.ok()) << config.error().message;
+  EXPECT_EQ(config->planning.method, planning::AllocationMethod::colony);
+  EXPECT_EQ(config->planning.weights.timing, 0.5);
+  EXPECT_EQ(config->planning.weights.reward, 1.0);
+  const auto again = parse_vehicle_config(to_yaml(*config), "again.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(again->planning.method, planning::AllocationMethod::colony);
+  EXPECT_EQ(parse_vehicle_config(kVehicle, "v.yaml").value().planning.method,
+            planning::AllocationMethod::best);
+  EXPECT_FALSE(
+      parse_vehicle_config(kVehicle + std::string{"planning: {allocation: count}\n"}, "v.yaml")
+          .ok());
+}
+
+TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
+  const std::string keys =
+      "flight_controller: {kind: ardupilot, can: 'mcast:3', node_id: 11, companion_node_id: 43, "
+      "system_id: 7, airframe: copter, take_over: from_ground, takeoff_height_m: 25, "
+      "geoid_height_m: -38.5, "
+      "turn_lead_s: 0.75}\n";
+  const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
+  ASSERT_TRUE(config.ok()) << config.error().message;
+  for (const auto& c : {*config, parse_vehicle_config(to_yaml(*config), "again.yaml").value()}) {
+    const ArdupilotConfig& fc = c.flight_controller.ardupilot;
+    EXPECT_EQ(c.flight_controller.kind, FlightControllerKind::ardupilot);
+    EXPECT_EQ(fc.can, "mcast:3");
+    EXPECT_EQ(fc.node_id, 11);
+    EXPECT_EQ(fc.companion_node_id, 43);
+    EXPECT_EQ(fc.system_id, 7);
+    EXPECT_EQ(c.flight_controller.airframe, AirframeKind::copter);
+    EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
+    EXPECT_EQ(fc.takeoff_height_m, 25.0);
+    EXPECT_EQ(fc.geoid_height_m, -38.5);
+    EXPECT_EQ(c.flight_controller.turn_lead_s(), 0.75);
+  }
+}
+
+struct Mistake {
+  const char* from;
+  const char* to;
+  const char* message;
+};
+
+TEST(VehicleConfigFile, NamesEveryMistake) {
+  const std::vector<Mistake> mistakes{
+      {"cruise_speed_mps: 50", "cruise_sped_mps: 50",
+       "v.yaml:3: vehicle.cruise_speed_mps: is missing; add it: a number from 1 to 200 m/s\n"
+       "v.yaml:3: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
+       "one of them\n"
+       "v.yaml:4: vehicle.cruise_sped_mps: is no key of this group; did you mean "
+       "cruise_speed_mps?"},
+      {"  port: 17402", "  port: 17402\n  colour: red",
+       "v.yaml:15: network.colour: is no key of this group, which knows domain_id, address, port, "
+       "peers, transport_plugin"},
+      {"  range_m: 18000\n", "",
+       "v.yaml:3: vehicle.range_m: is missing; add it: a number from 100 to 10000000 m"},
+      {"range_m: 18000", "range_m: far",
+       "v.yaml:8: vehicle.range_m: is \"far\", not a number; write one from 100 to 10000000 m"},
+      {"range_m: 18000", "range_m: .nan",
+       "v.yaml:8: vehicle.range_m: is \".nan\", not a number; write one from 100 to 10000000 m"},
+      {"range_m: 18000", "range_m:",
+       "v.yaml:8: vehicle.range_m: is empty, not a number; write one from 100 to 10000000 m"},
+      {"range_m: 18000", "range_m: 12",
+       "v.yaml:8: vehicle.range_m: is 12, outside 100 to 10000000 m; choose a number inside"},
+      {"heading_deg: 15", "heading_deg: 375",
+       "v.yaml:12: start.heading_deg: is 375, outside -360 to 360 deg; choose a number inside"},
+      {"id: 7", "id: 7.5",
+       "v.yaml:3: vehicle.id: is \"7.5\", not a whole number; write one from 1 to 65535"},
+      {"id: 7", "id: 70000",
+       "v.yaml:3: vehicle.id: is 70000, outside 1 to 65535; choose a number inside"},
+      {"[survey, deliver]", "[survey, delivr]",
+       "v.yaml:9: vehicle.capabilities[2]: is \"delivr\", not one of survey, deliver, assess; did "
+       "you mean deliver?"},
+      {"[survey, deliver]", "survey",
+       "v.yaml:9: vehicle.capabilities: is not a list; write [a, b], or a line with \"- \" for "
+       "each "
+       "element"},
+      {"[survey, deliver]", "[survey, deliver, assess, survey]",
+       "v.yaml:9: vehicle.capabilities: has 4 elements, the most is 3; remove some"},
+      {"start: {east_m: 10, north_m: 20, heading_deg: 15}", "start: 4",
+       "v.yaml:12: start: is not a group of keys; write \"key: value\" lines below it"},
+      {"id: 8, port", "id: 0, port",
+       "v.yaml:17: network.peers[2]: is peer 0 again; the first is on line 16, give each its own "
+       "id"},
+      {"version: 1", "version: 2",
+       "v.yaml:1: version: this program reads version 1 only; write 1 and compare the keys with "
+       "the "
+       "reference"},
+      {"  id: 7", "  id: 7\n  id: 9",
+       "v.yaml:4: vehicle.id: stands here a second time; the first is on line 3, remove one of "
+       "them"},
+      {"speed_min_mps: 42", "speed_min_mps: 52",
+       "v.yaml:4: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
+       "one of them"},
+      {"start:", "search: [[1, 2], [3]]\nstart:",
+       "v.yaml:12: search[2]: is not [east, north]; write two numbers from -1000000 to 1000000 m"},
+      {"start:", "recording_folder: [a]\nstart:",
+       "v.yaml:12: recording_folder: is a list, not text; write it in \"quotes\""},
+      {"start:", "flight_controller: {kind: ardupilot}\nstart:",
+       "v.yaml:12: flight_controller.can: an ardupilot needs a CAN bus; name one, such as can0 or "
+       "mcast:0"},
+      {"start:", "flight_controller: {kind: ardupilott, can: can0}\nstart:",
+       "v.yaml:12: flight_controller.kind: is \"ardupilott\", not one of simulated, ardupilot; did "
+       "you mean ardupilot?"},
+      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 42}\nstart:",
+       "v.yaml:12: flight_controller.companion_node_id: is the autopilot's node_id too; every node "
+       "on a bus has its own"},
+      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
+       "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
+      {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
+       "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},
+  };
+  for (const Mistake& m : mistakes) EXPECT_EQ(vehicle_error(m.from, m.to), m.message);
+}
+
+TEST(VehicleConfigFile, NamesAFileThatCannotBeRead) {
+  EXPECT_EQ(load_vehicle_config("no/such/file.yaml").error().message,
+            "no/such/file.yaml: cannot be opened: No such file or directory; check the path");
+  EXPECT_EQ(load_vehicle_config(kSource).error().message,
+            kSource.string() + ": is a folder; name a YAML file");
+  EXPECT_EQ(parse_vehicle_config("", "v.yaml").error().message,
+            "v.yaml: holds no single group of keys; write \"key: value\" lines, the first "
+            "\"version: 1\"");
+}
+
+constexpr const char* kScenario = R"(version: 1
+title: Test
+duration_max_s: 100
+origin: {latitude_deg: 31.5, longitude_deg: 105}
+all: {cruise_speed_mps: 50, speed_min_mps: 42, speed_max_mps: 58, turn_radius_m: 150,
+  range_m: 18000}
+types:
+  scout: {capabilities: [survey, assess], sensor_radius_m: 300, assess_radius_m: 300}
+  carrier: {capabilities: [deliver], loads: 1, final_approach_m: 300, cruise_speed_mps: 55}
+vehicles:
+  - {id: 1, type: scout, east_m: 0, north_m: 0, heading_deg: 0, height_m: 100}
+  - {id: 2, type: carrier, east_m: 0, north_m: 500, heading_deg: 90, height_m: 110}
+  - {id: 3, type: carrier, east_m: 500, north_m: 500, heading_deg: 90, height_m: 120, loads: 2}
+sites:
+  - id: 1
+    east_m: 2000
+    north_m: 2000
+    survey: {start_angle_deg: 0, dwell_s: 20}
+    deliveries: {mode: sequential, bearings_deg: [30, 30], interval_s: 5}
+    assessments: {count: 1, wait_s: 10, dwell_s: 20, start_angles_deg: [90]}
+hazards:
+  - {id: 1, east_m: 1000, north_m: 1500, radius_m: 100}
+operator_decisions:
+  - {site: 1, decision: grant, reaction_s: 2}
+faults:
+  - {at_s: 50, kill_vehicle: 3}
+  - {at_s: 60, for_s: 5, partition: [[0, 1], [2, 3]]}
+  - {at_s: 70, for_s: 5, loss_ratio: 0.5}
+  - {at_s: 80, kill_vehicle: 0}
+reference:
+  - {site: 1, found_by: 1, survey_done_s: 43.92, delivery_times_s: [101.44, 106.44]}
+expect: {coalitions: 1, vehicles_lost: [3]}
+)";
+
+Scenario scenario() {
+  const auto result = parse_scenario(kScenario, "s.yaml");
+  EXPECT_TRUE(result.ok()) << result.error().message;
+  return result.value();
+}
+
+std::string scenario_error(const std::string& from, const std::string& to) {
+  const auto result = parse_scenario(replaced(kScenario, from, to), "s.yaml");
+  return result.ok() ? "no error" : result.error().message;
+}
+
+TEST(ScenarioFile, LowerLevelsOfTheFleetOverrideHigherOnes) {
+  const Scenario s = scenario();
+  ASSERT_EQ(s.vehicles.size(), 3U);
+  EXPECT_EQ(s.vehicles[0].spec.cruise_speed_mps, 50);
+  EXPECT_EQ(s.vehicles[1].spec.cruise_speed_mps, 55);
+  EXPECT_EQ(s.vehicles[1].spec.loads, 1);
+  EXPECT_EQ(s.vehicles[2].spec.loads, 2);
+  EXPECT_EQ(s.vehicles[2].type, "carrier");
+}
+
+TEST(ScenarioFile, HoldsSitesAndFaults) {
+  const Scenario s = scenario();
+  const Site& site = s.sites.at(0);
+  EXPECT_EQ(site.survey.start_angle_rad, heading_from_compass_deg(0));
+  ASSERT_EQ(site.deliveries.size(), 2U);
+  EXPECT_EQ(site.deliveries[1].offset, std::chrono::seconds{5});
+  EXPECT_EQ(site.deliveries[1].bearing_rad, heading_from_compass_deg(30));
+  EXPECT_EQ(site.assessments.at(0).start_angle_rad, heading_from_compass_deg(90));
+  ASSERT_EQ(s.faults.size(), 4U);
+  EXPECT_EQ(s.faults[0].kind, FaultKind::kill_vehicle);
+  EXPECT_EQ(s.faults[1].groups.at(1).at(1), VehicleId{3});
+  EXPECT_EQ(s.faults[2].kind, FaultKind::loss);
+  EXPECT_EQ(s.faults[3].kind, FaultKind::kill_vehicle);
+  EXPECT_EQ(s.faults[3].vehicle, kGroundStation);
+  EXPECT_EQ(s.reference.at(0).found_by, VehicleId{1});
+  EXPECT_TRUE(check(s).ok()) << check(s).error().message;
+}
+
+TEST(ScenarioFile, NamesEveryMistake) {
+  const std::vector<Mistake> mistakes{
+      {"{id: 3, type: carrier", "{id: 2, type: carrier",
+       "s.yaml:13: vehicles[3]: is vehicle 2 again; the first is on line 12, give each its own id"},
+      {"{id: 3, type: carrier", "{id: 3, type: carier",
+       "s.yaml:13: vehicles[3].type: is \"carier\", which is not among types; did you mean "
+       "carrier?\n"
+       "s.yaml:13: vehicles[3].capabilities: is missing; add it: a list"},
+      {"turn_radius_m: 150,\n", "\n",
+       "s.yaml:11: vehicles[1].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
+       "s.yaml:12: vehicles[2].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
+       "s.yaml:13: vehicles[3].turn_radius_m: is missing; add it: a number from 1 to 5000 m"},
+      {"final_approach_m: 300", "final_aproach_m: 300",
+       "s.yaml:9: types.carrier.final_aproach_m: is no key of this group; did you mean "
+       "final_approach_m?"},
+      {", interval_s: 5", "",
+       "s.yaml:19: sites[1].deliveries.interval_s: must be above 0 s when the mode is sequential, "
+       "and is left out when simultaneous"},
+      {"start_angles_deg: [90]", "start_angles_deg: [90, 0]",
+       "s.yaml:20: sites[1].assessments.start_angles_deg: must have one angle for each assessment, "
+       "or none; compare with count"},
+      {"kill_vehicle: 3", "kill_vehicle: 3, for_s: 2, loss_ratio: 0.5",
+       "s.yaml:26: faults[1].at_s: a fault has exactly one of kill_vehicle, partition and "
+       "loss_ratio; split it or add one"},
+      {"for_s: 5, loss_ratio", "loss_ratio",
+       "s.yaml:28: faults[3].for_s: a partition or loss lasts for some time; add for_s above 0 s"},
+      {"[2, 3]]", "[2, 2]]",
+       "s.yaml:27: faults[2].partition[2][2]: is vehicle 2 again; the first is on line 27, give "
+       "each its own id"},
+      {"decision: grant", "decision: yes",
+       "s.yaml:24: operator_decisions[1].decision: is \"yes\", not one of refuse, grant; choose "
+       "one "
+       "of these"},
+      {"[101.44, 106.44]", "[101.44, -1]",
+       "s.yaml:31: reference[1].delivery_times_s[2]: is -1, outside 0 to 1000000 s; choose a "
+       "number "
+       "inside"},
+  };
+  for (const Mistake& m : mistakes) EXPECT_EQ(scenario_error(m.from, m.to), m.message);
+}
+
+TEST(ScenarioCheck, SaysWhyAMissionIsImpossible) {
+  const std::vector<Mistake> mistakes{
+      {"[30, 30]", "[30, 30, 30]",
+       "site 1 needs 3 deliveries, but the whole fleet has only 2 vehicles with the capability "
+       "deliver, a load and the range; add vehicles or take deliveries away"},
+      {"capabilities: [survey, assess]", "capabilities: [assess]",
+       "site 1 cannot be surveyed: no vehicle has the capability survey; give it to one"},
+      {"height_m: 100}", "height_m: 100, range_m: 3000}",
+       "site 1 cannot be surveyed: none of the 1 vehicle that can survey has the range to fly "
+       "there "
+       "and around it; raise range_m or move one"},
+      {"count: 1, wait_s: 10, dwell_s: 20, start_angles_deg: [90]", "count: 2, dwell_s: 20",
+       "site 1 needs 2 assessments, but the whole fleet has only 1 vehicle with the capability "
+       "assess and the range; add vehicles or take assessments away"},
+      {"height_m: 120", "height_m: 113",
+       "vehicle 2 and vehicle 3 fly only 3 m apart in height, expect.separation_vertical_m is 5 m; "
+       "give each its own height_m"},
+      {"{id: 1, east_m: 1000, north_m: 1500", "{id: 1, east_m: 0, north_m: 50",
+       "vehicle 1 starts inside hazard 1; move one of them"},
+      {"{id: 1, east_m: 1000, north_m: 1500", "{id: 1, east_m: 2000, north_m: 2050",
+       "site 1 lies inside hazard 1; move one of them"},
+      {"{id: 1, east_m: 1000, north_m: 1500", "{id: 1, east_m: 1900, north_m: 1800",
+       "the final approach to site 1 on bearing 30 deg crosses hazard 1; move one of them or "
+       "change "
+       "the bearing\n"
+       "the final approach to site 1 on bearing 30 deg crosses hazard 1; move one of them or "
+       "change "
+       "the bearing"},
+      {"sensor_radius_m: 300", "sensor_radius_m: 160",
+       "vehicle 1 cannot fly circles of its sensor_radius_m 160 m: it turns on 165 m "
+       "(turn_radius_m "
+       "* turn_radius_margin); raise sensor_radius_m"},
+      {"title: Test", "title: Test\nwind: {speed_mps: 45}",
+       "vehicle 1 cannot hold its course: the wind of 45 m/s with gusts reaches its speed_min_mps "
+       "42 "
+       "m/s; lower the wind\n"
+       "vehicle 2 cannot hold its course: the wind of 45 m/s with gusts reaches its speed_min_mps "
+       "42 "
+       "m/s; lower the wind\n"
+       "vehicle 3 cannot hold its course: the wind of 45 m/s with gusts reaches its speed_min_mps "
+       "42 "
+       "m/s; lower the wind"},
+      {"title: Test", "title: Test\nradio: {delay_ms_mean: 150, delay_ms_jitter: 60}",
+       "the radio delays messages by up to 210 ms, the protocol allows 200 ms; lower "
+       "radio.delay_ms_mean or raise protocol.message_delay_s"},
+      {"kill_vehicle: 3", "kill_vehicle: 4",
+       "the fault at 50 s names vehicle 4, which is not in the fleet"},
+      {"{site: 1, decision", "{site: 2, decision",
+       "operator_decisions names site 2, which is not among the sites"},
+      {"coalitions: 1", "coalitions: 2",
+       "expect.coalitions is 2, but there are only 1 site; lower it"},
+      {"at_s: 70", "at_s: 170", "the fault at 170 s comes after duration_max_s; move one of them"},
+  };
+  for (const Mistake& m : mistakes) {
+    const auto parsed = parse_scenario(replaced(kScenario, m.from, m.to), "s.yaml");
+    ASSERT_TRUE(parsed.ok()) << parsed.error().message;
+    const auto checked = check(*parsed);
+    EXPECT_EQ(checked.ok() ? "no error" : checked.error().message, m.message);
+  }
+}
+
+std::vector<std::filesystem::path> shipped() {
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator{kSource / "scenarios"}) {
+    if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+  }
+  EXPECT_GE(files.size(), 2U);
+  return files;
+}
+
+TEST(ShippedScenarios, LoadAndCheckAndRoundTrip) {
+  for (const auto& file : shipped()) {
+    const auto loaded = load_scenario(file);
+    ASSERT_TRUE(loaded.ok()) << loaded.error().message;
+    const auto checked = check(*loaded);
+    EXPECT_TRUE(checked.ok()) << file << "\n" << checked.error().message;
+    const std::string written = to_yaml(*loaded);
+    const auto again = parse_scenario(written, "written");
+    ASSERT_TRUE(again.ok()) << again.error().message;
+    EXPECT_EQ(to_yaml(*again), written);
+    ASSERT_EQ(again->vehicles.size(), loaded->vehicles.size());
+    for (std::size_t i = 0; i < loaded->vehicles.size(); ++i) {
+      EXPECT_EQ(again->vehicles[i].start.heading_rad, loaded->vehicles[i].start.heading_rad);
+      EXPECT_EQ(again->vehicles[i].type, loaded->vehicles[i].type);
+    }
+  }
+}
+
+TEST(Deployment, GivesEveryNodeItsPortItsPeersAndItsSeed) {
+  Scenario s = scenario();
+  s.hazards.push_back({{HazardId{2}, {0.0, 900.0}, 50.0}, at_seconds(40)});
+  Deployment deployment;
+  deployment.time = {1'700'000'000'123'456'789, 2.5};
+  deployment.recording_folder = "/tmp/run \"1\"";
+  const auto vehicles = vehicle_configs(s, deployment);
+  const GroundConfig ground = ground_config(s, deployment);
+  ASSERT_EQ(vehicles.size(), 3U);
+  EXPECT_EQ(ground.network.port, 17400);
+  EXPECT_EQ(ground.network.peers.size(), 3U);
+  EXPECT_EQ(vehicles[2].network.port, 17406);
+  ASSERT_EQ(vehicles[2].network.peers.size(), 3U);
+  EXPECT_EQ(vehicles[2].network.peers[0], (NetworkPeer{VehicleId{0}, "127.0.0.1", 17400}));
+  EXPECT_EQ(vehicles[2].hazards.size(), 1U);
+  EXPECT_NE(vehicles[0].seed, vehicles[1].seed);
+  EXPECT_THAT(ground.vehicles, testing::ElementsAre(VehicleId{1}, VehicleId{2}, VehicleId{3}));
+}
+
+TEST(Deployment, GivesFlightControllersOnCanBusesAndNodesOfTheirOwn) {
+  Scenario s = scenario();
+  s.vehicles[0].flight_controller.kind = FlightControllerKind::ardupilot;
+  s.vehicles[2].flight_controller.kind = FlightControllerKind::ardupilot;
+  Deployment deployment;
+  deployment.can_buses = {"mcast:5", "mcast:9"};
+  auto vehicles = vehicle_configs(s, deployment);
+  const auto& first = vehicles[0].flight_controller.ardupilot;
+  const auto& second = vehicles[2].flight_controller.ardupilot;
+  EXPECT_EQ(first.can, "mcast:5");
+  EXPECT_EQ(second.can, "mcast:9");
+  EXPECT_EQ(first.take_over, TakeOverKind::in_flight);
+  EXPECT_EQ((std::set<int>{first.node_id, first.companion_node_id, second.node_id,
+                           second.companion_node_id}
+                 .size()),
+            4U);
+  EXPECT_EQ(vehicles[1].flight_controller.kind, FlightControllerKind::simulated);
+  deployment.can_buses = {"vcan0"};
+  vehicles = vehicle_configs(s, deployment);
+  EXPECT_EQ(vehicles[2].flight_controller.ardupilot.can, "vcan0");
+  // What the scenario names itself stays.
+  s.vehicles[0].flight_controller.ardupilot.can = "can7";
+  s.vehicles[0].flight_controller.ardupilot.node_id = 99;
+  EXPECT_EQ(vehicle_configs(s, deployment)[0].flight_controller.ardupilot.can, "can7");
+  EXPECT_EQ(vehicle_configs(s, deployment)[0].flight_controller.ardupilot.node_id, 99);
+}
+
+TEST(ScenarioCheck, WantsNodesOfTheirOwnOnASharedBus) {
+  Scenario s = scenario();
+  for (auto& v : s.vehicles) v.flight_controller.kind = FlightControllerKind::ardupilot;
+  EXPECT_TRUE(check(s).ok()) << check(s).error().message;
+  s.vehicles[0].flight_controller.ardupilot.can = "vcan0";
+  s.vehicles[1].flight_controller.ardupilot.can = "vcan0";
+  s.vehicles[1].flight_controller.ardupilot.node_id = 11;
+  ASSERT_FALSE(check(s).ok());
+  EXPECT_EQ(check(s).error().message,
+            "vehicle 2 and vehicle 1 have node 42 on bus vcan0; give each node its own id");
+}
+
+TEST(Deployment, WhatIsWrittenIsReadBackExactly) {
+  for (const auto& file : shipped()) {
+    const auto s = load_scenario(file);
+    ASSERT_TRUE(s.ok());
+    Deployment deployment;
+    deployment.time = {1'700'000'000'123'456'789, 2.5};
+    deployment.recording_folder = "/tmp/run \"1\"";
+    deployment.can_buses = {"mcast:1"};
+    for (const VehicleConfig& config : vehicle_configs(*s, deployment)) {
+      const auto read_back = parse_vehicle_config(to_yaml(config), "written");
+      ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+      EXPECT_EQ(to_yaml(*read_back), to_yaml(config));
+      EXPECT_EQ(read_back->start.heading_rad, config.start.heading_rad);
+      EXPECT_EQ(read_back->flight_controller.wind.from_rad, config.flight_controller.wind.from_rad);
+      EXPECT_EQ(read_back->network, config.network);
+      EXPECT_EQ(read_back->time, config.time);
+      EXPECT_EQ(read_back->seed, config.seed);
+      EXPECT_EQ(read_back->search, config.search);
+      EXPECT_EQ(read_back->recording_folder, config.recording_folder);
+      EXPECT_EQ(read_back->protocol.message_delay, config.protocol.message_delay);
+      EXPECT_EQ(read_back->vehicle.capabilities, config.vehicle.capabilities);
+    }
+    const GroundConfig ground = ground_config(*s, deployment);
+    const auto read_back = parse_ground_config(to_yaml(ground), "written");
+    ASSERT_TRUE(read_back.ok()) << read_back.error().message;
+    EXPECT_EQ(read_back->operator_decisions, ground.operator_decisions);
+    EXPECT_EQ(read_back->vehicles, ground.vehicles);
+    EXPECT_EQ(read_back->network, ground.network);
+  }
+}
+
+TEST(Writer, KeepsAnyHeading) {
+  Random random{3};
+  VehicleConfig config = *parse_vehicle_config(kVehicle, "v.yaml");
+  for (int i = 0; i < 200; ++i) {
+    config.start.heading_rad = random.uniform(-kPi, kPi);
+    const auto again = parse_vehicle_config(to_yaml(config), "written");
+    ASSERT_TRUE(again.ok()) << again.error().message;
+    EXPECT_NEAR(again->start.heading_rad, config.start.heading_rad, 1e-14);
+  }
+}
+
+TEST(MutatedFiles, EndInAValueOrASentence) {
+  const std::string alphabet = "[]{}:,-#&*!|>'\"%@`\n\t 019.eE~?<=\\\xc3\xff";
+  Random random{17};
+  for (int i = 0; i < 1500; ++i) {
+    std::string text = i % 2 == 0 ? kScenario : kVehicle;
+    const std::uint64_t changes = 1 + random.index(6);
+    for (std::uint64_t c = 0; c < changes; ++c) {
+      const std::size_t at = random.index(text.size());
+      switch (random.index(4)) {
+        case 0:
+          text[at] = alphabet[random.index(alphabet.size())];
+          break;
+        case 1:
+          text.erase(at, 1 + random.index(20));
+          break;
+        case 2:
+          text.insert(at, 1, alphabet[random.index(alphabet.size())]);
+          break;
+        default:
+          text.insert(at, text.substr(random.index(text.size()), random.index(60)));
+          break;
+      }
+      if (text.empty()) text.assign(1, ' ');
+    }
+    if (i % 2 == 0) {
+      const auto result = parse_scenario(text, "s.yaml");
+      if (result.ok()) {
+        static_cast<void>(check(*result));
+      } else {
+        EXPECT_TRUE(result.error().message.starts_with("s.yaml")) << text;
+      }
+    } else if (const auto result = parse_vehicle_config(text, "v.yaml"); !result.ok()) {
+      EXPECT_TRUE(result.error().message.starts_with("v.yaml")) << text;
+    }
+  }
+}
+
+TEST(MutatedFiles, AreNotFollowedIntoTheDeep) {
+  EXPECT_FALSE(parse_scenario(std::string(100'000, '['), "s.yaml").ok());
+  EXPECT_FALSE(parse_scenario("a: &a [*a]\nversion: &b {x: *b}\n", "s.yaml").ok());
+}
+
+void expect_page(const std::filesystem::path& file, const std::string& page) {
+  // One thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
+  if (std::getenv("SKEIN_UPDATE_DOCS") != nullptr) std::ofstream{file, std::ios::binary} << page;
+  EXPECT_EQ(read(file), page) << "run configuration_test with SKEIN_UPDATE_DOCS=1 to print "
+                              << file;
+}
+
+TEST(ReferencePages, AreWhatTheTablesPrint) {
+  expect_page(kSource / "docs" / "scenarios.md", scenario_reference());
+  expect_page(kSource / "docs" / "configuration.md", configuration_reference());
+}
+
+constexpr auto kExperiment = R"(
+version: 1
+title: Try
+scenario: s.yaml
+runs: 3
+axes:
+  - name: range
+    points:
+      - {label: near, radio_range_m: 1000}
+      - {label: far, radio_range_m: 2500, allocation: greedy}
+)";
+
+std::string experiment_error(const std::string& from, const std::string& to) {
+  const auto result = parse_experiment(replaced(kExperiment, from, to), "e.yaml");
+  return result.ok() ? "no error" : result.error().message;
+}
+
+TEST(ExperimentFile, IsReadAndWrittenAlike) {
+  const auto read = parse_experiment(kExperiment, "e.yaml");
+  ASSERT_TRUE(read.ok()) << read.error().message;
+  ASSERT_EQ(read->axes.size(), 1U);
+  ASSERT_EQ(read->axes[0].points.size(), 2U);
+  EXPECT_EQ(read->axes[0].points[1].settings.radio_range_m, 2500.0);
+  EXPECT_EQ(read->axes[0].points[1].settings.allocation, planning::AllocationMethod::greedy);
+  EXPECT_FALSE(read->axes[0].points[0].settings.allocation.has_value());
+  EXPECT_FALSE(read->team.has_value());
+  const auto again = parse_experiment(to_yaml(*read), "again.yaml");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(to_yaml(*again), to_yaml(*read));
+}
+
+TEST(ExperimentFile, SaysWhereItIsWrongAndWhatToDo) {
+  EXPECT_THAT(
+      experiment_error("greedy", "greddy"),
+      ::testing::HasSubstr("e.yaml:10: axes[1].points[2].allocation: is \"greddy\", not one of"));
+  EXPECT_THAT(experiment_error("runs: 3", "runs: 0"),
+              ::testing::HasSubstr("e.yaml:5: runs: is 0, outside 1"));
+  EXPECT_THAT(experiment_error("radio_range_m: 1000", "radio_rang_m: 1000"),
+              ::testing::HasSubstr("did you mean radio_range_m?"));
+  EXPECT_THAT(experiment_error("label: far", "label: near"),
+              ::testing::HasSubstr("has a label twice"));
+  EXPECT_THAT(experiment_error("scenario: s.yaml\n", ""),
+              ::testing::HasSubstr("scenario: is missing"));
+  EXPECT_THAT(experiment_error("runs: 3",
+                               "runs: 3\nrandom_team: [{west_m: 5, east_m: 1, south_m: 0, "
+                               "north_m: 1}]"),
+              ::testing::HasSubstr("random_team[1].east_m: must be greater than west_m"));
+}
+
+TEST(ExperimentFile, ThoseThatAreShippedAreGoodAndNameTheirScenario) {
+  std::size_t files = 0;
+  const std::filesystem::path folder = std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "experiments";
+  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
+    const auto experiment = load_experiment(entry.path());
+    ASSERT_TRUE(experiment.ok()) << experiment.error().message;
+    const auto scenario = load_scenario(folder / experiment->scenario);
+    EXPECT_TRUE(scenario.ok()) << scenario.error().message;
+    ++files;
+  }
+  EXPECT_GE(files, 3U);
+}
+
+}  // namespace
+}  // namespace skein::configuration
