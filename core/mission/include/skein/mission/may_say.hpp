@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "skein/base/ids.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// Whether the message is its sender's to say: a vehicle speaks for itself, a leader for its
+/// rounds, the ground station for the operator. It also passes on what leaders announce and renew,
+/// for those who do not hear them. What is not the sender's to say is to be dropped where it is
+/// decided on.
+[[nodiscard]] bool may_say(const Message& message, VehicleId sender);
+
+}  // namespace skein::mission
