@@ -370,6 +370,38 @@ std::string control_socket_of(const configuration::GroundConfig& config) {
                                        : config.control_socket;
 }
 
+namespace {
+
+void serve_console(ConsoleDesk& console, const configuration::GroundConfig& config,
+                   process::Wake& wake) {
+  if (config.console.port == 0) return;
+  if (const auto served = console.serve(config, [&wake] { wake.notify(); }); !served) {
+    spdlog::warn("there is no console: {}", served.error().message);
+  } else {
+    spdlog::info("console: {}", console.url());
+  }
+}
+
+/// None, and a warning, where it cannot be had.
+std::unique_ptr<ControlSocket> open_control(const configuration::GroundConfig& config,
+                                            process::Wake& wake) {
+  auto control = ControlSocket::open(control_socket_of(config), [&wake] { wake.notify(); });
+  if (control) return std::move(*control);
+  spdlog::warn("takes no orders from other programs: {}", control.error().message);
+  return nullptr;
+}
+
+/// None where nothing is recorded.
+Result<std::optional<recording::Writer>> open_recording(const configuration::GroundConfig& config,
+                                                        const recording::Writer::Options& options) {
+  if (config.recording_folder.empty()) return std::optional<recording::Writer>{};
+  auto opened = recording::Writer::open(config.recording_folder, options);
+  if (!opened) return opened.error();
+  return std::optional<recording::Writer>{std::move(*opened)};
+}
+
+}  // namespace
+
 int run(const configuration::GroundConfig& config, const std::string& operator_name) {
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
@@ -391,14 +423,10 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
-  std::optional<recording::Writer> writer;
-  if (!config.recording_folder.empty()) {
-    auto opened = recording::Writer::open(config.recording_folder, options);
-    if (!opened) {
-      spdlog::critical("cannot record: {}", opened.error().message);
-      return process::kExitCannotStart;
-    }
-    writer = std::move(*opened);
+  auto writer = open_recording(config, options);
+  if (!writer) {
+    spdlog::critical("cannot record: {}", writer.error().message);
+    return process::kExitCannotStart;
   }
   process::Wake wake;
   auto node = network::Node::open(
@@ -408,19 +436,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     return process::kExitCannotStart;
   }
 
-  auto control = ControlSocket::open(control_socket_of(config), [&wake] { wake.notify(); });
-  if (!control) {
-    spdlog::warn("takes no orders from other programs: {}", control.error().message);
-  }
-
   ConsoleDesk console{config, *origin};
-  if (config.console.port != 0) {
-    if (const auto served = console.serve(config, [&wake] { wake.notify(); }); !served) {
-      spdlog::warn("there is no console: {}", served.error().message);
-    } else {
-      spdlog::info("console: {}", console.url());
-    }
-  }
+  serve_console(console, config, wake);
   auto audit = Audit::open(config.recording_folder);
   if (!audit) {
     spdlog::critical("cannot record: {}", audit.error().message);
@@ -439,9 +456,9 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   **node,
                   wake,
                   options,
-                  std::move(writer),
+                  std::move(*writer),
                   std::move(*formation),
-                  control ? std::move(*control) : nullptr,
+                  open_control(config, wake),
                   std::move(console),
                   std::move(*audit)};
   std::thread thread{[&loop] { loop.run(); }};

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -194,149 +196,183 @@ int export_recording(const ExportArguments& arguments) {
   return 0;
 }
 
-CLI::App& add_tell(CLI::App& app, Arguments& arguments, const char* name, const char* description,
-                   const char* footer) {
-  CLI::App& command = *app.add_subcommand(name, description);
-  command.add_option("--config", arguments.config,
-                     "The running ground station's configuration; without it, the one of the "
-                     "default port is told");
-  command.add_option("--socket", arguments.socket, "The name of its control socket, instead");
-  command.add_flag("--json", arguments.json, "Answer in JSON: done, text, data");
-  command.footer(footer);
-  command.prefix_command();
-  return command;
-}
+/// The command line: each command knows what to do once it was given.
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.footer(
+        "Examples:\n"
+        "  skein-ground --config ground.yaml\n"
+        "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
+        "  skein-ground tell --config ground.yaml --json status\n"
+        "  skein-ground plan scenarios/routes-3.yaml\n"
+        "  skein-ground info runs/mine/mission.mcap\n"
+        "  skein-ground replay runs/mine\n\n"
+        "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
+        "The keys of the file are explained in docs/configuration.md. The process ends on\n"
+        "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
+        "arguments or configuration, 3 that it could not start or that none answers.");
+    // One thread so far. NOLINTNEXTLINE(concurrency-mt-unsafe)
+    const char* user = std::getenv("USER");
+    arguments_.operator_name = user != nullptr && *user != '\0' ? user : "operator";
+    app_.add_option("--config", arguments_.config, "The ground station's configuration, YAML");
+    app_.add_option("--operator", arguments_.operator_name, "Who decides at the prompt")
+        ->capture_default_str();
+    app_.add_flag("--check-config", arguments_.check_only,
+                  "Read the configuration, say whether it is good, end");
+    app_.set_version_flag("--version", "skein-ground " SKEIN_VERSION);
+    add_orders();
+    add_plan();
+    add_password();
+    add_recordings();
+    add_replay();
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
+    }
+    const auto given = app_.get_subcommands();
+    return given.empty() ? ::run(arguments_) : actions_.at(given.front())();
+  }
+
+ private:
+  CLI::App& add(const char* name, const char* description, std::function<int()> action) {
+    CLI::App& command = *app_.add_subcommand(name, description);
+    actions_[&command] = std::move(action);
+    return command;
+  }
+
+  /// A command that hands the rest of its words, as one line, to a running ground station.
+  void add_tell(const char* name, const char* description, const char* footer,
+                const std::function<int(const std::vector<std::string>&)>& action) {
+    CLI::App& command = *app_.add_subcommand(name, description);
+    command.add_option("--config", arguments_.config,
+                       "The running ground station's configuration; without it, the one of the "
+                       "default port is told");
+    command.add_option("--socket", arguments_.socket, "The name of its control socket, instead");
+    command.add_flag("--json", arguments_.json, "Answer in JSON: done, text, data");
+    command.footer(footer);
+    command.prefix_command();
+    actions_[&command] = [&command, action] { return action(command.remaining()); };
+  }
+
+  void add_orders() {
+    add_tell("formation",
+             "Gives the formation of a running ground station an order, as at its prompt",
+             "Examples:\n"
+             "  skein-ground formation take-off\n"
+             "  skein-ground formation preview form wedge spacing 5 heading 90\n"
+             "  skein-ground formation --config runs/mine/ground.yaml form heart\n"
+             "  skein-ground formation places",
+             [this](const auto& words) { return tell_formation(CLI::detail::join(words, " ")); });
+    add_tell("tell", "Gives a running ground station any line of its prompt",
+             "Examples:\n"
+             "  skein-ground tell status\n"
+             "  skein-ground tell --socket skein-ground-7400 hold all",
+             [this](const auto& words) { return tell(arguments_, CLI::detail::join(words, " ")); });
+    add_tell("record", "Has a running ground station record into a folder from now on, or stop",
+             "Examples:\n"
+             "  skein-ground record runs/evening\n"
+             "  skein-ground record stop",
+             [this](const auto& words) {
+               // The ground station may have been started elsewhere.
+               const bool folder = words.size() == 1 && words[0] != "stop";
+               return tell(arguments_,
+                           "record " + (folder ? std::filesystem::absolute(words[0]).string()
+                                               : CLI::detail::join(words, " ")));
+             });
+  }
+
+  int tell_formation(const std::string& line) {
+    if (!groundstation::is_of_formation(line)) {
+      return fail("'" + line +
+                      "' is no order to the formation: take-off, rally, form SHAPE, land, preview "
+                      "and one of these, or places",
+                  skein::process::kExitBadInput);
+    }
+    return tell(arguments_, line);
+  }
+
+  void add_plan() {
+    CLI::App& command = add("plan", "Plans the routes of a mission file before the mission",
+                            [this] { return plan(planning_); });
+    command.add_option("scenario", planning_.scenario, "A mission with `routes`, YAML")->required();
+    command.add_option("--out", planning_.folder, "Folder for the plan (default: runs/NAME)");
+    command.add_option("--seed", planning_.seed, "In place of the mission's");
+    command.footer(
+        "Example:\n"
+        "  skein-ground plan scenarios/routes-3.yaml\n\n"
+        "Writes plan.yaml, which `skein-hil run --routes` flies, GeoJSON, KML, a .plan for each\n"
+        "vehicle that QGroundControl reads, and a picture. Exit status 1: no plan, or a rule is\n"
+        "broken.");
+  }
+
+  void add_password() {
+    CLI::App& command = add("password", "Makes the line of a user for the console's password file",
+                            [this] { return password(account_); });
+    command.add_option("name", account_.name, "Who it is for")->required();
+    command.add_flag("--observer", account_.observer, "May look, but give no orders");
+    command.footer(
+        "The password is asked for, or read from standard input.\n"
+        "Example:\n"
+        "  skein-ground password ada >> passwords");
+  }
+
+  void add_recordings() {
+    add("info", "Tells what is in a recording", [this] { return info(looked_at_); })
+        .add_option("recording", looked_at_, "An MCAP file, or a folder of a node or a run")
+        ->required();
+    CLI::App& command = add("export", "Writes a recording's tracks and events for other tools",
+                            [this] { return export_recording(exporting_); });
+    command
+        .add_option("recording", exporting_.recording,
+                    "An MCAP file, or a folder of a node or a run")
+        ->required();
+    command.add_option("--csv", exporting_.csv, "Folder for tables: all numbers, exact");
+    command.add_option("--geojson", exporting_.geojson, "Folder for flight.geojson");
+    command.add_option("--kml", exporting_.kml, "Folder for flight.kml");
+    command.require_option(2, 4);
+    command.footer(
+        "Example:\n"
+        "  skein-ground export runs/mine --csv tables --kml .");
+  }
+
+  void add_replay() {
+    CLI::App& command = add("replay", "Shows a recording in the console, as it was", [this] {
+      return groundstation::replay(replaying_.recording, replaying_.console, replaying_.speed);
+    });
+    command
+        .add_option("recording", replaying_.recording,
+                    "An MCAP file, or a folder of a node or a run")
+        ->required();
+    command.add_option("--port", replaying_.console.port, "Of the console, on loopback")
+        ->capture_default_str();
+    command.add_option("--speed", replaying_.speed, "Recorded seconds in a second")
+        ->check(CLI::Range(0.1, 100.0))
+        ->capture_default_str();
+    command.add_option("--tiles", replaying_.console.tiles,
+                       "Map: a folder z/x/y.png or an MBTiles file");
+    command.footer(
+        "A node's recording shows what that node heard; a run's, what every node said.\n"
+        "Example:\n"
+        "  skein-ground replay runs/mine --speed 4");
+  }
+
+  CLI::App app_{
+      "The ground station: shows the fleet and its mission, and is where an operator\n"
+      "authorises or refuses deliveries and gives a formation its orders."};
+  std::map<const CLI::App*, std::function<int()>> actions_;
+  Arguments arguments_;
+  PlanArguments planning_;
+  PasswordArguments account_;
+  std::string looked_at_;
+  ExportArguments exporting_;
+  ReplayArguments replaying_;
+};
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  CLI::App app{
-      "The ground station: shows the fleet and its mission, and is where an operator\n"
-      "authorises or refuses deliveries and gives a formation its orders."};
-  app.footer(
-      "Examples:\n"
-      "  skein-ground --config ground.yaml\n"
-      "  skein-ground formation --config ground.yaml preview form wedge spacing 5\n"
-      "  skein-ground tell --config ground.yaml --json status\n"
-      "  skein-ground plan scenarios/routes-3.yaml\n"
-      "  skein-ground info runs/mine/mission.mcap\n"
-      "  skein-ground replay runs/mine\n\n"
-      "At its prompt, `help` lists the commands. Without a terminal it runs on and logs.\n"
-      "The keys of the file are explained in docs/configuration.md. The process ends on\n"
-      "SIGINT, SIGTERM or `quit` with exit code 0; 1 means that an order was refused, 2 bad\n"
-      "arguments or configuration, 3 that it could not start or that none answers.");
-  Arguments arguments;
-  // One thread so far. NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const char* user = std::getenv("USER");
-  arguments.operator_name = user != nullptr && *user != '\0' ? user : "operator";
-  app.add_option("--config", arguments.config, "The ground station's configuration, YAML");
-  app.add_option("--operator", arguments.operator_name, "Who decides at the prompt")
-      ->capture_default_str();
-  app.add_flag("--check-config", arguments.check_only,
-               "Read the configuration, say whether it is good, end");
-  app.set_version_flag("--version", "skein-ground " SKEIN_VERSION);
-  const CLI::App& formation =
-      add_tell(app, arguments, "formation",
-               "Gives the formation of a running ground station an order, as at its prompt",
-               "Examples:\n"
-               "  skein-ground formation take-off\n"
-               "  skein-ground formation preview form wedge spacing 5 heading 90\n"
-               "  skein-ground formation --config runs/mine/ground.yaml form heart\n"
-               "  skein-ground formation places");
-  const CLI::App& any =
-      add_tell(app, arguments, "tell", "Gives a running ground station any line of its prompt",
-               "Examples:\n"
-               "  skein-ground tell status\n"
-               "  skein-ground tell --socket skein-ground-7400 hold all");
-  const CLI::App& record =
-      add_tell(app, arguments, "record",
-               "Has a running ground station record into a folder from now on, or stop",
-               "Examples:\n"
-               "  skein-ground record runs/evening\n"
-               "  skein-ground record stop");
-  PlanArguments planning;
-  CLI::App& plan_command =
-      *app.add_subcommand("plan", "Plans the routes of a mission file before the mission");
-  plan_command.add_option("scenario", planning.scenario, "A mission with `routes`, YAML")
-      ->required();
-  plan_command.add_option("--out", planning.folder, "Folder for the plan (default: runs/NAME)");
-  plan_command.add_option("--seed", planning.seed, "In place of the mission's");
-  plan_command.footer(
-      "Example:\n"
-      "  skein-ground plan scenarios/routes-3.yaml\n\n"
-      "Writes plan.yaml, which `skein-hil run --routes` flies, GeoJSON, KML, a .plan for each\n"
-      "vehicle that QGroundControl reads, and a picture. Exit status 1: no plan, or a rule is\n"
-      "broken.");
-  PasswordArguments account;
-  CLI::App& password_command =
-      *app.add_subcommand("password", "Makes the line of a user for the console's password file");
-  password_command.add_option("name", account.name, "Who it is for")->required();
-  password_command.add_flag("--observer", account.observer, "May look, but give no orders");
-  password_command.footer(
-      "The password is asked for, or read from standard input.\n"
-      "Example:\n"
-      "  skein-ground password ada >> passwords");
-  std::string looked_at;
-  CLI::App& info_command = *app.add_subcommand("info", "Tells what is in a recording");
-  info_command.add_option("recording", looked_at, "An MCAP file, or a folder of a node or a run")
-      ->required();
-  ExportArguments exporting;
-  CLI::App& export_command =
-      *app.add_subcommand("export", "Writes a recording's tracks and events for other tools");
-  export_command
-      .add_option("recording", exporting.recording, "An MCAP file, or a folder of a node or a run")
-      ->required();
-  export_command.add_option("--csv", exporting.csv, "Folder for tables: all numbers, exact");
-  export_command.add_option("--geojson", exporting.geojson, "Folder for flight.geojson");
-  export_command.add_option("--kml", exporting.kml, "Folder for flight.kml");
-  export_command.require_option(2, 4);
-  export_command.footer(
-      "Example:\n"
-      "  skein-ground export runs/mine --csv tables --kml .");
-  ReplayArguments replaying;
-  CLI::App& replay_command =
-      *app.add_subcommand("replay", "Shows a recording in the console, as it was");
-  replay_command
-      .add_option("recording", replaying.recording, "An MCAP file, or a folder of a node or a run")
-      ->required();
-  replay_command.add_option("--port", replaying.console.port, "Of the console, on loopback")
-      ->capture_default_str();
-  replay_command.add_option("--speed", replaying.speed, "Recorded seconds in a second")
-      ->check(CLI::Range(0.1, 100.0))
-      ->capture_default_str();
-  replay_command.add_option("--tiles", replaying.console.tiles,
-                            "Map: a folder z/x/y.png or an MBTiles file");
-  replay_command.footer(
-      "A node's recording shows what that node heard; a run's, what every node said.\n"
-      "Example:\n"
-      "  skein-ground replay runs/mine --speed 4");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
-  }
-  if (plan_command.parsed()) return plan(planning);
-  if (password_command.parsed()) return password(account);
-  if (info_command.parsed()) return info(looked_at);
-  if (export_command.parsed()) return export_recording(exporting);
-  if (replay_command.parsed()) {
-    return groundstation::replay(replaying.recording, replaying.console, replaying.speed);
-  }
-  if (record.parsed()) {
-    const auto words = record.remaining();
-    // The ground station may have been started elsewhere.
-    const bool folder = words.size() == 1 && words[0] != "stop";
-    return tell(arguments, "record " + (folder ? std::filesystem::absolute(words[0]).string()
-                                               : CLI::detail::join(words, " ")));
-  }
-  if (any.parsed()) return tell(arguments, CLI::detail::join(any.remaining(), " "));
-  if (!formation.parsed()) return run(arguments);
-  const std::string line = CLI::detail::join(formation.remaining(), " ");
-  if (!groundstation::is_of_formation(line)) {
-    return fail("'" + line +
-                    "' is no order to the formation: take-off, rally, form SHAPE, land, preview "
-                    "and one of these, or places",
-                skein::process::kExitBadInput);
-  }
-  return tell(arguments, line);
-}
+int main(int argc, char** argv) { return CommandLine{}.run(argc, argv); }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/base/angles.hpp"
@@ -58,29 +59,45 @@ inline double objective_of(const CoupledProblem& problem, const CoupledPlan& pla
   return problem.weights.reward * decayed / rewards + problem.weights.range * left / ranges;
 }
 
-/// Every rule of the model that the plan breaks, as sentences; empty when it is sound.
-inline std::vector<std::string> faults_of(const CoupledProblem& problem, const CoupledPlan& plan) {
-  constexpr double kTime_s = 1e-6;
-  constexpr double kLength_m = 1e-5;
-  std::vector<std::string> faults;
-  const auto say = [&](const CoupledTask& t, const std::string& what) {
-    faults.push_back(to_string(t.task) + " by " + std::to_string(t.vehicle.value) + ": " + what);
-  };
+/// Finds every rule of the model that a plan breaks.
+class CoupledJudge {
+ public:
+  CoupledJudge(const CoupledProblem& problem, const CoupledPlan& plan)
+      : problem_{problem}, plan_{plan} {
+    tasks_are_those_asked_for();
+    for (const CoupledVehicle& v : problem_.vehicles) flies(v);
+    for (const Site& site : problem_.sites) keeps_order(site);
+    if (std::abs(objective_of(problem_, plan_) - plan_.objective) >
+        1e-9 * std::max(1.0, std::abs(plan_.objective))) {
+      faults_.emplace_back("the objective is not that of the plan");
+    }
+  }
 
-  std::vector<TaskId> done;
-  for (const CoupledTask& t : plan.tasks) done.push_back(t.task);
-  std::sort(done.begin(), done.end());
-  std::vector<TaskId> asked = problem.open_tasks;
-  std::sort(asked.begin(), asked.end());
-  if (done != asked) faults.emplace_back("not every open task is done exactly once");
+  [[nodiscard]] std::vector<std::string> take() { return std::move(faults_); }
 
-  for (const CoupledVehicle& v : problem.vehicles) {
+ private:
+  static constexpr double kTime_s = 1e-6;
+  static constexpr double kLength_m = 1e-5;
+
+  void say(const CoupledTask& t, const std::string& what) {
+    faults_.push_back(to_string(t.task) + " by " + std::to_string(t.vehicle.value) + ": " + what);
+  }
+
+  void tasks_are_those_asked_for() {
+    std::vector<TaskId> done;
+    for (const CoupledTask& t : plan_.tasks) done.push_back(t.task);
+    std::sort(done.begin(), done.end());
+    std::vector<TaskId> asked = problem_.open_tasks;
+    std::sort(asked.begin(), asked.end());
+    if (done != asked) faults_.emplace_back("not every open task is done exactly once");
+  }
+
+  void flies(const CoupledVehicle& v) {
     Pose2 pose = v.pose;
     double free_s = 0.0;
     int deliveries = 0;
-    for (const CoupledTask& t : plan.tasks) {
+    for (const CoupledTask& t : plan_.tasks) {
       if (t.vehicle != v.id) continue;
-      const Site& site = *site_of(problem, t.task.site);
       if (!v.capabilities.has(t.task.kind)) say(t, "not capable");
       const double run_s = t.run.length_m / v.speed_mps;
       const bool deliver = t.task.kind == TaskKind::deliver;
@@ -89,52 +106,66 @@ inline std::vector<std::string> faults_of(const CoupledProblem& problem, const C
       const Pose2 exit = advance(t.entry, t.run.curvature_per_m, t.run.length_m);
       if (deliver) {
         ++deliveries;
-        const DeliveryRequirement& want = site.deliveries[t.task.index];
-        if (std::hypot(exit.x_m - site.position.x(), exit.y_m - site.position.y()) > kLength_m) {
-          say(t, "does not end over the site");
-        }
-        if (std::abs(wrap_pi(exit.heading_rad - want.bearing_rad)) > 1e-9) say(t, "bearing");
-        if (std::abs(t.run.length_m - v.final_approach_m) > kLength_m) say(t, "approach");
+        delivers(t, v, exit);
       } else {
-        const bool survey = t.task.kind == TaskKind::survey;
-        const ArcRequirement& want = survey ? site.survey : site.assessments[t.task.index];
-        const double radius_m = survey ? v.sensor_radius_m : v.assess_radius_m;
-        const Vec2 spoke = t.entry.position() - site.position;
-        if (std::abs(spoke.norm() - radius_m) > kLength_m) say(t, "radius of the arc");
-        if (std::abs(std::abs(t.run.curvature_per_m) - 1.0 / radius_m) > 1e-9) say(t, "curvature");
-        const Vec2 across = left_of(spoke) * (t.run.curvature_per_m > 0.0 ? 1.0 : -1.0);
-        if (std::abs(wrap_pi(std::atan2(across.y(), across.x()) - t.entry.heading_rad)) > 1e-9) {
-          say(t, "does not fly along the arc");
-        }
-        if (want.start_angle_rad) {
-          const double angle = std::atan2(spoke.y(), spoke.x());
-          if (std::abs(wrap_pi(angle - *want.start_angle_rad)) > 1e-9) say(t, "start angle");
-        }
-        if (run_s < to_seconds(want.dwell)) say(t, "dwell");
+        flies_arc(t, v);
       }
-      const double least_m = shortest_dubins_length(pose, t.entry, v.planning_radius_m);
-      if (std::abs(t.transit_m - (run_start_s - free_s) * v.speed_mps) > kLength_m) {
-        say(t, "the transit does not fill its time");
-      }
-      if (t.transit_m < least_m - kLength_m) say(t, "cannot be there in time");
-      if (problem.flyable_waits &&
-          (t.transit_m > least_m + kLength_m || !problem.hazards.empty())) {
-        const Transit transit{pose, t.entry, v.planning_radius_m, v.range_left_m, problem.hazards};
-        const auto path = path_of_length(problem.avoidance, transit, t.transit_m);
-        if (!path) say(t, path.error().message);
-      }
+      arrives(t, v, pose, run_start_s - free_s);
       pose = exit;
       free_s = t.end_s;
     }
     if (free_s * v.speed_mps > v.range_left_m + kLength_m) {
-      faults.push_back("vehicle " + std::to_string(v.id.value) + ": range");
+      faults_.push_back("vehicle " + std::to_string(v.id.value) + ": range");
     }
     if (deliveries > v.loads) {
-      faults.push_back("vehicle " + std::to_string(v.id.value) + ": loads");
+      faults_.push_back("vehicle " + std::to_string(v.id.value) + ": loads");
     }
   }
 
-  for (const Site& site : problem.sites) {
+  void delivers(const CoupledTask& t, const CoupledVehicle& v, const Pose2& exit) {
+    const Site& site = *site_of(problem_, t.task.site);
+    const DeliveryRequirement& want = site.deliveries[t.task.index];
+    if (std::hypot(exit.x_m - site.position.x(), exit.y_m - site.position.y()) > kLength_m) {
+      say(t, "does not end over the site");
+    }
+    if (std::abs(wrap_pi(exit.heading_rad - want.bearing_rad)) > 1e-9) say(t, "bearing");
+    if (std::abs(t.run.length_m - v.final_approach_m) > kLength_m) say(t, "approach");
+  }
+
+  void flies_arc(const CoupledTask& t, const CoupledVehicle& v) {
+    const Site& site = *site_of(problem_, t.task.site);
+    const bool survey = t.task.kind == TaskKind::survey;
+    const ArcRequirement& want = survey ? site.survey : site.assessments[t.task.index];
+    const double radius_m = survey ? v.sensor_radius_m : v.assess_radius_m;
+    const Vec2 spoke = t.entry.position() - site.position;
+    if (std::abs(spoke.norm() - radius_m) > kLength_m) say(t, "radius of the arc");
+    if (std::abs(std::abs(t.run.curvature_per_m) - 1.0 / radius_m) > 1e-9) say(t, "curvature");
+    const Vec2 across = left_of(spoke) * (t.run.curvature_per_m > 0.0 ? 1.0 : -1.0);
+    if (std::abs(wrap_pi(std::atan2(across.y(), across.x()) - t.entry.heading_rad)) > 1e-9) {
+      say(t, "does not fly along the arc");
+    }
+    if (want.start_angle_rad) {
+      const double angle = std::atan2(spoke.y(), spoke.x());
+      if (std::abs(wrap_pi(angle - *want.start_angle_rad)) > 1e-9) say(t, "start angle");
+    }
+    if (t.run.length_m / v.speed_mps < to_seconds(want.dwell)) say(t, "dwell");
+  }
+
+  void arrives(const CoupledTask& t, const CoupledVehicle& v, const Pose2& pose, double transit_s) {
+    const double least_m = shortest_dubins_length(pose, t.entry, v.planning_radius_m);
+    if (std::abs(t.transit_m - transit_s * v.speed_mps) > kLength_m) {
+      say(t, "the transit does not fill its time");
+    }
+    if (t.transit_m < least_m - kLength_m) say(t, "cannot be there in time");
+    if (problem_.flyable_waits &&
+        (t.transit_m > least_m + kLength_m || !problem_.hazards.empty())) {
+      const Transit transit{pose, t.entry, v.planning_radius_m, v.range_left_m, problem_.hazards};
+      const auto path = path_of_length(problem_.avoidance, transit, t.transit_m);
+      if (!path) say(t, path.error().message);
+    }
+  }
+
+  void keeps_order(const Site& site) {
     constexpr double kNever = std::numeric_limits<double>::infinity();
     double survey_end_s = -kNever;
     double first_delivery_s = kNever;
@@ -142,7 +173,7 @@ inline std::vector<std::string> faults_of(const CoupledProblem& problem, const C
     double first_assessment_s = kNever;
     double least_common_s = kNever;
     double greatest_common_s = -kNever;
-    for (const CoupledTask& t : plan.tasks) {
+    for (const CoupledTask& t : plan_.tasks) {
       if (t.task.site != site.id) continue;
       if (t.task.kind == TaskKind::survey) survey_end_s = t.end_s;
       if (t.task.kind == TaskKind::assess) {
@@ -157,24 +188,28 @@ inline std::vector<std::string> faults_of(const CoupledProblem& problem, const C
       }
     }
     const std::string name = "site " + std::to_string(site.id.value);
-    if (first_delivery_s < survey_end_s + to_seconds(problem.decide_wait) - kTime_s) {
-      faults.push_back(name + ": a delivery before the survey's end and the wait");
+    if (first_delivery_s < survey_end_s + to_seconds(problem_.decide_wait) - kTime_s) {
+      faults_.push_back(name + ": a delivery before the survey's end and the wait");
     }
     if (first_assessment_s < survey_end_s - kTime_s) {
-      faults.push_back(name + ": an assessment before the survey's end");
+      faults_.push_back(name + ": an assessment before the survey's end");
     }
     if (first_assessment_s < last_delivery_s + to_seconds(site.assess_wait) - kTime_s) {
-      faults.push_back(name + ": an assessment before the last delivery and the wait");
+      faults_.push_back(name + ": an assessment before the last delivery and the wait");
     }
     if (greatest_common_s - least_common_s > kTime_s) {
-      faults.push_back(name + ": the deliveries are not together");
+      faults_.push_back(name + ": the deliveries are not together");
     }
   }
-  if (std::abs(objective_of(problem, plan) - plan.objective) >
-      1e-9 * std::max(1.0, std::abs(plan.objective))) {
-    faults.emplace_back("the objective is not that of the plan");
-  }
-  return faults;
+
+  const CoupledProblem& problem_;
+  const CoupledPlan& plan_;
+  std::vector<std::string> faults_;
+};
+
+/// Every rule of the model that the plan breaks, as sentences; empty when it is sound.
+inline std::vector<std::string> faults_of(const CoupledProblem& problem, const CoupledPlan& plan) {
+  return CoupledJudge{problem, plan}.take();
 }
 
 }  // namespace skein::planning

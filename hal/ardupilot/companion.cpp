@@ -350,6 +350,52 @@ std::string Companion::Impl::ready_text() const {
   return "; it is not launched unless the operator gives it back on the ground";
 }
 
+void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
+  if (from != State::checking) desk_.clear();  // there the streams were asked for
+  if (from == State::preparing) {
+    const std::string more = ready_text();
+    say(!more.empty(), "the autopilot is ready" + more, now);
+  } else if (event == Event::disarmed) {
+    say(false, "the autopilot has disarmed", now);
+  } else if (event == Event::not_obeyed) {
+    say(true, "the autopilot does not arm" + ready_text(), now);
+  } else if (event == Event::not_ours && before_loss_ == State::arming) {
+    say(true, "the launch was broken off" + ready_text(), now);
+  }
+}
+
+void Companion::Impl::begin_climb(Instant now) {
+  own_flight_ = true;
+  climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
+  say(false, "armed; taking off", now);
+  if (params_.airframe != Airframe::copter) return;
+  mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
+  takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
+  ask(takeoff, {}, true);
+}
+
+void Companion::Impl::enter_piloted(State from, Event event, Instant now) {
+  if (from != State::checking) desk_.clear();
+  taken_by_others_ = true;
+  taken_at_ = now;
+  launch_spent_ = true;
+  say(true, why_piloted(from, event) + "; no setpoints until the operator gives it back", now);
+}
+
+void Companion::Impl::enter_loss(State from, std::uint32_t mode_before, Instant now) {
+  if (from == State::lost || from == State::silent) return;
+  desk_.clear();
+  lost_at_ = now;
+  if (from != State::checking) {
+    before_loss_ = from;
+    mode_before_loss_ = mode_before;
+  }
+  say(true,
+      machine_.in(State::lost) ? "no frame comes from the flight controller"
+                               : "the autopilot is silent, though its node is on the bus",
+      now);
+}
+
 void Companion::Impl::entered(State from, Event event, Instant now) {
   const std::uint32_t mode_before = mode_at_entry_;
   retry_at_ = now;
@@ -377,30 +423,11 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       say(false, "found an autopilot, system " + std::to_string(system_) + ", in " + mode(), now);
       break;
     case State::standing_by:
-      if (from != State::checking) desk_.clear();  // there the streams were asked for
-      if (from == State::preparing) {
-        const std::string more = ready_text();
-        say(!more.empty(), "the autopilot is ready" + more, now);
-      } else if (event == Event::disarmed) {
-        say(false, "the autopilot has disarmed", now);
-      } else if (event == Event::not_obeyed) {
-        say(true, "the autopilot does not arm" + ready_text(), now);
-      } else if (event == Event::not_ours && before_loss_ == State::arming) {
-        say(true, "the launch was broken off" + ready_text(), now);
-      }
+      enter_standing_by(from, event, now);
       break;
-    case State::climbing: {
-      if (from != State::arming) break;
-      own_flight_ = true;
-      climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
-      say(false, "armed; taking off", now);
-      if (params_.airframe == Airframe::copter) {
-        mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
-        takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
-        ask(takeoff, {}, true);
-      }
+    case State::climbing:
+      if (from == State::arming) begin_climb(now);
       break;
-    }
     case State::landing:
       say(false, "landing at its place", now);
       break;
@@ -413,26 +440,11 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       say(false, "flying the companion's setpoints", now);
       break;
     case State::piloted:
-      if (from != State::checking) desk_.clear();
-      taken_by_others_ = true;
-      taken_at_ = now;
-      launch_spent_ = true;
-      say(true, why_piloted(from, event) + "; no setpoints until the operator gives it back", now);
+      enter_piloted(from, event, now);
       break;
     case State::lost:
     case State::silent:
-      if (from != State::lost && from != State::silent) {
-        desk_.clear();
-        lost_at_ = now;
-        if (from != State::checking) {
-          before_loss_ = from;
-          mode_before_loss_ = mode_before;
-        }
-        say(true,
-            machine_.in(State::lost) ? "no frame comes from the flight controller"
-                                     : "the autopilot is silent, though its node is on the bus",
-            now);
-      }
+      enter_loss(from, mode_before, now);
       break;
     case State::checking:
       // A reboot in the first seconds after another shows in no uptime, and forgets the streams.

@@ -110,6 +110,10 @@ class Companion::Impl {
 
   void fire(Event event, Instant now);
   void entered(State from, Event event, Instant now);
+  void enter_standing_by(State from, Event event, Instant now);
+  void begin_climb(Instant now);
+  void enter_piloted(State from, Event event, Instant now);
+  void enter_loss(State from, std::uint32_t mode_before, Instant now);
   void reset_link();
   [[nodiscard]] bool airborne() const;
   [[nodiscard]] bool high() const;

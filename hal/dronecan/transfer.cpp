@@ -150,6 +150,31 @@ bool Reassembler::may_begin(Session& session, std::uint8_t transfer_id, std::uin
   return true;
 }
 
+bool Reassembler::may_go_on(Session& session, std::uint8_t transfer_id, bool toggle,
+                            std::uint8_t interface, Instant now) {
+  if (session.known && interface != session.transfer.interface) {
+    ++statistics_.redundant;
+    return false;
+  }
+  if (!session.assembling) {
+    // The rest of a transfer that was dropped, and counted when it was; or one whose beginning
+    // was never heard.
+    if (!session.known) ++statistics_.bad_order;
+    session.known = true;
+    session.transfer.interface = interface;
+    session.transfer_id = transfer_id;
+    session.heard = now;
+    return false;
+  }
+  if (toggle != session.toggle || transfer_id != session.transfer_id ||
+      now - session.heard > params_.timeout) {
+    session.assembling = false;
+    ++statistics_.bad_order;
+    return false;
+  }
+  return true;
+}
+
 const Transfer* Reassembler::on_anonymous(const Header& header, const can::Frame& frame,
                                           std::uint8_t interface, Instant now) {
   const std::uint8_t tail = frame.data[frame.size - 1U];
@@ -203,27 +228,8 @@ const Transfer* Reassembler::on_frame(const can::Frame& frame, std::uint8_t inte
       session.crc = static_cast<std::uint16_t>(frame.data[0] | frame.data[1] << 8);
       from = kCrcSize;
     }
-  } else {
-    if (session.known && interface != session.transfer.interface) {
-      ++statistics_.redundant;
-      return nullptr;
-    }
-    if (!session.assembling) {
-      // The rest of a transfer that was dropped, and counted when it was; or one whose beginning
-      // was never heard.
-      if (!session.known) ++statistics_.bad_order;
-      session.known = true;
-      session.transfer.interface = interface;
-      session.transfer_id = transfer_id;
-      session.heard = now;
-      return nullptr;
-    }
-    if (toggle != session.toggle || transfer_id != session.transfer_id ||
-        now - session.heard > params_.timeout) {
-      session.assembling = false;
-      ++statistics_.bad_order;
-      return nullptr;
-    }
+  } else if (!may_go_on(session, transfer_id, toggle, interface, now)) {
+    return nullptr;
   }
   session.heard = now;
   session.toggle = !session.toggle;

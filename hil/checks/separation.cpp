@@ -113,6 +113,108 @@ Approach closest(const Sample& a0, const Sample& a1, const Sample& b0, const Sam
   return {std::hypot(dx + t * vx, dy + t * vy), std::abs(dz + t * vz), t};
 }
 
+/// The tracks of a record on one grid of time.
+struct Grid {
+  Instant begin = Instant::max();
+  std::size_t count = 0;
+  std::vector<Gridded> tracks;
+};
+
+Grid grid_of(const RunRecord& record, const Limits& limits) {
+  Grid grid;
+  Instant end = Instant::min();
+  for (const auto& recorded : record.recordings) {
+    if (recorded.track.empty()) continue;
+    grid.begin = std::min(grid.begin, recorded.track.front().state.time);
+    end = std::max(end, recorded.track.back().state.time);
+  }
+  if (grid.begin >= end) return grid;
+  grid.count = static_cast<std::size_t>((end - grid.begin) / kStep) + 1;
+  for (const auto& recorded : record.recordings) {
+    if (recorded.track.empty()) continue;
+    grid.tracks.push_back(
+        {recorded.vehicle, on_grid(recorded.track, grid.begin, grid.count, limits.track_gap_s)});
+  }
+  return grid;
+}
+
+/// Looks at pairs of tracks, slice by slice; a pass below the limit is told once, at its nearest.
+class Watch {
+ public:
+  Watch(const Grid& grid, const Limits& limits) : grid_{grid}, limits_{limits} {}
+
+  void slice(std::size_t from, std::size_t to) {
+    std::vector<Box> boxes;
+    for (std::size_t k = 0; k < grid_.tracks.size(); ++k) {
+      boxes.push_back(box_of(grid_.tracks[k], k, from, to));
+    }
+    std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
+      return std::pair{a.low[0], a.track} < std::pair{b.low[0], b.track};
+    });
+    // Wider than the limit so that the nearest pass is measured where it is legal too.
+    const std::array<double, 3> margin{2.0 * limits_.separation_horizontal_m,
+                                       2.0 * limits_.separation_horizontal_m,
+                                       limits_.separation_vertical_m};
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
+        if (boxes[j].low[0] > boxes[i].high[0] + margin[0]) break;
+        if (!boxes[i].near(boxes[j], margin)) continue;
+        const auto [first, second] = std::minmax(boxes[i].track, boxes[j].track);
+        for (std::size_t step = from; step < to; ++step) pass(first, second, step);
+      }
+    }
+  }
+
+  [[nodiscard]] double nearest_m() const { return nearest_m_; }
+  [[nodiscard]] std::vector<Violation> take() { return std::move(violations_); }
+
+ private:
+  struct Episode {
+    std::size_t last_step = 0;
+    std::size_t violation = 0;
+    double nearest_m = 0.0;
+  };
+
+  void pass(std::size_t first, std::size_t second, std::size_t step) {
+    const auto& a = grid_.tracks[first].samples;
+    const auto& b = grid_.tracks[second].samples;
+    if (!a[step].known || !a[step + 1].known || !b[step].known || !b[step + 1].known) return;
+    const Approach approach =
+        closest(a[step], a[step + 1], b[step], b[step + 1], limits_.separation_vertical_m);
+    nearest_m_ = std::min(nearest_m_, approach.horizontal_m);
+    if (approach.horizontal_m >= limits_.separation_horizontal_m) return;
+    const auto [it, is_new] = episodes_.try_emplace({first, second});
+    Episode& episode = it->second;
+    if (is_new || step > episode.last_step + 1) {
+      episode = {step, violations_.size(), approach.horizontal_m};
+      violations_.push_back(violation(first, second, step, approach));
+    } else if (approach.horizontal_m < episode.nearest_m) {
+      episode.nearest_m = approach.horizontal_m;
+      violations_[episode.violation] = violation(first, second, step, approach);
+    }
+    episode.last_step = step;
+  }
+
+  [[nodiscard]] Violation violation(std::size_t first, std::size_t second, std::size_t step,
+                                    const Approach& approach) const {
+    const Instant when = grid_.begin + kStep * static_cast<Duration::rep>(step) +
+                         from_seconds(approach.share * to_seconds(kStep));
+    const VehicleId one = grid_.tracks[first].vehicle;
+    return {one, when,
+            vehicle_name(one) + " and " + vehicle_name(grid_.tracks[second].vehicle) + " came " +
+                at(when) + " within " + fixed(approach.horizontal_m, 1) + " m horizontally and " +
+                fixed(approach.vertical_m, 1) + " m vertically (limits " +
+                fixed(limits_.separation_horizontal_m, 0) + " m and " +
+                fixed(limits_.separation_vertical_m, 0) + " m)"};
+  }
+
+  const Grid& grid_;
+  const Limits& limits_;
+  std::map<std::pair<std::size_t, std::size_t>, Episode> episodes_;
+  std::vector<Violation> violations_;
+  double nearest_m_ = 1e12;
+};
+
 }  // namespace
 
 CheckResult check_separation(const RunRecord& record, const Limits& limits) {
@@ -124,79 +226,17 @@ CheckResult check_separation(const RunRecord& record, const Limits& limits) {
                      "pairs of vehicles",
                      "",
                      {}};
-  Instant begin = Instant::max();
-  Instant end = Instant::min();
-  for (const auto& recorded : record.recordings) {
-    if (recorded.track.empty()) continue;
-    begin = std::min(begin, recorded.track.front().state.time);
-    end = std::max(end, recorded.track.back().state.time);
+  const Grid grid = grid_of(record, limits);
+  if (grid.count == 0) return result;
+  result.judged = grid.tracks.size() * (grid.tracks.size() - 1) / 2;
+  Watch watch{grid, limits};
+  for (std::size_t from = 0; from + 1 < grid.count; from += kStepsPerSlice) {
+    watch.slice(from, std::min(from + kStepsPerSlice, grid.count - 1));
   }
-  if (begin >= end) return result;
-  const auto count = static_cast<std::size_t>((end - begin) / kStep) + 1;
-  std::vector<Gridded> tracks;
-  for (const auto& recorded : record.recordings) {
-    if (recorded.track.empty()) continue;
-    tracks.push_back({recorded.vehicle, on_grid(recorded.track, begin, count, limits.track_gap_s)});
-  }
-  result.judged = tracks.size() * (tracks.size() - 1) / 2;
-
-  struct Episode {
-    std::size_t last_step = 0;
-    std::size_t violation = 0;
-    double nearest_m = 0.0;
-  };
-  std::map<std::pair<std::size_t, std::size_t>, Episode> episodes;
-  // The margin is wider than the limit so that the nearest pass is measured where it is legal too.
-  const std::array<double, 3> margin{2.0 * limits.separation_horizontal_m,
-                                     2.0 * limits.separation_horizontal_m,
-                                     limits.separation_vertical_m};
-  double nearest = 1e12;
-  for (std::size_t from = 0; from + 1 < count; from += kStepsPerSlice) {
-    const std::size_t to = std::min(from + kStepsPerSlice, count - 1);
-    std::vector<Box> boxes;
-    for (std::size_t k = 0; k < tracks.size(); ++k) boxes.push_back(box_of(tracks[k], k, from, to));
-    std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) {
-      return std::pair{a.low[0], a.track} < std::pair{b.low[0], b.track};
-    });
-    for (std::size_t i = 0; i < boxes.size(); ++i) {
-      for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-        if (boxes[j].low[0] > boxes[i].high[0] + margin[0]) break;
-        if (!boxes[i].near(boxes[j], margin)) continue;
-        const auto [first, second] = std::minmax(boxes[i].track, boxes[j].track);
-        const auto& a = tracks[first].samples;
-        const auto& b = tracks[second].samples;
-        for (std::size_t step = from; step < to; ++step) {
-          if (!a[step].known || !a[step + 1].known || !b[step].known || !b[step + 1].known)
-            continue;
-          const Approach pass =
-              closest(a[step], a[step + 1], b[step], b[step + 1], limits.separation_vertical_m);
-          nearest = std::min(nearest, pass.horizontal_m);
-          if (pass.horizontal_m >= limits.separation_horizontal_m) continue;
-          const Instant when = begin + kStep * static_cast<Duration::rep>(step) +
-                               from_seconds(pass.share * to_seconds(kStep));
-          const Violation found{
-              tracks[first].vehicle, when,
-              vehicle_name(tracks[first].vehicle) + " and " + vehicle_name(tracks[second].vehicle) +
-                  " came " + at(when) + " within " + fixed(pass.horizontal_m, 1) +
-                  " m horizontally and " + fixed(pass.vertical_m, 1) + " m vertically (limits " +
-                  fixed(limits.separation_horizontal_m, 0) + " m and " +
-                  fixed(limits.separation_vertical_m, 0) + " m)"};
-          const auto [it, is_new] = episodes.try_emplace({first, second});
-          Episode& episode = it->second;
-          if (is_new || step > episode.last_step + 1) {
-            episode = {step, result.violations.size(), pass.horizontal_m};
-            result.violations.push_back(found);
-          } else if (pass.horizontal_m < episode.nearest_m) {
-            episode.nearest_m = pass.horizontal_m;
-            result.violations[episode.violation] = found;
-          }
-          episode.last_step = step;
-        }
-      }
-    }
-  }
-  result.measured =
-      nearest < 1e11 ? "nearest in one layer " + fixed(nearest, 1) + " m" : "no pair came near";
+  result.violations = watch.take();
+  result.measured = watch.nearest_m() < 1e11
+                        ? "nearest in one layer " + fixed(watch.nearest_m(), 1) + " m"
+                        : "no pair came near";
   return result;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -66,6 +67,95 @@ std::vector<int> shuffled(std::size_t n, Random& random) {
   return order;
 }
 
+/// Flies a change and looks at all of its vehicles again and again. Heights are stretched, so that
+/// one distance is the measure of all directions.
+class FlownChange {
+ public:
+  FlownChange(const ChangeRequest& request, const formation::ChangeMotion& motion)
+      : request_{request},
+        motion_{motion},
+        n_{request.transfers.size()},
+        factor_{request.separation.horizontal_m / request.separation.vertical_m},
+        ceiling_m_{request.ceiling_m},
+        look_at_(n_ * n_, 1),
+        before_(n_),
+        now_(n_) {
+    for (const auto& transfer : request.transfers) {
+      ceiling_m_ = std::max(ceiling_m_, transfer.from.z());
+    }
+  }
+
+  void fly() {
+    for (std::size_t look = 0;; ++look) {
+      const Duration t = std::min(kLook * static_cast<Duration::rep>(look), motion_.duration());
+      for (std::size_t i = 0; i < n_; ++i) look_at_place(i, t);
+      for (std::size_t i = 0; i < n_ && look > 0; ++i) look_at_way(i, look);
+      std::swap(before_, now_);
+      if (t >= motion_.duration()) break;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      if ((unstretched(before_[i]) - request_.transfers[i].to).norm() > kRounding_m) {
+        wrong("it ends elsewhere");
+      }
+    }
+  }
+
+  /// A way bends by a t^2 / 8 from its chord; both of two can.
+  [[nodiscard]] double bend_m() const {
+    return 2.0 * kAccelerationMore * request_.limits.acceleration_mps2 * std::max(1.0, factor_) *
+           look_s_ * look_s_ / 8.0;
+  }
+  [[nodiscard]] double least_m() const { return least_m_; }
+  [[nodiscard]] const std::string& violation() const { return violation_; }
+
+ private:
+  void wrong(const std::string& sentence) {
+    if (violation_.empty()) violation_ = sentence;
+  }
+  [[nodiscard]] Vec3 unstretched(const Vec3& v) const { return {v.x(), v.y(), v.z() / factor_}; }
+
+  void look_at_place(std::size_t i, Duration t) {
+    now_[i] = motion_.position(i, t);
+    if (now_[i].z() > std::max(ceiling_m_, request_.transfers[i].to.z()) + kRounding_m) {
+      wrong(fmt::format("vehicle {} flies above the ceiling", i + 1));
+    }
+    now_[i].z() *= factor_;
+    const double from_start_m = (unstretched(now_[i]) - request_.transfers[i].from).norm();
+    if (t == Duration::zero() && from_start_m > kRounding_m) wrong("it starts elsewhere");
+  }
+
+  void look_at_way(std::size_t i, std::size_t look) {
+    const Vec3 own = now_[i] - before_[i];
+    if (unstretched(own).norm() > request_.limits.speed_mps * look_s_ * (1.0 + 1e-6)) {
+      wrong(fmt::format("vehicle {} is faster than allowed", i + 1));
+    }
+    // Nobody is faster, heights stretched; so who is far away need not be looked at for a while.
+    const double step_m = 2.0 * request_.limits.speed_mps * std::max(1.0, factor_) * look_s_;
+    for (std::size_t k = 0; k < i; ++k) {
+      if (look_at_[i * n_ + k] > look) continue;
+      const Vec3 begin = before_[i] - before_[k];
+      const Vec3 way = own - (now_[k] - before_[k]);
+      const double squared = way.squaredNorm();
+      const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
+      const double apart_m = (begin + share * way).norm();
+      least_m_ = std::min(least_m_, apart_m);
+      look_at_[i * n_ + k] = look + static_cast<std::size_t>((apart_m - least_m_) / step_m);
+    }
+  }
+
+  const ChangeRequest& request_;
+  const formation::ChangeMotion& motion_;
+  std::size_t n_;
+  double look_s_ = to_seconds(kLook);
+  double factor_;
+  double ceiling_m_;
+  double least_m_ = std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> look_at_;  ///< the look at which a pair is measured next
+  std::vector<Vec3> before_;
+  std::vector<Vec3> now_;
+  std::string violation_;
+};
+
 }  // namespace
 
 ChangeTrial draw_change(std::uint64_t seed) {
@@ -105,76 +195,27 @@ JudgedChange judge_change(const ChangeRequest& request, const formation::Planned
   judged.vehicles = request.transfers.size();
   judged.way = planned.way;
   judged.wanted_m = request.separation.horizontal_m + request.reserve_m;
-  const auto wrong = [&](const std::string& sentence) {
-    if (judged.violation.empty()) judged.violation = sentence;
-  };
   if (!formation::valid(planned.change)) {
-    wrong("the change is not valid");
+    judged.violation = "the change is not valid";
     return judged;
   }
   const formation::ChangeMotion motion{planned.change};
-  const std::size_t n = request.transfers.size();
-  if (motion.movers() != n) {
-    wrong("vehicles are missing");
+  if (motion.movers() != judged.vehicles) {
+    judged.violation = "vehicles are missing";
     return judged;
   }
-  const double factor = request.separation.horizontal_m / request.separation.vertical_m;
-  const double look_s = to_seconds(kLook);
-  // A way bends by a t^2 / 8 from its chord; both of two can.
-  const double bend_m = 2.0 * kAccelerationMore * request.limits.acceleration_mps2 *
-                        std::max(1.0, factor) * look_s * look_s / 8.0;
-  double ceiling = request.ceiling_m;
-  for (const auto& transfer : request.transfers) ceiling = std::max(ceiling, transfer.from.z());
-  // Nobody is faster, heights stretched; so who is far away need not be looked at for a while.
-  const double step_m = 2.0 * request.limits.speed_mps * std::max(1.0, factor) * look_s;
-  double least = std::numeric_limits<double>::infinity();
-  std::vector<std::size_t> look_at(n * n, 1);
-  std::vector<Vec3> before(n);
-  std::vector<Vec3> now(n);
-  for (std::size_t look = 0;; ++look) {
-    const Duration t = std::min(kLook * static_cast<Duration::rep>(look), motion.duration());
-    for (std::size_t i = 0; i < n; ++i) {
-      now[i] = motion.position(i, t);
-      if (now[i].z() > std::max(ceiling, request.transfers[i].to.z()) + kRounding_m) {
-        wrong(fmt::format("vehicle {} flies above the ceiling", i + 1));
-      }
-      now[i].z() *= factor;
-      const Vec3 start = request.transfers[i].from;
-      const Vec3 at{now[i].x(), now[i].y(), now[i].z() / factor};
-      if (look == 0 && (at - start).norm() > kRounding_m) wrong("it starts elsewhere");
-    }
-    for (std::size_t i = 0; i < n && look > 0; ++i) {
-      const Vec3 own = now[i] - before[i];
-      if (Vec3{own.x(), own.y(), own.z() / factor}.norm() >
-          request.limits.speed_mps * look_s * (1.0 + 1e-6)) {
-        wrong(fmt::format("vehicle {} is faster than allowed", i + 1));
-      }
-      for (std::size_t k = 0; k < i; ++k) {
-        if (look_at[i * n + k] > look) continue;
-        const Vec3 begin = before[i] - before[k];
-        const Vec3 way = own - (now[k] - before[k]);
-        const double squared = way.squaredNorm();
-        const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
-        const double apart = (begin + share * way).norm();
-        least = std::min(least, apart);
-        look_at[i * n + k] = look + static_cast<std::size_t>((apart - least) / step_m);
-      }
-    }
-    std::swap(before, now);
-    if (t >= motion.duration()) break;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 at{before[i].x(), before[i].y(), before[i].z() / factor};
-    if ((at - request.transfers[i].to).norm() > kRounding_m) wrong("it ends elsewhere");
-  }
-  judged.least_m = least - bend_m;
+  FlownChange flown{request, motion};
+  flown.fly();
+  const double bend_m = flown.bend_m();
+  judged.least_m = flown.least_m() - bend_m;
+  judged.violation = flown.violation();
+  if (!judged.violation.empty()) return judged;
   if (judged.least_m < judged.wanted_m - bend_m - kRounding_m) {
-    wrong(fmt::format("two vehicles come within {:.3f} m; {:.3f} m are wanted", judged.least_m,
-                      judged.wanted_m));
-  }
-  if (planned.least_separation_m > judged.least_m + 2.0 * bend_m + kRounding_m) {
-    wrong(fmt::format("{:.3f} m are promised, and {:.3f} m flown", planned.least_separation_m,
-                      judged.least_m));
+    judged.violation = fmt::format("two vehicles come within {:.3f} m; {:.3f} m are wanted",
+                                   judged.least_m, judged.wanted_m);
+  } else if (planned.least_separation_m > judged.least_m + 2.0 * bend_m + kRounding_m) {
+    judged.violation = fmt::format("{:.3f} m are promised, and {:.3f} m flown",
+                                   planned.least_separation_m, judged.least_m);
   }
   return judged;
 }

@@ -115,76 +115,77 @@ struct Mistake {
   const char* message;
 };
 
+constexpr auto kMistakes = std::to_array<Mistake>({
+    {"cruise_speed_mps: 50", "cruise_sped_mps: 50",
+     "v.yaml:3: vehicle.cruise_speed_mps: is missing; add it: a number from 1 to 200 m/s\n"
+     "v.yaml:3: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
+     "one of them\n"
+     "v.yaml:4: vehicle.cruise_sped_mps: is no key of this group; did you mean "
+     "cruise_speed_mps?"},
+    {"  port: 17402", "  port: 17402\n  colour: red",
+     "v.yaml:15: network.colour: is no key of this group, which knows domain_id, address, port, "
+     "peers, transport_plugin"},
+    {"  range_m: 18000\n", "",
+     "v.yaml:3: vehicle.range_m: is missing; add it: a number from 100 to 10000000 m"},
+    {"range_m: 18000", "range_m: far",
+     "v.yaml:8: vehicle.range_m: is \"far\", not a number; write one from 100 to 10000000 m"},
+    {"range_m: 18000", "range_m: .nan",
+     "v.yaml:8: vehicle.range_m: is \".nan\", not a number; write one from 100 to 10000000 m"},
+    {"range_m: 18000", "range_m:",
+     "v.yaml:8: vehicle.range_m: is empty, not a number; write one from 100 to 10000000 m"},
+    {"range_m: 18000", "range_m: 12",
+     "v.yaml:8: vehicle.range_m: is 12, outside 100 to 10000000 m; choose a number inside"},
+    {"heading_deg: 15", "heading_deg: 375",
+     "v.yaml:12: start.heading_deg: is 375, outside -360 to 360 deg; choose a number inside"},
+    {"id: 7", "id: 7.5",
+     "v.yaml:3: vehicle.id: is \"7.5\", not a whole number; write one from 1 to 65535"},
+    {"id: 7", "id: 70000",
+     "v.yaml:3: vehicle.id: is 70000, outside 1 to 65535; choose a number inside"},
+    {"[survey, deliver]", "[survey, delivr]",
+     "v.yaml:9: vehicle.capabilities[2]: is \"delivr\", not one of survey, deliver, assess; did "
+     "you mean deliver?"},
+    {"[survey, deliver]", "survey",
+     "v.yaml:9: vehicle.capabilities: is not a list; write [a, b], or a line with \"- \" for "
+     "each "
+     "element"},
+    {"[survey, deliver]", "[survey, deliver, assess, survey]",
+     "v.yaml:9: vehicle.capabilities: has 4 elements, the most is 3; remove some"},
+    {"start: {east_m: 10, north_m: 20, heading_deg: 15}", "start: 4",
+     "v.yaml:12: start: is not a group of keys; write \"key: value\" lines below it"},
+    {"id: 8, port", "id: 0, port",
+     "v.yaml:17: network.peers[2]: is peer 0 again; the first is on line 16, give each its own "
+     "id"},
+    {"version: 1", "version: 2",
+     "v.yaml:1: version: this program reads version 1 only; write 1 and compare the keys with "
+     "the "
+     "reference"},
+    {"  id: 7", "  id: 7\n  id: 9",
+     "v.yaml:4: vehicle.id: stands here a second time; the first is on line 3, remove one of "
+     "them"},
+    {"speed_min_mps: 42", "speed_min_mps: 52",
+     "v.yaml:4: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
+     "one of them"},
+    {"start:", "search: [[1, 2], [3]]\nstart:",
+     "v.yaml:12: search[2]: is not [east, north]; write two numbers from -1000000 to 1000000 m"},
+    {"start:", "recording_folder: [a]\nstart:",
+     "v.yaml:12: recording_folder: is a list, not text; write it in \"quotes\""},
+    {"start:", "flight_controller: {kind: ardupilot}\nstart:",
+     "v.yaml:12: flight_controller.can: an ardupilot needs a CAN bus; name one, such as can0 or "
+     "mcast:0"},
+    {"start:", "flight_controller: {kind: ardupilott, can: can0}\nstart:",
+     "v.yaml:12: flight_controller.kind: is \"ardupilott\", not one of simulated, ardupilot; did "
+     "you mean ardupilot?"},
+    {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 42}\nstart:",
+     "v.yaml:12: flight_controller.companion_node_id: is the autopilot's node_id too; every node "
+     "on a bus has its own"},
+    {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
+     "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
+    {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
+     "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},
+});
+
 TEST(VehicleConfigFile, NamesEveryMistake) {
-  const std::vector<Mistake> mistakes{
-      {"cruise_speed_mps: 50", "cruise_sped_mps: 50",
-       "v.yaml:3: vehicle.cruise_speed_mps: is missing; add it: a number from 1 to 200 m/s\n"
-       "v.yaml:3: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
-       "one of them\n"
-       "v.yaml:4: vehicle.cruise_sped_mps: is no key of this group; did you mean "
-       "cruise_speed_mps?"},
-      {"  port: 17402", "  port: 17402\n  colour: red",
-       "v.yaml:15: network.colour: is no key of this group, which knows domain_id, address, port, "
-       "peers, transport_plugin"},
-      {"  range_m: 18000\n", "",
-       "v.yaml:3: vehicle.range_m: is missing; add it: a number from 100 to 10000000 m"},
-      {"range_m: 18000", "range_m: far",
-       "v.yaml:8: vehicle.range_m: is \"far\", not a number; write one from 100 to 10000000 m"},
-      {"range_m: 18000", "range_m: .nan",
-       "v.yaml:8: vehicle.range_m: is \".nan\", not a number; write one from 100 to 10000000 m"},
-      {"range_m: 18000", "range_m:",
-       "v.yaml:8: vehicle.range_m: is empty, not a number; write one from 100 to 10000000 m"},
-      {"range_m: 18000", "range_m: 12",
-       "v.yaml:8: vehicle.range_m: is 12, outside 100 to 10000000 m; choose a number inside"},
-      {"heading_deg: 15", "heading_deg: 375",
-       "v.yaml:12: start.heading_deg: is 375, outside -360 to 360 deg; choose a number inside"},
-      {"id: 7", "id: 7.5",
-       "v.yaml:3: vehicle.id: is \"7.5\", not a whole number; write one from 1 to 65535"},
-      {"id: 7", "id: 70000",
-       "v.yaml:3: vehicle.id: is 70000, outside 1 to 65535; choose a number inside"},
-      {"[survey, deliver]", "[survey, delivr]",
-       "v.yaml:9: vehicle.capabilities[2]: is \"delivr\", not one of survey, deliver, assess; did "
-       "you mean deliver?"},
-      {"[survey, deliver]", "survey",
-       "v.yaml:9: vehicle.capabilities: is not a list; write [a, b], or a line with \"- \" for "
-       "each "
-       "element"},
-      {"[survey, deliver]", "[survey, deliver, assess, survey]",
-       "v.yaml:9: vehicle.capabilities: has 4 elements, the most is 3; remove some"},
-      {"start: {east_m: 10, north_m: 20, heading_deg: 15}", "start: 4",
-       "v.yaml:12: start: is not a group of keys; write \"key: value\" lines below it"},
-      {"id: 8, port", "id: 0, port",
-       "v.yaml:17: network.peers[2]: is peer 0 again; the first is on line 16, give each its own "
-       "id"},
-      {"version: 1", "version: 2",
-       "v.yaml:1: version: this program reads version 1 only; write 1 and compare the keys with "
-       "the "
-       "reference"},
-      {"  id: 7", "  id: 7\n  id: 9",
-       "v.yaml:4: vehicle.id: stands here a second time; the first is on line 3, remove one of "
-       "them"},
-      {"speed_min_mps: 42", "speed_min_mps: 52",
-       "v.yaml:4: vehicle.cruise_speed_mps: must lie between speed_min_mps and speed_max_mps; mend "
-       "one of them"},
-      {"start:", "search: [[1, 2], [3]]\nstart:",
-       "v.yaml:12: search[2]: is not [east, north]; write two numbers from -1000000 to 1000000 m"},
-      {"start:", "recording_folder: [a]\nstart:",
-       "v.yaml:12: recording_folder: is a list, not text; write it in \"quotes\""},
-      {"start:", "flight_controller: {kind: ardupilot}\nstart:",
-       "v.yaml:12: flight_controller.can: an ardupilot needs a CAN bus; name one, such as can0 or "
-       "mcast:0"},
-      {"start:", "flight_controller: {kind: ardupilott, can: can0}\nstart:",
-       "v.yaml:12: flight_controller.kind: is \"ardupilott\", not one of simulated, ardupilot; did "
-       "you mean ardupilot?"},
-      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 42}\nstart:",
-       "v.yaml:12: flight_controller.companion_node_id: is the autopilot's node_id too; every node "
-       "on a bus has its own"},
-      {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
-       "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
-      {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
-       "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},
-  };
-  for (const Mistake& m : mistakes) EXPECT_EQ(vehicle_error(m.from, m.to), m.message);
+  for (const Mistake& m : kMistakes) EXPECT_EQ(vehicle_error(m.from, m.to), m.message);
 }
 
 TEST(VehicleConfigFile, NamesAFileThatCannotBeRead) {
@@ -604,7 +605,8 @@ TEST(ExperimentFile, SaysWhereItIsWrongAndWhatToDo) {
 
 TEST(ExperimentFile, ThoseThatAreShippedAreGoodAndNameTheirScenario) {
   std::size_t files = 0;
-  const std::filesystem::path folder = std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "experiments";
+  const std::filesystem::path folder =
+      std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "experiments";
   for (const auto& entry : std::filesystem::directory_iterator{folder}) {
     const auto experiment = load_experiment(entry.path());
     ASSERT_TRUE(experiment.ok()) << experiment.error().message;

@@ -63,6 +63,17 @@ mission::Health health(VehicleId vehicle, std::uint16_t vehicles, double now_s) 
   return h;
 }
 
+std::string hello(const console::PictureParams& params) {
+  nlohmann::json said{
+      {"program", "load 1.0"},
+      {"origin", {{"latitude_deg", 47.0}, {"longitude_deg", 8.0}, {"height_m", 500.0}}},
+      {"shapes", nlohmann::json::array()},
+      {"replay", nullptr},
+      {"expected", nlohmann::json::array()}};
+  for (const VehicleId vehicle : params.expected) said["expected"].push_back(vehicle.value);
+  return said.dump();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -76,16 +87,9 @@ int main(int argc, char** argv) {
   for (std::uint16_t i = 1; i <= vehicles; ++i) params.expected.push_back({i});
   console::Picture picture{params};
   const auto origin = MissionOrigin::make({47.0, 8.0, 500.0});
-  nlohmann::json hello{
-      {"program", "load 1.0"},
-      {"origin", {{"latitude_deg", 47.0}, {"longitude_deg", 8.0}, {"height_m", 500.0}}},
-      {"shapes", nlohmann::json::array()},
-      {"replay", nullptr},
-      {"expected", nlohmann::json::array()}};
-  for (const VehicleId vehicle : params.expected) hello["expected"].push_back(vehicle.value);
   console::ServerConfig config;
   config.port = 0;
-  config.hello = hello.dump();
+  config.hello = hello(params);
   auto server = console::Server::open(std::move(config), [] {});
   if (!server) {
     std::fprintf(stderr, "%s\n", server.error().message.c_str());

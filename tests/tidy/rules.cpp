@@ -7,12 +7,19 @@
 #include <regex>
 #include <string_view>
 
+#include "functions.hpp"
+#include "includes.hpp"
 #include "text.hpp"
 
 namespace skein::tidy {
 namespace {
 
 constexpr std::size_t kLinesMax = 800;
+constexpr std::size_t kFunctionLinesMax = 70;
+
+/// Still to be parted; nothing is ever added here.
+constexpr std::array<std::string_view, 2> kLongFunctions{"hil/skein-hil/main.cpp: main",
+                                                         "hil/skein-hil/run_command.cpp: run"};
 constexpr std::size_t kSpdxWithinLines = 3;
 
 bool is_cpp(std::string_view path) { return path.ends_with(".cpp") || path.ends_with(".hpp"); }
@@ -111,10 +118,10 @@ constexpr std::array kLineRules{
     LineRule{"core-library", is_core, kCode,
              R"(#\s*include\s*<(?!Eigen/|GeographicLib/|sys/|netinet/|arpa/|net/|linux/)[^>]*/)",
              "core depends on the standard library, Eigen and GeographicLib only"},
-    LineRule{
-        "dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
-        R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
-        "DDS stays in runtime/network/ and hil/radio/, CDR in runtime/codec/ and runtime/recording/: use their interfaces"},
+    LineRule{"dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
+             R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
+             "DDS stays in runtime/network/ and hil/radio/, CDR in runtime/codec/ and "
+             "runtime/recording/: use their interfaces"},
     LineRule{"qos-outside", is_cpp_outside_node, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",
@@ -172,6 +179,26 @@ class Checker {
     check_lines(code, literals, everything);
     check_scope(literals);
     check_file(everything);
+    if (is_cpp(file.path)) check_functions(without_comments(file.text, Literals::blank));
+  }
+
+  /// Between files, and between modules: folders with a CMakeLists.txt of their own. What a test
+  /// includes is not a need of its module.
+  void check_includes(const std::vector<File>& files) {
+    std::map<std::string, std::string> code;
+    for (const File& file : files) {
+      if (is_cpp(file.path)) code[file.path] = without_comments(file.text, Literals::keep);
+    }
+    const Graph includes = includes_of(code);
+    Graph needs;
+    for (const auto& [path, included] : includes) {
+      if (path.ends_with("_test.cpp")) continue;
+      for (const std::string& other : included) {
+        if (module_of(path) != module_of(other)) needs[module_of(path)].insert(module_of(other));
+      }
+    }
+    report_cycles(cycles_of(includes), "they include each other: part what both need from them");
+    report_cycles(cycles_of(needs), "modules need each other: part what both need from them");
   }
 
   [[nodiscard]] std::vector<Finding> take() { return std::move(findings_); }
@@ -179,6 +206,26 @@ class Checker {
  private:
   void report(std::size_t line, std::string rule, std::string message) {
     findings_.push_back({file_->path, line, std::move(rule), std::move(message)});
+  }
+
+  void report_cycles(const std::vector<std::vector<std::string>>& cycles, const char* message) {
+    for (const auto& cycle : cycles) {
+      std::string way;
+      for (const std::string& node : cycle) way += (way.empty() ? "" : " -> ") + node;
+      findings_.push_back({cycle.front(), 1, "cycle", way + ": " + message});
+    }
+  }
+
+  void check_functions(const std::string& code) {
+    for (const Function& function : functions_of(code)) {
+      const std::size_t lines = function.last - function.first + 1;
+      const bool known = std::ranges::find(kLongFunctions, file_->path + ": " + function.name) !=
+                         kLongFunctions.end();
+      if (lines <= kFunctionLinesMax || known) continue;
+      report(function.first, "long-function",
+             function.name + " has " + std::to_string(lines) + " lines, the limit is " +
+                 std::to_string(kFunctionLinesMax) + ": give its steps names");
+    }
   }
 
   void check_lines(const std::vector<std::string>& code, const std::vector<std::string>& literals,
@@ -257,6 +304,15 @@ class Checker {
     return false;
   }
 
+  /// The deepest folder with a CMakeLists.txt that the file lies in.
+  [[nodiscard]] std::string module_of(const std::string& path) const {
+    std::string module;
+    for (const auto& [folder, text] : cmake_lists_) {
+      if (path.starts_with(folder) && folder.size() > module.size()) module = folder;
+    }
+    return module;
+  }
+
   std::map<std::string, std::string> cmake_lists_;  ///< by folder, with a '/' at its end
   std::vector<std::regex> patterns_;                ///< of kLineRules
   const File* file_ = nullptr;
@@ -268,6 +324,7 @@ class Checker {
 std::vector<Finding> check(const std::vector<File>& files) {
   Checker checker{files};
   for (const File& file : files) checker.check(file);
+  checker.check_includes(files);
   return checker.take();
 }
 

@@ -6,6 +6,8 @@
 
 #include <string>
 
+#include "functions.hpp"
+#include "includes.hpp"
 #include "text.hpp"
 
 namespace skein::tidy {
@@ -89,7 +91,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
   EXPECT_TRUE(findings_in("core/planning/dubins_test.cpp", "#include <random>").empty());
   EXPECT_TRUE(findings_in(kOnboard, "#include <mutex>").empty());
-  EXPECT_TRUE(findings_in("runtime/network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
+  EXPECT_TRUE(
+      findings_in("runtime/network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
 }
 
 TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {
@@ -120,6 +123,100 @@ TEST(Rules, SourceMustNotBeTooLong) {
   EXPECT_EQ(found[0].rule, "too-long");
 }
 
+TEST(Rules, FunctionMustNotBeTooLong) {
+  std::string text = "int f() {\n";
+  for (int i = 0; i < 68; ++i) text += "  g();\n";
+  EXPECT_TRUE(findings_in("a.cpp", text + "}\n").empty());
+  const auto found = findings_in("a.cpp", text + "  g();\n}\n");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].rule, "long-function");
+  EXPECT_EQ(found[0].line, 2U) << "where it begins, not where it is too long";
+}
+
+TEST(Rules, FilesAndModulesMustNotNeedEachOther) {
+  const auto cycles_with = [](const std::string& of_a, const std::string& of_b,
+                              const std::string& name_of_b) {
+    const std::string targets = "# SPDX-License-Identifier: Apache-2.0\nx(b.cpp b_test.cpp)\n";
+    const auto found =
+        check({{"a/CMakeLists.txt", targets + "x(include/skein/a/a.hpp include/skein/a/a2.hpp)"},
+               {"a/include/skein/a/a.hpp", kSpdx + of_a},
+               {"a/include/skein/a/a2.hpp", kSpdx},
+               {"b/CMakeLists.txt", targets + "x(include/skein/b/b.hpp)"},
+               {"b/" + name_of_b, kSpdx + of_b},
+               {"b/include/skein/b/b.hpp", kSpdx}});
+    std::string all;
+    for (const Finding& f : found)
+      all += f.rule + " " + f.message.substr(0, f.message.find(':')) + "\n";
+    return all;
+  };
+  EXPECT_EQ(cycles_with("#include \"skein/a/a2.hpp\"\n", "#include \"skein/a/a.hpp\"\n", "b.cpp"),
+            "");
+  EXPECT_EQ(cycles_with("#include \"skein/b/b.hpp\"\n", "#include \"skein/a/a2.hpp\"\n", "b.cpp"),
+            "cycle a/ -> b/ -> a/\n");
+  EXPECT_EQ(
+      cycles_with("#include \"skein/b/b.hpp\"\n", "#include \"skein/a/a2.hpp\"\n", "b_test.cpp"),
+      "");
+  EXPECT_EQ(cycles_with("#include \"a.hpp\"\n", "", "b.cpp"),
+            "cycle a/include/skein/a/a.hpp -> a/include/skein/a/a.hpp\n");
+}
+
+TEST(Includes, AreFoundBesideTheirFileAndInIncludeFolders) {
+  const Graph graph = includes_of(
+      {{"m/x.cpp", "#include \"x.hpp\"\n # include  \"skein/m/y.hpp\"\n#include \"no.hpp\""},
+       {"m/x.hpp", "int s = f(\"x.cpp\");"},
+       {"m/include/skein/m/y.hpp", ""}});
+  EXPECT_EQ(graph.at("m/x.cpp"), (std::set<std::string>{"m/include/skein/m/y.hpp", "m/x.hpp"}));
+  EXPECT_TRUE(graph.at("m/x.hpp").empty());
+}
+
+TEST(Includes, CyclesAreToldInTheirOrder) {
+  using Cycles = std::vector<std::vector<std::string>>;
+  EXPECT_EQ(cycles_of({{"a", {"b", "c"}}, {"b", {"c"}}, {"c", {}}}), Cycles{});
+  EXPECT_EQ(cycles_of({{"a", {"b"}}, {"b", {"c"}}, {"c", {"b"}}}), (Cycles{{"b", "c", "b"}}));
+}
+
+/// "name first-last" of each function.
+std::string functions_in(const std::string& text) {
+  std::string all;
+  for (const Function& f : functions_of(without_comments(text, Literals::blank))) {
+    all += f.name + " " + std::to_string(f.first) + "-" + std::to_string(f.last) + "\n";
+  }
+  return all;
+}
+
+TEST(Functions, AreFoundInNamespacesAndClasses) {
+  EXPECT_EQ(functions_in("int f();\nint f() {\n  if (a) { g(); }\n  return 1;\n}\nint b;\n"),
+            "f 2-5\n");
+  EXPECT_EQ(
+      functions_in("namespace a::b {\nvoid A::f() const {\n}\n}\nextern \"C\" {\nvoid g() {}\n}\n"),
+      "A::f 2-3\ng 6-6\n");
+  EXPECT_EQ(functions_in("class A final : public B<int> {\n public:\n  A() {}\n private:\n  void "
+                         "f() {\n  }\n  int a_{1};\n};"),
+            "A 3-3\nf 5-6\n");
+  EXPECT_EQ(functions_in("enum class E { a, b };\nstruct alignas(8) S {\n  ~S() {}\n};"),
+            "~S 3-3\n");
+}
+
+TEST(Functions, InitialisersAndDefaultsAreNotTakenForBodies) {
+  EXPECT_EQ(functions_in("A::A(int a)\n    : a_{a},\n      b_{f(), 1} {\n}\n"), "A::A 1-4\n");
+  EXPECT_EQ(functions_in("A::A(int a) : a_(a), b_{} {}\nA::A() : A{1} {}\n"),
+            "A::A 1-1\nA::A 2-2\n");
+  EXPECT_EQ(functions_in("std::array a{B{\n1}};\nint c = f({1, 2});\nS s = {1,\n 2};\n"), "");
+  EXPECT_EQ(functions_in("void f(S s = {}, T t = T{1}) {\n}\n"), "f 1-2\n");
+}
+
+TEST(Functions, TemplatesOperatorsAndLambdasOfVariables) {
+  EXPECT_EQ(functions_in("template <class T = std::vector<int>>\n  requires(C<T>)\n[[nodiscard]] "
+                         "auto f(T t)\n    -> A<T> {\n}\n"),
+            "f 1-5\n");
+  EXPECT_EQ(functions_in("bool A::operator==(const A& a) const {\n}\nint operator()(int a) {\n}\n"),
+            "A::operator_ 1-2\noperator_ 3-4\n");
+  EXPECT_EQ(
+      functions_in("const auto f = [](int a) {\n  g();\n};\nconst int k = [] {\n return 1; }();\n"),
+      "f 1-3\nk 4-5\n");
+  EXPECT_EQ(functions_in("#define F(a) \\\n  void a() {\nvoid g() {\n}\n"), "g 3-4\n");
+}
+
 TEST(Rules, SourceMustBelongToATarget) {
   const auto rules_with = [](const std::string& cmake, const std::string& path) {
     const auto found = check(
@@ -131,7 +228,8 @@ TEST(Rules, SourceMustBelongToATarget) {
       << "a folder before the name may come from a variable";
   EXPECT_EQ(rules_with("skein_module(hal SOURCES can_bus.cpp)", "hal/bus.cpp"), "no-target");
   EXPECT_EQ(rules_with("# can/bus.cpp", "hal/can/bus.cpp"), "no-target");
-  EXPECT_EQ(rules_with("skein_module(hal SOURCES bus.cpp)", "runtime/network/bus.cpp"), "no-target");
+  EXPECT_EQ(rules_with("skein_module(hal SOURCES bus.cpp)", "runtime/network/bus.cpp"),
+            "no-target");
 }
 
 TEST(Text, CommentsAndLiteralsAreBlankedInPlace) {

@@ -153,6 +153,8 @@ class Reassembler {
 
   Session& session_of(std::uint32_t key);
   bool may_begin(Session& session, std::uint8_t transfer_id, std::uint8_t interface, Instant now);
+  bool may_go_on(Session& session, std::uint8_t transfer_id, bool toggle, std::uint8_t interface,
+                 Instant now);
   const Transfer* finish(Session& session, bool many_frames);
   const Transfer* on_anonymous(const Header& header, const can::Frame& frame,
                                std::uint8_t interface, Instant now);
