@@ -23,9 +23,11 @@
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
+#include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/hil/survey_sensors.hpp"
+#include "skein/hil/team_mission.hpp"
 #include "skein/network/node.hpp"
 #include "skein/recording/writer.hpp"
 
@@ -115,7 +117,8 @@ class Bench {
       : scenario_{scenario},
         options_{options},
         on_progress_{on_progress},
-        sensors_{scenario.sites, specs(scenario)} {
+        sensors_{scenario.sites, specs(scenario)},
+        timeline_{faults_of(scenario)} {
     progress_.now = Instant{Duration::min()};
   }
 
@@ -193,7 +196,7 @@ class Bench {
       watch(now);
       if (now >= Instant{}) {
         play_faults(now);
-        move_radio(now);
+        move_radio();
         sense(now);
       }
       progress_.now = now;
@@ -339,45 +342,41 @@ class Bench {
   }
 
   void play_faults(Instant now) {
-    loss_ = scenario_.radio.loss_ratio;
-    groups_.clear();
-    for (const auto& fault : scenario_.faults) {
-      if (now < fault.at) continue;
-      const bool lasts = now < fault.at + fault.duration;
-      switch (fault.kind) {
-        case configuration::FaultKind::kill_vehicle:
-          if (const auto it = processes_.find(fault.vehicle);
-              it != processes_.end() && killed_.insert(fault.vehicle).second) {
-            it->second.signal(SIGKILL);
-            if (const auto fc = flight_controllers_.find(fault.vehicle);
-                fc != flight_controllers_.end()) {
-              fc->second.signal(SIGKILL);
-            }
-            outcome_.killed.push_back(fault.vehicle);
-            say("fault: " + name_of(fault.vehicle) + " is killed");
+    timeline_.play(
+        now, [](Role) { return std::vector<VehicleId>{}; },
+        [this](const Fault& fault, const std::vector<VehicleId>& who) {
+          if (std::holds_alternative<ProgramsEnd>(fault.what)) {
+            for (const VehicleId id : who) kill(id);
+          } else {
+            say("fault: " + describe(fault));
           }
-          break;
-        case configuration::FaultKind::partition:
-          if (lasts) groups_ = fault.groups;
-          break;
-        case configuration::FaultKind::loss:
-          if (lasts) loss_ = fault.loss_ratio;
-          break;
-      }
-    }
+          return true;
+        });
   }
 
-  void move_radio(Instant /*now*/) {
-    radio::RadioParams params;
-    params.range_m = scenario_.radio.range_m;
-    params.ground_range_m = scenario_.radio.ground_range_m;
-    params.delay = from_seconds(to_seconds(scenario_.radio.delay_mean) / options_.rate);
-    params.jitter = from_seconds(to_seconds(scenario_.radio.delay_jitter) / options_.rate);
-    params.loss = loss_;
+  void kill(VehicleId id) {
+    const auto process = processes_.find(id);
+    if (process == processes_.end() || !killed_.insert(id).second) return;
+    process->second.signal(SIGKILL);
+    const auto fc = flight_controllers_.find(id);
+    if (fc != flight_controllers_.end()) fc->second.signal(SIGKILL);
+    outcome_.killed.push_back(id);
+    say("fault: " + name_of(id) + " is killed");
+  }
+
+  void move_radio() {
     const auto at = positions();
+    const auto node = [&](VehicleId id) {
+      const auto found = at.find(id);
+      return radio::Node{id, found == at.end() ? std::nullopt : std::optional{found->second}};
+    };
+    const auto params = radio_params(scenario_.radio);
     for (const auto& [from, p] : processes_) {
       for (const auto& [to, q] : processes_) {
-        if (from != to) table_->set(from, to, radio::link_between(params, from, to, at, groups_));
+        if (from == to) continue;
+        const auto link =
+            radio::link_between(params, timeline_.interference(), node(from), node(to));
+        table_->set(from, to, radio::in_real_time(link, options_.rate));
       }
     }
   }
@@ -516,8 +515,7 @@ class Bench {
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;
   std::set<VehicleId> fc_reported_;
-  std::vector<std::vector<VehicleId>> groups_;
-  double loss_ = 0.0;
+  FaultTimeline timeline_;
   std::optional<Instant> stop_at_;
   BenchProgress progress_;
   BenchOutcome outcome_;

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "skein/base/random.hpp"
+#include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/formation_simulator.hpp"
 #include "skein/hil/run_parallel.hpp"
+#include "skein/hil/team_mission.hpp"
 
 namespace skein::hil {
 namespace {
@@ -45,9 +47,8 @@ Result<FormationMission> formation_mission(const configuration::Scenario& scenar
   FormationMission mission;
   mission.seed = seed;
   mission.formation = scenario.formation;
-  mission.delay = scenario.radio.delay_mean;
-  mission.jitter = scenario.radio.delay_jitter;
-  mission.loss = scenario.radio.loss_ratio;
+  mission.radio = radio_params(scenario.radio);
+  mission.faults = faults_of(scenario);
   for (const auto& vehicle : scenario.vehicles) {
     mission.vehicles.push_back(
         {vehicle.spec.id, {vehicle.start.position().x(), vehicle.start.position().y(), 0.0}});
@@ -63,9 +64,9 @@ Result<FormationMission> formation_mission(const configuration::Scenario& scenar
     mission.gust_error_m = random.uniform(0.02, 0.1);
     changes = kShapes + 4;
   }
-  auto drawn = draw_formation_faults(faults, ids, changes, seed);
+  const auto drawn = formation_faults(faults, ids, changes, seed);
   if (!drawn) return drawn.error();
-  mission.faults = std::move(*drawn);
+  mission.faults.insert(mission.faults.end(), drawn->begin(), drawn->end());
   return mission;
 }
 

@@ -7,19 +7,19 @@
 #include <queue>
 #include <vector>
 
-#include "skein/base/random.hpp"
 #include "skein/hil/formation_simulator.hpp"
+#include "skein/hil/radio/radio_model.hpp"
 
 namespace skein::hil {
 
-/// From every node to all others, with the mission's delay, jitter and loss, and the faults that
-/// are active. Times are true.
+/// From every node to all others, through the simulated radio. Times are true.
 class FormationRadio {
  public:
   explicit FormationRadio(const FormationMission& mission);
 
-  /// From now on until the fault ends.
-  void begin(const FormationFault& fault, Instant now);
+  void interfere(const radio::Interference& interference) { radio_.interfere(interference); }
+  /// Where a node is now.
+  void move(VehicleId node, const Vec3& position_m);
   void broadcast(VehicleId from, const mission::Message& message, Instant now);
 
   struct Delivery {
@@ -31,10 +31,6 @@ class FormationRadio {
   [[nodiscard]] std::uint64_t messages() const { return messages_; }
 
  private:
-  struct Active {
-    FormationFault fault;
-    Instant until{};
-  };
   struct Parcel {
     Instant at{};
     std::uint64_t order = 0;
@@ -45,15 +41,12 @@ class FormationRadio {
       return a.at != b.at ? a.at > b.at : a.order > b.order;
     }
   };
-  [[nodiscard]] bool lets_through(VehicleId from, VehicleId to) const;
 
-  const FormationMission& mission_;
-  std::vector<VehicleId> nodes_;
-  std::vector<Active> active_;
+  radio::SimulatedRadio radio_;
+  std::vector<radio::Node> nodes_;
   std::priority_queue<Parcel, std::vector<Parcel>, Later> air_;
   std::uint64_t order_ = 0;
   std::uint64_t messages_ = 0;
-  Random random_;
 };
 
 }  // namespace skein::hil

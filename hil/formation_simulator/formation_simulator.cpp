@@ -14,6 +14,7 @@
 #include "skein/base/assert.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/groundstation/formation_desk.hpp"
+#include "skein/hil/fault_timeline.hpp"
 #include "skein/mission/formation_agent.hpp"
 
 namespace skein::hil {
@@ -54,10 +55,10 @@ class FormationFlight {
         judge_{{mission.formation.separation, mission.formation.ceiling_m,
                 mission.formation.tracking_m},
                ids(mission)},
-        pending_{mission.faults.faults} {
+        timeline_{mission.faults} {
     Random gusts{mission.seed ^ kGustStream};
     for (const FormationVehicle& vehicle : mission.vehicles) {
-      flyers_.push_back({vehicle, clock_of(vehicle.id),
+      flyers_.push_back({vehicle, clock_offset(mission.faults, vehicle.id),
                          MultirotorBody{vehicle.start, mission.gust_error_m, gusts.fork()}, nullptr,
                          std::nullopt, vehicle.start, std::nullopt, std::nullopt, "", 0});
       start_agent(flyers_.back());
@@ -86,10 +87,6 @@ class FormationFlight {
     for (const FormationVehicle& vehicle : mission.vehicles) ids.push_back(vehicle.id);
     return ids;
   }
-  [[nodiscard]] Duration clock_of(VehicleId node) const {
-    const auto found = mission_.faults.clocks.find(node);
-    return found == mission_.faults.clocks.end() ? Duration{} : found->second;
-  }
 
   // --- nodes -------------------------------------------------------------------------------------
 
@@ -115,7 +112,9 @@ class FormationFlight {
     said_.clear();
     return {};
   }
-  [[nodiscard]] Instant ground_now() const { return now_ + clock_of(kGroundStation); }
+  [[nodiscard]] Instant ground_now() const {
+    return now_ + clock_offset(mission_.faults, kGroundStation);
+  }
 
   Flyer& flyer_of(VehicleId id) {
     const auto found = std::find_if(flyers_.begin(), flyers_.end(),
@@ -127,42 +126,44 @@ class FormationFlight {
   // --- faults ------------------------------------------------------------------------------------
 
   void begin_faults() {
-    for (FormationFault& fault : pending_) {
-      if (fault.change >= begun_.size() || now_ < begun_[fault.change] + fault.after) continue;
-      tell(describe(fault));
-      begin(fault);
-      faults_end_ = std::max(faults_end_, now_ + fault.lasts);
-      fault.change = static_cast<std::size_t>(-1);
+    timeline_.play(
+        now_, [](Role) { return std::vector<VehicleId>{}; },
+        [this](const Fault& fault, const std::vector<VehicleId>& who) {
+          tell(describe(fault));
+          if (std::holds_alternative<ProgramsEnd>(fault.what)) end_programs(fault, who);
+          return true;
+        });
+    if (timeline_.radio_changed()) radio_.interfere(timeline_.interference());
+  }
+
+  void end_programs(const Fault& fault, const std::vector<VehicleId>& who) {
+    for (const VehicleId id : who) {
+      if (id == kGroundStation) {
+        lose_desk(fault);
+      } else {
+        lose(flyer_of(id), fault);
+      }
     }
   }
 
-  void begin(const FormationFault& fault) {
-    switch (fault.kind) {
-      case FormationFault::Kind::lost:
-      case FormationFault::Kind::restarted:
-        for (const VehicleId id : fault.who) lose(flyer_of(id), fault);
-        return;
-      case FormationFault::Kind::ground:
-        if (!desk_) return;
-        script_done_ += desk_->script_line();
-        desk_.reset();
-        if (!fault.for_good) desk_back_at_ = now_ + fault.lasts;
-        return;
-      default:
-        radio_.begin(fault, now_);
-    }
+  void lose_desk(const Fault& fault) {
+    if (!desk_) return;
+    script_done_ += desk_->script_line();
+    desk_.reset();
+    if (fault.lasts) desk_back_at_ = now_ + *fault.lasts;
   }
 
-  void lose(Flyer& flyer, const FormationFault& fault) {
+  void lose(Flyer& flyer, const Fault& fault) {
     if (!flyer.agent) return;
     flyer.agent.reset();
-    if (!fault.for_good) {
-      flyer.restart_at = now_ + fault.lasts;
+    flyer.restart_at.reset();
+    if (fault.lasts) {
+      flyer.restart_at = now_ + *fault.lasts;
       return;
     }
-    flyer.restart_at.reset();
     ++run_.lost;
-    if (fault.sinks) flyer.sinks_at = now_ + fault.sinks_after;
+    const auto& sinks_after = std::get<ProgramsEnd>(fault.what).sinks_after;
+    if (sinks_after) flyer.sinks_at = now_ + *sinks_after;
   }
 
   void mend() {
@@ -208,7 +209,8 @@ class FormationFlight {
       if (observer_.event) observer_.event(*event);
       moved_at_ = now_;
       if (event->kind == mission::EventKind::change_begun) {
-        begun_.push_back(now_);
+        ++run_.changes;
+        timeline_.on_change_begun(now_);
         said_.clear();
       }
       if (event->kind == mission::EventKind::warning) said_ = event->text;
@@ -265,6 +267,7 @@ class FormationFlight {
       const Vec3& position = flyer.body.position_m();
       const double off = (position - reference_of(flyer).position_m).norm();
       bodies.push_back({position, flyer.body.airborne(), sinking ? 0.0 : off});
+      radio_.move(flyer.what.id, position);
       if (observer_.body) observer_.body(now_, flyer.what.id, position);
     }
     judge_.step(bodies, now_);
@@ -274,7 +277,8 @@ class FormationFlight {
 
   [[nodiscard]] bool over() const {
     if (now_ - Instant{} > kLongest) return true;
-    const Instant since = std::max(moved_at_, faults_end_);
+    const Instant since =
+        std::max(moved_at_, run_.script_done ? Instant{} : timeline_.quiet_from());
     return now_ - since > (run_.script_done ? seconds{2} : kIdle);
   }
 
@@ -282,7 +286,6 @@ class FormationFlight {
     run_.violations = judge_.take();
     run_.least_m = judge_.least_m();
     run_.farthest_m = judge_.farthest_m();
-    run_.changes = begun_.size();
     run_.messages = radio_.messages();
     run_.ended_at = now_;
     const auto stuck = [this](const std::string& sentence) {
@@ -315,16 +318,14 @@ class FormationFlight {
   const FormationObserver& observer_;
   FormationRadio radio_;
   AirspaceJudge judge_;
-  std::vector<FormationFault> pending_;
+  FaultTimeline timeline_;
   std::vector<Flyer> flyers_;
   std::optional<groundstation::FormationDesk> desk_;
   std::optional<Instant> desk_back_at_;
   std::size_t script_done_ = 0;  ///< lines that are done, of desks before this one
   std::string said_;             ///< the ground station's last warning in the newest change
-  std::vector<Instant> begun_;   ///< changes
   Instant now_{};
   Instant moved_at_{};  ///< or an order was given
-  Instant faults_end_{};
   FormationRun run_;
 };
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -83,23 +84,19 @@ TEST(FormationSimulator, TheSameSeedGivesTheSameBytes) {
   EXPECT_TRUE(first == trace());
 }
 
-FormationFault fault(FormationFault::Kind kind, std::size_t change, double after_s, double lasts_s,
-                     std::vector<VehicleId> who) {
-  FormationFault fault;
-  fault.kind = kind;
-  fault.change = change;
-  fault.after = from_seconds(after_s);
-  fault.lasts = from_seconds(lasts_s);
-  fault.who = std::move(who);
+/// The programs end in that change; without `lasts_s` for good.
+Fault fault(std::vector<VehicleId> who, double after_s, std::optional<double> lasts_s) {
+  Fault fault{{.change = 2, .after = from_seconds(after_s)}, {}, ProgramsEnd{std::move(who)}};
+  if (lasts_s) fault.lasts = from_seconds(*lasts_s);
   return fault;
 }
 
-FormationRun fly(const std::vector<FormationFault>& faults) {
+FormationRun fly(const std::vector<Fault>& faults) {
   auto mission = formation_mission(five(), 1, "none");
   EXPECT_TRUE(mission);
   mission->formation.script = {"take-off", "rally", "form column spacing 5 at 0 60 20", "rally",
                                "land"};
-  mission->faults.faults = faults;
+  mission->faults = faults;
   auto run = fly_formation(*mission);
   EXPECT_TRUE(run);
   EXPECT_TRUE(run->held()) << text_of(*run);
@@ -107,33 +104,64 @@ FormationRun fly(const std::vector<FormationFault>& faults) {
 }
 
 TEST(FormationSimulator, WhoStartsAnewOnItsWayIsTakenAlong) {
-  const auto run = fly({fault(FormationFault::Kind::restarted, 2, 4.0, 1.0, {VehicleId{3}})});
+  const auto run = fly({fault({VehicleId{3}}, 4.0, 1.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
 TEST(FormationSimulator, WhoStartsAnewInItsPlaceIsTakenAlong) {
-  const auto run = fly({fault(FormationFault::Kind::restarted, 2, 25.0, 1.0, {VehicleId{3}})});
+  const auto run = fly({fault({VehicleId{3}}, 25.0, 1.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
 TEST(FormationSimulator, ANewGroundStationGoesOnOnceAllAreHeard) {
-  const auto run = fly({fault(FormationFault::Kind::ground, 2, 4.0, 6.0, {})});
+  const auto run = fly({fault({kGroundStation}, 4.0, 6.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
 TEST(FormationSimulator, ANewGroundStationGivesNoOrderWhileOneMayBeInTheWay) {
-  auto lost = fault(FormationFault::Kind::lost, 2, 5.0, 0.0, {VehicleId{4}});
-  lost.for_good = true;
-  const auto run = fly({fault(FormationFault::Kind::ground, 2, 4.0, 6.0, {}), lost});
+  const auto run =
+      fly({fault({kGroundStation}, 4.0, 6.0), fault({VehicleId{4}}, 5.0, std::nullopt)});
   EXPECT_FALSE(run.script_done);
   EXPECT_NE(run.reason.find("not heard yet: 4"), std::string::npos) << run.reason;
 }
 
 TEST(FormationSimulator, WithoutGroundStationEverybodyComesToItsPlace) {
-  auto gone = fault(FormationFault::Kind::ground, 2, 4.0, 0.0, {});
-  gone.for_good = true;
-  const auto run = fly({gone});
+  const auto run = fly({fault({kGroundStation}, 4.0, std::nullopt)});
   EXPECT_EQ(run.reason, "the ground station is lost");
+}
+
+/// The scenario's own time line, as on the bench.
+FormationRun fly_scenario_with(configuration::FaultKind kind, double at_s, double for_s,
+                               const std::vector<VehicleId>& who) {
+  auto scenario = five();
+  configuration::Fault fault;
+  fault.kind = kind;
+  fault.at = at_seconds(at_s);
+  fault.duration = from_seconds(for_s);
+  if (!who.empty()) fault.vehicle = who.front();
+  fault.groups = {who};
+  fault.loss_ratio = 1.0;
+  scenario.faults = {fault};
+  const auto mission = formation_mission(scenario, 1, "none");
+  EXPECT_TRUE(mission);
+  const auto run = fly_formation(*mission);
+  EXPECT_TRUE(run);
+  EXPECT_TRUE(run->held()) << text_of(*run);
+  return *run;
+}
+
+TEST(FormationSimulator, AScenariosFaultsAreDone) {
+  using configuration::FaultKind;
+  const auto undisturbed = fly_formation(*formation_mission(five(), 1, "none"));
+  ASSERT_TRUE(undisturbed);
+  EXPECT_EQ(fly_scenario_with(FaultKind::kill_vehicle, 40.0, 0.0, {{2}}).lost, 1U);
+  EXPECT_EQ(fly_scenario_with(FaultKind::kill_vehicle, 40.0, 0.0, {kGroundStation}).reason,
+            "the ground station is lost");
+  for (const auto& run : {fly_scenario_with(FaultKind::loss, 40.0, 20.0, {}),
+                          fly_scenario_with(FaultKind::partition, 40.0, 20.0, {{3}})}) {
+    EXPECT_TRUE(run.script_done) << run.reason;
+    EXPECT_GT(run.ended_at, undisturbed->ended_at + std::chrono::seconds{5});
+  }
 }
 
 TEST(FormationSimulator, TheJudgeSeesWhoComesTooNear) {

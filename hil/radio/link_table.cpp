@@ -38,7 +38,7 @@ Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
   LinkTable table{name, static_cast<Table*>(memory), create};
   if (create) {  // fresh pages are zero: every link down
     for (auto& row : table.table_->cells) {
-      for (auto& cell : row) cell.up = 1;
+      for (auto& cell : row) cell.up = true;
     }
   }
   return table;
@@ -58,18 +58,29 @@ LinkTable::LinkTable(LinkTable&& other) noexcept
 void LinkTable::set(VehicleId from, VehicleId to, const Link& link) {
   if (from.value >= kNodes || to.value >= kNodes) return;
   auto& cell = table_->cells[from.value][to.value];
-  cell.up.store(link.up ? 1 : 0, std::memory_order_relaxed);
-  cell.loss.store(static_cast<float>(link.loss), std::memory_order_relaxed);
-  cell.delay_ns.store(link.delay.count(), std::memory_order_relaxed);
-  cell.jitter_ns.store(link.jitter.count(), std::memory_order_relaxed);
+  const auto put = [](auto& place, auto value) { place.store(value, std::memory_order_relaxed); };
+  put(cell.up, link.up);
+  put(cell.loss, link.loss);
+  put(cell.delay_ns, link.delay.count());
+  put(cell.jitter_ns, link.jitter.count());
+  put(cell.disordered, link.disorder.has_value());
+  const Disorder disorder = link.disorder.value_or(Disorder{});
+  put(cell.duplicates, disorder.duplicates);
+  put(cell.held_back, disorder.held_back);
+  put(cell.held_back_max_ns, disorder.held_back_max.count());
 }
 
 Link LinkTable::get(VehicleId from, VehicleId to) const {
   if (from.value >= kNodes || to.value >= kNodes) return {};
   const auto& cell = table_->cells[from.value][to.value];
-  return {cell.up.load(std::memory_order_relaxed) != 0, cell.loss.load(std::memory_order_relaxed),
-          Duration{cell.delay_ns.load(std::memory_order_relaxed)},
-          Duration{cell.jitter_ns.load(std::memory_order_relaxed)}};
+  const auto got = [](const auto& place) { return place.load(std::memory_order_relaxed); };
+  Link link{got(cell.up), got(cell.loss), Duration{got(cell.delay_ns)},
+            Duration{got(cell.jitter_ns)}};
+  if (got(cell.disordered)) {
+    link.disorder = {got(cell.duplicates), got(cell.held_back),
+                     Duration{got(cell.held_back_max_ns)}};
+  }
+  return link;
 }
 
 }  // namespace skein::hil::radio

@@ -2,37 +2,103 @@
 #include "skein/hil/radio/radio_model.hpp"
 
 #include <algorithm>
+#include <utility>
+
+#include "skein/base/contains.hpp"
 
 namespace skein::hil::radio {
 namespace {
 
 std::size_t group_of(VehicleId node, const std::vector<std::vector<VehicleId>>& groups) {
-  const auto has = [node](const auto& g) { return std::find(g.begin(), g.end(), node) != g.end(); };
+  const auto has = [node](const auto& group) { return contains(group, node); };
   return static_cast<std::size_t>(std::find_if(groups.begin(), groups.end(), has) - groups.begin());
+}
+
+bool in_range(const RadioParams& params, const Node& from, const Node& to) {
+  static const Vec2 origin{0.0, 0.0};
+  const auto place = [](const Node& node) -> const Vec2* {
+    if (node.id == kGroundStation) return &origin;
+    return node.position ? &*node.position : nullptr;
+  };
+  const bool ground = from.id == kGroundStation || to.id == kGroundStation;
+  const Vec2* a = place(from);
+  const Vec2* b = place(to);
+  if (a == nullptr || b == nullptr) return ground;
+  const double range_m = ground ? params.ground_range_m : params.range_m;
+  return (*a - *b).squaredNorm() <= range_m * range_m;
 }
 
 }  // namespace
 
-Link link_between(const RadioParams& params, VehicleId from, VehicleId to,
-                  const std::map<VehicleId, Vec2>& positions,
-                  const std::vector<std::vector<VehicleId>>& groups) {
-  Link link{true, params.loss, params.delay, params.jitter};
-  const auto place = [&](VehicleId node) -> const Vec2* {
-    static const Vec2 origin{0.0, 0.0};
-    if (node == kGroundStation) return &origin;
-    const auto it = positions.find(node);
-    return it == positions.end() ? nullptr : &it->second;
-  };
-  const bool ground = from == kGroundStation || to == kGroundStation;
-  const Vec2* a = place(from);
-  const Vec2* b = place(to);
-  if (a != nullptr && b != nullptr) {
-    link.up = (*a - *b).norm() <= (ground ? params.ground_range_m : params.range_m);
-  } else {
-    link.up = ground;
-  }
-  link.up = link.up && group_of(from, groups) == group_of(to, groups);
+void Disturbance::add(const Disturbance& other) {
+  loss = std::max(loss, other.loss);
+  delay = std::max(delay, other.delay);
+  jitter = std::max(jitter, other.jitter);
+  if (!other.disorder) return;
+  if (!disorder) disorder.emplace();
+  disorder->duplicates = std::max(disorder->duplicates, other.disorder->duplicates);
+  disorder->held_back = std::max(disorder->held_back, other.disorder->held_back);
+  disorder->held_back_max = std::max(disorder->held_back_max, other.disorder->held_back_max);
+}
+
+bool Cut::lets_through(VehicleId sender, VehicleId receiver) const {
+  if (kind == Kind::bridge && (sender == bridge || receiver == bridge)) return true;
+  const std::size_t from = group_of(sender, groups);
+  if (kind == Kind::one_way && from == groups.size()) return true;
+  return from == group_of(receiver, groups);
+}
+
+Cut cut_off(std::vector<VehicleId> group, Cut::Kind kind) {
+  Cut cut;
+  cut.kind = kind;
+  cut.groups.push_back(std::move(group));
+  return cut;
+}
+
+Cut silence(const std::vector<VehicleId>& nodes, Cut::Kind kind) {
+  Cut cut;
+  cut.kind = kind;
+  for (const VehicleId node : nodes) cut.groups.push_back({node});
+  return cut;
+}
+
+Link link_between(const RadioParams& params, const Interference& interference, const Node& from,
+                  const Node& to) {
+  const Disturbance& worse = interference.disturbance;
+  Link link;
+  link.up = (interference.healed || in_range(params, from, to)) &&
+            std::all_of(interference.cuts.begin(), interference.cuts.end(),
+                        [&](const Cut& cut) { return cut.lets_through(from.id, to.id); });
+  link.loss = std::max(interference.healed ? 0.0 : params.loss, worse.loss);
+  link.delay = params.delay + worse.delay;
+  link.jitter = params.jitter + worse.jitter;
+  link.disorder = worse.disorder;
   return link;
+}
+
+Link in_real_time(const Link& link, double rate) {
+  const auto real = [rate](Duration d) { return from_seconds(to_seconds(d) / rate); };
+  Link slowed = link;
+  slowed.delay = real(link.delay);
+  slowed.jitter = real(link.jitter);
+  if (slowed.disorder) slowed.disorder->held_back_max = real(link.disorder->held_back_max);
+  return slowed;
+}
+
+Arrivals carry(const Link& link, Random& random) {
+  Arrivals arrivals;
+  if (!link.up || random.chance(link.loss)) return arrivals;
+  const auto delay = [&] {
+    const double share = random.uniform(-1.0, 1.0);
+    return std::max(Duration{}, link.delay + from_seconds(share * to_seconds(link.jitter)));
+  };
+  arrivals.push_back(delay());
+  if (!link.disorder) return arrivals;
+  if (random.chance(link.disorder->held_back)) {
+    arrivals.back() += from_seconds(random.uniform(0.0, to_seconds(link.disorder->held_back_max)));
+  }
+  if (random.chance(link.disorder->duplicates)) arrivals.push_back(delay());
+  return arrivals;
 }
 
 }  // namespace skein::hil::radio

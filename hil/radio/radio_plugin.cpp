@@ -2,8 +2,9 @@
 //
 // libskein_radio.so: a radio between a process and its sockets. The bench names it in the network
 // configuration of every process; nothing else knows of it. What a process receives from another is
-// lost, delayed or let through as the bench's link table says for the pair at that moment. Own
-// traffic passes, and so does that of senders that are not in the table (the bench itself).
+// lost, delayed, doubled or let through as the radio model does it with the pair's link of that
+// moment in the bench's table. Own traffic passes, and so does that of senders that are not in the
+// table (the bench itself).
 //
 // Environment: SKEIN_RADIO_TABLE, name of the link table; SKEIN_RADIO_SEED, number.
 
@@ -82,23 +83,22 @@ class RadioTransport : public rtps::ChainingTransport {
     const auto sender = sender_of(buffer, size);
     const Link link = sender && *sender != self_ ? table_->get(*sender, self_) : Link{};
     if (!link.up) return;
-    Duration delay{};
+    bool now = false;
     {
       const std::lock_guard lock{mutex_};
-      if (link.loss > 0.0 && random_.chance(link.loss)) return;
-      if (link.delay + link.jitter > Duration{}) {
-        const double share = random_.uniform(-1.0, 1.0);
-        delay = std::max(Duration{1}, link.delay + from_seconds(share * to_seconds(link.jitter)));
-        if (waiting_.size() >= kWaitingMax) return;
+      const auto arrivals = radio::carry(link, random_);
+      // Without any delay it goes on at once, on the channel's own thread, as without us.
+      now = !arrivals.empty() && link.delay + link.jitter == Duration{} && !link.disorder;
+      for (const Duration delay : arrivals) {
+        if (now || waiting_.size() >= kWaitingMax) break;
         waiting_.push({std::chrono::steady_clock::now() + delay, order_++, next,
                        std::vector<octet>(buffer, buffer + size), local, remote});
       }
     }
-    if (delay > Duration{}) {
-      changed_.notify_one();
+    if (now) {
+      next->OnDataReceived(buffer, size, local, remote);
     } else {
-      next->OnDataReceived(buffer, size, local,
-                           remote);  // on the channel's own thread, as without us
+      changed_.notify_one();
     }
   }
 

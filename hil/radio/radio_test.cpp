@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 
@@ -30,13 +33,52 @@ TEST(LinkTable, IsSharedByNameAndGoneWithItsMaker) {
   EXPECT_NE(gone.error().message.find(name), std::string::npos);
 }
 
+TEST(LinkTable, KeepsALinkToTheLastBit) {
+  auto table = LinkTable::create();
+  ASSERT_TRUE(table) << table.error().message;
+  const Link link{true, 0.1, from_seconds(0.06), from_seconds(0.03),
+                  Disorder{0.3, 0.2, from_seconds(2.0)}};
+  table->set(VehicleId{1}, VehicleId{2}, link);
+  const Link back = table->get(VehicleId{1}, VehicleId{2});
+  EXPECT_EQ(back.loss, 0.1);
+  ASSERT_TRUE(back.disorder.has_value());
+  EXPECT_EQ(back.disorder->duplicates, 0.3);
+  EXPECT_EQ(back.disorder->held_back, 0.2);
+  EXPECT_EQ(back.disorder->held_back_max, from_seconds(2.0));
+  table->set(VehicleId{1}, VehicleId{2}, {});
+  EXPECT_FALSE(table->get(VehicleId{1}, VehicleId{2}).disorder.has_value());
+}
+
+constexpr RadioParams kParams{1500.0, 5000.0, std::chrono::milliseconds{60},
+                              std::chrono::milliseconds{30}, 0.1};
+
+Node node(std::uint16_t id) {
+  switch (id) {
+    case 1:
+      return {VehicleId{1}, Vec2{0, 0}};
+    case 2:
+      return {VehicleId{2}, Vec2{1499, 0}};
+    case 3:
+      return {VehicleId{3}, Vec2{3000, 0}};
+    default:
+      return {VehicleId{id}, std::nullopt};
+  }
+}
+
+Link between(std::uint16_t a, std::uint16_t b, const Interference& interference = {}) {
+  return link_between(kParams, interference, node(a), node(b));
+}
+
+Interference cut(Cut cut) {
+  Interference interference;
+  interference.cuts.push_back(std::move(cut));
+  return interference;
+}
+
 TEST(RadioModel, RangeAndPartitionsDecide) {
-  const RadioParams params{1500.0, 5000.0, from_seconds(0.06), from_seconds(0.03), 0.1};
-  const std::map<VehicleId, Vec2> at{
-      {VehicleId{1}, {0, 0}}, {VehicleId{2}, {1499, 0}}, {VehicleId{3}, {3000, 0}}};
-  const auto up = [&](std::uint16_t a, std::uint16_t b,
-                      const std::vector<std::vector<VehicleId>>& groups = {}) {
-    return link_between(params, VehicleId{a}, VehicleId{b}, at, groups).up;
+  const auto up = [](std::uint16_t a, std::uint16_t b,
+                     const std::vector<std::vector<VehicleId>>& groups = {}) {
+    return between(a, b, cut({Cut::Kind::both_ways, groups, {}})).up;
   };
   EXPECT_TRUE(up(1, 2));
   EXPECT_FALSE(up(1, 3));
@@ -47,7 +89,76 @@ TEST(RadioModel, RangeAndPartitionsDecide) {
   EXPECT_FALSE(up(1, 2, {{VehicleId{1}}, {VehicleId{2}}}));
   EXPECT_TRUE(up(1, 2, {{VehicleId{1}, VehicleId{2}}}));
   EXPECT_FALSE(up(1, 2, {{VehicleId{1}}})) << "one inside, one outside";
-  EXPECT_DOUBLE_EQ(link_between(params, VehicleId{1}, VehicleId{2}, at, {}).loss, 0.1);
+  EXPECT_DOUBLE_EQ(between(1, 2).loss, 0.1);
+}
+
+TEST(RadioModel, TheGroundStationHasARangeToo) {
+  EXPECT_FALSE(link_between(kParams, {}, node(0), {VehicleId{4}, Vec2{0, 5001}}).up);
+  EXPECT_FALSE(link_between(kParams, {}, {VehicleId{4}, Vec2{0, 5001}}, node(0)).up);
+}
+
+TEST(RadioModel, OneWayIsHeardInOneDirectionOnly) {
+  const auto deaf = cut(cut_off({VehicleId{1}}, Cut::Kind::one_way));
+  EXPECT_FALSE(between(1, 2, deaf).up);
+  EXPECT_TRUE(between(2, 1, deaf).up);
+}
+
+TEST(RadioModel, ABridgeHearsAndIsHeardByBothHalves) {
+  Cut halves = cut_off({VehicleId{1}}, Cut::Kind::bridge);
+  EXPECT_FALSE(between(1, 2, cut(halves)).up);
+  halves.bridge = VehicleId{2};
+  EXPECT_TRUE(between(1, 2, cut(halves)).up);
+  EXPECT_TRUE(between(2, 1, cut(halves)).up);
+  EXPECT_FALSE(between(1, 0, cut(halves)).up);
+}
+
+TEST(RadioModel, WhoIsSilentHearsNobodyAndIsNotHeard) {
+  const auto both = cut(silence({VehicleId{1}, VehicleId{2}}));
+  EXPECT_FALSE(between(1, 2, both).up);
+  EXPECT_FALSE(between(0, 2, both).up);
+  const auto unheard = cut(silence({VehicleId{1}, VehicleId{2}}, Cut::Kind::one_way));
+  EXPECT_FALSE(between(1, 2, unheard).up);
+  EXPECT_FALSE(between(2, 0, unheard).up);
+  EXPECT_TRUE(between(0, 2, unheard).up);
+}
+
+TEST(RadioModel, WhatIsDisturbedIsWorseAndWhatIsHealedIsPerfect) {
+  Interference worse;
+  worse.disturbance = {0.5, from_seconds(0.1), from_seconds(0.2), Disorder{}};
+  const Link link = between(1, 2, worse);
+  EXPECT_EQ(link.loss, 0.5);
+  EXPECT_EQ(link.delay, kParams.delay + from_seconds(0.1));
+  EXPECT_EQ(link.jitter, kParams.jitter + from_seconds(0.2));
+  EXPECT_TRUE(link.disorder.has_value());
+  worse.disturbance.loss = 0.05;
+  EXPECT_EQ(between(1, 2, worse).loss, 0.1) << "a disturbance makes nothing better";
+  Interference healed;
+  healed.healed = true;
+  EXPECT_TRUE(between(1, 3, healed).up);
+  EXPECT_EQ(between(1, 3, healed).loss, 0.0);
+}
+
+TEST(RadioModel, MessagesAreLostDoubledAndHeldBackInTheGivenShares) {
+  Random random{1};
+  const Link link{true, 0.25, from_seconds(0.06), from_seconds(0.03),
+                  Disorder{0.5, 0.1, from_seconds(2.0)}};
+  int lost = 0;
+  int doubled = 0;
+  int late = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    const auto arrivals = carry(link, random);
+    if (arrivals.empty()) ++lost;
+    if (arrivals.size() == 2) ++doubled;
+    for (const Duration delay : arrivals) {
+      EXPECT_GE(delay, from_seconds(0.03));
+      EXPECT_LE(delay, from_seconds(2.09));
+      if (delay > from_seconds(0.09)) ++late;
+    }
+  }
+  EXPECT_NEAR(lost, 2500, 150);
+  EXPECT_NEAR(doubled, 3750, 150);
+  EXPECT_NEAR(late, 750, 100);
+  EXPECT_TRUE(carry({false}, random).empty());
 }
 
 }  // namespace

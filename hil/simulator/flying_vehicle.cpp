@@ -38,10 +38,11 @@ InstanceId instance(VehicleId vehicle, std::uint32_t life) {
 
 FlyingVehicle::FlyingVehicle(const TeamMission& mission, const SimulatedVehicle& what,
                              const models::Wind& wind)
-    : mission_{mission}, what_{what}, wind_{wind}, loads_left_{what.spec.loads} {
-  const auto clock = mission.faults.clocks.find(what.spec.id);
-  if (clock != mission.faults.clocks.end()) clock_ = clock->second;
-}
+    : mission_{mission},
+      what_{what},
+      wind_{wind},
+      clock_{clock_offset(mission.faults, what.spec.id)},
+      loads_left_{what.spec.loads} {}
 
 void FlyingVehicle::take_off(Instant now) {
   dynamics_.emplace(what_.spec, wind_, what_.start, now);

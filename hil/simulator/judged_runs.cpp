@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hil/team_record.hpp"
@@ -51,7 +52,8 @@ JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
   run.sites_done = run.result.sites_done == mission.sites.size();
 
   checks::Limits held_to = limits;
-  if (!mission.faults.clocks.empty()) {
+  const auto off = [](const Fault& fault) { return std::holds_alternative<ClockOff>(fault.what); };
+  if (std::any_of(mission.faults.begin(), mission.faults.end(), off)) {
     // Times are agreed by clocks that differ, and judged by the true one.
     const double differ = to_seconds(mission.protocol.clock_guard);
     held_to.planned_time_s += differ;

@@ -21,6 +21,11 @@ models::WindParams wind_params(const configuration::WindConfig& wind, std::uint6
   return params;
 }
 
+radio::RadioParams radio_params(const configuration::RadioConfig& radio) {
+  return {radio.range_m, radio.ground_range_m, radio.delay_mean, radio.delay_jitter,
+          radio.loss_ratio};
+}
+
 TeamMission team_mission(const configuration::Scenario& scenario) {
   TeamMission team;
   for (const auto& v : scenario.vehicles) team.vehicles.push_back({v.spec, v.start, v.search});
@@ -29,8 +34,8 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   team.protocol = scenario.protocol;
   team.planning = scenario.planning;
   team.decisions = scripted_decisions(scenario.operator_decisions);
-  team.radio = {scenario.radio.range_m, scenario.radio.delay_mean, scenario.radio.delay_jitter,
-                scenario.radio.loss_ratio};
+  team.radio = radio_params(scenario.radio);
+  team.faults = faults_of(scenario);
   team.wind = wind_params(scenario.wind, scenario.seed);
   team.duration_max = scenario.duration_max;
   team.seed = scenario.seed;

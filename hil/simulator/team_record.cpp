@@ -8,7 +8,7 @@
 namespace skein::hil {
 
 TeamRecorder::TeamRecorder(const TeamMission& mission, const TeamObserver& watcher)
-    : watcher_{watcher}, faults_{mission.faults.any()} {
+    : watcher_{watcher}, healing_{healing_of(mission.faults)} {
   record_.sites = mission.sites;
   for (const auto& h : mission.hazards) record_.hazards.push_back({h.hazard, h.known_from});
   for (const auto& v : mission.vehicles) {
@@ -41,6 +41,10 @@ TeamObserver TeamRecorder::observer() {
   };
   observer.fault = [this](const FaultEvent& event) {
     if (event.kind == FaultEvent::Kind::gone) record_.lost.push_back(event.vehicle);
+    if (event.vehicle == kGroundStation) {
+      if (watcher_.fault) watcher_.fault(event);
+      return;
+    }
     if (event.kind == FaultEvent::Kind::gone || event.kind == FaultEvent::Kind::ended)
       record_.agent_ends.push_back({event.vehicle, event.time, {}});
     if (event.kind == FaultEvent::Kind::restarted) {
@@ -54,8 +58,8 @@ TeamObserver TeamRecorder::observer() {
 }
 
 const checks::RunRecord& TeamRecorder::finish(const TeamResult& result) {
-  // Without faults there is no excuse.
-  if (faults_) record_.excused = excuses(record_, result.vehicles);
+  // Only a team that is given the time to finish what is possible is excused the rest.
+  if (healing_) record_.excused = excuses(record_, result.vehicles);
   return record_;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/hil/team_simulator.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -13,8 +15,9 @@
 
 #include "flying_vehicle.hpp"
 #include "in_flight.hpp"
-#include "radio_channel.hpp"
 #include "site_finder.hpp"
+#include "skein/base/assert.hpp"
+#include "skein/hil/fault_timeline.hpp"
 
 namespace skein::hil {
 namespace {
@@ -40,26 +43,24 @@ mission::GroundAgentConfig ground_config(const TeamMission& mission) {
   return config;
 }
 
-bool has_role(const mission::VehicleAgent& agent, Crash::Role role) {
+bool has_role(const mission::VehicleAgent& agent, Role role) {
   using mission::Activity;
   const Activity activity = agent.activity();
   switch (role) {
-    case Crash::Role::any:
+    case Role::any:
       return true;
-    case Crash::Role::leader:
+    case Role::leader:
       return activity == Activity::leading || activity == Activity::monitoring;
-    case Crash::Role::member:
+    case Role::member:
       return activity == Activity::executing || activity == Activity::bidding;
   }
   return false;
 }
 
-/// A crash of the schedule on its way.
-struct ComingCrash {
-  Crash crash;
-  std::optional<std::size_t> victim;
-  Instant at{};
-  bool over = false;
+/// A node of the simulated network.
+struct Station {
+  radio::Node node;
+  bool on = true;  ///< its program runs
 };
 
 class Team {
@@ -68,36 +69,39 @@ class Team {
       : mission_{mission},
         observer_{observer},
         air_{kControlPeriod},
-        radio_{mission, air_},
-        finder_{mission},
-        ground_{ground_config(mission), Instant{}} {
+        radio_{mission.radio, mission.seed},
+        timeline_{mission.faults},
+        healing_{healing_of(mission.faults)},
+        finder_{mission} {
     const models::Wind wind{mission.wind};
     for (const auto& v : mission.vehicles) {
       vehicles_.emplace_back(mission, v, wind);
-      nodes_.push_back({v.spec.id, Vec2{0.0, 0.0}, false});
+      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
     }
-    nodes_.push_back({kGroundStation, Vec2{0.0, 0.0}, true});
-    restart_at_.resize(vehicles_.size());
-    gone_at_.resize(vehicles_.size());
-    for (const Crash& crash : mission.faults.crashes) crashes_.push_back({crash, {}, {}, false});
+    nodes_.push_back({{kGroundStation, std::nullopt}, true});
+    restart_at_.resize(nodes_.size());
+    gone_at_.resize(nodes_.size());
+    start_ground(Instant{});
     for (const auto& h : mission.hazards) {
       if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
     }
-    take_off(Instant{});
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (start_of(mission.faults, vehicles_[i].spec().id) == Instant{}) take_off(i, Instant{});
+    }
   }
 
   TeamResult run() {
     const Instant last = Instant{} + mission_.duration_max;
     std::optional<Instant> stop_at;
     for (Instant now{}; now <= stop_at.value_or(last); now += kControlPeriod) {
-      if (mission_.faults.any()) play_faults(now);
+      if (!mission_.faults.empty()) play_faults(now);
       deliver(now);
       control(now);
       if (due(now, kSensorPeriod)) sense(now);
       if (due(now, kAgentPeriod)) step_agents(now);
       result_.ended_at = now;
       if (!stop_at && sites_over_.size() == mission_.sites.size()) {
-        stop_at = std::min(last, std::max(now, mission_.faults.healed_at) + kAfterwards);
+        stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + kAfterwards);
       }
     }
     result_.sites_done = sites_done_.size();
@@ -115,68 +119,113 @@ class Team {
   }
 
   void play_faults(Instant now) {
-    const FaultSchedule& faults = mission_.faults;
-    take_off(now);
-    if (now < faults.healed_at) {
-      for (auto& coming : crashes_) play_crash(coming, now);
-      std::erase_if(crashes_, [](const ComingCrash& c) { return c.over; });
-    }
-    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+    timeline_.play(
+        now, [this](Role role) { return having(role); },
+        [&](const Fault& fault, const std::vector<VehicleId>& who) {
+          return begin(fault, who, now);
+        });
+    if (timeline_.radio_changed()) radio_.interfere(timeline_.interference());
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
       if (!restart_at_[i] || now < *restart_at_[i]) continue;
       restart_at_[i].reset();
-      vehicles_[i].start_agent(hazards_);
-      nodes_[i].on = true;
-      tell(now, FaultEvent::Kind::restarted, vehicles_[i].spec().id);
-    }
-    const bool heals = now >= faults.healed_at && !std::exchange(healed_, true);
-    if (heals) tell(now, FaultEvent::Kind::healed, kGroundStation);
-    const bool reports = faults.sites_reported_at && now >= *faults.sites_reported_at &&
-                         !std::exchange(sites_reported_, true);
-    if (heals || reports) hand_over_sites(finder_.report_all(vehicles_), now, true);
-  }
-
-  void take_off(Instant now) {
-    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      if (vehicles_[i].flying()) continue;
-      const auto joins = mission_.faults.joining.find(vehicles_[i].spec().id);
-      const bool late = joins != mission_.faults.joining.end();
-      if (late && now < joins->second) continue;
-      vehicles_[i].take_off(now);
-      nodes_[i].on = true;
-      nodes_[i].position = vehicles_[i].state().position().horizontal();
-      if (late) tell(now, FaultEvent::Kind::joined, vehicles_[i].spec().id);
-    }
-  }
-
-  void play_crash(ComingCrash& coming, Instant now) {
-    if (now < coming.crash.not_before) return;
-    if (!coming.victim) {
-      std::vector<std::size_t> candidates;
-      for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-        const auto* agent = vehicles_[i].agent();
-        if (agent != nullptr && has_role(*agent, coming.crash.role)) candidates.push_back(i);
+      if (i == ground_index()) {
+        start_ground(now);
+      } else {
+        vehicles_[i].start_agent(hazards_);
       }
-      if (candidates.empty()) return;
-      coming.victim = candidates[coming.crash.pick % candidates.size()];
-      coming.at = now + coming.crash.after;
+      nodes_[i].on = true;
+      tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);
     }
-    const std::size_t i = *coming.victim;
-    if (now < coming.at) return;
-    // The flight controller knows of no hazards: its orbit must happen to keep its distance.
-    if (!vehicles_[i].can_hold(hazards_)) return;
-    coming.over = true;
-    if (vehicles_[i].agent() == nullptr) return;  // down already
-    count_errors(i);
-    vehicles_[i].end_agent(now, hazards_);
+  }
+
+  [[nodiscard]] std::vector<VehicleId> having(Role role) const {
+    std::vector<VehicleId> some;
+    for (const FlyingVehicle& v : vehicles_) {
+      if (v.agent() != nullptr && has_role(*v.agent(), role)) some.push_back(v.spec().id);
+    }
+    return some;
+  }
+
+  [[nodiscard]] std::size_t index_of(VehicleId id) const {
+    const auto found = std::find_if(nodes_.begin(), nodes_.end(),
+                                    [id](const Station& s) { return s.node.id == id; });
+    SKEIN_ASSERT(found != nodes_.end());
+    return static_cast<std::size_t>(found - nodes_.begin());
+  }
+
+  bool begin(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    if (std::holds_alternative<ProgramsEnd>(fault.what)) return end_programs(fault, who, now);
+    if (const auto* late = std::get_if<LateStart>(&fault.what)) {
+      take_off(index_of(late->vehicle), now);
+      tell(now, FaultEvent::Kind::joined, late->vehicle);
+      return true;
+    }
+    const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
+    if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
+      tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
+    }
+    const bool heals = std::holds_alternative<Healing>(fault.what);
+    if (heals) tell(now, FaultEvent::Kind::healed, kGroundStation);
+    if (heals || std::holds_alternative<SitesReported>(fault.what)) {
+      hand_over_sites(finder_.report_all(vehicles_), now, true);
+    }
+    return true;
+  }
+
+  bool end_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    for (const VehicleId id : who) {
+      const std::size_t i = index_of(id);
+      // The flight controller knows of no hazards: where somebody is chosen, the orbit must happen
+      // to keep its distance.
+      if (fault.when.role && !vehicles_[i].can_hold(hazards_)) return false;
+    }
+    for (const VehicleId id : who) end_program(index_of(id), fault.lasts, now);
+    return true;
+  }
+
+  void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now) {
+    if (!nodes_[i].on) return;  // down already
+    if (i == ground_index()) {
+      ground_.reset();
+    } else {
+      count_errors(i);
+      vehicles_[i].end_agent(now, hazards_);
+      finder_.on_agent_end(i);
+      if (observer_.plan) observer_.plan(vehicles_[i].spec().id, vehicles_[i].plan(), now);
+    }
     nodes_[i].on = false;
-    finder_.on_agent_end(i);
-    if (observer_.plan) observer_.plan(vehicles_[i].spec().id, vehicles_[i].plan(), now);
-    if (coming.crash.down_for) {
-      restart_at_[i] = now + *coming.crash.down_for;
-      tell(now, FaultEvent::Kind::ended, vehicles_[i].spec().id);
+    if (down_for) {
+      restart_at_[i] = now + *down_for;
     } else {
       gone_at_[i] = now;
-      tell(now, FaultEvent::Kind::gone, vehicles_[i].spec().id);
+    }
+    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id);
+  }
+
+  void start_ground(Instant now) { ground_.emplace(ground_config(mission_), now); }
+
+  void take_off(std::size_t i, Instant now) {
+    vehicles_[i].take_off(now);
+    nodes_[i].on = true;
+    nodes_[i].node.position = vehicles_[i].state().position().horizontal();
+  }
+
+  // --- the radio ---
+
+  void broadcast(std::size_t from, const mission::Message& message, Instant now) {
+    const auto what = std::make_shared<const Content>(message);
+    // The ground station is the last node, and the first to hear.
+    if (from != ground_index()) post(from, ground_index(), what, now);
+    for (std::size_t to = 0; to < ground_index(); ++to) {
+      if (to != from) post(from, to, what, now);
+    }
+  }
+
+  void post(std::size_t from, std::size_t to, const std::shared_ptr<const Content>& what,
+            Instant now) {
+    if (!nodes_[to].on) return;
+    for (const Duration delay : radio_.carry(nodes_[from].node, nodes_[to].node)) {
+      air_.post({now + delay, 0, to, nodes_[from].node.id, 0, what});
     }
   }
 
@@ -185,7 +234,8 @@ class Team {
   void deliver(Instant now) {
     while (const auto parcel = air_.pop_due(now)) {
       if (parcel->to == ground_index()) {
-        ground_.on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
+        if (!ground_) continue;
+        ground_->on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
         drain_ground(now);
         continue;
       }
@@ -206,7 +256,7 @@ class Team {
       FlyingVehicle& v = vehicles_[i];
       if (!v.flying() || (gone_at_[i] && now > *gone_at_[i] + kSeenWhenGone)) continue;
       const bool follows = v.control(now);
-      nodes_[i].position = v.state().position().horizontal();
+      nodes_[i].node.position = v.state().position().horizontal();
       if (follows && due(now, kTrackPeriod) && observer_.track) {
         observer_.track(v.spec().id, v.state(), v.plan());
       }
@@ -243,10 +293,10 @@ class Team {
       if (v.agent() == nullptr) continue;
       v.agent()->on_state(v.local_state(), v.local(now));
       drain(i, now);
-      if (due(now, kTelemetryPeriod))
-        radio_.broadcast(nodes_, i, mission::Message{v.agent()->telemetry()}, now);
+      if (due(now, kTelemetryPeriod)) broadcast(i, mission::Message{v.agent()->telemetry()}, now);
     }
-    ground_.on_timeout(now);
+    if (!ground_) return;
+    ground_->on_timeout(now);
     drain_ground(now);
   }
 
@@ -254,7 +304,7 @@ class Team {
     FlyingVehicle& v = vehicles_[i];
     while (const auto message = v.agent()->poll_message()) {
       ++result_.messages;
-      radio_.broadcast(nodes_, i, *message, now);
+      broadcast(i, *message, now);
     }
     while (const auto event = v.agent()->poll_event()) on_event(v, *event);
     while (const auto plan = v.agent()->poll_plan()) {
@@ -282,10 +332,10 @@ class Team {
   }
 
   void drain_ground(Instant now) {
-    while (const auto message = ground_.poll_message()) {
-      radio_.broadcast(nodes_, ground_index(), *message, now);
+    while (const auto message = ground_->poll_message()) {
+      broadcast(ground_index(), *message, now);
     }
-    while (const auto event = ground_.poll_event()) {
+    while (const auto event = ground_->poll_event()) {
       // Those of the vehicles have been seen at their source.
       if (event->vehicle == kGroundStation && observer_.event) observer_.event(*event);
     }
@@ -319,20 +369,19 @@ class Team {
   const TeamMission& mission_;
   const TeamObserver& observer_;
   InFlight air_;
-  RadioChannel radio_;
+  radio::SimulatedRadio radio_;
+  FaultTimeline timeline_;
+  std::optional<Instant> healing_;
   SiteFinder finder_;
-  mission::GroundAgent ground_;
+  std::optional<mission::GroundAgent> ground_;  ///< none while its program is down
   std::vector<FlyingVehicle> vehicles_;
-  std::vector<RadioNode> nodes_;  ///< the vehicles, then the ground station
-  std::vector<Hazard> hazards_;   ///< that exist by now
+  std::vector<Station> nodes_;   ///< the vehicles, then the ground station
+  std::vector<Hazard> hazards_;  ///< that exist by now
   std::set<HazardId> told_;
   std::set<SiteId> sites_done_;
-  std::set<SiteId> sites_over_;  ///< done, or refused by the operator
-  std::vector<ComingCrash> crashes_;
-  std::vector<std::optional<Instant>> restart_at_;  ///< of each vehicle
+  std::set<SiteId> sites_over_;                     ///< done, or refused by the operator
+  std::vector<std::optional<Instant>> restart_at_;  ///< of each node
   std::vector<std::optional<Instant>> gone_at_;
-  bool healed_ = false;
-  bool sites_reported_ = false;
   TeamResult result_;
 };
 
@@ -355,16 +404,34 @@ std::string trace_line(const mission::MissionEvent& event) {
 }
 
 std::string trace_line(const FaultEvent& event) {
-  static constexpr std::array<const char*, 7> kNames{
-      "its program ends", "its program ends for good",
-      "starts anew",      "joins",
-      "is told of",       "appears",
-      "the radio heals"};
+  static constexpr std::array<const char*, 8> kNames{
+      "its program ends", "its program ends for good", "starts anew", "joins", "is told of",
+      "appears",          "the radio heals",           "the radio,"};
   std::array<char, 96> line{};
   std::snprintf(line.data(), line.size(), "%12.6f  %3u  FAULT: %s", to_seconds(event.time),
                 static_cast<unsigned>(event.vehicle.value),
                 kNames.at(static_cast<std::size_t>(event.kind)));
   return line.data() + (event.text.empty() ? "" : " " + event.text);
+}
+
+std::string describe(const TeamMission& mission) {
+  std::string text;
+  for (const Fault& fault : mission.faults) text += "fault: " + describe(fault) + "\n";
+  if (!healing_of(mission.faults)) return text;
+  text +=
+      fmt::format("the mission ends at {:.2f} s at the latest\n", to_seconds(mission.duration_max));
+  for (const auto& h : mission.hazards) {
+    if (h.known_from <= Instant{}) continue;
+    text += fmt::format("hazard {} at ({:.1f}, {:.1f}), radius {:.1f} m, appears at {:.2f} s\n",
+                        h.hazard.id.value, h.hazard.centre.x(), h.hazard.centre.y(),
+                        h.hazard.radius_m, to_seconds(h.known_from));
+  }
+  for (const auto& d : mission.decisions) {
+    text += fmt::format("operator, site {}: {}, {:.2f} s after the request, not before {:.2f} s\n",
+                        d.site.value, d.grant ? "grants" : "refuses", to_seconds(d.reaction),
+                        to_seconds(d.not_before));
+  }
+  return text;
 }
 
 }  // namespace skein::hil

@@ -36,10 +36,7 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
   }
   if (arguments.trace) {
     for (const auto& line : mission->formation.script) fmt::print("script: {}\n", line);
-    for (const auto& [node, off] : mission->faults.clocks) {
-      fmt::print("clock of {}: {:+.1f} ms\n", who(node), 1e3 * to_seconds(off));
-    }
-    for (const auto& fault : mission->faults.faults) fmt::print("{}\n", describe(fault));
+    for (const Fault& fault : mission->faults) fmt::print("fault: {}\n", describe(fault));
   }
   FormationObserver watcher;
   watcher.event = [&](const mission::MissionEvent& event) {

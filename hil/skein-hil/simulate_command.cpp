@@ -10,7 +10,7 @@
 #include "commands.hpp"
 #include "progress_line.hpp"
 #include "skein/configuration/scenario.hpp"
-#include "skein/hil/faults.hpp"
+#include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"

@@ -11,7 +11,8 @@
 #include "skein/base/result.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/scenario.hpp"
-#include "skein/hil/formation_faults.hpp"
+#include "skein/hil/fault.hpp"
+#include "skein/hil/radio/radio_model.hpp"
 #include "skein/mission/messages.hpp"
 
 /// A team of multirotors in formation, in virtual time and with faults: the production agents and
@@ -28,16 +29,14 @@ struct FormationMission {
   std::uint64_t seed = 1;
   std::vector<FormationVehicle> vehicles;    ///< in the order of their numbers
   configuration::FormationConfig formation;  ///< with the script that is flown
-  Duration delay = std::chrono::milliseconds{40};
-  Duration jitter = std::chrono::milliseconds{20};  ///< to either side
-  double loss = 0.0;
+  radio::RadioParams radio;
   /// Of how far gusts push a body from its reference, per axis; never beyond 0.3 m.
   double gust_error_m = 0.05;
-  FormationFaults faults;
+  std::vector<Fault> faults;
 };
 
-/// The scenario's formation with this seed. With faults the shapes, the gusts and what goes wrong
-/// are drawn from it too; with "none" the scenario's script is flown.
+/// The scenario's formation with this seed, and the faults of its time line. With more faults the
+/// shapes, the gusts and what goes wrong are drawn too; with "none" the scenario's script is flown.
 [[nodiscard]] Result<FormationMission> formation_mission(const configuration::Scenario& scenario,
                                                          std::uint64_t seed,
                                                          const std::string& faults);

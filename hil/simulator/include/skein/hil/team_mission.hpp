@@ -7,8 +7,7 @@
 
 namespace skein::hil {
 
-/// The scenario as the simulator flies it. Faults of the scenario's time line are for the bench and
-/// are left out.
+/// The scenario as the simulator flies it, with the faults of its time line.
 [[nodiscard]] TeamMission team_mission(const configuration::Scenario& scenario);
 
 /// The scripted decisions as the ground agent takes them.
@@ -18,6 +17,8 @@ namespace skein::hil {
 /// The wind's velocity and gusts as the models take them.
 [[nodiscard]] models::WindParams wind_params(const configuration::WindConfig& wind,
                                              std::uint64_t seed);
+
+[[nodiscard]] radio::RadioParams radio_params(const configuration::RadioConfig& radio);
 
 /// The scenario's expectations as the judges' limits.
 [[nodiscard]] checks::Limits limits_of(const configuration::Expectations& expect);

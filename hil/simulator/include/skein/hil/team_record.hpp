@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 
 #include "skein/checks/run_record.hpp"
 #include "skein/hil/team_simulator.hpp"
@@ -27,7 +28,7 @@ class TeamRecorder {
   [[nodiscard]] recording::Recording& of(VehicleId vehicle);
 
   const TeamObserver& watcher_;
-  bool faults_;
+  std::optional<Instant> healing_;
   checks::RunRecord record_;
   std::map<VehicleId, std::size_t> index_;  ///< into record_.recordings
 };

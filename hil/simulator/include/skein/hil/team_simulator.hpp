@@ -13,7 +13,8 @@
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
-#include "skein/hil/faults.hpp"
+#include "skein/hil/fault.hpp"
+#include "skein/hil/radio/radio_model.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/vehicle_agent.hpp"
@@ -34,16 +35,6 @@ struct TimedHazard {
   Instant known_from{};
 };
 
-/// The radio of the simulator. Between vehicles a message arrives after `delay` +- `jitter` when
-/// both are within range at the moment of sending and it is not lost; the ground station is heard
-/// and hears everywhere.
-struct SimulatedRadio {
-  double range_m = 1500.0;
-  Duration delay = std::chrono::milliseconds{60};
-  Duration jitter = std::chrono::milliseconds{30};
-  double loss = 0.0;  ///< probability
-};
-
 /// A whole mission in virtual time.
 struct TeamMission {
   std::vector<SimulatedVehicle> vehicles;
@@ -55,17 +46,26 @@ struct TeamMission {
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
   std::vector<mission::ScriptedDecision> decisions;
-  SimulatedRadio radio;
+  radio::RadioParams radio;
   models::WindParams wind;
   Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
   Duration duration_max = std::chrono::seconds{300};
   std::uint64_t seed = 1;
-  FaultSchedule faults;  ///< none unless drawn by add_faults()
+  std::vector<Fault> faults;  ///< of the scenario, and drawn by add_faults()
 };
 
 /// A fault, or a part of its mending, that took place.
 struct FaultEvent {
-  enum class Kind : std::uint8_t { ended, gone, restarted, joined, reported, appeared, healed };
+  enum class Kind : std::uint8_t {
+    ended,
+    gone,
+    restarted,
+    joined,
+    reported,
+    appeared,
+    healed,
+    radio
+  };
   Instant time{};
   Kind kind = Kind::healed;
   VehicleId vehicle;  ///< where it applies
@@ -109,5 +109,7 @@ TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observe
 /// One line an event, for traces and their comparison.
 [[nodiscard]] std::string trace_line(const mission::MissionEvent& event);
 [[nodiscard]] std::string trace_line(const FaultEvent& event);
+/// What goes wrong in the mission, a line each: its faults, and what was drawn with them.
+[[nodiscard]] std::string describe(const TeamMission& mission);
 
 }  // namespace skein::hil

@@ -10,22 +10,14 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
-#include "skein/base/time.hpp"
+#include "skein/hil/radio/radio_model.hpp"
 
 namespace skein::hil::radio {
 
-/// How one node hears another at this moment.
-struct Link {
-  bool up = true;
-  double loss = 0.0;  ///< probability, of each packet by itself
-  Duration delay{};   ///< real time
-  Duration jitter{};  ///< the delay varies by up to this, either way
-};
-
 /// The radio links between all nodes, in shared memory: written by the bench while the vehicles
-/// move, read by the radio in every process. Ids 0 (ground station) to 254; others pass untouched.
-/// Each field of a link is atomic; a reader may see the fields of two updates mixed, which a radio
-/// does not mind. Wait-free both ways.
+/// move, read by the radio in every process; times in it are real. Ids 0 (ground station) to 254;
+/// others pass untouched. Each field of a link is atomic; a reader may see the fields of two
+/// updates mixed, which a radio does not mind. Wait-free both ways.
 class LinkTable {
  public:
   static constexpr std::size_t kNodes = 255;
@@ -48,13 +40,18 @@ class LinkTable {
 
  private:
   struct Cell {
-    std::atomic<std::uint32_t> up;
-    std::atomic<float> loss;
-    std::atomic<std::int64_t> delay_ns;
-    std::atomic<std::int64_t> jitter_ns;
+    std::atomic<bool> up;
+    std::atomic<bool> disordered;
+    std::atomic<double> loss;
+    std::atomic<double> duplicates;
+    std::atomic<double> held_back;
+    std::atomic<Duration::rep> delay_ns;
+    std::atomic<Duration::rep> jitter_ns;
+    std::atomic<Duration::rep> held_back_max_ns;
   };
-  static_assert(std::atomic<std::int64_t>::is_always_lock_free);
-  static_assert(std::atomic<float>::is_always_lock_free);
+  static_assert(std::atomic<bool>::is_always_lock_free);
+  static_assert(std::atomic<double>::is_always_lock_free);
+  static_assert(std::atomic<Duration::rep>::is_always_lock_free);
   struct Table {
     std::array<std::array<Cell, kNodes>, kNodes> cells;
   };

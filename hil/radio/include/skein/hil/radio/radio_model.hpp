@@ -1,30 +1,116 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <map>
+#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "skein/base/geometry.hpp"
 #include "skein/base/ids.hpp"
+#include "skein/base/random.hpp"
+#include "skein/base/static_vector.hpp"
 #include "skein/base/time.hpp"
-#include "skein/hil/radio/link_table.hpp"
 
+/// The one radio of simulator and bench: who hears whom, and what becomes of each message. Pure;
+/// what is random is drawn from the generator that is handed in.
 namespace skein::hil::radio {
 
+/// What a radio is when nothing goes wrong.
 struct RadioParams {
-  double range_m = 1500.0;  ///< vehicle to vehicle (Wang 2022: r_n)
-  double ground_range_m =
-      20000.0;  ///< vehicle to ground station, which stands at the mission origin
-  Duration delay{};
-  Duration jitter{};
-  double loss = 0.0;  ///< probability, of each message
+  double range_m = 1500.0;          ///< vehicle to vehicle (Wang 2022: r_n)
+  double ground_range_m = 20000.0;  ///< vehicle to ground station, which is at the mission origin
+  Duration delay = std::chrono::milliseconds{60};
+  Duration jitter = std::chrono::milliseconds{30};  ///< the delay varies by up to this, either way
+  double loss = 0.0;                                ///< probability, of each message by itself
 };
 
-/// The link from `from` to `to`, given where the vehicles are (mission frame) and the groups that
-/// the network is cut into (each hears itself only; a node in no group hears the nodes in none).
-/// A vehicle whose position is not known yet is not in range of other vehicles.
-[[nodiscard]] Link link_between(const RadioParams& params, VehicleId from, VehicleId to,
-                                const std::map<VehicleId, Vec2>& positions,
-                                const std::vector<std::vector<VehicleId>>& groups);
+/// Messages that arrive twice, or after those that were sent later.
+struct Disorder {
+  double duplicates = 0.0;  ///< probability
+  double held_back = 0.0;   ///< probability, of arriving up to held_back_max later
+  Duration held_back_max{};
+};
+
+/// A radio that is worse than RadioParams for a time.
+struct Disturbance {
+  double loss = 0.0;  ///< where it is more than the radio's own
+  Duration delay{};   ///< besides the radio's own
+  Duration jitter{};
+  std::optional<Disorder> disorder = std::nullopt;
+
+  /// The larger of each.
+  void add(const Disturbance& other);
+};
+
+/// The network is cut for a time: each group hears itself only, and so do those in no group.
+struct Cut {
+  enum class Kind : std::uint8_t {
+    both_ways,
+    one_way,  ///< a group is not heard by the others, and hears those in no group
+    bridge    ///< but one node hears all, and all hear it
+  };
+  Kind kind = Kind::both_ways;
+  std::vector<std::vector<VehicleId>> groups;  ///< 0 is the ground station
+  VehicleId bridge;                            ///< where the kind is bridge
+
+  [[nodiscard]] bool lets_through(VehicleId sender, VehicleId receiver) const;
+};
+/// One group apart from all others.
+[[nodiscard]] Cut cut_off(std::vector<VehicleId> group, Cut::Kind kind = Cut::Kind::both_ways);
+/// Each of the nodes by itself: they are silent, and deaf unless it is one way.
+[[nodiscard]] Cut silence(const std::vector<VehicleId>& nodes,
+                          Cut::Kind kind = Cut::Kind::both_ways);
+
+/// All that is wrong with the radio at a moment.
+struct Interference {
+  Disturbance disturbance;
+  std::vector<Cut> cuts;
+  bool healed = false;  ///< nobody is out of range, and the radio itself loses nothing
+};
+
+struct Node {
+  VehicleId id;
+  std::optional<Vec2> position;  ///< mission frame; nothing: not known yet. Not of the ground.
+};
+
+/// How one node hears another at this moment.
+struct Link {
+  bool up = true;
+  double loss = 0.0;  ///< probability, of each message by itself
+  Duration delay{};
+  Duration jitter{};  ///< the delay varies by up to this, either way
+  std::optional<Disorder> disorder = std::nullopt;
+};
+
+/// A vehicle whose position is not known is out of range of other vehicles, and in that of the
+/// ground station.
+[[nodiscard]] Link link_between(const RadioParams& params, const Interference& interference,
+                                const Node& from, const Node& to);
+
+/// The link where `rate` mission seconds pass in a real one.
+[[nodiscard]] Link in_real_time(const Link& link, double rate);
+
+/// How long a message is on its way: nothing where it is lost, twice where it is doubled. What is
+/// drawn depends on the link alone: from one that is down, nothing.
+using Arrivals = StaticVector<Duration, 2>;
+[[nodiscard]] Arrivals carry(const Link& link, Random& random);
+
+/// The radio as a simulator has it; the bench has a LinkTable and, in every process, the plugin.
+class SimulatedRadio {
+ public:
+  SimulatedRadio(const RadioParams& params, std::uint64_t seed) : params_{params}, random_{seed} {}
+
+  /// From now on.
+  void interfere(const Interference& interference) { interference_ = interference; }
+  [[nodiscard]] Arrivals carry(const Node& from, const Node& to) {
+    return radio::carry(link_between(params_, interference_, from, to), random_);
+  }
+
+ private:
+  RadioParams params_;
+  Interference interference_;
+  Random random_;
+};
 
 }  // namespace skein::hil::radio

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/hil/faults.hpp"
+#include "skein/hil/fault_profiles.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,6 +17,7 @@
 namespace skein::hil {
 namespace {
 
+using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -63,6 +64,16 @@ TEST(Faults, AProfileThatThereIsNotIsRefusedWithThoseThatThereAre) {
   EXPECT_THAT(params.error().message, HasSubstr("crash, clocks"));
 }
 
+TEST(Faults, AProfileOfTheOtherKindOfMissionIsRefusedByItsKind) {
+  const auto sites = fault_params("lossy,leader", 1);
+  ASSERT_FALSE(sites);
+  EXPECT_THAT(sites.error().message, HasSubstr("'leader' are of formations, and this mission has"));
+  const auto formation = formation_faults("loss,hazards", {{1}, {2}}, 3, 1);
+  ASSERT_FALSE(formation);
+  EXPECT_THAT(formation.error().message, HasSubstr("'hazards' are of missions with sites, and"));
+  EXPECT_THAT(formation.error().message, HasSubstr("none, vehicle, leader"));
+}
+
 TEST(Faults, ProfilesAreComposed) {
   const auto params = fault_params("lossy,crash", 1);
   ASSERT_TRUE(params);
@@ -92,54 +103,11 @@ TEST(Faults, TheScheduleIsTheSeedsAndOnlyTheSeeds) {
   EXPECT_THAT(describe(drawn("none", 7)), IsEmpty());
 }
 
-TEST(Faults, HalvesHearThemselves) {
-  Partition p;
-  p.apart = {VehicleId{1}, VehicleId{2}};
-  EXPECT_TRUE(p.lets_through(VehicleId{1}, VehicleId{2}));
-  EXPECT_TRUE(p.lets_through(VehicleId{3}, kGroundStation));
-  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
-  EXPECT_FALSE(p.lets_through(VehicleId{3}, VehicleId{1}));
-}
-
-TEST(Faults, OneWayIsHeardInOneDirectionOnly) {
-  Partition p;
-  p.kind = Partition::Kind::one_way;
-  p.apart = {VehicleId{1}};
-  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
-  EXPECT_TRUE(p.lets_through(VehicleId{3}, VehicleId{1}));
-}
-
-TEST(Faults, ABridgeHearsAndIsHeardByBothHalves) {
-  Partition p;
-  p.kind = Partition::Kind::bridge;
-  p.apart = {VehicleId{1}, VehicleId{2}};
-  p.bridge = VehicleId{2};
-  EXPECT_TRUE(p.lets_through(VehicleId{2}, VehicleId{3}));
-  EXPECT_TRUE(p.lets_through(VehicleId{3}, VehicleId{2}));
-  EXPECT_TRUE(p.lets_through(VehicleId{1}, VehicleId{2}));
-  EXPECT_FALSE(p.lets_through(VehicleId{1}, VehicleId{3}));
-}
-
-TEST(Faults, APartitionLastsForItsTimeOnly) {
-  FaultSchedule faults;
-  Partition p;
-  p.apart = {VehicleId{1}};
-  p.from = at_seconds(10);
-  p.until = at_seconds(20);
-  faults.partitions = {p};
-  EXPECT_TRUE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(9.9)));
-  EXPECT_FALSE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(10)));
-  EXPECT_TRUE(faults.lets_through(VehicleId{1}, VehicleId{2}, at_seconds(20)));
-}
-
 TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
   auto mission = drawn("crash", 1);
-  Crash crash;
-  crash.role = Crash::Role::leader;
-  crash.not_before = at_seconds(1);
-  crash.after = std::chrono::seconds{3};
-  crash.down_for = std::chrono::seconds{8};
-  mission.faults.crashes = {crash};
+  mission.faults = {
+      {{.not_before = at_seconds(1), .role = Role::leader, .after = 3s}, 8s, ProgramsEnd{}},
+      {{.not_before = at_seconds(90)}, {}, Healing{}}};
   const auto flown = fly(mission);
   ASSERT_GE(flown.faults.size(), 2U) << flown.trace;
   EXPECT_EQ(flown.faults[0].kind, FaultEvent::Kind::ended);
@@ -157,7 +125,7 @@ TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
 
 TEST(Faults, AJoinerIsNotThereBefore) {
   auto mission = drawn("joining", 1);
-  mission.faults.joining = {{VehicleId{5}, at_seconds(30)}};
+  mission.faults = {{{.not_before = at_seconds(30)}, {}, LateStart{VehicleId{5}}}};
   const auto flown = fly(mission);
   ASSERT_FALSE(flown.faults.empty());
   for (const auto& e : flown.events) {
@@ -167,10 +135,10 @@ TEST(Faults, AJoinerIsNotThereBefore) {
 
 TEST(Faults, ClocksThatDifferAreSeenByTheAgentsOnly) {
   auto mission = drawn("none", 1);
-  mission.faults.healed_at = at_seconds(1);
+  mission.faults = {{{.not_before = at_seconds(1)}, {}, Healing{}}};
   const auto straight = fly(mission);
   for (const auto& v : mission.vehicles) {
-    mission.faults.clocks[v.spec.id] = std::chrono::milliseconds{200};
+    mission.faults.push_back({{}, {}, ClockOff{v.spec.id, 200ms}});
   }
   const auto shifted = fly(mission);
   // All clocks are fast by the same: what is flown at which true time stays nearly the same.

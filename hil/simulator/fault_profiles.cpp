@@ -1,0 +1,469 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/fault_profiles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
+#include "skein/base/random.hpp"
+#include "skein/hil/team_simulator.hpp"
+
+namespace skein::hil {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// Keeps the draw of faults apart from the radio's, which starts from the same seed.
+constexpr std::uint64_t kFaultStream = 0x6661756c74730001;
+constexpr std::uint64_t kMixStream = 0x6661756c74730002;
+/// A hazard that appears leaves this much room around a site's final approaches.
+constexpr double kSiteRoom_m = 60.0;
+constexpr double kEverywhere_m = 1e6;
+constexpr Duration kHeldBackMax = seconds{2};
+
+FaultParams phase_only() {
+  FaultParams p;
+  p.phase = seconds{90};
+  p.bound = seconds{300};
+  return p;
+}
+
+FaultParams lossy() {
+  FaultParams p = phase_only();
+  p.loss = 0.6;
+  p.delay = milliseconds{300};
+  p.jitter = milliseconds{200};
+  p.duplicates = 0.3;
+  p.held_back = 0.1;
+  return p;
+}
+FaultParams partition() {
+  FaultParams p = phase_only();
+  p.partitions = 3;
+  return p;
+}
+FaultParams crash() {
+  FaultParams p = phase_only();
+  p.crashes = 2;
+  p.restarts = 2;
+  return p;
+}
+FaultParams clocks() {
+  FaultParams p = phase_only();
+  p.clock_offset = milliseconds{245};  // two of them within the guard of 500 ms
+  return p;
+}
+FaultParams hazards() {
+  FaultParams p = phase_only();
+  p.hazards = 3;
+  return p;
+}
+FaultParams slow_operator() {
+  FaultParams p = phase_only();
+  p.slow_operator = true;
+  return p;
+}
+FaultParams joining() {
+  FaultParams p = phase_only();
+  p.joiners = 3;
+  p.sites_together = true;
+  return p;
+}
+
+// --- in the changes of a formation ---
+
+/// Keeps the draw apart from what else starts from the same seed.
+constexpr std::uint64_t kFormationStream = 0x666f726d66617501;
+constexpr Duration kClockMax = milliseconds{10};
+constexpr Duration kHeldBackInFormation = seconds{1};
+/// A change takes about so long.
+constexpr Duration kChange = seconds{9};
+
+struct Draw {
+  const std::vector<VehicleId>& vehicles;
+  std::size_t changes = 1;
+  Random random;
+  std::vector<Fault> faults = {};
+
+  Duration between(Duration low, Duration high) {
+    return from_seconds(random.uniform(to_seconds(low), to_seconds(high)));
+  }
+  VehicleId anyone() { return vehicles[random.index(vehicles.size())]; }
+  When in_a_change() {
+    When when;
+    when.change = random.index(changes);
+    when.after = between(Duration{}, kChange);
+    return when;
+  }
+};
+
+void no_fault(Draw& /*draw*/) {}
+
+void lose(Draw& draw, std::optional<VehicleId> who) {
+  const When when = draw.in_a_change();
+  const VehicleId other = draw.vehicles[1 + draw.random.index(draw.vehicles.size() - 1)];
+  ProgramsEnd lost{{who.value_or(other)}};
+  const bool sinks = draw.random.chance(0.5);
+  const Duration after = draw.between(seconds{0}, seconds{30});
+  if (sinks) lost.sinks_after = after;
+  draw.faults.push_back({when, std::nullopt, lost});
+}
+void lost_vehicle(Draw& draw) { lose(draw, std::nullopt); }
+void lost_leader(Draw& draw) { lose(draw, draw.vehicles.front()); }
+
+void lost_ground(Draw& draw) {
+  const When when = draw.in_a_change();
+  const bool for_good = draw.random.chance(0.3);
+  const Duration lasts = draw.between(seconds{1}, seconds{20});
+  draw.faults.push_back(
+      {when, for_good ? std::nullopt : std::optional{lasts}, ProgramsEnd{{kGroundStation}}});
+}
+
+void heavy_loss(Draw& draw) {
+  const When when = draw.in_a_change();
+  const Duration lasts = draw.between(seconds{10}, seconds{60});
+  radio::Disorder disorder;
+  disorder.duplicates = draw.random.uniform(0.0, 0.3);
+  disorder.held_back = draw.random.uniform(0.0, 0.2);
+  disorder.held_back_max = kHeldBackInFormation;
+  draw.faults.push_back({when, lasts, radio::Disturbance{0.5, {}, {}, disorder}});
+}
+
+void short_silence(Draw& draw) {
+  const bool everybody = draw.random.chance(0.5);
+  const bool one_way = !everybody && draw.random.chance(0.5);
+  const When when = draw.in_a_change();
+  std::vector<VehicleId> who{draw.anyone()};
+  if (everybody) {
+    who = draw.vehicles;
+    who.push_back(kGroundStation);
+  }
+  draw.faults.push_back(
+      {when, seconds{2},
+       radio::silence(who, one_way ? radio::Cut::Kind::one_way : radio::Cut::Kind::both_ways)});
+}
+
+void apart(Draw& draw) {
+  const bool both_ways = draw.random.chance(0.5);
+  const When when = draw.in_a_change();
+  const Duration lasts = draw.between(seconds{1}, seconds{15});
+  std::vector<VehicleId> who;
+  for (const VehicleId vehicle : draw.vehicles) {
+    if (draw.random.chance(0.4)) who.push_back(vehicle);
+  }
+  if (draw.random.chance(0.2)) who.push_back(kGroundStation);
+  draw.faults.push_back(
+      {when, lasts,
+       both_ways ? radio::cut_off(who) : radio::silence(who, radio::Cut::Kind::one_way)});
+}
+
+void restart(Draw& draw) {
+  const When when = draw.in_a_change();
+  const Duration lasts = draw.between(milliseconds{100}, seconds{6});
+  draw.faults.push_back({when, lasts, ProgramsEnd{{draw.anyone()}}});
+}
+
+void small_clocks(Draw& draw) {
+  for (const VehicleId vehicle : draw.vehicles) {
+    draw.faults.push_back({{}, {}, ClockOff{vehicle, draw.between(-kClockMax, kClockMax)}});
+  }
+  draw.faults.push_back({{}, {}, ClockOff{kGroundStation, draw.between(-kClockMax, kClockMax)}});
+}
+
+// --- the one vocabulary ---
+
+struct Profile {
+  std::string_view name;
+  FaultParams (*sites)() = nullptr;  ///< null: not of missions with sites
+  void (*formation)(Draw&) = nullptr;
+
+  [[nodiscard]] bool of(MissionKind kind) const {
+    return kind == MissionKind::sites ? sites != nullptr : formation != nullptr;
+  }
+};
+
+/// `mixed` draws from those above it, in this order.
+constexpr std::array<Profile, 14> kProfiles{{{"none", nullptr, no_fault},
+                                             {"lossy", lossy},
+                                             {"vehicle", nullptr, lost_vehicle},
+                                             {"leader", nullptr, lost_leader},
+                                             {"ground", nullptr, lost_ground},
+                                             {"loss", nullptr, heavy_loss},
+                                             {"silence", nullptr, short_silence},
+                                             {"partition", partition, apart},
+                                             {"crash", crash},
+                                             {"restart", nullptr, restart},
+                                             {"clocks", clocks, small_clocks},
+                                             {"hazards", hazards},
+                                             {"operator", slow_operator},
+                                             {"joining", joining}}};
+
+FaultParams mixed(std::uint64_t seed) {
+  Random random{seed ^ kMixStream};
+  FaultParams all = phase_only();
+  for (const Profile& profile : kProfiles) {
+    if (profile.sites != nullptr && random.chance(0.45)) all.add(profile.sites());
+  }
+  return all;
+}
+
+void mix(Draw& draw) {
+  for (const Profile& profile : kProfiles) {
+    if (profile.formation != nullptr && draw.random.chance(0.4)) profile.formation(draw);
+  }
+}
+
+/// The names in a list with commas. Fails where such a mission does not have one.
+Result<std::vector<std::string>> names_in(const std::string& list, MissionKind kind) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    names.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  const auto known = fault_profiles(kind);
+  for (const std::string& name : names) {
+    if (contains(known, name)) continue;
+    const bool elsewhere = std::any_of(kProfiles.begin(), kProfiles.end(),
+                                       [&](const Profile& p) { return p.name == name; });
+    const bool sites = kind == MissionKind::sites;
+    std::string message = elsewhere ? "the faults '" + name + "' are of " +
+                                          (sites ? "formations, and this mission has sites"
+                                                 : "missions with sites, and this is a formation")
+                                    : "there is no fault profile '" + name + "'";
+    message += "; write one of ";
+    for (const auto& one : known) message.append(one).append(", ");
+    return Error{message + "or several with commas"};
+  }
+  return names;
+}
+
+const Profile& profile_of(const std::string& name) {
+  const auto* const profile = std::find_if(kProfiles.begin(), kProfiles.end(),
+                                           [&](const Profile& p) { return p.name == name; });
+  SKEIN_ASSERT(profile != kProfiles.end());
+  return *profile;
+}
+
+// --- a mission with sites ---
+
+Duration between(Random& random, Duration low, Duration high) {
+  return from_seconds(random.uniform(to_seconds(low), to_seconds(high)));
+}
+/// Up to `most`, more often than not at least one.
+std::size_t count(Random& random, std::size_t most) {
+  return static_cast<std::size_t>(random.index(most + 1));
+}
+
+Fault draw_partition(Random& random, const TeamMission& mission, Duration phase) {
+  static constexpr std::array kKinds{radio::Cut::Kind::both_ways, radio::Cut::Kind::one_way,
+                                     radio::Cut::Kind::bridge};
+  radio::Cut cut;
+  cut.kind = kKinds.at(random.index(kKinds.size()));
+  const Duration from = between(random, Duration{}, phase * 3 / 4);
+  const Duration lasts = std::min(between(random, seconds{2}, seconds{40}), phase - from);
+  std::vector<VehicleId> group;
+  for (const auto& v : mission.vehicles) {
+    if (random.chance(0.5)) group.push_back(v.spec.id);
+  }
+  if (random.chance(0.3)) group.push_back(kGroundStation);
+  cut.groups.push_back(group);
+  cut.bridge = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+  return {{.not_before = Instant{} + from}, lasts, cut};
+}
+
+Fault draw_crash(Random& random, Duration phase, bool for_good) {
+  static constexpr std::array kRoles{Role::any, Role::leader, Role::member};
+  Fault fault;
+  fault.when.role = kRoles.at(random.index(kRoles.size()));
+  fault.when.not_before = Instant{} + between(random, seconds{1}, phase);
+  fault.when.not_after = Instant{} + phase;
+  fault.when.after = between(random, Duration{}, seconds{12});
+  fault.what = ProgramsEnd{{}, random.next()};
+  if (!for_good) fault.lasts = between(random, milliseconds{500}, seconds{15});
+  return fault;
+}
+
+bool is_free(const Hazard& hazard, const TeamMission& mission) {
+  double approach = 0.0;
+  double circle = 0.0;
+  double turn = 0.0;
+  for (const auto& v : mission.vehicles) {
+    approach = std::max(approach, v.spec.final_approach_m);
+    circle = std::max({circle, v.spec.sensor_radius_m, v.spec.assess_radius_m});
+    turn = std::max(turn, v.spec.planning_radius_m());
+  }
+  const double room = hazard.radius_m + kSiteRoom_m + std::max(approach + turn, circle);
+  for (const auto& site : mission.sites) {
+    if ((site.position - hazard.centre).norm() < room) return false;
+  }
+  for (const auto& h : mission.hazards) {
+    if ((h.hazard.centre - hazard.centre).norm() < h.hazard.radius_m + hazard.radius_m + 4.0 * turn)
+      return false;
+  }
+  for (const auto& v : mission.vehicles) {  // where it waits, it must be able to wait
+    if (v.search.empty()) continue;
+    if ((v.search.back() - hazard.centre).norm() < hazard.radius_m + 3.0 * turn) return false;
+  }
+  return true;
+}
+
+/// A place on some vehicle's way.
+Vec2 draw_place(Random& random, const TeamMission& mission) {
+  const SimulatedVehicle& v = mission.vehicles[random.index(mission.vehicles.size())];
+  Vec2 from{v.start.x_m, v.start.y_m};
+  const std::size_t leg = v.search.empty() ? 0 : random.index(v.search.size());
+  if (leg > 0) from = v.search[leg - 1];
+  const Vec2 to = v.search.empty() ? from : v.search[leg];
+  const double share = random.uniform(0.2, 0.8);
+  const double east = random.uniform(-60.0, 60.0);
+  const double north = random.uniform(-60.0, 60.0);
+  return from + share * (to - from) + Vec2{east, north};
+}
+
+void draw_hazards(Random& random, TeamMission& mission, const FaultParams& params) {
+  std::uint16_t id = 1000;
+  const std::size_t wanted = count(random, params.hazards);
+  for (std::size_t drawn = 0, tries = 0; drawn < wanted && tries < 200; ++tries) {
+    Hazard hazard;
+    hazard.radius_m = random.uniform(20.0, 60.0);
+    hazard.centre = draw_place(random, mission);
+    const Instant known_from = Instant{} + between(random, seconds{3}, params.phase);
+    if (!is_free(hazard, mission)) continue;
+    hazard.id = HazardId{++id};
+    mission.hazards.push_back({hazard, known_from});
+    ++drawn;
+  }
+}
+
+/// Late, refused, or only from some moment on; a plan is always decided about in the end.
+void draw_decisions(Random& random, TeamMission& mission, const FaultParams& params) {
+  mission.decisions.clear();
+  for (const auto& site : mission.sites) {
+    mission::ScriptedDecision decision;
+    decision.site = site.id;
+    decision.reaction = between(random, milliseconds{200}, seconds{2});
+    const double kind = random.uniform();
+    if (kind < 0.15) decision.grant = false;
+    if (kind >= 0.15 && kind < 0.5)
+      decision.not_before = Instant{} + between(random, seconds{10}, params.phase);
+    mission.decisions.push_back(decision);
+    // Who asks again, because the plan fell through, is answered with another delay.
+    decision.reaction = between(random, milliseconds{200}, seconds{2});
+    mission.decisions.push_back(decision);
+  }
+}
+
+}  // namespace
+
+FaultParams& FaultParams::add(const FaultParams& other) {
+  phase = std::max(phase, other.phase);
+  bound = std::max(bound, other.bound);
+  loss = std::max(loss, other.loss);
+  delay = std::max(delay, other.delay);
+  jitter = std::max(jitter, other.jitter);
+  duplicates = std::max(duplicates, other.duplicates);
+  held_back = std::max(held_back, other.held_back);
+  partitions = std::max(partitions, other.partitions);
+  crashes = std::max(crashes, other.crashes);
+  restarts = std::max(restarts, other.restarts);
+  joiners = std::max(joiners, other.joiners);
+  clock_offset = std::max(clock_offset, other.clock_offset);
+  hazards = std::max(hazards, other.hazards);
+  slow_operator = slow_operator || other.slow_operator;
+  sites_together = sites_together || other.sites_together;
+  return *this;
+}
+
+std::vector<std::string_view> fault_profiles(MissionKind kind) {
+  std::vector<std::string_view> names;
+  for (const Profile& profile : kProfiles) {
+    if (profile.of(kind) || profile.name == "none") names.push_back(profile.name);
+  }
+  names.emplace_back("mixed");
+  return names;
+}
+
+Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed) {
+  const auto names = names_in(profiles, MissionKind::sites);
+  if (!names) return names.error();
+  FaultParams all;
+  for (const std::string& name : *names) {
+    if (name == "none") continue;
+    all.add(name == "mixed" ? mixed(seed) : profile_of(name).sites());
+  }
+  return all;
+}
+
+Result<std::vector<Fault>> formation_faults(const std::string& profiles,
+                                            const std::vector<VehicleId>& vehicles,
+                                            std::size_t changes, std::uint64_t seed) {
+  const auto names = names_in(profiles, MissionKind::formation);
+  if (!names) return names.error();
+  if (vehicles.size() < 2 || changes == 0) return Error{"faults need two vehicles and a change"};
+  Draw draw{vehicles, changes, Random{seed ^ kFormationStream}};
+  for (const std::string& name : *names) {
+    name == "mixed" ? mix(draw) : profile_of(name).formation(draw);
+  }
+  return std::move(draw.faults);
+}
+
+void add_faults(TeamMission& mission, const FaultParams& params) {
+  if (params.phase == Duration{}) return;
+  Random random{mission.seed ^ kFaultStream};
+  std::vector<Fault>& faults = mission.faults;
+  mission.duration_max = params.phase + params.bound;
+  // Who waits flies on, and hears everybody in the end: neither range is what is tried here.
+  for (auto& v : mission.vehicles) {
+    v.spec.range_m += v.spec.speed_max_mps * to_seconds(mission.duration_max);
+  }
+  mission.protocol.radio_range_m = std::max(mission.protocol.radio_range_m, kEverywhere_m);
+
+  radio::Disturbance radio;
+  radio.loss = random.uniform(0.0, params.loss);
+  radio.delay = between(random, Duration{}, params.delay);
+  radio.jitter = between(random, Duration{}, params.jitter);
+  radio::Disorder disorder;
+  disorder.duplicates = random.uniform(0.0, params.duplicates);
+  disorder.held_back = random.uniform(0.0, params.held_back);
+  disorder.held_back_max = kHeldBackMax;
+  radio.disorder = disorder;
+  faults.push_back({{}, params.phase, radio});
+  for (std::size_t n = count(random, params.partitions); n > 0; --n) {
+    faults.push_back(draw_partition(random, mission, params.phase));
+  }
+  for (std::size_t n = count(random, params.crashes); n > 0; --n) {
+    faults.push_back(draw_crash(random, params.phase, true));
+  }
+  for (std::size_t n = count(random, params.restarts); n > 0; --n) {
+    faults.push_back(draw_crash(random, params.phase, false));
+  }
+  std::map<VehicleId, Instant> joining;
+  for (std::size_t n = count(random, params.joiners); n > 0; --n) {
+    const auto& late = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+    joining[late] = Instant{} + between(random, seconds{2}, params.phase / 2);
+  }
+  for (const auto& [vehicle, at] : joining) {
+    faults.push_back({{.not_before = at}, {}, LateStart{vehicle}});
+  }
+  if (params.clock_offset > Duration{}) {
+    for (const auto& v : mission.vehicles) {
+      const Duration off = between(random, -params.clock_offset, params.clock_offset);
+      faults.push_back({{}, {}, ClockOff{v.spec.id, off}});
+    }
+  }
+  if (params.sites_together && random.chance(0.7)) {
+    const Instant at = Instant{} + between(random, seconds{1}, seconds{30});
+    faults.push_back({{.not_before = at}, {}, SitesReported{}});
+  }
+  faults.push_back({{.not_before = Instant{} + params.phase}, {}, Healing{}});
+  if (params.hazards > 0) draw_hazards(random, mission, params);
+  if (params.slow_operator) draw_decisions(random, mission, params);
+}
+
+}  // namespace skein::hil

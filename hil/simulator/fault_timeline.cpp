@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/hil/fault_timeline.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace skein::hil {
+namespace {
+
+bool of_radio(const Fault& fault) {
+  return std::holds_alternative<radio::Cut>(fault.what) ||
+         std::holds_alternative<radio::Disturbance>(fault.what) ||
+         std::holds_alternative<Healing>(fault.what);
+}
+
+}  // namespace
+
+FaultTimeline::FaultTimeline(const std::vector<Fault>& faults) {
+  for (const Fault& fault : faults) {
+    if (std::holds_alternative<ClockOff>(fault.what)) continue;  // of the whole mission
+    coming_.push_back({fault, std::nullopt, {}, false});
+    const When& when = fault.when;
+    if (when.change || when.role) continue;
+    quiet_from_ = std::max(quiet_from_, when.not_before + when.after);
+  }
+}
+
+void FaultTimeline::plan(Coming& coming, Instant now, const Having& having) const {
+  const When& when = coming.fault.when;
+  auto* const ended = std::get_if<ProgramsEnd>(&coming.fault.what);
+  if (ended != nullptr) coming.who = ended->who;
+  if (when.role) {
+    const auto candidates = having(*when.role);
+    if (candidates.empty()) return;
+    coming.who = {candidates[ended != nullptr ? ended->pick % candidates.size() : 0]};
+    coming.at = now + when.after;
+  } else if (when.change) {
+    if (*when.change < changes_.size()) coming.at = changes_[*when.change] + when.after;
+  } else {
+    coming.at = when.not_before + when.after;
+  }
+}
+
+void FaultTimeline::play(Instant now, const Having& having, const Begin& begin) {
+  radio_changed_ = false;
+  for (Coming& coming : coming_) {
+    const Fault& fault = coming.fault;
+    if (now < fault.when.not_before) continue;
+    coming.over = fault.when.not_after && now >= *fault.when.not_after;
+    if (coming.over) continue;
+    if (!coming.at) plan(coming, now, having);
+    if (!coming.at || now < *coming.at || !begin(fault, coming.who)) continue;
+    coming.over = true;
+    if (fault.lasts) quiet_from_ = std::max(quiet_from_, now + *fault.lasts);
+    if (!of_radio(fault)) continue;
+    active_.push_back({fault, fault.lasts ? *coming.at + *fault.lasts : Instant::max()});
+    radio_changed_ = true;
+  }
+  std::erase_if(coming_, [](const Coming& coming) { return coming.over; });
+  update_radio(now);
+}
+
+void FaultTimeline::update_radio(Instant now) {
+  const auto ended = [now](const Active& active) { return active.until <= now; };
+  radio_changed_ = std::erase_if(active_, ended) > 0 || radio_changed_;
+  if (!radio_changed_) return;
+  interference_ = {};
+  for (const Active& active : active_) {
+    if (const auto* cut = std::get_if<radio::Cut>(&active.fault.what)) {
+      interference_.cuts.push_back(*cut);
+    } else if (const auto* worse = std::get_if<radio::Disturbance>(&active.fault.what)) {
+      interference_.disturbance.add(*worse);
+    } else {
+      interference_.healed = true;
+    }
+  }
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/hil/radio/radio_model.hpp"
+
+/// What goes wrong in a mission, and when: one list, written in a scenario or drawn from a seed,
+/// done by the simulator in virtual time and by the bench to processes.
+namespace skein::hil {
+
+/// What a vehicle does when something happens to it.
+enum class Role : std::uint8_t { any, leader, member };
+
+/// A fault begins `after` the first moment at which all of this is so.
+struct When {
+  Instant not_before{};
+  std::optional<Instant> not_after = std::nullopt;  ///< then it does not begin any more
+  /// That a ground station has begun so many changes of the formation before, and then this one.
+  std::optional<std::size_t> change = std::nullopt;
+  /// That some vehicle has this role; it is the one that the fault is done to.
+  std::optional<Role> role = std::nullopt;
+  Duration after{};
+};
+
+/// The programs of nodes end: an aircraft holds by its flight controller, a multirotor brakes and
+/// stays. Those that start anew, where the fault ends, remember nothing. 0 is the ground station.
+struct ProgramsEnd {
+  std::vector<VehicleId> who;                          ///< empty where When::role finds one
+  std::uint64_t pick = 0;                              ///< among those that have the role
+  std::optional<Duration> sinks_after = std::nullopt;  ///< a multirotor comes down where it is
+};
+/// The vehicle takes off only then.
+struct LateStart {
+  VehicleId vehicle;
+};
+/// A node's clock is so far ahead of the true time, all the mission long.
+struct ClockOff {
+  VehicleId node;
+  Duration offset{};
+};
+/// Somebody tells the team of all sites that are hidden still.
+struct SitesReported {};
+/// The radio is perfect from now on, and sites that nobody is at work on are reported: what is left
+/// of the team must finish its work.
+struct Healing {};
+
+struct Fault {
+  When when;
+  std::optional<Duration> lasts;  ///< nothing: for good
+  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, SitesReported,
+               Healing>
+      what;
+};
+
+/// The scenario's time line.
+[[nodiscard]] std::vector<Fault> faults_of(const configuration::Scenario& scenario);
+
+/// How far a node's clock is off; 0 unless a fault says otherwise.
+[[nodiscard]] Duration clock_offset(const std::vector<Fault>& faults, VehicleId node);
+/// When a vehicle takes off: at the epoch, unless a fault says otherwise.
+[[nodiscard]] Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle);
+/// When the radio heals; nothing: it does not.
+[[nodiscard]] std::optional<Instant> healing_of(const std::vector<Fault>& faults);
+
+/// One line.
+[[nodiscard]] std::string describe(const Fault& fault);
+/// "U1, U3, ground".
+[[nodiscard]] std::string names_of(const std::vector<VehicleId>& nodes);
+
+}  // namespace skein::hil

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+#include "skein/hil/fault.hpp"
+
+/// Faults that are drawn from a seed. A mission with sites has all of them in a phase at its start;
+/// then the radio heals, and what remains of the team must finish its work. In a formation each
+/// lies in the middle of a change.
+namespace skein::hil {
+
+struct TeamMission;
+
+enum class MissionKind : std::uint8_t { sites, formation };
+
+/// The names of the profiles that can be drawn for such a mission, in the order of the
+/// documentation.
+[[nodiscard]] std::vector<std::string_view> fault_profiles(MissionKind kind);
+
+/// How much may go wrong in a mission with sites; counts and figures are the most that is drawn.
+/// Members of several profiles can be set together.
+struct FaultParams {
+  Duration phase{};  ///< from the start until the radio heals
+  Duration bound{};  ///< after it all that is possible must be done
+  // Radio, during the phase:
+  double loss = 0.0;
+  Duration delay{};  ///< besides the scenario's
+  Duration jitter{};
+  double duplicates = 0.0;
+  double held_back = 0.0;  ///< share of messages that arrive up to 2 s later than those after them
+  std::size_t partitions = 0;
+  // Vehicles:
+  std::size_t crashes = 0;   ///< silent for good
+  std::size_t restarts = 0;  ///< silent for some seconds, then with an agent without memory
+  std::size_t joiners = 0;   ///< take off only during the phase
+  Duration clock_offset{};   ///< of each vehicle's clock, to either side
+  // World:
+  std::size_t hazards = 0;      ///< appear in flight
+  bool slow_operator = false;   ///< decisions late, refused, or only after a fixed moment
+  bool sites_together = false;  ///< all sites are reported at one moment: several leaders
+
+  /// The larger of each.
+  FaultParams& add(const FaultParams& other);
+};
+
+/// "lossy", "lossy,crash", ...: the profiles together. `mixed` draws several with the seed. Fails
+/// with the names that there are, also for a profile of formations.
+[[nodiscard]] Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed);
+
+/// Draws faults from the mission's seed and puts them into the mission: its faults, later hazards,
+/// the operator's decisions and the duration.
+void add_faults(TeamMission& mission, const FaultParams& params);
+
+/// Faults of a formation, for changes 0 to `changes` - 1. Fails with the names that there are, also
+/// for a profile of missions with sites.
+[[nodiscard]] Result<std::vector<Fault>> formation_faults(const std::string& profiles,
+                                                          const std::vector<VehicleId>& vehicles,
+                                                          std::size_t changes, std::uint64_t seed);
+
+}  // namespace skein::hil
