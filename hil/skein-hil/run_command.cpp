@@ -53,21 +53,20 @@ class ProgressLine {
   std::size_t sites_;
 };
 
-}  // namespace
-
-int run(const RunArguments& arguments) {
+Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) {
   auto scenario = configuration::load_scenario(arguments.scenario);
-  if (!scenario) return complain(scenario.error().message);
-  if (const auto flyable = configuration::check(*scenario); !flyable)
-    return complain(flyable.error().message);
+  if (!scenario) return scenario;
+  if (const auto flyable = configuration::check(*scenario); !flyable) return flyable.error();
   if (arguments.seed) scenario->seed = *arguments.seed;
-  if (const auto given = give_routes(*scenario, arguments.routes); !given)
-    return complain(given.error().message);
+  if (const auto given = give_routes(*scenario, arguments.routes); !given) return given.error();
   if (arguments.prompt) {
     scenario->operator_decisions.clear();
     scenario->formation.script.clear();
   }
+  return scenario;
+}
 
+BenchOptions options_of(const RunArguments& arguments) {
   BenchOptions options;
   options.programs = arguments.programs;
   options.radio_plugin = arguments.programs.parent_path() / "lib" / "libskein_radio.so";
@@ -83,6 +82,41 @@ int run(const RunArguments& arguments) {
           : std::filesystem::path{"runs"} / fmt::format("{}-{:%Y%m%d-%H%M%S}",
                                                         arguments.scenario.stem().string(),
                                                         fmt::localtime(std::time(nullptr)));
+  return options;
+}
+
+/// Judges the run, writes its report and map, and says whether every check held.
+bool report_on(const configuration::Scenario& scenario, const checks::RunRecord& record,
+               const BenchOutcome& outcome, const RunArguments& arguments,
+               const std::filesystem::path& folder) {
+  report::Contents contents;
+  contents.title = scenario.title;
+  contents.summary =
+      fmt::format("{}, seed {}, {:%Y-%m-%d %H:%M}, mission time at {} times real time",
+                  arguments.scenario.filename().string(), scenario.seed,
+                  fmt::localtime(std::time(nullptr)), arguments.rate);
+  contents.replay = fmt::format("{} replay {}", (arguments.programs / "skein-ground").string(),
+                                std::filesystem::absolute(folder).string());
+  contents.limits = limits_of(scenario.expect);
+  contents.checks = judge_run(scenario, record, outcome);
+  contents.comparison = compare(site_figures(record, contents.limits), scenario.reference);
+  contents.record = record;
+  const auto page = folder / "report.html";
+  std::ofstream{page} << report::html(contents);
+  std::ofstream{folder / "map.svg"} << report::mission_svg(record);
+  fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\nreplay: {}\n\n{}",
+             page.string(), (folder / recording::kRunFileName).string(), contents.replay,
+             report::text_table(contents.checks, contents.comparison));
+  return std::all_of(contents.checks.begin(), contents.checks.end(),
+                     [](const auto& check) { return check.held(); });
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  const auto scenario = flyable_scenario(arguments);
+  if (!scenario) return complain(scenario.error().message);
+  const BenchOptions options = options_of(arguments);
   if (!std::filesystem::exists(options.radio_plugin)) {
     return complain(options.radio_plugin.string() + ": not there; build it with ./dev build");
   }
@@ -104,27 +138,7 @@ int run(const RunArguments& arguments) {
     for (const auto& death : outcome->deaths) fmt::print(stderr, "{}\n", death);
     return complain(record.error().message);
   }
-  report::Contents contents;
-  contents.title = scenario->title;
-  contents.summary =
-      fmt::format("{}, seed {}, {:%Y-%m-%d %H:%M}, mission time at {} times real time",
-                  arguments.scenario.filename().string(), scenario->seed,
-                  fmt::localtime(std::time(nullptr)), options.rate);
-  contents.replay = fmt::format("{} replay {}", (arguments.programs / "skein-ground").string(),
-                                std::filesystem::absolute(options.run_folder).string());
-  contents.limits = limits_of(scenario->expect);
-  contents.checks = judge_run(*scenario, *record, *outcome);
-  contents.comparison = compare(site_figures(*record, contents.limits), scenario->reference);
-  contents.record = *record;
-  const auto page = options.run_folder / "report.html";
-  std::ofstream{page} << report::html(contents);
-  std::ofstream{options.run_folder / "map.svg"} << report::mission_svg(*record);
-  fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\nreplay: {}\n\n{}",
-             page.string(), (options.run_folder / recording::kRunFileName).string(),
-             contents.replay, report::text_table(contents.checks, contents.comparison));
-
-  const bool held = std::all_of(contents.checks.begin(), contents.checks.end(),
-                                [](const auto& check) { return check.held(); });
+  const bool held = report_on(*scenario, *record, *outcome, arguments, options.run_folder);
   return held && !outcome->interrupted ? kExitHeld : kExitViolated;
 }
 
