@@ -20,9 +20,11 @@ std::optional<VehicleState> SimulatedFlightController::state(Instant now) {
   return state;
 }
 
-void SimulatedFlightController::command(const Setpoint& setpoint, Instant now) {
+void SimulatedFlightController::command(const Demand& demand, Instant now) {
+  const auto* setpoint = std::get_if<Setpoint>(&demand);
+  if (setpoint == nullptr) return;
   advance_to(now);  // the setpoint before this one stood until now
-  model_.command(setpoint);
+  model_.command(*setpoint);
 }
 
 }  // namespace skein::hal

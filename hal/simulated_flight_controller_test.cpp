@@ -40,7 +40,7 @@ TEST(SimulatedFlightController, FliesFromMissionTimeZero) {
 
 TEST(SimulatedFlightController, ACommandHoldsFromItsTimeOn) {
   auto fc = controller();
-  fc.command({.heading_rad = 1.0, .airspeed_mps = 50.0, .height_m = 0.0}, at_seconds(1.0));
+  fc.command(Setpoint{.heading_rad = 1.0, .airspeed_mps = 50.0, .height_m = 0.0}, at_seconds(1.0));
   const auto at_command = fc.state(at_seconds(1.0));
   ASSERT_TRUE(at_command);
   EXPECT_DOUBLE_EQ(at_command->heading_rad, 0.0);  // nothing turned before it was asked to

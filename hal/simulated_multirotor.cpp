@@ -22,11 +22,6 @@ constexpr double kFixFilter_s = 1.0;
 
 double step_s() { return to_seconds(SimulatedMultirotor::kStep); }
 
-Vec3 ned_of(const Eigen::Vector3d& enu) { return {enu.y(), enu.x(), -enu.z()}; }
-
-/// Between a heading from east, counter-clockwise, and one from north, clockwise.
-double turned_over(double angle_rad) { return wrap_pi(kPi / 2.0 - angle_rad); }
-
 /// Of the centre of mass above the ground, at rest on its feet.
 double rest_height_m(const models::HexarotorParams& airframe) {
   const auto& ground = airframe.ground;
@@ -49,6 +44,10 @@ models::RigidBodyState parked(const models::HexarotorParams& airframe, const Vec
   return state;
 }
 
+Vec3 steady_wind_ned_mps(const SimulatedMultirotorParams& params) {
+  return ned_from_enu({params.wind_mps.x(), params.wind_mps.y(), 0.0});
+}
+
 /// The wind at 6 m of the Dryden gusts that have this standard deviation there.
 double wind_of_gusts(double gust_mps) {
   constexpr double kSixMetres = 6.096;
@@ -60,11 +59,11 @@ double wind_of_gusts(double gust_mps) {
 SimulatedMultirotor::SimulatedMultirotor(const SimulatedMultirotorParams& params)
     : params_{params},
       airframe_{airframe_on(params.start.z())},
-      vehicle_{airframe_, parked(airframe_, {params.start.y(), params.start.x()},
-                                 turned_over(params.yaw_rad))},
+      vehicle_{airframe_, parked(airframe_, ned_from_enu(params.start.metres()).head<2>(),
+                                 yaw_from_heading(params.yaw_rad))},
       loops_{params.tuning},
       gusts_{wind_of_gusts(params.gust_mps), params.seed},
-      wind_ned_mps_{params.wind_mps.y(), params.wind_mps.x(), 0.0} {
+      wind_ned_mps_{steady_wind_ned_mps(params)} {
   if (params.gnss) {
     gnss_.emplace(*params.gnss, params.seed + 1);
     sense();
@@ -77,8 +76,8 @@ double SimulatedMultirotor::height_m() const {
 }
 
 Position<MissionEnu> SimulatedMultirotor::true_position() const {
-  const Vec3& ned = vehicle_.state().position_m;
-  return {ned.y(), ned.x(), params_.start.z() + height_m()};
+  const Vec3 enu = enu_from_ned(vehicle_.state().position_m);
+  return {enu.x(), enu.y(), params_.start.z() + height_m()};
 }
 
 void SimulatedMultirotor::sense() {
@@ -112,13 +111,14 @@ PositionSetpoint SimulatedMultirotor::point() const {
 }
 
 autopilot::MotionDemand SimulatedMultirotor::demand(const PositionSetpoint& point) const {
-  const Vec3 position = ned_of(point.position_m());
+  const Vec3 position = ned_from_enu(point.position_m());
   autopilot::MotionDemand demand{
       .horizontal_m = Vec2{position.head<2>()},
       .down_m = position.z() - rest_height_m(airframe_),
-      .velocity_mps = ned_of(point.velocity_mps()),
-      .acceleration_mps2 = ned_of(point.acceleration_mps2() + kDrag_per_s * point.velocity_mps()),
-      .yaw_rad = turned_over(point.yaw_rad)};
+      .velocity_mps = ned_from_enu(point.velocity_mps()),
+      .acceleration_mps2 =
+          ned_from_enu(point.acceleration_mps2() + kDrag_per_s * point.velocity_mps()),
+      .yaw_rad = yaw_from_heading(point.yaw_rad)};
   const bool lands = point.z_m <= params_.start.z() + kGround_m;
   if (lands) {
     // However deep below the ground the point is.
@@ -141,7 +141,7 @@ void SimulatedMultirotor::step() {
   const models::RigidBodyState& truth = vehicle_.state();
   const Vec3 velocity = truth.velocity_ned_mps();
   const double air_mps = (velocity - wind_ned_mps_).norm();
-  wind_ned_mps_ = {params_.wind_mps.y(), params_.wind_mps.x(), 0.0};
+  wind_ned_mps_ = steady_wind_ned_mps(params_);
   if (params_.gust_mps > 0.0) {
     (void)gusts_.step(step_s(), air_mps, std::max(height_m(), 0.0));
     wind_ned_mps_ += gusts_.velocity_ned_mps(euler_angles(truth.attitude).yaw_rad);
@@ -193,29 +193,30 @@ std::optional<VehicleState> SimulatedMultirotor::state(Instant now) {
   advance_to(now);
   const models::RigidBodyState& truth = vehicle_.state();
   const Vec3 velocity =
-      flying_ ? Vec3{truth.velocity_ned_mps() + velocity_error_mps_} : Vec3{Vec3::Zero()};
+      flying_ ? enu_from_ned(truth.velocity_ned_mps() + velocity_error_mps_) : Vec3{Vec3::Zero()};
   // At rest before mission time 0, and less than a step behind after it.
   const double behind_s = std::max(0.0, to_seconds(now - flown_to_));
-  const Vec3 position = truth.position_m + position_error_m_ + behind_s * velocity;
+  const Vec3 position = enu_from_ned(truth.position_m + position_error_m_) + behind_s * velocity;
   VehicleState state;
   state.time = now;
-  state.x_m = position.y();
-  state.y_m = position.x();
-  state.z_m = -position.z() - rest_height_m(airframe_);
-  state.heading_rad = turned_over(euler_angles(truth.attitude).yaw_rad);
+  state.x_m = position.x();
+  state.y_m = position.y();
+  state.z_m = position.z() - rest_height_m(airframe_);
+  state.heading_rad = heading_from_yaw(euler_angles(truth.attitude).yaw_rad);
   state.groundspeed_mps = velocity.head<2>().norm();
   state.course_rad =
-      state.groundspeed_mps > 0.0 ? std::atan2(velocity.x(), velocity.y()) : state.heading_rad;
+      state.groundspeed_mps > 0.0 ? std::atan2(velocity.y(), velocity.x()) : state.heading_rad;
   state.airspeed_mps = (truth.velocity_ned_mps() - wind_ned_mps_).norm();
-  state.climb_mps = -velocity.z();
+  state.climb_mps = velocity.z();
   state.distance_flown_m = distance_flown_m_;
   return state;
 }
 
-void SimulatedMultirotor::command(const PositionSetpoint& setpoint, Instant now) {
+void SimulatedMultirotor::command(const Demand& demand, Instant now) {
+  const auto* setpoint = std::get_if<PositionSetpoint>(&demand);
+  if (setpoint == nullptr || !setpoint->finite()) return;
   advance_to(now);  // the setpoint before this one stood until now
-  if (!setpoint.finite()) return;
-  setpoint_ = setpoint;
+  setpoint_ = *setpoint;
   setpoint_at_ = now;
 }
 

@@ -70,16 +70,15 @@ void AgentLoop::step(Instant now) {
 }
 
 void AgentLoop::hand_out() {
-  while (const auto plan = agent_->poll_plan()) {
-    control_->plan.write(*plan);
+  while (const auto guidance = agent_->poll_guidance()) {
+    control_->guidance.write(*guidance);
     if (link_.record) {
-      note(recording::PlanMade{std::make_shared<const mission::FlightPlan>(*plan), stepped_at_});
+      std::visit([this](auto made) { note(std::move(made)); },
+                 recording::made(*guidance, stepped_at_));
     }
-    self_report_.on_plan(*plan);
-  }
-  while (const auto track = agent_->poll_track()) {
-    control_->motion.write(*track);
-    if (link_.record) note(recording::made(*track, stepped_at_));
+    if (const auto* plan = std::get_if<mission::FlightPlan>(&*guidance)) {
+      self_report_.on_plan(*plan);
+    }
   }
   while (const auto message = agent_->poll_message()) send(*message);
   while (auto request = agent_->poll_planning_request()) planner_->request(std::move(*request));

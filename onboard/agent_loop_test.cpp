@@ -73,9 +73,9 @@ TEST(AgentLoop, IsOnTheNetworkBeforeTheMissionButDoesNotFly) {
   Cabin cabin;
   for (int i = 0; i < 98; ++i) cabin.step(-5.0 + 0.05 * i);
   EXPECT_NEAR(static_cast<double>(cabin.sent_of<mission::Telemetry>().size()), 49.0, 2.0);
-  EXPECT_EQ(cabin.control.plan.read(), nullptr);
+  EXPECT_EQ(cabin.control.guidance.read(), nullptr);
   cabin.step(0.05);
-  EXPECT_NE(cabin.control.plan.read(), nullptr);  // the search begins
+  EXPECT_NE(cabin.control.guidance.read(), nullptr);  // the search begins
 }
 
 TEST(AgentLoop, TelemetryCarriesStateAndHealth) {

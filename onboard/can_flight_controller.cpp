@@ -13,12 +13,8 @@ std::optional<VehicleState> CanFlightController::state(Instant now) {
   return ardupilot::carried_to(*newest_, now);
 }
 
-void CanFlightController::command(const Setpoint& setpoint, Instant now) {
-  command_.write({setpoint, now});
-}
-
-void CanFlightController::command(const PositionSetpoint& setpoint, Instant now) {
-  command_.write({setpoint, now});
+void CanFlightController::command(const Demand& demand, Instant now) {
+  command_.write({demand, now});
 }
 
 void CanFlightController::on_command(const mission::Command& command, VehicleId self) {
@@ -47,9 +43,7 @@ void CanFlightController::tell_mode() {
 
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
-    std::visit(
-        [this, at = newer->at](const auto& setpoint) { link_.companion().command(setpoint, at); },
-        newer->setpoint);
+    link_.companion().command(newer->demand, newer->at);
   }
   const Instant::rep issued = given_back_.exchange(kNothing, std::memory_order_acq_rel);
   if (issued != kNothing) (void)link_.companion().give_back(now, Instant{Duration{issued}});

@@ -52,7 +52,7 @@ struct Cockpit {
 
 TEST(ControlLoop, FollowsTheNewestPlan) {
   Cockpit cockpit;
-  cockpit.ports.plan.write(plan(1));
+  cockpit.ports.guidance.write(plan(1));
   const auto state = cockpit.fly(0.0, 20.0);
   const Pose2 wanted = plan(1).timed.pose_at(state.time);
   EXPECT_LT((state.pose().position() - wanted.position()).norm(), 10.0);
@@ -60,7 +60,7 @@ TEST(ControlLoop, FollowsTheNewestPlan) {
 
 TEST(ControlLoop, FliesTheHoldWhenTheAgentFallsSilent) {
   Cockpit cockpit;
-  cockpit.ports.plan.write(plan(1));
+  cockpit.ports.guidance.write(plan(1));
   const Instant end = plan(1).timed.end_time();
   const auto state = cockpit.fly(0.0, to_seconds(end) + 120.0);
   const Vec2 centre = plan(1).timed.path.end().position() + Vec2{-110.0, 0.0};
@@ -93,8 +93,8 @@ TEST(ControlLoop, StepNeitherAllocatesNorLocks) {
 
   counted_calls::reset();
   for (int i = 0; i < 5000; ++i) {
-    if (i == 10) cockpit.ports.plan.write(first);
-    if (i == 700) cockpit.ports.plan.write(second);
+    if (i == 10) cockpit.ports.guidance.write(first);
+    if (i == 700) cockpit.ports.guidance.write(second);
     cockpit.loop.step(at_seconds(0.02 * i));
   }
   EXPECT_EQ(counted_calls::allocations(), 0);
@@ -108,7 +108,7 @@ TEST(ControlLoop, RecordsTwentyStatesASecondAndEveryPlanOnce) {
   for (int i = -50; i < 0; ++i) cockpit.loop.step(at_seconds(0.02 * i));
   EXPECT_FALSE(cockpit.ports.track.pop());  // before mission time 0
   for (int i = 0; i < 500; ++i) {
-    if (i == 100) cockpit.ports.plan.write(plan(7));
+    if (i == 100) cockpit.ports.guidance.write(plan(7));
     cockpit.loop.step(at_seconds(0.02 * i));
   }
   int samples = 0;
@@ -127,8 +127,7 @@ TEST(ControlLoop, RecordsTwentyStatesASecondAndEveryPlanOnce) {
 class SilentFlightController final : public hal::FlightController {
  public:
   std::optional<VehicleState> state(Instant) override { return last; }
-  using FlightController::command;
-  void command(const Setpoint&, Instant) override { ++commands; }
+  void command(const Demand&, Instant) override { ++commands; }
   std::optional<VehicleState> last;
   int commands = 0;
 };
@@ -151,7 +150,7 @@ TEST(ControlLoop, LeavesASilentFlightControllerToItsFailsafe) {
   SilentFlightController flight_controller;
   ControlPorts ports;
   ControlLoop loop{vehicle(), flight_controller, ports};
-  ports.plan.write(plan(1));
+  ports.guidance.write(plan(1));
   loop.step(at_seconds(0.0));  // nothing heard yet
   EXPECT_EQ(flight_controller.commands, 0);
   flight_controller.last =

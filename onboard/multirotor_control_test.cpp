@@ -3,9 +3,20 @@
 
 #include "counted_calls.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
+#include "skein/onboard/control_loop.hpp"
 
 namespace skein::onboard {
 namespace {
+
+/// At rest at the start, and from then on at `z_m` above it.
+MotionTrack climb_to(double z_m, Instant start) {
+  MotionTrack track;
+  track.number = 1;
+  track.start = start;
+  track.count = 2;
+  track.points[1].position_m = {0.0, 0.0, z_m};
+  return track;
+}
 
 TEST(MultirotorControl, NeitherAllocatesNorLocks) {
   if (!counted_calls::available()) GTEST_SKIP() << "a sanitizer stands in for what is counted";
@@ -13,17 +24,26 @@ TEST(MultirotorControl, NeitherAllocatesNorLocks) {
   params.gust_mps = 1.0;
   params.gnss = models::GnssParams{};
   hal::SimulatedMultirotor controller{params};
+  ControlPorts ports;
+  ControlLoop loop{VehicleSpec{}, controller, ports};
+  const mission::Guidance up = climb_to(4.0, at_seconds(0.0));
+  const mission::Guidance down = climb_to(0.0, at_seconds(6.0));
   counted_calls::reset();
-  PositionSetpoint point;
-  for (int i = 0; i < 1000; ++i) {  // up, and down again
-    const Instant now = at_seconds(0.02 * i);
-    point.z_m = i < 300 ? 4.0 : 0.0;
-    ASSERT_TRUE(controller.state(now));
-    controller.command(point, now);
+  for (int i = 0; i < 1000; ++i) {
+    if (i == 0) ports.guidance.write(up);
+    if (i == 300) ports.guidance.write(down);
+    loop.step(at_seconds(0.02 * i));
+    if (i == 290) {
+      EXPECT_TRUE(controller.flying());
+    }
   }
   EXPECT_FALSE(controller.flying());
   EXPECT_EQ(counted_calls::allocations(), 0);
   EXPECT_EQ(counted_calls::locks(), 0);
+  EXPECT_FALSE(ports.plans.pop());  // a track is no flight plan
+  const auto first = ports.track.pop();
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->plan_number, 1U);
 }
 
 }  // namespace

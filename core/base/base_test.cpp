@@ -20,7 +20,8 @@ concept Subtractable = requires(A a, B b) {
   a - b;
 };
 static_assert(Subtractable<Position<MissionEnu>, Position<MissionEnu>>);
-static_assert(!Subtractable<Position<MissionEnu>, Position<BodyFrd>>);
+struct OtherFrame;
+static_assert(!Subtractable<Position<MissionEnu>, Position<OtherFrame>>);
 
 template <class C>
 concept ReadsTime = requires {
@@ -54,6 +55,19 @@ TEST(Angles, CompassAndMathematicalHeadings) {
   for (int c = 0; c < 360; c += 7) {
     EXPECT_NEAR(compass_deg_from_heading(heading_from_compass_deg(c)), c, 1e-9);
   }
+}
+
+TEST(Angles, YawIsTheCompassInRadians) {
+  for (int c = -180; c < 360; c += 7) {
+    const double heading = heading_from_compass_deg(c);
+    EXPECT_NEAR(yaw_from_heading(heading), wrap_pi(radians(c)), 1e-12);
+    EXPECT_NEAR(heading_from_yaw(radians(c)), heading, 1e-12);
+  }
+}
+
+TEST(Frames, NorthEastDownAndBack) {
+  EXPECT_EQ(ned_from_enu({1.0, 2.0, 3.0}), Eigen::Vector3d(2.0, 1.0, -3.0));
+  EXPECT_EQ(enu_from_ned({2.0, 1.0, -3.0}), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
 
 TEST(Random, FirstNumbersAreFixedForEver) {

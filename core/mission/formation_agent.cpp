@@ -169,7 +169,7 @@ void FormationAgent::tell_of_wait(Instant now) {
          "waits in change " + std::to_string(change_->number) + ": " + why, now);
 }
 
-std::optional<MotionTrack> FormationAgent::poll_track() { return std::exchange(track_, {}); }
+std::optional<Guidance> FormationAgent::poll_guidance() { return std::exchange(track_, {}); }
 
 Telemetry FormationAgent::telemetry() const {
   Telemetry telemetry;

@@ -42,7 +42,7 @@ class Team {
       state.z_m = v.position.z();
       v.agent.on_state(state, now);
       while (const auto message = v.agent.poll_message()) hear(*message, v.id);
-      static_cast<void>(v.agent.poll_track());
+      static_cast<void>(v.agent.poll_guidance());
       while (v.agent.poll_event()) {
       }
     }

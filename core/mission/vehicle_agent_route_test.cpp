@@ -87,7 +87,7 @@ class Flown {
 
  private:
   void collect() {
-    while (auto next = agent.poll_plan()) plan = *next;
+    while (auto next = agent.poll_guidance()) plan = std::get<FlightPlan>(*next);
     while (auto event = agent.poll_event()) events.push_back(*event);
     while (agent.poll_message()) {
     }

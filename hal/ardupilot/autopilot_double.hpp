@@ -139,7 +139,7 @@ class AutopilotDouble {
   [[nodiscard]] mavlink::Attitude attitude(Instant now) const {
     mavlink::Attitude a;
     a.time_boot_ms = boot_ms(now);
-    a.yaw = static_cast<float>(wrap_pi(kPi / 2.0 - truth.heading_rad));
+    a.yaw = static_cast<float>(yaw_from_heading(truth.heading_rad));
     a.yawspeed = static_cast<float>(-turn_rate_radps);
     return a;
   }

@@ -248,24 +248,25 @@ void Companion::Impl::send_target(Message target, Instant now) {
 
 void Companion::Impl::fly(Instant now) {
   const auto sample = motion_.sample();
-  if (now - setpoint_at_ > params_.setpoint_age_max || !sample ||
+  if (!demand_ || now - demand_at_ > params_.setpoint_age_max || !sample ||
       now - sample->state.time > kSampleAgeMax) {
     on_ground_since_.reset();
     return;
   }
   const VehicleState state = carried_to(*sample, now);
-  if (const auto* point = std::get_if<PositionSetpoint>(&setpoint_)) {
+  if (const auto* point = std::get_if<PositionSetpoint>(&*demand_)) {
     const double home_z_m = sample->state.z_m - motion_.relative_height_m();
-    fly_to(point->carried_on(to_seconds(now - setpoint_at_)), state, home_z_m, now);
-  } else if (const auto* setpoint = std::get_if<Setpoint>(&setpoint_)) {
-    if (params_.airframe == Airframe::copter) {
-      send_target(velocity_target(*setpoint, state), now);
-      return;
-    }
-    send_target(roll_target(bank_for(params_.vehicle, *setpoint, state)), now);
-    set_speed(*setpoint, now);
-    set_height(*setpoint, state, now);
+    fly_to(point->carried_on(to_seconds(now - demand_at_)), state, home_z_m, now);
+    return;
   }
+  const auto& setpoint = std::get<Setpoint>(*demand_);
+  if (params_.airframe == Airframe::copter) {
+    send_target(velocity_target(setpoint, state), now);
+    return;
+  }
+  send_target(roll_target(bank_for(params_.vehicle, setpoint, state)), now);
+  set_speed(setpoint, now);
+  set_height(setpoint, state, now);
 }
 
 void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m,
@@ -479,10 +480,7 @@ void Companion::on_reboot(Instant now) { impl_->on_reboot(now); }
 void Companion::on_duplicate(std::uint8_t node_id, Instant now) {
   impl_->on_duplicate(node_id, now);
 }
-void Companion::command(const Setpoint& setpoint, Instant now) { impl_->command(setpoint, now); }
-void Companion::command(const PositionSetpoint& setpoint, Instant now) {
-  impl_->command(setpoint, now);
-}
+void Companion::command(const Demand& demand, Instant now) { impl_->command(demand, now); }
 bool Companion::give_back(Instant now, Instant issued) { return impl_->give_back(now, issued); }
 void Companion::step(Instant now) { impl_->step(now); }
 std::optional<mavlink::WireBytes> Companion::poll_packet() {

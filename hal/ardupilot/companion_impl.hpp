@@ -55,14 +55,11 @@ class Companion::Impl {
   }
   void on_reboot(Instant now);
   void on_duplicate(std::uint8_t node_id, Instant now);
-  void command(const Setpoint& setpoint, Instant now) {
-    setpoint_ = setpoint;
-    setpoint_at_ = now;
-  }
-  void command(const PositionSetpoint& setpoint, Instant now) {
-    if (params_.airframe != Airframe::copter || !setpoint.finite()) return;
-    setpoint_ = setpoint;
-    setpoint_at_ = now;
+  void command(const Demand& demand, Instant now) {
+    const auto* point = std::get_if<PositionSetpoint>(&demand);
+    if (point != nullptr && (params_.airframe != Airframe::copter || !point->finite())) return;
+    demand_ = demand;
+    demand_at_ = now;
   }
   bool give_back(Instant now, Instant issued);
   void step(Instant now);
@@ -185,8 +182,8 @@ class Companion::Impl {
   Instant taken_at_;
   Instant climb_by_;
   std::optional<Instant> duplicate_at_;
-  std::variant<std::monostate, Setpoint, PositionSetpoint> setpoint_;
-  Instant setpoint_at_;
+  std::optional<Demand> demand_;
+  Instant demand_at_;
   Instant target_at_;
   std::optional<Instant> on_ground_since_;  ///< the point that is flown
   std::optional<double> speed_sent_;

@@ -51,7 +51,7 @@ void Motion::on_attitude(const mavlink::Attitude& attitude, Instant measured) {
   }
   has_attitude_ = true;
   attitude_at_ = measured;
-  heading_rad_ = wrap_pi(kPi / 2.0 - double{attitude.yaw});
+  heading_rad_ = heading_from_yaw(attitude.yaw);
   // Body rates to the rate of yaw (Beard and McLain, eq. 3.3); yaw is clockwise, heading is not.
   const double roll = attitude.roll;
   const double pitch = std::clamp(double{attitude.pitch}, -1.4, 1.4);
@@ -67,7 +67,9 @@ void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant mea
   }
   const auto enu = origin_.to_enu({position.lat * 1e-7, position.lon * 1e-7,
                                    static_cast<double>(position.alt) * 1e-3 + geoid_height_m_});
-  const Vec2 over_ground{position.vy * 0.01, position.vx * 0.01};
+  const Eigen::Vector3d velocity =
+      enu_from_ned({position.vx * 0.01, position.vy * 0.01, position.vz * 0.01});
+  const Vec2 over_ground = velocity.head<2>();
   const Duration since = measured - state_.time;
   if (has_position_ && since > Duration{} && since <= kGapMax && measured > Instant{}) {
     state_.distance_flown_m += over_ground.norm() * to_seconds(since);
@@ -84,7 +86,7 @@ void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant mea
   } else {
     state_.course_rad = heading_rad_;
   }
-  state_.climb_mps = -position.vz * 0.01;
+  state_.climb_mps = velocity.z();
   relative_height_m_ = position.relative_alt * 1e-3;
 }
 

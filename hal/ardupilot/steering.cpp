@@ -50,9 +50,12 @@ mavlink::SetPositionTargetLocalNed velocity_target(const Setpoint& setpoint,
   const double climb =
       std::clamp(kClimbGain_per_s * (setpoint.height_m - state.z_m), -kClimbMax_mps, kClimbMax_mps);
   mavlink::SetPositionTargetLocalNed target;
-  target.vx = static_cast<float>(setpoint.airspeed_mps * std::sin(setpoint.heading_rad));
-  target.vy = static_cast<float>(setpoint.airspeed_mps * std::cos(setpoint.heading_rad));
-  target.vz = static_cast<float>(-climb);
+  const Vec2 over_ground = setpoint.airspeed_mps * unit_vector(setpoint.heading_rad);
+  const Eigen::Vector3f velocity =
+      ned_from_enu({over_ground.x(), over_ground.y(), climb}).cast<float>();
+  target.vx = velocity.x();
+  target.vy = velocity.y();
+  target.vz = velocity.z();
   target.type_mask = kVelocityAlone;
   target.coordinate_frame = static_cast<std::uint8_t>(mavlink::Frame::local_ned);
   return target;
@@ -66,13 +69,15 @@ mavlink::SetPositionTargetGlobalInt point_target(const PositionSetpoint& setpoin
   target.lat_int = static_cast<std::int32_t>(std::lround(place.latitude_deg * 1e7));
   target.lon_int = static_cast<std::int32_t>(std::lround(place.longitude_deg * 1e7));
   target.alt = static_cast<float>(place.height_m - geoid_height_m);
-  target.vx = static_cast<float>(setpoint.vy_mps);
-  target.vy = static_cast<float>(setpoint.vx_mps);
-  target.vz = static_cast<float>(-setpoint.vz_mps);
-  target.afx = static_cast<float>(setpoint.ay_mps2);
-  target.afy = static_cast<float>(setpoint.ax_mps2);
-  target.afz = static_cast<float>(-setpoint.az_mps2);
-  target.yaw = static_cast<float>(wrap_pi(kPi / 2.0 - setpoint.yaw_rad));
+  const Eigen::Vector3f velocity = ned_from_enu(setpoint.velocity_mps()).cast<float>();
+  target.vx = velocity.x();
+  target.vy = velocity.y();
+  target.vz = velocity.z();
+  const Eigen::Vector3f acceleration = ned_from_enu(setpoint.acceleration_mps2()).cast<float>();
+  target.afx = acceleration.x();
+  target.afy = acceleration.y();
+  target.afz = acceleration.z();
+  target.yaw = static_cast<float>(yaw_from_heading(setpoint.yaw_rad));
   target.type_mask = mavlink::ignore_yaw_rate;
   target.coordinate_frame = static_cast<std::uint8_t>(mavlink::Frame::global_int);
   return target;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "air.hpp"
 
+#include "skein/base/frames.hpp"
 #include "skein/models/fixed_wing.hpp"
 
 namespace skein::hil {
@@ -17,7 +18,7 @@ constexpr double kAirspeedNoise_mps = 0.2;
 }  // namespace
 
 Air::Air(const EmulatorConfig& config)
-    : steady_{config.wind_mps.y(), config.wind_mps.x(), 0.0},
+    : steady_{ned_from_enu({config.wind_mps.x(), config.wind_mps.y(), 0.0})},
       gusts_{config.gusts_wind_mps, config.seed},
       gusty_{config.gusts_wind_mps > 0.0},
       wind_{steady_},

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/frames.hpp"
 
 namespace skein::hil {
 namespace {
@@ -34,9 +35,9 @@ constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
 models::Hexarotor at_start(const EmulatorConfig& config) {
   const models::HexarotorParams params = models::firefly();
   models::RigidBodyState state;
-  state.position_m = {config.start.y_m, config.start.x_m,
-                      config.airborne ? -config.height_m : -kParkedHeight_m};
-  state.attitude = attitude_from({.yaw_rad = wrap_pi(kPi / 2.0 - config.start.heading_rad)});
+  state.position_m = ned_from_enu(
+      {config.start.x_m, config.start.y_m, config.airborne ? config.height_m : kParkedHeight_m});
+  state.attitude = attitude_from({.yaw_rad = yaw_from_heading(config.start.heading_rad)});
   models::Hexarotor aircraft{params, state};
   if (config.airborne) {
     models::RotorSpeeds hover{};
@@ -79,7 +80,7 @@ autopilot::PositionTarget motion_of(const Target& t) {
 CopterVehicle::CopterVehicle(const EmulatorConfig& config, const Earth& earth, Instant now)
     : earth_{earth},
       hold_until_{config.airborne ? config.hold_until : Instant::min()},
-      ekf_origin_m_{config.start.y_m, config.start.x_m, 0.0},
+      ekf_origin_m_{ned_from_enu({config.start.x_m, config.start.y_m, 0.0})},
       air_{config},
       senses_{config},
       aircraft_{at_start(config)},

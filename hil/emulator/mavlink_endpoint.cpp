@@ -271,7 +271,7 @@ Situation MavlinkEndpoint::situation(Instant now) const {
           .unix_us = config_.unix_us + now.time_since_epoch() / std::chrono::microseconds{1},
           .position = position_,
           .may_arm = !refusal_,
-          .ekf_origin_m = {config_.start.y_m, config_.start.x_m, 0.0}};
+          .ekf_origin_m = ned_from_enu({config_.start.x_m, config_.start.y_m, 0.0})};
 }
 
 void MavlinkEndpoint::say(mavlink::Severity severity, std::string_view text) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/frames.hpp"
 
 namespace skein::hil {
 namespace {
@@ -33,20 +34,20 @@ constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
 
 models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& trim) {
   const models::FixedWingParams params = models::fast_fixed_wing();
-  const double yaw = wrap_pi(kPi / 2.0 - config.start.heading_rad);
+  const double yaw = yaw_from_heading(config.start.heading_rad);
   models::RigidBodyState state;
   if (!config.airborne) {
-    state.position_m = {config.start.y_m, config.start.x_m, -kParkedHeight_m};
+    state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, kParkedHeight_m});
     state.attitude = attitude_from({.yaw_rad = yaw});
     return {params, state, {}};
   }
   state = trim.state;
-  state.position_m = {config.start.y_m, config.start.x_m, -config.height_m};
+  state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, config.height_m});
   EulerAngles angles = euler_angles(state.attitude);
   angles.yaw_rad = yaw;
   state.attitude = attitude_from(angles);
   state.velocity_mps +=
-      state.attitude.conjugate() * Vec3{config.wind_mps.y(), config.wind_mps.x(), 0.0};
+      state.attitude.conjugate() * ned_from_enu({config.wind_mps.x(), config.wind_mps.y(), 0.0});
   return {params, state, trim.input};
 }
 
@@ -80,7 +81,7 @@ PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
       flown_to_{now},
       params_{params_of(config)},
       autopilot_{params_} {
-  report_.home_m = {config.start.y_m, config.start.x_m, 0.0};
+  report_.home_m = ned_from_enu({config.start.x_m, config.start.y_m, 0.0});
   sense(to_seconds(period()));
   const auto mode = autopilot::plane_mode(mode_named(config.airframe, config.mode).value_or(0));
   start_autopilot(now, mode.value_or(PlaneMode::manual));

@@ -252,7 +252,9 @@ class FormationFlight {
     while (const auto message = flyer.agent->poll_message()) {
       radio_.broadcast(flyer.what.id, *message, now_);
     }
-    if (auto track = flyer.agent->poll_track()) flyer.track = *track;
+    if (auto guidance = flyer.agent->poll_guidance()) {
+      flyer.track = std::get<MotionTrack>(*guidance);
+    }
     while (const auto event = flyer.agent->poll_event()) {
       if (observer_.event) observer_.event(*event);
       if (event->kind == mission::EventKind::change_begun) flyer.said.clear();

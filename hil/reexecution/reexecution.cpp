@@ -130,12 +130,10 @@ class Rerun {
 
   /// Takes what the agent gives, in the order in which the process does.
   void collect() {
-    while (const auto plan = agent_->poll_plan()) {
-      given_.emplace_back(
-          recording::PlanMade{std::make_shared<const mission::FlightPlan>(*plan), now_});
+    while (const auto guidance = agent_->poll_guidance()) {
+      std::visit([this](auto made) { given_.emplace_back(std::move(made)); },
+                 recording::made(*guidance, now_));
     }
-    while (const auto track = agent_->poll_track())
-      given_.emplace_back(recording::made(*track, now_));
     while (auto message = agent_->poll_message()) {
       Content content{std::in_place_type<mission::Message>, std::move(*message)};
       // One that cannot be sent is not recorded either.

@@ -113,9 +113,9 @@ class Vehicle {
   }
   void note(const recording::AgentRecord& record) { writer_.write(record); }
   void hand_out() {
-    while (const auto plan = agent_->poll_plan()) {
-      plan_ = *plan;
-      note(recording::PlanMade{std::make_shared<const mission::FlightPlan>(*plan), now_});
+    while (const auto guidance = agent_->poll_guidance()) {
+      plan_ = std::get<mission::FlightPlan>(*guidance);
+      std::visit([this](const auto& made) { note(made); }, recording::made(*guidance, now_));
     }
     while (auto message = agent_->poll_message()) {
       note(recording::MessageRecord{*message, config_.vehicle.id, now_});

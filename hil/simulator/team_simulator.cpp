@@ -307,8 +307,8 @@ class Team {
       broadcast(i, *message, now);
     }
     while (const auto event = v.agent()->poll_event()) on_event(v, *event);
-    while (const auto plan = v.agent()->poll_plan()) {
-      v.follow(*plan);
+    while (const auto guidance = v.agent()->poll_guidance()) {
+      v.follow(std::get<mission::FlightPlan>(*guidance));
       if (observer_.plan) observer_.plan(v.spec().id, v.plan(), now);
     }
     while (const auto request = v.agent()->poll_planning_request()) {

@@ -90,7 +90,7 @@ std::vector<AgentRecord> agent_records(Instant now) {
           TimeoutGiven{now},
           FlightNotice{"says \"so\",\nand this", now},
           PlanMade{std::make_shared<const mission::FlightPlan>(plan), now},
-          made(track, now)};
+          std::get<TrackMade>(made(track, now))};
 }
 
 TEST_F(LogTest, EveryMessageComesBackWithItsSenderAndTime) {

@@ -530,7 +530,11 @@ std::optional<VehicleId> vehicle_of_event(const RecordKind& kind,
       static_cast<std::uint16_t>(bytes[kEncapsulation] | bytes[kEncapsulation + 1] << 8U)};
 }
 
-TrackMade made(const MotionTrack& track, Instant now) {
+GuidanceMade made(const mission::Guidance& guidance, Instant now) {
+  if (const auto* plan = std::get_if<mission::FlightPlan>(&guidance)) {
+    return PlanMade{std::make_shared<const mission::FlightPlan>(*plan), now};
+  }
+  const auto& track = std::get<MotionTrack>(guidance);
   TrackMade record;
   record.number = track.number;
   record.start = track.start;

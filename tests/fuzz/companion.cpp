@@ -71,7 +71,8 @@ void run(Input input) {
       }
       companion.command(point, now);
     } else {
-      companion.command({.heading_rad = 0.1 * what, .airspeed_mps = 50.0, .height_m = 300.0}, now);
+      companion.command(
+          Setpoint{.heading_rad = 0.1 * what, .airspeed_mps = 50.0, .height_m = 300.0}, now);
     }
     companion.step(now);
     drain(companion, parser, may_arm);

@@ -69,7 +69,7 @@ void write_records(Writer& writer, Instant now, Random& random) {
       TimeoutGiven{now},
       FlightNotice{"EKF variance", now},
       PlanMade{std::make_shared<const mission::FlightPlan>(flight_plan), now},
-      made(track, now)};
+      std::get<TrackMade>(made(track, now))};
   for (const AgentRecord& record : records) writer.write(record);
   writer.write(Gap{random.next()});
 }

@@ -15,8 +15,7 @@ class SimulatedFlightController final : public FlightController {
                             const models::WindParams& wind);
 
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
-  using FlightController::command;
-  void command(const Setpoint& setpoint, Instant now) override;
+  void command(const Demand& demand, Instant now) override;
 
  private:
   void advance_to(Instant now);

@@ -46,8 +46,7 @@ class SimulatedMultirotor final : public FlightController {
 
   /// z counts from the vehicle's feet; the airspeed is that through the air with its gusts.
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
-  void command(const PositionSetpoint& setpoint, Instant now) override;
-  void command(const Setpoint& /*setpoint*/, Instant /*now*/) override {}
+  void command(const Demand& demand, Instant now) override;
 
   /// The motors turn.
   [[nodiscard]] bool flying() const { return flying_; }

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <variant>
 
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/hal/flight_controller.hpp"
@@ -27,8 +26,7 @@ class CanFlightController final : public hal::FlightController {
 
   // Of the control thread.
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
-  void command(const Setpoint& setpoint, Instant now) override;
-  void command(const PositionSetpoint& setpoint, Instant now) override;
+  void command(const Demand& demand, Instant now) override;
 
   // Of the CAN thread.
   void step(Instant now);
@@ -50,7 +48,7 @@ class CanFlightController final : public hal::FlightController {
     std::array<char, 64> text{};  ///< ends with a zero
   };
   struct Command {
-    std::variant<Setpoint, PositionSetpoint> setpoint;
+    Demand demand;
     Instant at;
   };
   LatestValue<ardupilot::MotionSample> sample_;  ///< CAN to control

@@ -3,11 +3,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/hal/flight_controller.hpp"
-#include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/guidance.hpp"
 #include "skein/onboard/latest_value.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 #include "skein/planning/path_follower.hpp"
@@ -17,9 +18,8 @@ namespace skein::onboard {
 
 /// What control shares with the other threads. Every slot and ring has one writer and one reader.
 struct ControlPorts {
-  LatestValue<mission::FlightPlan> plan;  ///< agent to control, of a fixed wing
-  LatestValue<MotionTrack> motion;        ///< the same, of a multirotor
-  LatestValue<VehicleState> state;        ///< control to agent
+  LatestValue<mission::Guidance> guidance;  ///< agent to control
+  LatestValue<VehicleState> state;          ///< control to agent
   /// Control to recorder: how it flies, 20 times a second from mission time 0, and every plan at
   /// the moment that it is first followed.
   SpscRing<recording::TrackPoint, 256> track;
@@ -44,8 +44,8 @@ class PeriodicSchedule {
 };
 
 /// The real-time part of a vehicle: each step reads the flight controller, follows the newest
-/// flight plan and commands the flight controller. step() allocates nothing, takes no lock, makes
-/// no system call and ends in bounded time. When no new plan ever comes, it flies the last one into
+/// guidance and commands the flight controller. step() allocates nothing, takes no lock, makes
+/// no system call and ends in bounded time. When nothing new ever comes, it flies the last into
 /// its hold. A flight controller that has told nothing new for kStateAgeMax gets no commands: it is
 /// left to its failsafe.
 class ControlLoop {
@@ -64,10 +64,7 @@ class ControlLoop {
   planning::PathFollowerParams follower_;
   hal::FlightController* flight_controller_;
   ControlPorts* ports_;
-  mission::FlightPlan plan_;
-  bool has_plan_ = false;
-  MotionTrack motion_;
-  bool has_motion_ = false;
+  std::optional<mission::Guidance> guidance_;
   Instant next_track_{};
   Instant recorded_ = Instant::min();
 };

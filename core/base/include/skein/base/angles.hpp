@@ -27,13 +27,21 @@ inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 [[nodiscard]] constexpr double degrees(double rad) { return rad * 180.0 / kPi; }
 
 /// Inside the program a heading is mathematical: radians from east, counter-clockwise. What people
-/// read and type is compass degrees: from north, clockwise. These two are the only conversions.
+/// read and type is compass degrees: from north, clockwise; autopilots have the same in radians,
+/// which is called yaw here. These are the only conversions.
 [[nodiscard]] inline double heading_from_compass_deg(double compass_deg) {
   return wrap_pi(radians(90.0 - compass_deg));
 }
 /// In [0, 360).
 [[nodiscard]] inline double compass_deg_from_heading(double heading_rad) {
   return degrees(wrap_two_pi(kPi / 2.0 - heading_rad));
+}
+/// In (-pi, pi].
+[[nodiscard]] inline double yaw_from_heading(double heading_rad) {
+  return wrap_pi(kPi / 2.0 - heading_rad);
+}
+[[nodiscard]] inline double heading_from_yaw(double yaw_rad) {
+  return wrap_pi(kPi / 2.0 - yaw_rad);
 }
 
 }  // namespace skein

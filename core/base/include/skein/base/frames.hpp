@@ -7,9 +7,8 @@
 
 namespace skein {
 
-/// Frames of reference, as tags of the types below.
+/// The frame of reference, as a tag of the types below.
 struct MissionEnu;  ///< East, north, up in metres from the scenario's WGS84 origin.
-struct BodyFrd;     ///< Forward, right, down in metres, fixed to the vehicle.
 
 /// A difference of two positions in one frame, in metres.
 template <class Frame>
@@ -50,6 +49,14 @@ class Position {
  private:
   Eigen::Vector3d metres_ = Eigen::Vector3d::Zero();
 };
+
+/// A vector east, north, up as aircraft models and autopilots have it: north, east, down; and back.
+[[nodiscard]] inline Eigen::Vector3d ned_from_enu(const Eigen::Vector3d& enu) {
+  return {enu.y(), enu.x(), -enu.z()};
+}
+[[nodiscard]] inline Eigen::Vector3d enu_from_ned(const Eigen::Vector3d& ned) {
+  return {ned.y(), ned.x(), -ned.z()};
+}
 
 /// A geodetic position: WGS84 degrees, metres above the ellipsoid.
 struct Wgs84 {

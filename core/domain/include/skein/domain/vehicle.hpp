@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <variant>
 
 #include "skein/base/frames.hpp"
 #include "skein/base/geometry.hpp"
@@ -105,5 +106,8 @@ struct PositionSetpoint {
     return later;
   }
 };
+
+/// What control asks of a flight controller. Trivially copyable.
+using Demand = std::variant<Setpoint, PositionSetpoint>;
 
 }  // namespace skein

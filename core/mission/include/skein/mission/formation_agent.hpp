@@ -41,7 +41,7 @@ class FormationAgent final : public OnboardAgent {
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   /// A new one in every slot, once there is a change.
-  [[nodiscard]] std::optional<MotionTrack> poll_track() override;
+  [[nodiscard]] std::optional<Guidance> poll_guidance() override;
   [[nodiscard]] std::optional<MissionEvent> poll_event() override { return events_.pop(); }
   [[nodiscard]] Instant next_timeout() const override { return next_slot_; }
   [[nodiscard]] Telemetry telemetry() const override;

@@ -7,9 +7,8 @@
 #include <string>
 
 #include "skein/base/time.hpp"
-#include "skein/domain/motion_track.hpp"
-#include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/mission/guidance.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/planning/allocation.hpp"
 
@@ -45,9 +44,8 @@ class OnboardAgent {
 
   /// To be sent; events are among them.
   [[nodiscard]] virtual std::optional<Message> poll_message() = 0;
-  /// To the control thread: of a fixed wing, and of a multirotor.
-  [[nodiscard]] virtual std::optional<FlightPlan> poll_plan() { return std::nullopt; }
-  [[nodiscard]] virtual std::optional<MotionTrack> poll_track() { return std::nullopt; }
+  /// To control, which follows it from now on.
+  [[nodiscard]] virtual std::optional<Guidance> poll_guidance() = 0;
   /// To the recorder; also sent as messages.
   [[nodiscard]] virtual std::optional<MissionEvent> poll_event() = 0;
   [[nodiscard]] virtual std::optional<PlanningRequest> poll_planning_request() {

@@ -42,7 +42,7 @@ class VehicleAgent final : public OnboardAgent {
   void on_timeout(Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override;
-  [[nodiscard]] std::optional<FlightPlan> poll_plan() override;
+  [[nodiscard]] std::optional<Guidance> poll_guidance() override;
   [[nodiscard]] std::optional<MissionEvent> poll_event() override;
   [[nodiscard]] std::optional<PlanningRequest> poll_planning_request() override;
   [[nodiscard]] Instant next_timeout() const override;

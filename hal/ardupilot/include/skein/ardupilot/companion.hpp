@@ -117,12 +117,11 @@ class Companion {
   /// A sign that two nodes on the bus have that id: ours or the flight controller's.
   void on_duplicate(std::uint8_t node_id, Instant now);
 
-  /// Flown while the state is `flying`; the last one stands until it is too old.
-  void command(const Setpoint& setpoint, Instant now);
-  /// Likewise, of a copter: the newest of both counts. GUIDED flies it no lower than kLandFrom_m
+  /// Flown while the state is `flying`; the last one stands until it is too old. A position is
+  /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kLandFrom_m
   /// above home; where the point stays at home's height or below it for kLandAfter, and the copter
-  /// is within kLandWithin_m of it, the autopilot lands it there. Has no effect on a plane.
-  void command(const PositionSetpoint& setpoint, Instant now);
+  /// is within kLandWithin_m of it, the autopilot lands it there.
+  void command(const Demand& demand, Instant now);
   static constexpr double kLandFrom_m = 1.0;
   static constexpr double kLandWithin_m = 2.0;  ///< horizontally
   static constexpr Duration kLandAfter = std::chrono::seconds{1};

@@ -11,7 +11,6 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
-#include "skein/domain/motion_track.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/messages.hpp"
@@ -94,7 +93,8 @@ struct TrackMade {
   std::uint64_t digest = 0;  ///< FNV-1a of all its values
   Instant now{};
 };
-[[nodiscard]] TrackMade made(const MotionTrack& track, Instant now);
+using GuidanceMade = std::variant<PlanMade, TrackMade>;
+[[nodiscard]] GuidanceMade made(const mission::Guidance& guidance, Instant now);
 
 /// What an agent's thread leaves for the recorder, in its order.
 using AgentRecord = std::variant<AgentStart, StateGiven, MessageRecord, PlanningGiven, TimeoutGiven,
