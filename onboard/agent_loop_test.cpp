@@ -3,20 +3,22 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <limits>
-#include <memory>
+#include <optional>
 #include <semaphore>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
-#include "skein/mission/vehicle_agent.hpp"
 #include "skein/onboard/threads.hpp"
 
 namespace skein::onboard {
 namespace {
 
-mission::VehicleAgentConfig config() {
+mission::VehicleNodeConfig config() {
   mission::VehicleAgentConfig c;
   c.vehicle.id = {4};
   c.vehicle.cruise_speed_mps = 50.0;
@@ -29,11 +31,7 @@ mission::VehicleAgentConfig config() {
   c.vehicle.capabilities.add(TaskKind::survey);
   c.instance = {99};
   c.search = {{3000.0, 0.0}};
-  return c;
-}
-
-std::unique_ptr<mission::OnboardAgent> agent() {
-  return std::make_unique<mission::VehicleAgent>(config(), at_seconds(-5.0));
+  return {.agent = c, .program = "skein-onboard 1.0", .flight_controller = "simulated"};
 }
 
 struct Cabin {
@@ -66,19 +64,19 @@ struct Cabin {
   ControlPorts control;
   Planner planner{[] {}};
   EventRing events;
-  AgentLoop loop{agent(), {4}, link(), control, planner, events, at_seconds(-5.0)};
+  AgentLoop loop{config(), link(), control, planner, events, at_seconds(-5.0)};
 };
 
-TEST(AgentLoop, IsOnTheNetworkBeforeTheMissionButDoesNotFly) {
+TEST(AgentLoop, HandsGuidanceToControlAndMessagesToTheNetwork) {
   Cabin cabin;
   for (int i = 0; i < 98; ++i) cabin.step(-5.0 + 0.05 * i);
-  EXPECT_NEAR(static_cast<double>(cabin.sent_of<mission::Telemetry>().size()), 49.0, 2.0);
+  EXPECT_FALSE(cabin.sent_of<mission::Telemetry>().empty());
   EXPECT_EQ(cabin.control.guidance.read(), nullptr);
   cabin.step(0.05);
   EXPECT_NE(cabin.control.guidance.read(), nullptr);  // the search begins
 }
 
-TEST(AgentLoop, TelemetryCarriesStateAndHealth) {
+TEST(AgentLoop, TelemetryCarriesStateAndWhatWasLost) {
   Cabin cabin;
   cabin.control.overruns = 7;
   cabin.step(1.0);
@@ -108,24 +106,39 @@ TEST(AgentLoop, AFloodOfMessagesIsTakenInPortions) {
   EXPECT_EQ(cabin.inbox.size(), 1000U - AgentLoop::kMessagesPerStep);
 }
 
-TEST(AgentLoop, PassesTheOperatorsCommandsOnOnceEachAndAsTheyWere) {
+TEST(AgentLoop, CarriesNoticesModeAndTheGivingBackOfTheAircraft) {
   Cabin cabin;
-  std::vector<mission::Command> heard;
   AgentLink link = cabin.link();
-  link.on_command = [&heard](const mission::Command& command) { heard.push_back(command); };
-  AgentLoop loop{agent(), {4}, link, cabin.control, cabin.planner, cabin.events, at_seconds(-5.0)};
-  using mission::CommandKind;
-  for (const auto& command : {mission::Command{{4}, 10, CommandKind::give_back},
-                              mission::Command{{4}, 10, CommandKind::give_back},
-                              mission::Command{{5}, 11, CommandKind::give_back},
-                              mission::Command{kGroundStation, 12, CommandKind::resume}}) {
-    cabin.inbox.push_back({command, kGroundStation});
-  }
+  std::deque<mission::FlightNotice> notices{{at_seconds(0.5), true, "engine failure"}};
+  link.notice = [&notices]() -> std::optional<mission::FlightNotice> {
+    if (notices.empty()) return std::nullopt;
+    auto first = std::move(notices.front());
+    notices.pop_front();
+    return first;
+  };
+  link.mode = [] { return std::string{"LOITER, piloted"}; };
+  std::vector<Instant> given_back;
+  link.give_back = [&given_back](Instant issued) { given_back.push_back(issued); };
+  std::vector<recording::AgentRecord> records;
+  link.record = [&records](recording::AgentRecord record) { records.push_back(std::move(record)); };
+  AgentLoop loop{config(), link, cabin.control, cabin.planner, cabin.events, at_seconds(-5.0)};
+  cabin.inbox.push_back({mission::Command{{4}, 10, mission::CommandKind::give_back}, {}});
   loop.step(at_seconds(1.0));
-  ASSERT_EQ(heard.size(), 2U);
-  EXPECT_EQ(heard[0].kind, CommandKind::give_back);
-  EXPECT_EQ(heard[0].vehicle, VehicleId{4});
-  EXPECT_EQ(heard[1].vehicle, kGroundStation);
+  EXPECT_EQ(given_back, std::vector{at_seconds(0.009)});
+  const auto events = cabin.sent_of<mission::MissionEvent>();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().text, "engine failure");
+  ASSERT_EQ(cabin.sent_of<mission::Health>().size(), 1U);
+  EXPECT_EQ(cabin.sent_of<mission::Health>()[0].mode, "LOITER, piloted");
+  const auto recorded = [&records]<class Record>(Record) {
+    return std::count_if(records.begin(), records.end(),
+                         [](const auto& r) { return std::holds_alternative<Record>(r); });
+  };
+  EXPECT_EQ(recorded(recording::NoticeGiven{}), 1);
+  EXPECT_EQ(recorded(recording::ConditionGiven{}), 1);
+  loop.step(at_seconds(1.1));
+  EXPECT_EQ(recorded(recording::ConditionGiven{}), 1);  // the same
+  EXPECT_EQ(recorded(recording::TimeoutGiven{}), 2);
 }
 
 TEST(Planner, AnswersRequestsUntilStopped) {

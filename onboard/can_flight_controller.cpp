@@ -17,10 +17,8 @@ void CanFlightController::command(const Demand& demand, Instant now) {
   command_.write({demand, now});
 }
 
-void CanFlightController::on_command(const mission::Command& command, VehicleId self) {
-  if (command.kind != mission::CommandKind::give_back || command.vehicle != self) return;
-  given_back_.store(mission::issued_at(command).time_since_epoch().count(),
-                    std::memory_order_release);
+void CanFlightController::give_back(Instant issued) {
+  given_back_.store(issued.time_since_epoch().count(), std::memory_order_release);
 }
 
 std::string CanFlightController::mode() {

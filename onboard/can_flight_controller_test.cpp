@@ -107,26 +107,21 @@ TEST(CanFlightController, CarriesTheStateOnToTheMomentThatItIsAskedFor) {
 
 /// In the state `searching` nothing can be given back, and a notice says so: that tells what came
 /// through to the companion.
-TEST(CanFlightController, IsGivenBackByThatCommandToThisVehicleAndByNoOther) {
+TEST(CanFlightController, PassesOnThatItIsGivenBackOnceEachTime) {
   Cockpit cockpit;
   cockpit.controller->step(at_seconds(10.0));
-  const auto refused = [&cockpit](const mission::Command& command) {
-    while (cockpit.controller->poll_notice()) {
-    }
-    cockpit.controller->on_command(command, {3});
+  const auto refusals = [&cockpit] {
     cockpit.controller->step(at_seconds(11.0));
-    bool said = false;
+    int said = 0;
     while (const auto notice = cockpit.controller->poll_notice()) {
-      said = said || notice->text.find("cannot be given") != std::string::npos;
+      if (notice->text.find("cannot be given") != std::string::npos) ++said;
     }
     return said;
   };
-  using mission::CommandKind;
-  EXPECT_TRUE(refused({{3}, 10'001, CommandKind::give_back}));
-  EXPECT_FALSE(refused({kGroundStation, 10'002, CommandKind::give_back}));
-  EXPECT_FALSE(refused({{4}, 10'003, CommandKind::give_back}));
-  EXPECT_FALSE(refused({kGroundStation, 10'004, CommandKind::resume}));
-  EXPECT_FALSE(refused({{3}, 10'005, CommandKind::resume}));
+  EXPECT_EQ(refusals(), 0);
+  cockpit.controller->give_back(at_seconds(10.0));
+  EXPECT_EQ(refusals(), 1);
+  EXPECT_EQ(refusals(), 0);
 }
 
 TEST(CanFlightController, ControlNeitherAllocatesNorLocks) {
@@ -160,7 +155,7 @@ TEST(CanFlightController, ThreadsShareItWithoutRaces) {
   // The agent's thread: until the CAN thread has noticed that nothing more comes.
   bool found = false;
   while (!found) {
-    cockpit.controller->on_command({{1}, 9001, mission::CommandKind::give_back}, {1});
+    cockpit.controller->give_back(at_seconds(9.0));
     while (const auto notice = cockpit.controller->poll_notice()) {
       found = found || notice->text.find("found an autopilot") != std::string::npos;
     }

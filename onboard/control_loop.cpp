@@ -27,7 +27,7 @@ void ControlLoop::step(Instant now) {
     }
   }
   const auto state = flight_controller_->state(now);
-  if (!state || now - state->time > kStateAgeMax) {
+  if (!state || now - state->time > mission::kFlightControllerSilence) {
     ports_->stale_states.fetch_add(1, std::memory_order_relaxed);
     return;
   }

@@ -17,7 +17,7 @@
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
 #include "skein/onboard/control_loop.hpp"
-#include "skein/onboard/make_agent.hpp"
+#include "skein/onboard/node_config.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/recorder.hpp"
 #include "skein/onboard/threads.hpp"
@@ -109,36 +109,19 @@ AgentLink link_to(network::Node& node) {
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
 
-/// The next warning of the flight controller. The log has all that it tells, with the moment at
-/// which it was noticed.
-std::optional<mission::MissionEvent> next_warning(CanFlightController& controller, VehicleId self) {
-  while (auto notice = controller.poll_notice()) {
-    spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time), notice->text);
-    if (!notice->warning) continue;
-    mission::MissionEvent event;
-    event.vehicle = self;
-    event.time = notice->time;
-    event.kind = mission::EventKind::warning;
-    event.text = std::move(notice->text);
-    return event;
-  }
-  return std::nullopt;
-}
-
-AgentLink link_to(network::Node& node, CanFlightController* on_can,
-                  const configuration::VehicleConfig& config, AgentRing* records) {
-  const VehicleId self = config.vehicle.id;
+AgentLink link_to(network::Node& node, CanFlightController* on_can, AgentRing* records) {
   AgentLink link = link_to(node);
-  link.program = {"skein-onboard " SKEIN_VERSION, on_can != nullptr ? "ardupilot" : "simulated"};
   if (records != nullptr) {
     link.record = [records](recording::AgentRecord record) { records->push(std::move(record)); };
   }
   if (on_can == nullptr) return link;
   link.mode = [on_can] { return on_can->mode(); };
-  link.flight_event = [on_can, self] { return next_warning(*on_can, self); };
-  link.on_command = [on_can, self](const mission::Command& command) {
-    on_can->on_command(command, self);
+  link.notice = [on_can]() -> std::optional<mission::FlightNotice> {
+    auto notice = on_can->poll_notice();
+    if (!notice) return std::nullopt;
+    return mission::FlightNotice{notice->time, notice->warning, std::move(notice->text)};
   };
+  link.give_back = [on_can](Instant issued) { on_can->give_back(issued); };
   return link;
 }
 
@@ -156,9 +139,8 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{make_agent(config, route, instance, now),
-               config.vehicle.id,
-               link_to(node, flight_controllers_.on_can, config, writer ? &records_ : nullptr),
+        agent_{node_config(config, route, instance, "skein-onboard " SKEIN_VERSION),
+               link_to(node, flight_controllers_.on_can, writer ? &records_ : nullptr),
                ports_,
                planner_,
                events_,
@@ -188,15 +170,15 @@ class Threads {
 
   void log_summary(const network::Node& node) const {
     const auto traffic = process::traffic_of(node);
-    std::uint64_t errors = 0;
-    for (const auto& [name, count] : agent_.agent().counters()) errors += count;
+    const mission::Counters counters = agent_.node().counters();
     spdlog::info(
         "ended: {} control periods, {} overruns, {} without a state; messages sent {}, received "
-        "{}, "
-        "dropped {}; agent errors {}; records dropped {}",
+        "{}, dropped {}, refused of their senders {}; protocol errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
-        traffic.received, traffic.dropped, errors,
-        ports_.track.dropped() + ports_.plans.dropped() + events_.dropped() + records_.dropped());
+        traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
+        counters.protocol_errors + counters.bad_changes,
+        counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
+            events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;
     const auto& link = flight_controllers_.on_can->link();
     const auto& bus = link.bus().statistics();

@@ -445,7 +445,7 @@ void Initiator::announce_again(const std::string& why, Instant now) {
   start_round(now);
 }
 
-void Initiator::authorised(const Round& round) { authorised_rounds_[round.number] = true; }
+void Initiator::authorised(const Round& round) { authorised_rounds_.insert(round.number); }
 
 void Initiator::close(const std::string& why, Instant /*now*/) {
   if (machine_.in(State::closed) || !machine_.fire(Event::closed)) return;

@@ -182,10 +182,12 @@ Telemetry FormationAgent::telemetry() const {
   return telemetry;
 }
 
-std::map<std::string, std::uint64_t> FormationAgent::counters() const {
-  return {{"bad_changes", bad_changes_},
-          {"messages_dropped", messages_.dropped()},
-          {"events_dropped", events_.dropped()}};
+Counters FormationAgent::counters() const {
+  Counters all;
+  all.bad_changes = bad_changes_;
+  all.messages_dropped = messages_.dropped();
+  all.events_dropped = events_.dropped();
+  return all;
 }
 
 void FormationAgent::report(EventKind kind, double value, std::string text, Instant now) {

@@ -27,6 +27,6 @@ std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
 Instant VehicleAgent::next_timeout() const { return impl_->next_timeout(); }
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }
-std::map<std::string, std::uint64_t> VehicleAgent::counters() const { return impl_->counters(); }
+Counters VehicleAgent::counters() const { return impl_->counters(); }
 
 }  // namespace skein::mission

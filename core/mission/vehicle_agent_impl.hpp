@@ -34,7 +34,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] Instant next_timeout() const;
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const;
+  [[nodiscard]] Counters counters() const;
 
   BoundedQueue<Message> messages{256};
   BoundedQueue<MissionEvent> events{1024};

@@ -245,15 +245,16 @@ Telemetry VehicleAgent::Impl::telemetry() const {
   t.range_left_m = config_.vehicle.range_m - state_.distance_flown_m;
   t.loads = loads_;
   t.plan_number = flight_.plan().number;
-  t.messages_dropped = static_cast<std::uint32_t>(messages.dropped());
   return t;
 }
 
-std::map<std::string, std::uint64_t> VehicleAgent::Impl::counters() const {
-  return {{"protocol_errors", participant_.protocol_errors() + protocol_errors_led_ +
-                                  (initiator_ ? initiator_->protocol_errors() : 0)},
-          {"messages_dropped", messages.dropped()},
-          {"events_dropped", events.dropped()}};
+Counters VehicleAgent::Impl::counters() const {
+  Counters all;
+  all.protocol_errors = participant_.protocol_errors() + protocol_errors_led_ +
+                        (initiator_ ? initiator_->protocol_errors() : 0);
+  all.messages_dropped = messages.dropped();
+  all.events_dropped = events.dropped();
+  return all;
 }
 
 }  // namespace skein::mission

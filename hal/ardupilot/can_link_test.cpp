@@ -118,7 +118,8 @@ struct Bench {
     for (const Instant end = now + from_seconds(seconds); now < end;) {
       now += milliseconds{5};
       if (fc) fc->step(now);
-      link.companion().command({.heading_rad = 0.6, .airspeed_mps = 50.0, .height_m = 300.0}, now);
+      link.companion().command(
+          Setpoint{.heading_rad = 0.6, .airspeed_mps = 50.0, .height_m = 300.0}, now);
       link.step(now);
     }
   }

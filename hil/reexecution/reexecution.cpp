@@ -2,13 +2,13 @@
 #include "skein/hil/reexecution.hpp"
 
 #include <deque>
-#include <memory>
+#include <optional>
 #include <utility>
 #include <variant>
 
 #include "skein/configuration/vehicle_config.hpp"
-#include "skein/mission/onboard_agent.hpp"
-#include "skein/onboard/make_agent.hpp"
+#include "skein/mission/vehicle_node.hpp"
+#include "skein/onboard/node_config.hpp"
 #include "skein/planning/allocation.hpp"
 #include "skein/recording/log.hpp"
 
@@ -20,13 +20,6 @@ using recording::Entry;
 
 /// Records that the recorder is late with, at most, when it notes that others had no room.
 constexpr Duration kGapMargin = std::chrono::seconds{1};
-
-/// What the process says of itself, not its agent.
-bool is_of_the_process(const mission::Message& message) {
-  return std::holds_alternative<mission::Telemetry>(message) ||
-         std::holds_alternative<mission::PlanReport>(message) ||
-         std::holds_alternative<mission::Health>(message);
-}
 
 class Rerun {
  public:
@@ -52,7 +45,7 @@ class Rerun {
   void gap_at(Instant time) {
     if (!result_.gap) result_.gap = time - kGapMargin;
   }
-  [[nodiscard]] bool has_started() const { return agent_ != nullptr; }
+  [[nodiscard]] bool has_started() const { return node_.has_value(); }
   [[nodiscard]] const Reexecution& result() const { return result_; }
 
  private:
@@ -60,16 +53,16 @@ class Rerun {
   void on(const Other& /*record*/, const Entry& /*entry*/) {}
 
   void on(const recording::AgentStart& start, const Entry& /*entry*/) {
-    agent_ = onboard::make_agent(config_, route_, start.instance, start.now);
+    node_.emplace(onboard::node_config(config_, route_, start.instance, start.program), start.now);
     given_.clear();
     asked_.clear();
     collect();
   }
   void on(const recording::StateGiven& given, const Entry& entry) {
-    input(entry.time, [&] { agent_->on_state(given.state, given.now); });
+    input(entry.time, [&] { node_->on_state(given.state, given.now); });
   }
   void on(const recording::TimeoutGiven& given, const Entry& entry) {
-    input(entry.time, [&] { agent_->on_timeout(given.now); });
+    input(entry.time, [&] { node_->on_timeout(given.now); });
   }
   void on(const recording::PlanningGiven& given, const Entry& entry) {
     // A request for which the planner had no room got no answer.
@@ -90,19 +83,20 @@ class Rerun {
     const mission::PlanningResult result{
         request.round, planning::allocate(request.params, request.problem, budget), given.took};
     ++result_.allocations;
-    input(entry.time, [&] { agent_->on_planning_result(result, given.now); });
+    input(entry.time, [&] { node_->on_planning_result(result, given.now); });
   }
-  void on(const recording::FlightNotice& /*notice*/, const Entry& /*entry*/) {
-    notice_follows_ = true;
+  void on(const recording::NoticeGiven& given, const Entry& entry) {
+    input(entry.time, [&] { node_->on_notice(given.notice); });
+  }
+  void on(const recording::ConditionGiven& given, const Entry& entry) {
+    input(entry.time, [&] { node_->on_condition(given.condition); });
+  }
+  void on(const recording::NamesakeHeard& /*heard*/, const Entry& /*entry*/) {
+    namesake_follows_ = true;
   }
   void on(const mission::Message& message, const Entry& entry) {
-    if (entry.sender != result_.vehicle) {
-      input(entry.time, [&] { agent_->on_message(message, entry.sender, entry.time); });
-      return;
-    }
-    if (is_of_the_process(message)) return;
-    if (notice_follows_ && std::holds_alternative<mission::MissionEvent>(message)) {
-      notice_follows_ = false;
+    if (entry.sender != result_.vehicle || std::exchange(namesake_follows_, false)) {
+      input(entry.time, [&] { node_->on_message(message, entry.sender, entry.time); });
       return;
     }
     compare(entry);
@@ -119,7 +113,7 @@ class Rerun {
 
   template <class Give>
   void input(Instant time, Give give) {
-    if (agent_ == nullptr) return;
+    if (!node_) return;
     expect_nothing_left(time);
     if (!result_.difference.empty()) return;
     ++result_.inputs;
@@ -128,24 +122,24 @@ class Rerun {
     collect();
   }
 
-  /// Takes what the agent gives, in the order in which the process does.
+  /// Takes what the node gives, in the order in which the process does.
   void collect() {
-    while (const auto guidance = agent_->poll_guidance()) {
+    while (const auto guidance = node_->poll_guidance()) {
       std::visit([this](auto made) { given_.emplace_back(std::move(made)); },
                  recording::made(*guidance, now_));
     }
-    while (auto message = agent_->poll_message()) {
+    while (auto message = node_->poll_message()) {
       Content content{std::in_place_type<mission::Message>, std::move(*message)};
       // One that cannot be sent is not recorded either.
       if (!bytes_of(content).empty()) given_.push_back(std::move(content));
     }
-    while (auto request = agent_->poll_planning_request()) asked_.push_back(std::move(*request));
-    while (agent_->poll_event()) {
+    while (auto request = node_->poll_planning_request()) asked_.push_back(std::move(*request));
+    while (node_->poll_event() || node_->poll_give_back()) {
     }
   }
 
   void compare(const Entry& entry) {
-    if (agent_ == nullptr) return;
+    if (!node_) return;
     if (given_.empty()) {
       differ(entry.time, "recorded, and not given now", recording::text_of(entry.content),
              "nothing");
@@ -173,11 +167,11 @@ class Rerun {
 
   const configuration::VehicleConfig& config_;
   std::optional<TimedPath> route_;
-  std::unique_ptr<mission::OnboardAgent> agent_;
+  std::optional<mission::VehicleNode> node_;
   Instant now_{};
-  std::deque<Content> given_;  ///< by the agent, and not yet found in the recording
+  std::deque<Content> given_;  ///< by the node, and not yet found in the recording
   std::deque<mission::PlanningRequest> asked_;
-  bool notice_follows_ = false;
+  bool namesake_follows_ = false;
   Reexecution result_;
 };
 

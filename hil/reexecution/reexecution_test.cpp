@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -13,7 +14,7 @@
 #include <vector>
 
 #include "skein/configuration/vehicle_config.hpp"
-#include "skein/onboard/make_agent.hpp"
+#include "skein/onboard/node_config.hpp"
 #include "skein/planning/allocation.hpp"
 #include "skein/recording/log.hpp"
 #include "skein/recording/writer.hpp"
@@ -25,8 +26,10 @@ using recording::Content;
 using recording::Entry;
 using ::testing::HasSubstr;
 
+constexpr Instant kBegin{std::chrono::seconds{-2}};
 constexpr Duration kStep = std::chrono::milliseconds{50};
 constexpr VehicleId kOther{255};
+constexpr const char* kProgram = "skein-onboard 1.0";
 
 configuration::VehicleConfig config(std::uint16_t id) {
   configuration::VehicleConfig c;
@@ -50,16 +53,16 @@ configuration::VehicleConfig config(std::uint16_t id) {
   return c;
 }
 
-/// A vehicle whose control is perfect: what onboard::AgentLoop does, in virtual time, with the
-/// planner's work done at once.
+/// A vehicle whose control is perfect: what onboard::AgentLoop does, in virtual time from before
+/// the mission on, with the planner's work done at once.
 class Vehicle {
  public:
   Vehicle(std::uint16_t id, const std::filesystem::path& folder)
       : config_{config(id)},
         instance_{1000U + id},
-        agent_{onboard::make_agent(config_, std::nullopt, instance_, Instant{})},
+        node_{onboard::node_config(config_, std::nullopt, instance_, kProgram), kBegin},
         writer_{open(folder)} {
-    note(recording::AgentStart{instance_, Instant{}});
+    note(recording::AgentStart{instance_, kProgram, kBegin});
   }
 
   void step(Instant now) {
@@ -72,14 +75,15 @@ class Vehicle {
     state.z_m = config_.vehicle.height_m;
     state.heading_rad = state.course_rad = pose.heading_rad;
     state.groundspeed_mps = state.airspeed_mps = 50.0;
-    state.distance_flown_m = 50.0 * to_seconds(now);
+    state.distance_flown_m = 50.0 * std::max(0.0, to_seconds(now));
     note(recording::StateGiven{state, now});
-    agent_->on_state(state, now);
+    node_.on_state(state, now);
     hand_out();
     for (; !inbox.empty(); inbox.pop_front()) {
       const auto& [message, sender] = inbox.front();
+      if (sender == config_.vehicle.id) note(recording::NamesakeHeard{now});
       note(recording::MessageRecord{message, sender, now});
-      agent_->on_message(message, sender, now);
+      node_.on_message(message, sender, now);
       hand_out();
     }
     while (!asked_.empty()) {
@@ -89,15 +93,26 @@ class Vehicle {
                                      planning::allocate(request.params, request.problem),
                                      std::chrono::milliseconds{3}};
       note(recording::PlanningGiven{request.round, 0, result.took, now});
-      agent_->on_planning_result(result, now);
+      node_.on_planning_result(result, now);
       hand_out();
     }
+    for (; !notices.empty(); notices.pop_front()) {
+      note(recording::NoticeGiven{notices.front(), now});
+      node_.on_notice(notices.front());
+      hand_out();
+    }
+    if (now.time_since_epoch() % std::chrono::seconds{20} == Duration{}) {
+      const mission::Condition condition{"GUIDED", overruns_, ++overruns_ / 3};
+      note(recording::ConditionGiven{condition, now});
+      node_.on_condition(condition);
+    }
     note(recording::TimeoutGiven{now});
-    agent_->on_timeout(now);
+    node_.on_timeout(now);
     hand_out();
   }
 
   std::deque<std::pair<mission::Message, VehicleId>> inbox;
+  std::deque<mission::FlightNotice> notices;
   std::vector<mission::Message> outbox;
 
  private:
@@ -113,24 +128,25 @@ class Vehicle {
   }
   void note(const recording::AgentRecord& record) { writer_.write(record); }
   void hand_out() {
-    while (const auto guidance = agent_->poll_guidance()) {
+    while (const auto guidance = node_.poll_guidance()) {
       plan_ = std::get<mission::FlightPlan>(*guidance);
       std::visit([this](const auto& made) { note(made); }, recording::made(*guidance, now_));
     }
-    while (auto message = agent_->poll_message()) {
+    while (auto message = node_.poll_message()) {
       note(recording::MessageRecord{*message, config_.vehicle.id, now_});
       outbox.push_back(std::move(*message));
     }
-    while (auto request = agent_->poll_planning_request()) asked_.push_back(std::move(*request));
-    while (agent_->poll_event()) {
+    while (auto request = node_.poll_planning_request()) asked_.push_back(std::move(*request));
+    while (node_.poll_event()) {
     }
   }
 
   configuration::VehicleConfig config_;
   InstanceId instance_;
-  std::unique_ptr<mission::OnboardAgent> agent_;
+  mission::VehicleNode node_;
   recording::Writer writer_;
   Instant now_{};
+  std::uint64_t overruns_ = 0;
   std::optional<mission::FlightPlan> plan_;
   std::deque<mission::PlanningRequest> asked_;
 };
@@ -146,10 +162,17 @@ void fly(const std::filesystem::path& folder) {
   site.position = {2500.0, 800.0};
   site.deliveries = {{0.5, {}}};
   site.assessments.resize(1);
-  for (Instant now{}; now < at_seconds(150.0); now += kStep) {
+  for (Instant now = kBegin; now < at_seconds(150.0); now += kStep) {
     if (now == at_seconds(5.0)) {
       for (auto& v : vehicles)
         v->inbox.emplace_back(mission::SiteReport{VehicleId{1}, site}, kOther);
+    }
+    if (now == at_seconds(30.0)) {
+      vehicles[0]->notices.push_back({now, true, "EKF variance"});
+      // Another node under its number, which it takes for no word of its own.
+      mission::HazardReport hazard{{HazardId{7}, {-3000.0, -3000.0}, 50.0}};
+      vehicles[1]->inbox.emplace_back(hazard, VehicleId{2});
+      vehicles[2]->inbox.emplace_back(mission::Command{{3}, 1, mission::CommandKind::hold}, kOther);
     }
     for (auto& v : vehicles) v->step(now);
     for (std::size_t from = 0; from < vehicles.size(); ++from) {
@@ -180,10 +203,11 @@ class ReexecutionTest : public ::testing::Test {
   }
   static void TearDownTestSuite() { std::filesystem::remove_all(g_flown); }
 
-  /// The leader's recording with some records changed: `change` may alter an entry, or say false to
-  /// leave it out. The result of running that.
-  static Result<Reexecution> altered(const std::function<bool(Entry&)>& change) {
-    auto log = recording::Log::open(g_flown / "vehicle-01");
+  /// The leader's recording, or another's, with some records changed: `change` may alter an entry,
+  /// or say false to leave it out. The result of running that.
+  static Result<Reexecution> altered(const std::function<bool(Entry&)>& change,
+                                     const char* vehicle = "vehicle-01") {
+    auto log = recording::Log::open(g_flown / vehicle);
     EXPECT_TRUE(log.ok());
     const auto folder = g_flown / "altered";
     {
@@ -221,7 +245,7 @@ TEST_F(ReexecutionTest, GivesWhatTheFlightGave) {
     EXPECT_EQ(result->difference, "") << name << " at " << to_seconds(result->differs_at);
     EXPECT_GT(result->inputs, 6000U);
     EXPECT_GT(result->plans, 0U);
-    EXPECT_GT(result->messages, 5U);
+    EXPECT_GT(result->messages, 1500U);  // telemetry and health among them
     EXPECT_EQ(result->until, at_seconds(149.95));
     allocations += result->allocations;
   }
@@ -265,6 +289,41 @@ TEST_F(ReexecutionTest, FindsAStateThatWasAnother) {
   ASSERT_TRUE(result.ok());
   EXPECT_NE(result->difference, "");
   EXPECT_GE(result->differs_at, at_seconds(5.0));
+}
+
+/// A condition, a notice or a namesake's message that was not given.
+TEST_F(ReexecutionTest, EveryKindOfInputCounts) {
+  const auto without = [](const char* vehicle, auto is_it) {
+    return altered(
+        [&](Entry& entry) { return entry.time < at_seconds(20.0) || !is_it(entry.content); },
+        vehicle);
+  };
+  const auto condition = without("vehicle-01", [](const Content& content) {
+    return std::holds_alternative<recording::ConditionGiven>(content);
+  });
+  ASSERT_TRUE(condition.ok());
+  EXPECT_THAT(condition->difference, HasSubstr("Telemetry"));
+  const auto notice = without("vehicle-01", [](const Content& content) {
+    return std::holds_alternative<recording::NoticeGiven>(content);
+  });
+  ASSERT_TRUE(notice.ok());
+  EXPECT_THAT(notice->difference, HasSubstr("EKF variance"));
+  const auto namesake = without("vehicle-02", [](const Content& content) {
+    return std::holds_alternative<recording::NamesakeHeard>(content);
+  });
+  ASSERT_TRUE(namesake.ok());
+  EXPECT_THAT(namesake->difference, HasSubstr("HazardReport"));
+}
+
+TEST_F(ReexecutionTest, FindsAWordOfHealthThatWasAnother) {
+  const auto result = altered([](Entry& entry) {
+    auto* message = std::get_if<mission::Message>(&entry.content);
+    if (message == nullptr || entry.sender != VehicleId{1}) return true;
+    if (auto* health = std::get_if<mission::Health>(message)) health->mode = "GUIDE";
+    return true;
+  });
+  ASSERT_TRUE(result.ok());
+  EXPECT_THAT(result->difference, HasSubstr("Health"));
 }
 
 TEST_F(ReexecutionTest, FindsWhatTheRecordingLacks) {

@@ -348,8 +348,8 @@ class Team {
 
   void count_errors(std::size_t i) {
     const auto counters = vehicles_[i].agent()->counters();
-    result_.protocol_errors += counters.at("protocol_errors");
-    result_.dropped += counters.at("messages_dropped") + counters.at("events_dropped");
+    result_.protocol_errors += counters.protocol_errors;
+    result_.dropped += counters.messages_dropped + counters.events_dropped;
   }
 
   void sum_up(std::size_t i) {

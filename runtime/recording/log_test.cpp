@@ -84,13 +84,15 @@ std::vector<AgentRecord> agent_records(Instant now) {
   track.count = 2;
   track.points[1].position_m = {1.0, 2.0, 1.0 / 3.0};
   VehicleState state{now, 1.0, -2.0, 3.0, 0.1, 0.2, 50.0, 49.0, 1e5, -0.25};
-  return {AgentStart{InstanceId{0xFFFFFFFFFFFFFFFFU}, now},
+  return {AgentStart{InstanceId{0xFFFFFFFFFFFFFFFFU}, "skein 1", now},
           StateGiven{state, now},
           PlanningGiven{{{VehicleId{1}, InstanceId{2}, 3}, 4}, 17, Duration{123456}, now},
           TimeoutGiven{now},
-          FlightNotice{"says \"so\",\nand this", now},
+          NoticeGiven{{now, true, "says \"so\",\nand this"}, now},
           PlanMade{std::make_shared<const mission::FlightPlan>(plan), now},
-          std::get<TrackMade>(made(track, now))};
+          std::get<TrackMade>(made(track, now)),
+          ConditionGiven{{"LOITER, piloted", 3, 0xFFFFFFFFFFFFFFFFU}, now},
+          NamesakeHeard{now}};
 }
 
 TEST_F(LogTest, EveryMessageComesBackWithItsSenderAndTime) {
@@ -143,6 +145,7 @@ TEST_F(LogTest, WhatAnAgentWasGivenComesBackExactly) {
   const auto records = agent_records(now);
   ASSERT_EQ(contents.size(), records.size() + 1);
   EXPECT_EQ(std::get<AgentStart>(contents[0]).instance.value, 0xFFFFFFFFFFFFFFFFU);
+  EXPECT_EQ(std::get<AgentStart>(contents[0]).program, "skein 1");
   const auto& state = std::get<StateGiven>(contents[1]).state;
   EXPECT_EQ(state.time, now);
   EXPECT_EQ(state.climb_mps, -0.25);
@@ -152,13 +155,19 @@ TEST_F(LogTest, WhatAnAgentWasGivenComesBackExactly) {
   EXPECT_EQ(planning.took, Duration{123456});
   EXPECT_EQ(planning.round.number, 4U);
   EXPECT_EQ(std::get<TimeoutGiven>(contents[3]).now, now);
-  EXPECT_EQ(std::get<FlightNotice>(contents[4]).text, "says \"so\",\nand this");
+  const auto& notice = std::get<NoticeGiven>(contents[4]).notice;
+  EXPECT_EQ(notice.text, "says \"so\",\nand this");
+  EXPECT_TRUE(notice.warning);
+  EXPECT_EQ(notice.time, now);
   const auto& plan = *std::get<PlanMade>(contents[5]).plan;
   EXPECT_EQ(plan.timed.speed_mps, 50.0 / 3.0);
   ASSERT_EQ(plan.timed.path.segments.size(), 1U);
   EXPECT_EQ(plan.timed.path.segments[0].length_m, 1234.5678901234);
   EXPECT_EQ(std::get<TrackMade>(contents[6]).digest, std::get<TrackMade>(records[6]).digest);
-  EXPECT_EQ(std::get<Gap>(contents[7]).lost, 12U);
+  EXPECT_EQ(std::get<ConditionGiven>(contents[7]).condition,
+            (mission::Condition{"LOITER, piloted", 3, 0xFFFFFFFFFFFFFFFFU}));
+  EXPECT_EQ(std::get<NamesakeHeard>(contents[8]).now, now);
+  EXPECT_EQ(std::get<Gap>(contents[9]).lost, 12U);
 }
 
 TEST_F(LogTest, SeekGoesToATimeAndBack) {

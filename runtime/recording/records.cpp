@@ -132,6 +132,7 @@ record::Gap to_idl(const Gap& g) {
 record::AgentStart to_idl(const AgentStart& s) {
   record::AgentStart w;
   w.instance(s.instance.value);
+  w.program(s.program);
   return w;
 }
 
@@ -155,9 +156,25 @@ record::AgentTimeout to_idl(const TimeoutGiven& t) {
   return w;
 }
 
-record::FlightNotice to_idl(const FlightNotice& n) {
-  record::FlightNotice w;
-  w.text(n.text);
+record::AgentNotice to_idl(const NoticeGiven& n) {
+  record::AgentNotice w;
+  w.time_ns(ns(n.notice.time));
+  w.warning(n.notice.warning);
+  w.text(n.notice.text);
+  return w;
+}
+
+record::AgentCondition to_idl(const ConditionGiven& c) {
+  record::AgentCondition w;
+  w.mode(c.condition.mode);
+  w.overruns(c.condition.overruns);
+  w.dropped(c.condition.dropped);
+  return w;
+}
+
+record::AgentNamesake to_idl(const NamesakeHeard& n) {
+  record::AgentNamesake w;
+  w.now_ns(ns(n.now));
   return w;
 }
 
@@ -260,7 +277,7 @@ PlaceRecord from_idl(const record::Place& w, Check& c, Instant /*now*/) {
 Gap from_idl(const record::Gap& w, Check& /*c*/, Instant /*now*/) { return {w.lost()}; }
 
 AgentStart from_idl(const record::AgentStart& w, Check& /*c*/, Instant now) {
-  return {InstanceId{w.instance()}, now};
+  return {InstanceId{w.instance()}, w.program(), now};
 }
 
 StateGiven from_idl(const record::AgentState& w, Check& c, Instant now) {
@@ -275,8 +292,16 @@ TimeoutGiven from_idl(const record::AgentTimeout& /*w*/, Check& /*c*/, Instant n
   return {now};
 }
 
-FlightNotice from_idl(const record::FlightNotice& w, Check& /*c*/, Instant now) {
-  return {w.text(), now};
+NoticeGiven from_idl(const record::AgentNotice& w, Check& c, Instant now) {
+  return {{c.instant(w.time_ns()), w.warning(), w.text()}, now};
+}
+
+ConditionGiven from_idl(const record::AgentCondition& w, Check& /*c*/, Instant now) {
+  return {{w.mode(), w.overruns(), w.dropped()}, now};
+}
+
+NamesakeHeard from_idl(const record::AgentNamesake& /*w*/, Check& /*c*/, Instant now) {
+  return {now};
 }
 
 PlanMade from_idl(const record::AgentPlan& w, Check& c, Instant now) {
@@ -358,8 +383,13 @@ constexpr Named<record::AgentPlanning> kNamed<record::AgentPlanning>{"agent/plan
 template <>
 constexpr Named<record::AgentTimeout> kNamed<record::AgentTimeout>{"agent/timeout", "AgentTimeout"};
 template <>
-constexpr Named<record::FlightNotice> kNamed<record::FlightNotice>{"agent/flight_notice",
-                                                                   "FlightNotice"};
+constexpr Named<record::AgentNotice> kNamed<record::AgentNotice>{"agent/notice", "AgentNotice"};
+template <>
+constexpr Named<record::AgentCondition> kNamed<record::AgentCondition>{"agent/condition",
+                                                                       "AgentCondition"};
+template <>
+constexpr Named<record::AgentNamesake> kNamed<record::AgentNamesake>{"agent/namesake",
+                                                                     "AgentNamesake"};
 template <>
 constexpr Named<record::AgentPlan> kNamed<record::AgentPlan>{"agent/plan", "AgentPlan"};
 template <>
@@ -378,7 +408,9 @@ class Kinds {
     add<record::AgentState>();
     add<record::AgentPlanning>();
     add<record::AgentTimeout>();
-    add<record::FlightNotice>();
+    add<record::AgentNotice>();
+    add<record::AgentCondition>();
+    add<record::AgentNamesake>();
     add<record::AgentPlan>();
     add<record::AgentTrack>();
     add_messages(std::make_index_sequence<codec::kTopicCount>{});
@@ -495,7 +527,9 @@ Encoded encode(const AgentStart& start) { return encode_idl(to_idl(start)); }
 Encoded encode(const StateGiven& state) { return encode_idl(to_idl(state)); }
 Encoded encode(const PlanningGiven& planning) { return encode_idl(to_idl(planning)); }
 Encoded encode(const TimeoutGiven& timeout) { return encode_idl(to_idl(timeout)); }
-Encoded encode(const FlightNotice& notice) { return encode_idl(to_idl(notice)); }
+Encoded encode(const NoticeGiven& notice) { return encode_idl(to_idl(notice)); }
+Encoded encode(const ConditionGiven& condition) { return encode_idl(to_idl(condition)); }
+Encoded encode(const NamesakeHeard& namesake) { return encode_idl(to_idl(namesake)); }
 Encoded encode(const PlanMade& plan) { return encode_idl(to_idl(plan)); }
 Encoded encode(const TrackMade& track) { return encode_idl(to_idl(track)); }
 

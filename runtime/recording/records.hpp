@@ -43,7 +43,9 @@ struct Encoded {
 [[nodiscard]] Encoded encode(const StateGiven& state);
 [[nodiscard]] Encoded encode(const PlanningGiven& planning);
 [[nodiscard]] Encoded encode(const TimeoutGiven& timeout);
-[[nodiscard]] Encoded encode(const FlightNotice& notice);
+[[nodiscard]] Encoded encode(const NoticeGiven& notice);
+[[nodiscard]] Encoded encode(const ConditionGiven& condition);
+[[nodiscard]] Encoded encode(const NamesakeHeard& namesake);
 [[nodiscard]] Encoded encode(const PlanMade& plan);
 [[nodiscard]] Encoded encode(const TrackMade& track);
 

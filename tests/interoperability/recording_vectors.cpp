@@ -63,11 +63,13 @@ void write_records(Writer& writer, Instant now, Random& random) {
   track.count = 2;
   track.start = now;
   const std::vector<AgentRecord> records{
-      AgentStart{InstanceId{random.next()}, now},
+      AgentStart{InstanceId{random.next()}, "skein-onboard 1.0", now},
       StateGiven{random_state(now, random), now},
       PlanningGiven{event.round, random.next(), Duration{12345}, now},
       TimeoutGiven{now},
-      FlightNotice{"EKF variance", now},
+      NoticeGiven{{now, true, "EKF variance"}, now},
+      ConditionGiven{{"GUIDED", 2, random.next()}, now},
+      NamesakeHeard{now},
       PlanMade{std::make_shared<const mission::FlightPlan>(flight_plan), now},
       std::get<TrackMade>(made(track, now))};
   for (const AgentRecord& record : records) writer.write(record);

@@ -10,7 +10,6 @@
 
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/hal/flight_controller.hpp"
-#include "skein/mission/messages.hpp"
 #include "skein/onboard/latest_value.hpp"
 #include "skein/onboard/spsc_ring.hpp"
 
@@ -35,9 +34,8 @@ class CanFlightController final : public hal::FlightController {
   [[nodiscard]] const ardupilot::CanLink& link() const { return link_; }
 
   // Of the agent's thread.
-  /// The operator gives the aircraft (back) to the companion, by that very command to this very
-  /// vehicle: what goes to all, and any other, takes no aircraft from its pilot.
-  void on_command(const mission::Command& command, VehicleId self);
+  /// The operator gives the aircraft (back) to the companion, by a word that was issued then.
+  void give_back(Instant issued);
   [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
   /// The autopilot's mode, and what the companion is about where it does not fly: "LOITER,
   /// piloted".

@@ -46,11 +46,10 @@ class PeriodicSchedule {
 /// The real-time part of a vehicle: each step reads the flight controller, follows the newest
 /// guidance and commands the flight controller. step() allocates nothing, takes no lock, makes
 /// no system call and ends in bounded time. When nothing new ever comes, it flies the last into
-/// its hold. A flight controller that has told nothing new for kStateAgeMax gets no commands: it is
-/// left to its failsafe.
+/// its hold. A flight controller that has told nothing new for mission::kFlightControllerSilence
+/// gets no commands: it is left to its failsafe.
 class ControlLoop {
  public:
-  static constexpr Duration kStateAgeMax = std::chrono::milliseconds{500};
   static constexpr Duration kTrackPeriod = std::chrono::milliseconds{50};
 
   /// Both must outlive this object.

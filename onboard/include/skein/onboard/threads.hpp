@@ -15,30 +15,24 @@ namespace skein::onboard {
 enum class ThreadRole : std::uint8_t { control, can, agent, planner, recorder, count };
 enum class SchedulingPolicy : std::uint8_t { realtime, normal };
 
-/// One thread of skein-onboard. Periods and deadlines are mission time; a period of zero means that
-/// the thread waits for work.
+/// One thread of skein-onboard. Periods are mission time; a period of zero means that the
+/// thread waits for work.
 struct ThreadSpec {
   ThreadRole role;
   std::string_view name;
   SchedulingPolicy policy;
   int priority;  ///< SCHED_FIFO priority; 0 for normal threads
   Duration period;
-  Duration deadline;  ///< from the start of the period to the end of its work
 };
 
 /// All threads of the process but main and DDS's own, which are normal. `can` runs where the flight
 /// controller is on a bus, whenever a frame comes and at its period.
 inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::count)> kThreads{{
-    {ThreadRole::control, "control", SchedulingPolicy::realtime, 50, std::chrono::milliseconds{20},
-     std::chrono::milliseconds{20}},
-    {ThreadRole::can, "can", SchedulingPolicy::realtime, 60, std::chrono::milliseconds{5},
-     std::chrono::milliseconds{10}},
-    {ThreadRole::agent, "agent", SchedulingPolicy::normal, 0, std::chrono::milliseconds{50},
-     std::chrono::milliseconds{100}},
-    {ThreadRole::planner, "planner", SchedulingPolicy::normal, 0, Duration::zero(),
-     std::chrono::milliseconds{500}},
-    {ThreadRole::recorder, "recorder", SchedulingPolicy::normal, 0, std::chrono::milliseconds{200},
-     std::chrono::seconds{1}},
+    {ThreadRole::control, "control", SchedulingPolicy::realtime, 50, std::chrono::milliseconds{20}},
+    {ThreadRole::can, "can", SchedulingPolicy::realtime, 60, std::chrono::milliseconds{5}},
+    {ThreadRole::agent, "agent", SchedulingPolicy::normal, 0, std::chrono::milliseconds{50}},
+    {ThreadRole::planner, "planner", SchedulingPolicy::normal, 0, Duration::zero()},
+    {ThreadRole::recorder, "recorder", SchedulingPolicy::normal, 0, std::chrono::milliseconds{200}},
 }};
 
 [[nodiscard]] constexpr const ThreadSpec& spec_of(ThreadRole role) {

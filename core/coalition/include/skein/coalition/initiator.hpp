@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -203,7 +204,7 @@ class Initiator {
   /// Who was in the first coalition that stood, and may choose another leader; empty before. They
   /// only become fewer.
   std::map<VehicleId, ElectorEntry> electors_;
-  std::map<std::uint32_t, bool> authorised_rounds_;
+  std::set<std::uint32_t> authorised_rounds_;
   Instant deadline_{};  ///< of the present state
   Instant next_repeat_{};
   Instant next_heartbeat_{};

@@ -19,7 +19,7 @@ namespace skein::coalition {
 /// A vehicle's side of the contract net: bids, is locked to one leader, holds leases, reports
 /// tasks. It does no I/O and reads no clock, and decides nothing about flying: it asks (BidWanted,
 /// AwardReceived) and is told (bid(), decline(), accept(), refuse(), task_*()).
-/// Call with a `now` that never decreases; drain poll_message() and poll_event() after each call.
+/// Call with a `now` that never decreases; drain poll_message() and poll_output() after each call.
 class Participant {
  public:
   enum class State : std::uint8_t { free, bidding, deciding, member, rebidding, orphaned, count };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -45,7 +44,7 @@ class FormationAgent final : public OnboardAgent {
   [[nodiscard]] std::optional<MissionEvent> poll_event() override { return events_.pop(); }
   [[nodiscard]] Instant next_timeout() const override { return next_slot_; }
   [[nodiscard]] Telemetry telemetry() const override;
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  [[nodiscard]] Counters counters() const override;
 
   /// How it flies the newest change; none before the first.
   [[nodiscard]] const formation::Execution* execution() const { return execution_.get(); }

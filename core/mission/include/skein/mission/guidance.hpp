@@ -17,6 +17,9 @@ namespace skein::mission {
 /// older one of either kind. Trivially copyable.
 using Guidance = std::variant<FlightPlan, MotionTrack>;
 
+/// Without a state for so long the flight controller is silent: nothing is asked of it.
+inline constexpr Duration kFlightControllerSilence = std::chrono::milliseconds{500};
+
 /// What is asked of the flight controller at `now`, to follow it. Allocates nothing and takes
 /// bounded time.
 [[nodiscard]] Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -26,6 +25,30 @@ struct PlanningResult {
   coalition::Round round;
   Result<planning::Allocation> allocation;
   Duration took{};  ///< for the log only
+};
+
+/// What the flight controller lets people know. A warning is for the operator.
+struct FlightNotice {
+  Instant time{};
+  bool warning = false;
+  std::string text;
+};
+
+/// What only the program around the node can know; counted since its start.
+struct Condition {
+  std::string mode;            ///< of the flight controller, its own word; empty where it has none
+  std::uint64_t overruns = 0;  ///< control periods that were missed
+  std::uint64_t dropped = 0;   ///< messages and records that had no room, or were broken
+  friend bool operator==(const Condition&, const Condition&) = default;
+};
+
+/// What was of no use, or had no room, since the start.
+struct Counters {
+  std::uint64_t protocol_errors = 0;   ///< inputs that no state machine had an entry for
+  std::uint64_t bad_changes = 0;       ///< changes of formation that are none
+  std::uint64_t refused = 0;           ///< messages that were not their sender's to say
+  std::uint64_t messages_dropped = 0;  ///< queues were full
+  std::uint64_t events_dropped = 0;
 };
 
 /// All decisions of one vehicle, whatever it flies. It does no I/O and reads no clock. Call the
@@ -53,10 +76,9 @@ class OnboardAgent {
   }
   [[nodiscard]] virtual Instant next_timeout() const = 0;
 
-  /// The telemetry of this moment; sent by the process at its own rate.
+  /// The telemetry of this moment; sent by the node at its own rate.
   [[nodiscard]] virtual Telemetry telemetry() const = 0;
-  /// Inputs that no state machine had an entry for, and messages that queues had no room for.
-  [[nodiscard]] virtual std::map<std::string, std::uint64_t> counters() const = 0;
+  [[nodiscard]] virtual Counters counters() const = 0;
 };
 
 }  // namespace skein::mission

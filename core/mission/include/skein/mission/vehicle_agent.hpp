@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -49,7 +48,7 @@ class VehicleAgent final : public OnboardAgent {
 
   [[nodiscard]] Telemetry telemetry() const override;
   [[nodiscard]] Activity activity() const;
-  [[nodiscard]] std::map<std::string, std::uint64_t> counters() const override;
+  [[nodiscard]] Counters counters() const override;
 
  private:
   class Impl;

@@ -12,7 +12,7 @@
 
 namespace skein::hil {
 
-/// How a vehicle's agent did when it was given again what its recording says that it was given.
+/// How a vehicle's node did when it was given again what its recording says that it was given.
 struct Reexecution {
   VehicleId vehicle;
   std::uint64_t inputs = 0;
@@ -27,10 +27,10 @@ struct Reexecution {
   Instant differs_at{};
 };
 
-/// Makes the agent from the configuration in a vehicle's recording, gives it the recorded inputs at
-/// their times and in their order, plans anew wherever it asks for a plan, and compares each flight
-/// plan and message that it gives with the recorded one, byte for byte. Fails where there is no
-/// recording of an agent from its start.
+/// Makes the node from the configuration in a vehicle's recording, gives it the recorded inputs at
+/// their times and in their order, plans anew wherever it asks for a plan, and compares everything
+/// that it says, and each flight plan and motion track that it gives, with the recorded ones, byte
+/// for byte. Fails where there is no recording of a node from its start.
 [[nodiscard]] Result<Reexecution> reexecute(const std::filesystem::path& node_folder);
 
 }  // namespace skein::hil

@@ -22,7 +22,7 @@ namespace skein::recording {
 /// as a message it is what was sent.
 using Content = std::variant<mission::Message, TrackPoint, mission::MissionEvent, PlanRecord,
                              PlaceRecord, Gap, AgentStart, StateGiven, PlanningGiven, TimeoutGiven,
-                             FlightNotice, PlanMade, TrackMade>;
+                             NoticeGiven, ConditionGiven, NamesakeHeard, PlanMade, TrackMade>;
 
 struct Entry {
   Instant time{};          ///< sent, given or noted

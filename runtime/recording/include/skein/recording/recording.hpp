@@ -44,7 +44,7 @@ struct PlaceRecord {
   Vec3 place_m = Vec3::Zero();
 };
 
-/// A message of the mission network, as the node sent it, or as its agent was given it.
+/// A message of the mission network, as the node sent it, or as it was given it.
 struct MessageRecord {
   mission::Message message;
   VehicleId sender;
@@ -56,10 +56,11 @@ struct Gap {
   std::uint64_t lost = 0;
 };
 
-/// What a vehicle's agent is given besides messages, and what it gives besides them, each at the
+/// What a vehicle's node is given besides messages, and what it gives besides them, each at the
 /// `now` of the step that it was given in.
 struct AgentStart {
   InstanceId instance;
+  std::string program;  ///< as it names itself
   Instant now{};
 };
 struct StateGiven {
@@ -75,9 +76,16 @@ struct PlanningGiven {
 struct TimeoutGiven {
   Instant now{};
 };
-/// The next event that the vehicle sends is the flight controller's, not the agent's.
-struct FlightNotice {
-  std::string text;
+struct NoticeGiven {
+  mission::FlightNotice notice;
+  Instant now{};
+};
+struct ConditionGiven {
+  mission::Condition condition;
+  Instant now{};
+};
+/// The next message under this vehicle's number was given, not said: another node has it too.
+struct NamesakeHeard {
   Instant now{};
 };
 struct PlanMade {
@@ -96,9 +104,9 @@ struct TrackMade {
 using GuidanceMade = std::variant<PlanMade, TrackMade>;
 [[nodiscard]] GuidanceMade made(const mission::Guidance& guidance, Instant now);
 
-/// What an agent's thread leaves for the recorder, in its order.
+/// What the agent's thread leaves for the recorder, in its order.
 using AgentRecord = std::variant<AgentStart, StateGiven, MessageRecord, PlanningGiven, TimeoutGiven,
-                                 FlightNotice, PlanMade, TrackMade>;
+                                 NoticeGiven, ConditionGiven, NamesakeHeard, PlanMade, TrackMade>;
 
 /// All that one node recorded of the flight.
 struct Recording {

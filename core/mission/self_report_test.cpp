@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/onboard/self_report.hpp"
+#include "self_report.hpp"
 
 #include <gtest/gtest.h>
 
-namespace skein::onboard {
+namespace skein::mission {
 namespace {
 
-SelfReport made() { return {{7}, {"skein-onboard 1.0", "ardupilot"}, at_seconds(0.0)}; }
+SelfReport made() {
+  Health base;
+  base.vehicle = {7};
+  return {base, at_seconds(0.0)};
+}
 
-mission::FlightPlan plan(std::uint32_t number) {
-  mission::FlightPlan made;
+FlightPlan plan(std::uint32_t number) {
+  FlightPlan made;
   made.number = number;
   made.timed.speed_mps = 50.0;
   return made;
@@ -39,20 +43,21 @@ TEST(SelfReport, SaysWhomItHearsNewestFirstAndForgetsThem) {
 
 TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
   SelfReport report = made();
-  SelfReport::Condition condition;
-  EXPECT_EQ(report.health(condition, at_seconds(1.0)).problems,
+  SelfReport::Facts facts;
+  EXPECT_EQ(report.health(facts, at_seconds(1.0)).problems,
             std::vector<std::string>{"its flight controller has told no state yet"});
-  condition.state_at = at_seconds(2.0);
-  EXPECT_TRUE(report.health(condition, at_seconds(2.1)).problems.empty());
-  condition.overruns = 4;
-  condition.dropped = 9;
-  EXPECT_EQ(
-      report.health(condition, at_seconds(4.0)).problems,
-      (std::vector<std::string>{"no state from its flight controller for 2.0 s",
-                                "4 control periods missed", "9 messages or records dropped"}));
-  condition.state_at = at_seconds(5.0);
-  EXPECT_TRUE(report.health(condition, at_seconds(5.0)).problems.empty());
+  facts.state_at = at_seconds(2.0);
+  EXPECT_TRUE(report.health(facts, at_seconds(2.1)).problems.empty());
+  facts.condition.overruns = 4;
+  facts.condition.dropped = 9;
+  facts.refused = 2;
+  EXPECT_EQ(report.health(facts, at_seconds(4.0)).problems,
+            (std::vector<std::string>{"no state from its flight controller for 2.0 s",
+                                      "4 control periods missed", "9 messages or records dropped",
+                                      "2 messages refused: not their sender's to say"}));
+  facts.state_at = at_seconds(5.0);
+  EXPECT_TRUE(report.health(facts, at_seconds(5.0)).problems.empty());
 }
 
 }  // namespace
-}  // namespace skein::onboard
+}  // namespace skein::mission

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "skein/base/time.hpp"
+#include "skein/mission/messages.hpp"
+#include "skein/mission/onboard_agent.hpp"
+
+namespace skein::mission {
+
+/// What a vehicle tells of itself besides its telemetry, for people who watch it: the plan that it
+/// follows, with every new one and every 5 s; and once a second how its program is.
+class SelfReport {
+ public:
+  static constexpr Duration kPlanPeriod = std::chrono::seconds{5};
+  static constexpr Duration kHealthPeriod = std::chrono::seconds{1};
+  static constexpr Duration kHeardFor = std::chrono::seconds{60};  ///< then it is left out
+
+  /// What does not change is in `base`: vehicle, instance, program, flight controller.
+  SelfReport(Health base, Instant now) : base_{std::move(base)}, next_health_{now} {}
+
+  void on_heard(VehicleId sender, Instant now) { heard_[sender] = now; }
+  void on_plan(const FlightPlan& plan);
+
+  /// What can be wrong, counted since the start.
+  struct Facts {
+    Condition condition;
+    std::optional<Instant> state_at = {};  ///< of the newest state; none: none came yet
+    std::uint64_t refused = 0;             ///< messages that were not their sender's to say
+  };
+  [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
+  [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }
+  /// Problems are those since the last call.
+  [[nodiscard]] Health health(const Facts& facts, Instant now);
+  [[nodiscard]] Instant next_due() const { return std::min(next_plan_, next_health_); }
+
+ private:
+  [[nodiscard]] std::vector<std::string> problems(const Facts& facts, Instant now) const;
+
+  Health base_;
+  std::map<VehicleId, Instant> heard_;
+  std::optional<FlightPlan> plan_;
+  Instant next_plan_ = Instant::max();
+  Instant next_health_;
+  Facts told_;
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/vehicle_node.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace skein::mission {
+namespace {
+
+constexpr VehicleId kSelf{4};
+
+VehicleNodeConfig config() {
+  VehicleAgentConfig c;
+  c.vehicle.id = kSelf;
+  c.vehicle.cruise_speed_mps = 50.0;
+  c.vehicle.speed_min_mps = 40.0;
+  c.vehicle.speed_max_mps = 60.0;
+  c.vehicle.turn_radius_m = 100.0;
+  c.vehicle.range_m = 50000.0;
+  c.vehicle.sensor_radius_m = 300.0;
+  c.vehicle.assess_radius_m = 300.0;
+  c.vehicle.capabilities.add(TaskKind::survey);
+  c.instance = {99};
+  c.search = {{3000.0, 0.0}};
+  return {.agent = c, .program = "skein-onboard 1.0", .flight_controller = "ardupilot"};
+}
+
+struct Vehicle {
+  void step(double seconds) {
+    now = at_seconds(seconds);
+    node.on_state({.time = now, .groundspeed_mps = 50.0, .airspeed_mps = 50.0}, now);
+    node.on_timeout(now);
+    drain();
+  }
+  void hear(const Message& message, VehicleId sender) {
+    node.on_message(message, sender, now);
+    drain();
+  }
+  void drain() {
+    while (auto message = node.poll_message()) said.push_back(std::move(*message));
+    while (auto guidance = node.poll_guidance()) guided = std::get<FlightPlan>(*guidance).number;
+    while (node.poll_event()) {
+    }
+  }
+  template <class T>
+  [[nodiscard]] std::vector<T> said_of() const {
+    std::vector<T> found;
+    for (const auto& message : said) {
+      if (const auto* wanted = std::get_if<T>(&message)) found.push_back(*wanted);
+    }
+    return found;
+  }
+
+  VehicleNode node{config(), at_seconds(-5.0)};
+  Instant now{};
+  std::vector<Message> said;
+  std::uint32_t guided = 0;
+};
+
+TEST(VehicleNode, IsOnTheNetworkBeforeTheMissionButDoesNotFly) {
+  Vehicle vehicle;
+  for (int i = 0; i < 98; ++i) vehicle.step(-5.0 + 0.05 * i);
+  EXPECT_NEAR(static_cast<double>(vehicle.said_of<Telemetry>().size()), 49.0, 2.0);
+  EXPECT_EQ(vehicle.said_of<Health>().size(), 5U);
+  EXPECT_EQ(vehicle.guided, 0U);
+  vehicle.step(0.05);
+  EXPECT_NE(vehicle.guided, 0U);  // the search begins
+}
+
+TEST(VehicleNode, TellsOfItself) {
+  Vehicle vehicle;
+  vehicle.node.on_condition({.mode = "GUIDED", .overruns = 7, .dropped = 3});
+  vehicle.step(1.0);
+  const auto telemetry = vehicle.said_of<Telemetry>();
+  ASSERT_EQ(telemetry.size(), 1U);
+  EXPECT_EQ(telemetry[0].vehicle, kSelf);
+  EXPECT_EQ(telemetry[0].instance, InstanceId{99});
+  EXPECT_EQ(telemetry[0].state.time, at_seconds(1.0));
+  EXPECT_EQ(telemetry[0].control_overruns, 7U);
+  EXPECT_EQ(telemetry[0].messages_dropped, 3U);
+  const auto health = vehicle.said_of<Health>();
+  ASSERT_EQ(health.size(), 1U);
+  EXPECT_EQ(health[0].vehicle, kSelf);
+  EXPECT_EQ(health[0].instance, InstanceId{99});
+  EXPECT_EQ(health[0].program, "skein-onboard 1.0");
+  EXPECT_EQ(health[0].flight_controller, "ardupilot");
+  EXPECT_EQ(health[0].mode, "GUIDED");
+  EXPECT_EQ(health[0].problems, (std::vector<std::string>{"7 control periods missed",
+                                                          "3 messages or records dropped"}));
+  ASSERT_EQ(vehicle.said_of<PlanReport>().size(), 1U);
+  EXPECT_EQ(vehicle.said_of<PlanReport>()[0].plan.number, vehicle.guided);
+}
+
+TEST(VehicleNode, RefusesWhatIsNotItsSendersToSay) {
+  Vehicle vehicle;
+  vehicle.step(0.0);
+  const Command hold{kSelf, 10, CommandKind::hold};
+  vehicle.hear(hold, {9});
+  vehicle.hear(Authorisation{}, {9});
+  Telemetry namesake;
+  namesake.vehicle = kSelf;
+  vehicle.hear(namesake, {9});  // its id is not used twice: another says so
+  EXPECT_EQ(vehicle.node.counters().refused, 3U);
+  EXPECT_TRUE(vehicle.said_of<MissionEvent>().empty());
+  vehicle.step(1.0);
+  EXPECT_EQ(vehicle.said_of<Health>().back().problems,
+            std::vector<std::string>{"3 messages refused: not their sender's to say"});
+  EXPECT_TRUE(vehicle.said_of<Health>().back().heard.empty());
+  // From the ground station it is obeyed: the number was not used up.
+  vehicle.hear(hold, kGroundStation);
+  EXPECT_EQ(vehicle.node.counters().refused, 3U);
+  EXPECT_FALSE(vehicle.said_of<MissionEvent>().empty());
+}
+
+TEST(VehicleNode, IsGivenBackByThatCommandToThisVehicleOnceEach) {
+  Vehicle vehicle;
+  std::vector<Instant> given_back;
+  const auto hear = [&](const Command& command, VehicleId sender) {
+    vehicle.hear(command, sender);
+    while (const auto issued = vehicle.node.poll_give_back()) given_back.push_back(*issued);
+  };
+  hear({kSelf, 9'001, CommandKind::give_back}, {9});
+  hear({kSelf, 10'001, CommandKind::give_back}, kGroundStation);
+  hear({kSelf, 10'001, CommandKind::give_back}, kGroundStation);
+  hear({kGroundStation, 10'002, CommandKind::give_back}, kGroundStation);
+  hear({{5}, 10'003, CommandKind::give_back}, kGroundStation);
+  hear({kGroundStation, 10'004, CommandKind::resume}, kGroundStation);
+  hear({kSelf, 10'005, CommandKind::resume}, kGroundStation);
+  EXPECT_EQ(given_back, std::vector{at_seconds(10.0)});
+}
+
+TEST(VehicleNode, TheFlightControllersWarningsAreForTheOperator) {
+  Vehicle vehicle;
+  vehicle.node.on_notice({at_seconds(0.5), false, "found an autopilot"});
+  vehicle.node.on_notice({at_seconds(0.7), true, "engine failure"});
+  vehicle.drain();
+  const auto events = vehicle.said_of<MissionEvent>();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].vehicle, kSelf);
+  EXPECT_EQ(events[0].time, at_seconds(0.7));
+  EXPECT_EQ(events[0].text, "engine failure");
+}
+
+TEST(VehicleNode, AMultirotorIsANodeTheSame) {
+  FormationAgentConfig agent;
+  agent.vehicle = kSelf;
+  agent.instance = {5};
+  VehicleNode node{{.agent = agent, .program = "p", .flight_controller = "simulated"}, Instant{}};
+  node.on_state({.time = at_seconds(0.0), .z_m = 2.0}, at_seconds(0.0));
+  node.on_timeout(at_seconds(0.0));
+  int told = 0;
+  while (const auto message = node.poll_message()) {
+    if (const auto* telemetry = std::get_if<Telemetry>(&*message)) {
+      EXPECT_EQ(telemetry->state.z_m, 2.0);
+      EXPECT_EQ(telemetry->instance, InstanceId{5});
+      ++told;
+    }
+    if (std::holds_alternative<Health>(*message)) ++told;
+    EXPECT_FALSE(std::holds_alternative<PlanReport>(*message));
+  }
+  EXPECT_EQ(told, 2);
+}
+
+}  // namespace
+}  // namespace skein::mission

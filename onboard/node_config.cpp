@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/onboard/node_config.hpp"
+
+#include <utility>
+
+namespace skein::onboard {
+namespace {
+
+mission::FormationAgentConfig formation_agent(const configuration::VehicleConfig& config,
+                                              InstanceId instance) {
+  mission::FormationAgentConfig agent;
+  agent.vehicle = config.vehicle.id;
+  agent.instance = instance;
+  agent.limits = config.formation.limits;
+  agent.avoidance = config.formation.avoidance;
+  agent.passage.tolerance_m = config.formation.tracking_m;
+  return agent;
+}
+
+mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& config,
+                                          const std::optional<TimedPath>& route,
+                                          InstanceId instance) {
+  mission::VehicleAgentConfig agent;
+  agent.vehicle = config.vehicle;
+  agent.instance = instance;
+  agent.protocol = config.protocol;
+  agent.planning = config.planning;
+  agent.search = config.search;
+  agent.route = route;
+  agent.hazards = config.hazards;
+  return agent;
+}
+
+}  // namespace
+
+mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& config,
+                                       const std::optional<TimedPath>& route, InstanceId instance,
+                                       std::string program) {
+  mission::VehicleNodeConfig node;
+  if (config.flight_controller.is_multirotor()) {
+    node.agent = formation_agent(config, instance);
+  } else {
+    node.agent = vehicle_agent(config, route, instance);
+  }
+  node.program = std::move(program);
+  const bool ardupilot =
+      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;
+  node.flight_controller = ardupilot ? "ardupilot" : "simulated";
+  return node;
+}
+
+}  // namespace skein::onboard
