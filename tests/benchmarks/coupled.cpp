@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/planning/coupled.hpp"
+#include "skein/coupled/coupled.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "coupled_instances.hpp"
+#include "instances.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coupled_instances.hpp"
+#include "instances.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "skein/base/result.hpp"
-#include "skein/planning/coupled.hpp"
+#include "skein/coupled/coupled.hpp"
 #include "skein/planning/task_path.hpp"
 
 /// What greedy_awards, branch_and_bound and ruin_and_recreate share: the problem in numbers, and

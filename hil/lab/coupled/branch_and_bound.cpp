@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "coupled_bounds.hpp"
-#include "coupled_model.hpp"
-#include "coupled_partial.hpp"
-#include "coupled_search.hpp"
+#include "bounds.hpp"
+#include "model.hpp"
+#include "partial.hpp"
+#include "search.hpp"
 
 namespace skein::planning::coupled {
 namespace {

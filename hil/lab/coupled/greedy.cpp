@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "coupled_model.hpp"
+#include "model.hpp"
 
 namespace skein::planning::coupled {
 namespace {

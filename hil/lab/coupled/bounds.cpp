@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupled_bounds.hpp"
+#include "bounds.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/coupled/coupled.hpp"
 #include "skein/planning/arrival.hpp"
-#include "skein/planning/coupled.hpp"
 #include "skein/planning/dubins.hpp"
 #include "skein/planning/task_path.hpp"
 

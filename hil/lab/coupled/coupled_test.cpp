@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/planning/coupled.hpp"
+#include "skein/coupled/coupled.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 #include <optional>
 #include <vector>
 
-#include "coupled_instances.hpp"
-#include "coupled_judge.hpp"
+#include "instances.hpp"
+#include "judge.hpp"
 #include "skein/planning/dubins.hpp"
 #include "skein/planning/task_path.hpp"
 

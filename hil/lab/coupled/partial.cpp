@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupled_partial.hpp"
+#include "partial.hpp"
 
 #include <algorithm>
 

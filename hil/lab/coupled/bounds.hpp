@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "coupled_model.hpp"
-#include "coupled_partial.hpp"
+#include "model.hpp"
+#include "partial.hpp"
 #include "skein/planning/assignment.hpp"
 
 namespace skein::planning::coupled {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "coupled_model.hpp"
+#include "model.hpp"
 
 namespace skein::planning::coupled {
 

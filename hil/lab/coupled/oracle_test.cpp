@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "coupled_instances.hpp"
-#include "coupled_judge.hpp"
+#include "instances.hpp"
+#include "judge.hpp"
 #include "skein/planning/dubins.hpp"
 #include "skein/planning/task_path.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupled_search.hpp"
+#include "search.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
-#include "skein/planning/coupled.hpp"
+#include "skein/coupled/coupled.hpp"
 
 /// Random coupled problems for tests and benchmarks: vehicles of the three types of Wang 2022,
 /// table 1, in turn, anywhere in a square with any heading, sites in the middle of it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupled_paths.hpp"
+#include "paths.hpp"
 
 #include <algorithm>
 

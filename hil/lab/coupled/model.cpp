@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "coupled_model.hpp"
+#include "model.hpp"
 
 #include <algorithm>
 #include <array>

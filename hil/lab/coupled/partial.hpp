@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "coupled_model.hpp"
+#include "model.hpp"
 
 namespace skein::planning::coupled {
 

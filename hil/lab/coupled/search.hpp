@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "coupled_model.hpp"
-#include "coupled_paths.hpp"
+#include "model.hpp"
+#include "paths.hpp"
 
 namespace skein::planning::coupled {
 
