@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "skein/base/angles.hpp"
 #include "skein/groundstation/route_planning.hpp"
@@ -14,6 +16,7 @@ namespace {
 
 using configuration::Scenario;
 using configuration::VehicleRoute;
+using Json = nlohmann::ordered_json;
 
 constexpr double kStep_m = 10.0;  ///< between points of what is flown
 
@@ -50,12 +53,25 @@ Wgs84 on_earth(const MissionOrigin& origin, const Vec2& point, double height_m =
   return origin.to_wgs84({point.x(), point.y(), height_m});
 }
 
-/// A height, where it is there, is above the ellipsoid (RFC 7946, section 4).
-std::string geojson_position(const Wgs84& p) {
-  return fmt::format("[{:.7f},{:.7f},{:.1f}]", p.longitude_deg, p.latitude_deg, p.height_m);
+double decimals(double value, int count) {
+  const double scale = std::pow(10.0, count);
+  return std::round(value * scale) / scale;
 }
-std::string geojson_place(const Wgs84& p) {
-  return fmt::format("[{:.7f},{:.7f}]", p.longitude_deg, p.latitude_deg);
+
+/// A height, where it is there, is above the ellipsoid (RFC 7946, section 4).
+Json geojson_place(const Wgs84& p) {
+  return {decimals(p.longitude_deg, 7), decimals(p.latitude_deg, 7)};
+}
+Json geojson_position(const Wgs84& p) {
+  Json position = geojson_place(p);
+  position.push_back(decimals(p.height_m, 1));
+  return position;
+}
+
+Json feature(Json properties, const char* type, Json coordinates) {
+  return {{"type", "Feature"},
+          {"properties", std::move(properties)},
+          {"geometry", {{"type", type}, {"coordinates", std::move(coordinates)}}}};
 }
 
 std::string xml_escaped(const std::string& text) {
@@ -71,13 +87,13 @@ constexpr std::array<std::string_view, 6> kColours{"#0072b2", "#d55e00", "#00875
                                                    "#b8578f", "#c98500", "#3a9fd6"};
 std::string_view colour(std::size_t index) { return kColours.at(index % kColours.size()); }
 
-std::string circle_ring(const routes::RouteHazard& hazard, const MissionOrigin& origin) {
+Json circle_ring(const routes::RouteHazard& hazard, const MissionOrigin& origin) {
   constexpr int kCorners = 64;
-  std::string ring;
+  Json ring = Json::array();
   for (int i = 0; i <= kCorners; ++i) {
     const Vec2 at =
         hazard.centre + hazard.radius_m * unit_vector(2.0 * kPi * (i % kCorners) / kCorners);
-    ring += (i > 0 ? "," : "") + geojson_place(on_earth(origin, at));
+    ring.push_back(geojson_place(on_earth(origin, at)));
   }
   return ring;
 }
@@ -86,33 +102,29 @@ std::string circle_ring(const routes::RouteHazard& hazard, const MissionOrigin& 
 
 std::string routes_geojson(const PlannedRoutes& planned, const Scenario& scenario,
                            const MissionOrigin& origin) {
-  std::string features;
+  Json features = Json::array();
   for (const VehicleRoute& route : planned.file.routes) {
     const double layer_m = heights_of(scenario, route.vehicle).layer_m;
-    std::string line;
+    Json line = Json::array();
     for (const Vec2& point : flown(route)) {
-      line += (line.empty() ? "" : ",") + geojson_position(on_earth(origin, point, layer_m));
+      line.push_back(geojson_position(on_earth(origin, point, layer_m)));
     }
-    features += fmt::format(
-        "{{\"type\":\"Feature\",\"properties\":{{\"vehicle\":{},\"arrival_s\":{:.3f},"
-        "\"length_m\":{:.2f},\"speed_mps\":{:.2f},\"height_above_origin_m\":{:.1f}}},\"geometry\":{"
-        "{\"type\":\"LineString\","
-        "\"coordinates\":[{}]}}}},\n",
-        route.vehicle.value, route.arrival_s, route.length_m, route.route.speed_mps, layer_m, line);
+    features.push_back(feature({{"vehicle", route.vehicle.value},
+                                {"arrival_s", decimals(route.arrival_s, 3)},
+                                {"length_m", decimals(route.length_m, 2)},
+                                {"speed_mps", decimals(route.route.speed_mps, 2)},
+                                {"height_above_origin_m", decimals(layer_m, 1)}},
+                               "LineString", std::move(line)));
   }
   for (const routes::RouteHazard& hazard : planned.problem.hazards) {
-    features += fmt::format(
-        "{{\"type\":\"Feature\",\"properties\":{{\"hazard\":{},\"kind\":\"{}\",\"radius_m\":{:.1f}}"
-        "},"
-        "\"geometry\":{{\"type\":\"Polygon\",\"coordinates\":[[{}]]}}}},\n",
-        hazard.id.value, routes::to_string(hazard.kind), hazard.radius_m,
-        circle_ring(hazard, origin));
+    features.push_back(feature({{"hazard", hazard.id.value},
+                                {"kind", routes::to_string(hazard.kind)},
+                                {"radius_m", decimals(hazard.radius_m, 1)}},
+                               "Polygon", Json::array({circle_ring(hazard, origin)})));
   }
-  features += fmt::format(
-      "{{\"type\":\"Feature\",\"properties\":{{\"site\":true}},\"geometry\":{{\"type\":\"Point\","
-      "\"coordinates\":{}}}}}",
-      geojson_place(on_earth(origin, planned.problem.site)));
-  return "{\"type\":\"FeatureCollection\",\"features\":[\n" + features + "\n]}\n";
+  features.push_back(
+      feature({{"site", true}}, "Point", geojson_place(on_earth(origin, planned.problem.site))));
+  return Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump() + "\n";
 }
 
 std::string routes_kml(const PlannedRoutes& planned, const Scenario& scenario,
@@ -153,30 +165,46 @@ std::string routes_qgc(const VehicleRoute& route, const Scenario& scenario,
   constexpr int kArdupilot = 3;
   const Heights heights = heights_of(scenario, route.vehicle);
   const Wgs84& home = origin.origin();
-  std::string items = fmt::format(
-      "{{\"type\":\"SimpleItem\",\"command\":{},\"frame\":{},\"autoContinue\":true,\"doJumpId\":1,"
-      "\"params\":[1,{:.2f},-1,0,0,0,0]}}",
-      kChangeSpeed, kMissionFrame, route.route.speed_mps);
-  int id = 1;
+  const double speed_mps = decimals(route.route.speed_mps, 2);
+  Json items = Json::array({{{"type", "SimpleItem"},
+                             {"command", kChangeSpeed},
+                             {"frame", kMissionFrame},
+                             {"autoContinue", true},
+                             {"doJumpId", 1},
+                             {"params", {1, speed_mps, -1, 0, 0, 0, 0}}}});
   for (const Vec2& point : route.route.waypoints) {
     const Wgs84 p = on_earth(origin, point, heights.layer_m);
-    const double above_home_m = p.height_m - home.height_m;
-    items += fmt::format(
-        ",\n{{\"type\":\"SimpleItem\",\"command\":{},\"frame\":{},\"autoContinue\":true,"
-        "\"doJumpId\":{},\"Altitude\":{:.1f},\"AltitudeMode\":1,\"AMSLAltAboveTerrain\":null,"
-        "\"params\":[0,0,0,null,{:.7f},{:.7f},{:.1f}]}}",
-        kWaypoint, kGlobalRelative, ++id, above_home_m, p.latitude_deg, p.longitude_deg,
-        above_home_m);
+    const double above_home_m = decimals(p.height_m - home.height_m, 1);
+    items.push_back({{"type", "SimpleItem"},
+                     {"command", kWaypoint},
+                     {"frame", kGlobalRelative},
+                     {"autoContinue", true},
+                     {"doJumpId", items.size() + 1},
+                     {"Altitude", above_home_m},
+                     {"AltitudeMode", 1},
+                     {"AMSLAltAboveTerrain", nullptr},
+                     {"params",
+                      {0, 0, 0, nullptr, decimals(p.latitude_deg, 7), decimals(p.longitude_deg, 7),
+                       above_home_m}}});
   }
-  return fmt::format(
-      "{{\"fileType\":\"Plan\",\"version\":1,\"groundStation\":\"Skein\",\n"
-      "\"geoFence\":{{\"circles\":[],\"polygons\":[],\"version\":2}},\n"
-      "\"rallyPoints\":{{\"points\":[],\"version\":2}},\n"
-      "\"mission\":{{\"version\":2,\"firmwareType\":{},\"vehicleType\":{},\"cruiseSpeed\":{:.2f},"
-      "\"hoverSpeed\":5,\"globalPlanAltitudeMode\":1,\"plannedHomePosition\":[{:.7f},{:.7f},{:.1f}]"
-      ",\"items\":[\n{}\n]}}}}\n",
-      kArdupilot, kFixedWing, route.route.speed_mps, home.latitude_deg, home.longitude_deg,
-      home.height_m - heights.geoid_m, items);
+  const Json plan{
+      {"fileType", "Plan"},
+      {"version", 1},
+      {"groundStation", "Skein"},
+      {"geoFence", {{"circles", Json::array()}, {"polygons", Json::array()}, {"version", 2}}},
+      {"rallyPoints", {{"points", Json::array()}, {"version", 2}}},
+      {"mission",
+       {{"version", 2},
+        {"firmwareType", kArdupilot},
+        {"vehicleType", kFixedWing},
+        {"cruiseSpeed", speed_mps},
+        {"hoverSpeed", 5},
+        {"globalPlanAltitudeMode", 1},
+        {"plannedHomePosition",
+         {decimals(home.latitude_deg, 7), decimals(home.longitude_deg, 7),
+          decimals(home.height_m - heights.geoid_m, 1)}},
+        {"items", std::move(items)}}}};
+  return plan.dump() + "\n";
 }
 
 std::string routes_svg(const PlannedRoutes& planned) {

@@ -7,6 +7,8 @@
 #include <immintrin.h>
 #endif
 
+#include "skein/base/vectors.hpp"
+
 namespace skein::formation {
 
 /// Rows and columns are padded to a multiple of this: the same table for every width.
@@ -48,28 +50,14 @@ struct PlaceThreshold {
   int* near;     ///< the columns
 };
 
-/// Vectors of the compiler (GCC, Clang): numbers, and what their comparison gives.
-template <int Lanes>
-struct PlaceVectors;
-template <>
-struct PlaceVectors<2> {
-  using Real = double __attribute__((vector_size(16)));
-  using Bits = decltype(Real{} < Real{});
-};
-template <>
-struct PlaceVectors<4> {
-  using Real = double __attribute__((vector_size(32)));
-  using Bits = decltype(Real{} < Real{});
-};
-
 /// Least-sum and least-largest assignments of a dense square table.
 /// Minima, additions and subtractions in one order, ties by the lowest index: the same bits with
 /// every width. Each width is instantiated in one source only, which is compiled for processors
-/// that have it; hence no other header is included.
+/// that have it; hence no header with code is included.
 template <int Lanes>
 struct PlaceLanes {
-  using Real = typename PlaceVectors<Lanes>::Real;
-  using Bits = typename PlaceVectors<Lanes>::Bits;
+  using Real = typename Vectors<Lanes>::Real;
+  using Bits = typename Vectors<Lanes>::Bits;
 
   static constexpr double kInfinity = __builtin_inf();
 

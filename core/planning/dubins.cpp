@@ -2,6 +2,7 @@
 #include "skein/planning/dubins.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -220,23 +221,9 @@ void consider_two_arcs(ToPoint& best, const Vec2& goal, double sense, double r) 
 }  // namespace
 
 std::string_view to_string(DubinsWord word) {
-  switch (word) {
-    case DubinsWord::LSL:
-      return "LSL";
-    case DubinsWord::LSR:
-      return "LSR";
-    case DubinsWord::RSL:
-      return "RSL";
-    case DubinsWord::RSR:
-      return "RSR";
-    case DubinsWord::RLR:
-      return "RLR";
-    case DubinsWord::LRL:
-      return "LRL";
-    case DubinsWord::count:
-      break;
-  }
-  return "unknown";
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(DubinsWord::count)> kNames{
+      "LSL", "LSR", "RSL", "RSR", "RLR", "LRL"};
+  return word < DubinsWord::count ? kNames.at(static_cast<std::size_t>(word)) : "unknown";
 }
 
 Path DubinsPath::to_path() const {

@@ -9,6 +9,8 @@
 #include <arm_neon.h>
 #endif
 
+#include "skein/base/vectors.hpp"
+
 namespace skein::planning {
 
 /// Poses as columns; `step` is 1, or 0 where one pose stands for all. cos and sin may be null.
@@ -21,29 +23,11 @@ struct DubinsColumns {
   std::size_t step;
 };
 
-/// Vectors of the compiler (GCC, Clang): numbers, and what their comparison gives.
-template <int Lanes>
-struct Vectors;
-template <>
-struct Vectors<2> {
-  using Real = double __attribute__((vector_size(16)));
-  using Bits = decltype(Real{} < Real{});
-};
-template <>
-struct Vectors<4> {
-  using Real = double __attribute__((vector_size(32)));
-  using Bits = decltype(Real{} < Real{});
-};
-template <>
-struct Vectors<8> {
-  using Real = double __attribute__((vector_size(64)));
-  using Bits = decltype(Real{} < Real{});
-};
-
 /// Shortest Dubins lengths of so many pose pairs at once.
 /// Additions, multiplications, divisions and square roots only, in one order for every width and
 /// without fused operations: the same bits on every processor. Each width is instantiated in one
-/// source only, which is compiled for processors that have it; hence no other header is included.
+/// source only, which is compiled for processors that have it; hence no header with code is
+/// included.
 ///
 /// In the frame of the start pose, the left-first words (LSL, LSR, LRL) only: the right-first words
 /// are those to the mirrored goal. Centres c1 = (0, r) and c2 (Shkel and Lumelsky 2001, without

@@ -2,6 +2,7 @@
 #include "skein/routes/chaos.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "skein/base/angles.hpp"
@@ -78,36 +79,10 @@ double step(ChaoticMap map, double x) {
 }  // namespace
 
 std::string_view to_string(ChaoticMap map) {
-  switch (map) {
-    case ChaoticMap::logistic:
-      return "logistic";
-    case ChaoticMap::circle:
-      return "circle";
-    case ChaoticMap::gauss:
-      return "gauss";
-    case ChaoticMap::iterative:
-      return "iterative";
-    case ChaoticMap::tent:
-      return "tent";
-    case ChaoticMap::sinusoidal:
-      return "sinusoidal";
-    case ChaoticMap::singer:
-      return "singer";
-    case ChaoticMap::sine:
-      return "sine";
-    case ChaoticMap::piecewise:
-      return "piecewise";
-    case ChaoticMap::chebyshev:
-      return "chebyshev";
-    case ChaoticMap::liebovitch:
-      return "liebovitch";
-    case ChaoticMap::intermittency:
-      return "intermittency";
-    case ChaoticMap::count:
-      break;
-  }
-  SKEIN_ASSERT(false);
-  return "";
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(ChaoticMap::count)> kNames{
+      "logistic", "circle", "gauss",     "iterative", "tent",       "sinusoidal",
+      "singer",   "sine",   "piecewise", "chebyshev", "liebovitch", "intermittency"};
+  return kNames.at(static_cast<std::size_t>(map));
 }
 
 ChaoticSequence::ChaoticSequence(ChaoticMap map, Random random) : map_{map}, random_{random} {

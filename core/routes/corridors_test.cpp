@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "skein/base/random.hpp"
-#include "skein/routes/fly_by.hpp"
 #include "skein/paper_routes/paper_world.hpp"
+#include "skein/routes/fly_by.hpp"
 
 namespace skein::routes {
 namespace {

@@ -6,6 +6,8 @@
 #include <immintrin.h>
 #endif
 
+#include "skein/base/vectors.hpp"
+
 namespace skein::routes {
 
 /// Samples are padded to a multiple of this, and so many partial sums are kept: one order of
@@ -42,27 +44,14 @@ struct CurveSums {
   double length;
 };
 
-template <int Lanes>
-struct CurveVectors;
-template <>
-struct CurveVectors<2> {
-  using Real = double __attribute__((vector_size(16)));
-  using Bits = decltype(Real{} < Real{});
-};
-template <>
-struct CurveVectors<4> {
-  using Real = double __attribute__((vector_size(32)));
-  using Bits = decltype(Real{} < Real{});
-};
-
 /// Length and exposure of a sampled curve. Additions, multiplications, divisions and
 /// square roots in one order, without fused operations: the same bits with every width. Each width
 /// is instantiated in one source only, which is compiled for processors that have it; hence no
-/// other header is included.
+/// header with code is included.
 template <int Lanes>
 struct CurveLanes {
-  using Real = typename CurveVectors<Lanes>::Real;
-  using Bits = typename CurveVectors<Lanes>::Bits;
+  using Real = typename Vectors<Lanes>::Real;
+  using Bits = typename Vectors<Lanes>::Bits;
   static constexpr std::size_t kParts = kCurveBlock / Lanes;
 
   static Real splat(double value) { return Real{} + value; }

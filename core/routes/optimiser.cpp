@@ -2,6 +2,7 @@
 #include "skein/routes/optimiser.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "search_counter.hpp"
@@ -40,22 +41,10 @@ std::vector<Candidate> first_population(const SearchSpace& space, std::size_t si
 }
 
 std::string_view to_string(SearchMethod method) {
-  switch (method) {
-    case SearchMethod::grey_wolf:
-      return "grey wolf";
-    case SearchMethod::chaotic_grey_wolf:
-      return "chaotic grey wolf";
-    case SearchMethod::particle_swarm:
-      return "particle swarm";
-    case SearchMethod::differential_evolution:
-      return "differential evolution";
-    case SearchMethod::cma_es:
-      return "CMA-ES";
-    case SearchMethod::count:
-      break;
-  }
-  SKEIN_ASSERT(false);
-  return "";
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(SearchMethod::count)>
+      kNames{"grey wolf", "chaotic grey wolf", "particle swarm", "differential evolution",
+             "CMA-ES"};
+  return kNames.at(static_cast<std::size_t>(method));
 }
 
 SearchResult search(SearchMethod method, const Objective& objective, const SearchSpace& space,

@@ -17,9 +17,10 @@ constexpr std::uint32_t kError = 1U << 29U;
 constexpr std::size_t kCovered = 4;  // the checksum is over all from here
 
 std::uint16_t checksum(std::span<const std::uint8_t> datagram) {
+  const auto covered = datagram.subspan(kCovered);
   Crc16 crc;
-  crc.add(datagram.subspan(kCovered));
-  return crc.value();
+  crc.process_bytes(covered.data(), covered.size());
+  return crc.checksum();
 }
 
 std::uint16_t u16_at(std::span<const std::uint8_t> bytes, std::size_t at) {

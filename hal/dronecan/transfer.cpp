@@ -2,6 +2,7 @@
 #include "skein/dronecan/transfer.hpp"
 
 #include <algorithm>
+#include <span>
 
 #include "skein/base/assert.hpp"
 #include "skein/can/crc16.hpp"
@@ -21,7 +22,9 @@ constexpr std::uint8_t kPriorityMask = 0x1F;
 
 can::Crc16 crc_of_signature(std::uint64_t signature) {
   can::Crc16 crc;
-  for (unsigned i = 0; i < 8; ++i) crc.add(static_cast<std::uint8_t>(signature >> (8 * i)));
+  for (unsigned i = 0; i < 8; ++i) {
+    crc.process_byte(static_cast<std::uint8_t>(signature >> (8 * i)));
+  }
   return crc;
 }
 
@@ -79,10 +82,10 @@ TransferFrames to_frames(const Header& header, std::uint64_t signature,
   const std::size_t total = prefix + payload.size() + padding;
 
   can::Crc16 crc = crc_of_signature(signature);
-  crc.add(payload);
-  for (std::size_t i = 0; i < padding; ++i) crc.add(0);
+  crc.process_bytes(payload.data(), payload.size());
+  for (std::size_t i = 0; i < padding; ++i) crc.process_byte(0);
   const auto byte_at = [&](std::size_t i) -> std::uint8_t {
-    if (i < prefix) return static_cast<std::uint8_t>(crc.value() >> (8 * i));
+    if (i < prefix) return static_cast<std::uint8_t>(crc.checksum() >> (8 * i));
     return i - prefix < payload.size() ? payload[i - prefix] : std::uint8_t{0};
   };
 
@@ -252,8 +255,9 @@ const Transfer* Reassembler::finish(Session& session, bool many_frames) {
       ++statistics_.unchecked;
     } else {
       can::Crc16 crc = crc_of_signature(type->signature);
-      crc.add(transfer.payload);
-      if (crc.value() != session.crc) {
+      const std::span<const std::uint8_t> payload{transfer.payload};
+      crc.process_bytes(payload.data(), payload.size());
+      if (crc.checksum() != session.crc) {
         ++statistics_.bad_crc;
         return nullptr;
       }

@@ -8,6 +8,7 @@
 #include "charts.hpp"
 #include "formation_charts.hpp"
 #include "skein/report/drawing.hpp"
+#include "skein/report/palette.hpp"
 #include "story.hpp"
 #include "style.hpp"
 
@@ -104,7 +105,7 @@ std::string html(const Contents& contents) {
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">"
       "<meta name=\"color-scheme\" content=\"light dark\">";
   page += fmt::format("<title>{}</title><style>{}{}{}</style></head><body>\n",
-                      escaped(contents.title), kColours, kDrawing, kPage);
+                      escaped(contents.title), kPalette, kDrawing, kPage);
   page += fmt::format("<header><div><h1>{}</h1><p>{}</p></div>{}</header>\n",
                       escaped(contents.title), escaped(contents.summary), verdict(contents.checks));
   if (!contents.replay.empty()) {
@@ -149,7 +150,7 @@ std::string html(const Contents& contents) {
 }
 
 std::string mission_svg(const checks::RunRecord& record) {
-  const std::string style = fmt::format("<style>{}{}</style>", kColours, kDrawing);
+  const std::string style = fmt::format("<style>{}{}</style>", kPalette, kDrawing);
   return map(record, stories(record), R"~(xmlns="http://www.w3.org/2000/svg" width="900")~", style);
 }
 

@@ -9,6 +9,7 @@
 #include "skein/base/assert.hpp"
 #include "skein/base/geometry.hpp"
 #include "skein/report/drawing.hpp"
+#include "skein/report/palette.hpp"
 
 namespace skein::report {
 namespace {
@@ -19,14 +20,13 @@ constexpr double kFoot = 24.0;
 constexpr double kMargin = 20.0;
 constexpr double kLargestDot = 9.0;
 
-constexpr std::string_view kShapeStyle = R"(<style>
-:root{--paper:#fff;--ground:#f7f8fa;--ink:#1c2530;--soft:#5b6774;--c:#0072b2}
-@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ground:#1b2027;--ink:#e6eaef;--soft:#98a3af;--c:#5ab4f0}}
+constexpr std::string_view kShapeStyle = R"(
+:root{--c:var(--s1)}
 .paper{fill:var(--paper)}.ground{fill:var(--ground)}text{font:12px system-ui,sans-serif;fill:var(--soft)}
 .title{font-size:13px;font-weight:600;fill:var(--ink)}.dot{fill:var(--c);stroke:var(--c);stroke-width:1.4}
 .ring{fill:var(--ground);stroke:var(--c);stroke-width:1.4}.mid{text-anchor:middle;font-size:9px}
 .on{fill:var(--paper);font-weight:650}.bar{stroke:var(--ink);stroke-width:1.3;fill:none}
-</style>)";
+)";
 
 std::string draw_panel(const ShapePanel& panel, double spacing_m, const Vec2& corner) {
   SKEIN_ASSERT(!panel.places.empty());
@@ -79,8 +79,8 @@ std::string shapes_svg(const std::vector<ShapePanel>& panels, double spacing_m,
   const double panel_height = kHead + kSide + kFoot;
   const double height = panel_height * static_cast<double>(rows);
   std::string svg = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/>)",
-      width, height, kShapeStyle);
+      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}"><style>{2}{3}</style><rect class="paper" width="{0:.0f}" height="{1:.0f}"/>)",
+      width, height, kPalette, kShapeStyle);
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const std::size_t row = i / columns;
     const std::size_t column = i % columns;

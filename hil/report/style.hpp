@@ -5,19 +5,6 @@
 
 namespace skein::report {
 
-/// Colours of sites and of what vehicles do: after Okabe and Ito (2008), who chose them so that
-/// people with any colour vision tell them apart.
-inline constexpr std::string_view kColours = R"(
-:root{--paper:#fff;--ground:#f7f8fa;--ink:#1c2530;--soft:#5b6774;--rule:#dfe3e8;
---s0:#a3abb5;--s1:#0072b2;--s2:#d55e00;--s3:#00875f;--s4:#b8578f;--s5:#c98500;--s6:#3a9fd6;
---d0:#dde1e6;--d1:#cc79a7;--d2:#f0e442;--d3:#a9cbe8;--d4:#56b4e9;--d5:#d55e00;--d6:#009e73;
---good:#00734f;--bad:#b3261e}
-@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ground:#1b2027;--ink:#e6eaef;--soft:#98a3af;--rule:#2f3741;
---s0:#69737f;--s1:#5ab4f0;--s2:#ff8f4a;--s3:#35c99a;--s4:#e79fc8;--s5:#f0b73c;--s6:#8fd3fa;
---d0:#323a44;--d1:#b8699a;--d2:#d3c63a;--d3:#33597a;--d4:#56b4e9;--d5:#ef7a2a;--d6:#16b385;
---good:#3ecf9c;--bad:#ff8a80}}
-)";
-
 inline constexpr std::string_view kDrawing = R"(
 svg text{font:11px system-ui,sans-serif;fill:var(--soft)}
 svg .ground{fill:var(--ground)}svg .grid{stroke:var(--rule);fill:none}

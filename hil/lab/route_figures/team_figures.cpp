@@ -13,9 +13,9 @@
 
 #include "parts.hpp"
 #include "skein/experiments/plots.hpp"
+#include "skein/paper_routes/paper_world.hpp"
 #include "skein/routes/cooperative.hpp"
 #include "skein/routes/fly_by.hpp"
-#include "skein/paper_routes/paper_world.hpp"
 #include "skein/routes/route_check.hpp"
 #include "world_picture.hpp"
 

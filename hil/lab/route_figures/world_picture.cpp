@@ -7,6 +7,7 @@
 
 #include "skein/experiments/plots.hpp"
 #include "skein/report/drawing.hpp"
+#include "skein/report/palette.hpp"
 
 namespace skein::route_figures {
 namespace {
@@ -64,7 +65,7 @@ std::string world_svg(const std::string& title, double side_m,
     for (const Vec2& at : curves[i].points) line.push_back(pixel(at));
     text +=
         fmt::format(R"(<g class="c{}"><polyline class="line" points="{}"/>)",
-                    i % experiments::kPlotColours, report::points_text(report::thinned(line, 0.1)));
+                    i % report::kSeriesColours, report::points_text(report::thinned(line, 0.1)));
     if (!line.empty()) {
       text += fmt::format(R"(<circle class="dot" cx="{:.1f}" cy="{:.1f}" r="4.5"/>)",
                           line.front().x(), line.front().y());

@@ -6,6 +6,7 @@
 
 #include "skein/base/geometry.hpp"
 #include "skein/report/drawing.hpp"
+#include "skein/report/palette.hpp"
 #include "skein/swap/swap.hpp"
 
 namespace skein::swap {
@@ -14,17 +15,12 @@ namespace {
 constexpr double kSide = 640.0;
 constexpr double kHead = 32.0;
 constexpr double kMargin = 20.0;
-constexpr int kColours = 7;
 
-constexpr std::string_view kStyle = R"(<style>
-:root{--paper:#fff;--ink:#1c2530;--soft:#5b6774}
-.c0{--c:#0072b2}.c1{--c:#d55e00}.c2{--c:#00875f}.c3{--c:#b8578f}.c4{--c:#c98500}.c5{--c:#3a9fd6}.c6{--c:#7a838d}
-@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ink:#e6eaef;--soft:#98a3af}
-.c0{--c:#5ab4f0}.c1{--c:#ff8f4a}.c2{--c:#35c99a}.c3{--c:#e79fc8}.c4{--c:#f0b73c}.c5{--c:#8fd3fa}.c6{--c:#98a3af}}
+constexpr std::string_view kStyle = R"(
 .paper{fill:var(--paper)}text{font:13px system-ui,sans-serif;fill:var(--ink)}
 polyline{fill:none;stroke:var(--c);stroke-width:1.3;opacity:.8}.start{fill:var(--paper);stroke:var(--c);stroke-width:1.5}
 .end{fill:var(--c)}
-</style>)";
+)";
 
 }  // namespace
 
@@ -38,16 +34,16 @@ std::string swap_svg(const std::string& title, const SwapRun& run) {
     return Vec2{0.5 * kSide + scale * at.x(), kHead + 0.5 * kSide - scale * at.y()};
   };
   std::string text = fmt::format(
-      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text x="12" y="22">{3}</text>)",
-      kSide, kSide + kHead, kStyle, report::escaped(title));
+      R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}"><style>{2}{3}{4}</style><rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text x="12" y="22">{5}</text>)",
+      kSide, kSide + kHead, report::kPalette, report::kSeries, kStyle, report::escaped(title));
   for (std::size_t i = 0; i < run.tracks.size(); ++i) {
     if (run.tracks[i].empty()) continue;
     std::vector<Vec2> line;
     for (const Vec3& at : run.tracks[i]) line.push_back(pixel(at));
     text += fmt::format(
         R"(<g class="c{}"><polyline points="{}"/><circle class="start" cx="{:.1f}" cy="{:.1f}" r="3.5"/><circle class="end" cx="{:.1f}" cy="{:.1f}" r="2"/></g>)",
-        i % kColours, report::points_text(report::thinned(line, 0.3)), line.front().x(),
-        line.front().y(), line.back().x(), line.back().y());
+        i % report::kSeriesColours, report::points_text(report::thinned(line, 0.3)),
+        line.front().x(), line.front().y(), line.back().x(), line.back().y());
   }
   return text + "</svg>\n";
 }

@@ -10,6 +10,7 @@
 
 #include "skein/base/geometry.hpp"
 #include "skein/report/drawing.hpp"
+#include "skein/report/palette.hpp"
 
 namespace skein::experiments {
 namespace {
@@ -22,17 +23,12 @@ constexpr double kTop = 54.0;
 constexpr double kBottom = kHeight - 44.0;
 constexpr double kLetter = 6.5;  // as wide as one is, about
 
-/// Colours after Okabe and Ito (2008).
-constexpr std::string_view kStyle = R"(<style>
-:root{--paper:#fff;--ink:#1c2530;--soft:#5b6774;--rule:#dfe3e8}
-.c0{--c:#0072b2}.c1{--c:#d55e00}.c2{--c:#00875f}.c3{--c:#b8578f}.c4{--c:#c98500}.c5{--c:#3a9fd6}.c6{--c:#7a838d}
-@media(prefers-color-scheme:dark){:root{--paper:#14181d;--ink:#e6eaef;--soft:#98a3af;--rule:#2f3741}
-.c0{--c:#5ab4f0}.c1{--c:#ff8f4a}.c2{--c:#35c99a}.c3{--c:#e79fc8}.c4{--c:#f0b73c}.c5{--c:#8fd3fa}.c6{--c:#98a3af}}
+constexpr std::string_view kStyle = R"(
 .paper{fill:var(--paper)}text{font:12px system-ui,sans-serif;fill:var(--soft)}.title{font-size:14px;font-weight:600;fill:var(--ink)}
 .mid{text-anchor:middle}.end{text-anchor:end}.grid{stroke:var(--rule)}
 .line{fill:none;stroke:var(--c);stroke-width:2}.bar{fill:var(--c)}.dot{fill:var(--c)}.error{fill:none;stroke:var(--c);stroke-width:1.3}
 .bar+.error{stroke:var(--ink)}
-</style>)";
+)";
 
 /// With room at both ends, but for bars at 0. low > high: there is no value at all.
 report::Axis value_axis(double low, double high, bool bars) {
@@ -62,7 +58,8 @@ template <class AnyPlot>
 std::string frame(const AnyPlot& plot, const report::Axis& value, double below) {
   std::string text = fmt::format(
       R"(<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {0:.0f} {1:.0f}" width="{0:.0f}" height="{1:.0f}">{2}<rect class="paper" width="{0:.0f}" height="{1:.0f}"/><text class="title" x="12" y="20">{3}</text><text x="12" y="40">{4}</text>)",
-      kWidth, kHeight + below, kStyle, report::escaped(plot.title), report::escaped(plot.y_label));
+      kWidth, kHeight + below, plot_style(), report::escaped(plot.title),
+      report::escaped(plot.y_label));
   for (const double v : value.ticks(6)) {
     text += fmt::format(
         R"(<path class="grid" d="M{0:.0f} {1:.1f}H{2:.0f}"/><text class="end" x="{3:.0f}" y="{4:.1f}">{5:g}</text>)",
@@ -82,7 +79,7 @@ std::string legend(const std::vector<AnySeries>& series) {
     const double y = kTop + 12.0 + 20.0 * static_cast<double>(s);
     text += fmt::format(
         R"(<rect class="bar c{}" x="{:.0f}" y="{:.1f}" width="12" height="12" rx="2"/><text x="{:.0f}" y="{:.1f}">{}</text>)",
-        s % kPlotColours, kRight + 14.0, y - 10.0, kRight + 32.0, y,
+        s % report::kSeriesColours, kRight + 14.0, y - 10.0, kRight + 32.0, y,
         report::escaped(series[s].name));
   }
   return text;
@@ -116,7 +113,7 @@ std::string lines_of(const Plot& plot, const report::Axis& value, double step) {
           e.mean, e.half_width, e.count);
     }
     text += fmt::format(R"(<g class="c{}"><polyline class="line" points="{}"/>{}</g>)",
-                        s % kPlotColours, report::points_text(line), marks);
+                        s % report::kSeriesColours, report::points_text(line), marks);
   }
   return text;
 }
@@ -125,7 +122,7 @@ std::string bars_of(const Plot& plot, const report::Axis& value, double step) {
   std::string text;
   const double width = 0.8 * step / static_cast<double>(plot.series.size());
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
-    text += fmt::format(R"(<g class="c{}">)", s % kPlotColours);
+    text += fmt::format(R"(<g class="c{}">)", s % report::kSeriesColours);
     for (std::size_t i = 0; i < plot.x.size(); ++i) {
       const Estimate& e = plot.series[s].values.at(i);
       if (e.count == 0) continue;
@@ -193,12 +190,14 @@ std::string svg(const LinePlot& plot) {
       line.emplace_back(along(point.x()), value(point.y()));
     }
     text += fmt::format(R"(<polyline class="line c{}" points="{}"><title>{}</title></polyline>)",
-                        s % kPlotColours, report::points_text(report::thinned(line, 0.2)),
+                        s % report::kSeriesColours, report::points_text(report::thinned(line, 0.2)),
                         report::escaped(plot.lines[s].name));
   }
   return text + legend(plot.lines) + "</svg>\n";
 }
 
-std::string_view plot_style() { return kStyle; }
+std::string plot_style() {
+  return fmt::format("<style>{}{}{}</style>", report::kPalette, report::kSeries, kStyle);
+}
 
 }  // namespace skein::experiments

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "skein/base/geometry.hpp"
@@ -47,7 +45,6 @@ struct LinePlot {
 
 /// The style of these plots, for other pictures of the same looks: class `paper` of the background,
 /// `title`, and c0 ... c6 which set the colour --c of a series.
-[[nodiscard]] std::string_view plot_style();
-inline constexpr std::size_t kPlotColours = 7;
+[[nodiscard]] std::string plot_style();
 
 }  // namespace skein::experiments
