@@ -14,18 +14,12 @@ namespace skein::mavlink {
 
 /// A command with a position (latitude and longitude in degE7, or 1e-4 m).
 struct CommandInt {
-  float param1 = 0;
-  float param2 = 0;
-  float param3 = 0;
-  float param4 = 0;
+  float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
   std::int32_t x = 0;
   std::int32_t y = 0;
   float z = 0;
   std::uint16_t command = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t frame = 0;
-  std::uint8_t current = 0;
+  std::uint8_t target_system = 0, target_component = 0, frame = 0, current = 0;
   std::uint8_t autocontinue = 0;
 
   static constexpr auto kDefinition =
@@ -36,17 +30,10 @@ struct CommandInt {
 
 /// A command with seven floats.
 struct CommandLong {
-  float param1 = 0;
-  float param2 = 0;
-  float param3 = 0;
-  float param4 = 0;
-  float param5 = 0;
-  float param6 = 0;
-  float param7 = 0;
+  float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
+  float param5 = 0, param6 = 0, param7 = 0;
   std::uint16_t command = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t confirmation = 0;
+  std::uint8_t target_system = 0, target_component = 0, confirmation = 0;
 
   static constexpr auto kDefinition =
       define(76, "COMMAND_LONG",
@@ -81,13 +68,9 @@ struct MessageInterval {
 struct SetAttitudeTarget {
   std::uint32_t time_boot_ms = 0;  ///< ms
   std::array<float, 4> q{};
-  float body_roll_rate = 0;   ///< rad/s
-  float body_pitch_rate = 0;  ///< rad/s
-  float body_yaw_rate = 0;    ///< rad/s
+  float body_roll_rate = 0, body_pitch_rate = 0, body_yaw_rate = 0;  ///< rad/s
   float thrust = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t type_mask = 0;
+  std::uint8_t target_system = 0, target_component = 0, type_mask = 0;
   std::array<float, 3> thrust_body{};
 
   static constexpr auto kDefinition = define(
@@ -99,22 +82,14 @@ struct SetAttitudeTarget {
 
 /// Position, velocity, acceleration and yaw to fly; a set bit of the mask means ignore.
 struct SetPositionTargetLocalNed {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  float x = 0;                     ///< m
-  float y = 0;                     ///< m
-  float z = 0;                     ///< m
-  float vx = 0;                    ///< m/s
-  float vy = 0;                    ///< m/s
-  float vz = 0;                    ///< m/s
-  float afx = 0;                   ///< m/s/s
-  float afy = 0;                   ///< m/s/s
-  float afz = 0;                   ///< m/s/s
-  float yaw = 0;                   ///< rad
-  float yaw_rate = 0;              ///< rad/s
+  std::uint32_t time_boot_ms = 0;   ///< ms
+  float x = 0, y = 0, z = 0;        ///< m
+  float vx = 0, vy = 0, vz = 0;     ///< m/s
+  float afx = 0, afy = 0, afz = 0;  ///< m/s/s
+  float yaw = 0;                    ///< rad
+  float yaw_rate = 0;               ///< rad/s
   std::uint16_t type_mask = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t coordinate_frame = 0;
+  std::uint8_t target_system = 0, target_component = 0, coordinate_frame = 0;
 
   static constexpr auto kDefinition =
       define(84, "SET_POSITION_TARGET_LOCAL_NED",
@@ -125,22 +100,16 @@ struct SetPositionTargetLocalNed {
 
 /// As SetPositionTargetLocalNed, with latitude and longitude.
 struct SetPositionTargetGlobalInt {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::int32_t lat_int = 0;        ///< degE7
-  std::int32_t lon_int = 0;        ///< degE7
-  float alt = 0;                   ///< m
-  float vx = 0;                    ///< m/s
-  float vy = 0;                    ///< m/s
-  float vz = 0;                    ///< m/s
-  float afx = 0;                   ///< m/s/s
-  float afy = 0;                   ///< m/s/s
-  float afz = 0;                   ///< m/s/s
-  float yaw = 0;                   ///< rad
-  float yaw_rate = 0;              ///< rad/s
+  std::uint32_t time_boot_ms = 0;   ///< ms
+  std::int32_t lat_int = 0;         ///< degE7
+  std::int32_t lon_int = 0;         ///< degE7
+  float alt = 0;                    ///< m
+  float vx = 0, vy = 0, vz = 0;     ///< m/s
+  float afx = 0, afy = 0, afz = 0;  ///< m/s/s
+  float yaw = 0;                    ///< rad
+  float yaw_rate = 0;               ///< rad/s
   std::uint16_t type_mask = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t coordinate_frame = 0;
+  std::uint8_t target_system = 0, target_component = 0, coordinate_frame = 0;
 
   static constexpr auto kDefinition =
       define(86, "SET_POSITION_TARGET_GLOBAL_INT",

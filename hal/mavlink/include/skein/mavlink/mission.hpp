@@ -15,9 +15,7 @@ namespace skein::mavlink {
 /// Asks for an item; ArduPilot asks with this one and takes a MissionItemInt.
 struct MissionRequest {
   std::uint16_t seq = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
 
   static constexpr auto kDefinition =
       define(40, "MISSION_REQUEST",
@@ -28,9 +26,7 @@ struct MissionRequest {
 /// Asks for an item as MissionItemInt.
 struct MissionRequestInt {
   std::uint16_t seq = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
 
   static constexpr auto kDefinition =
       define(51, "MISSION_REQUEST_INT",
@@ -55,9 +51,7 @@ struct MissionCurrent {
   std::uint16_t total = 0;
   std::uint8_t mission_state = 0;
   std::uint8_t mission_mode = 0;
-  std::uint32_t mission_id = 0;
-  std::uint32_t fence_id = 0;
-  std::uint32_t rally_points_id = 0;
+  std::uint32_t mission_id = 0, fence_id = 0, rally_points_id = 0;
 
   static constexpr auto kDefinition =
       define(42, "MISSION_CURRENT", SKEIN_MAVLINK_FIELDS(MissionCurrent, seq),
@@ -67,9 +61,7 @@ struct MissionCurrent {
 
 /// Asks how many items there are; answered with MissionCount.
 struct MissionRequestList {
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
 
   static constexpr auto kDefinition =
       define(43, "MISSION_REQUEST_LIST",
@@ -80,9 +72,7 @@ struct MissionRequestList {
 /// Starts the transfer of `count` items.
 struct MissionCount {
   std::uint16_t count = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
   std::uint32_t opaque_id = 0;
 
   static constexpr auto kDefinition =
@@ -93,9 +83,7 @@ struct MissionCount {
 
 /// Forgets the mission; answered with MissionAck.
 struct MissionClearAll {
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, mission_type = 0;
 
   static constexpr auto kDefinition =
       define(45, "MISSION_CLEAR_ALL",
@@ -113,10 +101,7 @@ struct MissionItemReached {
 
 /// Ends a transfer: MissionResult in `type`.
 struct MissionAck {
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t type = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, type = 0, mission_type = 0;
   std::uint32_t opaque_id = 0;
 
   static constexpr auto kDefinition = define(
@@ -126,21 +111,14 @@ struct MissionAck {
 
 /// An item of a mission; latitude and longitude in degE7.
 struct MissionItemInt {
-  float param1 = 0;
-  float param2 = 0;
-  float param3 = 0;
-  float param4 = 0;
+  float param1 = 0, param2 = 0, param3 = 0, param4 = 0;
   std::int32_t x = 0;
   std::int32_t y = 0;
   float z = 0;
   std::uint16_t seq = 0;
   std::uint16_t command = 0;
-  std::uint8_t target_system = 0;
-  std::uint8_t target_component = 0;
-  std::uint8_t frame = 0;
-  std::uint8_t current = 0;
-  std::uint8_t autocontinue = 0;
-  std::uint8_t mission_type = 0;
+  std::uint8_t target_system = 0, target_component = 0, frame = 0, current = 0;
+  std::uint8_t autocontinue = 0, mission_type = 0;
 
   static constexpr auto kDefinition = define(
       73, "MISSION_ITEM_INT",

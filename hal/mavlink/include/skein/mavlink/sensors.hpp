@@ -15,15 +15,9 @@ namespace skein::mavlink {
 /// Inertial sensors, in units of the firmware.
 struct RawImu {
   std::uint64_t time_usec = 0;  ///< us
-  std::int16_t xacc = 0;
-  std::int16_t yacc = 0;
-  std::int16_t zacc = 0;
-  std::int16_t xgyro = 0;
-  std::int16_t ygyro = 0;
-  std::int16_t zgyro = 0;
-  std::int16_t xmag = 0;
-  std::int16_t ymag = 0;
-  std::int16_t zmag = 0;
+  std::int16_t xacc = 0, yacc = 0, zacc = 0;
+  std::int16_t xgyro = 0, ygyro = 0, zgyro = 0;
+  std::int16_t xmag = 0, ymag = 0, zmag = 0;
   std::uint8_t id = 0;
   std::int16_t temperature = 0;  ///< cdegC
 
@@ -36,17 +30,11 @@ struct RawImu {
 
 /// The second inertial sensor.
 struct ScaledImu2 {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::int16_t xacc = 0;           ///< mG
-  std::int16_t yacc = 0;           ///< mG
-  std::int16_t zacc = 0;           ///< mG
-  std::int16_t xgyro = 0;          ///< mrad/s
-  std::int16_t ygyro = 0;          ///< mrad/s
-  std::int16_t zgyro = 0;          ///< mrad/s
-  std::int16_t xmag = 0;           ///< mgauss
-  std::int16_t ymag = 0;           ///< mgauss
-  std::int16_t zmag = 0;           ///< mgauss
-  std::int16_t temperature = 0;    ///< cdegC
+  std::uint32_t time_boot_ms = 0;                ///< ms
+  std::int16_t xacc = 0, yacc = 0, zacc = 0;     ///< mG
+  std::int16_t xgyro = 0, ygyro = 0, zgyro = 0;  ///< mrad/s
+  std::int16_t xmag = 0, ymag = 0, zmag = 0;     ///< mgauss
+  std::int16_t temperature = 0;                  ///< cdegC
 
   static constexpr auto kDefinition =
       define(116, "SCALED_IMU2",
@@ -57,17 +45,11 @@ struct ScaledImu2 {
 
 /// The third inertial sensor.
 struct ScaledImu3 {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::int16_t xacc = 0;           ///< mG
-  std::int16_t yacc = 0;           ///< mG
-  std::int16_t zacc = 0;           ///< mG
-  std::int16_t xgyro = 0;          ///< mrad/s
-  std::int16_t ygyro = 0;          ///< mrad/s
-  std::int16_t zgyro = 0;          ///< mrad/s
-  std::int16_t xmag = 0;           ///< mgauss
-  std::int16_t ymag = 0;           ///< mgauss
-  std::int16_t zmag = 0;           ///< mgauss
-  std::int16_t temperature = 0;    ///< cdegC
+  std::uint32_t time_boot_ms = 0;                ///< ms
+  std::int16_t xacc = 0, yacc = 0, zacc = 0;     ///< mG
+  std::int16_t xgyro = 0, ygyro = 0, zgyro = 0;  ///< mrad/s
+  std::int16_t xmag = 0, ymag = 0, zmag = 0;     ///< mgauss
+  std::int16_t temperature = 0;                  ///< cdegC
 
   static constexpr auto kDefinition =
       define(129, "SCALED_IMU3",
@@ -106,24 +88,12 @@ struct ScaledPressure2 {
 
 /// What the outputs of the autopilot are at: a report.
 struct ServoOutputRaw {
-  std::uint32_t time_usec = 0;   ///< us
-  std::uint16_t servo1_raw = 0;  ///< us
-  std::uint16_t servo2_raw = 0;  ///< us
-  std::uint16_t servo3_raw = 0;  ///< us
-  std::uint16_t servo4_raw = 0;  ///< us
-  std::uint16_t servo5_raw = 0;  ///< us
-  std::uint16_t servo6_raw = 0;  ///< us
-  std::uint16_t servo7_raw = 0;  ///< us
-  std::uint16_t servo8_raw = 0;  ///< us
+  std::uint32_t time_usec = 0;                                                   ///< us
+  std::uint16_t servo1_raw = 0, servo2_raw = 0, servo3_raw = 0, servo4_raw = 0;  ///< us
+  std::uint16_t servo5_raw = 0, servo6_raw = 0, servo7_raw = 0, servo8_raw = 0;  ///< us
   std::uint8_t port = 0;
-  std::uint16_t servo9_raw = 0;   ///< us
-  std::uint16_t servo10_raw = 0;  ///< us
-  std::uint16_t servo11_raw = 0;  ///< us
-  std::uint16_t servo12_raw = 0;  ///< us
-  std::uint16_t servo13_raw = 0;  ///< us
-  std::uint16_t servo14_raw = 0;  ///< us
-  std::uint16_t servo15_raw = 0;  ///< us
-  std::uint16_t servo16_raw = 0;  ///< us
+  std::uint16_t servo9_raw = 0, servo10_raw = 0, servo11_raw = 0, servo12_raw = 0;   ///< us
+  std::uint16_t servo13_raw = 0, servo14_raw = 0, servo15_raw = 0, servo16_raw = 0;  ///< us
 
   static constexpr auto kDefinition =
       define(36, "SERVO_OUTPUT_RAW",
@@ -135,25 +105,12 @@ struct ServoOutputRaw {
 
 /// The pilot's sticks as received.
 struct RcChannels {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::uint16_t chan1_raw = 0;     ///< us
-  std::uint16_t chan2_raw = 0;     ///< us
-  std::uint16_t chan3_raw = 0;     ///< us
-  std::uint16_t chan4_raw = 0;     ///< us
-  std::uint16_t chan5_raw = 0;     ///< us
-  std::uint16_t chan6_raw = 0;     ///< us
-  std::uint16_t chan7_raw = 0;     ///< us
-  std::uint16_t chan8_raw = 0;     ///< us
-  std::uint16_t chan9_raw = 0;     ///< us
-  std::uint16_t chan10_raw = 0;    ///< us
-  std::uint16_t chan11_raw = 0;    ///< us
-  std::uint16_t chan12_raw = 0;    ///< us
-  std::uint16_t chan13_raw = 0;    ///< us
-  std::uint16_t chan14_raw = 0;    ///< us
-  std::uint16_t chan15_raw = 0;    ///< us
-  std::uint16_t chan16_raw = 0;    ///< us
-  std::uint16_t chan17_raw = 0;    ///< us
-  std::uint16_t chan18_raw = 0;    ///< us
+  std::uint32_t time_boot_ms = 0;                                                ///< ms
+  std::uint16_t chan1_raw = 0, chan2_raw = 0, chan3_raw = 0, chan4_raw = 0;      ///< us
+  std::uint16_t chan5_raw = 0, chan6_raw = 0, chan7_raw = 0, chan8_raw = 0;      ///< us
+  std::uint16_t chan9_raw = 0, chan10_raw = 0, chan11_raw = 0, chan12_raw = 0;   ///< us
+  std::uint16_t chan13_raw = 0, chan14_raw = 0, chan15_raw = 0, chan16_raw = 0;  ///< us
+  std::uint16_t chan17_raw = 0, chan18_raw = 0;                                  ///< us
   std::uint8_t chancount = 0;
   std::uint8_t rssi = 0;
 
@@ -190,13 +147,8 @@ struct Meminfo {
 
 /// Drift and errors of the attitude estimate.
 struct Ahrs {
-  float omega_ix = 0;  ///< rad/s
-  float omega_iy = 0;  ///< rad/s
-  float omega_iz = 0;  ///< rad/s
-  float accel_weight = 0;
-  float renorm_val = 0;
-  float error_rp = 0;
-  float error_yaw = 0;
+  float omega_ix = 0, omega_iy = 0, omega_iz = 0;  ///< rad/s
+  float accel_weight = 0, renorm_val = 0, error_rp = 0, error_yaw = 0;
 
   static constexpr auto kDefinition = define(
       163, "AHRS",
@@ -208,12 +160,10 @@ struct Ahrs {
 
 /// The second estimate.
 struct Ahrs2 {
-  float roll = 0;        ///< rad
-  float pitch = 0;       ///< rad
-  float yaw = 0;         ///< rad
-  float altitude = 0;    ///< m
-  std::int32_t lat = 0;  ///< degE7
-  std::int32_t lng = 0;  ///< degE7
+  float roll = 0, pitch = 0, yaw = 0;  ///< rad
+  float altitude = 0;                  ///< m
+  std::int32_t lat = 0;                ///< degE7
+  std::int32_t lng = 0;                ///< degE7
 
   static constexpr auto kDefinition =
       define(178, "AHRS2", SKEIN_MAVLINK_FIELDS(Ahrs2, roll, pitch, yaw, altitude, lat, lng));
@@ -221,17 +171,11 @@ struct Ahrs2 {
 
 /// Software in the loop only: the truth.
 struct Simstate {
-  float roll = 0;        ///< rad
-  float pitch = 0;       ///< rad
-  float yaw = 0;         ///< rad
-  float xacc = 0;        ///< m/s/s
-  float yacc = 0;        ///< m/s/s
-  float zacc = 0;        ///< m/s/s
-  float xgyro = 0;       ///< rad/s
-  float ygyro = 0;       ///< rad/s
-  float zgyro = 0;       ///< rad/s
-  std::int32_t lat = 0;  ///< degE7
-  std::int32_t lng = 0;  ///< degE7
+  float roll = 0, pitch = 0, yaw = 0;     ///< rad
+  float xacc = 0, yacc = 0, zacc = 0;     ///< m/s/s
+  float xgyro = 0, ygyro = 0, zgyro = 0;  ///< rad/s
+  std::int32_t lat = 0;                   ///< degE7
+  std::int32_t lng = 0;                   ///< degE7
 
   static constexpr auto kDefinition =
       define(164, "SIMSTATE",
@@ -245,9 +189,7 @@ struct TerrainReport {
   std::int32_t lon = 0;      ///< degE7
   float terrain_height = 0;  ///< m
   float current_height = 0;  ///< m
-  std::uint16_t spacing = 0;
-  std::uint16_t pending = 0;
-  std::uint16_t loaded = 0;
+  std::uint16_t spacing = 0, pending = 0, loaded = 0;
 
   static constexpr auto kDefinition =
       define(136, "TERRAIN_REPORT",

@@ -15,10 +15,7 @@ namespace skein::mavlink {
 /// Sent by every node once a second: who it is, its mode, whether it is armed.
 struct Heartbeat {
   std::uint32_t custom_mode = 0;
-  std::uint8_t type = 0;
-  std::uint8_t autopilot = 0;
-  std::uint8_t base_mode = 0;
-  std::uint8_t system_status = 0;
+  std::uint8_t type = 0, autopilot = 0, base_mode = 0, system_status = 0;
   std::uint8_t mavlink_version = 3;
 
   static constexpr auto kDefinition =
@@ -29,22 +26,18 @@ struct Heartbeat {
 
 /// Sensors and battery in short; bit 28 of the sensors is the check before arming.
 struct SysStatus {
-  std::uint32_t onboard_control_sensors_present = 0;
-  std::uint32_t onboard_control_sensors_enabled = 0;
-  std::uint32_t onboard_control_sensors_health = 0;
+  std::uint32_t onboard_control_sensors_present = 0, onboard_control_sensors_enabled = 0,
+                onboard_control_sensors_health = 0;
   std::uint16_t load = 0;             ///< d%
   std::uint16_t voltage_battery = 0;  ///< mV
   std::int16_t current_battery = 0;   ///< cA
   std::uint16_t drop_rate_comm = 0;   ///< c%
-  std::uint16_t errors_comm = 0;
-  std::uint16_t errors_count1 = 0;
-  std::uint16_t errors_count2 = 0;
-  std::uint16_t errors_count3 = 0;
+  std::uint16_t errors_comm = 0, errors_count1 = 0, errors_count2 = 0, errors_count3 = 0;
   std::uint16_t errors_count4 = 0;
   std::int8_t battery_remaining = 0;  ///< %
-  std::uint32_t onboard_control_sensors_present_extended = 0;
-  std::uint32_t onboard_control_sensors_enabled_extended = 0;
-  std::uint32_t onboard_control_sensors_health_extended = 0;
+  std::uint32_t onboard_control_sensors_present_extended = 0,
+                onboard_control_sensors_enabled_extended = 0,
+                onboard_control_sensors_health_extended = 0;
 
   static constexpr auto kDefinition =
       define(1, "SYS_STATUS",
@@ -83,10 +76,8 @@ struct Timesync {
 struct AutopilotVersion {
   std::uint64_t capabilities = 0;
   std::uint64_t uid = 0;
-  std::uint32_t flight_sw_version = 0;
-  std::uint32_t middleware_sw_version = 0;
-  std::uint32_t os_sw_version = 0;
-  std::uint32_t board_version = 0;
+  std::uint32_t flight_sw_version = 0, middleware_sw_version = 0, os_sw_version = 0,
+                board_version = 0;
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
   std::array<std::uint8_t, 8> flight_custom_version{};
@@ -108,14 +99,10 @@ struct HomePosition {
   std::int32_t latitude = 0;   ///< degE7
   std::int32_t longitude = 0;  ///< degE7
   std::int32_t altitude = 0;   ///< mm
-  float x = 0;                 ///< m
-  float y = 0;                 ///< m
-  float z = 0;                 ///< m
+  float x = 0, y = 0, z = 0;   ///< m
   std::array<float, 4> q{};
-  float approach_x = 0;         ///< m
-  float approach_y = 0;         ///< m
-  float approach_z = 0;         ///< m
-  std::uint64_t time_usec = 0;  ///< us
+  float approach_x = 0, approach_y = 0, approach_z = 0;  ///< m
+  std::uint64_t time_usec = 0;                           ///< us
 
   static constexpr auto kDefinition =
       define(242, "HOME_POSITION",
@@ -147,13 +134,9 @@ struct Statustext {
 
 /// Roll, pitch and yaw against north-east-down.
 struct Attitude {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  float roll = 0;                  ///< rad
-  float pitch = 0;                 ///< rad
-  float yaw = 0;                   ///< rad
-  float rollspeed = 0;             ///< rad/s
-  float pitchspeed = 0;            ///< rad/s
-  float yawspeed = 0;              ///< rad/s
+  std::uint32_t time_boot_ms = 0;                     ///< ms
+  float roll = 0, pitch = 0, yaw = 0;                 ///< rad
+  float rollspeed = 0, pitchspeed = 0, yawspeed = 0;  ///< rad/s
 
   static constexpr auto kDefinition =
       define(30, "ATTITUDE",
@@ -164,12 +147,8 @@ struct Attitude {
 /// North-east-down from the origin of the filter.
 struct LocalPositionNed {
   std::uint32_t time_boot_ms = 0;  ///< ms
-  float x = 0;                     ///< m
-  float y = 0;                     ///< m
-  float z = 0;                     ///< m
-  float vx = 0;                    ///< m/s
-  float vy = 0;                    ///< m/s
-  float vz = 0;                    ///< m/s
+  float x = 0, y = 0, z = 0;       ///< m
+  float vx = 0, vy = 0, vz = 0;    ///< m/s
 
   static constexpr auto kDefinition =
       define(32, "LOCAL_POSITION_NED",
@@ -178,15 +157,13 @@ struct LocalPositionNed {
 
 /// Filtered position; velocity north, east, down; hdg is UINT16_MAX if unknown.
 struct GlobalPositionInt {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::int32_t lat = 0;            ///< degE7
-  std::int32_t lon = 0;            ///< degE7
-  std::int32_t alt = 0;            ///< mm
-  std::int32_t relative_alt = 0;   ///< mm
-  std::int16_t vx = 0;             ///< cm/s
-  std::int16_t vy = 0;             ///< cm/s
-  std::int16_t vz = 0;             ///< cm/s
-  std::uint16_t hdg = 0;           ///< cdeg
+  std::uint32_t time_boot_ms = 0;       ///< ms
+  std::int32_t lat = 0;                 ///< degE7
+  std::int32_t lon = 0;                 ///< degE7
+  std::int32_t alt = 0;                 ///< mm
+  std::int32_t relative_alt = 0;        ///< mm
+  std::int16_t vx = 0, vy = 0, vz = 0;  ///< cm/s
+  std::uint16_t hdg = 0;                ///< cdeg
 
   static constexpr auto kDefinition =
       define(33, "GLOBAL_POSITION_INT",
@@ -236,10 +213,7 @@ struct GpsRawInt {
 
 /// ArduPilot: how well the filter agrees with its sensors, below 1 is good.
 struct EkfStatusReport {
-  float velocity_variance = 0;
-  float pos_horiz_variance = 0;
-  float pos_vert_variance = 0;
-  float compass_variance = 0;
+  float velocity_variance = 0, pos_horiz_variance = 0, pos_vert_variance = 0, compass_variance = 0;
   float terrain_alt_variance = 0;
   std::uint16_t flags = 0;
   float airspeed_variance = 0;
@@ -270,18 +244,14 @@ struct NavControllerOutput {
 
 /// The setpoint that the autopilot flies to now.
 struct PositionTargetGlobalInt {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  std::int32_t lat_int = 0;        ///< degE7
-  std::int32_t lon_int = 0;        ///< degE7
-  float alt = 0;                   ///< m
-  float vx = 0;                    ///< m/s
-  float vy = 0;                    ///< m/s
-  float vz = 0;                    ///< m/s
-  float afx = 0;                   ///< m/s/s
-  float afy = 0;                   ///< m/s/s
-  float afz = 0;                   ///< m/s/s
-  float yaw = 0;                   ///< rad
-  float yaw_rate = 0;              ///< rad/s
+  std::uint32_t time_boot_ms = 0;   ///< ms
+  std::int32_t lat_int = 0;         ///< degE7
+  std::int32_t lon_int = 0;         ///< degE7
+  float alt = 0;                    ///< m
+  float vx = 0, vy = 0, vz = 0;     ///< m/s
+  float afx = 0, afy = 0, afz = 0;  ///< m/s/s
+  float yaw = 0;                    ///< rad
+  float yaw_rate = 0;               ///< rad/s
   std::uint16_t type_mask = 0;
   std::uint8_t coordinate_frame = 0;
 
@@ -293,18 +263,12 @@ struct PositionTargetGlobalInt {
 
 /// The setpoint that the autopilot flies to now, local.
 struct PositionTargetLocalNed {
-  std::uint32_t time_boot_ms = 0;  ///< ms
-  float x = 0;                     ///< m
-  float y = 0;                     ///< m
-  float z = 0;                     ///< m
-  float vx = 0;                    ///< m/s
-  float vy = 0;                    ///< m/s
-  float vz = 0;                    ///< m/s
-  float afx = 0;                   ///< m/s/s
-  float afy = 0;                   ///< m/s/s
-  float afz = 0;                   ///< m/s/s
-  float yaw = 0;                   ///< rad
-  float yaw_rate = 0;              ///< rad/s
+  std::uint32_t time_boot_ms = 0;   ///< ms
+  float x = 0, y = 0, z = 0;        ///< m
+  float vx = 0, vy = 0, vz = 0;     ///< m/s
+  float afx = 0, afy = 0, afz = 0;  ///< m/s/s
+  float yaw = 0;                    ///< rad
+  float yaw_rate = 0;               ///< rad/s
   std::uint16_t type_mask = 0;
   std::uint8_t coordinate_frame = 0;
 
@@ -318,9 +282,7 @@ struct PositionTargetLocalNed {
 struct AttitudeTarget {
   std::uint32_t time_boot_ms = 0;  ///< ms
   std::array<float, 4> q{};
-  float body_roll_rate = 0;   ///< rad/s
-  float body_pitch_rate = 0;  ///< rad/s
-  float body_yaw_rate = 0;    ///< rad/s
+  float body_roll_rate = 0, body_pitch_rate = 0, body_yaw_rate = 0;  ///< rad/s
   float thrust = 0;
   std::uint8_t type_mask = 0;
 
@@ -347,9 +309,7 @@ struct BatteryStatus {
   std::int16_t temperature = 0;              ///< cdegC
   std::array<std::uint16_t, 10> voltages{};  ///< mV
   std::int16_t current_battery = 0;          ///< cA
-  std::uint8_t id = 0;
-  std::uint8_t battery_function = 0;
-  std::uint8_t type = 0;
+  std::uint8_t id = 0, battery_function = 0, type = 0;
   std::int8_t battery_remaining = 0;  ///< %
   std::int32_t time_remaining = 0;    ///< s
   std::uint8_t charge_state = 0;
@@ -368,12 +328,8 @@ struct BatteryStatus {
 /// Vibration (m/s^2) and clipped samples of the accelerometers.
 struct Vibration {
   std::uint64_t time_usec = 0;  ///< us
-  float vibration_x = 0;
-  float vibration_y = 0;
-  float vibration_z = 0;
-  std::uint32_t clipping_0 = 0;
-  std::uint32_t clipping_1 = 0;
-  std::uint32_t clipping_2 = 0;
+  float vibration_x = 0, vibration_y = 0, vibration_z = 0;
+  std::uint32_t clipping_0 = 0, clipping_1 = 0, clipping_2 = 0;
 
   static constexpr auto kDefinition =
       define(241, "VIBRATION",
