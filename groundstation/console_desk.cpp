@@ -7,7 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include "skein/process/event_text.hpp"
 #include "skein/recording/published.hpp"
 
 namespace skein::groundstation {
@@ -116,7 +115,7 @@ void ConsoleDesk::on_message(const mission::Message& message, VehicleId sender, 
 void ConsoleDesk::on_event(const mission::MissionEvent& event) {
   picture_.on_event(event);
   const std::uint64_t seq = next_seq_++;
-  if (server_) events_.push_back(console::event_json(event, process::text_of(event), seq));
+  if (server_) events_.push_back(console::event_json(event, seq));
 }
 
 void ConsoleDesk::on_timeout(const std::string& audit, Instant now) {

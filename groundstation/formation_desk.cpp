@@ -32,11 +32,6 @@ mission::FormationGroundConfig ground_config(const configuration::FormationConfi
   return ground;
 }
 
-std::string without_numbers(std::string text) {
-  std::erase_if(text, [](char c) { return (c >= '0' && c <= '9') || c == '.'; });
-  return text;
-}
-
 std::string text_of(const mission::FormationPreview& preview) {
   const auto& planned = preview.planned;
   std::string text = fmt::format("{} vehicles, {}, {:.1f} s, separation {:.2f} m at least\n",
@@ -177,12 +172,12 @@ void FormationDesk::work_off_script(Instant now) {
   // The first order is for the whole team.
   if (next_line_ == 0 && !given_ && ground_.members().size() < vehicles_.size()) {
     if (!team_by_) team_by_ = now + kTeamWait;
-    if (now < *team_by_ || !said_.empty()) return;
+    if (now < *team_by_ || std::exchange(told_awaited_, true)) return;
+    mission::event::FormationWarning awaited{mission::event::FormationNews::awaited};
     for (const VehicleId vehicle : vehicles_) {
-      if (!ground_.members().contains(vehicle)) said_ += fmt::format(" {}", vehicle.value);
+      if (!ground_.members().contains(vehicle)) awaited.vehicles.push_back(vehicle);
     }
-    report(mission::EventKind::warning, "the script waits for vehicles not heard yet:" + said_,
-           now);
+    report(std::move(awaited), now);
     return;
   }
   if (given_) {
@@ -195,7 +190,7 @@ void FormationDesk::work_off_script(Instant now) {
     ++next_line_;
   }
   if (next_line_ == script_.size()) {
-    report(mission::EventKind::script_done, "", now);
+    report(mission::event::ScriptDone{static_cast<std::uint32_t>(script_.size())}, now);
     return;
   }
   const Input& line = script_[next_line_];
@@ -206,16 +201,15 @@ void FormationDesk::work_off_script(Instant now) {
   const auto given = answer(std::get<Formation>(line), now);
   given_ = given.ok();
   if (given_) {
-    said_.clear();
+    told_waits_ = false;
     return;
   }
   try_again_ = now + kTryAgain;
-  // Where gusts move vehicles that rest, its numbers change all the time.
-  const std::string why = without_numbers(given.error().message);
-  if (why == said_) return;
-  said_ = why;
-  report(mission::EventKind::warning,
-         "the script waits at '" + config_.script[next_line_] + "': " + given.error().message, now);
+  // Once: where gusts move vehicles that rest, the reason changes all the time.
+  if (std::exchange(told_waits_, true)) return;
+  report(mission::event::OrderWaits{static_cast<std::uint32_t>(next_line_ + 1),
+                                    config_.script[next_line_], given.error().message},
+         now);
 }
 
 std::optional<mission::MissionEvent> FormationDesk::poll_event() {
@@ -230,9 +224,9 @@ void FormationDesk::take_events() {
   while (auto event = ground_.poll_event()) events_.push_back(std::move(*event));
 }
 
-void FormationDesk::report(mission::EventKind kind, std::string text, Instant now) {
+void FormationDesk::report(mission::EventBody body, Instant now) {
   take_events();  // which were before this one
-  events_.push_back({kGroundStation, now, kind, {}, {}, 0.0, std::move(text)});
+  events_.push_back({kGroundStation, now, {}, {}, std::move(body)});
 }
 
 }  // namespace skein::groundstation

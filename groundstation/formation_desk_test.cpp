@@ -25,12 +25,14 @@ TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
     }
     desk->on_timeout(now);
     while (const auto event = desk->poll_event()) {
-      if (event->kind == mission::EventKind::warning) warnings.push_back(*event);
+      if (mission::is_warning(event->kind())) warnings.push_back(*event);
     }
   }
   ASSERT_EQ(warnings.size(), 1U);
-  EXPECT_THAT(warnings[0].text, HasSubstr("the script waits at 'take-off': vehicle 1 and vehicle 2 "
-                                          "would come within 1.01 m of each other"));
+  const auto& waits = std::get<mission::event::OrderWaits>(warnings[0].body);
+  EXPECT_EQ(waits.line, 1U);
+  EXPECT_EQ(waits.order, "take-off");
+  EXPECT_THAT(waits.detail, HasSubstr("vehicle 1 and vehicle 2 would come within 1.01 m"));
 }
 
 TEST(FormationDesk, RefusesOrdersBeforeTheMissionBegins) {

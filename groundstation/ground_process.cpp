@@ -24,13 +24,13 @@
 #include "skein/mission/ground_agent.hpp"
 #include "skein/network/node.hpp"
 #include "skein/process/close_limit.hpp"
-#include "skein/process/event_text.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -323,8 +323,8 @@ class GroundLoop {
   }
 
   void tell_of(const mission::MissionEvent& event) {
-    const bool warning = event.kind == mission::EventKind::warning;
-    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(event));
+    const bool warning = mission::is_warning(event.kind());
+    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
     if (writer_) writer_->write(event);
     console_.on_event(event);
   }

@@ -9,7 +9,6 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/console/sections.hpp"
-#include "skein/process/event_text.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -80,8 +79,7 @@ void Playback::read_all(const std::function<void(double)>& progress) {
     }
     take(*entry);
     if (const auto* event = std::get_if<mission::MissionEvent>(&entry->content)) {
-      events_.push_back(
-          {entry->time, console::event_json(*event, process::text_of(*event), events_.size())});
+      events_.push_back({entry->time, console::event_json(*event, events_.size())});
     }
     end_ = std::max(end_, entry->time);  // of a file that was cut
   }

@@ -48,7 +48,7 @@ class PlaybackTest : public ::testing::Test {
         mission::MissionEvent event;
         event.vehicle = {2};
         event.time = now;
-        event.kind = mission::EventKind::survey_done;
+        event.body = mission::event::SurveyDone{};
         event.task = {{static_cast<std::uint16_t>(i / 100 + 1)}, TaskKind::survey, 0};
         writer->write(event);
         picture.on_event(event);

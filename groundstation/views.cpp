@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "skein/base/angles.hpp"
-#include "skein/process/event_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -76,7 +76,7 @@ std::string request_text(const mission::PendingAuthorisation& pending, const Mis
       "where   {}\n"
       "leader  {}, coalition {} round {}\n",
       request.deliveries.size(), request.site.value, place_text(request.site_position, origin),
-      process::text_of(request.round.coalition.leader), request.round.coalition.number,
+      wording::text_of(request.round.coalition.leader), request.round.coalition.number,
       request.round.number);
   auto line = std::back_inserter(text);
   for (const auto& delivery : request.deliveries) {
@@ -107,8 +107,8 @@ std::string coalitions_text(const console::Picture& picture) {
   auto line = std::back_inserter(text);
   for (const auto& [id, coalition] : picture.coalitions()) {
     fmt::format_to(line, "site {}: coalition {} of {}, {}{}\n", coalition.site.value, id.number,
-                   process::text_of(id.leader), to_string(coalition.state),
-                   coalition.why.empty() ? "" : ": " + coalition.why);
+                   wording::text_of(id.leader), to_string(coalition.state),
+                   coalition.why == coalition::Why{} ? "" : ": " + wording::text_of(coalition.why));
     for (const auto& round : coalition.rounds) {
       fmt::format_to(line, "  round {}: {} tasks announced, {} bids", round.number,
                      round.announcement ? round.announcement->tasks.size() : 0, round.bids.size());
@@ -138,7 +138,7 @@ void SiteBoard::on_event(const mission::MissionEvent& event) {
   if (event.task.site == SiteId{}) return;
   Entry& entry = sites_[event.task.site];
   entry.latest = event;
-  switch (event.kind) {
+  switch (event.kind()) {
     case mission::EventKind::announced:
     case mission::EventKind::monitoring:
     case mission::EventKind::coalition_formed:
@@ -161,9 +161,9 @@ std::string SiteBoard::text() const {
   for (const auto& [site, entry] : sites_) {
     fmt::format_to(std::back_inserter(text),
                    "site {}: {}, {}, {} delivered, {} assessed; {:.1f} s {}\n", site.value,
-                   entry.leader ? "led by " + process::text_of(*entry.leader) : "no leader yet",
+                   entry.leader ? "led by " + wording::text_of(*entry.leader) : "no leader yet",
                    entry.surveyed ? "surveyed" : "not surveyed", entry.delivered, entry.assessed,
-                   to_seconds(entry.latest.time), process::text_of(entry.latest));
+                   to_seconds(entry.latest.time), wording::text_of(entry.latest));
   }
   return text.empty() ? "no site is known yet\n" : text;
 }

@@ -91,14 +91,14 @@ TEST(SiteBoard, GathersWhatTheVehiclesTell) {
   SiteBoard board;
   EXPECT_THAT(board.text(), HasSubstr("no site is known"));
   const auto tell = [&](std::uint16_t vehicle, mission::EventKind kind, const TaskId& task) {
-    board.on_event({{vehicle}, at_seconds(5.0), kind, {}, task, 0.0, {}});
+    board.on_event({{vehicle}, at_seconds(5.0), {}, task, mission::body_of(kind)});
   };
   using enum mission::EventKind;
   tell(1, survey_done, {{1}, TaskKind::survey, 0});
   tell(1, coalition_formed, {{1}, TaskKind::survey, 0});
   for (std::uint8_t i = 0; i < 8; ++i) tell(2, task_done, {{1}, TaskKind::deliver, i});
   tell(7, task_done, {{1}, TaskKind::assess, 0});
-  tell(4, warning, {});  // concerns no site
+  tell(4, fleet_warning, {});  // concerns no site
   EXPECT_THAT(board.text(),
               HasSubstr("site 1: led by vehicle 1, surveyed, 8 delivered, 1 assessed; 5.0 s"));
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "skein/onboard/threads.hpp"
-#include "skein/process/event_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::onboard {
 
@@ -41,7 +41,8 @@ void AgentLoop::step(Instant now) {
     hand_out();
   }
   while (auto notice = link_.notice ? link_.notice() : std::nullopt) {
-    spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time), notice->text);
+    spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time),
+                 wording::text_of(notice->what));
     note(recording::NoticeGiven{*notice, now});
     node_.on_notice(*notice);
     hand_out();
@@ -87,8 +88,8 @@ void AgentLoop::note(recording::AgentRecord record) const {
 }
 
 void AgentLoop::report(mission::MissionEvent event) {
-  const bool warning = event.kind == mission::EventKind::warning;
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, process::text_of(event));
+  const bool warning = mission::is_warning(event.kind());
+  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
   events_->push(std::move(event));
 }
 

@@ -109,7 +109,7 @@ TEST(AgentLoop, AFloodOfMessagesIsTakenInPortions) {
 TEST(AgentLoop, CarriesNoticesModeAndTheGivingBackOfTheAircraft) {
   Cabin cabin;
   AgentLink link = cabin.link();
-  std::deque<mission::FlightNotice> notices{{at_seconds(0.5), true, "engine failure"}};
+  std::deque<mission::FlightNotice> notices{{at_seconds(0.5), true, {AutopilotNews::rebooted}}};
   link.notice = [&notices]() -> std::optional<mission::FlightNotice> {
     if (notices.empty()) return std::nullopt;
     auto first = std::move(notices.front());
@@ -127,7 +127,8 @@ TEST(AgentLoop, CarriesNoticesModeAndTheGivingBackOfTheAircraft) {
   EXPECT_EQ(given_back, std::vector{at_seconds(0.009)});
   const auto events = cabin.sent_of<mission::MissionEvent>();
   ASSERT_FALSE(events.empty());
-  EXPECT_EQ(events.back().text, "engine failure");
+  const mission::EventBody rebooted = mission::event::FlightWarning{{AutopilotNews::rebooted}};
+  EXPECT_EQ(events.back().body, rebooted);
   ASSERT_EQ(cabin.sent_of<mission::Health>().size(), 1U);
   EXPECT_EQ(cabin.sent_of<mission::Health>()[0].mode, "LOITER, piloted");
   const auto recorded = [&records]<class Record>(Record) {

@@ -114,7 +114,7 @@ TEST(CanFlightController, PassesOnThatItIsGivenBackOnceEachTime) {
     cockpit.controller->step(at_seconds(11.0));
     int said = 0;
     while (const auto notice = cockpit.controller->poll_notice()) {
-      if (notice->text.find("cannot be given") != std::string::npos) ++said;
+      if (notice->what.news == AutopilotNews::not_given_back) ++said;
     }
     return said;
   };
@@ -157,7 +157,7 @@ TEST(CanFlightController, ThreadsShareItWithoutRaces) {
   while (!found) {
     cockpit.controller->give_back(at_seconds(9.0));
     while (const auto notice = cockpit.controller->poll_notice()) {
-      found = found || notice->text.find("found an autopilot") != std::string::npos;
+      found = found || notice->what.news == AutopilotNews::found;
     }
     std::this_thread::yield();
   }

@@ -119,7 +119,7 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can, AgentRing* r
   link.notice = [on_can]() -> std::optional<mission::FlightNotice> {
     auto notice = on_can->poll_notice();
     if (!notice) return std::nullopt;
-    return mission::FlightNotice{notice->time, notice->warning, std::move(notice->text)};
+    return mission::FlightNotice{notice->time, notice->warning, std::move(notice->what)};
   };
   link.give_back = [on_can](Instant issued) { on_can->give_back(issued); };
   return link;

@@ -264,7 +264,7 @@ class Team {
       }
     } else if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {
       if (unable.contains(id)) {
-        m.participant.refuse("no path", clock(id));
+        m.participant.refuse({Reason::no_path}, clock(id));
         return;
       }
       for (const auto& a : award->mine) m.due[a.task] = a.time;
@@ -530,7 +530,7 @@ TEST(Coalition, CloseReleasesEveryone) {
   team.task_takes = 60s;
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
-  team.leader().close("refused by the operator", team.now);
+  team.leader().close({Reason::refused_by_operator}, team.now);
   team.run_for(300ms);
   EXPECT_TRUE(team.everyone_free());
 }

@@ -127,7 +127,7 @@ void Initiator::close_bids(Instant now) {
   }
   for (const auto& [bidder, bid] : bids_) wanted.bids.push_back(bid);
   if (wanted.tasks.empty()) {
-    not_formed(Event::allocation_failed, "waiting for tasks whose owners are silent", now);
+    not_formed(Event::allocation_failed, {Reason::owners_silent}, now);
   } else {
     outputs_.push(std::move(wanted));
   }
@@ -154,7 +154,7 @@ void Initiator::allocated(const Round& round, std::vector<TaskAssignment> assign
     return;  // too late: asked anew
   const Instant lease_until = std::max(announcement_.formed_at, now) + params_.first_lease();
   if (authority_until() < lease_until) {
-    not_formed(Event::allocation_failed, "too few of the coalition's electors are heard", now);
+    not_formed(Event::allocation_failed, {Reason::electors_silent}, now);
     return;
   }
   machine_.fire(Event::allocated);
@@ -242,7 +242,7 @@ void Initiator::on_rival(const Round& rival, bool rival_stands, Instant now) {
       known.tasks.push_back({entry.task, TaskState::done, entry.done_at});
     }
   }
-  close("vehicle " + std::to_string(rival.coalition.leader.value) + " leads the site", now);
+  close({Reason::superseded, rival.coalition.leader}, now);
   if (!known.tasks.empty()) messages_.push(std::move(known));
   outputs_.push(Superseded{announcement_.round, rival.coalition});
 }
@@ -258,15 +258,15 @@ void Initiator::start_anew(Instant now) {
   promised_until_ = Instant::max();
 }
 
-void Initiator::allocation_failed(const Round& round, const std::string& why, Instant now) {
+void Initiator::allocation_failed(const Round& round, const std::string& detail, Instant now) {
   if (round != announcement_.round || !machine_.in(State::allocating)) return;
-  not_formed(Event::allocation_failed, why, now);
+  not_formed(Event::allocation_failed, {Reason::no_allocation, {}, detail}, now);
 }
 
-void Initiator::not_formed(Event event, const std::string& why, Instant now) {
+void Initiator::not_formed(Event event, const Why& why, Instant now) {
   if (!machine_.fire(event)) return;
   // Frees the bidders, and with them whoever has confirmed an award that not all can fly.
-  messages_.push(Cancel{announcement_.round, why.substr(0, kReasonMax)});
+  messages_.push(Cancel{announcement_.round, why});
   outputs_.push(NotFormed{announcement_.round, why});
   deadline_ = now + params_.monitoring_interval;
 }
@@ -287,8 +287,7 @@ void Initiator::on_confirmation(const Confirmation& message, Instant now) {
       }
     }
     if (machine_.in(State::awarding)) {
-      not_formed(Event::not_confirmed,
-                 "vehicle " + std::to_string(message.member.value) + " refused: " + message.reason,
+      not_formed(Event::not_confirmed, {Reason::award_refused, message.member, message.why.detail},
                  now);
     }
     return;
@@ -343,7 +342,7 @@ void Initiator::on_status(const MemberStatus& message, Instant now) {
       entry->maybe_flown = true;
       if (entry->ownership == Ownership::open) make_unknown(*entry);
     } else if (owner && reported.state == TaskState::failed && message.round == entry->round) {
-      lose(*entry, "its owner reports that it failed");
+      lose(*entry, Reason::owner_failed);
     } else if (owner && reported.state == TaskState::started) {
       entry->reported = TaskState::started;
     }
@@ -382,7 +381,7 @@ void Initiator::expire(Instant now) {
     if (may_be_flown) {
       make_unknown(entry);
     } else {
-      lose(entry, "its owner fell silent");
+      lose(entry, Reason::owner_silent);
     }
   }
   finish_if_done();
@@ -397,7 +396,7 @@ void Initiator::reopen(Entry& entry) {
   }
 }
 
-void Initiator::lose(Entry& entry, const std::string& why) {
+void Initiator::lose(Entry& entry, Reason why) {
   reopen(entry);
   if (entry.ownership == Ownership::open) {
     outputs_.push(TaskLost{entry.round, entry.assignment, why});
@@ -439,21 +438,21 @@ void Initiator::heartbeat(Instant now) {
   messages_.push(std::move(renewal));
 }
 
-void Initiator::announce_again(const std::string& why, Instant now) {
+void Initiator::announce_again(Reason why, Instant now) {
   if (!machine_.in(State::executing) || !machine_.fire(Event::try_again)) return;
-  outputs_.push(NotFormed{announcement_.round, why});
+  outputs_.push(NotFormed{announcement_.round, {why}});
   start_round(now);
 }
 
 void Initiator::authorised(const Round& round) { authorised_rounds_.insert(round.number); }
 
-void Initiator::close(const std::string& why, Instant /*now*/) {
+void Initiator::close(const Why& why, Instant /*now*/) {
   if (machine_.in(State::closed) || !machine_.fire(Event::closed)) return;
   std::set<Round> rounds{announcement_.round};
   for (const auto& entry : ledger_) {
     if (entry.ownership == Ownership::leased) rounds.insert(entry.round);
   }
-  for (const auto& round : rounds) messages_.push(Cancel{round, why.substr(0, kReasonMax)});
+  for (const auto& round : rounds) messages_.push(Cancel{round, why});
 }
 
 void Initiator::on_timeout(Instant now) {
@@ -472,12 +471,12 @@ void Initiator::on_timeout(Instant now) {
       break;
     case State::allocating:
       if (now >= deadline_) {
-        not_formed(Event::allocation_failed, "the allocation was not ready in time", now);
+        not_formed(Event::allocation_failed, {Reason::allocation_too_late}, now);
       }
       break;
     case State::awarding:
       if (now >= deadline_) {
-        not_formed(Event::not_confirmed, "not every member confirmed the award", now);
+        not_formed(Event::not_confirmed, {Reason::not_confirmed}, now);
       } else if (now >= next_repeat_) {
         next_repeat_ = now + params_.message_delay;
         messages_.push(*award_);
@@ -501,7 +500,7 @@ void Initiator::on_timeout(Instant now) {
         return overdue || (e.ownership == Ownership::open && !waits);
       };
       if (has_authority(now) && std::any_of(ledger_.begin(), ledger_.end(), needs_round)) {
-        announce_again("tasks are open again", now);
+        announce_again(Reason::tasks_open, now);
       }
       break;
     }

@@ -50,7 +50,7 @@ void Participant::on_announcement(const Announcement& message, Instant now) {
       outputs_.push(BidWanted{message});
     }
   } else if (newer_of_mine) {  // bidding: the round that was bid in has come to nothing
-    leave(Event::new_round, "the leader opened another round");
+    leave(Event::new_round, {Reason::new_round});
     outputs_.push(BidWanted{message});
   }
 }
@@ -61,7 +61,7 @@ void Participant::bid(const Announcement& announcement, Bid bid, Instant now) {
   if (announcement.round.coalition != round_.coalition) {  // its leader does not hear this bid
     for (const auto& lease : leases_) give_up(lease, now);
   }
-  end_leases("bid in a new round", true);
+  end_leases({Reason::bid_again}, true);
   round_ = announcement.round;
   bid.round = round_;
   bid.bidder = self_;
@@ -90,8 +90,8 @@ void Participant::on_award(const Award& message, Instant now) {
     if (a.vehicle == self_) mine.push_back(a);
   }
   if (mine.empty() || now >= message.lease_until) {
-    if (!goes_on)
-      leave(Event::not_awarded, mine.empty() ? "not needed" : "the award came too late");
+    const Reason reason = mine.empty() ? Reason::not_needed : Reason::award_too_late;
+    if (!goes_on) leave(Event::not_awarded, {reason});
     return;
   }
   if (!machine_.fire(Event::award_received)) return;
@@ -121,10 +121,10 @@ void Participant::accept(Instant now) {
   next_status_ = now + params_.heartbeat;
 }
 
-void Participant::refuse(const std::string& reason, Instant /*now*/) {
-  confirmation_ = Confirmation{round_, self_, false, reason.substr(0, kReasonMax)};
+void Participant::refuse(const Why& why, Instant /*now*/) {
+  confirmation_ = Confirmation{round_, self_, false, why};
   messages_.push(*confirmation_);
-  leave(Event::refused, reason);
+  leave(Event::refused, why);
 }
 
 void Participant::on_cancel(const Cancel& message, Instant now) {
@@ -133,7 +133,7 @@ void Participant::on_cancel(const Cancel& message, Instant now) {
   for (const auto& lease : leases_) {
     if (lease.state == TaskState::started) give_up(lease, now);
   }
-  leave(Event::released, message.reason);
+  leave(Event::released, message.why);
 }
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
@@ -161,12 +161,12 @@ void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
 
 void Participant::on_timeout(Instant now) {
   if ((machine_.in(State::bidding) || machine_.in(State::rebidding)) && now >= bidding_until_) {
-    leave(Event::no_award, "no award came");
+    leave(Event::no_award, {Reason::no_award});
   }
   if (machine_.in(State::orphaned)) {
     if (now >= orphaned_until_) {
       for (const auto& lease : leases_) give_up(lease, now);
-      leave(Event::released, "no successor of the leader came");
+      leave(Event::released, {Reason::no_successor});
     }
   } else {
     expire_leases(now);
@@ -188,7 +188,8 @@ void Participant::expire_leases(Instant now) {
   const bool held = machine_.in(State::member) && elector_.awaits_successor() &&
                     !task_in_progress() && std::all_of(leases_.begin(), leases_.end(), ran_out);
   for (const auto& lease : leases_) {
-    if (ran_out(lease)) outputs_.push(LeaseEnded{round_, lease.task, "the lease ran out", held});
+    if (!ran_out(lease)) continue;
+    outputs_.push(LeaseEnded{round_, lease.task, {Reason::lease_ran_out}, held});
   }
   if (held) {
     machine_.fire(Event::leader_lost);
@@ -199,7 +200,9 @@ void Participant::expire_leases(Instant now) {
     if (ran_out(lease)) give_up(lease, now);
   }
   std::erase_if(leases_, ran_out);
-  if (leases_.empty() && machine_.in(State::member)) leave(Event::released, "the lease ran out");
+  if (leases_.empty() && machine_.in(State::member)) {
+    leave(Event::released, {Reason::lease_ran_out});
+  }
 }
 
 /// The leader may count on a lease for longer than it was heard to: it is told otherwise.
@@ -273,20 +276,21 @@ void Participant::finish(const TaskId& task, TaskState state, Instant now) {
       std::find_if(leases_.begin(), leases_.end(), [&](const Lease& l) { return l.task == task; });
   if (lease == leases_.end()) return;
   leases_.erase(lease);
-  outputs_.push(LeaseEnded{round_, task, std::string{to_string(state)}, false});
+  const Why why{state == TaskState::done ? Reason::task_done : Reason::task_failed};
+  outputs_.push(LeaseEnded{round_, task, why, false});
   finished_.push_back({round_, {task, state, now}, now + kReportFinishedFor});
   send_status(now);
   if (leases_.empty() && (machine_.in(State::member) || machine_.in(State::orphaned))) {
-    leave(Event::released, "its tasks are " + std::string{to_string(state)});
+    leave(Event::released, why);
   }
 }
 
-void Participant::withdraw(const std::string& reason, Instant now) {
+void Participant::withdraw(Reason reason, Instant now) {
   while (!leases_.empty()) finish(leases_.front().task, TaskState::failed, now);
-  if (!machine_.in(State::free)) leave(Event::released, reason);
+  if (!machine_.in(State::free)) leave(Event::released, {reason});
 }
 
-void Participant::end_leases(const std::string& why, bool unstarted_only) {
+void Participant::end_leases(const Why& why, bool unstarted_only) {
   const auto ends = [unstarted_only](const Lease& l) {
     return !unstarted_only || l.state == TaskState::planned;
   };
@@ -296,7 +300,7 @@ void Participant::end_leases(const std::string& why, bool unstarted_only) {
   std::erase_if(leases_, ends);
 }
 
-void Participant::leave(Event event, const std::string& why) {
+void Participant::leave(Event event, const Why& why) {
   if (!machine_.fire(event)) return;
   end_leases(why, false);
   if (event != Event::new_round) elector_.leave();

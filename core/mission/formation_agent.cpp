@@ -50,8 +50,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   if (const auto why = why_not(change, *self)) {
     // It is sent again, and may fit then.
     if (change.number == std::exchange(refused_, change.number)) return;
-    report(EventKind::warning, 0.0,
-           "change " + std::to_string(change.number) + " is not flown: " + *why, now);
+    report(event::ChangeRefused{change.number, *why}, now);
     return;
   }
   change_ = change;
@@ -67,20 +66,22 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   execution_->hold(held_ || !not_begun_.empty());
   arrived_ = false;
   waits_since_.reset();
-  report(EventKind::change_begun, change.number, "", now);
+  report(event::ChangeTakenUp{change.number}, now);
   step(now);
 }
 
-std::optional<std::string> FormationAgent::why_not(const Change& change, std::size_t self) const {
-  if (change_ && !execution_->at_rest()) return "the one before is still flown";
+std::optional<event::ChangeRefusal> FormationAgent::why_not(const Change& change,
+                                                            std::size_t self) const {
+  using enum event::ChangeRefusal;
+  if (change_ && !execution_->at_rest()) return another_is_flown;
   const auto& limits = change.limits;
   if (limits.speed_mps > config_.limits.speed_mps ||
       limits.acceleration_mps2 > config_.limits.acceleration_mps2) {
-    return "it is faster than this vehicle";
+    return too_fast;
   }
   const Vec3 from = change_ ? execution_->reference(next_slot_).position_m : here(*state_);
   const Vec3 apart = from - change.movers[self].points.front();
-  if (apart.norm() > config_.start_tolerance_m) return "it begins somewhere else";
+  if (apart.norm() > config_.start_tolerance_m) return begins_elsewhere;
   return std::nullopt;
 }
 
@@ -131,7 +132,7 @@ void FormationAgent::step(Instant now) {
     track_ = execution_->track();
     if (!arrived_ && execution_->finished()) {
       arrived_ = true;
-      report(EventKind::place_reached, change_->number, "", now);
+      report(event::PlaceReached{change_->number}, now);
     }
     tell_of_wait(now);
   }
@@ -159,14 +160,15 @@ void FormationAgent::tell_of_wait(Instant now) {
   if (!waits_since_) waits_since_ = now;
   if (now - *waits_since_ < kLongWait) return;
   waits_since_ = Instant::max();  // it is said once
-  std::string why = "it is told to hold";
+  event::Waiting waiting{change_->number};
   if (!not_begun_.empty()) {
-    why = "vehicle " + std::to_string(not_begun_.begin()->value) + " has not begun";
+    waiting.what = event::WaitsFor::beginning;
+    waiting.vehicle = *not_begun_.begin();
   } else if (const auto other = execution_->waits_for()) {
-    why = "vehicle " + std::to_string(change_->movers[*other].vehicle.value) + " has yet to pass";
+    waiting.what = event::WaitsFor::passing;
+    waiting.vehicle = change_->movers[*other].vehicle;
   }
-  report(EventKind::warning, to_seconds(kLongWait),
-         "waits in change " + std::to_string(change_->number) + ": " + why, now);
+  report(waiting, now);
 }
 
 std::optional<Guidance> FormationAgent::poll_guidance() { return std::exchange(track_, {}); }
@@ -190,8 +192,8 @@ Counters FormationAgent::counters() const {
   return all;
 }
 
-void FormationAgent::report(EventKind kind, double value, std::string text, Instant now) {
-  MissionEvent event{config_.vehicle, now, kind, {}, {}, value, std::move(text)};
+void FormationAgent::report(EventBody body, Instant now) {
+  MissionEvent event{config_.vehicle, now, {}, {}, std::move(body)};
   events_.push(event);
   messages_.push(std::move(event));
 }

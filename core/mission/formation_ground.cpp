@@ -13,6 +13,7 @@
 namespace skein::mission {
 namespace {
 
+using event::FormationNews;
 using formation::Change;
 using formation::ChangeMotion;
 using formation::Transfer;
@@ -37,23 +38,7 @@ std::string metres_of(double m) {
   return text.data();
 }
 
-std::string names_of(const std::vector<VehicleId>& vehicles) {
-  std::string text;
-  for (const VehicleId vehicle : vehicles) {
-    if (!text.empty()) text += ", ";
-    text += std::to_string(vehicle.value);
-  }
-  return text;
-}
-
 }  // namespace
-
-std::string_view to_string(OrderKind kind) {
-  static constexpr std::array<std::string_view, 4> kNames{"take_off", "rally", "form", "land"};
-  static_assert(kNames.size() == static_cast<std::size_t>(OrderKind::count));
-  const auto i = static_cast<std::size_t>(kind);
-  return i < kNames.size() ? kNames[i] : "unknown";
-}
 
 FormationGround::FormationGround(const FormationGroundConfig& config, Instant now)
     : config_{config}, next_{now} {}
@@ -240,17 +225,16 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   rest_since_.reset();
   messages_.push(*change_);
   send_next_ = now + kRepeat;
-  std::string what{to_string(preview.order.kind)};
-  if (preview.order.kind == OrderKind::form) {
-    what += " " + std::string{formation::to_string(preview.order.shape.kind)};
-  }
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "%s%s, %s: %zu vehicles in %.1f s, separation %.2f m at least",
-                correcting_ ? "correction of " : "", what.c_str(),
-                std::string{to_string(preview.planned.way)}.c_str(), change_->movers.size(),
-                to_seconds(preview.planned.duration), preview.planned.least_separation_m);
-  report(EventKind::change_begun, kGroundStation, number_, text.data(), now);
+  event::ChangeBegun begun;
+  begun.number = number_;
+  begun.order = preview.order.kind;
+  begun.shape = preview.order.shape.kind;
+  begun.correction = correcting_;
+  begun.way = preview.planned.way;
+  begun.vehicles = static_cast<std::uint8_t>(change_->movers.size());
+  begun.takes = preview.planned.duration;
+  begun.separation_m = preview.planned.least_separation_m;
+  report(begun, now);
 }
 
 // --- what is heard -------------------------------------------------------------------------------
@@ -271,8 +255,7 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   const auto [found, is_new] = members_.try_emplace(status.vehicle);
   Member& member = found->second;
   if (!is_new && member.lost) {
-    report(EventKind::warning, status.vehicle, 0.0,
-           name_of(status.vehicle) + " is heard again; the next order takes it along", now);
+    warn(FormationNews::back, {status.vehicle}, now);
   }
   // A ground station before this one has commanded it.
   succeeds_ = succeeds_ || status.progress.change > number_;
@@ -329,10 +312,7 @@ void FormationGround::find_lost(Instant now) {
     member.lost = true;
     const bool on_way = change_ && !held_since_ && goal_of(vehicle);
     give_again_ = give_again_ || on_way;
-    report(EventKind::warning, vehicle, 0.0,
-           name_of(vehicle) + " is silent: its way is kept clear" +
-               (on_way ? ", and the order is given again to the others once they rest" : ""),
-           now);
+    warn(on_way ? FormationNews::lost_on_its_way : FormationNews::lost, {vehicle}, now);
   }
 }
 
@@ -354,8 +334,7 @@ void FormationGround::find_stuck(Instant now) {
   if (!stuck_since_) stuck_since_ = now;
   if (now - *stuck_since_ >= kStuck && !give_again_) {
     give_again_ = true;
-    report(EventKind::warning, who, 0.0,
-           name_of(who) + " has not begun the change: the order is given again", now);
+    warn(FormationNews::not_begun, {who}, now);
   }
   withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;
 }
@@ -370,13 +349,11 @@ void FormationGround::give_again(Instant now) {
   auto again = preview(*order_);
   if (!again) {
     rest_since_ = now + kTryAgain;
-    if (!refused_.empty()) return;  // said before, and where others rest differs a little
-    refused_ = again.error().message;
-    report(EventKind::warning, kGroundStation, 0.0, "the order cannot be given again: " + refused_,
-           now);
+    if (std::exchange(told_refused_, true)) return;  // and where others rest differs a little
+    report(event::OrderWaits{0, std::string{to_string(order_->kind)}, again.error().message}, now);
     return;
   }
-  refused_.clear();
+  told_refused_ = false;
   begin(std::move(*again), now);
 }
 
@@ -399,7 +376,7 @@ void FormationGround::judge_places(Instant now) {
   if (now - *near_since_ < config_.settle) return;
   held_since_ = now;
   if (correcting_) return;
-  report(EventKind::formation_held, kGroundStation, to_seconds(*last - *first), "", now);
+  report(event::FormationHeld{*last - *first}, now);
 }
 
 void FormationGround::correct_drift(Instant now) {
@@ -427,14 +404,16 @@ void FormationGround::correct_drift(Instant now) {
     members_[transfer.vehicle].drift_m = Vec3::Zero();
   }
   correcting_ = true;
-  report(EventKind::warning, kGroundStation, 0.0,
-         "drift is corrected of vehicles " + names_of(drifting), now);
+  warn(FormationNews::drift_corrected, drifting, now);
   begin(std::move(*again), now);
 }
 
-void FormationGround::report(EventKind kind, VehicleId vehicle, double value, std::string text,
-                             Instant now) {
-  events_.push({vehicle, now, kind, {}, {}, value, std::move(text)});
+void FormationGround::report(EventBody body, Instant now) {
+  events_.push({kGroundStation, now, {}, {}, std::move(body)});
+}
+
+void FormationGround::warn(FormationNews news, std::vector<VehicleId> vehicles, Instant now) {
+  report(event::FormationWarning{news, std::move(vehicles)}, now);
 }
 
 }  // namespace skein::mission

@@ -64,9 +64,13 @@ class Team {
   [[nodiscard]] const Vec3& position(std::size_t index) const {
     return vehicles_.at(index).position;
   }
+  [[nodiscard]] std::size_t warnings() const {
+    return static_cast<std::size_t>(std::count_if(
+        events.begin(), events.end(), [](const auto& event) { return is_warning(event.kind()); }));
+  }
   [[nodiscard]] std::size_t count(EventKind kind) const {
     return static_cast<std::size_t>(std::count_if(
-        events.begin(), events.end(), [kind](const auto& event) { return event.kind == kind; }));
+        events.begin(), events.end(), [kind](const auto& event) { return event.kind() == kind; }));
   }
 
   Instant now{};
@@ -124,17 +128,17 @@ TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
   ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
   ASSERT_TRUE(team.take_off());
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
-  EXPECT_EQ(team.count(EventKind::warning), 0U);
+  EXPECT_EQ(team.warnings(), 0U);
   const Vec3 place = team.position(1);
   team.push_aside(1, {0.25, 0.0, 0.0});  // within the tolerance of 0.3 m
-  ASSERT_TRUE(team.until([&] { return team.count(EventKind::warning) > 0; }));
-  const auto warning = std::find_if(team.events.begin(), team.events.end(), [](const auto& event) {
-    return event.kind == EventKind::warning;
-  });
-  EXPECT_THAT(warning->text, HasSubstr("drift is corrected of vehicles 2"));
+  ASSERT_TRUE(team.until([&] { return team.warnings() > 0; }));
+  const auto warning = std::find_if(team.events.begin(), team.events.end(),
+                                    [](const auto& event) { return is_warning(event.kind()); });
+  EXPECT_EQ(warning->body,
+            EventBody{(event::FormationWarning{event::FormationNews::drift_corrected, {{2}}})});
   for (int i = 0; i < 600; ++i) team.step();
   EXPECT_LT((team.position(1) - place).norm(), 0.08);
-  EXPECT_EQ(team.count(EventKind::warning), 1U);
+  EXPECT_EQ(team.warnings(), 1U);
   EXPECT_TRUE(team.ground().in_place());
   EXPECT_EQ(team.count(EventKind::formation_held), 1U);  // it is no new formation
 }
@@ -146,7 +150,7 @@ TEST(FormationGround, LeavesASmallDriftAlone) {
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
   team.push_aside(1, {0.1, 0.0, 0.0});
   for (int i = 0; i < 1200; ++i) team.step();
-  EXPECT_EQ(team.count(EventKind::warning), 0U);
+  EXPECT_EQ(team.warnings(), 0U);
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 namespace skein::mission {
 namespace {
 
+using event::FleetNews;
+
 constexpr Duration kAuthorisationRepeat = std::chrono::milliseconds{500};
 constexpr Duration kHazardRepeat = std::chrono::seconds{5};
 constexpr Duration kCommandRepeat = std::chrono::seconds{1};
@@ -73,8 +75,7 @@ void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
   const VehicleId vehicle = telemetry.vehicle;
   if (!fleet_.contains(vehicle)) {
     if (fleet_.size() >= config_.expected.size() + kStrangersMax) return;
-    report(EventKind::warning, {}, {}, now,
-           name_of(vehicle) + " speaks, but is not in the fleet; check its id");
+    warn(FleetNews::stranger, vehicle, now);
   }
   FleetEntry& entry = fleet_[vehicle];
 
@@ -87,11 +88,9 @@ void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
   if (known || instances.size() < kInstancesMax) instances[telemetry.instance] = now;
   if (changed && known && !entry.duplicate) {
     entry.duplicate = true;
-    report(EventKind::warning, {}, {}, now,
-           "two vehicles answer to the id of " + name_of(vehicle) +
-               "; nothing is commanded to it until one of them is stopped or renumbered");
+    warn(FleetNews::duplicate, vehicle, now);
   } else if (changed && !known && !entry.duplicate) {
-    report(EventKind::warning, {}, {}, now, name_of(vehicle) + " has started anew");
+    warn(FleetNews::restarted, vehicle, now);
   }
 
   const bool older =
@@ -99,11 +98,7 @@ void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
   if (!older) entry.telemetry = telemetry;
   if (entry.silent) {
     entry.silent = false;
-    report(
-        EventKind::warning, {}, {}, now,
-        name_of(vehicle) + " is heard again after " +
-            std::to_string(std::chrono::round<std::chrono::seconds>(now - entry.heard_at).count()) +
-            " s");
+    warn(FleetNews::heard_again, vehicle, now, now - entry.heard_at);
   }
   entry.heard_at = now;
 }
@@ -112,7 +107,7 @@ void GroundAgent::mark_silent(Instant now) {
   for (auto& [vehicle, entry] : fleet_) {
     if (!entry.telemetry || entry.silent || now < entry.heard_at + config_.silence) continue;
     entry.silent = true;
-    report(EventKind::warning, {}, {}, now, name_of(vehicle) + " is silent");
+    warn(FleetNews::silent, vehicle, now);
   }
 }
 
@@ -123,7 +118,7 @@ void GroundAgent::mark_mended(Instant now) {
     std::erase_if(instances, [&](const auto& i) { return i.second + config_.silence <= now; });
     if (instances.size() > 1) continue;
     entry.duplicate = false;
-    report(EventKind::warning, {}, {}, now, "the id of " + name_of(vehicle) + " is unique again");
+    warn(FleetNews::unique, vehicle, now);
   }
 }
 
@@ -238,23 +233,24 @@ const Authorisation* GroundAgent::granted_before(const AuthorisationRequest& req
 }
 
 void GroundAgent::on_event(const MissionEvent& event) {
-  const bool lost = event.kind == EventKind::lease_ended &&
-                    event.text != coalition::to_string(coalition::TaskState::done) &&
-                    event.text != kHeldForSuccessor;
+  const auto* ended = std::get_if<event::LeaseEnded>(&event.body);
+  const bool lost =
+      ended != nullptr && ended->why.reason != coalition::Reason::task_done && !ended->held;
+  const EventKind kind = event.kind();
   const bool gives_up =
-      lost || event.kind == EventKind::task_failed || event.kind == EventKind::authorisation_late;
+      lost || kind == EventKind::task_failed || kind == EventKind::authorisation_late;
   const auto granted = granted_.find(event.task);
   if (granted != granted_.end() && granted->second.round == event.round &&
       granted->second.assignment.vehicle == event.vehicle) {
     // What was begun may be flown to its end, whatever is said afterwards.
-    granted->second.begun = granted->second.begun || event.kind == EventKind::task_started;
+    granted->second.begun = granted->second.begun || kind == EventKind::task_started;
     granted->second.given_up = granted->second.given_up || (gives_up && !granted->second.begun);
   }
-  if (event.kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
+  if (kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
     done_.emplace(event.task, coalition::MemberStatus::Entry{event.task, coalition::TaskState::done,
                                                              event.time});
   }
-  if (!seen_events_.emplace(event.time, event.vehicle, event.kind, event.task, event.text).second) {
+  if (!seen_events_.emplace(event.time, event.vehicle, event.task, event.body).second) {
     return;
   }
   if (seen_events_.size() > kSeenEventsMax) seen_events_.erase(seen_events_.begin());
@@ -331,8 +327,8 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
                                                                 delivery.bearing_rad, false});
   }
   pending.decision = Authorisation{request.round, request.site, granted, by, now};
-  report(granted ? EventKind::authorised : EventKind::authorisation_refused, request.round,
-         {request.site, TaskKind::deliver, 0}, now, "by " + by);
+  report(granted ? EventBody{event::Authorised{by}} : EventBody{event::AuthorisationRefused{by}},
+         request.round, {request.site, TaskKind::deliver, 0}, now);
   messages_.push(Message{*pending.decision});
   next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
   return {};
@@ -473,9 +469,13 @@ Instant GroundAgent::next_timeout() const {
   return next;
 }
 
-void GroundAgent::report(EventKind kind, const coalition::Round& round, const TaskId& task,
-                         Instant now, std::string text) {
-  events_.push({kGroundStation, now, kind, round, task, 0.0, std::move(text)});
+void GroundAgent::report(EventBody body, const coalition::Round& round, const TaskId& task,
+                         Instant now) {
+  events_.push({kGroundStation, now, round, task, std::move(body)});
+}
+
+void GroundAgent::warn(FleetNews news, VehicleId vehicle, Instant now, Duration silence) {
+  report(event::FleetWarning{news, vehicle, silence}, {}, {}, now);
 }
 
 }  // namespace skein::mission

@@ -83,6 +83,14 @@ TEST(GroundAgent, KnowsItsFleetBeforeItSpeaks) {
   EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
 }
 
+using event::FleetNews;
+using event::FleetWarning;
+
+FleetWarning news_of(const MissionEvent& event) {
+  const auto* news = std::get_if<FleetWarning>(&event.body);
+  return news == nullptr ? FleetWarning{FleetNews::count, {}} : *news;
+}
+
 TEST(GroundAgent, TellsSilenceAndReturn) {
   Bench bench;
   bench.hear(telemetry_of({1}, 10, 1.0), 1.0);
@@ -91,12 +99,12 @@ TEST(GroundAgent, TellsSilenceAndReturn) {
   EXPECT_TRUE(bench.agent.fleet().at({1}).silent);
   auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_THAT(events[0].text, HasSubstr("vehicle 1 is silent"));
+  EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::silent, {1}}));
   bench.hear(telemetry_of({1}, 10, 9.0), 9.0);
   EXPECT_FALSE(bench.agent.fleet().at({1}).silent);
   events = bench.events();
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_THAT(events[0].text, HasSubstr("heard again after 8 s"));
+  EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::heard_again, {1}, from_seconds(8.0)}));
 }
 
 TEST(GroundAgent, TwoInstancesWithOneIdAreADuplicateUntilMended) {
@@ -123,7 +131,7 @@ TEST(GroundAgent, ARestartIsNoDuplicate) {
   EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);
   const auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_THAT(events[0].text, HasSubstr("started anew"));
+  EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::restarted, {1}}));
 }
 
 TEST(GroundAgent, WarnsOnceOfAStranger) {
@@ -132,7 +140,7 @@ TEST(GroundAgent, WarnsOnceOfAStranger) {
   bench.hear(telemetry_of({9}, 10, 1.1), 1.1);
   const auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_THAT(events[0].text, HasSubstr("vehicle 9 speaks, but is not in the fleet"));
+  EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::stranger, {9}}));
   EXPECT_FALSE(bench.agent.command({9}, CommandKind::hold, at_seconds(2.0)).ok());
 }
 
@@ -144,8 +152,7 @@ TEST(GroundAgent, AFloodOfStrangersIsBounded) {
 
 TEST(GroundAgent, ForwardsEveryEventOnce) {
   Bench bench;
-  MissionEvent event{
-      {2}, at_seconds(4.0), EventKind::task_done, {}, {kSite, TaskKind::deliver, 1}, 0.0, {}};
+  MissionEvent event{{2}, at_seconds(4.0), {}, {kSite, TaskKind::deliver, 1}, event::TaskDone{}};
   bench.agent.on_message(Message{event}, {2}, at_seconds(4.1));
   bench.agent.on_message(Message{event}, {2}, at_seconds(4.2));
   event.task.index = 2;
@@ -181,7 +188,7 @@ TEST(GroundAgent, SendsADecisionUntilTheLastDelivery) {
   EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
   const auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
-  EXPECT_EQ(events[0].kind, EventKind::authorised);
+  EXPECT_EQ(events[0].kind(), EventKind::authorised);
 
   const auto again = bench.agent.refuse(kSite, "Bob", at_seconds(13.0));
   ASSERT_FALSE(again.ok());
@@ -217,13 +224,18 @@ TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   // Until its owner says that it does not fly it.
   bench.ask(request(2, 25.0, 40.0), 14.0);
   EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(14.5)).ok());
-  MissionEvent gives_up{{3},
-                        at_seconds(15.0),
-                        EventKind::lease_ended,
-                        rival.round,
-                        rival.deliveries[0].assignment.task,
-                        0.0,
-                        "bid in a new round"};
+  const TaskId& task = rival.deliveries[0].assignment.task;
+  const auto ends = [&](coalition::Reason reason, bool held) {
+    return MissionEvent{
+        {3}, at_seconds(15.0), rival.round, task, event::LeaseEnded{{reason}, held}};
+  };
+  for (const MissionEvent& holds :
+       {ends(coalition::Reason::task_done, false), ends(coalition::Reason::lease_ran_out, true)}) {
+    bench.agent.on_message(Message{holds}, {3}, at_seconds(15.0));
+    bench.ask(request(2, 25.0, 40.0), 15.2);
+    EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(15.2)).ok());
+  }
+  const MissionEvent gives_up = ends(coalition::Reason::bid_again, false);
   bench.agent.on_message(Message{gives_up}, {3}, at_seconds(15.0));
   bench.ask(request(2, 25.0, 40.0), 15.5);
   EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0)).ok());

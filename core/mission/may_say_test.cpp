@@ -47,7 +47,7 @@ TEST(MaySay, ALeaderSpeaksForItsRounds) {
   coalition::Award award;
   award.round = kRound;
   EXPECT_EQ(of(coalition::Message{award}), kItself);
-  EXPECT_EQ(of(coalition::Message{coalition::Cancel{kRound, ""}}), kItself);
+  EXPECT_EQ(of(coalition::Message{coalition::Cancel{kRound, {}}}), kItself);
   AuthorisationRequest request;
   request.round = kRound;
   EXPECT_EQ(of(request), kItself);
@@ -67,7 +67,7 @@ TEST(MaySay, AMemberSpeaksForItself) {
   bid.round = {{kOther, {}, 1}, 1};
   bid.bidder = kSelf;
   EXPECT_EQ(of(coalition::Message{bid}), kItself);
-  EXPECT_EQ(of(coalition::Message{coalition::Confirmation{bid.round, kSelf, true, ""}}), kItself);
+  EXPECT_EQ(of(coalition::Message{coalition::Confirmation{bid.round, kSelf, true, {}}}), kItself);
   EXPECT_EQ(of(coalition::Message{coalition::MemberStatus{bid.round, kSelf, {}}}), kItself);
   // The ground station says of deliveries that they are over, as a member of its own number.
   EXPECT_EQ(of(coalition::Message{coalition::MemberStatus{bid.round, kGroundStation, {}}}),

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "flight.hpp"
@@ -46,17 +47,16 @@ class VehicleAgent::Impl {
   void pump(Instant now);
   void send(const coalition::Message& message, Instant now);
   void receive(const coalition::Message& message, Instant now);
-  void report(EventKind kind, const coalition::Round& round, const TaskId& task, double value,
-              std::string text, Instant time);
+  void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant time);
 
   // Member: answers what the participant asks, and flies what was awarded.
   void answer(const coalition::Participant::Output& output, Instant now);
   void answer_bid_wanted(const coalition::Announcement& announcement, Instant now);
-  [[nodiscard]] Result<coalition::Bid> make_bid(const coalition::Announcement& announcement,
-                                                Instant now) const;
+  [[nodiscard]] std::variant<coalition::Bid, coalition::Reason> make_bid(
+      const coalition::Announcement& announcement, Instant now) const;
   void answer_award(const coalition::Participant::AwardReceived& award, Instant now);
-  [[nodiscard]] Result<TaskFlight> set_out(TaskFlight task, double speed_mps, Instant start,
-                                           Instant now);
+  [[nodiscard]] std::variant<TaskFlight, coalition::Why> set_out(TaskFlight task, double speed_mps,
+                                                                 Instant start, Instant now);
   void keep_time(Instant now);
   [[nodiscard]] std::optional<double> speed_for(const TaskFlight& task, double along_m,
                                                 Instant start) const;
@@ -77,7 +77,8 @@ class VehicleAgent::Impl {
   void take_up_site(Instant now);
   void fly_survey(Instant now);
   void take_up_lost_site(Instant now);
-  [[nodiscard]] Result<SurveyFlight> fly_around(const Site& site, bool relief, Instant now);
+  [[nodiscard]] std::variant<SurveyFlight, event::TaskFailed> fly_around(const Site& site,
+                                                                         bool relief, Instant now);
   void fly_to_lost_site(Instant now);
   [[nodiscard]] Instant unheard_since(Instant now) const;
   void lead(const Site& site, const std::vector<TaskId>& done, Instant now);

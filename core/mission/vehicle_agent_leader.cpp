@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
-#include <string>
-#include <string_view>
 #include <utility>
 
 #include "vehicle_agent_impl.hpp"
@@ -22,17 +18,10 @@ constexpr int kFarewells = 5;
 constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for such sites
 constexpr double kReliefRadiusFactor = 1.2;
 
-/// "exact: J 1.7312, proven" or "colony: J 1.7312, at most 0.0040 below the optimum".
-std::string summary_of(const planning::Allocation& allocation) {
-  std::array<char, 96> text{};
-  const std::string_view method = planning::to_string(allocation.method);
-  const int length =
-      std::snprintf(text.data(), text.size(), "%.*s: J %.4f, ", static_cast<int>(method.size()),
-                    method.data(), allocation.value.total);
-  if (allocation.proven) return std::string{text.data()} + "proven";
-  std::snprintf(text.data() + length, text.size() - static_cast<std::size_t>(length),
-                "at most %.4f below the optimum", allocation.gap());
-  return text.data();
+/// Of things of which there are few.
+template <class Container>
+std::uint8_t count_of(const Container& some) {
+  return static_cast<std::uint8_t>(std::min<std::size_t>(some.size(), 255));
 }
 
 /// Of the lots that a plan may need: another for every round, the same in every replay.
@@ -48,11 +37,13 @@ Duration final_approach_time(const coalition::Bid& bid) {
 }  // namespace
 
 using coalition::Initiator;
+using coalition::Reason;
+using event::TaskFailure;
 
 void VehicleAgent::Impl::on_site_report(const SiteReport& message, Instant now) {
   if (message.finder != config_.vehicle.id || !known_.insert(message.site.id).second) return;
   const double range = (message.site.position - state_.position().horizontal()).norm();
-  report(EventKind::site_detected, {}, {message.site.id, TaskKind::survey, 0}, range, {}, now);
+  report(event::SiteDetected{range}, {}, {message.site.id, TaskKind::survey, 0}, now);
   if (found_.size() < kSitesWaitingMax) found_.push_back({message.site});
 }
 
@@ -67,8 +58,8 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
   if (found_.empty() || now < survey_again_) return;
   survey_again_ = now + kSurveyPeriod;
   for (auto& found : found_) {
-    const auto survey = fly_around(found.site, false, now);
-    if (survey) {
+    const auto outcome = fly_around(found.site, false, now);
+    if (const auto* survey = std::get_if<SurveyFlight>(&outcome)) {
       survey_ = *survey;
       survey_again_ = now;
       std::erase_if(found_, [&](const FoundSite& f) { return f.site.id == survey_->site.id; });
@@ -76,15 +67,16 @@ void VehicleAgent::Impl::take_up_site(Instant now) {
     }
     // It may become possible: from elsewhere, or with other hazards known.
     if (!std::exchange(found.told, true)) {
-      report(EventKind::task_failed, {}, {found.site.id, TaskKind::survey, 0}, 0.0,
-             survey.error().message, now);
+      report(std::get<event::TaskFailed>(outcome), {}, {found.site.id, TaskKind::survey, 0}, now);
     }
   }
 }
 
 /// The flight to a site and around it, for its survey or (`relief`) to lead there, is the flight
 /// plan from now on. It goes on circling the site on the same arc.
-Result<SurveyFlight> VehicleAgent::Impl::fly_around(const Site& site, bool relief, Instant now) {
+std::variant<SurveyFlight, event::TaskFailed> VehicleAgent::Impl::fly_around(const Site& site,
+                                                                             bool relief,
+                                                                             Instant now) {
   const Instant start = now + kSurveyLead;
   VehicleSpec vehicle = config_.vehicle;
   if (relief) {  // at any radius that it can fly
@@ -93,15 +85,15 @@ Result<SurveyFlight> VehicleAgent::Impl::fly_around(const Site& site, bool relie
   }
   const auto plan = planning::plan_survey(config_.planning, vehicle, flight_.pose_at(start), start,
                                           site, hazards_);
-  if (!plan) return plan.error();
+  if (!plan) return event::TaskFailed{TaskFailure::no_plan, {}, plan.error().message};
   const Path& path = plan->timed.path;
   // Who is to lead there must also have the range to stay for some time.
   const double stay_m = relief ? path.length_m() : 0.0;
   if (path.length_m() + stay_m + flight_.way_home_m(path.end(), hazards_) > range_to_spend(start)) {
-    return Error{"not enough range left"};
+    return event::TaskFailed{TaskFailure::out_of_range};
   }
   if (!flight_.continue_with(start, path, plan->timed.tail_curvature_per_m, now)) {
-    return Error{"the path has too many pieces"};
+    return event::TaskFailed{TaskFailure::path_too_long};
   }
   return SurveyFlight{site, *plan, relief};
 }
@@ -117,10 +109,10 @@ void VehicleAgent::Impl::take_up_lost_site(Instant now) {
   if (duplicate_id_ || now < relief_again_) return;
   relief_again_ = now + kReliefPeriod;
   for (const auto* lost : sites_.lost(unheard_since(now))) {
-    const auto relief = fly_around(lost->site, true, now);
-    if (!relief) continue;
-    report(EventKind::plan_changed, {}, {lost->site.id, {}, 0}, 0.0,
-           "the site's leader is lost: goes there to lead", now);
+    const auto outcome = fly_around(lost->site, true, now);
+    const auto* relief = std::get_if<SurveyFlight>(&outcome);
+    if (relief == nullptr) continue;
+    report(event::ReliefBegun{lost->heard_at}, {}, {lost->site.id, {}, 0}, now);
     survey_ = *relief;
     return;
   }
@@ -145,36 +137,36 @@ void VehicleAgent::Impl::fly_survey(Instant now) {
   const TaskId task{survey_->site.id, TaskKind::survey, 0};
   if (!survey_->begun && now >= survey_->begin_time()) {
     survey_->begun = true;
-    report(EventKind::survey_started, {}, task, 0.0, {}, survey_->begin_time());
+    report(event::SurveyStarted{survey_->begin_time()}, {}, task, survey_->begin_time());
   }
   if (!survey_->begun || now < survey_->end_time()) return;
   const auto survey = *std::exchange(survey_, std::nullopt);
   if (!on_track(survey.plan.timed)) {
-    report(EventKind::task_failed, {}, task, 0.0, "off the planned path", now);
+    report(event::TaskFailed{TaskFailure::off_path}, {}, task, now);
     found_.push_back({survey.site});
     return;
   }
-  report(EventKind::survey_done, {}, task, to_seconds(survey.begin_time()), {}, survey.end_time());
+  report(event::SurveyDone{survey.begin_time()}, {}, task, survey.end_time());
   if (sites_.led(survey.site.id, now - config_.protocol.cut_max)) return;
   lead(survey.site, {}, now);
 }
 
 void VehicleAgent::Impl::lead(const Site& site, const std::vector<TaskId>& done, Instant now) {
   if (site.tasks_after_survey().empty()) {
-    report(EventKind::site_done, {}, {site.id, TaskKind::survey, 0}, 0.0, {}, now);
+    report(event::SiteDone{}, {}, {site.id, TaskKind::survey, 0}, now);
     return;
   }
   initiator_.emplace(config_.protocol, next_coalition(), site, done,
                      flight_.pose_at(now + config_.protocol.formation_time()).position(), now);
-  report(EventKind::announced, initiator_->round(), {site.id, {}, 0},
-         static_cast<double>(initiator_->announcement().tasks.size()), {}, now);
+  report(event::Announced{count_of(initiator_->announcement().tasks), {}}, initiator_->round(),
+         {site.id, {}, 0}, now);
 }
 
 void VehicleAgent::Impl::end_closed_site(const coalition::LeaseRenewal& last, Instant now) {
   const bool other = initiator_ && initiator_->site().id == last.site &&
                      initiator_->round().coalition != last.round.coalition;
   if (!other) return;
-  initiator_->close("the site is done", now);
+  initiator_->close({Reason::site_done}, now);
   stop_leading(now);
 }
 
@@ -189,9 +181,8 @@ void VehicleAgent::Impl::take_over(const coalition::Participant::LeadershipWon& 
   initiator_.emplace(config_.protocol, next_coalition(), won, authorised,
                      flight_.pose_at(now + config_.protocol.formation_time()).position(), now);
   const VehicleId lost = won.plan.round.coalition.leader;
-  report(EventKind::leader_replaced, initiator_->round(), {won.plan.site.id, {}, 0},
-         static_cast<double>(won.supporters.size()),
-         "takes over from vehicle " + std::to_string(lost.value), now);
+  report(event::LeaderReplaced{lost, count_of(won.supporters)}, initiator_->round(),
+         {won.plan.site.id, {}, 0}, now);
 }
 
 void VehicleAgent::Impl::meet_rival(SiteId site, const coalition::Round& rival, bool stands,
@@ -207,29 +198,29 @@ void VehicleAgent::Impl::answer(const Initiator::Output& output, Instant now) {
   } else if (const auto* formed = std::get_if<Initiator::Formed>(&output)) {
     std::set<VehicleId> vehicles{config_.vehicle.id};
     for (const auto& a : formed->assignments) vehicles.insert(a.vehicle);
-    report(EventKind::coalition_formed, formed->round, {site, {}, 0},
-           static_cast<double>(vehicles.size()), {}, now);
+    report(event::CoalitionFormed{count_of(vehicles)}, formed->round, {site, {}, 0}, now);
     request_authorisation(*formed, now);
   } else if (const auto* failed = std::get_if<Initiator::NotFormed>(&output)) {
     request_.reset();
     const bool waits = initiator_->state() == Initiator::State::monitoring;
-    report(waits ? EventKind::monitoring : EventKind::announced, failed->round, {site, {}, 0},
-           static_cast<double>(initiator_->announcement().tasks.size()), failed->why, now);
+    const std::uint8_t tasks = count_of(initiator_->announcement().tasks);
+    report(waits ? EventBody{event::Monitoring{tasks, failed->why}}
+                 : EventBody{event::Announced{tasks, failed->why}},
+           failed->round, {site, {}, 0}, now);
   } else if (const auto* lost = std::get_if<Initiator::TaskLost>(&output)) {
-    report(EventKind::warning, lost->round, lost->assignment.task, 0.0,
-           lost->why + ": vehicle " + std::to_string(lost->assignment.vehicle.value), now);
+    report(event::TaskLost{{lost->why, lost->assignment.vehicle}}, lost->round,
+           lost->assignment.task, now);
   } else if (const auto* unknown = std::get_if<Initiator::TaskUnknown>(&output)) {
-    report(EventKind::warning, unknown->round, unknown->assignment.task, 0.0,
-           "may have been flown: vehicle " + std::to_string(unknown->assignment.vehicle.value) +
-               " fell silent; the operator must look",
-           now);
+    report(event::TaskUnknown{unknown->assignment.vehicle}, unknown->round,
+           unknown->assignment.task, now);
   } else if (const auto* superseded = std::get_if<Initiator::Superseded>(&output)) {
-    report(EventKind::conflict_yielded, superseded->round, {site, {}, 0}, 0.0,
-           "vehicle " + std::to_string(superseded->by.leader.value) + " leads the site", now);
+    report(event::ConflictYielded{superseded->by.leader, 0.0, true}, superseded->round,
+           {site, {}, 0}, now);
     pump(now);  // its last messages
     stop_leading(now);
   } else if (std::holds_alternative<Initiator::AllDone>(output)) {
-    report(EventKind::site_done, initiator_->round(), {site, {}, 0}, 0.0, {}, now);
+    report(event::SiteDone{count_of(initiator_->site().tasks_after_survey())}, initiator_->round(),
+           {site, {}, 0}, now);
     farewells_.push_back({initiator_->farewell(), now, kFarewells});
     if (farewells_.size() > kSitesWaitingMax) farewells_.erase(farewells_.begin());
     pump(now);  // its last messages
@@ -269,17 +260,17 @@ void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instan
   const TaskId about{initiator_->site().id, {}, 0};
   if (result.allocation) {
     const auto& assignments = result.allocation->assignments;
-    report(EventKind::allocation_done, result.round, about, to_seconds(result.took),
-           std::to_string(bids_.size()) + " bids; " + summary_of(*result.allocation), now);
+    const planning::Allocation& made = *result.allocation;
+    report(event::AllocationDone{result.took, count_of(bids_), made.method, made.value.total,
+                                 made.proven, made.proven ? 0.0 : made.gap()},
+           result.round, about, now);
     initiator_->allocated(result.round, assignments, now);
     if (initiator_->state() == Initiator::State::awarding) {
-      report(EventKind::awarded, result.round, about, static_cast<double>(assignments.size()), {},
-             now);
+      report(event::Awarded{count_of(assignments)}, result.round, about, now);
     }
   } else {
     const auto& why = result.allocation.error().message;
-    report(EventKind::allocation_failed, result.round, about, static_cast<double>(bids_.size()),
-           why, now);
+    report(event::AllocationFailed{count_of(bids_), why}, result.round, about, now);
     initiator_->allocation_failed(result.round, why, now);
   }
   step(now);
@@ -297,8 +288,8 @@ void VehicleAgent::Impl::request_authorisation(const Initiator::Formed& formed, 
         std::min(request.decide_by, a.time - final_approach_time(bid->second) - kDecisionMargin);
   }
   if (request.deliveries.empty()) return;
-  report(EventKind::authorisation_requested, formed.round, {site.id, TaskKind::deliver, 0},
-         to_seconds(request.decide_by), {}, now);
+  report(event::AuthorisationRequested{request.decide_by}, formed.round,
+         {site.id, TaskKind::deliver, 0}, now);
   request_ = std::move(request);
   request_again_ = now;
 }
@@ -307,9 +298,9 @@ void VehicleAgent::Impl::watch_authorisation(Instant now) {
   if (!request_) return;
   if (now >= request_->decide_by) {
     const auto late = *std::exchange(request_, std::nullopt);
-    report(EventKind::authorisation_late, late.round, {late.site, TaskKind::deliver, 0}, 0.0,
-           "no decision: the plan is timed anew", now);
-    initiator_->announce_again("no decision of the operator in time", now);
+    report(event::AuthorisationLate{event::Lateness::no_decision}, late.round,
+           {late.site, TaskKind::deliver, 0}, now);
+    initiator_->announce_again(Reason::no_decision, now);
     pump(now);
   } else if (now >= request_again_) {
     messages.push(Message{*request_});
@@ -329,10 +320,10 @@ void VehicleAgent::Impl::yield_to(const coalition::Announcement& other, Instant 
       own.reward < other.reward ||
       (own.reward == other.reward && config_.vehicle.id > other.round.coalition.leader);
   if (!yields) return;
-  report(EventKind::conflict_yielded, own.round, {own.site.id, {}, 0}, own.reward,
-         "to vehicle " + std::to_string(other.round.coalition.leader.value), now);
+  report(event::ConflictYielded{other.round.coalition.leader, own.reward, false}, own.round,
+         {own.site.id, {}, 0}, now);
   surveyed_.push_back(own.site);
-  initiator_->close("yields to a larger reward", now);
+  initiator_->close({Reason::yields}, now);
   stop_leading(now);
 }
 

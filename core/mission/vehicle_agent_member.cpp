@@ -24,6 +24,8 @@ constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 }  // namespace
 
 using coalition::Participant;
+using coalition::Reason;
+using event::TaskFailure;
 
 void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) {
   if (const auto* wanted = std::get_if<Participant::BidWanted>(&output)) {
@@ -31,14 +33,12 @@ void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) 
   } else if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {
     answer_award(*award, now);
   } else if (const auto* granted = std::get_if<Participant::LeaseGranted>(&output)) {
-    report(EventKind::lease_granted, granted->round, granted->task, to_seconds(granted->until), {},
-           now);
+    report(event::LeaseGranted{granted->until}, granted->round, granted->task, now);
   } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
-    report(EventKind::lease_ended, ended->round, ended->task, 0.0,
-           ended->held ? std::string{kHeldForSuccessor} : ended->why, now);
+    report(event::LeaseEnded{ended->why, ended->held}, ended->round, ended->task, now);
     if (task_ && task_->assignment.task == ended->task && !ended->held) drop_task(now);
   } else if (const auto* released = std::get_if<Participant::Released>(&output)) {
-    report(EventKind::released, released->round, {}, 0.0, released->why, now);
+    report(event::Released{released->why}, released->round, {}, now);
     if (task_ && task_->round == released->round) drop_task(now);  // held for a successor in vain
   } else if (const auto* won = std::get_if<Participant::LeadershipWon>(&output)) {
     take_over(*won, now);
@@ -47,39 +47,39 @@ void VehicleAgent::Impl::answer(const Participant::Output& output, Instant now) 
 
 void VehicleAgent::Impl::answer_bid_wanted(const coalition::Announcement& announcement,
                                            Instant now) {
-  const auto bid = make_bid(announcement, now);
-  if (bid) {
-    report(EventKind::bid_sent, announcement.round, {announcement.site.id, {}, 0},
-           to_seconds(bid->eta), {}, now);
+  const TaskId about{announcement.site.id, {}, 0};
+  const auto answer = make_bid(announcement, now);
+  if (const auto* bid = std::get_if<coalition::Bid>(&answer)) {
+    report(event::BidSent{bid->eta}, announcement.round, about, now);
     participant_.bid(announcement, *bid, now);
   } else {
-    report(EventKind::bid_declined, announcement.round, {announcement.site.id, {}, 0}, 0.0,
-           bid.error().message, now);
+    const auto reason = std::get<Reason>(answer);
+    report(event::BidDeclined{{reason}}, announcement.round, about, now);
     participant_.decline(announcement);
   }
 }
 
-Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcement& announcement,
-                                                    Instant now) const {
+std::variant<coalition::Bid, Reason> VehicleAgent::Impl::make_bid(
+    const coalition::Announcement& announcement, Instant now) const {
   const bool own = initiator_ && announcement.round.coalition == initiator_->round().coalition;
-  if (held_by_operator_) return Error{"held by the operator"};
-  if (duplicate_id_) return Error{"another vehicle uses this id"};
-  if (survey_) return Error{"surveying"};
-  if (initiator_ && !own) return Error{"leading its own site"};
-  if (task_ && task_->begun) return Error{"a task is in progress"};
-  if (spent_) return Error{"not enough range left"};
+  if (held_by_operator_) return Reason::held_by_operator;
+  if (duplicate_id_) return Reason::id_in_use;
+  if (survey_) return Reason::surveying;
+  if (initiator_ && !own) return Reason::leading;
+  if (task_ && task_->begun) return Reason::task_in_progress;
+  if (spent_) return Reason::out_of_range;
 
   const auto& vehicle = config_.vehicle;
   const auto can = [&](const TaskId& t) {
     return vehicle.capabilities.has(t.kind) && (t.kind != TaskKind::deliver || loads_ > 0);
   };
   if (std::none_of(announcement.tasks.begin(), announcement.tasks.end(), can)) {
-    return Error{"no capability or load for these tasks"};
+    return Reason::incapable;
   }
   const Pose2 pose = flight_.pose_at(announcement.formed_at);
   for (const Vec2& position : {flight_.pose_at(now).position(), pose.position()}) {
     if ((position - announcement.leader_at_formation).norm() > config_.protocol.radio_range_m) {
-      return Error{"out of the leader's radio range before the coalition stands"};
+      return Reason::out_of_reach;
     }
   }
   const double way =
@@ -87,7 +87,7 @@ Result<coalition::Bid> VehicleAgent::Impl::make_bid(const coalition::Announcemen
           .length_m();
   auto self = candidate(pose, announcement.formed_at);
   self.range_left_m = range_for(announcement.site, announcement.formed_at);
-  if (way > self.range_left_m) return Error{"not enough range left"};
+  if (way > self.range_left_m) return Reason::out_of_range;
 
   coalition::Bid bid;
   bid.instance = config_.instance;
@@ -127,11 +127,11 @@ planning::Candidate VehicleAgent::Impl::candidate(const Pose2& pose, Instant at)
 }
 
 void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, Instant now) {
-  const auto refuse = [&](const std::string& why) {
-    report(EventKind::refused, award.award.round, award.mine.front().task, 0.0, why, now);
+  const auto refuse = [&](const coalition::Why& why) {
+    report(event::Refused{why}, award.award.round, award.mine.front().task, now);
     participant_.refuse(why, now);
   };
-  if (award.mine.size() != 1) return refuse("it can fly one task at a time");
+  if (award.mine.size() != 1) return refuse({Reason::one_task_at_a_time});
   const auto& mine = award.mine.front();
   const bool goes_on = task_ && task_->assignment.task == mine.task &&
                        task_->assignment.time == mine.time &&
@@ -139,44 +139,45 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
   if (goes_on) {  // a successor's award: the path is flown already
     task_->round = award.award.round;
     task_->authorised = false;
-    report(EventKind::confirmed, task_->round, mine.task, to_seconds(mine.time), {}, now);
+    report(event::Confirmed{mine.time}, task_->round, mine.task, now);
     participant_.accept(now);
     return;
   }
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
-  const auto task = set_out({award.award.round, award.award.site, mine, {}},
-                            config_.vehicle.cruise_speed_mps, start, now);
-  if (!task) return refuse(task.error().message);
-  report(EventKind::confirmed, task->round, mine.task, to_seconds(mine.time), {}, now);
-  task_ = *task;
+  const auto outcome = set_out({award.award.round, award.award.site, mine, {}},
+                               config_.vehicle.cruise_speed_mps, start, now);
+  if (const auto* why = std::get_if<coalition::Why>(&outcome)) return refuse(*why);
+  task_ = std::get<TaskFlight>(outcome);
+  report(event::Confirmed{mine.time}, task_->round, mine.task, now);
   participant_.accept(now);
 }
 
 /// The flight to that task from where the vehicle will be at `start`, which is then its flight
 /// plan.
-Result<TaskFlight> VehicleAgent::Impl::set_out(TaskFlight task, double speed_mps, Instant start,
-                                               Instant now) {
+std::variant<TaskFlight, coalition::Why> VehicleAgent::Impl::set_out(TaskFlight task,
+                                                                     double speed_mps,
+                                                                     Instant start, Instant now) {
   const Pose2 pose = flight_.pose_at(start);
   auto self = candidate(pose, start);
   self.speed_mps = speed_mps;
   auto plan =
       planning::plan_task(config_.planning, self, start, task.site, task.assignment, hazards_);
-  if (!plan) return plan.error();
+  if (!plan) return coalition::Why{Reason::no_path, {}, plan.error().message};
   Path path = plan->timed.path;
   if (path.length_m() + flight_.way_home_m(path.end(), hazards_) > range_to_spend(start)) {
-    return Error{"not enough range left"};
+    return coalition::Why{Reason::out_of_range};
   }
   task.plan = *plan;
   double tail = plan->timed.tail_curvature_per_m;
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
-    if (!to_gate) return Error{"its path has too many pieces"};
+    if (!to_gate) return coalition::Why{Reason::path_too_long};
     path = *to_gate;
     tail = flight_.hold_curvature(path.end(), hazards_);
   }
   if (!flight_.continue_with(start, path, tail, now, speed_mps))
-    return Error{"its path has too many pieces"};
+    return coalition::Why{Reason::path_too_long};
   return task;
 }
 
@@ -189,8 +190,7 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
   if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
       task_->site.id == message.site && !task_->authorised) {
     task_->authorised = true;
-    report(EventKind::authorised, message.round, task_->assignment.task, 0.0, message.decided_by,
-           now);
+    report(event::Authorised{message.decided_by}, message.round, task_->assignment.task, now);
   }
   if (!message.granted) sites_.close(message.site);
   // A grant counts for the rounds before this one too: a member may have heard it and begun.
@@ -200,9 +200,9 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
   if (!initiator_ || !request_ || message.round != request_->round) return;
   request_.reset();
   if (message.granted) return;
-  report(EventKind::authorisation_refused, message.round, {message.site, TaskKind::deliver, 0}, 0.0,
-         message.decided_by, now);
-  initiator_->close("refused by the operator", now);
+  report(event::AuthorisationRefused{message.decided_by}, message.round,
+         {message.site, TaskKind::deliver, 0}, now);
+  initiator_->close({Reason::refused_by_operator}, now);
   stop_leading(now);
 }
 
@@ -231,26 +231,30 @@ void VehicleAgent::Impl::fly_task(Instant now) {
       // News of the last delivery may come a moment after the arc has begun.
       const bool news_may_come = !task_->is_delivery() && now < task_->begin_time() + kNewsMayTake;
       if (!news_may_come && !std::exchange(task_->late, true)) {
-        report(EventKind::authorisation_late, task_->round, id, 0.0,
-               !task_->is_delivery() ? "its deliveries or its lease are not certain"
-               : task_->authorised   ? "the lease does not reach over the delivery"
-                                     : "holding at the gate",
-               now);
+        using event::Lateness;
+        const Lateness why = !task_->is_delivery() ? Lateness::not_certain
+                             : task_->authorised   ? Lateness::lease_too_short
+                                                   : Lateness::not_authorised;
+        report(event::AuthorisationLate{why}, task_->round, id, now);
       }
       return;
     }
     task_->begun = true;
-    report(EventKind::task_started, task_->round, id, to_seconds(task_->begin_time()), {},
-           task_->begin_time());
+    report(event::TaskStarted{task_->begin_time()}, task_->round, id, task_->begin_time());
     participant_.task_started(id, now);
   }
   if (!task_->begun || now < task_->end_time()) return;
   const bool flown = on_track(task_->plan.timed);
   if (task_->is_delivery() && loads_ > 0) --loads_;
   const auto task = *std::exchange(task_, std::nullopt);
-  report(flown ? EventKind::task_done : EventKind::task_failed, task.round, id,
-         to_seconds(task.assignment.time), flown ? "" : "off the planned path", task.end_time());
-  flown ? participant_.task_done(id, now) : participant_.task_failed(id, now);
+  const Instant planned = task.assignment.time;
+  if (flown) {
+    report(event::TaskDone{planned}, task.round, id, task.end_time());
+    participant_.task_done(id, now);
+  } else {
+    report(event::TaskFailed{TaskFailure::off_path, planned}, task.round, id, task.end_time());
+    participant_.task_failed(id, now);
+  }
 }
 
 /// An assessment waits until the leader or who flew them has said so of all deliveries. They may
@@ -270,8 +274,8 @@ void VehicleAgent::Impl::drop_task(Instant now) {
   const bool leads_on = task_->committed || !task_->is_delivery();
   if (task_->begun && task_->is_delivery()) {
     if (loads_ > 0) --loads_;  // it counts as used
-    report(EventKind::task_failed, task_->round, task_->assignment.task,
-           to_seconds(task_->assignment.time), "released within it", now);
+    report(event::TaskFailed{TaskFailure::released_within, task_->assignment.time}, task_->round,
+           task_->assignment.task, now);
   }
   task_.reset();
   if (leads_on) flight_.hold(hazards_, now);
@@ -281,8 +285,7 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
   const bool mine = message.vehicle == config_.vehicle.id || message.vehicle == kGroundStation;
   if (!mine || message.number <= last_command_ || !flight_.started()) return;
   last_command_ = message.number;
-  report(EventKind::plan_changed, {}, {}, 0.0,
-         "the operator commands: " + std::string{to_string(message.kind)}, now);
+  report(event::Commanded{message.kind}, {}, {}, now);
   if (message.kind == CommandKind::give_back) return;  // of the flight controller
   if (message.kind == CommandKind::resume) {
     held_by_operator_ = false;
@@ -290,16 +293,17 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
     return;
   }
   held_by_operator_ = true;
-  participant_.withdraw("the operator commands " + std::string{to_string(message.kind)}, now);
+  const bool home = message.kind == CommandKind::return_home;
+  participant_.withdraw(home ? Reason::sent_home : Reason::held_by_operator, now);
   if (initiator_) {
     surveyed_.push_back(initiator_->site());
-    initiator_->close("the operator holds the leader", now);
+    initiator_->close({Reason::held_by_operator}, now);
     stop_leading(now);
   }
   if (survey_ && !survey_->relief) found_.push_back({survey_->site});
   survey_.reset();
   pump(now);
-  if (message.kind == CommandKind::return_home) {
+  if (home) {
     flight_.fly_home(hazards_, now);
   } else {
     flight_.hold(hazards_, now);
@@ -311,8 +315,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   if (std::any_of(hazards_.begin(), hazards_.end(), same)) return;
   hazards_.push_back(hazard);
   range_again_ = now;  // the way home may be longer by it
-  report(EventKind::hazard_known, {}, {}, hazard.radius_m,
-         "hazard " + std::to_string(hazard.id.value), now);
+  report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
   if (!flight_.started()) return;
   if (flight_.keeps_clear(hazards_, now)) return;
   if (flight_.searching() || flight_.homing()) {
@@ -322,13 +325,13 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
   // to the leader, who times the coalition anew.
   const bool under_way = task_ && !task_->begun && !task_->committed;
-  const auto detour = under_way
-                          ? set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now)
-                          : Result<TaskFlight>{Error{""}};
-  if (detour) {
-    task_ = *detour;
-    report(EventKind::plan_changed, task_->round, task_->assignment.task, 0.0,
-           "around the hazard, to the same time", now);
+  std::variant<TaskFlight, coalition::Why> detour;
+  if (under_way) {
+    detour = set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now);
+  }
+  if (under_way && std::holds_alternative<TaskFlight>(detour)) {
+    task_ = std::get<TaskFlight>(detour);
+    report(event::PlanDetoured{hazard.id}, task_->round, task_->assignment.task, now);
   } else {
     // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
     const auto& timed = flight_.plan().timed;
@@ -336,7 +339,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
     const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
     const bool bound = task_ || survey_ || flight_.en_route(now);
     if (bound && rest && planning::is_clear(*rest, hazards_)) return;
-    participant_.withdraw("a hazard bars its path", now);
+    participant_.withdraw(Reason::path_barred, now);
     pump(now);
     flight_.hold(hazards_, now);
   }
@@ -378,11 +381,8 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
   if (spare_s > 0.0) return;
   spent_ = true;
-  report(
-      EventKind::plan_changed, {}, {}, range_left(now),
-      comes_home() ? "its range is used up but for the way home" : "its range is used up: it holds",
-      now);
-  participant_.withdraw("not enough range left", now);
+  report(event::RangeSpent{range_left(now), comes_home()}, {}, {}, now);
+  participant_.withdraw(Reason::out_of_range, now);
   if (survey_ && !survey_->relief) found_.push_back({survey_->site});
   survey_.reset();
   pump(now);
@@ -394,9 +394,9 @@ void VehicleAgent::Impl::watch_range(Instant now) {
 /// others to take the site up.
 void VehicleAgent::Impl::hand_on_lead(Instant now) {
   if (!initiator_ || !initiator_->owned().empty()) return;
-  report(EventKind::cancelled, initiator_->round(), {initiator_->site().id, {}, 0}, 0.0,
-         "not enough range left to lead", now);
-  initiator_->close("not enough range left to lead", now);
+  const coalition::Why why{Reason::out_of_range};
+  report(event::Cancelled{why}, initiator_->round(), {initiator_->site().id, {}, 0}, now);
+  initiator_->close(why, now);
   stop_leading(now);
 }
 

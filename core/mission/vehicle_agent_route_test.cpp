@@ -72,10 +72,13 @@ class Flown {
     agent.on_message(message, kGroundStation, state_.time);
     collect();
   }
-  [[nodiscard]] bool said(EventKind kind, const std::string& words = "") const {
-    return std::any_of(events.begin(), events.end(), [&](const MissionEvent& event) {
-      return event.kind == kind && event.text.find(words) != std::string::npos;
-    });
+  [[nodiscard]] bool said(EventKind kind) const {
+    return std::any_of(events.begin(), events.end(),
+                       [kind](const MissionEvent& event) { return event.kind() == kind; });
+  }
+  [[nodiscard]] bool said(const EventBody& body) const {
+    return std::any_of(events.begin(), events.end(),
+                       [&](const MissionEvent& event) { return event.body == body; });
   }
   [[nodiscard]] Vec2 at(double seconds) const {
     return plan.timed.pose_at(at_seconds(seconds)).position();
@@ -111,7 +114,7 @@ TEST(VehicleWithRoute, FliesItFromMissionTimeZeroAndIsOverTheSiteOnTime) {
   vehicle.fly_until(arrival_s + 20.0);
   EXPECT_EQ(vehicle.agent.activity(), Activity::searching);
   EXPECT_LT((vehicle.at(arrival_s + 6.0) - Vec2{1000.0, 1100.0}).norm(), 25.0);
-  EXPECT_FALSE(vehicle.said(EventKind::warning));
+  EXPECT_FALSE(vehicle.said(EventKind::vehicle_trouble));
 }
 
 TEST(VehicleWithRoute, TakesItUpInTheMiddleWhereItIsThereAtThatTime) {
@@ -120,7 +123,7 @@ TEST(VehicleWithRoute, TakesItUpInTheMiddleWhereItIsThereAtThatTime) {
   vehicle.be_at({there.x_m + 30.0, there.y_m - 30.0, there.heading_rad + 0.5}, 50.0);
   EXPECT_EQ(vehicle.agent.activity(), Activity::en_route);
   EXPECT_LT((vehicle.at(kToSite_m / kSpeed_mps) - kSite).norm(), 1e-6);
-  EXPECT_FALSE(vehicle.said(EventKind::warning));
+  EXPECT_FALSE(vehicle.said(EventKind::vehicle_trouble));
 }
 
 TEST(VehicleWithRoute, ElsewhereAtThatTimeItSaysSoAndSearches) {
@@ -133,7 +136,7 @@ TEST(VehicleWithRoute, ElsewhereAtThatTimeItSaysSoAndSearches) {
     Flown vehicle{config};
     vehicle.be_at(pose, 50.0);
     EXPECT_EQ(vehicle.agent.activity(), Activity::searching);
-    EXPECT_TRUE(vehicle.said(EventKind::warning, "the route is not flown"));
+    EXPECT_TRUE(vehicle.said(event::VehicleTrouble{event::Trouble::route_not_flown}));
     // From where it is.
     EXPECT_LT((vehicle.at(50.0) - pose.position()).norm(), 1e-6);
   }
@@ -148,7 +151,7 @@ TEST(VehicleWithRoute, AHazardThatDoesNotBarTheWayChangesNothing) {
   vehicle.fly_until(10.0);
   vehicle.tell(HazardReport{{{2}, {800.0, 39.0}, 60.0}});   // beside the way
   vehicle.tell(HazardReport{{{3}, {100.0, 100.0}, 60.0}});  // behind
-  EXPECT_TRUE(vehicle.said(EventKind::hazard_known, "hazard 2"));
+  EXPECT_TRUE(vehicle.said(event::HazardKnown{{2}, 60.0}));
   vehicle.fly_until(80.0);
   EXPECT_EQ(vehicle.agent.activity(), Activity::en_route);
   EXPECT_EQ(vehicle.plan.number, 1U);
@@ -179,7 +182,7 @@ TEST(VehicleWithRoute, RangeIsKeptForTheWayHome) {
     vehicle.be_at({0.0, 100.0, 0.0}, 0.0);
     vehicle.fly_until(90.0);
     const bool enough = range_m > 4'000.0;
-    EXPECT_EQ(vehicle.said(EventKind::plan_changed, "range is used up"), !enough) << range_m;
+    EXPECT_EQ(vehicle.said(EventKind::range_spent), !enough) << range_m;
     EXPECT_EQ(vehicle.agent.activity() == Activity::en_route, enough) << range_m;
   }
   VehicleAgentConfig config = on_route();

@@ -53,8 +53,7 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
     } else {
       flight_.start(state.pose(), hazards_, range_to_spend(now), now);
       if (config_.route) {
-        report(EventKind::warning, {}, {}, 0.0,
-               "it is not where its route has it at this time: the route is not flown", now);
+        report(event::VehicleTrouble{event::Trouble::route_not_flown}, {}, {}, now);
       }
     }
   }
@@ -75,9 +74,7 @@ void VehicleAgent::Impl::on_message(const Message& message, VehicleId /*sender*/
                             return;
                           }
                           duplicate_id_ = true;
-                          report(EventKind::warning, {}, {}, 0.0,
-                                 "another vehicle uses this id; this one bids and leads no more",
-                                 now);
+                          report(event::VehicleTrouble{event::Trouble::id_in_use}, {}, {}, now);
                         },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
@@ -182,9 +179,10 @@ void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now)
              message);
 }
 
-void VehicleAgent::Impl::report(EventKind kind, const coalition::Round& round, const TaskId& task,
-                                double value, std::string text, Instant time) {
-  const MissionEvent event{config_.vehicle.id, time, kind, round, task, value, std::move(text)};
+void VehicleAgent::Impl::report(EventBody body, const coalition::Round& round, const TaskId& task,
+                                Instant time) {
+  const MissionEvent event{config_.vehicle.id, time, round, task, std::move(body)};
+  const EventKind kind = event.kind();
   events.push(event);
   // Renewals and refusals to bid are many and of interest to the recording only.
   if (kind != EventKind::lease_granted && kind != EventKind::bid_declined) messages.push(event);

@@ -45,16 +45,16 @@ void VehicleAgent::Impl::keep_time(Instant now) {
   if (expected_s <= kUntimely_s) return;
   const Instant start = now + kLead;
   if (const auto speed_mps = speed_for(*task_, along_m, start)) {
-    if (const auto task = set_out(*task_, *speed_mps, start, now)) {
+    const auto outcome = set_out(*task_, *speed_mps, start, now);
+    if (const auto* task = std::get_if<TaskFlight>(&outcome)) {
       task_ = *task;
-      report(EventKind::plan_changed, task_->round, task_->assignment.task, *speed_mps,
-             "to the same time in this wind", now);
+      report(event::PlanRetimed{*speed_mps}, task_->round, task_->assignment.task, now);
       return;
     }
   }
   if (std::exchange(task_->untimely, true)) return;
-  report(EventKind::warning, task_->round, task_->assignment.task, 0.0,
-         "neither its speed nor another path keeps its time in this wind", now);
+  report(event::VehicleTrouble{event::Trouble::untimely}, task_->round, task_->assignment.task,
+         now);
 }
 
 /// The speed over the ground nearest to cruise speed at which a path from where it is at `start` is

@@ -133,11 +133,7 @@ void VehicleNode::on_planning_result(const PlanningResult& result, Instant now) 
 
 void VehicleNode::on_notice(const FlightNotice& notice) {
   if (!notice.warning) return;
-  MissionEvent event;
-  event.vehicle = impl_->self;
-  event.time = notice.time;
-  event.kind = EventKind::warning;
-  event.text = notice.text;
+  MissionEvent event{impl_->self, notice.time, {}, {}, event::FlightWarning{notice.what}};
   impl_->messages.push(event);
   impl_->events.push(std::move(event));
 }
@@ -167,8 +163,8 @@ std::optional<MissionEvent> VehicleNode::poll_event() {
 std::optional<Instant> VehicleNode::poll_give_back() { return std::exchange(impl_->give_back, {}); }
 
 Instant VehicleNode::next_timeout() const {
-  return std::min({impl_->next_telemetry, impl_->self_report.next_due(),
-                   impl_->agent->next_timeout()});
+  return std::min(
+      {impl_->next_telemetry, impl_->self_report.next_due(), impl_->agent->next_timeout()});
 }
 
 VehicleId VehicleNode::vehicle() const { return impl_->self; }

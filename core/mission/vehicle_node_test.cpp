@@ -134,14 +134,14 @@ TEST(VehicleNode, IsGivenBackByThatCommandToThisVehicleOnceEach) {
 
 TEST(VehicleNode, TheFlightControllersWarningsAreForTheOperator) {
   Vehicle vehicle;
-  vehicle.node.on_notice({at_seconds(0.5), false, "found an autopilot"});
-  vehicle.node.on_notice({at_seconds(0.7), true, "engine failure"});
+  vehicle.node.on_notice({at_seconds(0.5), false, {AutopilotNews::found}});
+  vehicle.node.on_notice({at_seconds(0.7), true, {AutopilotNews::rebooted}});
   vehicle.drain();
   const auto events = vehicle.said_of<MissionEvent>();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].vehicle, kSelf);
   EXPECT_EQ(events[0].time, at_seconds(0.7));
-  EXPECT_EQ(events[0].text, "engine failure");
+  EXPECT_EQ(events[0].body, EventBody{(event::FlightWarning{{AutopilotNews::rebooted}})});
 }
 
 TEST(VehicleNode, AMultirotorIsANodeTheSame) {

@@ -158,7 +158,9 @@ CoalitionPicture& Picture::coalition_of(const coalition::CoalitionId& id) {
                                   [&](const auto& entry) { return entry.first == id; });
   if (known != coalitions_.rend()) return known->second;
   if (coalitions_.size() >= params_.coalitions_max) coalitions_.erase(coalitions_.begin());
-  return coalitions_.emplace_back(id, CoalitionPicture{}).second;
+  auto& [key, coalition] = coalitions_.emplace_back();
+  key = id;
+  return coalition;
 }
 
 RoundPicture& Picture::round_of(const coalition::Round& round) {
@@ -216,7 +218,7 @@ void Picture::on(const coalition::Award& m) {
   const bool first = !round.award;
   if (first) {
     coalition.state = CoalitionState::awarded;
-    coalition.why.clear();
+    coalition.why = {};
   }
   round.award = m;
   coalition.members.clear();
@@ -238,10 +240,10 @@ void Picture::on(const coalition::Confirmation& m) { round_of(m.round).answers[m
 
 void Picture::on(const coalition::Cancel& m) {
   CoalitionPicture& coalition = coalition_of(m.round.coalition);
-  round_of(m.round).cancelled = m.reason;
+  round_of(m.round).cancelled = m.why;
   if (coalition.state == CoalitionState::closed) return;
   coalition.state = CoalitionState::failed;
-  coalition.why = m.reason;
+  coalition.why = m.why;
 }
 
 void Picture::on(const coalition::LeaseRenewal& m) {
@@ -258,7 +260,7 @@ void Picture::on(const coalition::LeaseRenewal& m) {
   site.leader = m.round.coalition.leader;
   if (m.stands() && !m.members.empty()) {
     coalition.state = CoalitionState::formed;
-    coalition.why.clear();
+    coalition.why = {};
     coalition.members = m.members;
   }
 }
@@ -275,8 +277,8 @@ void Picture::on_event(const mission::MissionEvent& event) {
   using enum mission::EventKind;
   if (event.task.site == SiteId{}) return;
   SitePicture& site = sites_[event.task.site];
-  if (!event.text.empty()) site.news = event.text;
-  switch (event.kind) {
+  site.news = event;
+  switch (event.kind()) {
     case survey_done:
       site.surveyed = true;
       advance(site.tasks[{event.task.site, TaskKind::survey, 0}], coalition::TaskState::done);
@@ -294,13 +296,14 @@ void Picture::on_event(const mission::MissionEvent& event) {
       site.done = true;
       break;
     case bid_declined:
-      round_of(event.round).declined[event.vehicle] = event.text;
+      round_of(event.round).declined[event.vehicle] =
+          std::get<mission::event::BidDeclined>(event.body).why;
       break;
     case coalition_formed: {
       CoalitionPicture& coalition = coalition_of(event.round.coalition);
       coalition.site = event.task.site;
       coalition.state = CoalitionState::formed;
-      coalition.why.clear();
+      coalition.why = {};
       break;
     }
     case allocation_failed: {
@@ -308,7 +311,9 @@ void Picture::on_event(const mission::MissionEvent& event) {
       coalition.site = event.task.site;
       if (coalition.state == CoalitionState::closed) break;
       coalition.state = CoalitionState::failed;
-      coalition.why = event.text;
+      coalition.why = {coalition::Reason::no_allocation,
+                       {},
+                       std::get<mission::event::AllocationFailed>(event.body).detail};
       break;
     }
     default:

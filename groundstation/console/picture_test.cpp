@@ -149,10 +149,9 @@ TEST(Picture, SaysWhyACoalitionFailed) {
   Desk desk;
   desk.say(announcement(), kLeader, 10.0);
   mission::MissionEvent event;
-  event.kind = mission::EventKind::allocation_failed;
   event.round = kRound;
   event.task.site = {4};
-  event.text = "nobody can deliver from 090";
+  event.body = mission::event::AllocationFailed{3, "nobody can deliver from 090"};
   desk.picture.on_event(event);
   const Json coalition = desk.section(Section::coalitions, 11.0)[0];
   EXPECT_EQ(coalition["state"], "failed");

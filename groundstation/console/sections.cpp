@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/mission/event_fields.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::console {
 namespace {
@@ -38,6 +41,30 @@ Json or_null(const std::optional<T>& value) {
 }
 Json id_or_null(const std::optional<VehicleId>& id) { return id ? Json(id->value) : Json(nullptr); }
 Json point(const Vec3& p) { return Json::array({metres(p.x()), metres(p.y()), metres(p.z())}); }
+
+/// The fields of an event by their names; times in seconds, as `name_s`.
+template <class Struct>
+Json fields_of(const Struct& made) {
+  Json json = Json::object();
+  mission::for_each_field(made, [&json]<class T>(std::string_view name, const T& value) {
+    const std::string key{name};
+    if constexpr (std::is_same_v<T, Instant> || std::is_same_v<T, Duration>) {
+      json[key + "_s"] = number(to_seconds(value), 3);
+    } else if constexpr (std::is_same_v<T, std::vector<VehicleId>>) {
+      json[key] = Json::array();
+      for (const VehicleId id : value) json[key].push_back(id.value);
+    } else if constexpr (std::is_enum_v<T>) {
+      json[key] = to_string(value);
+    } else if constexpr (requires { value.value; }) {
+      json[key] = value.value;
+    } else if constexpr (std::is_arithmetic_v<T> || std::is_same_v<T, std::string>) {
+      json[key] = value;
+    } else {
+      json[key] = fields_of(value);
+    }
+  });
+  return json;
+}
 
 Json task_json(const TaskId& task, const TaskPicture& picture) {
   return {{"site", task.site.value},
@@ -222,7 +249,7 @@ Json site_json(SiteId id, const SitePicture& site) {
                      : site.surveyed ? "surveyed"
                                      : "found"},
           {"tasks", std::move(tasks)},
-          {"news", site.news}};
+          {"news", site.news ? wording::text_of(*site.news) : ""}};
 }
 
 Json sites_json(const Picture& picture) {
@@ -253,7 +280,7 @@ Json round_json(const RoundPicture& round) {
   }
   r["declined"] = Json::array();
   for (const auto& [vehicle, why] : round.declined) {
-    r["declined"].push_back({{"vehicle", vehicle.value}, {"why", why}});
+    r["declined"].push_back({{"vehicle", vehicle.value}, {"why", wording::text_of(why)}});
   }
   r["award"] = Json::array();
   if (round.award) {
@@ -265,10 +292,11 @@ Json round_json(const RoundPicture& round) {
   }
   r["answers"] = Json::array();
   for (const auto& [member, answer] : round.answers) {
-    r["answers"].push_back(
-        {{"vehicle", member.value}, {"accepted", answer.accepted}, {"why", answer.reason}});
+    r["answers"].push_back({{"vehicle", member.value},
+                            {"accepted", answer.accepted},
+                            {"why", wording::text_of(answer.why)}});
   }
-  r["cancelled"] = round.cancelled ? Json(*round.cancelled) : Json(nullptr);
+  r["cancelled"] = round.cancelled ? Json(wording::text_of(*round.cancelled)) : Json(nullptr);
   return r;
 }
 
@@ -284,7 +312,7 @@ Json coalitions_json(const Picture& picture) {
                    {"number", id.number},
                    {"site", coalition.site.value},
                    {"state", to_string(coalition.state)},
-                   {"why", coalition.why},
+                   {"why", wording::text_of(coalition.why)},
                    {"members", std::move(members)},
                    {"lease_until_s", or_null(coalition.lease_until)},
                    {"rounds", std::move(rounds)}});
@@ -489,20 +517,21 @@ std::string series_of(const Picture& picture) {
   return text_of(all);
 }
 
-std::string event_json(const mission::MissionEvent& event, const std::string& text,
-                       std::uint64_t seq) {
-  const bool warning = event.kind == mission::EventKind::warning;
+std::string event_json(const mission::MissionEvent& event, std::uint64_t seq) {
+  const bool warning = mission::is_warning(event.kind());
+  Json fields = std::visit([](const auto& body) { return fields_of(body); }, event.body);
   return text_of(
       {{"seq", seq},
        {"time_s", seconds(event.time)},
        {"vehicle", event.vehicle.value},
-       {"kind", to_string(event.kind)},
+       {"kind", to_string(event.kind())},
        {"level", warning ? "warning" : "info"},
        {"site", event.task.site == SiteId{} ? Json(nullptr) : Json(event.task.site.value)},
        {"task", event.task.site == SiteId{} ? Json(nullptr) : Json(to_string(event.task))},
        {"coalition", event.round.number == 0 ? Json(nullptr) : Json(key_of(event.round.coalition))},
-       {"value", event.value},
-       {"text", text}});
+       {"fields", std::move(fields)},
+       {"news", wording::news_of(event)},
+       {"text", wording::text_of(event)}});
 }
 
 }  // namespace skein::console

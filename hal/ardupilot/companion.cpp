@@ -55,22 +55,24 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
   const bool from_ground = params_.take_over == TakeOver::from_ground;
   const bool waits_landed =
       !armed_ && !airborne() && (taken_by_others_ || (from_ground && launch_spent_));
-  std::string why;
+  AutopilotNotice refusal{AutopilotNews::not_given_back};
   if (machine_.in(State::duplicated)) {
     if (duplicate_at_ && now - *duplicate_at_ < kDuplicateGone) {
-      why = "two nodes on the bus still have the id " + std::to_string(duplicate_node_);
+      refusal.refusal = GiveBackRefusal::node_still_duplicate;
+      refusal.number = duplicate_node_;
     }
   } else if (!machine_.accepts(Event::given_back)) {
-    why = "the companion is in the state " + std::string{to_string(machine_.state())};
+    refusal.refusal = GiveBackRefusal::wrong_state;
+    refusal.detail = to_string(machine_.state());
   } else if (taken_by_others_ && issued < taken_at_) {
-    why = "it was taken after the operator's word";
+    refusal.refusal = GiveBackRefusal::taken_since;
   } else if (!navigation_healthy()) {
-    why = "it does not know where it is";
+    refusal.refusal = GiveBackRefusal::no_position;
   } else if (!in_flight && !waits_landed) {
-    why = "it is not armed and in the air";
+    refusal.refusal = GiveBackRefusal::not_flying;
   }
-  if (!why.empty()) {
-    say(true, "the aircraft cannot be given to the companion: " + why, now);
+  if (refusal.refusal != GiveBackRefusal::none) {
+    say(true, std::move(refusal), now);
     return false;
   }
   if (machine_.in(State::duplicated)) {
@@ -83,7 +85,7 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
     return true;
   }
   launch_spent_ = false;
-  say(false, "given back on the ground", now);
+  say(false, {AutopilotNews::given_back_landed}, now);
   if (machine_.in(State::piloted)) fire(Event::given_back_landed, now);
   return true;
 }
@@ -335,40 +337,42 @@ void Companion::Impl::fire(Event event, Instant now) {
   if (machine_.fire(event)) entered(from, event, now);
 }
 
-std::string Companion::Impl::why_piloted(State from, Event event) const {
-  if (event == Event::other_mode && (from != State::arming || !armed_)) {
-    return "the mode was changed to " + mode() + " by the pilot or a failsafe";
+AutopilotNotice Companion::Impl::why_piloted(State from, Event event) const {
+  if (event == Event::other_mode) {
+    const bool armed = from == State::arming && armed_;
+    return {.news = armed ? AutopilotNews::armed_by_others : AutopilotNews::mode_changed,
+            .detail = mode()};
   }
-  if (event == Event::other_mode) return "it was armed by others, in " + mode();
-  if (from != State::climbing) return "the autopilot does not obey";
-  return "it has not climbed to " + std::to_string(std::lround(params_.takeoff_height_m)) +
-         " m in time (TKOFF_ALT?)";
+  if (from != State::climbing) return {.news = AutopilotNews::not_obeying};
+  return {.news = AutopilotNews::not_climbed,
+          .number = static_cast<std::uint16_t>(std::lround(params_.takeoff_height_m))};
 }
 
-std::string Companion::Impl::ready_text() const {
-  if (taken_by_others_) return "; others have the aircraft until the operator gives it back";
-  if (params_.take_over != TakeOver::from_ground || !launch_spent_ || own_flight_) return "";
-  return "; it is not launched unless the operator gives it back on the ground";
+Given Companion::Impl::given() const {
+  if (taken_by_others_) return Given::taken_by_others;
+  if (params_.take_over != TakeOver::from_ground || !launch_spent_ || own_flight_) {
+    return Given::yes;
+  }
+  return Given::launch_spent;
 }
 
 void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
   if (from != State::checking) desk_.clear();  // there the streams were asked for
   if (from == State::preparing) {
-    const std::string more = ready_text();
-    say(!more.empty(), "the autopilot is ready" + more, now);
+    say(given() != Given::yes, {.news = AutopilotNews::ready, .given = given()}, now);
   } else if (event == Event::disarmed) {
-    say(false, "the autopilot has disarmed", now);
+    say(false, {AutopilotNews::disarmed}, now);
   } else if (event == Event::not_obeyed) {
-    say(true, "the autopilot does not arm" + ready_text(), now);
+    say(true, {.news = AutopilotNews::not_armed, .given = given()}, now);
   } else if (event == Event::not_ours && before_loss_ == State::arming) {
-    say(true, "the launch was broken off" + ready_text(), now);
+    say(true, {.news = AutopilotNews::launch_broken_off, .given = given()}, now);
   }
 }
 
 void Companion::Impl::begin_climb(Instant now) {
   own_flight_ = true;
   climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
-  say(false, "armed; taking off", now);
+  say(false, {AutopilotNews::taking_off}, now);
   if (params_.airframe != Airframe::copter) return;
   mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
   takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
@@ -380,7 +384,7 @@ void Companion::Impl::enter_piloted(State from, Event event, Instant now) {
   taken_by_others_ = true;
   taken_at_ = now;
   launch_spent_ = true;
-  say(true, why_piloted(from, event) + "; no setpoints until the operator gives it back", now);
+  say(true, why_piloted(from, event), now);
 }
 
 void Companion::Impl::enter_loss(State from, std::uint32_t mode_before, Instant now) {
@@ -391,10 +395,7 @@ void Companion::Impl::enter_loss(State from, std::uint32_t mode_before, Instant 
     before_loss_ = from;
     mode_before_loss_ = mode_before;
   }
-  say(true,
-      machine_.in(State::lost) ? "no frame comes from the flight controller"
-                               : "the autopilot is silent, though its node is on the bus",
-      now);
+  say(true, {machine_.in(State::lost) ? AutopilotNews::no_frames : AutopilotNews::silent}, now);
 }
 
 void Companion::Impl::entered(State from, Event event, Instant now) {
@@ -410,18 +411,17 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
     case State::searching:
       reset_link();
       say(true,
-          event == Event::rebooted ? "the autopilot has rebooted"
-          : event == Event::given_back
-              ? "looking for the autopilot again"
-              : "the autopilot has gone before it was prepared; looking for it again",
+          {event == Event::rebooted     ? AutopilotNews::rebooted
+           : event == Event::given_back ? AutopilotNews::looked_for
+                                        : AutopilotNews::gone},
           now);
       break;
     case State::refused:
       reset_link();
       break;
     case State::preparing:
-      said_refusal_.clear();
-      say(false, "found an autopilot, system " + std::to_string(system_) + ", in " + mode(), now);
+      said_refusal_.reset();
+      say(false, {.news = AutopilotNews::found, .number = system_, .detail = mode()}, now);
       break;
     case State::standing_by:
       enter_standing_by(from, event, now);
@@ -430,7 +430,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       if (from == State::arming) begin_climb(now);
       break;
     case State::landing:
-      say(false, "landing at its place", now);
+      say(false, {AutopilotNews::landing}, now);
       break;
     case State::flying:
       on_ground_since_.reset();
@@ -438,7 +438,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       height_sent_.reset();
       height_at_.reset();
       target_at_ = now;
-      say(false, "flying the companion's setpoints", now);
+      say(false, {AutopilotNews::flying}, now);
       break;
     case State::piloted:
       enter_piloted(from, event, now);
@@ -458,10 +458,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       desk_.clear();
       while (packets_.pop()) {
       }
-      say(true,
-          "two nodes on the bus have the id " + std::to_string(duplicate_node_) +
-              ": nothing is sent any more; give each its own, then give the aircraft back",
-          now);
+      say(true, {.news = AutopilotNews::duplicate_node, .number = duplicate_node_}, now);
       break;
     default:
       break;

@@ -73,10 +73,9 @@ void Companion::Impl::refuse_system(const mavlink::Packet& packet, Instant now) 
     return;
   refused_systems_.set(packet.system);
   say(true,
-      "an autopilot of system " + std::to_string(packet.system) +
-          " is on the line, and not heeded: the "
-          "configuration names system " +
-          std::to_string(params_.system_id),
+      {.news = AutopilotNews::other_system,
+       .number = packet.system,
+       .detail = "system " + std::to_string(params_.system_id)},
       now);
 }
 
@@ -90,22 +89,21 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
     own_flight_ = false;
   }
   if (machine_.in(State::searching) || (machine_.in(State::refused) && !firmware_refused_)) {
-    std::string wrong;
+    std::optional<AutopilotNotice> wrong;
     if (heartbeat.autopilot != static_cast<std::uint8_t>(mavlink::Autopilot::ardupilotmega)) {
-      wrong = "is of make " + std::to_string(heartbeat.autopilot) +
-              ", not an ArduPilot (3); choose another kind of flight controller";
+      wrong = {.news = AutopilotNews::wrong_make, .number = heartbeat.autopilot};
     } else if (!is_of(params_.airframe, heartbeat.type)) {
-      wrong = "flies an aircraft of MAV_TYPE " + std::to_string(heartbeat.type) + ", which is no " +
-              (params_.airframe == Airframe::copter ? "copter" : "plane") +
-              "; mend the airframe in the configuration";
+      wrong = {.news = AutopilotNews::wrong_airframe,
+               .number = heartbeat.type,
+               .detail = params_.airframe == Airframe::copter ? "copter" : "plane"};
     }
-    if (wrong.empty()) {
+    if (!wrong) {
       system_ = packet.system;
       encoder_.emplace(system_, mavlink::kComponentOnboardComputer);
       fire(Event::autopilot_found, now);
     } else if (machine_.in(State::searching)) {
       fire(Event::wrong_autopilot, now);
-      say(true, "the autopilot " + wrong, now);
+      say(true, *wrong, now);
     }
     return;
   }
@@ -244,15 +242,12 @@ void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Insta
   if (firmware_settled_) return;
   firmware_settled_ = true;
   if ((firmware_ >> 16U) < kFirmwareMin) {
-    say(true,
-        "the autopilot runs ArduPilot " + version_text(firmware_) +
-            ", older than 4.5; update its firmware",
-        now);
+    say(true, {.news = AutopilotNews::old_firmware, .detail = version_text(firmware_)}, now);
     firmware_refused_ = true;
     if (machine_.in(State::preparing)) fire(Event::wrong_autopilot, now);
     return;
   }
-  say(false, "the autopilot runs ArduPilot " + version_text(firmware_), now);
+  say(false, {.news = AutopilotNews::firmware, .detail = version_text(firmware_)}, now);
 }
 
 void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
@@ -266,7 +261,7 @@ void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
   text_id_ = text.id;
   const bool warning = text.severity <= static_cast<std::uint8_t>(mavlink::Severity::warning);
   if (warning) last_text_at_ = now;
-  say(false, "autopilot: " + last_text_, now);
+  say(false, {.news = AutopilotNews::text, .detail = last_text_}, now);
   if (warning && refusal_) report_refusal(now);
 }
 
@@ -295,8 +290,8 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
 }
 
 void Companion::Impl::report_refusal(Instant now) {
-  std::string text = "the autopilot refuses " + name_of_command(refusal_->command.command) + ": " +
-                     name_of_result(refusal_->result);
+  std::string text =
+      name_of_command(refusal_->command.command) + ": " + name_of_result(refusal_->result);
   const auto command = static_cast<Command>(refusal_->command.command);
   if (command == Command::set_message_interval) {
     const auto id = static_cast<std::uint32_t>(refusal_->command.param1);
@@ -305,9 +300,10 @@ void Companion::Impl::report_refusal(Instant now) {
   }
   if (last_text_at_ && now - *last_text_at_ <= 2 * kReasonWithin) text += ": " + last_text_;
   refusal_.reset();
-  if (text == said_refusal_) return;
-  said_refusal_ = text;
-  say(true, std::move(text), now);
+  AutopilotNotice refused{.news = AutopilotNews::command_refused, .detail = std::move(text)};
+  if (refused == said_refusal_) return;
+  said_refusal_ = refused;
+  say(true, std::move(refused), now);
 }
 
 std::optional<Instant> Companion::Impl::measured_at(std::uint32_t time_boot_ms, Instant now) {

@@ -102,8 +102,8 @@ class Companion::Impl {
   void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
   void keep_clock(Instant now);
   void report_refusal(Instant now);
-  [[nodiscard]] std::string why_piloted(State from, Event event) const;
-  [[nodiscard]] std::string ready_text() const;
+  [[nodiscard]] AutopilotNotice why_piloted(State from, Event event) const;
+  [[nodiscard]] Given given() const;
 
   void fire(Event event, Instant now);
   void entered(State from, Event event, Instant now);
@@ -124,8 +124,8 @@ class Companion::Impl {
   void send(const Message& message) {
     if (encoder_) packets_.push(encoder_->encode(message));
   }
-  void say(bool warning, std::string text, Instant now) {
-    notices_.push({now, warning, std::move(text)});
+  void say(bool warning, AutopilotNotice what, Instant now) {
+    notices_.push({now, warning, std::move(what)});
   }
 
   CompanionParams params_;
@@ -192,7 +192,7 @@ class Companion::Impl {
   std::optional<Instant> height_at_;
   std::optional<Outcome> refusal_;
   Instant refusal_at_;
-  std::string said_refusal_;
+  std::optional<AutopilotNotice> said_refusal_;
 };
 
 }  // namespace skein::ardupilot

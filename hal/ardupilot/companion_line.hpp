@@ -8,6 +8,7 @@
 
 #include "autopilot_double.hpp"
 #include "skein/ardupilot/companion.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::ardupilot {
 
@@ -71,8 +72,8 @@ struct Line {
       up_.pop_front();
     }
     while (const auto notice = companion.poll_notice()) {
-      notices.push_back(notice->text);
-      if (notice->warning) warnings.push_back(notice->text);
+      notices.push_back(wording::text_of(notice->what));
+      if (notice->warning) warnings.push_back(notices.back());
     }
   }
   void run(double seconds) {

@@ -30,6 +30,7 @@
 #include "skein/hil/team_mission.hpp"
 #include "skein/network/node.hpp"
 #include "skein/recording/writer.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
@@ -280,7 +281,7 @@ class Bench {
               seconds_text(*outcome_.all_heard_s) + " after the start; the mission begins at 0 s");
         }
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
-        if (event->kind == mission::EventKind::site_done &&
+        if (event->kind() == mission::EventKind::site_done &&
             sites_done_.insert(event->task.site).second) {
           progress_.sites_done = sites_done_.size();
         }
@@ -292,13 +293,13 @@ class Bench {
 
   void on_formation_event(const mission::MissionEvent& event) {
     using mission::EventKind;
-    script_done_ = script_done_ || event.kind == EventKind::script_done;
+    script_done_ = script_done_ || event.kind() == EventKind::script_done;
     if (event.vehicle == kGroundStation) return;
-    if (event.kind == EventKind::change_begun) {
+    if (event.kind() == EventKind::change_taken_up) {
       changes_begun_ = true;
       moving_.insert(event.vehicle);
     }
-    if (event.kind == EventKind::place_reached) moving_.erase(event.vehicle);
+    if (event.kind() == EventKind::place_reached) moving_.erase(event.vehicle);
   }
 
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
@@ -449,7 +450,7 @@ class Bench {
 
   void news(const mission::MissionEvent& event) {
     using mission::EventKind;
-    switch (event.kind) {
+    switch (event.kind()) {
       case EventKind::site_detected:
       case EventKind::survey_done:
       case EventKind::coalition_formed:
@@ -461,19 +462,11 @@ class Bench {
       case EventKind::formation_held:
       case EventKind::script_done:
       case EventKind::task_failed:
-      case EventKind::warning:
         break;
       default:
-        return;
+        if (!mission::is_warning(event.kind())) return;
     }
-    std::string line = seconds_text(to_seconds(event.time)) + "  " + name_of(event.vehicle) + "  " +
-                       std::string{to_string(event.kind)};
-    if (event.task.site != SiteId{}) line += ", site " + std::to_string(event.task.site.value);
-    if (event.kind == EventKind::coalition_formed)
-      line += ", " + std::to_string(std::lround(event.value)) + " vehicles";
-    if (event.kind == EventKind::change_begun && event.vehicle != kGroundStation) return;
-    if (!event.text.empty()) line += ": " + event.text;
-    say(line);
+    say(seconds_text(to_seconds(event.time)) + "  " + wording::text_of(event));
   }
 
   void say(const std::string& news) {

@@ -107,8 +107,8 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
   std::set<SiteId> formed;
   std::set<SiteId> waited;
   for (const auto& event : events_of(record)) {
-    if (event.kind == EventKind::coalition_formed) formed.insert(event.task.site);
-    if (event.kind == EventKind::monitoring && !formed.contains(event.task.site))
+    if (event.kind() == EventKind::coalition_formed) formed.insert(event.task.site);
+    if (event.kind() == EventKind::monitoring && !formed.contains(event.task.site))
       waited.insert(event.task.site);
   }
   const auto expected = static_cast<std::size_t>(scenario.expect.coalitions);
@@ -139,7 +139,7 @@ std::vector<SiteFigures> site_figures(const checks::RunRecord& record,
     for (const auto& e : events) {
       if (e.task.site != site.id) continue;
       const double t = to_seconds(e.time);
-      switch (e.kind) {
+      switch (e.kind()) {
         case EventKind::site_detected:
           if (!f.found_by) f.found_by = e.vehicle;
           break;
@@ -151,10 +151,10 @@ std::vector<SiteFigures> site_figures(const checks::RunRecord& record,
           break;
         case EventKind::coalition_formed:
           f.formed_s = t;
-          f.coalition_size = static_cast<int>(std::lround(e.value));
+          f.coalition_size = std::get<mission::event::CoalitionFormed>(e.body).vehicles;
           break;
         case EventKind::allocation_done:
-          f.allocation_time_s = e.value;
+          f.allocation_time_s = to_seconds(std::get<mission::event::AllocationDone>(e.body).took);
           break;
         case EventKind::task_done:
           if (e.task.kind == TaskKind::assess)

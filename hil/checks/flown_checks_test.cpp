@@ -83,13 +83,13 @@ TEST(FlownChecks, SlotsAreKept) {
   record.sites.front().assess_wait = from_seconds(5.0);
   auto& south = of(record, kFromSouth);
   shift(south, {0.0, -250.0});  // 5 s behind
-  event_of(record, kFromSouth, EventKind::task_done).value = 65.0;
+  set_moment(event_of(record, kFromSouth, EventKind::task_done), 65.0);
   EXPECT_TRUE(check_deliveries(record, {}).held());
   shift(south, {0.0, -60.0});
   const CheckResult late = check_deliveries(record, {});
   ASSERT_EQ(late.violations.size(), 2U);
   EXPECT_THAT(late.violations[1].sentence, HasSubstr("1.20 s off its slot"));
-  event_of(record, kFromSouth, EventKind::task_done).value = 66.0;
+  set_moment(event_of(record, kFromSouth, EventKind::task_done), 66.0);
   EXPECT_THAT(check_deliveries(record, {}).violations.front().sentence,
               HasSubstr("off its slot beside the others"));
 }

@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "skein/wording/wording.hpp"
+
 namespace skein::checks {
 namespace {
 
@@ -22,12 +24,12 @@ std::vector<FormationChange> formation_changes(const RunRecord& record) {
   std::vector<FormationChange> all;
   for (const auto& event : record.ground_events) {
     if (event.vehicle != kGroundStation) continue;
-    if (event.kind == EventKind::change_begun) {
+    if (const auto* begun = std::get_if<mission::event::ChangeBegun>(&event.body)) {
       FormationChange change;
-      change.number = static_cast<std::uint32_t>(event.value);
-      change.order = event.text.substr(0, event.text.find(':'));
+      change.number = begun->number;
+      change.order = wording::text_of(*begun);
       change.begun = event.time;
-      change.correction = event.text.starts_with("correction");
+      change.correction = begun->correction;
       if (!change.correction) {
         change.places = places_of(record, change.number);
       } else if (!all.empty()) {
@@ -35,7 +37,7 @@ std::vector<FormationChange> formation_changes(const RunRecord& record) {
       }
       if (!all.empty()) all.back().until = event.time;
       all.push_back(std::move(change));
-    } else if (event.kind == EventKind::formation_held && !all.empty() && !all.back().held) {
+    } else if (event.kind() == EventKind::formation_held && !all.empty() && !all.back().held) {
       all.back().held = event.time;
     }
   }

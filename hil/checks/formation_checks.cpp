@@ -38,10 +38,8 @@ CheckResult check_arrivals(const RunRecord& record, const Limits& limits) {
     std::vector<Instant> reached;
     for (const auto& recorded : record.recordings) {
       for (const auto& event : recorded.events) {
-        if (event.kind == EventKind::place_reached &&
-            static_cast<std::uint32_t>(event.value) == change.number) {
-          reached.push_back(event.time);
-        }
+        const auto* place = std::get_if<mission::event::PlaceReached>(&event.body);
+        if (place != nullptr && place->number == change.number) reached.push_back(event.time);
       }
     }
     if (reached.size() < 2) continue;

@@ -8,24 +8,20 @@
 namespace skein::checks {
 namespace {
 
-using mission::EventKind;
+using mission::event::ChangeBegun;
+using mission::event::FormationHeld;
+using mission::event::PlaceReached;
 using ::testing::HasSubstr;
 
-mission::MissionEvent event(std::uint16_t vehicle, double seconds, EventKind kind, double value) {
-  mission::MissionEvent e;
-  e.vehicle = {vehicle};
-  e.time = at_seconds(seconds);
-  e.kind = kind;
-  e.value = value;
-  return e;
+mission::MissionEvent event(std::uint16_t vehicle, double seconds, mission::EventBody body) {
+  return {{vehicle}, at_seconds(seconds), {}, {}, std::move(body)};
 }
 
 /// Two vehicles, one order that holds from 10 s to 20 s; each hovers `off_m` east of its place.
 RunRecord flown(double off_m, double second_reaches_s) {
   RunRecord record;
-  record.ground_events = {
-      event(0, 1.0, EventKind::change_begun, 7.0), event(0, 10.0, EventKind::formation_held, 0.0),
-      event(0, 20.0, EventKind::change_begun, 8.0), event(0, 30.0, EventKind::formation_held, 0.0)};
+  record.ground_events = {event(0, 1.0, ChangeBegun{7}), event(0, 10.0, FormationHeld{}),
+                          event(0, 20.0, ChangeBegun{8}), event(0, 30.0, FormationHeld{})};
   for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
     VehicleSpec spec;
     spec.id = {id};
@@ -40,7 +36,7 @@ RunRecord flown(double off_m, double second_reaches_s) {
       point.state.z_m = 20.0;
       recording.track.push_back(point);
     }
-    recording.events = {event(id, id == 1 ? 9.0 : second_reaches_s, EventKind::place_reached, 7.0)};
+    recording.events = {event(id, id == 1 ? 9.0 : second_reaches_s, PlaceReached{7})};
     record.recordings.push_back(recording);
   }
   return record;
@@ -48,15 +44,15 @@ RunRecord flown(double off_m, double second_reaches_s) {
 
 TEST(FormationChanges, AreToldByTheGroundStationsEvents) {
   RunRecord record = flown(0.0, 9.0);
-  record.ground_events[0].text = "form, straight: 2 vehicles";
-  record.ground_events[2].text = "correction of form, straight: 1 vehicle";
+  std::get<ChangeBegun>(record.ground_events[0].body).order = mission::OrderKind::land;
+  std::get<ChangeBegun>(record.ground_events[2].body).correction = true;
   record.ground_events.pop_back();  // a correction does not hold anew
-  record.ground_events.push_back(event(1, 21.0, EventKind::change_begun, 8.0));
+  record.ground_events.push_back(event(1, 21.0, mission::event::ChangeTakenUp{8}));
   record.places.push_back({8, at_seconds(21.0), {1}, {10.5, 0.0, 20.0}});
   const auto changes = formation_changes(record);
   ASSERT_EQ(changes.size(), 2U);
   EXPECT_EQ(changes[0].number, 7U);
-  EXPECT_EQ(changes[0].order, "form, straight");
+  EXPECT_EQ(changes[0].order, "land, straight");
   EXPECT_FALSE(changes[0].correction);
   EXPECT_EQ(changes[0].begun, at_seconds(1.0));
   EXPECT_EQ(changes[0].held, at_seconds(10.0));

@@ -83,8 +83,8 @@ bool refused(const RunRecord& record, SiteId site) {
   bool is_refused = false;
   for (const MissionEvent& event : record.ground_events) {
     if (event.task.site != site) continue;
-    if (event.kind == EventKind::authorisation_refused) is_refused = true;
-    if (event.kind == EventKind::authorised) is_refused = false;
+    if (event.kind() == EventKind::authorisation_refused) is_refused = true;
+    if (event.kind() == EventKind::authorised) is_refused = false;
   }
   return is_refused;
 }
@@ -216,7 +216,7 @@ CheckResult check_authorisation(const RunRecord& record, const Limits& /*limits*
                           const TaskRun& run, EventKind kind) {
     std::optional<Instant> first;
     for (const MissionEvent& event : events) {
-      if (event.vehicle == teller && event.kind == kind && event.round == run.round &&
+      if (event.vehicle == teller && event.kind() == kind && event.round == run.round &&
           event.task.site == run.task.site && (!first || event.time < *first)) {
         first = event.time;
       }

@@ -24,7 +24,7 @@ TEST(ProtocolChecks, ASurveyThatIsToldTwiceIsOneRun) {
 TEST(ProtocolChecks, ADeliveryBeforeTheSurveyIsDoneIsFound) {
   RunRecord record = good_record();
   for (auto& e : of(record, kSurveyor).events) {
-    if (e.kind != EventKind::survey_started) e.time = at_seconds(56.0);
+    if (e.kind() != EventKind::survey_started) e.time = at_seconds(56.0);
   }
   EXPECT_THAT(failed(record), ElementsAre("precedence"));
   EXPECT_EQ(check_precedence(record, {}).violations.size(), 2U);
@@ -47,7 +47,7 @@ TEST(ProtocolChecks, AnAssessmentBeforeItsWaitIsFound) {
 
 TEST(ProtocolChecks, AnAssessmentPlannedBeforeItsWaitIsFound) {
   RunRecord record = good_record();
-  event_of(record, kAssessor, EventKind::task_done).value = 69.9;
+  set_moment(event_of(record, kAssessor, EventKind::task_done), 69.9);
   const CheckResult result = check_precedence(record, {});
   ASSERT_EQ(result.violations.size(), 2U);
   EXPECT_THAT(result.violations.front().sentence, HasSubstr("was planned at 69.90 s"));
@@ -81,7 +81,8 @@ TEST(ProtocolChecks, ALeaseThatFollowsAnExpiredOneIsFine) {
   RunRecord record = good_record();
   auto& events = of(record, kFromWest).events;
   std::erase_if(events, [](const auto& e) {
-    return e.kind == EventKind::lease_granted && e.value > 100.0;  // the renewal
+    const auto* lease = std::get_if<mission::event::LeaseGranted>(&e.body);
+    return lease != nullptr && lease->until > at_seconds(100.0);  // the renewal
   });
   of(record, kAssessor)
       .events.push_back(event(kAssessor, 45.0, EventKind::lease_granted, kEastward, 55.0));
@@ -227,7 +228,7 @@ TEST(ProtocolChecks, WhatEndsWithItsAgentIsCutOffAndCountsAsFlown) {
   // When it ended nobody knows; but nothing that comes after it may begin before it did.
   RunRecord early = record;
   for (auto& e : of(early, kFromWest).events) {
-    if (e.kind == EventKind::task_started) e.time = at_seconds(90.0);
+    if (e.kind() == EventKind::task_started) e.time = at_seconds(90.0);
   }
   early.agent_ends = {{kFromWest, at_seconds(91.0), {}}};
   EXPECT_FALSE(check_precedence(early, {}).held());

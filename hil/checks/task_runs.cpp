@@ -19,8 +19,15 @@ bool is_done(EventKind kind) {
 
 TaskId task_of(const MissionEvent& event) {
   const bool survey =
-      event.kind == EventKind::survey_started || event.kind == EventKind::survey_done;
+      event.kind() == EventKind::survey_started || event.kind() == EventKind::survey_done;
   return survey ? TaskId{event.task.site, TaskKind::survey, 0} : event.task;
+}
+
+/// When what was done was to begin, or be done: of a task, and of a survey that it tells apart.
+Instant planned_of(const MissionEvent& event) {
+  if (const auto* done = std::get_if<mission::event::TaskDone>(&event.body)) return done->planned;
+  const auto* survey = std::get_if<mission::event::SurveyDone>(&event.body);
+  return survey == nullptr ? Instant{} : survey->begun;
 }
 
 /// One vehicle's events in order of time; others' that it may have noted are not its own.
@@ -34,29 +41,32 @@ std::vector<MissionEvent> own_events(const recording::Recording& recorded) {
 }
 
 void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
-  const bool done = is_done(event.kind);
-  const bool unleased = event.kind == EventKind::lease_ended && event.task.kind == TaskKind::assess;
-  if (!is_start(event.kind) && !done && !unleased && event.kind != EventKind::task_failed) return;
+  const bool done = is_done(event.kind());
+  const bool unleased =
+      event.kind() == EventKind::lease_ended && event.task.kind == TaskKind::assess;
+  if (!is_start(event.kind()) && !done && !unleased && event.kind() != EventKind::task_failed)
+    return;
   const TaskId task = task_of(event);
   const auto last = std::find_if(runs.rbegin(), runs.rend(),
                                  [&](const TaskRun& run) { return run.task == task; });
   // Who loses the lease within an arc may fly it to its end or leave it; a new start tells.
-  if (is_start(event.kind) && last != runs.rend() && last->lease_lost && !last->done)
+  if (is_start(event.kind()) && last != runs.rend() && last->lease_lost && !last->done)
     last->failed = true;
   const bool open = last != runs.rend() && !last->done && !last->failed && !last->cut_off;
   // A survey is told twice, as a survey and as a task: one run.
   const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
                           last->done && event.time - *last->done < std::chrono::seconds{1};
   if (!open && !told_again) {
-    if (unleased || event.kind == EventKind::task_failed) return;  // given up before it began
+    if (unleased || event.kind() == EventKind::task_failed) return;  // given up before it began
     runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false, false});
   }
   TaskRun& run = open || told_again ? *last : runs.back();
-  if (event.kind == EventKind::task_failed) run.failed = true;
+  if (event.kind() == EventKind::task_failed) run.failed = true;
   if (unleased) run.lease_lost = !run.done;
-  if (is_start(event.kind) && !run.started) run.started = event.time;
+  if (is_start(event.kind()) && !run.started) run.started = event.time;
   if (done && !run.done) run.done = event.time;
-  if (done && event.value > 0.0) run.planned = at_seconds(event.value);
+  const auto planned = planned_of(event);
+  if (planned > Instant{}) run.planned = planned;
 }
 
 void cut_off(std::vector<TaskRun>& runs) {
@@ -75,10 +85,10 @@ std::vector<AgentEnd> ends_of(const RunRecord& record, VehicleId vehicle) {
 }
 
 void add_to_leases(const MissionEvent& event, std::vector<Lease>& leases) {
-  const bool granted = event.kind == EventKind::lease_granted;
-  const bool over = event.kind == EventKind::lease_ended || event.kind == EventKind::task_done ||
-                    event.kind == EventKind::task_failed;
-  if (!granted && !over) return;
+  const auto* granted = std::get_if<mission::event::LeaseGranted>(&event.body);
+  const bool over = event.kind() == EventKind::lease_ended ||
+                    event.kind() == EventKind::task_done || event.kind() == EventKind::task_failed;
+  if (granted == nullptr && !over) return;
   const auto running = [&](const Lease& lease) {
     return lease.task == event.task && lease.until > event.time &&
            lease.coalition == event.round.coalition;
@@ -89,7 +99,7 @@ void add_to_leases(const MissionEvent& event, std::vector<Lease>& leases) {
     }
     return;
   }
-  const Instant until = at_seconds(event.value);
+  const Instant until = granted->until;
   const auto renewed = std::find_if(leases.begin(), leases.end(), running);
   if (renewed != leases.end()) {
     renewed->until = until;

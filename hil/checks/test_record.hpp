@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "skein/checks/checks.hpp"
+#include "skein/mission/event_fields.hpp"
 
 /// A small mission without fault, built by hand, for the tests to spoil.
 namespace skein::checks::testing {
@@ -59,9 +61,18 @@ inline void fly(recording::Recording& recorded, double until_s, double height_m)
   }
 }
 
+/// The moment that the event speaks of: when a lease ends, for when a task was planned.
+inline void set_moment(mission::MissionEvent& event, double time_s) {
+  const auto set = [time_s](auto /*name*/, auto& value) {
+    if constexpr (std::is_same_v<decltype(value), Instant&>) value = at_seconds(time_s);
+  };
+  std::visit([&](auto& body) { mission::for_each_field(body, set); }, event.body);
+}
 inline mission::MissionEvent event(VehicleId vehicle, double time_s, mission::EventKind kind,
-                                   const TaskId& task, double value = 0.0) {
-  return {vehicle, at_seconds(time_s), kind, kRound, task, value, ""};
+                                   const TaskId& task, double moment_s = 0.0) {
+  mission::MissionEvent made{vehicle, at_seconds(time_s), kRound, task, mission::body_of(kind)};
+  set_moment(made, moment_s);
+  return made;
 }
 
 /// Spoil a track.
@@ -86,10 +97,11 @@ inline VehicleSpec& spec(RunRecord& record, VehicleId vehicle) {
 inline mission::MissionEvent& event_of(RunRecord& record, VehicleId vehicle,
                                        mission::EventKind kind) {
   auto& events = of(record, vehicle).events;
-  return *std::find_if(events.begin(), events.end(), [&](const auto& e) { return e.kind == kind; });
+  return *std::find_if(events.begin(), events.end(),
+                       [&](const auto& e) { return e.kind() == kind; });
 }
 inline void erase_events(RunRecord& record, VehicleId vehicle, mission::EventKind kind) {
-  std::erase_if(of(record, vehicle).events, [&](const auto& e) { return e.kind == kind; });
+  std::erase_if(of(record, vehicle).events, [&](const auto& e) { return e.kind() == kind; });
 }
 
 inline RunRecord good_record() {

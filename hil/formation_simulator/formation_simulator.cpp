@@ -16,6 +16,7 @@
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/mission/formation_agent.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
@@ -42,7 +43,7 @@ struct Flyer {
   Vec3 hover_m;                                    ///< without a track
   std::optional<Instant> restart_at;
   std::optional<Instant> sinks_at;
-  std::string said;  ///< the agent's last warning in its change
+  std::optional<mission::MissionEvent> said;  ///< the agent's last warning in its change
   std::uint64_t lives = 0;
 };
 
@@ -60,7 +61,7 @@ class FormationFlight {
     for (const FormationVehicle& vehicle : mission.vehicles) {
       flyers_.push_back({vehicle, clock_offset(mission.faults, vehicle.id),
                          MultirotorBody{vehicle.start, mission.gust_error_m, gusts.fork()}, nullptr,
-                         std::nullopt, vehicle.start, std::nullopt, std::nullopt, "", 0});
+                         std::nullopt, vehicle.start, std::nullopt, std::nullopt, std::nullopt, 0});
       start_agent(flyers_.back());
     }
     run_.seed = mission.seed;
@@ -98,7 +99,7 @@ class FormationFlight {
     config.avoidance = mission_.formation.avoidance;
     config.passage.tolerance_m = mission_.formation.tracking_m;
     flyer.agent = std::make_unique<mission::FormationAgent>(config, now_ + flyer.clock);
-    flyer.said.clear();
+    flyer.said.reset();
   }
 
   Result<void> start_desk() {
@@ -109,7 +110,7 @@ class FormationFlight {
     auto desk = groundstation::FormationDesk::open(config, ids(mission_), ground_now());
     if (!desk) return desk.error();
     desk_ = std::move(*desk);
-    said_.clear();
+    said_.reset();
     return {};
   }
   [[nodiscard]] Instant ground_now() const {
@@ -208,13 +209,13 @@ class FormationFlight {
     while (const auto event = desk_->poll_event()) {
       if (observer_.event) observer_.event(*event);
       moved_at_ = now_;
-      if (event->kind == mission::EventKind::change_begun) {
+      if (event->kind() == mission::EventKind::change_begun) {
         ++run_.changes;
         timeline_.on_change_begun(now_);
-        said_.clear();
+        said_.reset();
       }
-      if (event->kind == mission::EventKind::warning) said_ = event->text;
-      run_.script_done = run_.script_done || event->kind == mission::EventKind::script_done;
+      if (mission::is_warning(event->kind())) said_ = *event;
+      run_.script_done = run_.script_done || event->kind() == mission::EventKind::script_done;
     }
   }
 
@@ -257,8 +258,8 @@ class FormationFlight {
     }
     while (const auto event = flyer.agent->poll_event()) {
       if (observer_.event) observer_.event(*event);
-      if (event->kind == mission::EventKind::change_begun) flyer.said.clear();
-      if (event->kind == mission::EventKind::warning) flyer.said = event->text;
+      if (event->kind() == mission::EventKind::change_taken_up) flyer.said.reset();
+      if (mission::is_warning(event->kind())) flyer.said = *event;
     }
   }
 
@@ -299,8 +300,8 @@ class FormationFlight {
       return;
     }
     if (desk_) {
-      run_.reason = said_;
-      if (said_.empty()) stuck("the script stops, and the ground station does not say why");
+      if (said_) run_.reason = wording::news_of(*said_);
+      if (!said_) stuck("the script stops, and the ground station does not say why");
       return;
     }
     // Without a ground station everybody comes to its place, or says what it waits for.
@@ -308,10 +309,10 @@ class FormationFlight {
     for (const Flyer& flyer : flyers_) {
       if (!flyer.agent || flyer.agent->execution() == nullptr) continue;
       if (flyer.agent->execution()->finished()) continue;
-      if (flyer.said.empty()) {
+      if (!flyer.said) {
         stuck(fmt::format("U{} neither comes to its place nor says why", flyer.what.id.value));
       } else {
-        run_.reason += fmt::format("; U{}: {}", flyer.what.id.value, flyer.said);
+        run_.reason += fmt::format("; U{}: {}", flyer.what.id.value, wording::news_of(*flyer.said));
       }
     }
   }
@@ -324,8 +325,8 @@ class FormationFlight {
   std::vector<Flyer> flyers_;
   std::optional<groundstation::FormationDesk> desk_;
   std::optional<Instant> desk_back_at_;
-  std::size_t script_done_ = 0;  ///< lines that are done, of desks before this one
-  std::string said_;             ///< the ground station's last warning in the newest change
+  std::size_t script_done_ = 0;                ///< lines that are done, of desks before this one
+  std::optional<mission::MissionEvent> said_;  ///< its last warning in the newest change
   Instant now_{};
   Instant moved_at_{};  ///< or an order was given
   FormationRun run_;

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "skein/wording/wording.hpp"
+
 namespace skein::hil {
 namespace {
 
@@ -71,7 +73,7 @@ TEST(FormationSimulator, TheSameSeedGivesTheSameBytes) {
     FormationObserver observer;
     observer.event = [&](const mission::MissionEvent& event) {
       text += fmt::format("{} {} {}\n", event.time.time_since_epoch().count(),
-                          mission::to_string(event.kind), event.text);
+                          mission::to_string(event.kind()), wording::news_of(event));
     };
     observer.body = [&](Instant, VehicleId, const Vec3& p) {
       text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());

@@ -168,7 +168,7 @@ void fly(const std::filesystem::path& folder) {
         v->inbox.emplace_back(mission::SiteReport{VehicleId{1}, site}, kOther);
     }
     if (now == at_seconds(30.0)) {
-      vehicles[0]->notices.push_back({now, true, "EKF variance"});
+      vehicles[0]->notices.push_back({now, true, {AutopilotNews::mode_changed}});
       // Another node under its number, which it takes for no word of its own.
       mission::HazardReport hazard{{HazardId{7}, {-3000.0, -3000.0}, 50.0}};
       vehicles[1]->inbox.emplace_back(hazard, VehicleId{2});

@@ -15,15 +15,21 @@
 namespace skein::report {
 namespace {
 
-using mission::EventKind;
+using mission::event::BidSent;
+using mission::event::CoalitionFormed;
+using mission::event::LeaseGranted;
+using mission::event::SurveyDone;
+using mission::event::SurveyStarted;
+using mission::event::TaskDone;
+using mission::event::TaskStarted;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-mission::MissionEvent event(VehicleId vehicle, double time_s, EventKind kind, const TaskId& task,
-                            double value = 0.0) {
-  return {vehicle, at_seconds(time_s), kind, {{VehicleId{1}, InstanceId{5}, 1}, 1}, task, value,
-          ""};
+mission::MissionEvent event(VehicleId vehicle, double time_s, mission::EventBody body,
+                            const TaskId& task) {
+  return {
+      vehicle, at_seconds(time_s), {{VehicleId{1}, InstanceId{5}, 1}, 1}, task, std::move(body)};
 }
 
 /// Vehicle 1 surveys and leads; vehicle 12 delivers eastward over the site at the origin at 60 s.
@@ -57,14 +63,15 @@ Contents small_contents() {
   const TaskId delivery{site.id, TaskKind::deliver, 0};
   const VehicleId leader{1};
   const VehicleId member{12};
-  contents.record.recordings[0].events = {event(leader, 5.0, EventKind::survey_started, survey),
-                                          event(leader, 25.0, EventKind::survey_done, survey, 5.0),
-                                          event(leader, 27.0, EventKind::coalition_formed, survey)};
+  contents.record.recordings[0].events = {
+      event(leader, 5.0, SurveyStarted{at_seconds(5.0)}, survey),
+      event(leader, 25.0, SurveyDone{at_seconds(5.0)}, survey),
+      event(leader, 27.0, CoalitionFormed{}, survey)};
   contents.record.recordings[1].events = {
-      event(member, 25.2, EventKind::bid_sent, delivery),
-      event(member, 27.0, EventKind::lease_granted, delivery, 90.0),
-      event(member, 54.0, EventKind::task_started, delivery),
-      event(member, 60.2, EventKind::task_done, delivery, 60.0)};
+      event(member, 25.2, BidSent{}, delivery),
+      event(member, 27.0, LeaseGranted{at_seconds(90.0)}, delivery),
+      event(member, 54.0, TaskStarted{}, delivery),
+      event(member, 60.2, TaskDone{at_seconds(60.0)}, delivery)};
   contents.checks = {{"turn radius", "none tighter", 4, "plans", "101 %", {}}};
   contents.comparison = {{site.id, "survey done", "25.00 s", "43.92 s"}};
   return contents;

@@ -22,9 +22,9 @@ bool answers_bid(EventKind kind) {
 
 void add_bids(const std::vector<MissionEvent>& events, Story& story) {
   for (auto bid = events.begin(); bid != events.end(); ++bid) {
-    if (bid->kind != EventKind::bid_sent) continue;
+    if (bid->kind() != EventKind::bid_sent) continue;
     const auto answer = std::find_if(bid + 1, events.end(),
-                                     [](const MissionEvent& e) { return answers_bid(e.kind); });
+                                     [](const MissionEvent& e) { return answers_bid(e.kind()); });
     const Instant until = answer == events.end() ? bid->time + kBidUnanswered : answer->time;
     story.spans.push_back({Doing::bidding, bid->time, until, bid->task.site});
   }
@@ -33,10 +33,10 @@ void add_bids(const std::vector<MissionEvent>& events, Story& story) {
 /// From the survey's end until the coalition stands, monitoring included.
 void add_leading(const std::vector<MissionEvent>& events, Instant end, Story& story) {
   for (auto done = events.begin(); done != events.end(); ++done) {
-    if (done->kind != EventKind::survey_done) continue;
+    if (done->kind() != EventKind::survey_done) continue;
     const auto formed = std::find_if(done + 1, events.end(), [&](const MissionEvent& e) {
       return e.task.site == done->task.site &&
-             (e.kind == EventKind::coalition_formed || e.kind == EventKind::site_done);
+             (e.kind() == EventKind::coalition_formed || e.kind() == EventKind::site_done);
     });
     story.spans.push_back(
         {Doing::leading, done->time, formed == events.end() ? end : formed->time, done->task.site});

@@ -39,12 +39,11 @@ std::set<TaskId> may_have_been_flown(const checks::RunRecord& record) {
   std::set<TaskId> tasks;
   std::set<SiteId> granted;
   for (const auto& event : record.ground_events) {
-    if (event.kind == mission::EventKind::authorised) granted.insert(event.task.site);
+    if (event.kind() == mission::EventKind::authorised) granted.insert(event.task.site);
   }
   for (const auto& recorded : record.recordings) {
     for (const auto& event : recorded.events) {
-      if (event.kind == mission::EventKind::warning && event.task.kind == TaskKind::deliver &&
-          event.text.starts_with("may have been flown") && granted.contains(event.task.site)) {
+      if (event.kind() == mission::EventKind::task_unknown && granted.contains(event.task.site)) {
         tasks.insert(event.task);
       }
     }

@@ -148,7 +148,7 @@ TEST(Faults, ClocksThatDifferAreSeenByTheAgentsOnly) {
               3.0);
   const auto first = [](const Flown& f) {
     for (const auto& e : f.events) {
-      if (e.kind == mission::EventKind::survey_done) return e;
+      if (e.kind() == mission::EventKind::survey_done) return e;
     }
     return mission::MissionEvent{};
   };

@@ -170,7 +170,7 @@ TEST(ScenarioFaults, WhoIsCutOffFormsNoCoalition) {
   cut.groups = {{{1}}, {{2}}, {{3}}, {{4}}, {{5}}, {{6}}};
   const auto flown = fly({cut});
   EXPECT_TRUE(std::none_of(flown.events.begin(), flown.events.end(), [](const auto& e) {
-    return e.kind == mission::EventKind::coalition_formed;
+    return e.kind() == mission::EventKind::coalition_formed;
   }));
   EXPECT_THAT(flown.broken(), Contains("completion"));
 }

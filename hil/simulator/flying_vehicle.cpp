@@ -2,8 +2,10 @@
 #include "flying_vehicle.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
+#include "skein/mission/event_fields.hpp"
 #include "skein/planning/path_follower.hpp"
 
 namespace skein::hil {
@@ -11,23 +13,6 @@ namespace {
 
 /// An orbit in wind is flown some metres off its circle.
 constexpr double kOrbitClearance_m = 15.0;
-
-/// Kinds whose value is a moment.
-bool has_moment(mission::EventKind kind) {
-  using mission::EventKind;
-  switch (kind) {
-    case EventKind::survey_done:
-    case EventKind::bid_sent:
-    case EventKind::confirmed:
-    case EventKind::lease_granted:
-    case EventKind::authorisation_requested:
-    case EventKind::task_started:
-    case EventKind::task_done:
-      return true;
-    default:
-      return false;
-  }
-}
 
 /// A number for an instance that no other life of any vehicle has.
 InstanceId instance(VehicleId vehicle, std::uint32_t life) {
@@ -99,7 +84,13 @@ void FlyingVehicle::end_agent(Instant now, const std::vector<Hazard>& hazards) {
 
 mission::MissionEvent FlyingVehicle::in_true_time(mission::MissionEvent event) const {
   event.time -= clock_;
-  if (clock_ != Duration{} && has_moment(event.kind)) event.value -= to_seconds(clock_);
+  std::visit(
+      [this](auto& body) {
+        mission::for_each_field(body, [this](auto /*name*/, auto& value) {
+          if constexpr (std::is_same_v<decltype(value), Instant&>) value -= clock_;
+        });
+      },
+      event.body);
   return event;
 }
 

@@ -104,7 +104,7 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<FlyingVe
 }
 
 void SiteFinder::on_event(const mission::MissionEvent& event) {
-  if (event.kind == mission::EventKind::site_done) done_.insert(event.task.site);
+  if (event.kind() == mission::EventKind::site_done) done_.insert(event.task.site);
   // Whoever announces, bids or declines has heard of the site.
   if (event.vehicle != kGroundStation) knowing_[event.task.site].insert(event.vehicle);
 }

@@ -18,6 +18,7 @@
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/hil/fault_timeline.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
@@ -323,10 +324,10 @@ class Team {
   void on_event(FlyingVehicle& v, const mission::MissionEvent& event) {
     using mission::EventKind;
     finder_.on_event(event);
-    if (event.kind == EventKind::site_done) sites_done_.insert(event.task.site);
-    if (event.kind == EventKind::site_done || event.kind == EventKind::authorisation_refused)
+    if (event.kind() == EventKind::site_done) sites_done_.insert(event.task.site);
+    if (event.kind() == EventKind::site_done || event.kind() == EventKind::authorisation_refused)
       sites_over_.insert(event.task.site);
-    if (event.kind == EventKind::task_started && event.task.kind == TaskKind::deliver)
+    if (event.kind() == EventKind::task_started && event.task.kind == TaskKind::deliver)
       v.began_delivery();
     if (observer_.event) observer_.event(v.in_true_time(event));
   }
@@ -395,12 +396,10 @@ std::string trace_line(const mission::MissionEvent& event) {
   std::array<char, 160> head{};
   std::snprintf(head.data(), head.size(), "%12.6f  %3u  %-23.*s  %u.%u/%u  ",
                 to_seconds(event.time), static_cast<unsigned>(event.vehicle.value),
-                static_cast<int>(to_string(event.kind).size()), to_string(event.kind).data(),
+                static_cast<int>(to_string(event.kind()).size()), to_string(event.kind()).data(),
                 static_cast<unsigned>(event.round.coalition.leader.value),
                 event.round.coalition.number, event.round.number);
-  std::array<char, 48> value{};
-  std::snprintf(value.data(), value.size(), "  %.6f  ", event.value);
-  return head.data() + to_string(event.task) + value.data() + event.text;
+  return head.data() + to_string(event.task) + "  " + wording::news_of(event);
 }
 
 std::string trace_line(const FaultEvent& event) {

@@ -65,7 +65,7 @@ struct Flown {
   [[nodiscard]] std::vector<MissionEvent> of(EventKind kind) const {
     std::vector<MissionEvent> some;
     std::copy_if(events.begin(), events.end(), std::back_inserter(some),
-                 [kind](const MissionEvent& e) { return e.kind == kind; });
+                 [kind](const MissionEvent& e) { return e.kind() == kind; });
     return some;
   }
   [[nodiscard]] std::vector<MissionEvent> done(TaskKind kind) const {
@@ -102,7 +102,9 @@ TEST(TeamSimulator, TheSmallMissionIsFlownToItsEnd) {
   const auto assessments = flown.done(TaskKind::assess);
   ASSERT_EQ(assessments.size(), 2U);
   for (const auto& e : assessments) {
-    EXPECT_NEAR(e.value, to_seconds(deliveries[0].time) + 5.0, 0.05) << "start, after the wait";
+    const Instant planned = std::get<mission::event::TaskDone>(e.body).planned;
+    EXPECT_NEAR(to_seconds(planned), to_seconds(deliveries[0].time) + 5.0, 0.05)
+        << "start, after the wait";
   }
 }
 
@@ -182,7 +184,7 @@ TEST(TeamSimulator, AReportedSiteIsToldAtItsTimeToTheNearestWhoCanSurvey) {
   std::vector<MissionEvent> found;
   TeamObserver observer;
   observer.event = [&](const MissionEvent& event) {
-    if (event.kind == EventKind::site_detected) found.push_back(event);
+    if (event.kind() == EventKind::site_detected) found.push_back(event);
   };
   const TeamResult result = simulate_team(mission, observer);
   EXPECT_EQ(result.sites_done, 1U);

@@ -10,6 +10,7 @@
 #include "skein/hil/change_trials.hpp"
 #include "skein/hil/formation_simulator.hpp"
 #include "skein/hil/run_parallel.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
@@ -40,11 +41,10 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
   }
   FormationObserver watcher;
   watcher.event = [&](const mission::MissionEvent& event) {
-    using mission::EventKind;
-    const bool news = event.vehicle == kGroundStation || event.kind == EventKind::warning;
+    const bool news = event.vehicle == kGroundStation || mission::is_warning(event.kind());
     if (!arguments.trace && !news) return;
-    fmt::print("{:8.2f} {:<4} {} {:g} {}\n", to_seconds(event.time), who(event.vehicle),
-               mission::to_string(event.kind), event.value, event.text);
+    fmt::print("{:8.2f} {:<4} {} {}\n", to_seconds(event.time), who(event.vehicle),
+               mission::to_string(event.kind()), wording::news_of(event));
   };
   watcher.fault = [](Instant now, const std::string& text) {
     fmt::print("{:8.2f} FAULT {}\n", to_seconds(now), text);

@@ -24,18 +24,12 @@ constexpr std::size_t kFailuresShown = 20;
 /// What a reader of a mission wants to see first.
 bool of_interest(mission::EventKind kind) {
   using mission::EventKind;
-  static constexpr std::array kKinds{EventKind::site_detected,
-                                     EventKind::survey_done,
-                                     EventKind::coalition_formed,
-                                     EventKind::monitoring,
-                                     EventKind::authorisation_late,
-                                     EventKind::task_done,
-                                     EventKind::task_failed,
-                                     EventKind::conflict_yielded,
-                                     EventKind::site_done,
-                                     EventKind::authorisation_refused,
-                                     EventKind::warning};
-  return std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
+  static constexpr std::array kKinds{
+      EventKind::site_detected,        EventKind::survey_done,        EventKind::coalition_formed,
+      EventKind::monitoring,           EventKind::authorisation_late, EventKind::task_done,
+      EventKind::task_failed,          EventKind::conflict_yielded,   EventKind::site_done,
+      EventKind::authorisation_refused};
+  return mission::is_warning(kind) || std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 
 std::string who(VehicleId vehicle) {
@@ -58,7 +52,7 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
   if (arguments.trace) fmt::print("{}", describe(*mission));
   TeamObserver watcher;
   watcher.event = [&](const mission::MissionEvent& event) {
-    if (arguments.trace || of_interest(event.kind)) fmt::print("{}\n", trace_line(event));
+    if (arguments.trace || of_interest(event.kind())) fmt::print("{}\n", trace_line(event));
   };
   watcher.fault = [](const FaultEvent& event) { fmt::print("{}\n", trace_line(event)); };
   const auto run = fly_judged(*mission, limits_of(scenario.expect), watcher);

@@ -7,6 +7,7 @@
 #include <exception>
 #include <type_traits>
 
+#include "event_cdr.hpp"
 #include "wire.hpp"
 
 namespace skein::codec {
@@ -68,6 +69,42 @@ std::variant<mission::Message, Fault> decode_as(std::span<const std::uint8_t> sa
   return message;
 }
 
+std::optional<std::vector<std::uint8_t>> encode_event(const mission::MissionEvent& event) {
+  std::vector<std::uint8_t> bytes(kEncapsulation + wire::MissionEvent::getMaxCdrSerializedSize());
+  FastBuffer buffer{chars(bytes).data(), bytes.size()};
+  Cdr cdr{buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR};
+  try {
+    cdr.serialize_encapsulation();
+    write(cdr, event);
+  } catch (const eprosima::fastcdr::exception::Exception&) {
+    return std::nullopt;
+  }
+  bytes.resize(cdr.getSerializedDataLength());
+  const auto read =
+      decode(Topic::mission_event, bytes);  // so that nothing goes out that is refused
+  if (std::holds_alternative<Fault>(read)) return std::nullopt;
+  return bytes;
+}
+
+std::variant<mission::Message, Fault> decode_event(std::span<const std::uint8_t> sample) {
+  std::vector<std::uint8_t> bytes{sample.begin(), sample.end()};
+  FastBuffer buffer{chars(bytes).data(), bytes.size()};
+  Cdr cdr{buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR};
+  bool ok = true;
+  try {
+    cdr.read_encapsulation();
+    std::uint16_t version = 0;
+    cdr >> version;
+    if (version != wire::kVersion) return Fault::bad_version;
+    mission::MissionEvent event = read_event(cdr, ok);
+    if (!ok) return Fault::bad_value;
+    if (bytes.size() - cdr.getSerializedDataLength() >= 4) return Fault::malformed;
+    return event;
+  } catch (const std::exception&) {
+    return Fault::malformed;
+  }
+}
+
 /// Calls `f` with the wire type of the topic.
 template <class F>
 auto with_type(Topic topic, F f) {
@@ -104,13 +141,27 @@ auto with_type(Topic topic, F f) {
 }  // namespace
 
 std::optional<std::vector<std::uint8_t>> encode(const mission::Message& message) {
-  return std::visit([](const auto& m) { return encode_as(to_wire(m)); }, message);
+  return std::visit(
+      [](const auto& m) -> std::optional<std::vector<std::uint8_t>> {
+        if constexpr (std::is_same_v<std::decay_t<decltype(m)>, mission::MissionEvent>) {
+          return encode_event(m);
+        } else {
+          return encode_as(to_wire(m));
+        }
+      },
+      message);
 }
 
 std::variant<mission::Message, Fault> decode(Topic topic, std::span<const std::uint8_t> bytes) {
   if (bytes.size() > encoded_size_max(topic)) return Fault::malformed;
-  return with_type(topic,
-                   [bytes](auto type) { return decode_as<typename decltype(type)::type>(bytes); });
+  return with_type(topic, [bytes](auto type) {
+    using Wire = typename decltype(type)::type;
+    if constexpr (std::is_same_v<Wire, wire::MissionEvent>) {
+      return decode_event(bytes);
+    } else {
+      return decode_as<Wire>(bytes);
+    }
+  });
 }
 
 std::size_t encoded_size_max(Topic topic) {

@@ -209,18 +209,18 @@ TEST(Codec, RefusesSequencesBeyondTheirLimit) {
 
 TEST(Codec, CutsLongTextsAtACharacter) {
   coalition::Cancel m;
-  m.reason = std::string(coalition::kReasonMax - 1, 'x') + "ä" + "more";
+  m.why.detail = std::string(coalition::kReasonMax - 1, 'x') + "ä" + "more";
   const auto decoded = decode(Topic::coalition, encode(coalition::Message{m}).value());
   const auto& received = std::get<coalition::Cancel>(
       std::get<coalition::Message>(std::get<mission::Message>(decoded)));
-  EXPECT_EQ(received.reason, std::string(coalition::kReasonMax - 1, 'x'));
+  EXPECT_EQ(received.why.detail, std::string(coalition::kReasonMax - 1, 'x'));
 }
 
 TEST(Codec, RefusesTextsThatAreNotText) {
   coalition::Cancel m;
-  m.reason = "abc\xFF";
+  m.why.detail = "abc\xFF";
   EXPECT_FALSE(encode(coalition::Message{m}));
-  m.reason = "abcdefg";
+  m.why.detail = "abcdefg";
   Bytes bytes = encode(coalition::Message{m}).value();
   bytes[bytes.size() - 5] = 0;  // a zero inside would hide what follows
   EXPECT_EQ(fault_of(Topic::coalition, bytes), Fault::bad_value);

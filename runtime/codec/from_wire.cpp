@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "skein/codec/codec.hpp"
+#include "check.hpp"
 #include "wire.hpp"
 
 namespace skein::codec {
@@ -16,6 +16,7 @@ static_assert(wire::kTasksPerKindMax == kTasksPerKindMax);
 static_assert(wire::kTasksMax == coalition::kTasksMax);
 static_assert(wire::kMembersMax == coalition::kMembersMax);
 static_assert(wire::kMoversMax == formation::kMoversMax);
+static_assert(wire::kTeamMax == formation::kMoversMax);
 static_assert(wire::kMoverPointsMax == formation::kStagesMax + 1);
 static_assert(wire::kSegmentsMax == kPathSegmentsMax);
 static_assert(wire::kProblemsMax == mission::kProblemsMax);
@@ -25,84 +26,10 @@ static_assert(wire::UNKNOWN + 1 == static_cast<int>(coalition::TaskState::count)
 static_assert(wire::EN_ROUTE + 1 == static_cast<int>(mission::Activity::count));
 static_assert(wire::SURVEYING == static_cast<int>(mission::Activity::surveying));
 static_assert(wire::EXECUTING == static_cast<int>(mission::Activity::executing));
-static_assert(wire::WARNING + 1 == static_cast<int>(mission::EventKind::count));
-static_assert(wire::AWARDED == static_cast<int>(mission::EventKind::awarded));
-static_assert(wire::AUTHORISED == static_cast<int>(mission::EventKind::authorised));
-static_assert(wire::TASK_DONE == static_cast<int>(mission::EventKind::task_done));
+static_assert(wire::event::FLIGHT_WARNING + 1 == static_cast<int>(mission::EventKind::count));
+static_assert(wire::event::TASK_DONE == static_cast<int>(mission::EventKind::task_done));
+static_assert(wire::why_not::SITE_DONE + 1 == static_cast<int>(coalition::Reason::count));
 static_assert(wire::GIVE_BACK + 1 == static_cast<int>(mission::CommandKind::count));
-
-bool is_utf8(const std::string& text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i]);
-    std::size_t more = 0;
-    if (lead < 0x80U) {
-      more = 0;
-    } else if (lead >= 0xC2U && lead < 0xE0U) {
-      more = 1;
-    } else if (lead >= 0xE0U && lead < 0xF0U) {
-      more = 2;
-    } else if (lead >= 0xF0U && lead < 0xF5U) {
-      more = 3;
-    } else {
-      return false;
-    }
-    if (text.size() - i <= more) return false;
-    for (std::size_t k = 1; k <= more; ++k) {
-      if ((static_cast<unsigned char>(text[i + k]) & 0xC0U) != 0x80U) return false;
-    }
-    i += more + 1;
-  }
-  return true;
-}
-
-/// Takes fields over and remembers whether one was out of range.
-class Check {
- public:
-  explicit Check(bool& ok) : ok_{ok} {}
-
-  double within(double value, double low, double high) {
-    require(value >= low && value <= high);  // false for what is not a number
-    return value;
-  }
-  double distance(double m) { return within(m, 0.0, kDistanceMaxM); }
-  double coordinate(double m) { return within(m, -kDistanceMaxM, kDistanceMaxM); }
-  double speed(double mps) { return within(mps, 0.0, kSpeedMaxMps); }
-  double angle(double rad) { return within(rad, -kAngleMaxRad, kAngleMaxRad); }
-  double curvature(double per_m) { return within(per_m, -kCurvatureMaxPerM, kCurvatureMaxPerM); }
-  double amount(double value) { return within(value, 0.0, kNumberMax); }
-  Instant instant(std::int64_t ns) {
-    require(ns >= -kTimeMax.count() && ns <= kTimeMax.count());
-    return Instant{Duration{ns}};
-  }
-  Duration duration(std::int64_t ns) {
-    require(ns >= 0 && ns <= kTimeMax.count());
-    return Duration{ns};
-  }
-  template <class To, class From>
-  To enumerator(From value) {
-    const auto number = static_cast<std::uint32_t>(value);
-    const bool known = number < static_cast<std::uint32_t>(To::count);
-    require(known);
-    return known ? static_cast<To>(number) : To{};
-  }
-  std::string text(const std::string& value) {
-    require(value.size() <= coalition::kReasonMax && is_utf8(value));
-    return value;
-  }
-  template <class In, class Convert>
-  auto each(const std::vector<In>& from, std::size_t limit, Convert convert) {
-    std::vector<decltype(convert(*this, from.front()))> to;
-    require(from.size() <= limit);
-    if (!ok_) return to;
-    to.reserve(from.size());
-    for (const In& item : from) to.push_back(convert(*this, item));
-    return to;
-  }
-  void require(bool condition) { ok_ = ok_ && condition; }
-
- private:
-  bool& ok_;
-};
 
 Vec2 point(Check& c, const wire::Point& w) {
   return {c.coordinate(w.x_m()), c.coordinate(w.y_m())};
@@ -202,13 +129,18 @@ coalition::Message body(Check& c, const wire::Award& w) {
   return m;
 }
 
+coalition::Why why(Check& c, const wire::Why& w) {
+  return {c.enumerator<coalition::Reason>(w.reason()), VehicleId{w.vehicle()},
+          c.text(w.detail().to_string())};
+}
+
 coalition::Message body(Check& c, const wire::Confirmation& w) {
   return coalition::Confirmation{round(w.round()), VehicleId{w.member()}, w.accepted(),
-                                 c.text(w.reason().to_string())};
+                                 why(c, w.why())};
 }
 
 coalition::Message body(Check& c, const wire::Cancel& w) {
-  return coalition::Cancel{round(w.round()), c.text(w.reason().to_string())};
+  return coalition::Cancel{round(w.round()), why(c, w.why())};
 }
 
 coalition::Message body(Check& c, const wire::LeaseRenewal& w) {
@@ -323,19 +255,6 @@ mission::Message from_wire(const wire::Authorisation& w, bool& ok) {
   Check c{ok};
   return mission::Authorisation{round(w.round()), SiteId{w.site()}, w.granted(),
                                 c.text(w.decided_by().to_string()), c.instant(w.decided_at_ns())};
-}
-
-mission::Message from_wire(const wire::MissionEvent& w, bool& ok) {
-  Check c{ok};
-  mission::MissionEvent m;
-  m.vehicle = VehicleId{w.vehicle()};
-  m.time = c.instant(w.time_ns());
-  m.kind = c.enumerator<mission::EventKind>(w.kind());
-  m.round = round(w.round());
-  m.task = task_id(c, w.task());
-  m.value = c.within(w.value(), -kNumberMax, kNumberMax);
-  m.text = c.text(w.text().to_string());
-  return m;
 }
 
 mission::Message from_wire(const wire::Command& w, bool& ok) {

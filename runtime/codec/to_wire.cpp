@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "cut.hpp"
 #include "wire.hpp"
 
 namespace skein::codec {
@@ -18,16 +19,6 @@ To as_enum(From value) {
 }
 
 std::int64_t ns(Instant t) { return t.time_since_epoch().count(); }
-
-/// Cut at a character of UTF-8, so that the receiver still finds it valid.
-std::string cut(const std::string& text) {
-  std::size_t size = text.size();
-  if (size > coalition::kReasonMax) {
-    size = coalition::kReasonMax;
-    while (size > 0 && (static_cast<unsigned char>(text[size]) & 0xC0U) == 0x80U) --size;
-  }
-  return text.substr(0, size);
-}
 
 template <class Out, class In, class Convert>
 std::vector<Out> each(const std::vector<In>& from, Convert convert) {
@@ -164,19 +155,27 @@ wire::Award body(const coalition::Award& m) {
   return w;
 }
 
+wire::Why why(const coalition::Why& y) {
+  wire::Why w;
+  w.reason(as_enum<wire::why_not::Reason>(y.reason));
+  w.vehicle(y.vehicle.value);
+  w.detail(cut(y.detail));
+  return w;
+}
+
 wire::Confirmation body(const coalition::Confirmation& m) {
   wire::Confirmation w;
   w.round(round(m.round));
   w.member(m.member.value);
   w.accepted(m.accepted);
-  w.reason(cut(m.reason));
+  w.why(why(m.why));
   return w;
 }
 
 wire::Cancel body(const coalition::Cancel& m) {
   wire::Cancel w;
   w.round(round(m.round));
-  w.reason(cut(m.reason));
+  w.why(why(m.why));
   return w;
 }
 
@@ -294,19 +293,6 @@ wire::Authorisation to_wire(const mission::Authorisation& m) {
   w.granted(m.granted);
   w.decided_by(cut(m.decided_by));
   w.decided_at_ns(ns(m.decided_at));
-  return w;
-}
-
-wire::MissionEvent to_wire(const mission::MissionEvent& m) {
-  wire::MissionEvent w;
-  w.version(wire::kVersion);
-  w.vehicle(m.vehicle.value);
-  w.time_ns(ns(m.time));
-  w.kind(as_enum<wire::EventKind>(m.kind));
-  w.round(round(m.round));
-  w.task(task_id(m.task));
-  w.value(m.value);
-  w.text(cut(m.text));
   return w;
 }
 

@@ -12,7 +12,6 @@ namespace skein::codec {
 [[nodiscard]] wire::Telemetry to_wire(const mission::Telemetry& m);
 [[nodiscard]] wire::AuthorisationRequest to_wire(const mission::AuthorisationRequest& m);
 [[nodiscard]] wire::Authorisation to_wire(const mission::Authorisation& m);
-[[nodiscard]] wire::MissionEvent to_wire(const mission::MissionEvent& m);
 [[nodiscard]] wire::Command to_wire(const mission::Command& m);
 [[nodiscard]] wire::SiteReport to_wire(const mission::SiteReport& m);
 [[nodiscard]] wire::HazardReport to_wire(const mission::HazardReport& m);
@@ -26,7 +25,6 @@ namespace skein::codec {
 [[nodiscard]] mission::Message from_wire(const wire::Telemetry& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::AuthorisationRequest& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::Authorisation& w, bool& ok);
-[[nodiscard]] mission::Message from_wire(const wire::MissionEvent& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::Command& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::SiteReport& w, bool& ok);
 [[nodiscard]] mission::Message from_wire(const wire::HazardReport& w, bool& ok);

@@ -6,7 +6,6 @@
 
 #include "skein/base/assert.hpp"
 #include "skein/process/close_limit.hpp"
-#include "skein/process/event_text.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/shutdown.hpp"
@@ -90,16 +89,6 @@ TEST(CloseLimit, IsNotWaitedForWhereAllIsClosed) {
 }
 
 TEST(Log, WritesAnInstantForPeople) { EXPECT_EQ(text_of(at_seconds(12.3456)), "12.346 s"); }
-
-TEST(EventText, SaysWhoWhatAndWhere) {
-  mission::MissionEvent event{
-      {7}, {}, mission::EventKind::task_done, {}, {{1}, TaskKind::deliver, 2}, 0.4, "late"};
-  EXPECT_EQ(text_of(event), "vehicle 7: task done, site 1 deliver 3 (0.4): late");
-  event = {kGroundStation, {}, mission::EventKind::warning, {}, {}, 0.0, "vehicle 2 is silent"};
-  EXPECT_EQ(text_of(event), "ground station: warning: vehicle 2 is silent");
-  event = {{2}, {}, mission::EventKind::coalition_formed, {}, {{4}, TaskKind::survey, 0}, 10.0, {}};
-  EXPECT_EQ(text_of(event), "vehicle 2: coalition formed, site 4 (10)");
-}
 
 }  // namespace
 }  // namespace skein::process

@@ -88,7 +88,8 @@ std::vector<AgentRecord> agent_records(Instant now) {
           StateGiven{state, now},
           PlanningGiven{{{VehicleId{1}, InstanceId{2}, 3}, 4}, 17, Duration{123456}, now},
           TimeoutGiven{now},
-          NoticeGiven{{now, true, "says \"so\",\nand this"}, now},
+          NoticeGiven{
+              {now, true, {.news = AutopilotNews::text, .detail = "says \"so\",\nand this"}}, now},
           PlanMade{std::make_shared<const mission::FlightPlan>(plan), now},
           std::get<TrackMade>(made(track, now)),
           ConditionGiven{{"LOITER, piloted", 3, 0xFFFFFFFFFFFFFFFFU}, now},
@@ -156,7 +157,8 @@ TEST_F(LogTest, WhatAnAgentWasGivenComesBackExactly) {
   EXPECT_EQ(planning.round.number, 4U);
   EXPECT_EQ(std::get<TimeoutGiven>(contents[3]).now, now);
   const auto& notice = std::get<NoticeGiven>(contents[4]).notice;
-  EXPECT_EQ(notice.text, "says \"so\",\nand this");
+  EXPECT_EQ(notice.what.news, AutopilotNews::text);
+  EXPECT_EQ(notice.what.detail, "says \"so\",\nand this");
   EXPECT_TRUE(notice.warning);
   EXPECT_EQ(notice.time, now);
   const auto& plan = *std::get<PlanMade>(contents[5]).plan;
@@ -228,8 +230,8 @@ TEST_F(LogTest, ARunHasEachRecordOnce) {
       names.push_back(topic.topic);
       EXPECT_EQ(topic.records, 50U);
     }
-    EXPECT_THAT(names,
-                ElementsAre("/ground/command", "/vehicle_01/event", "/vehicle_255/hazard_report"));
+    EXPECT_THAT(names, ElementsAre("/ground/command", "/vehicle_01/event/site_detected",
+                                   "/vehicle_255/hazard_report"));
   }
 }
 

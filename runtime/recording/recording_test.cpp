@@ -33,11 +33,10 @@ MissionEvent awkward_event() {
   MissionEvent event;
   event.vehicle = VehicleId{7};
   event.time = Instant{Duration{123456789012345}};
-  event.kind = EventKind::lease_granted;
   event.round = {{VehicleId{27}, InstanceId{0xFFFFFFFFFFFFFFFFULL}, 3}, 4};
   event.task = {SiteId{3}, TaskKind::deliver, 5};
-  event.value = 0.1 + 0.2;
-  event.text = "said \"no\", then\nleft";
+  event.body = mission::event::AllocationDone{
+      from_seconds(1.5), 9, planning::AllocationMethod::colony, 0.1 + 0.2, false, 1e-9};
   return event;
 }
 
@@ -80,11 +79,9 @@ TEST_F(RecordingTest, WhatIsWrittenReadsBack) {
   ASSERT_EQ(read_back->events.size(), 1U);
   const MissionEvent& event = read_back->events[0];
   EXPECT_EQ(event.time, expected.time);
-  EXPECT_EQ(event.kind, expected.kind);
   EXPECT_EQ(event.round, expected.round);
   EXPECT_EQ(event.task, expected.task);
-  EXPECT_EQ(event.value, expected.value);
-  EXPECT_EQ(event.text, expected.text);
+  EXPECT_EQ(event.body, expected.body);
 
   ASSERT_EQ(read_back->plans.size(), 2U);
   const PlanRecord& first = read_back->plans[0];
@@ -104,7 +101,7 @@ TEST_F(RecordingTest, EveryEventKindReadsBack) {
     ASSERT_TRUE(writer.ok());
     MissionEvent event;
     for (std::size_t i = 0; i < static_cast<std::size_t>(EventKind::count); ++i) {
-      event.kind = static_cast<EventKind>(i);
+      event.body = mission::body_of(static_cast<EventKind>(i));
       writer->write(event);
     }
   }
@@ -112,7 +109,7 @@ TEST_F(RecordingTest, EveryEventKindReadsBack) {
   ASSERT_TRUE(read_back.ok()) << read_back.error().message;
   ASSERT_EQ(read_back->events.size(), static_cast<std::size_t>(EventKind::count));
   for (std::size_t i = 0; i < read_back->events.size(); ++i) {
-    EXPECT_EQ(read_back->events[i].kind, static_cast<EventKind>(i));
+    EXPECT_EQ(read_back->events[i].kind(), static_cast<EventKind>(i));
   }
 }
 

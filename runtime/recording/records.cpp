@@ -25,6 +25,8 @@ using eprosima::fastcdr::FastBuffer;
 
 constexpr std::size_t kEncapsulation = 4;
 constexpr std::string_view kTopicPrefix = "skein/";
+constexpr std::string_view kEventType = "skein::record::Event";
+constexpr std::string_view kEventName = "event/";
 /// Of any record that is no message; the largest is a plan of 64 pieces, or an event's text.
 constexpr std::size_t kRecordBytesMax = 64U << 10U;
 
@@ -90,22 +92,6 @@ record::TrackPoint to_idl(const TrackPoint& p) {
   return w;
 }
 
-record::Event to_idl(const mission::MissionEvent& e) {
-  record::Event w;
-  w.vehicle(e.vehicle.value);
-  w.time_ns(ns(e.time));
-  w.kind(static_cast<wire::EventKind>(e.kind));
-  w.round(round(e.round));
-  wire::TaskId task;
-  task.site(e.task.site.value);
-  task.kind(static_cast<wire::TaskKind>(e.task.kind));
-  task.index(e.task.index);
-  w.task(task);
-  w.value(e.value);
-  w.text(e.text);
-  return w;
-}
-
 record::Plan to_idl(const PlanRecord& p) {
   record::Plan w;
   w.number(p.number);
@@ -160,7 +146,11 @@ record::AgentNotice to_idl(const NoticeGiven& n) {
   record::AgentNotice w;
   w.time_ns(ns(n.notice.time));
   w.warning(n.notice.warning);
-  w.text(n.notice.text);
+  w.news(static_cast<wire::autopilot::AutopilotNews>(n.notice.what.news));
+  w.number(n.notice.what.number);
+  w.given(static_cast<wire::autopilot::Given>(n.notice.what.given));
+  w.refusal(static_cast<wire::autopilot::GiveBackRefusal>(n.notice.what.refusal));
+  w.detail(n.notice.what.detail);
   return w;
 }
 
@@ -254,18 +244,6 @@ TrackPoint from_idl(const record::TrackPoint& w, Check& c, Instant /*now*/) {
           c.number(w.cross_error_m())};
 }
 
-mission::MissionEvent from_idl(const record::Event& w, Check& c, Instant /*now*/) {
-  mission::MissionEvent e;
-  e.vehicle = VehicleId{w.vehicle()};
-  e.time = c.instant(w.time_ns());
-  e.kind = c.enumerator<mission::EventKind>(w.kind());
-  e.round = Check::round(w.round());
-  e.task = {SiteId{w.task().site()}, c.enumerator<TaskKind>(w.task().kind()), w.task().index()};
-  e.value = c.number(w.value());
-  e.text = w.text();
-  return e;
-}
-
 PlanRecord from_idl(const record::Plan& w, Check& c, Instant /*now*/) {
   return {w.number(), c.instant(w.since_ns()), c.timed_path(w.path())};
 }
@@ -293,7 +271,11 @@ TimeoutGiven from_idl(const record::AgentTimeout& /*w*/, Check& /*c*/, Instant n
 }
 
 NoticeGiven from_idl(const record::AgentNotice& w, Check& c, Instant now) {
-  return {{c.instant(w.time_ns()), w.warning(), w.text()}, now};
+  return {{c.instant(w.time_ns()),
+           w.warning(),
+           {c.enumerator<AutopilotNews>(w.news()), w.number(), c.enumerator<Given>(w.given()),
+            c.enumerator<GiveBackRefusal>(w.refusal()), w.detail()}},
+          now};
 }
 
 ConditionGiven from_idl(const record::AgentCondition& w, Check& /*c*/, Instant now) {
@@ -349,6 +331,13 @@ std::optional<Content> decode_message(std::span<const std::uint8_t> sample, Inst
   return std::nullopt;
 }
 
+std::optional<Content> decode_event(std::span<const std::uint8_t> sample, Instant /*now*/) {
+  auto decoded = codec::decode(codec::Topic::mission_event, sample);
+  auto* message = std::get_if<mission::Message>(&decoded);
+  if (message == nullptr) return std::nullopt;
+  return std::move(std::get<mission::MissionEvent>(*message));
+}
+
 struct KnownKind {
   RecordKind kind;
   Decoder decoder;
@@ -365,8 +354,6 @@ template <class Idl>
 constexpr Named<Idl> kNamed{};
 template <>
 constexpr Named<record::TrackPoint> kNamed<record::TrackPoint>{"track", "TrackPoint"};
-template <>
-constexpr Named<record::Event> kNamed<record::Event>{"event", "Event"};
 template <>
 constexpr Named<record::Plan> kNamed<record::Plan>{"plan", "Plan"};
 template <>
@@ -400,7 +387,7 @@ class Kinds {
  public:
   Kinds() {
     add<record::TrackPoint>();
-    add<record::Event>();
+    add_events();
     add<record::Plan>();
     add<record::Place>();
     add<record::Gap>();
@@ -431,6 +418,15 @@ class Kinds {
     const auto* schema = schemas::find(std::string{"skein::record::"} + kNamed<Idl>.type);
     SKEIN_ASSERT(schema != nullptr);
     kinds_.emplace(schema->name, KnownKind{{kNamed<Idl>.name, schema}, &decode_as<Idl>});
+  }
+  /// Recorded as they are sent, and told apart by their schemas' names.
+  void add_events() {
+    for (const schemas::Schema& schema : schemas::all()) {
+      if (schema.type != kEventType) continue;
+      kinds_.emplace(schema.name,
+                     KnownKind{{std::string{kEventName} + std::string{schema.branch}, &schema},
+                               &decode_event});
+    }
   }
   template <std::size_t... Topic>
   void add_messages(std::index_sequence<Topic...> /*topics*/) {
@@ -475,34 +471,31 @@ Encoded encode_idl(const Idl& w) {
   return encoded;
 }
 
-/// A message's kind: by its topic, and where that is a union's by the discriminator, which stands
-/// after the 2-byte version, at the next multiple of 4.
-const RecordKind* kind_of(codec::Topic topic, std::span<const std::uint8_t> bytes) {
-  struct OfTopic {
-    const RecordKind* plain = nullptr;
-    std::vector<const RecordKind*> branches;
-  };
+/// A type's kind, or those of its union's branches.
+std::vector<const RecordKind*> kinds_of(std::string_view type) {
+  std::vector<const RecordKind*> of;
+  for (const schemas::Schema& schema : schemas::all()) {
+    if (schema.type != type) continue;
+    const std::size_t branch = schema.kind.value_or(0);
+    of.resize(std::max(of.size(), branch + 1));
+    of[branch] = &kinds().find(schema.name)->kind;
+  }
+  return of;
+}
+
+const RecordKind* kind_of(const mission::Message& message) {
   static const auto kByTopic = [] {
-    std::array<OfTopic, codec::kTopicCount> by_topic;
+    std::array<std::vector<const RecordKind*>, codec::kTopicCount> by_topic;
     for (const codec::TopicInfo& t : codec::kTopics) {
-      OfTopic& of = by_topic.at(static_cast<std::size_t>(t.topic));
-      for (const schemas::Schema& schema : schemas::all()) {
-        if (schema.type != t.type) continue;
-        const RecordKind* kind = &kinds().find(schema.name)->kind;
-        if (!schema.kind) of.plain = kind;
-        if (schema.kind) {
-          of.branches.resize(std::max<std::size_t>(of.branches.size(), *schema.kind + 1));
-          of.branches[*schema.kind] = kind;
-        }
-      }
+      by_topic.at(static_cast<std::size_t>(t.topic)) = kinds_of(t.type);
     }
     return by_topic;
   }();
-  const OfTopic& of = kByTopic.at(static_cast<std::size_t>(topic));
-  if (of.plain != nullptr) return of.plain;
-  constexpr std::size_t kDiscriminator = kEncapsulation + 4;
-  SKEIN_ASSERT(bytes.size() > kDiscriminator);
-  return of.branches.at(bytes[kDiscriminator]);
+  std::size_t branch = 0;
+  if (const auto* said = std::get_if<coalition::Message>(&message)) branch = said->index();
+  if (const auto* event = std::get_if<mission::MissionEvent>(&message))
+    branch = event->body.index();
+  return kByTopic.at(static_cast<std::size_t>(codec::topic_of(message))).at(branch);
 }
 
 }  // namespace
@@ -515,11 +508,15 @@ const RecordKind* kind_named(std::string_view schema_name) {
 std::optional<Encoded> encode(const mission::Message& message) {
   auto bytes = codec::encode(message);
   if (!bytes) return std::nullopt;
-  const RecordKind* kind = kind_of(codec::topic_of(message), *bytes);
-  return Encoded{kind, std::move(*bytes)};
+  return Encoded{kind_of(message), std::move(*bytes)};
 }
 Encoded encode(const TrackPoint& point) { return encode_idl(to_idl(point)); }
-Encoded encode(const mission::MissionEvent& event) { return encode_idl(to_idl(event)); }
+std::optional<Encoded> encode(const mission::MissionEvent& event) {
+  auto bytes = codec::encode(mission::Message{event});
+  if (!bytes) return std::nullopt;
+  static const auto kOf = kinds_of(kEventType);
+  return Encoded{kOf.at(event.body.index()), std::move(*bytes)};
+}
 Encoded encode(const PlanRecord& plan) { return encode_idl(to_idl(plan)); }
 Encoded encode(const PlaceRecord& place) { return encode_idl(to_idl(place)); }
 Encoded encode(const Gap& gap) { return encode_idl(to_idl(gap)); }
@@ -534,7 +531,7 @@ Encoded encode(const PlanMade& plan) { return encode_idl(to_idl(plan)); }
 Encoded encode(const TrackMade& track) { return encode_idl(to_idl(track)); }
 
 std::optional<Encoded> encode(const Content& content) {
-  return std::visit([](const auto& record) { return std::optional<Encoded>{encode(record)}; },
+  return std::visit([](const auto& record) -> std::optional<Encoded> { return encode(record); },
                     content);
 }
 
@@ -557,11 +554,9 @@ std::optional<Content> decode(const RecordKind& kind, std::span<const std::uint8
 
 std::optional<VehicleId> vehicle_of_event(const RecordKind& kind,
                                           std::span<const std::uint8_t> bytes) {
-  if (kind.name != kNamed<record::Event>.name || bytes.size() < kEncapsulation + 2) {
-    return std::nullopt;
-  }
-  return VehicleId{
-      static_cast<std::uint16_t>(bytes[kEncapsulation] | bytes[kEncapsulation + 1] << 8U)};
+  constexpr std::size_t kVehicle = kEncapsulation + 2;  // after the version
+  if (!kind.name.starts_with(kEventName) || bytes.size() < kVehicle + 2) return std::nullopt;
+  return VehicleId{static_cast<std::uint16_t>(bytes[kVehicle] | bytes[kVehicle + 1] << 8U)};
 }
 
 GuidanceMade made(const mission::Guidance& guidance, Instant now) {

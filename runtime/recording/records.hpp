@@ -35,7 +35,7 @@ struct Encoded {
 /// None where a value is out of its range.
 [[nodiscard]] std::optional<Encoded> encode(const mission::Message& message);
 [[nodiscard]] Encoded encode(const TrackPoint& point);
-[[nodiscard]] Encoded encode(const mission::MissionEvent& event);
+[[nodiscard]] std::optional<Encoded> encode(const mission::MissionEvent& event);
 [[nodiscard]] Encoded encode(const PlanRecord& plan);
 [[nodiscard]] Encoded encode(const PlaceRecord& place);
 [[nodiscard]] Encoded encode(const Gap& gap);

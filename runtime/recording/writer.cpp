@@ -113,7 +113,7 @@ void Writer::write(const TrackPoint& point) {
   impl_->write(encode(point), impl_->node(), point.state.time);
 }
 void Writer::write(const mission::MissionEvent& event) {
-  impl_->write(encode(event), impl_->node(), event.time);
+  if (const auto encoded = encode(event)) impl_->write(*encoded, impl_->node(), event.time);
 }
 void Writer::write(const PlanRecord& plan) {
   impl_->write(encode(plan), impl_->node(), plan.since);

@@ -73,7 +73,7 @@ class Second {
       mission::MissionEvent event;
       event.vehicle = id(v);
       event.time = now;
-      event.text = "3 of 5 vehicles";
+      event.body = mission::event::AllocationFailed{5, "3 of 5 vehicles"};
       writer.write(mission::Message{event}, id(v), now);
       coalition::MemberStatus status;
       status.member = id(v);

@@ -76,7 +76,7 @@ class Flight {
     mission::MissionEvent event;
     event.vehicle = vehicle;
     event.time = now;
-    event.text = "something happened";
+    event.body = mission::event::Authorised{"something happened"};
     writer.write(event);
     if (tick % 200 != 0) return;
     mission::PlanReport plan;

@@ -123,7 +123,7 @@ int main(int argc, char** argv) {
       mission::MissionEvent event;
       event.time = at_seconds(now_s);
       event.vehicle = {static_cast<std::uint16_t>(seq % vehicles + 1)};
-      (*server)->append({console::event_json(event, "something happened", seq)});
+      (*server)->append({console::event_json(event, seq)});
       ++seq;
     }
     while (const auto request = (*server)->next()) {

@@ -12,16 +12,30 @@
 #include "skein/base/angles.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/mission/event_fields.hpp"
 #include "skein/planning/dubins_batch.hpp"
 
 namespace skein {
 namespace {
 
+/// The moments and figures of an event.
+template <class Struct>
+void print_exactly(const Struct& made) {
+  mission::for_each_field(made, []<class T>(std::string_view /*name*/, const T& value) {
+    if constexpr (std::is_same_v<T, double>) std::printf(" %a", value);
+    if constexpr (std::is_same_v<T, Instant> || std::is_same_v<T, Duration>) {
+      std::printf(" %a", to_seconds(value));
+    }
+  });
+}
+
 /// Every event, plan and state, numbers exact.
 hil::TeamObserver exact_printer() {
   hil::TeamObserver print;
   print.event = [](const mission::MissionEvent& e) {
-    std::printf("%s %a\n", hil::trace_line(e).c_str(), e.value);
+    std::printf("%s", hil::trace_line(e).c_str());
+    std::visit([](const auto& body) { print_exactly(body); }, e.body);
+    std::printf("\n");
   };
   print.plan = [](VehicleId id, const mission::FlightPlan& plan, Instant) {
     const Pose2 end = plan.timed.path.end();

@@ -43,10 +43,13 @@ void write_records(Writer& writer, Instant now, Random& random) {
   mission::MissionEvent event;
   event.vehicle = VehicleId{7};
   event.time = now;
-  event.kind = static_cast<mission::EventKind>(random.index(20));
   event.round.coalition.instance = InstanceId{random.next()};
-  event.value = random.normal(0.0, 1e12);
-  event.text = "\"said\" \\ so: \u00e4\u20ac\U0001F681";
+  event.body = mission::body_of(static_cast<mission::EventKind>(
+      random.index(static_cast<std::uint64_t>(mission::EventKind::count))));
+  if (random.chance(0.5)) {
+    event.body = mission::event::AllocationFailed{static_cast<std::uint8_t>(random.index(64)),
+                                                  "\"said\" \\ so: \u00e4\u20ac\U0001F681"};
+  }
   writer.write(event);
   PlanRecord plan;
   plan.number = 0xFFFFFFFFU;
@@ -67,7 +70,7 @@ void write_records(Writer& writer, Instant now, Random& random) {
       StateGiven{random_state(now, random), now},
       PlanningGiven{event.round, random.next(), Duration{12345}, now},
       TimeoutGiven{now},
-      NoticeGiven{{now, true, "EKF variance"}, now},
+      NoticeGiven{{now, true, {.news = AutopilotNews::mode_changed, .detail = "RTL"}}, now},
       ConditionGiven{{"GUIDED", 2, random.next()}, now},
       NamesakeHeard{now},
       PlanMade{std::make_shared<const mission::FlightPlan>(flight_plan), now},

@@ -215,7 +215,7 @@ TEST_F(Programs, TheGroundStationDecidesAsScripted) {
   ASSERT_TRUE(recorded.ok()) << recorded.error().message;
   const auto& events = recorded->events;
   EXPECT_TRUE(std::any_of(events.begin(), events.end(), [](const mission::MissionEvent& event) {
-    return event.kind == mission::EventKind::authorised;
+    return event.kind() == mission::EventKind::authorised;
   }));
 }
 

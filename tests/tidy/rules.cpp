@@ -68,6 +68,15 @@ bool is_pure_but_assert(std::string_view path) {
   return is_pure(path) && path != "core/base/assert.cpp";  // its last words go to stderr
 }
 
+/// What decides, judges and counts, and what carries that: everything but its tests and the one
+/// place where sentences are made.
+bool reads_no_sentence(std::string_view path) {
+  static constexpr std::array<std::string_view, 6> kOf{"core/",    "runtime/",       "hal/",
+                                                       "onboard/", "groundstation/", "hil/"};
+  return is_cpp(path) && !path.ends_with("_test.cpp") && !path.starts_with("runtime/wording/") &&
+         std::ranges::any_of(kOf, [path](std::string_view of) { return path.starts_with(of); });
+}
+
 bool is_text_of_ours(std::string_view path) { return !is_tidy(path); }
 
 /// A pattern that must match no line of the files that it applies to.
@@ -126,6 +135,16 @@ constexpr std::array kLineRules{
     LineRule{"topic-name", is_cpp_outside_topics, LineRule::View::code_and_literals,
              R"x("(rt/)?skein/[a-z_]+")x",
              "a topic's name, type and QoS are one entry of the list in codec (topics.hpp)"},
+    // A comparison of a `detail`, of an error's message or of what wording makes; and of anything
+    // with a literal of several words.
+    LineRule{"sentence", reads_no_sentence, LineRule::View::code_and_literals,
+             R"(\b(detail|message|sentence)\b(\(\))?\s*(==|!=)(?!\s*nullptr)|)"
+             R"((==|!=)\s*[A-Za-z_][\w.>()-]*(\.|->)(detail|message|sentence)\b|)"
+             R"(\b(detail|message|sentence)(\(\))?\.(r?find\w*|\w+s_with|compare|contains|substr)\(|)"
+             R"(\bwording::\w+\([^;"]*\)\s*(==|!=|\.(r?find|\w+s_with|compare|contains|substr)))"
+             R"(|(==|!=)\s*"[^" ]+ [^"]*[a-z]"|"[^" ]+ [^"]*[a-z]"\s*(==|!=))"
+             R"(|\b(r?find|\w+s_with|compare|contains)\(\s*"[^" ]+ [^"]*[a-z]")",
+             "nobody decides on a sentence: give what you need to know a field of its own"},
     LineRule{"unfinished", is_text_of_ours, LineRule::View::everything,
              R"(\b(TODO|FIXME|XXX|HACK)\b)", "finish it, or open an issue and say what is missing"},
     LineRule{"machine-path", is_text_of_ours, LineRule::View::everything,

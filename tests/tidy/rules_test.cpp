@@ -78,6 +78,19 @@ INSTANTIATE_TEST_SUITE_P(
                "q.reliability().kind = RELIABLE_RELIABILITY_QOS;", "q = topic.qos;"},
         Sample{"topic-name", kOnboard, "subscribe(\"skein/telemetry\");",
                "#include \"skein/network/node.hpp\"\nsubscribe(Topic::telemetry);"},
+        Sample{"sentence", kCore, "return why.detail == \"too late\";",
+               "event.detail = \"too late\";"},
+        Sample{"sentence", kCore, "if (said_ != again.error().message) tell();",
+               "if (message != nullptr) tell(again.error().message);"},
+        Sample{"sentence", "hil/checks/excuses.cpp",
+               "if (text.starts_with(\"may have been flown\")) n++;",
+               "if (option.starts_with(\"--\")) n++;"},
+        Sample{"sentence", "hil/simulator/run.cpp", "return kHeld != \"the plan is held\";",
+               "return std::string{\"the plan is held\"};"},
+        Sample{"sentence", kOnboard, "if (wording::text_of(event) == last_) return;",
+               "last_ = wording::text_of(event);"},
+        Sample{"sentence", "groundstation/desk.cpp", "at = error.message.find(':');",
+               "say(error.message + \": \");"},
         Sample{"unfinished", "docs/a.md", "TODO: the rest", "what is left to do"},
         Sample{"unfinished", kOnboard, "// FIXME", "// fixme not"},
         Sample{"machine-path", "docs/a.md", "see /home/ann/skein/notes", "see docs/home/notes"},
@@ -93,6 +106,13 @@ TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
   EXPECT_TRUE(findings_in(kOnboard, "#include <mutex>").empty());
   EXPECT_TRUE(
       findings_in("runtime/network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
+}
+
+TEST(Rules, SentencesAreForTestsAndTheirOwnModule) {
+  const char* const line = "EXPECT(event.detail == \"too late\");";
+  EXPECT_TRUE(findings_in("core/mission/agent_test.cpp", line).empty());
+  EXPECT_TRUE(findings_in("runtime/wording/wording.cpp", line).empty());
+  EXPECT_EQ(findings_in("core/mission/agent.cpp", line).size(), 1U);
 }
 
 TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {

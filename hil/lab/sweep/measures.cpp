@@ -142,8 +142,8 @@ Measures measures_of(const hil::TeamMission& mission, const checks::RunRecord& r
   m.messages = static_cast<double>(run.result.messages);
   for (const auto& recorded : record.recordings) {
     for (const auto& event : recorded.events) {
-      if (event.kind == EventKind::monitoring) m.attempts_failed += 1.0;
-      if (event.kind != EventKind::coalition_formed) continue;
+      if (event.kind() == EventKind::monitoring) m.attempts_failed += 1.0;
+      if (event.kind() != EventKind::coalition_formed) continue;
       m.coalitions += 1.0;
       const auto [known, is_new] = m.formed_s.emplace(event.task.site, to_seconds(event.time));
       if (!is_new) known->second = std::min(known->second, to_seconds(event.time));

@@ -2,9 +2,12 @@
 #include "skein/random_messages/random_messages.hpp"
 
 #include <string>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "skein/codec/codec.hpp"
+#include "skein/mission/event_fields.hpp"
 
 namespace skein::codec {
 namespace {
@@ -166,19 +169,27 @@ coalition::Message award(Random& random) {
   return m;
 }
 
+coalition::Why why(Random& random) {
+  coalition::Why w;
+  w.reason = enumerator<coalition::Reason>(random);
+  w.vehicle = vehicle(random);
+  w.detail = text(random);
+  return w;
+}
+
 coalition::Message confirmation(Random& random) {
   coalition::Confirmation m;
   m.round = round(random);
   m.member = vehicle(random);
   m.accepted = random.chance(0.5);
-  m.reason = text(random);
+  m.why = why(random);
   return m;
 }
 
 coalition::Message cancel(Random& random) {
   coalition::Cancel m;
   m.round = round(random);
-  m.reason = text(random);
+  m.why = why(random);
   return m;
 }
 
@@ -275,15 +286,43 @@ mission::Message authorisation(Random& random) {
   return m;
 }
 
+void draw(Random& random, double& value) { value = random.uniform(-kNumberMax, kNumberMax); }
+void draw(Random& random, bool& value) { value = random.chance(0.5); }
+void draw(Random& random, std::string& value) { value = text(random); }
+void draw(Random& random, Instant& value) { value = instant(random); }
+void draw(Random& random, Duration& value) { value = duration(random); }
+void draw(Random& random, std::vector<VehicleId>& value) {
+  value = several(random, formation::kMoversMax, vehicle);
+}
+template <class Tag, class Rep>
+void draw(Random& random, Id<Tag, Rep>& value) {
+  value.value = integer<Rep>(random);
+}
+template <class T>
+void draw(Random& random, T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    value = enumerator<T>(random);
+  } else if constexpr (std::is_integral_v<T>) {
+    value = integer<T>(random);
+  } else {
+    mission::for_each_field(value,
+                            [&random](auto /*name*/, auto& member) { draw(random, member); });
+  }
+}
+
+mission::EventBody event_body(Random& random) {
+  auto body = mission::body_of(enumerator<mission::EventKind>(random));
+  std::visit([&random](auto& made) { draw(random, made); }, body);
+  return body;
+}
+
 mission::Message mission_event(Random& random) {
   mission::MissionEvent m;
   m.vehicle = vehicle(random);
   m.time = instant(random);
-  m.kind = enumerator<mission::EventKind>(random);
   m.round = round(random);
   m.task = task_id(random);
-  m.value = random.uniform(-kNumberMax, kNumberMax);
-  m.text = text(random);
+  m.body = event_body(random);
   return m;
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "skein/wording/wording.hpp"
+
 namespace skein::recording_export {
 namespace {
 
@@ -34,14 +36,13 @@ std::string track_csv(const recording::Recording& flight) {
 }
 
 std::string events_csv(const recording::Recording& flight) {
-  std::string text =
-      "time_ns,vehicle,kind,leader,instance,coalition,round,site,task,index,value,text\n";
+  std::string text = "time_ns,vehicle,kind,leader,instance,coalition,round,site,task,index,text\n";
   for (const auto& e : flight.events) {
     const coalition::CoalitionId& coalition = e.round.coalition;
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", ns(e.time), e.vehicle.value,
-                        to_string(e.kind), coalition.leader.value, coalition.instance.value,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", ns(e.time), e.vehicle.value,
+                        to_string(e.kind()), coalition.leader.value, coalition.instance.value,
                         coalition.number, e.round.number, e.task.site.value, to_string(e.task.kind),
-                        e.task.index, e.value, quoted(e.text));
+                        e.task.index, quoted(wording::news_of(e)));
   }
   return text;
 }

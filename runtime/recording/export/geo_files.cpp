@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "flights.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::recording_export {
 namespace {
@@ -76,8 +77,8 @@ Result<std::string> geojson(const Flights& flights) {
                           geojson_position(*flights.origin, at->state)),
               fmt::format("\"vehicle\":{},\"time_s\":{:.3f},\"event\":\"{}\",\"site\":{},"
                           "\"text\":\"{}\"",
-                          vehicle.value, to_seconds(event.time), to_string(event.kind),
-                          event.task.site.value, json_escaped(event.text)));
+                          vehicle.value, to_seconds(event.time), to_string(event.kind()),
+                          event.task.site.value, json_escaped(wording::news_of(event))));
     }
   }
   return text + "\n]}\n";
@@ -106,7 +107,7 @@ Result<std::string> kml(const Flights& flights) {
           "<Placemark><name>{}</name><description>{:.3f} s: {}</description><Point>"
           "<altitudeMode>relativeToGround</altitudeMode><coordinates>{}</coordinates></Point>"
           "</Placemark>\n",
-          to_string(event.kind), to_seconds(event.time), xml_escaped(event.text),
+          to_string(event.kind()), to_seconds(event.time), xml_escaped(wording::news_of(event)),
           kml_position(*flights.origin, at->state));
     }
     text += "</Folder>\n";

@@ -54,8 +54,7 @@ class RecordingExport : public ::testing::Test {
     mission::MissionEvent event;
     event.vehicle = VehicleId{7};
     event.time = at_seconds(0.06);
-    event.kind = mission::EventKind::task_done;
-    event.text = "\"said\" <so>";
+    event.body = mission::event::Authorised{"\"her\" <there>"};
     writer->write(event);
     recording::PlanRecord plan;
     plan.plan.speed_mps = 50.0 / 3.0;
@@ -82,7 +81,7 @@ TEST_F(RecordingExport, CsvHasEverythingExactly) {
   EXPECT_THAT(track, StartsWith("time_s,x_m,y_m,z_m,heading_rad,"));
   EXPECT_THAT(track, HasSubstr("\n0.050000000,0,1000,0.30000000000000004,0,"));
   EXPECT_THAT(text_of("vehicle-07/events.csv"),
-              HasSubstr("\n60000000,7,task_done,0,0,0,0,0,survey,0,0,\"\"\"said\"\" <so>\"\n"));
+              HasSubstr("\n60000000,7,authorised,0,0,0,0,0,survey,0,\"by \"\"her\"\" <there>\"\n"));
   EXPECT_THAT(text_of("vehicle-07/plans.csv"),
               HasSubstr("\n0,0,0,16.666666666666668,0,0,0,0,0:12.5|0.01:7\n"));
 }
@@ -91,13 +90,13 @@ TEST_F(RecordingExport, GeojsonAndKmlSayWhereItWas) {
   ASSERT_TRUE(write(folder_, Format::geojson, folder_ / "out").ok());
   const auto geojson = text_of("flight.geojson");
   EXPECT_THAT(geojson, HasSubstr("\"LineString\",\"coordinates\":[[8.0000000,47.0000000,500.3],"));
-  EXPECT_THAT(geojson, HasSubstr("\"event\":\"task_done\""));
-  EXPECT_THAT(geojson, HasSubstr("\\\"said\\\" <so>"));
+  EXPECT_THAT(geojson, HasSubstr("\"event\":\"authorised\""));
+  EXPECT_THAT(geojson, HasSubstr("\\\"her\\\" <there>"));
   EXPECT_THAT(geojson, HasSubstr("\"Point\",\"coordinates\":[8.0000000,47.0089"));
   ASSERT_TRUE(write(folder_, Format::kml, folder_ / "out").ok());
   const auto kml = text_of("flight.kml");
   EXPECT_THAT(kml, HasSubstr("8.0000000,47.0000000,0.3 8.0000000,47.0089"));
-  EXPECT_THAT(kml, HasSubstr("&lt;so&gt;"));
+  EXPECT_THAT(kml, HasSubstr("&lt;there&gt;"));
 }
 
 TEST_F(RecordingExport, SummaryTellsWhatIsThere) {

@@ -49,7 +49,7 @@ class FormationDesk {
   [[nodiscard]] Result<mission::FormationOrder> completed(const Formation& input) const;
   void work_off_script(Instant now);
   void take_events();
-  void report(mission::EventKind kind, std::string text, Instant now);
+  void report(mission::EventBody body, Instant now);
 
   configuration::FormationConfig config_;
   std::vector<VehicleId> vehicles_;
@@ -61,7 +61,8 @@ class FormationDesk {
   std::optional<Instant> wait_until_;
   std::optional<Instant> team_by_;
   Instant try_again_{};
-  std::string said_;  ///< why the script's next order waits
+  bool told_awaited_ = false;  ///< that vehicles are not heard yet
+  bool told_waits_ = false;    ///< why the script's next order does
   std::deque<mission::MissionEvent> events_;
 };
 

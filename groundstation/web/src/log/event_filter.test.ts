@@ -2,11 +2,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { an_event } from "../wire/samples";
-import { all_events, filtered, rest_of_text, rows_in_sight } from "./event_filter";
+import { all_events, filtered, rows_in_sight } from "./event_filter";
 
 const events = [
   an_event(0),
-  an_event(1, { vehicle: 2, kind: "warning", level: "warning", text: "Heard nothing from 3" }),
+  an_event(1, { vehicle: 2, kind: "fleet_warning", level: "warning", text: "Heard nothing from 3" }),
   an_event(2, { vehicle: 2, kind: "task_done" }),
 ];
 const seqs = (filter: Partial<typeof all_events>, until_s: number | null = null) =>
@@ -19,14 +19,6 @@ test("filters by vehicle, kind, level and text, and all together", () => {
   assert.deepEqual(seqs({ warnings_only: true }), [1]);
   assert.deepEqual(seqs({ text: " heard NOTHING" }), [1]);
   assert.deepEqual(seqs({ vehicle: 2, kind: "task_done", text: "nothing" }), []);
-});
-
-test("a row does not say twice who and what", () => {
-  const text = (kind: string, words: string) => rest_of_text(an_event(0, { kind, text: words }));
-  assert.equal(text("task_started", "vehicle 2: task started, site 1 deliver 1 (27.56)"), "site 1 deliver 1 (27.56)");
-  assert.equal(text("released", "vehicle 6: released: not needed"), "not needed");
-  assert.equal(text("warning", "ground station: vehicle 3 is silent"), "vehicle 3 is silent");
-  assert.equal(text("monitoring", "vehicle 6: monitoring"), "");
 });
 
 test("a recording shows no event before it has happened", () => {

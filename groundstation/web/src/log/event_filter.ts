@@ -10,14 +10,6 @@ export interface EventFilter {
 
 export const all_events: EventFilter = { vehicle: null, kind: null, warnings_only: false, text: "" };
 
-/** Its words without those that the row's columns say already: who, and what kind. */
-export function rest_of_text(event: MissionEvent): string {
-  const kind = event.kind.replaceAll("_", " ");
-  const rest = event.text.replace(/^(vehicle \d+|ground station): /, "");
-  if (rest === kind) return "";
-  return rest.startsWith(kind) ? rest.slice(kind.length).replace(/^[,:]? +/, "") : rest;
-}
-
 /** Those that the filter lets through; in a recording, none that is later than `until_s`. */
 export function filtered(events: readonly MissionEvent[], filter: EventFilter, until_s: number | null): MissionEvent[] {
   const text = filter.text.trim().toLowerCase();

@@ -5,7 +5,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { clock, words } from "../shell/format";
 import { select, selected } from "../shell/view";
 import { events, in_replay, shown, vehicles } from "../wire/store";
-import { all_events, filtered, rest_of_text, rows_in_sight } from "./event_filter";
+import { all_events, filtered, rows_in_sight } from "./event_filter";
 import type { EventFilter } from "./event_filter";
 
 const row_px = 22;
@@ -93,7 +93,7 @@ export function LogPanel() {
                 {words(event.kind)}
               </span>
               <span class="event-text" title={event.text}>
-                {rest_of_text(event)}
+                {event.news}
               </span>
             </div>
           ))}

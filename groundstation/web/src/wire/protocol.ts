@@ -240,7 +240,10 @@ export interface MissionEvent {
   site: number | null;
   task: string | null;
   coalition: string | null;
-  value: number | null;
+  /** What the kind tells besides, by name; times in seconds end in _s. */
+  fields: Record<string, unknown>;
+  /** For people: what it says, and the whole line. */
+  news: string;
   text: string;
 }
 

@@ -60,7 +60,8 @@ export function an_event(seq: number, other: Partial<MissionEvent> = {}): Missio
     site: null,
     task: null,
     coalition: null,
-    value: null,
+    fields: {},
+    news: "",
     text: `event ${seq}`,
     ...other,
   };

@@ -76,13 +76,13 @@ class Initiator {
   /// Not enough bids, or no plan, or an award unconfirmed: the leader monitors and tries again.
   struct NotFormed {
     Round round;
-    std::string why;
+    Why why;
   };
   /// A task whose owner fell silent or failed: it is announced again.
   struct TaskLost {
     Round round;
     TaskAssignment assignment;
-    std::string why;
+    Reason why;
   };
   /// A delivery that was due when its owner fell silent. Whether it was flown is not known, so it
   /// is not flown again.
@@ -120,14 +120,14 @@ class Initiator {
   void on_timeout(Instant now);
 
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
-  void allocation_failed(const Round& round, const std::string& why, Instant now);
+  void allocation_failed(const Round& round, const std::string& detail, Instant now);
   /// The operator's grant came for that round: from then on a silent owner's delivery that is due
   /// may have been flown.
   void authorised(const Round& round);
   /// Opens another round for what is not done (times have become impossible).
-  void announce_again(const std::string& why, Instant now);
+  void announce_again(Reason why, Instant now);
   /// Ends the coalition and releases everyone.
-  void close(const std::string& why, Instant now);
+  void close(const Why& why, Instant now);
 
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<Output> poll_output();
@@ -178,10 +178,10 @@ class Initiator {
   void take_back(Entry& entry, const Bid& bid, Instant now);
   void expire(Instant now);
   void reopen(Entry& entry);
-  void lose(Entry& entry, const std::string& why);
+  void lose(Entry& entry, Reason why);
   void make_unknown(Entry& entry);
   void heartbeat(Instant now);
-  void not_formed(Event event, const std::string& why, Instant now);
+  void not_formed(Event event, const Why& why, Instant now);
   void finish_if_done();
   [[nodiscard]] bool all_confirmed() const;
   [[nodiscard]] std::vector<TaskId> tasks_that_are(Ownership ownership) const;

@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -76,18 +77,71 @@ struct Award {
   CoalitionId continues{};
 };
 
+/// Why a vehicle does not bid, an award is refused, or a lease, a round or a coalition ends.
+enum class Reason : std::uint8_t {
+  none,
+  // of who does not bid, or not accept
+  held_by_operator,
+  id_in_use,  ///< by another vehicle too
+  surveying,
+  leading,
+  task_in_progress,
+  out_of_range,  ///< not enough of it is left
+  incapable,     ///< no capability or load for these tasks
+  out_of_reach,  ///< of the leader's radio, before the coalition stands
+  one_task_at_a_time,
+  path_too_long,  ///< it has too many pieces
+  no_path,        ///< Why::detail has the planner's words
+  // of who leaves
+  sent_home,    ///< by the operator
+  path_barred,  ///< by a hazard
+  new_round,    ///< the leader opened one
+  bid_again,
+  not_needed,
+  award_too_late,
+  no_award,
+  no_successor,  ///< of the leader
+  lease_ran_out,
+  task_done,
+  task_failed,
+  // of the leader
+  owners_silent,  ///< only tasks are open whose owners are silent
+  electors_silent,
+  no_allocation,  ///< Why::detail has the planner's words
+  allocation_too_late,
+  award_refused,  ///< by Why::vehicle, for the reason in Why::detail
+  not_confirmed,  ///< by every member
+  tasks_open,     ///< again
+  owner_failed,
+  owner_silent,
+  superseded,  ///< Why::vehicle leads the site
+  no_decision,
+  refused_by_operator,
+  yields,  ///< to a larger reward
+  site_done,
+  count
+};
+[[nodiscard]] std::string_view to_string(Reason reason);
+
+struct Why {
+  Reason reason = Reason::none;
+  VehicleId vehicle{};   ///< whom the reason speaks of; 0: nobody
+  std::string detail{};  ///< for people; at most kReasonMax
+  friend auto operator<=>(const Why&, const Why&) = default;
+};
+
 /// A member's answer to an award.
 struct Confirmation {
   Round round;
   VehicleId member;
   bool accepted = false;
-  std::string reason;  ///< why not
+  Why why;  ///< not
 };
 
 /// Everyone in the round is released, and every lease in it ends at once.
 struct Cancel {
   Round round;
-  std::string reason;
+  Why why;
 };
 
 /// The leader's heartbeat to those members that it hears.

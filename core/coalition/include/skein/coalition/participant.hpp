@@ -79,13 +79,13 @@ class Participant {
   struct LeaseEnded {
     Round round;
     TaskId task;
-    std::string why;
+    Why why;
     bool held = false;
   };
   /// Not (any more) in a coalition; all leases have ended.
   struct Released {
     Round round;
-    std::string why;
+    Why why;
   };
   /// This vehicle leads from now on: Initiator's second constructor takes it.
   using LeadershipWon = Elector::Won;
@@ -112,14 +112,14 @@ class Participant {
   void decline(const Announcement& announcement);
   /// Answers to AwardReceived.
   void accept(Instant now);
-  void refuse(const std::string& reason, Instant now);
+  void refuse(const Why& why, Instant now);
 
   /// How the tasks go. A task that is done or failed is no longer held.
   void task_started(const TaskId& task, Instant now);
   void task_done(const TaskId& task, Instant now);
   void task_failed(const TaskId& task, Instant now);
   /// Leaves the coalition: tasks that are not done are reported as failed.
-  void withdraw(const std::string& reason, Instant now);
+  void withdraw(Reason reason, Instant now);
 
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<Output> poll_output();
@@ -151,8 +151,8 @@ class Participant {
     Instant report_until{};
   };
   void finish(const TaskId& task, TaskState state, Instant now);
-  void end_leases(const std::string& why, bool unstarted_only);
-  void leave(Event event, const std::string& why);
+  void end_leases(const Why& why, bool unstarted_only);
+  void leave(Event event, const Why& why);
   void expire_leases(Instant now);
   void note_over(const TaskId& task, Instant since);
   void give_up(const Lease& lease, Instant now);

@@ -51,14 +51,14 @@ class FormationAgent final : public OnboardAgent {
 
  private:
   void on_change(const formation::Change& change, Instant now);
-  [[nodiscard]] std::optional<std::string> why_not(const formation::Change& change,
-                                                   std::size_t self) const;
+  [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const formation::Change& change,
+                                                            std::size_t self) const;
   void on_status(const FormationStatus& status, Instant now);
   void on_command(const Command& command);
   void step(Instant now);
   void tell_of_wait(Instant now);
   [[nodiscard]] double off_m(Instant now) const;
-  void report(EventKind kind, double value, std::string text, Instant now);
+  void report(EventBody body, Instant now);
 
   FormationAgentConfig config_;
   std::optional<formation::Change> change_;

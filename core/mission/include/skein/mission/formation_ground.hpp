@@ -34,16 +34,6 @@ struct FormationGroundConfig {
   std::uint64_t seed = 1;  ///< of the ant colony
 };
 
-/// What an operator can ask for. Every order moves all vehicles that are heard.
-enum class OrderKind : std::uint8_t {
-  take_off,  ///< from the ground straight up to the rally's height
-  rally,     ///< to the rally
-  form,      ///< a shape; low ids take the places where they are few, the others wait at the rally
-  land,      ///< straight down
-  count
-};
-[[nodiscard]] std::string_view to_string(OrderKind kind);
-
 struct FormationOrder {
   OrderKind kind = OrderKind::rally;
   formation::ShapeSpec shape{};         ///< of `form`
@@ -110,7 +100,8 @@ class FormationGround {
   void judge_places(Instant now);
   void correct_drift(Instant now);
   [[nodiscard]] std::optional<Vec3> goal_of(VehicleId vehicle) const;
-  void report(EventKind kind, VehicleId vehicle, double value, std::string text, Instant now);
+  void report(EventBody body, Instant now);
+  void warn(event::FormationNews news, std::vector<VehicleId> vehicles, Instant now);
 
   FormationGroundConfig config_;
   std::map<VehicleId, Member> members_;
@@ -124,7 +115,7 @@ class FormationGround {
   bool give_again_ = false;              ///< somebody was lost in the change, or has not begun it
   bool withdrawn_ = false;               ///< nobody begins the newest change any more
   std::optional<Instant> stuck_since_;
-  std::string refused_;                ///< why the order was not given again
+  bool told_refused_ = false;          ///< that the order cannot be given again
   std::optional<Instant> near_since_;  ///< all within tolerance
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;

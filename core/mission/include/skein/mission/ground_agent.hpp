@@ -93,7 +93,7 @@ class GroundAgent {
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
 
  private:
-  using EventKey = std::tuple<Instant, VehicleId, EventKind, TaskId, std::string>;
+  using EventKey = std::tuple<Instant, VehicleId, TaskId, EventBody>;
   /// A delivery that the operator has granted, to the newest round that asked for it.
   struct Granted {
     coalition::Round round;
@@ -134,8 +134,8 @@ class GroundAgent {
   Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
   Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                       Instant now);
-  void report(EventKind kind, const coalition::Round& round, const TaskId& task, Instant now,
-              std::string text);
+  void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
+  void warn(event::FleetNews news, VehicleId vehicle, Instant now, Duration silence = {});
 
   GroundAgentConfig config_;
   std::map<VehicleId, FleetEntry> fleet_;

@@ -16,6 +16,7 @@
 #include "skein/domain/vehicle.hpp"
 #include "skein/formation/change.hpp"
 #include "skein/formation/passage.hpp"
+#include "skein/mission/events.hpp"
 
 /// What crosses the mission network besides the coalition's own messages.
 namespace skein::mission {
@@ -69,68 +70,6 @@ struct Authorisation {
   std::string decided_by;
   Instant decided_at{};
 };
-
-enum class EventKind : std::uint8_t {
-  site_detected,
-  survey_started,
-  survey_done,
-  announced,
-  bid_sent,
-  bid_declined,
-  allocation_done,
-  allocation_failed,
-  awarded,
-  confirmed,
-  refused,
-  coalition_formed,
-  cancelled,
-  released,
-  lease_granted,
-  lease_ended,
-  authorisation_requested,
-  authorised,
-  authorisation_refused,
-  authorisation_late,
-  task_started,
-  task_done,
-  task_failed,
-  plan_changed,
-  hazard_known,
-  conflict_yielded,
-  monitoring,
-  leader_replaced,
-  site_done,
-  change_begun,    ///< of a formation; value: its number
-  place_reached,   ///< by a vehicle; value: the change's number
-  formation_held,  ///< all are in their places; value: seconds from the first there to the last
-  script_done,     ///< the ground station's orders are all flown
-  warning,
-  count
-};
-[[nodiscard]] std::string_view to_string(EventKind kind);
-
-/// Something worth a line in the log and a mark on the time line.
-struct MissionEvent {
-  VehicleId vehicle;
-  Instant time{};
-  EventKind kind = EventKind::warning;
-  coalition::Round round;  ///< where it applies
-  TaskId task;             ///< where it applies; task.site for events of a site
-  double value = 0.0;      ///< the kind's number: seconds, metres or a count, see docs/protocol.md
-  std::string text;        ///< for people
-};
-
-/// The text of a lease_ended event when the plan is held: its lease may come back.
-inline constexpr std::string_view kHeldForSuccessor = "the leader is silent: the plan is held";
-
-enum class CommandKind : std::uint8_t {
-  hold,
-  resume,  ///< go on with the mission
-  return_home,
-  give_back,  ///< of an aircraft that others fly: the companion takes it. To one vehicle, never all
-  count
-};
-[[nodiscard]] std::string_view to_string(CommandKind kind);
 
 /// From the ground station to one vehicle, or to all (vehicle 0).
 struct Command {

@@ -31,7 +31,7 @@ struct PlanningResult {
 struct FlightNotice {
   Instant time{};
   bool warning = false;
-  std::string text;
+  AutopilotNotice what{};
 };
 
 /// What only the program around the node can know; counted since its start.

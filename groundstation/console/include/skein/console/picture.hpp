@@ -63,10 +63,10 @@ struct RoundPicture {
   std::uint32_t number = 0;
   std::optional<coalition::Announcement> announcement;
   std::vector<coalition::Bid> bids;
-  std::map<VehicleId, std::string> declined;
+  std::map<VehicleId, coalition::Why> declined;
   std::optional<coalition::Award> award;
   std::map<VehicleId, coalition::Confirmation> answers;
-  std::optional<std::string> cancelled;
+  std::optional<coalition::Why> cancelled;
 };
 
 enum class CoalitionState : std::uint8_t { announced, awarded, formed, failed, closed, count };
@@ -75,7 +75,7 @@ enum class CoalitionState : std::uint8_t { announced, awarded, formed, failed, c
 struct CoalitionPicture {
   SiteId site;
   CoalitionState state = CoalitionState::announced;
-  std::string why;  ///< it failed
+  coalition::Why why;  ///< it failed
   std::vector<VehicleId> members;
   std::optional<Instant> lease_until;
   std::deque<RoundPicture> rounds;
@@ -93,7 +93,7 @@ struct SitePicture {
   bool surveyed = false;
   bool done = false;
   std::map<TaskId, TaskPicture> tasks;
-  std::string news;
+  std::optional<mission::MissionEvent> news;  ///< the newest event of the site
 };
 
 struct AuthorisationPicture {

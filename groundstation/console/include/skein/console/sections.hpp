@@ -42,9 +42,8 @@ using Sections = std::array<std::string, kSectionCount>;
 /// The `series` of a history message: a JSON array.
 [[nodiscard]] std::string series_of(const Picture& picture);
 
-/// One of an `events` message: a JSON object. `text` is the event as a line for people.
-[[nodiscard]] std::string event_json(const mission::MissionEvent& event, const std::string& text,
-                                     std::uint64_t seq);
+/// One of an `events` message: a JSON object, with the event's own fields and its line for people.
+[[nodiscard]] std::string event_json(const mission::MissionEvent& event, std::uint64_t seq);
 
 /// A coalition's own word.
 [[nodiscard]] std::string key_of(const coalition::CoalitionId& id);

@@ -13,6 +13,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/state_table.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/autopilot_notice.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -46,11 +47,11 @@ struct CompanionParams {
   Duration setpoint_age_max = std::chrono::milliseconds{250};
 };
 
-/// A line for the log; a warning is for the operator too.
+/// For the log; a warning is for the operator too.
 struct Notice {
   Instant time;
   bool warning = false;
-  std::string text;
+  AutopilotNotice what;
 };
 
 /// The companion's side of a flight by an ArduPilot (4.5 or newer), over any stream of bytes that

@@ -17,7 +17,7 @@ namespace skein::checks {
 /// A change of formation, as the ground station's events tell it.
 struct FormationChange {
   std::uint32_t number = 0;
-  std::string order;  ///< in the ground station's words: "form, straight"
+  std::string order;  ///< for people: "form wedge, straight"
   Instant begun{};
   std::optional<Instant> held;     ///< from then on all are in place
   Instant until = Instant::max();  ///< when the next one begins

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/wording/wording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string_view>
+
+namespace skein::wording {
+namespace {
+
+using coalition::Reason;
+namespace event = mission::event;
+
+std::string words_of(std::string_view name) {
+  std::string words{name};
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+/// `why` after `what`, where there is one.
+std::string because(std::string what, const std::string& why) {
+  if (why.empty()) return what;
+  return what.empty() ? why : what + ": " + why;
+}
+
+std::string names_of(const std::vector<VehicleId>& vehicles) {
+  std::string text;
+  for (const VehicleId vehicle : vehicles) {
+    text += (text.empty() ? "" : ", ") + std::to_string(vehicle.value);
+  }
+  return text;
+}
+
+std::string moment(Instant t) { return fmt::format("{:.1f} s", to_seconds(t)); }
+
+/// In the order of Reason; empty for those that speak of a vehicle.
+constexpr std::array kReasons{
+    std::string_view{""},
+    std::string_view{"held by the operator"},
+    std::string_view{"another vehicle uses this id"},
+    std::string_view{"surveying"},
+    std::string_view{"leading its own site"},
+    std::string_view{"a task is in progress"},
+    std::string_view{"not enough range left"},
+    std::string_view{"no capability or load for these tasks"},
+    std::string_view{"out of the leader's radio range before the coalition stands"},
+    std::string_view{"it can fly one task at a time"},
+    std::string_view{"its path has too many pieces"},
+    std::string_view{"no path"},
+    std::string_view{"the operator sends it home"},
+    std::string_view{"a hazard bars its path"},
+    std::string_view{"the leader opened another round"},
+    std::string_view{"bid in a new round"},
+    std::string_view{"not needed"},
+    std::string_view{"the award came too late"},
+    std::string_view{"no award came"},
+    std::string_view{"no successor of the leader came"},
+    std::string_view{"the lease ran out"},
+    std::string_view{"done"},
+    std::string_view{"failed"},
+    std::string_view{"waiting for tasks whose owners are silent"},
+    std::string_view{"too few of the coalition's electors are heard"},
+    std::string_view{"no allocation"},
+    std::string_view{"the allocation was not ready in time"},
+    std::string_view{""},
+    std::string_view{"not every member confirmed the award"},
+    std::string_view{"tasks are open again"},
+    std::string_view{"its owner reports that it failed"},
+    std::string_view{"its owner fell silent"},
+    std::string_view{""},
+    std::string_view{"no decision of the operator in time"},
+    std::string_view{"refused by the operator"},
+    std::string_view{"yields to a larger reward"},
+    std::string_view{"the site is done"},
+};
+static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
+
+std::string_view sentence_of(event::Lateness why) {
+  switch (why) {
+    case event::Lateness::no_decision:
+      return "no decision: the plan is timed anew";
+    case event::Lateness::not_authorised:
+      return "holding at the gate";
+    case event::Lateness::lease_too_short:
+      return "the lease does not reach over the delivery";
+    case event::Lateness::not_certain:
+      return "its deliveries or its lease are not certain";
+    case event::Lateness::count:
+      break;
+  }
+  return "";
+}
+
+std::string_view sentence_of(event::TaskFailure why) {
+  switch (why) {
+    case event::TaskFailure::no_plan:
+      return "";
+    case event::TaskFailure::out_of_range:
+      return "not enough range left";
+    case event::TaskFailure::path_too_long:
+      return "the path has too many pieces";
+    case event::TaskFailure::off_path:
+      return "off the planned path";
+    case event::TaskFailure::released_within:
+      return "released within it";
+    case event::TaskFailure::count:
+      break;
+  }
+  return "";
+}
+
+std::string_view sentence_of(event::Trouble trouble) {
+  switch (trouble) {
+    case event::Trouble::untimely:
+      return "neither its speed nor another path keeps its time in this wind";
+    case event::Trouble::route_not_flown:
+      return "it is not where its route has it at this time: the route is not flown";
+    case event::Trouble::id_in_use:
+      return "another vehicle uses this id; this one bids and leads no more";
+    case event::Trouble::count:
+      break;
+  }
+  return "";
+}
+
+std::string_view sentence_of(event::ChangeRefusal why) {
+  switch (why) {
+    case event::ChangeRefusal::another_is_flown:
+      return "the one before is still flown";
+    case event::ChangeRefusal::too_fast:
+      return "it is faster than this vehicle";
+    case event::ChangeRefusal::begins_elsewhere:
+      return "it begins somewhere else";
+    case event::ChangeRefusal::count:
+      break;
+  }
+  return "";
+}
+
+std::string_view sentence_of(Given given) {
+  switch (given) {
+    case Given::taken_by_others:
+      return "; others have the aircraft until the operator gives it back";
+    case Given::launch_spent:
+      return "; it is not launched unless the operator gives it back on the ground";
+    case Given::yes:
+    case Given::count:
+      break;
+  }
+  return "";
+}
+
+std::string sentence_of(GiveBackRefusal why, const AutopilotNotice& notice) {
+  switch (why) {
+    case GiveBackRefusal::node_still_duplicate:
+      return fmt::format("two nodes on the bus still have the id {}", notice.number);
+    case GiveBackRefusal::wrong_state:
+      return "the companion is in the state " + notice.detail;
+    case GiveBackRefusal::taken_since:
+      return "it was taken after the operator's word";
+    case GiveBackRefusal::no_position:
+      return "it does not know where it is";
+    case GiveBackRefusal::not_flying:
+      return "it is not armed and in the air";
+    case GiveBackRefusal::none:
+    case GiveBackRefusal::count:
+      break;
+  }
+  return "";
+}
+
+constexpr std::string_view kPiloted = "; no setpoints until the operator gives it back";
+
+/// In the order of AutopilotNews.
+constexpr std::array kAutopilotNews{
+    std::string_view{"the autopilot has rebooted"},
+    std::string_view{"looking for the autopilot again"},
+    std::string_view{"the autopilot has gone before it was prepared; looking for it again"},
+    std::string_view{"found an autopilot, system {number}, in {detail}"},
+    std::string_view{"the autopilot is ready{given}"},
+    std::string_view{"the autopilot has disarmed"},
+    std::string_view{"the autopilot does not arm{given}"},
+    std::string_view{"the launch was broken off{given}"},
+    std::string_view{"armed; taking off"},
+    std::string_view{"landing at its place"},
+    std::string_view{"flying the companion's setpoints"},
+    std::string_view{"the mode was changed to {detail} by the pilot or a failsafe{piloted}"},
+    std::string_view{"it was armed by others, in {detail}{piloted}"},
+    std::string_view{"the autopilot does not obey{piloted}"},
+    std::string_view{"it has not climbed to {number} m in time (TKOFF_ALT?){piloted}"},
+    std::string_view{"no frame comes from the flight controller"},
+    std::string_view{"the autopilot is silent, though its node is on the bus"},
+    std::string_view{"two nodes on the bus have the id {number}: nothing is sent any more; give "
+                     "each its own, then give the aircraft back"},
+    std::string_view{"the aircraft cannot be given to the companion: {refusal}"},
+    std::string_view{"given back on the ground"},
+    std::string_view{"an autopilot of system {number} is on the line, and not heeded: the "
+                     "configuration names {detail}"},
+    std::string_view{"the autopilot is of make {number}, not an ArduPilot (3); choose another kind "
+                     "of flight controller"},
+    std::string_view{"the autopilot flies an aircraft of MAV_TYPE {number}, which is no {detail}; "
+                     "mend the airframe in the configuration"},
+    std::string_view{"the autopilot runs ArduPilot {detail}, older than 4.5; update its firmware"},
+    std::string_view{"the autopilot runs ArduPilot {detail}"},
+    std::string_view{"autopilot: {detail}"},
+    std::string_view{"the autopilot refuses {detail}"},
+};
+static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
+
+/// One for each alternative of EventBody: one that is missing does not compile.
+struct News {
+  std::string operator()(const event::SiteDetected& e) const {
+    return fmt::format("{:.0f} m away", e.range_m);
+  }
+  std::string operator()(const event::SurveyStarted& /*e*/) const { return ""; }
+  std::string operator()(const event::SurveyDone& e) const { return "begun at " + moment(e.begun); }
+  std::string operator()(const event::Announced& e) const {
+    return because(fmt::format("{} tasks", e.tasks), text_of(e.why));
+  }
+  std::string operator()(const event::BidSent& e) const { return "there at " + moment(e.eta); }
+  std::string operator()(const event::BidDeclined& e) const { return text_of(e.why); }
+  std::string operator()(const event::AllocationDone& e) const {
+    return fmt::format("{} bids; {}: J {:.4f}, {} (took {:.3f} s)", e.bids, to_string(e.method),
+                       e.objective,
+                       e.proven ? "proven" : fmt::format("at most {:.4f} below the optimum", e.gap),
+                       to_seconds(e.took));
+  }
+  std::string operator()(const event::AllocationFailed& e) const {
+    return fmt::format("{} bids; {}", e.bids, e.detail);
+  }
+  std::string operator()(const event::Awarded& e) const { return fmt::format("{} tasks", e.tasks); }
+  std::string operator()(const event::Confirmed& e) const { return "for " + moment(e.planned); }
+  std::string operator()(const event::Refused& e) const { return text_of(e.why); }
+  std::string operator()(const event::CoalitionFormed& e) const {
+    return fmt::format("{} vehicles", e.vehicles);
+  }
+  std::string operator()(const event::Cancelled& e) const { return text_of(e.why); }
+  std::string operator()(const event::Released& e) const { return text_of(e.why); }
+  std::string operator()(const event::LeaseGranted& e) const { return "until " + moment(e.until); }
+  std::string operator()(const event::LeaseEnded& e) const {
+    return e.held ? "the leader is silent: the plan is held" : text_of(e.why);
+  }
+  std::string operator()(const event::AuthorisationRequested& e) const {
+    return "to be decided by " + moment(e.decide_by);
+  }
+  std::string operator()(const event::Authorised& e) const { return "by " + e.by; }
+  std::string operator()(const event::AuthorisationRefused& e) const { return "by " + e.by; }
+  std::string operator()(const event::AuthorisationLate& e) const {
+    return std::string{sentence_of(e.why)};
+  }
+  std::string operator()(const event::TaskStarted& /*e*/) const { return ""; }
+  std::string operator()(const event::TaskDone& e) const {
+    return "planned for " + moment(e.planned);
+  }
+  std::string operator()(const event::TaskFailed& e) const {
+    return because(std::string{sentence_of(e.why)}, e.detail);
+  }
+  std::string operator()(const event::Commanded& e) const {
+    return "the operator commands: " + words_of(to_string(e.command));
+  }
+  std::string operator()(const event::PlanRetimed& e) const {
+    return fmt::format("at {:.1f} m/s, to the same time in this wind", e.speed_mps);
+  }
+  std::string operator()(const event::PlanDetoured& /*e*/) const {
+    return "around the hazard, to the same time";
+  }
+  std::string operator()(const event::RangeSpent& e) const {
+    return fmt::format("its range is used up{}; {:.0f} m are left",
+                       e.comes_home ? " but for the way home" : ": it holds", e.range_left_m);
+  }
+  std::string operator()(const event::ReliefBegun& /*e*/) const {
+    return "the site's leader is lost: goes there to lead";
+  }
+  std::string operator()(const event::HazardKnown& e) const {
+    return fmt::format("hazard {}, {:.0f} m", e.hazard.value, e.radius_m);
+  }
+  std::string operator()(const event::ConflictYielded& e) const {
+    return e.leads ? text_of(e.to) + " leads the site" : "to " + text_of(e.to);
+  }
+  std::string operator()(const event::Monitoring& e) const {
+    return because(fmt::format("{} tasks", e.tasks), text_of(e.why));
+  }
+  std::string operator()(const event::LeaderReplaced& e) const {
+    return fmt::format("takes over from {}, followed by {}", text_of(e.lost), e.supporters);
+  }
+  std::string operator()(const event::SiteDone& /*e*/) const { return ""; }
+  std::string operator()(const event::ChangeBegun& e) const {
+    return fmt::format("change {}, {}: {} vehicles in {:.1f} s, separation {:.2f} m at least",
+                       e.number, text_of(e), e.vehicles, to_seconds(e.takes), e.separation_m);
+  }
+  std::string operator()(const event::ChangeTakenUp& e) const {
+    return fmt::format("change {}", e.number);
+  }
+  std::string operator()(const event::PlaceReached& e) const {
+    return fmt::format("of change {}", e.number);
+  }
+  std::string operator()(const event::FormationHeld& e) const {
+    return fmt::format("the last in its place {:.2f} s after the first", to_seconds(e.spread));
+  }
+  std::string operator()(const event::ScriptDone& /*e*/) const { return ""; }
+  std::string operator()(const event::TaskLost& e) const {
+    return text_of(coalition::Why{e.why.reason}) + ": " + text_of(e.why.vehicle);
+  }
+  std::string operator()(const event::TaskUnknown& e) const {
+    return "may have been flown: " + text_of(e.owner) + " fell silent; the operator must look";
+  }
+  std::string operator()(const event::VehicleTrouble& e) const {
+    return std::string{sentence_of(e.trouble)};
+  }
+  std::string operator()(const event::FleetWarning& e) const {
+    const std::string who = text_of(e.vehicle);
+    switch (e.news) {
+      case event::FleetNews::stranger:
+        return who + " speaks, but is not in the fleet; check its id";
+      case event::FleetNews::duplicate:
+        return "two vehicles answer to the id of " + who +
+               "; nothing is commanded to it until one of them is stopped or renumbered";
+      case event::FleetNews::unique:
+        return "the id of " + who + " is unique again";
+      case event::FleetNews::restarted:
+        return who + " has started anew";
+      case event::FleetNews::silent:
+        return who + " is silent";
+      case event::FleetNews::heard_again:
+        return fmt::format("{} is heard again after {} s", who,
+                           std::chrono::round<std::chrono::seconds>(e.silence).count());
+      case event::FleetNews::count:
+        break;
+    }
+    return who;
+  }
+  std::string operator()(const event::ChangeRefused& e) const {
+    return fmt::format("change {} is not flown: {}", e.number, sentence_of(e.why));
+  }
+  std::string operator()(const event::Waiting& e) const {
+    const std::string waits = fmt::format("waits in change {}: ", e.number);
+    switch (e.what) {
+      case event::WaitsFor::beginning:
+        return waits + text_of(e.vehicle) + " has not begun";
+      case event::WaitsFor::passing:
+        return waits + text_of(e.vehicle) + " has yet to pass";
+      case event::WaitsFor::order:
+      case event::WaitsFor::count:
+        break;
+    }
+    return waits + "it is told to hold";
+  }
+  std::string operator()(const event::FormationWarning& e) const {
+    const std::string who =
+        (e.vehicles.size() == 1 ? "vehicle " : "vehicles ") + names_of(e.vehicles);
+    switch (e.news) {
+      case event::FormationNews::lost:
+        return who + " is silent: its way is kept clear";
+      case event::FormationNews::lost_on_its_way:
+        return who +
+               " is silent: its way is kept clear, and the order is given again to the others once "
+               "they rest";
+      case event::FormationNews::back:
+        return who + " is heard again; the next order takes it along";
+      case event::FormationNews::not_begun:
+        return who + " has not begun the change: the order is given again";
+      case event::FormationNews::drift_corrected:
+        return "drift is corrected of " + who;
+      case event::FormationNews::awaited:
+        return "the script waits for vehicles not heard yet: " + names_of(e.vehicles);
+      case event::FormationNews::count:
+        break;
+    }
+    return who;
+  }
+  std::string operator()(const event::OrderWaits& e) const {
+    if (e.line == 0) return "the order cannot be given again: " + e.detail;
+    return fmt::format("the script waits at '{}': {}", e.order, e.detail);
+  }
+  std::string operator()(const event::FlightWarning& e) const { return text_of(e.notice); }
+};
+
+/// Does the event concern one task, rather than a site or nothing?
+bool names_task(mission::EventKind kind) {
+  using enum mission::EventKind;
+  return kind == task_started || kind == task_done || kind == task_failed ||
+         kind == lease_granted || kind == lease_ended || kind == task_lost || kind == task_unknown;
+}
+
+}  // namespace
+
+std::string text_of(VehicleId vehicle) {
+  return vehicle == kGroundStation ? "ground station" : fmt::format("vehicle {}", vehicle.value);
+}
+
+std::string text_of(const coalition::Why& why) {
+  std::string text{kReasons.at(static_cast<std::size_t>(why.reason))};
+  if (why.reason == Reason::award_refused) text = text_of(why.vehicle) + " refused";
+  if (why.reason == Reason::superseded) text = text_of(why.vehicle) + " leads the site";
+  const bool only_detail =
+      why.reason == Reason::no_path || why.reason == Reason::no_allocation;  // it says it better
+  if (only_detail && !why.detail.empty()) return why.detail;
+  return because(std::move(text), why.detail);
+}
+
+std::string text_of(const mission::event::ChangeBegun& change) {
+  std::string text = change.correction ? "correction of " : "";
+  text += to_string(change.order);
+  if (change.order == mission::OrderKind::form) {
+    text += " " + std::string{formation::to_string(change.shape)};
+  }
+  return text + ", " + std::string{formation::to_string(change.way)};
+}
+
+std::string text_of(const AutopilotNotice& notice) {
+  const auto pattern = kAutopilotNews.at(static_cast<std::size_t>(notice.news));
+  return fmt::format(fmt::runtime(pattern), fmt::arg("number", notice.number),
+                     fmt::arg("detail", notice.detail), fmt::arg("piloted", kPiloted),
+                     fmt::arg("given", sentence_of(notice.given)),
+                     fmt::arg("refusal", sentence_of(notice.refusal, notice)));
+}
+
+std::string news_of(const mission::MissionEvent& event) { return std::visit(News{}, event.body); }
+
+std::string text_of(const mission::MissionEvent& event) {
+  const bool warning = mission::is_warning(event.kind());
+  std::string line =
+      text_of(event.vehicle) + ": " + (warning ? "warning" : words_of(to_string(event.kind())));
+  if (names_task(event.kind())) {
+    line += ", " + to_string(event.task);
+  } else if (event.task.site != SiteId{}) {
+    line += fmt::format(", site {}", event.task.site.value);
+  }
+  return because(std::move(line), news_of(event));
+}
+
+}  // namespace skein::wording

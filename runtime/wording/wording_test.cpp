@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/wording/wording.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+namespace skein::wording {
+namespace {
+
+using mission::MissionEvent;
+namespace event = mission::event;
+
+TEST(Wording, SaysWhoWhatAndWhere) {
+  MissionEvent done{{7}, {}, {}, {{1}, TaskKind::deliver, 2}, event::TaskDone{at_seconds(0.4)}};
+  EXPECT_EQ(text_of(done), "vehicle 7: task done, site 1 deliver 3: planned for 0.4 s");
+  done = {kGroundStation, {}, {}, {}, event::FleetWarning{event::FleetNews::silent, {2}}};
+  EXPECT_EQ(text_of(done), "ground station: warning: vehicle 2 is silent");
+  done = {{2}, {}, {}, {{4}, TaskKind::survey, 0}, event::CoalitionFormed{10}};
+  EXPECT_EQ(text_of(done), "vehicle 2: coalition formed, site 4: 10 vehicles");
+}
+
+TEST(Wording, EveryReasonHasASentenceOfItsOwn) {
+  std::set<std::string> sentences;
+  const auto count = static_cast<int>(coalition::Reason::count);
+  for (int i = 0; i < count; ++i) {
+    sentences.insert(text_of(coalition::Why{static_cast<coalition::Reason>(i), {3}, {}}));
+  }
+  EXPECT_EQ(sentences.size(), static_cast<std::size_t>(count));
+  EXPECT_TRUE(sentences.contains(""));  // none
+}
+
+TEST(Wording, EveryNoticeOfAnAutopilotHasASentenceOfItsOwn) {
+  std::set<std::string> sentences;
+  const auto count = static_cast<int>(AutopilotNews::count);
+  for (int i = 0; i < count; ++i) {
+    sentences.insert(text_of(AutopilotNotice{static_cast<AutopilotNews>(i), 7, {}, {}, "so"}));
+  }
+  EXPECT_EQ(sentences.size(), static_cast<std::size_t>(count));
+}
+
+TEST(Wording, APlannersWordsAreShownForARefusalAndALeaderIsNamed) {
+  using enum coalition::Reason;
+  EXPECT_EQ(text_of(coalition::Why{no_path, {}, "No path of 3 m"}), "No path of 3 m");
+  EXPECT_EQ(text_of(coalition::Why{award_refused, {3}, "No path of 3 m"}),
+            "vehicle 3 refused: No path of 3 m");
+  EXPECT_EQ(text_of(coalition::Why{superseded, {2}, {}}), "vehicle 2 leads the site");
+}
+
+TEST(Wording, AChangeIsNamedByItsOrder) {
+  event::ChangeBegun change;
+  change.order = mission::OrderKind::form;
+  change.shape = formation::ShapeKind::wedge;
+  EXPECT_EQ(text_of(change), "form wedge, straight");
+  change.correction = true;
+  EXPECT_EQ(text_of(change), "correction of form wedge, straight");
+}
+
+}  // namespace
+}  // namespace skein::wording
