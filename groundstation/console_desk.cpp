@@ -47,6 +47,7 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                                  {"height_m", place.height_m}}},
                                {"expected", nlohmann::ordered_json::array()},
                                {"shapes", shapes},
+                               {"limits", nlohmann::ordered_json::parse(limits_json())},
                                {"replay", nullptr}};
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
   if (recording) {

@@ -64,9 +64,8 @@ constexpr const char* kConsole = "console";
 /// Who gave a line.
 struct Asker {
   std::string who;
-  std::string from;                                      ///< prompt, command line, console
-  bool may_order = true;                                 ///< otherwise may only look
-  std::optional<console::Server::Line::Seen> seen = {};  ///< the plan that was on the screen
+  std::string from;       ///< prompt, command line, console
+  bool may_order = true;  ///< otherwise may only look
 };
 
 bool only_looks(const Input& input) {
@@ -155,14 +154,20 @@ class GroundLoop {
       const auto line = console_.next();
       if (!line) break;
       const Answer given =
-          answer(line->line, {line->user, kConsole, line->may_order, line->seen}, now);
+          line->order.empty()
+              ? answer(line->line, {line->user, kConsole, line->may_order}, now)
+              : answer(read_order(line->order), "", {line->user, kConsole, line->may_order}, now);
       line->reply(given.done, given.text, given.data);
     }
   }
 
-  /// What came of a line. Orders and decisions are noted.
   Answer answer(const std::string& line, const Asker& asker, Instant now) {
-    const auto input = parse_input(line);
+    return answer(parse_input(line), line, asker, now);
+  }
+
+  /// What came of what somebody asked, in a `line` or without one. Orders and decisions are noted.
+  Answer answer(const Result<Input>& input, std::string line, const Asker& asker, Instant now) {
+    if (line.empty() && input) line = line_of(*input);
     const auto* formation = input ? std::get_if<Formation>(&*input) : nullptr;
     if (formation != nullptr && asker.from == kConsole && names_file(*formation)) {
       return {false, "the console takes shapes by their names; files are for the prompt\n"};
@@ -172,7 +177,8 @@ class GroundLoop {
                    : !asker.may_order ? Answer{false, "an observer gives no orders\n"}
                                       : order(*input, asker, now);
     // What an observer tries would only push the orders out of sight.
-    if (asker.may_order) note({now, asker.who, asker.from, line, given.done, given.text});
+    if (asker.may_order)
+      note({now, asker.who, asker.from, std::move(line), given.done, given.text});
     return given;
   }
 
@@ -186,7 +192,10 @@ class GroundLoop {
 
   Answer order(const Input& input, const Asker& asker, Instant now) {
     if (const auto* decision = std::get_if<Decision>(&input)) {
-      if (asker.seen) return decide_on(*asker.seen, *decision, asker.who, now);
+      if (decision->plan) {
+        return answer_to(
+            agent_.decide_on(*decision->plan, decision->site, decision->grant, asker.who, now));
+      }
       return answer_to(decision->grant ? agent_.authorise(decision->site, asker.who, now)
                                        : agent_.refuse(decision->site, asker.who, now));
     }
@@ -222,20 +231,6 @@ class GroundLoop {
     auto outcome = formation_.answer(order, now);
     if (!outcome) return refusal(outcome.error());
     return {true, std::move(outcome->text), std::move(outcome->data)};
-  }
-
-  /// On the plan that was on somebody's screen.
-  Answer decide_on(const console::Server::Line::Seen& seen, const Decision& decision,
-                   const std::string& who, Instant now) {
-    for (const auto& pending : agent_.authorisations()) {
-      const coalition::Round& round = pending.request.round;
-      if (pending.request.site != decision.site || round.number != seen.round ||
-          console::key_of(round.coalition) != seen.coalition) {
-        continue;
-      }
-      return answer_to(agent_.decide_on(round, decision.site, decision.grant, who, now));
-    }
-    return {false, "that plan does not wait for a decision any more; look at what does\n"};
   }
 
   void note(Audit::Entry entry) {

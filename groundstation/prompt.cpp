@@ -57,14 +57,12 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
 }
 
 /// A number after a keyword.
-Result<double> number_after(std::string_view keyword, std::string_view word, double low,
-                            double high) {
+Result<double> number_after(std::string_view keyword, std::string_view word, const Limit& limit) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size() ||
-      !(value >= low && value <= high)) {
-    return Error{
-        fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, low, high, word)};
+  if (error != std::errc{} || end != word.data() + word.size() || !limit.has(value)) {
+    return Error{fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, limit.low,
+                             limit.high, word)};
   }
   return value;
 }
@@ -76,9 +74,9 @@ Result<Input> hazard(const std::vector<std::string_view>& words) {
         "'hazard 1200 -300 250'; 'hazards' lists those that are known"};
   }
   NewHazard hazard;
-  const auto east = number_after("hazard EAST", words[1], -1e5, 1e5);
-  const auto north = number_after("hazard EAST NORTH", words[2], -1e5, 1e5);
-  const auto radius = number_after("hazard EAST NORTH RADIUS", words[3], 1.0, 5e4);
+  const auto east = number_after("hazard EAST", words[1], kCoordinate_m);
+  const auto north = number_after("hazard EAST NORTH", words[2], kCoordinate_m);
+  const auto radius = number_after("hazard EAST NORTH RADIUS", words[3], kHazardRadius_m);
   for (const auto* number : {&east, &north, &radius}) {
     if (!*number) return number->error();
   }
@@ -100,9 +98,7 @@ Result<Input> give_back(const std::vector<std::string_view>& words) {
 std::optional<formation::ShapeKind> shape_kind(std::string_view word) {
   for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
     const auto kind = static_cast<formation::ShapeKind>(i);
-    std::string name{formation::to_string(kind)};
-    std::replace(name.begin(), name.end(), '_', '-');
-    if (word == name) return kind;
+    if (word == hyphened(formation::to_string(kind))) return kind;
   }
   return std::nullopt;
 }
@@ -110,30 +106,30 @@ std::optional<formation::ShapeKind> shape_kind(std::string_view word) {
 /// What follows the shape, in any order.
 Result<Formation> with_options(Formation input, const std::vector<std::string_view>& words) {
   std::size_t next = 0;
-  const auto take = [&](std::string_view keyword, double low, double high) -> Result<double> {
+  const auto take = [&](std::string_view keyword, const Limit& limit) -> Result<double> {
     if (next == words.size()) return Error{fmt::format("'{}' needs a number after it", keyword)};
-    return number_after(keyword, words[next++], low, high);
+    return number_after(keyword, words[next++], limit);
   };
   formation::ShapeSpec& shape = input.order.shape;
   while (next < words.size()) {
     const auto keyword = words[next++];
     if (keyword == "spacing") {
-      const auto metres = take(keyword, 0.5, 1000.0);
+      const auto metres = take(keyword, kSpacing_m);
       if (!metres) return metres.error();
       shape.spacing_m = *metres;
       input.has_spacing = true;
     } else if (keyword == "heading") {
-      const auto degrees = take(keyword, -360.0, 360.0);
+      const auto degrees = take(keyword, kHeading_deg);
       if (!degrees) return degrees.error();
       shape.heading_rad = heading_from_compass_deg(*degrees);
       input.has_heading = true;
     } else if (keyword == "places") {
-      const auto count = take(keyword, 1.0, 1000.0);
+      const auto count = take(keyword, kPlaces);
       if (!count) return count.error();
       input.order.places = static_cast<std::size_t>(*count);
     } else if (keyword == "at") {
       for (int axis = 0; axis < 3; ++axis) {
-        const auto metres = take("at EAST NORTH HEIGHT", -1e5, 1e5);
+        const auto metres = take("at EAST NORTH HEIGHT", kCoordinate_m);
         if (!metres) return metres.error();
         shape.centre[axis] = *metres;
       }
@@ -185,7 +181,7 @@ Result<Input> preview(std::vector<std::string_view> words) {
 
 Result<Input> wait(const std::vector<std::string_view>& words) {
   if (words.size() != 2) return Error{"'wait' needs seconds, as in 'wait 10'"};
-  const auto seconds = number_after("wait", words[1], 0.0, 86400.0);
+  const auto seconds = number_after("wait", words[1], kWait_s);
   if (!seconds) return seconds.error();
   return Input{Wait{from_seconds(*seconds)}};
 }

@@ -89,7 +89,8 @@ class ReplayLoop {
   void take_requests() {
     while (auto request = server_->next()) {
       if (auto* line = std::get_if<console::Server::Line>(&*request)) {
-        const Answer given = answer(line->line);
+        const Answer given = line->order.empty() ? answer(line->line)
+                                                 : Answer{false, "a recording takes no orders\n"};
         line->reply(given.done, given.text, given.data);
       } else {
         std::get<console::Server::Join>(*request).reply(console::series_of(playback_.picture()));

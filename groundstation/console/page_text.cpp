@@ -15,21 +15,6 @@ const Json* member(const Json& object, const char* name) {
   return found == object.end() ? nullptr : &*found;
 }
 
-std::optional<PageText> line_text(const Json& json, std::int64_t id) {
-  const Json* line = member(json, "line");
-  if (line == nullptr || !line->is_string()) return std::nullopt;
-  LineText text{id, line->get<std::string>(), {}};
-  const Json* coalition = member(json, "coalition");
-  const Json* round = member(json, "round");
-  if (coalition == nullptr && round == nullptr) return text;
-  if (coalition == nullptr || round == nullptr || !coalition->is_string() ||
-      !round->is_number_unsigned() || round->get<std::uint64_t>() > UINT32_MAX) {
-    return std::nullopt;
-  }
-  text.seen = {coalition->get<std::string>(), round->get<std::uint32_t>()};
-  return text;
-}
-
 }  // namespace
 
 std::optional<PageText> parse_page_text(const std::string& text) {
@@ -46,7 +31,14 @@ std::optional<PageText> parse_page_text(const std::string& text) {
   if (id == nullptr || !id->is_number_integer()) return std::nullopt;
   const auto number = id->get<std::int64_t>();
   if (*type == "ping") return PingText{number};
-  if (*type == "line") return line_text(json, number);
+  const Json* line = member(json, "line");
+  if (*type == "line" && line != nullptr && line->is_string()) {
+    return LineText{number, line->get<std::string>(), {}};
+  }
+  const Json* order = member(json, "order");
+  if (*type == "order" && order != nullptr && order->is_object()) {
+    return LineText{number, {}, order->dump(-1, ' ', false, Json::error_handler_t::replace)};
+  }
   return std::nullopt;
 }
 

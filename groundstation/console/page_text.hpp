@@ -6,8 +6,6 @@
 #include <string>
 #include <variant>
 
-#include "skein/console/server.hpp"
-
 namespace skein::console {
 
 /// What a page says on the socket (docs/console-socket.md, from the client).
@@ -19,8 +17,8 @@ struct PingText {
 };
 struct LineText {
   std::int64_t id = 0;
-  std::string line;
-  std::optional<Server::Line::Seen> seen;
+  std::string line;   ///< of the prompt; or
+  std::string order;  ///< as JSON, not looked into here
 };
 using PageText = std::variant<ResumeText, PingText, LineText>;
 

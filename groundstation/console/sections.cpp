@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <type_traits>
@@ -449,6 +450,23 @@ std::string_view to_string(Section section) {
       "vehicles", "plans",     "sites",    "coalitions", "authorisations",
       "hazards",  "formation", "timeline", "audit",      "replay"};
   return kNames.at(static_cast<std::size_t>(section));
+}
+
+std::optional<coalition::CoalitionId> coalition_of(std::string_view key) {
+  coalition::CoalitionId id;
+  const char* at = key.data();
+  const char* const end = at + key.size();
+  const auto take = [&](auto& value, int base, bool last) {
+    const auto [next, error] = std::from_chars(at, end, value, base);
+    const bool taken = error == std::errc{} && (last ? next == end : next != end && *next == '-');
+    at = last ? next : next + 1;
+    return taken;
+  };
+  if (take(id.leader.value, 10, false) && take(id.instance.value, 16, false) &&
+      take(id.number, 10, true)) {
+    return id;
+  }
+  return std::nullopt;
 }
 
 std::string key_of(const coalition::CoalitionId& id) {

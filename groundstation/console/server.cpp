@@ -356,7 +356,7 @@ class SocketClient final : public Client,
     given.line = std::move(text.line);
     given.user = identity_.user;
     given.may_order = identity_.role == Role::op;
-    given.seen = std::move(text.seen);
+    given.order = std::move(text.order);
     // Called on other threads: only the server's may be the last to hold a client.
     given.reply = [server = &server_, self = weak(), id = text.id](
                       bool done, const std::string& said, const std::string& data) {

@@ -57,8 +57,7 @@ class Station {
       requests_.acquire();
       while (const auto request = server_->next()) {
         if (const auto* line = std::get_if<Server::Line>(&*request)) {
-          line->reply(line->may_order, line->user + ": " + line->line,
-                      line->seen ? "{\"round\":" + std::to_string(line->seen->round) + "}" : "");
+          line->reply(line->may_order, line->user + ": " + line->line, line->order);
         } else {
           std::get<Server::Join>(*request).reply("[]");
         }
@@ -220,11 +219,13 @@ TEST(Server, AReplayThatJumpsBackSendsTheEventsAnew) {
 TEST(Server, PassesLinesOnAndAnswers) {
   const Station station;
   Page page{station};
-  page.say(R"({"type":"line","id":3,"line":"hold all","coalition":"1-a-1","round":4})");
+  page.say(R"({"type":"line","id":2,"line":"hold all"})");
+  EXPECT_EQ(page.read("answer")["data"], nullptr);
+  page.say(R"({"type":"order","id":3,"order":{"kind":"decision","round":4}})");
   const Json answer = page.read("answer");
   EXPECT_EQ(answer["id"], 3);
   EXPECT_EQ(answer["done"], true);
-  EXPECT_EQ(answer["text"], "operator: hold all");
+  EXPECT_EQ(answer["text"], "operator: ");
   EXPECT_EQ(answer["data"]["round"], 4);
   page.say(R"({"type":"ping","id":4})");
   EXPECT_EQ(page.read("pong")["id"], 4);
@@ -250,9 +251,10 @@ TEST(Server, IsForItsOwnPageOnly) {
 TEST(Server, EndsWithWhoTalksNonsense) {
   const Station station;
   for (const char* nonsense :
-       {"", "{", "[]", "null", R"({"type":7})", R"({"type":"order"})", R"({"type":"line","id":1})",
-        R"({"type":"line","id":"x","line":"status"})", R"({"type":"resume","next_seq":-1})",
-        R"({"type":"line","id":1,"line":"status","round":1})", "\xff\xfe"}) {
+       {"", "{", "[]", "null", R"({"type":7})", R"({"type":"order","id":1})",
+        R"({"type":"line","id":1})", R"({"type":"line","id":"x","line":"status"})",
+        R"({"type":"resume","next_seq":-1})", R"({"type":"order","id":1,"order":"hold all"})",
+        "\xff\xfe"}) {
     Page page{station};
     page.say(nonsense);
     while (!page.read().empty()) {

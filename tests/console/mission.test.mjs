@@ -56,7 +56,10 @@ test("a delivery is authorised by a long press, and not by a short one", async (
   await view.picture("request");
   await hold(view.part("authorise-1").first(), 300);
   // A decision on another plan than the one that waits; and by its answer all before it is told.
-  const other = await say(view.page, { line: "authorise 1", coalition: "9-0000000000000001-1", round: 1 });
+  const other = await say(view.page, {
+    type: "order",
+    order: { kind: "decision", site: 1, grant: true, coalition: "9-0000000000000001-1", round: 1 },
+  });
   assert.equal(other.done, false);
   assert.match(other.text, /does not wait/);
   assert.deepEqual(

@@ -25,7 +25,10 @@ void run(std::string_view text) {
     case 'p':
       if (const auto said = console::parse_page_text(all)) {
         if (const auto* line = std::get_if<console::LineText>(&*said)) {
-          SKEIN_ASSERT(line->line.size() <= all.size());
+          SKEIN_ASSERT(line->line.empty() || line->order.empty());
+          if (const auto order = groundstation::read_order(line->order)) {
+            static_cast<void>(groundstation::line_of(*order));
+          }
         }
       }
       return;

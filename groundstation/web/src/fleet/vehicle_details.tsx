@@ -2,6 +2,7 @@
 // One vehicle: its figures, and the orders to it alone.
 
 import { bearing, distance, ids, number, words } from "../shell/format";
+import { command } from "../orders/orders";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { follow, select } from "../shell/view";
@@ -12,17 +13,17 @@ function Orders({ vehicle }: { vehicle: Vehicle }) {
   const { id } = vehicle;
   return (
     <div class="button-row" role="group" aria-label={`Orders to vehicle ${id}`}>
-      <button type="button" class="stop" data-testid="vehicle-hold" onClick={() => void give(`hold ${id}`)}>
+      <button type="button" class="stop" data-testid="vehicle-hold" onClick={() => void give(command("hold", id))}>
         Hold
       </button>
-      <HoldButton testid="vehicle-resume" on_held={() => void give(`resume ${id}`)}>
+      <HoldButton testid="vehicle-resume" on_held={() => void give(command("resume", id))}>
         Resume
       </HoldButton>
-      <HoldButton testid="vehicle-return" on_held={() => void give(`return ${id}`)}>
+      <HoldButton testid="vehicle-return" on_held={() => void give(command("return_home", id))}>
         Return
       </HoldButton>
       {vehicle.flight_controller !== null && (
-        <HoldButton testid="vehicle-give-back" on_held={() => void give(`give-back ${id}`)}>
+        <HoldButton testid="vehicle-give-back" on_held={() => void give(command("give_back", id))}>
           Give back
         </HoldButton>
       )}

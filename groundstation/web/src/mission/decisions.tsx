@@ -27,7 +27,8 @@ function Countdown({ request }: { request: Authorisation }) {
 }
 
 function Request({ request }: { request: Authorisation }) {
-  const plan = { coalition: request.coalition, round: request.round };
+  const { site, coalition, round } = request;
+  const plan = { kind: "decision", site, coalition, round } as const;
   const where = distance_and_bearing({ x: 0, y: 0 }, request);
   const key = request_key(request);
   const point_out = (on: boolean) => (highlighted_request.value = on ? key : null);
@@ -66,10 +67,10 @@ function Request({ request }: { request: Authorisation }) {
       </table>
       {may_order.value && (
         <div class="button-row">
-          <HoldButton kind="go" testid={`authorise-${request.site}`} on_held={() => void give(`authorise ${request.site}`, plan)}>
+          <HoldButton kind="go" testid={`authorise-${request.site}`} on_held={() => void give({ ...plan, grant: true })}>
             Authorise
           </HoldButton>
-          <HoldButton kind="stop" testid={`refuse-${request.site}`} on_held={() => void give(`refuse ${request.site}`, plan)}>
+          <HoldButton kind="stop" testid={`refuse-${request.site}`} on_held={() => void give({ ...plan, grant: false })}>
             Refuse
           </HoldButton>
         </div>

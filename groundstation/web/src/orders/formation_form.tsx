@@ -8,11 +8,11 @@ import { HoldButton } from "../shell/hold_button";
 import { formation_spot, preview, tool } from "../shell/view";
 import type { Answer, Preview } from "../wire/protocol";
 import { formation, hello, send } from "../wire/store";
-import { acknowledgements, formation_line, no_fields } from "./order_lines";
-import type { FormFields } from "./order_lines";
+import { acknowledgements, formation_order, no_fields, words_of_order } from "./orders";
+import type { FormFields } from "./orders";
 
 const kinds: { kind: FormFields["kind"]; text: string }[] = [
-  { kind: "take-off", text: "Take off" },
+  { kind: "take_off", text: "Take off" },
   { kind: "rally", text: "Rally" },
   { kind: "form", text: "Form" },
   { kind: "land", text: "Land" },
@@ -115,21 +115,23 @@ export function FormationForm() {
     preview.value = null;
     set_fields((before) => ({ ...before, ...some }));
   };
-  const made = formation_line(fields);
-  const line = "line" in made ? made.line : null;
+  const limits = hello.value?.limits;
+  const made = limits ? formation_order(fields, limits) : { trouble: "not connected yet" };
+  const order = "order" in made ? made.order : null;
+  const line = order && words_of_order(order);
   const tried = preview.value;
   const may_give = tried !== null && tried.done && tried.line === line;
 
   const try_it = async () => {
-    if (line === null) return;
+    if (order === null || line === null) return;
     set_busy(true);
-    const answer = await send(`preview ${line}`);
+    const answer = await send({ ...order, preview: true });
     preview.value = { line, data: preview_of(answer), text: answer.text, done: answer.done };
     set_busy(false);
   };
   const give_it = async () => {
-    if (line === null) return;
-    const answer = await give(line);
+    if (order === null) return;
+    const answer = await give(order);
     if (answer.done) {
       preview.value = null;
       formation_spot.value = null;
@@ -188,7 +190,7 @@ export function FormationForm() {
           </div>
         )}
         <p class="muted">
-          {"line" in made ? <code>{made.line}</code> : <span class="problem warning">{made.trouble}</span>}
+          {"trouble" in made ? <span class="problem warning">{made.trouble}</span> : <code>{line}</code>}
         </p>
         <div class="button-row">
           <button type="submit" disabled={line === null || busy} data-testid="formation-preview">

@@ -7,7 +7,7 @@ import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { hazard_draft, tool } from "../shell/view";
 import { hazards } from "../wire/store";
-import { hazard_line } from "./order_lines";
+import { hazard_order } from "./orders";
 
 const empty_draft = { x: 0, y: 0, radius_m: 100 };
 
@@ -39,7 +39,7 @@ export function HazardForm() {
   );
   const give_it = async () => {
     if (!draft) return;
-    const answer = await give(hazard_line(draft));
+    const answer = await give(hazard_order(draft));
     if (answer.done) hazard_draft.value = null;
   };
   return (

@@ -3,14 +3,15 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { a_vehicle } from "../wire/samples";
 import { hold_progress, told_to_hold } from "./hold_watch";
+import { command } from "./orders";
 
 const holding = { activity: "holding" };
 
 test("who is told to hold", () => {
   const vehicles = [a_vehicle(1), a_vehicle(2), a_vehicle(3, { heard_age_s: null })];
-  assert.deepEqual(told_to_hold("hold all", vehicles), [1, 2]);
-  assert.deepEqual(told_to_hold("hold 7", vehicles), [7]);
-  assert.equal(told_to_hold("resume all", vehicles), null);
+  assert.deepEqual(told_to_hold(command("hold", 0), vehicles), [1, 2]);
+  assert.deepEqual(told_to_hold(command("hold", 7), vehicles), [7]);
+  assert.equal(told_to_hold(command("resume", 0), vehicles), null);
 });
 
 test("who does, who does not yet, and who cannot be heard", () => {

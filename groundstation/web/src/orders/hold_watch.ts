@@ -2,13 +2,12 @@
 // Whether vehicles that were told to hold do so: an order that was sent is not one that is obeyed.
 
 import { ids } from "../shell/format";
-import type { Vehicle } from "../wire/protocol";
+import type { Order, Vehicle } from "../wire/protocol";
 
-/** Which vehicles a line tells to hold; null for other lines. */
-export function told_to_hold(line: string, vehicles: readonly Vehicle[]): number[] | null {
-  const match = /^hold (all|\d+)$/.exec(line);
-  if (!match) return null;
-  if (match[1] !== "all") return [Number(match[1])];
+/** Which vehicles an order tells to hold; null for other orders. */
+export function told_to_hold(order: Order, vehicles: readonly Vehicle[]): number[] | null {
+  if (order.kind !== "command" || order.command !== "hold") return null;
+  if (order.vehicle !== 0) return [order.vehicle];
   return vehicles.filter((vehicle) => vehicle.heard_age_s !== null).map((vehicle) => vehicle.id);
 }
 

@@ -4,6 +4,7 @@ import { HoldButton } from "../shell/hold_button";
 import { formation, hello, in_replay, may_order } from "../wire/store";
 import { FormationForm } from "./formation_form";
 import { HazardForm } from "./hazard_form";
+import { command } from "./orders";
 
 function ToAll() {
   return (
@@ -13,10 +14,10 @@ function ToAll() {
         <button type="button" class="stop" data-testid="orders-hold-all" onClick={hold_all}>
           Hold all
         </button>
-        <HoldButton testid="orders-resume-all" on_held={() => void give("resume all")}>
+        <HoldButton testid="orders-resume-all" on_held={() => void give(command("resume", 0))}>
           Resume all
         </HoldButton>
-        <HoldButton testid="orders-return-all" on_held={() => void give("return all")}>
+        <HoldButton testid="orders-return-all" on_held={() => void give(command("return_home", 0))}>
           Return all
         </HoldButton>
       </div>

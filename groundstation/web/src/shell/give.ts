@@ -2,8 +2,9 @@
 // Orders: sent, answered, and the answer shown until it has been read.
 
 import { signal } from "@preact/signals";
-import type { Answer, DecidedPlan } from "../wire/protocol";
+import type { Answer, Order } from "../wire/protocol";
 import { hold_progress, told_to_hold } from "../orders/hold_watch";
+import { command, words_of_order } from "../orders/orders";
 import { current, on_picture, send } from "../wire/store";
 
 export interface Notice {
@@ -34,12 +35,13 @@ export function note(text: string): void {
   window.setTimeout(() => dismiss(id), 10_000);
 }
 
-export async function give(line: string, plan?: DecidedPlan): Promise<Answer> {
+export async function give(order: Order): Promise<Answer> {
   const id = next_id++;
+  const line = words_of_order(order);
   put({ id, line, text: "sent", state: "sent" });
-  const answer = await send(line, plan);
+  const answer = await send(order);
   put({ id, line, text: answer.text.trim() || (answer.done ? "done" : "refused"), state: answer.done ? "done" : "refused" });
-  const told = answer.done ? told_to_hold(line, current().vehicles) : null;
+  const told = answer.done ? told_to_hold(order, current().vehicles) : null;
   if (told) watch_hold(id, line, told);
   // A refusal stays until it is dismissed.
   else if (answer.done) window.setTimeout(() => dismiss(id), 6000);
@@ -65,4 +67,4 @@ function watch_hold(id: number, line: string, told: number[]): void {
 }
 
 /** No confirmation: to stop where one is can always be taken back. */
-export const hold_all = (): void => void give("hold all");
+export const hold_all = (): void => void give(command("hold", 0));

@@ -18,6 +18,17 @@ export interface Tiles {
   attribution: string;
 }
 
+export type Limit = [low: number, high: number];
+
+/** Between which figures the ground station takes orders. */
+export interface Limits {
+  coordinate_m: Limit;
+  hazard_radius_m: Limit;
+  spacing_m: Limit;
+  heading_deg: Limit;
+  places: Limit;
+}
+
 export interface Hello {
   type: "hello";
   program: string;
@@ -27,6 +38,7 @@ export interface Hello {
   origin: Origin;
   expected: number[];
   shapes: string[];
+  limits: Limits;
   replay: { name: string; from_s: number; to_s: number } | null;
   tiles: Tiles | null;
   overlays: { name: string; url: string }[];
@@ -153,7 +165,7 @@ export interface Delivery {
 export interface Authorisation {
   site: number;
   leader: number;
-  coalition: string | number;
+  coalition: string;
   round: number;
   x: number;
   y: number;
@@ -277,11 +289,44 @@ export interface Pong {
 
 export type FromServer = Hello | History | State | Events | Answer | Pong;
 
-/** The plan that was on the screen, so that no other is decided (authorise, refuse). */
-export interface DecidedPlan {
-  coalition: string | number;
+export interface Command {
+  kind: "command";
+  command: "hold" | "resume" | "return_home" | "give_back";
+  /** 0: all. */
+  vehicle: number;
+}
+
+/** On the plan that was on the screen, and on no other. */
+export interface Decision {
+  kind: "decision";
+  site: number;
+  grant: boolean;
+  coalition: string;
   round: number;
 }
+
+export interface NewHazard {
+  kind: "hazard";
+  x: number;
+  y: number;
+  radius_m: number;
+}
+
+/** What is left out is left to the ground station. */
+export interface FormationOrder {
+  kind: "formation";
+  order: "take_off" | "rally" | "form" | "land";
+  preview: boolean;
+  shape?: string;
+  spacing_m?: number;
+  heading_deg?: number;
+  x?: number;
+  y?: number;
+  z?: number;
+  places?: number;
+}
+
+export type Order = Command | Decision | NewHazard | FormationOrder;
 
 export interface Session {
   user: string;

@@ -13,6 +13,13 @@ export function a_hello(): Hello {
     origin: { latitude_deg: 31.5, longitude_deg: 105, height_m: 480 },
     expected: [1, 2, 3],
     shapes: [],
+    limits: {
+      coordinate_m: [-1e5, 1e5],
+      hazard_radius_m: [1, 5e4],
+      spacing_m: [0.5, 1000],
+      heading_deg: [-360, 360],
+      places: [1, 1000],
+    },
     replay: null,
     tiles: null,
     overlays: [],

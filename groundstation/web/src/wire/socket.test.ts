@@ -4,6 +4,7 @@ import { beforeEach, test } from "node:test";
 import { backoff_ms } from "./backoff";
 import type { FromServer } from "./protocol";
 import { ConsoleSocket } from "./socket";
+import { command } from "../orders/orders";
 
 /** A socket whose other end is the test. */
 class FakeSocket {
@@ -87,13 +88,15 @@ test("a connection says first which event it wants, and again after a loss", () 
   assert.deepEqual(links, ["connecting", "open", "lost", "lost", "open"]);
 });
 
-test("answers find their lines, in whatever order they come", async () => {
+const decision = { kind: "decision", site: 3, grant: true, coalition: "1-0-1", round: 2 } as const;
+
+test("answers find their orders, in whatever order they come", async () => {
   const { socket, messages } = a_socket();
   newest().open();
-  const hold = socket.line("hold all");
-  const grant = socket.line("authorise 3", { coalition: "1/1", round: 2 });
+  const hold = socket.ask(command("hold", 0));
+  const grant = socket.ask(decision);
   const [, first, second] = newest().sent;
-  assert.deepEqual(second, { type: "line", id: second!["id"], line: "authorise 3", coalition: "1/1", round: 2 });
+  assert.deepEqual(second, { type: "order", id: second!["id"], order: decision });
   newest().says({ type: "answer", id: second!["id"] as number, done: false, text: "another plan waits", data: null });
   newest().says({ type: "answer", id: first!["id"] as number, done: true, text: "sent", data: null });
   assert.equal((await hold).text, "sent");
@@ -101,11 +104,11 @@ test("answers find their lines, in whatever order they come", async () => {
   assert.deepEqual(messages, []);
 });
 
-test("a line that cannot be sent, or whose answer is lost, says so", async () => {
+test("an order that cannot be sent, or whose answer is lost, says so", async () => {
   const { socket } = a_socket();
-  assert.match((await socket.line("hold all")).text, /not sent/);
+  assert.match((await socket.ask(command("hold", 0))).text, /not sent/);
   newest().open();
-  const hold = socket.line("hold all");
+  const hold = socket.ask(command("hold", 0));
   newest().close();
   const answer = await hold;
   assert.equal(answer.done, false);

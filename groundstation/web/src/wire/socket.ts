@@ -2,7 +2,7 @@
 // The connection to skein-ground: connects, connects again, and pairs lines with their answers.
 
 import { backoff_ms } from "./backoff";
-import type { Answer, DecidedPlan, FromServer } from "./protocol";
+import type { Answer, FromServer, Order } from "./protocol";
 
 export type LinkState = "connecting" | "open" | "lost";
 
@@ -58,9 +58,9 @@ export class ConsoleSocket {
     this.socket?.close();
   }
 
-  /** One line of the prompt. Never rejects: a line that could not be sent, or was not answered, is
-   *  an answer that says so. */
-  line(line: string, plan?: DecidedPlan): Promise<Answer> {
+  /** An order, or a line of the prompt. Never rejects: what could not be sent, or was not answered,
+   *  is an answer that says so. */
+  ask(what: Order | string): Promise<Answer> {
     const id = this.next_id++;
     return new Promise((resolve) => {
       const not_done = (text: string) => resolve({ type: "answer", id, done: false, text, data: null });
@@ -73,7 +73,8 @@ export class ConsoleSocket {
         not_done("no answer came: it is not known whether the order was given; see the audit log");
       }, answer_within_ms);
       this.waiting.set(id, { settle: resolve, timer });
-      this.socket.send(JSON.stringify({ type: "line", id, line, ...plan }));
+      const said = typeof what === "string" ? { type: "line", id, line: what } : { type: "order", id, order: what };
+      this.socket.send(JSON.stringify(said));
     });
   }
 

@@ -5,7 +5,7 @@
 import { batch, computed, signal } from "@preact/signals";
 import { empty_picture, reduce } from "./picture";
 import type { Picture } from "./picture";
-import type { Answer, DecidedPlan, FromServer, Session } from "./protocol";
+import type { Answer, Order, FromServer, Session } from "./protocol";
 import { ConsoleSocket } from "./socket";
 import type { LinkState } from "./socket";
 import { Tracks } from "./tracks";
@@ -117,8 +117,9 @@ const socket = new ConsoleSocket({
   on_refused: () => void ask_session(),
 });
 
-export function send(line: string, plan?: DecidedPlan): Promise<Answer> {
-  return socket.line(line, plan);
+/** An order, or of a recording a line. */
+export function send(what: Order | string): Promise<Answer> {
+  return socket.ask(what);
 }
 
 let asked = 0;

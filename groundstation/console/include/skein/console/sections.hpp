@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -45,6 +46,8 @@ using Sections = std::array<std::string, kSectionCount>;
 /// One of an `events` message: a JSON object, with the event's own fields and its line for people.
 [[nodiscard]] std::string event_json(const mission::MissionEvent& event, std::uint64_t seq);
 
+/// The coalition of that key; none where it is no key.
+[[nodiscard]] std::optional<coalition::CoalitionId> coalition_of(std::string_view key);
 /// A coalition's own word.
 [[nodiscard]] std::string key_of(const coalition::CoalitionId& id);
 

@@ -39,17 +39,12 @@ struct ServerConfig {
 /// is let go. All functions may be called from any thread.
 class Server {
  public:
-  /// A client has given a line.
+  /// A client has given a line or an order.
   struct Line {
-    std::string line;
+    std::string line;   ///< of the prompt; or
+    std::string order;  ///< as JSON
     std::string user;
     bool may_order = false;  ///< otherwise an observer's: it may look only
-    /// Of the authorisation request that was on its screen; the key and round of a coalition.
-    struct Seen {
-      std::string coalition;
-      std::uint32_t round = 0;
-    };
-    std::optional<Seen> seen;
     /// `data` is JSON, or empty.
     std::function<void(bool done, const std::string& text, const std::string& data)> reply;
   };

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
+#include "skein/mission/formation_ground.hpp"
+#include "skein/mission/messages.hpp"
+
+/// What an operator can ask: a closed set, whether it is typed, clicked, or of a script.
+namespace skein::groundstation {
+
+/// Between which figures are taken, from the prompt and from the page.
+struct Limit {
+  double low = 0.0;
+  double high = 0.0;
+  [[nodiscard]] constexpr bool has(double value) const { return value >= low && value <= high; }
+};
+inline constexpr Limit kCoordinate_m{-1e5, 1e5};
+inline constexpr Limit kHazardRadius_m{1.0, 5e4};
+inline constexpr Limit kSpacing_m{0.5, 1000.0};
+inline constexpr Limit kHeading_deg{-360.0, 360.0};
+inline constexpr Limit kPlaces{1.0, 1000.0};
+inline constexpr Limit kWait_s{0.0, 86400.0};
+
+enum class View { help, status, sites, pending, places, coalitions, hazards, audit };
+/// The operator's decision on the deliveries at a site.
+struct Decision {
+  SiteId site;
+  bool grant = false;
+  std::optional<coalition::Round> plan = {};  ///< that was seen; none: the newest
+};
+/// A command to a vehicle, or to all (kGroundStation).
+struct Order {
+  VehicleId vehicle;
+  mission::CommandKind kind = mission::CommandKind::hold;
+};
+/// A circle to keep out of, told to all. Mission frame.
+struct NewHazard {
+  Vec2 centre_m{0.0, 0.0};
+  double radius_m = 0.0;
+};
+/// To the formation. A free shape has its name or file, and no points yet.
+struct Formation {
+  mission::FormationOrder order;
+  std::string shape;         ///< of a free shape
+  bool preview = false;      ///< only show what it would do
+  bool has_centre = false;   ///< otherwise where the formation is
+  bool has_spacing = false;  ///< otherwise the rally's
+  bool has_heading = false;  ///< otherwise the rally's
+};
+/// Of a script: the formation stays so long before the next order.
+struct Wait {
+  Duration duration{};
+};
+/// Everything is recorded into that folder from now on, in place of where it was before.
+struct Record {
+  std::string folder;  ///< empty: nothing is recorded any more
+};
+struct Quit {};
+/// monostate: an empty line.
+using Input =
+    std::variant<std::monostate, View, Decision, Order, NewHazard, Formation, Wait, Record, Quit>;
+
+/// "line_abreast" as it is typed: "line-abreast".
+[[nodiscard]] std::string hyphened(std::string_view name);
+/// The order in the prompt's words, for the log and the audit: "form wedge spacing 5".
+[[nodiscard]] std::string line_of(const Input& input);
+
+/// The order that a page has sent (docs/console-socket.md). Any text is safe; fails with what is
+/// wrong.
+[[nodiscard]] Result<Input> read_order(std::string_view json);
+/// The limits as JSON, for the page's forms.
+[[nodiscard]] std::string limits_json();
+
+}  // namespace skein::groundstation

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "skein/base/angles.hpp"
+#include "skein/console/sections.hpp"
+#include "skein/groundstation/orders.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Reads members, and keeps the first that is wrong.
+class Reader {
+ public:
+  explicit Reader(const Json& json) : json_{json} {}
+
+  [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
+  double number(const char* name, const Limit& limit) {
+    const auto found = json_.find(name);
+    if (found != json_.end() && found->is_number() && limit.has(found->get<double>())) {
+      return found->get<double>();
+    }
+    fail(fmt::format("{} is to be a number from {} to {}", name, limit.low, limit.high));
+    return limit.low;
+  }
+  std::uint32_t integer(const char* name, double low, double high) {
+    const auto found = json_.find(name);
+    if (found == json_.end() || !found->is_number_integer()) {
+      fail(fmt::format("{} is to be a whole number", name));
+      return 0;
+    }
+    return static_cast<std::uint32_t>(number(name, {low, high}));
+  }
+  bool flag(const char* name) {
+    const auto found = json_.find(name);
+    if (found != json_.end() && found->is_boolean()) return found->get<bool>();
+    fail(fmt::format("{} is to be true or false", name));
+    return false;
+  }
+  std::string text(const char* name) {
+    const auto found = json_.find(name);
+    if (found != json_.end() && found->is_string()) return found->get<std::string>();
+    fail(fmt::format("{} is to be a text", name));
+    return "";
+  }
+  /// One of an enumeration, by its name.
+  template <class E>
+  E one_of(const char* name) {
+    const auto wanted = text(name);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(E::count); ++i) {
+      if (to_string(static_cast<E>(i)) == wanted) return static_cast<E>(i);
+    }
+    fail(fmt::format("there is no {} '{}'", name, wanted));
+    return E{};
+  }
+  void fail(std::string why) {
+    if (!wrong_) wrong_ = Error{std::move(why)};
+  }
+  [[nodiscard]] const std::optional<Error>& wrong() const { return wrong_; }
+
+ private:
+  const Json& json_;
+  std::optional<Error> wrong_;
+};
+
+constexpr double kIdMax = 65535.0;
+
+Input command(Reader& from) {
+  Order order;
+  order.kind = from.one_of<mission::CommandKind>("command");
+  order.vehicle = {static_cast<std::uint16_t>(from.integer("vehicle", 0.0, kIdMax))};
+  return order;
+}
+
+Input decision(Reader& from) {
+  Decision decision;
+  decision.site = {static_cast<std::uint16_t>(from.integer("site", 1.0, kIdMax))};
+  decision.grant = from.flag("grant");
+  const auto coalition = console::coalition_of(from.text("coalition"));
+  if (!coalition) from.fail("coalition is to be the key of one");
+  decision.plan = coalition::Round{coalition.value_or(coalition::CoalitionId{}),
+                                   from.integer("round", 0.0, 4294967295.0)};
+  return decision;
+}
+
+Input hazard(Reader& from) {
+  NewHazard hazard;
+  hazard.centre_m = {from.number("x", kCoordinate_m), from.number("y", kCoordinate_m)};
+  hazard.radius_m = from.number("radius_m", kHazardRadius_m);
+  return hazard;
+}
+
+/// A name that is none of the known shapes is a free one's.
+std::optional<formation::ShapeKind> shape_of(const std::string& name) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
+    const auto kind = static_cast<formation::ShapeKind>(i);
+    if (hyphened(formation::to_string(kind)) == name) return kind;
+  }
+  return std::nullopt;
+}
+
+Input formation_order(Reader& from) {
+  Formation input;
+  input.preview = from.flag("preview");
+  input.order.kind = from.one_of<mission::OrderKind>("order");
+  if (input.order.kind != mission::OrderKind::form) return input;
+  formation::ShapeSpec& shape = input.order.shape;
+  const std::string name = from.text("shape");
+  const auto known = shape_of(name);
+  shape.kind = known.value_or(formation::ShapeKind::free);
+  if (!known) input.shape = name;
+  input.has_spacing = from.has("spacing_m");
+  if (input.has_spacing) shape.spacing_m = from.number("spacing_m", kSpacing_m);
+  input.has_heading = from.has("heading_deg");
+  if (input.has_heading) {
+    shape.heading_rad = heading_from_compass_deg(from.number("heading_deg", kHeading_deg));
+  }
+  input.has_centre = from.has("x");
+  if (input.has_centre) {
+    shape.centre = {from.number("x", kCoordinate_m), from.number("y", kCoordinate_m),
+                    from.number("z", kCoordinate_m)};
+  }
+  if (from.has("places")) input.order.places = from.integer("places", kPlaces.low, kPlaces.high);
+  return input;
+}
+
+}  // namespace
+
+Result<Input> read_order(std::string_view text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return Error{"an order is a JSON object"};
+  Reader from{json};
+  const std::string kind = from.text("kind");
+  Input input;
+  if (kind == "command") {
+    input = command(from);
+  } else if (kind == "decision") {
+    input = decision(from);
+  } else if (kind == "hazard") {
+    input = hazard(from);
+  } else if (kind == "formation") {
+    input = formation_order(from);
+  } else {
+    from.fail("there is no order '" + kind + "'");
+  }
+  if (from.wrong()) return *from.wrong();
+  return input;
+}
+
+std::string limits_json() {
+  const auto range = [](const Limit& limit) { return Json::array({limit.low, limit.high}); };
+  return Json{{"coordinate_m", range(kCoordinate_m)},
+              {"hazard_radius_m", range(kHazardRadius_m)},
+              {"spacing_m", range(kSpacing_m)},
+              {"heading_deg", range(kHeading_deg)},
+              {"places", range(kPlaces)}}
+      .dump();
+}
+
+}  // namespace skein::groundstation

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/orders.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "skein/base/angles.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+std::string_view word_of(View view) {
+  switch (view) {
+    case View::help:
+      return "help";
+    case View::status:
+      return "status";
+    case View::sites:
+      return "sites";
+    case View::pending:
+      return "pending";
+    case View::places:
+      return "places";
+    case View::coalitions:
+      return "coalitions";
+    case View::hazards:
+      return "hazards";
+    case View::audit:
+      return "audit";
+  }
+  return "";
+}
+
+std::string_view verb_of(mission::CommandKind kind) {
+  switch (kind) {
+    case mission::CommandKind::hold:
+      return "hold";
+    case mission::CommandKind::resume:
+      return "resume";
+    case mission::CommandKind::return_home:
+      return "return";
+    case mission::CommandKind::give_back:
+      return "give-back";
+    case mission::CommandKind::count:
+      break;
+  }
+  return "";
+}
+
+struct Line {
+  std::string operator()(std::monostate /*empty*/) const { return ""; }
+  std::string operator()(View view) const { return std::string{word_of(view)}; }
+  std::string operator()(const Decision& decision) const {
+    return fmt::format("{} {}", decision.grant ? "authorise" : "refuse", decision.site.value);
+  }
+  std::string operator()(const Order& order) const {
+    const std::string_view verb = verb_of(order.kind);
+    return order.vehicle == kGroundStation ? fmt::format("{} all", verb)
+                                           : fmt::format("{} {}", verb, order.vehicle.value);
+  }
+  std::string operator()(const NewHazard& hazard) const {
+    return fmt::format("hazard {} {} {}", hazard.centre_m.x(), hazard.centre_m.y(),
+                       hazard.radius_m);
+  }
+  std::string operator()(const Formation& formation) const {
+    const formation::ShapeSpec& shape = formation.order.shape;
+    std::string line = formation.preview ? "preview " : "";
+    line += hyphened(to_string(formation.order.kind));
+    if (formation.order.kind != mission::OrderKind::form) return line;
+    line += " " + (formation.shape.empty() ? hyphened(formation::to_string(shape.kind))
+                                           : formation.shape);
+    if (formation.has_spacing) line += fmt::format(" spacing {}", shape.spacing_m);
+    if (formation.has_heading) {
+      line += fmt::format(" heading {:.6g}", compass_deg_from_heading(shape.heading_rad));
+    }
+    if (formation.has_centre) {
+      line += fmt::format(" at {} {} {}", shape.centre.x(), shape.centre.y(), shape.centre.z());
+    }
+    if (formation.order.places) line += fmt::format(" places {}", *formation.order.places);
+    return line;
+  }
+  std::string operator()(const Wait& wait) const {
+    return fmt::format("wait {}", to_seconds(wait.duration));
+  }
+  std::string operator()(const Record& record) const {
+    return "record " + (record.folder.empty() ? "stop" : record.folder);
+  }
+  std::string operator()(const Quit& /*quit*/) const { return "quit"; }
+};
+
+}  // namespace
+
+std::string hyphened(std::string_view name) {
+  std::string word{name};
+  std::replace(word.begin(), word.end(), '_', '-');
+  return word;
+}
+
+std::string line_of(const Input& input) { return std::visit(Line{}, input); }
+
+}  // namespace skein::groundstation

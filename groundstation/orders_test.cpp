@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/orders.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "skein/console/sections.hpp"
+#include "skein/groundstation/prompt.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string line_of_json(const char* json) {
+  const auto order = read_order(json);
+  EXPECT_TRUE(order.ok()) << (order ? "" : order.error().message);
+  return order ? line_of(*order) : "";
+}
+std::string trouble_with(const char* json) {
+  const auto order = read_order(json);
+  EXPECT_FALSE(order.ok()) << json;
+  return order ? "" : order.error().message;
+}
+
+TEST(Orders, WhatIsTypedComesBackAsItsLine) {
+  for (const char* line : {"hold all",
+                           "resume 7",
+                           "return 3",
+                           "give-back 2",
+                           "authorise 3",
+                           "refuse 4",
+                           "hazard 1200 -300 250",
+                           "take-off",
+                           "rally",
+                           "land",
+                           "preview land",
+                           "wait 10",
+                           "record stop",
+                           "record runs/mine",
+                           "quit",
+                           "status",
+                           "pending",
+                           "form wedge",
+                           "form line-abreast spacing 5 heading 90 at 0 40.5 20 places 3",
+                           "form my-shape"}) {
+    const auto input = parse_input(line);
+    ASSERT_TRUE(input.ok()) << line;
+    EXPECT_EQ(line_of(*input), line);
+  }
+}
+
+TEST(Orders, OfAPageAreReadFieldByField) {
+  EXPECT_EQ(line_of_json(R"({"kind":"command","command":"hold","vehicle":0})"), "hold all");
+  EXPECT_EQ(line_of_json(R"({"kind":"command","command":"return_home","vehicle":7})"), "return 7");
+  EXPECT_EQ(line_of_json(R"({"kind":"hazard","x":1200,"y":-300,"radius_m":250})"),
+            "hazard 1200 -300 250");
+  EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":true,"order":"take_off"})"),
+            "preview take-off");
+  EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"form","shape":"echelon",
+                             "spacing_m":5,"heading_deg":90,"x":0,"y":40.5,"z":20,"places":3})"),
+            "form echelon spacing 5 heading 90 at 0 40.5 20 places 3");
+}
+
+TEST(Orders, ADecisionOfAPageIsOnThePlanThatItShows) {
+  const coalition::CoalitionId id{{27}, {0xFFFFFFFFFFFFFFFFULL}, 3};
+  const std::string json = R"({"kind":"decision","site":3,"grant":true,"coalition":")" +
+                           console::key_of(id) + R"(","round":4})";
+  const auto order = read_order(json);
+  ASSERT_TRUE(order.ok());
+  const auto& decision = std::get<Decision>(*order);
+  EXPECT_EQ(decision.site, SiteId{3});
+  EXPECT_TRUE(decision.grant);
+  EXPECT_EQ(decision.plan, (coalition::Round{id, 4}));
+  EXPECT_FALSE(std::get<Decision>(*parse_input("authorise 3")).plan);
+}
+
+TEST(Orders, WhatIsWrongIsNamed) {
+  EXPECT_THAT(trouble_with("x"), HasSubstr("JSON object"));
+  EXPECT_THAT(trouble_with("{}"), HasSubstr("kind"));
+  EXPECT_THAT(trouble_with(R"({"kind":"quit"})"), HasSubstr("no order 'quit'"));
+  EXPECT_THAT(trouble_with(R"({"kind":"command","command":"fall","vehicle":1})"),
+              HasSubstr("no command 'fall'"));
+  EXPECT_THAT(trouble_with(R"({"kind":"command","command":"hold","vehicle":-1})"),
+              HasSubstr("vehicle"));
+  EXPECT_THAT(trouble_with(R"({"kind":"command","command":"hold"})"), HasSubstr("vehicle"));
+  EXPECT_THAT(trouble_with(R"({"kind":"hazard","x":1,"y":2,"radius_m":0.5})"),
+              HasSubstr("from 1 to 50000"));
+  EXPECT_THAT(trouble_with(R"({"kind":"hazard","x":1,"y":"2","radius_m":5})"), HasSubstr("y is"));
+  EXPECT_THAT(
+      trouble_with(R"({"kind":"decision","site":3,"grant":true,"coalition":"1-x-2","round":4})"),
+      HasSubstr("key"));
+}
+
+}  // namespace
+}  // namespace skein::groundstation
