@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
+#include <string_view>
+#include <utility>
 
+#include "skein/base/assert.hpp"
+#include "skein/base/state_table.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
@@ -10,17 +16,76 @@
 
 namespace skein::mission {
 
-/// An awarded task on its way: what is flown when, and how far it has come.
-struct TaskFlight {
+/// An awarded task on its way: what is flown when, and how far it has come (docs/protocol.md). The
+/// flight plan leads past a delivery's gate from `committed` on, and not before.
+class TaskFlight {
+ public:
+  enum class State : std::uint8_t { planned, authorised, committed, begun, late, over, count };
+  enum class Event : std::uint8_t {
+    granted,    ///< by the operator, this round
+    passed_on,  ///< a successor of the leader awards it anew, as it is
+    committed,  ///< the flight plan now leads past the gate
+    began,      ///< the gate or the start of the arc has been passed
+    missed,     ///< it was passed uncommitted, or not certain
+    finished,
+    dropped,  ///< its lease has ended
+    count
+  };
+  static constexpr std::array kTable{
+      Transition<State, Event>{State::planned, Event::granted, State::authorised},
+      Transition<State, Event>{State::planned, Event::passed_on, State::planned},
+      Transition<State, Event>{State::planned, Event::began, State::begun},
+      Transition<State, Event>{State::planned, Event::missed, State::late},
+      Transition<State, Event>{State::planned, Event::dropped, State::over},
+      Transition<State, Event>{State::authorised, Event::passed_on, State::planned},
+      Transition<State, Event>{State::authorised, Event::committed, State::committed},
+      Transition<State, Event>{State::authorised, Event::missed, State::late},
+      Transition<State, Event>{State::authorised, Event::dropped, State::over},
+      Transition<State, Event>{State::committed, Event::granted, State::committed},
+      Transition<State, Event>{State::committed, Event::passed_on, State::committed},
+      Transition<State, Event>{State::committed, Event::began, State::begun},
+      Transition<State, Event>{State::committed, Event::dropped, State::over},
+      Transition<State, Event>{State::begun, Event::granted, State::begun},
+      Transition<State, Event>{State::begun, Event::passed_on, State::begun},
+      Transition<State, Event>{State::begun, Event::finished, State::over},
+      Transition<State, Event>{State::begun, Event::dropped, State::over},
+      Transition<State, Event>{State::late, Event::granted, State::late},
+      Transition<State, Event>{State::late, Event::passed_on, State::late},
+      Transition<State, Event>{State::late, Event::dropped, State::over},
+  };
+
+  TaskFlight() = default;
+  TaskFlight(const coalition::Round& awarded, Site where, const TaskAssignment& what)
+      : round{awarded}, site{std::move(where)}, assignment{what} {}
+
   coalition::Round round;
   Site site;
   TaskAssignment assignment;
   planning::TaskPlan plan;
-  bool authorised = false;  ///< the operator has granted this round (deliveries only)
-  bool committed = false;   ///< the flight plan now leads past the gate
-  bool begun = false;       ///< the gate or the start of the arc has been passed
-  bool late = false;        ///< the gate was reached without being committed
-  bool untimely = false;    ///< it has been told that the wind does not let it be on time
+  bool untimely = false;  ///< it has been told that the wind does not let it be on time
+
+  /// Precondition: the table has it.
+  void fire(Event event) {
+    const bool known = machine_.fire(event);
+    SKEIN_ASSERT(known);
+  }
+  /// The operator has granted this round; false where that is known already.
+  bool grant() {
+    if (authorised()) return false;
+    granted_ = round;
+    fire(Event::granted);
+    return true;
+  }
+  void pass_on(const coalition::Round& to) {
+    round = to;
+    granted_.reset();
+    fire(Event::passed_on);
+  }
+  [[nodiscard]] bool authorised() const { return granted_ == round; }
+  [[nodiscard]] bool in(State state) const { return machine_.in(state); }
+  [[nodiscard]] bool accepts(Event event) const { return machine_.accepts(event); }
+  /// It is flown to its end, whatever comes: nothing else is planned for it.
+  [[nodiscard]] bool in_run() const { return in(State::committed) || in(State::begun); }
 
   [[nodiscard]] bool is_delivery() const { return assignment.task.kind == TaskKind::deliver; }
   /// When the task's own run begins: the gate of a delivery, the entry of an arc.
@@ -28,7 +93,13 @@ struct TaskFlight {
     return plan.timed.start_time + from_seconds(plan.gate_m / plan.timed.speed_mps);
   }
   [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
+
+ private:
+  StateMachine<State, Event> machine_{kTable, State::planned};
+  std::optional<coalition::Round> granted_;  ///< the newest that was
 };
+[[nodiscard]] std::string_view to_string(TaskFlight::State state);
+[[nodiscard]] std::string_view to_string(TaskFlight::Event event);
 
 /// A survey on its way, or (`relief`) a flight to a surveyed site whose leader is lost.
 struct SurveyFlight {

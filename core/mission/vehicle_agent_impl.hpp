@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "failsafe.hpp"
 #include "flight.hpp"
 #include "site_book.hpp"
 #include "skein/base/bounded_queue.hpp"
@@ -62,12 +63,15 @@ class VehicleAgent::Impl {
                                                 Instant start) const;
   void fly_task(Instant now);
   void commit_delivery(Instant now);
+  void begin_task(Instant now);
+  void end_task(Instant now);
   void drop_task(Instant now);
   void on_authorisation(const Authorisation& message, Instant now);
   void on_command(const Command& message, Instant now);
   void on_hazard(const Hazard& hazard, Instant now);
   void idle(Instant now);
   void search(Instant now);
+  void note(bool Failsafe::Facts::*fact, bool holds);
   [[nodiscard]] bool comes_home() const;
   void watch_range(Instant now);
   void hand_on_lead(Instant now);
@@ -106,9 +110,8 @@ class VehicleAgent::Impl {
   std::uint32_t last_command_ = 0;
   std::uint32_t coalitions_led_ = 0;
   std::uint8_t loads_ = 0;
-  bool held_by_operator_ = false;
-  bool spent_ = false;  ///< what is left of its range is for the way home
-  bool duplicate_id_ = false;
+  Failsafe::Facts facts_;
+  Failsafe failsafe_;  ///< of facts_: see note()
   VehicleState state_;
   Flight flight_;
   std::vector<Hazard> hazards_;

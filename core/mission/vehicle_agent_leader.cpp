@@ -48,7 +48,7 @@ void VehicleAgent::Impl::on_site_report(const SiteReport& message, Instant now) 
 }
 
 void VehicleAgent::Impl::take_up_site(Instant now) {
-  if (duplicate_id_) return;
+  if (failsafe_.in(Failsafe::Action::take_up_nothing)) return;
   if (!surveyed_.empty()) {
     const Site site = surveyed_.front();
     surveyed_.erase(surveyed_.begin());
@@ -106,7 +106,7 @@ Instant VehicleAgent::Impl::unheard_since(Instant now) const {
 }
 
 void VehicleAgent::Impl::take_up_lost_site(Instant now) {
-  if (duplicate_id_ || now < relief_again_) return;
+  if (failsafe_.in(Failsafe::Action::take_up_nothing) || now < relief_again_) return;
   relief_again_ = now + kReliefPeriod;
   for (const auto* lost : sites_.lost(unheard_since(now))) {
     const auto outcome = fly_around(lost->site, true, now);

@@ -62,12 +62,10 @@ void VehicleAgent::Impl::answer_bid_wanted(const coalition::Announcement& announ
 std::variant<coalition::Bid, Reason> VehicleAgent::Impl::make_bid(
     const coalition::Announcement& announcement, Instant now) const {
   const bool own = initiator_ && announcement.round.coalition == initiator_->round().coalition;
-  if (held_by_operator_) return Reason::held_by_operator;
-  if (duplicate_id_) return Reason::id_in_use;
+  if (!failsafe_.in(Failsafe::Action::none)) return failsafe_.reason();
   if (survey_) return Reason::surveying;
   if (initiator_ && !own) return Reason::leading;
-  if (task_ && task_->begun) return Reason::task_in_progress;
-  if (spent_) return Reason::out_of_range;
+  if (task_ && task_->in(TaskFlight::State::begun)) return Reason::task_in_progress;
 
   const auto& vehicle = config_.vehicle;
   const auto can = [&](const TaskId& t) {
@@ -137,15 +135,14 @@ void VehicleAgent::Impl::answer_award(const Participant::AwardReceived& award, I
                        task_->assignment.time == mine.time &&
                        award.award.continues.leader.value > 0;
   if (goes_on) {  // a successor's award: the path is flown already
-    task_->round = award.award.round;
-    task_->authorised = false;
+    task_->pass_on(award.award.round);
     report(event::Confirmed{mine.time}, task_->round, mine.task, now);
     participant_.accept(now);
     return;
   }
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
-  const auto outcome = set_out({award.award.round, award.award.site, mine, {}},
+  const auto outcome = set_out({award.award.round, award.award.site, mine},
                                config_.vehicle.cruise_speed_mps, start, now);
   if (const auto* why = std::get_if<coalition::Why>(&outcome)) return refuse(*why);
   task_ = std::get<TaskFlight>(outcome);
@@ -188,8 +185,7 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
     if (granted_.size() > kGrantsMax) granted_.erase(granted_.begin());
   }
   if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
-      task_->site.id == message.site && !task_->authorised) {
-    task_->authorised = true;
+      task_->site.id == message.site && task_->grant()) {
     report(event::Authorised{message.decided_by}, message.round, task_->assignment.task, now);
   }
   if (!message.granted) sites_.close(message.site);
@@ -209,44 +205,54 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
 void VehicleAgent::Impl::commit_delivery(Instant now) {
   const Instant gate = task_->begin_time();
   const bool in_time = now >= gate - kCommitLead && now <= gate - kCommitLatest;
-  if (task_->committed || !in_time || !task_->authorised) return;
+  if (!in_time || !task_->accepts(TaskFlight::Event::committed)) return;
   if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
   const auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
   if (!rest) return;
-  task_->committed = flight_.continue_with(
-      at, *rest, flight_.hold_curvature(timed.path.end(), hazards_), now, timed.speed_mps);
+  const double tail = flight_.hold_curvature(timed.path.end(), hazards_);
+  if (flight_.continue_with(at, *rest, tail, now, timed.speed_mps)) {
+    task_->fire(TaskFlight::Event::committed);
+  }
 }
 
 void VehicleAgent::Impl::fly_task(Instant now) {
   keep_time(now);
   if (task_->is_delivery()) commit_delivery(now);
+  const bool due = !task_->in(TaskFlight::State::begun) && now >= task_->begin_time();
+  if (due) begin_task(now);
+  if (task_->in(TaskFlight::State::begun) && now >= task_->end_time()) end_task(now);
+}
+
+void VehicleAgent::Impl::begin_task(Instant now) {
+  if (task_->in(TaskFlight::State::late)) return;
   const TaskId id = task_->assignment.task;
-  if (!task_->begun && now >= task_->begin_time()) {
-    const bool may_begin = task_->is_delivery()
-                               ? task_->committed
-                               : participant_.holds(id, now, now) && deliveries_over(*task_);
-    if (!may_begin || task_->late) {
-      // News of the last delivery may come a moment after the arc has begun.
-      const bool news_may_come = !task_->is_delivery() && now < task_->begin_time() + kNewsMayTake;
-      if (!news_may_come && !std::exchange(task_->late, true)) {
-        using event::Lateness;
-        const Lateness why = !task_->is_delivery() ? Lateness::not_certain
-                             : task_->authorised   ? Lateness::lease_too_short
-                                                   : Lateness::not_authorised;
-        report(event::AuthorisationLate{why}, task_->round, id, now);
-      }
-      return;
-    }
-    task_->begun = true;
+  const bool may_begin = task_->is_delivery()
+                             ? task_->in(TaskFlight::State::committed)
+                             : participant_.holds(id, now, now) && deliveries_over(*task_);
+  if (may_begin) {
+    task_->fire(TaskFlight::Event::began);
     report(event::TaskStarted{task_->begin_time()}, task_->round, id, task_->begin_time());
     participant_.task_started(id, now);
+    return;
   }
-  if (!task_->begun || now < task_->end_time()) return;
+  // News of the last delivery may come a moment after the arc has begun.
+  if (!task_->is_delivery() && now < task_->begin_time() + kNewsMayTake) return;
+  using event::Lateness;
+  const Lateness why = !task_->is_delivery() ? Lateness::not_certain
+                       : task_->authorised() ? Lateness::lease_too_short
+                                             : Lateness::not_authorised;
+  task_->fire(TaskFlight::Event::missed);
+  report(event::AuthorisationLate{why}, task_->round, id, now);
+}
+
+void VehicleAgent::Impl::end_task(Instant now) {
   const bool flown = on_track(task_->plan.timed);
   if (task_->is_delivery() && loads_ > 0) --loads_;
-  const auto task = *std::exchange(task_, std::nullopt);
+  task_->fire(TaskFlight::Event::finished);
+  const TaskFlight task = *std::exchange(task_, std::nullopt);
+  const TaskId id = task.assignment.task;
   const Instant planned = task.assignment.time;
   if (flown) {
     report(event::TaskDone{planned}, task.round, id, task.end_time());
@@ -271,12 +277,13 @@ bool VehicleAgent::Impl::deliveries_over(const TaskFlight& assessment) const {
 
 /// The lease has gone: the plan must lead past no gate.
 void VehicleAgent::Impl::drop_task(Instant now) {
-  const bool leads_on = task_->committed || !task_->is_delivery();
-  if (task_->begun && task_->is_delivery()) {
+  const bool leads_on = task_->in_run() || !task_->is_delivery();
+  if (task_->in(TaskFlight::State::begun) && task_->is_delivery()) {
     if (loads_ > 0) --loads_;  // it counts as used
     report(event::TaskFailed{TaskFailure::released_within, task_->assignment.time}, task_->round,
            task_->assignment.task, now);
   }
+  task_->fire(TaskFlight::Event::dropped);
   task_.reset();
   if (leads_on) flight_.hold(hazards_, now);
 }
@@ -288,11 +295,11 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
   report(event::Commanded{message.kind}, {}, {}, now);
   if (message.kind == CommandKind::give_back) return;  // of the flight controller
   if (message.kind == CommandKind::resume) {
-    held_by_operator_ = false;
+    note(&Failsafe::Facts::ordered, false);
     if (!task_ && !survey_) search(now);
     return;
   }
-  held_by_operator_ = true;
+  note(&Failsafe::Facts::ordered, true);
   const bool home = message.kind == CommandKind::return_home;
   participant_.withdraw(home ? Reason::sent_home : Reason::held_by_operator, now);
   if (initiator_) {
@@ -324,7 +331,7 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   }
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
   // to the leader, who times the coalition anew.
-  const bool under_way = task_ && !task_->begun && !task_->committed;
+  const bool under_way = task_ && !task_->in_run();
   std::variant<TaskFlight, coalition::Why> detour;
   if (under_way) {
     detour = set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now);
@@ -345,11 +352,16 @@ void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
   }
 }
 
+void VehicleAgent::Impl::note(bool Failsafe::Facts::*fact, bool holds) {
+  facts_.*fact = holds;
+  failsafe_.update(facts_);
+}
+
 /// Nothing to do: search on, or take up a site that waits.
 void VehicleAgent::Impl::idle(Instant now) {
-  if (held_by_operator_ || task_ || survey_ || !participant_.free()) return;
+  if (failsafe_.in(Failsafe::Action::obey) || task_ || survey_ || !participant_.free()) return;
   if (flight_.en_route(now)) return;
-  if (spent_) {
+  if (failsafe_.in(Failsafe::Action::come_home)) {
     if (comes_home() && !flight_.homing()) flight_.fly_home(hazards_, now);
     return;
   }
@@ -360,7 +372,7 @@ void VehicleAgent::Impl::idle(Instant now) {
 }
 
 void VehicleAgent::Impl::search(Instant now) {
-  if (!spent_) {
+  if (!facts_.range_spent) {
     flight_.search(hazards_, range_to_spend(now), now);
   } else if (!comes_home()) {
     flight_.hold(hazards_, now);
@@ -374,13 +386,13 @@ bool VehicleAgent::Impl::comes_home() const { return config_.vehicle.recovery ==
 /// While it still can it turns for home (or holds, to be recovered), whatever it was about. Only a
 /// run that has begun is flown to its end: that was planned with the way home.
 void VehicleAgent::Impl::watch_range(Instant now) {
-  if (spent_) hand_on_lead(now);
-  if (spent_ || now < range_again_ || (task_ && (task_->begun || task_->committed))) return;
+  if (facts_.range_spent) hand_on_lead(now);
+  if (facts_.range_spent || now < range_again_ || (task_ && task_->in_run())) return;
   // A metre of flight brings it at most a metre further from home.
   const double spare_s = spare_range(now) / (2.0 * config_.vehicle.cruise_speed_mps);
   range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
   if (spare_s > 0.0) return;
-  spent_ = true;
+  note(&Failsafe::Facts::range_spent, true);
   report(event::RangeSpent{range_left(now), comes_home()}, {}, {}, now);
   participant_.withdraw(Reason::out_of_range, now);
   if (survey_ && !survey_->relief) found_.push_back({survey_->site});

@@ -70,10 +70,10 @@ void VehicleAgent::Impl::on_message(const Message& message, VehicleId /*sender*/
                         [&](const HazardReport& m) { on_hazard(m.hazard, now); },
                         [&](const Telemetry& m) {
                           if (m.vehicle != config_.vehicle.id || m.instance == config_.instance ||
-                              duplicate_id_) {
+                              facts_.id_in_use) {
                             return;
                           }
-                          duplicate_id_ = true;
+                          note(&Failsafe::Facts::id_in_use, true);
                           report(event::VehicleTrouble{event::Trouble::id_in_use}, {}, {}, now);
                         },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
@@ -90,9 +90,9 @@ void VehicleAgent::Impl::step(Instant now) {
         flight_.pose_at(now + config_.protocol.formation_time()).position());
     initiator_->on_timeout(now);
   }
-  if (task_ && task_->begun) fly_task(now);  // what is done was done under the lease that ends now
-  participant_.set_may_lead(!initiator_ && !survey_ && !duplicate_id_ && !held_by_operator_ &&
-                            !spent_);
+  if (task_ && task_->in(TaskFlight::State::begun))
+    fly_task(now);  // what is done was done under the lease that ends now
+  participant_.set_may_lead(!initiator_ && !survey_ && failsafe_.in(Failsafe::Action::none));
   participant_.on_timeout(now);
   pump(now);
   say_farewell(now);
@@ -216,14 +216,18 @@ Instant VehicleAgent::Impl::next_timeout() const {
     if (farewell.times > 0) next = std::min(next, farewell.next);
   }
   if (request_) next = std::min({next, request_again_, request_->decide_by});
-  if (task_) next = std::min(next, task_->begun ? task_->end_time() : task_->begin_time());
+  if (task_) {
+    const bool begun = task_->in(TaskFlight::State::begun);
+    next = std::min(next, begun ? task_->end_time() : task_->begin_time());
+  }
   if (survey_) next = std::min(next, survey_->begun ? survey_->end_time() : survey_->begin_time());
   return next;
 }
 
 Activity VehicleAgent::Impl::activity() const {
-  if (held_by_operator_) return Activity::holding;
-  if (spent_ && !task_ && !initiator_) return Activity::holding;
+  if (failsafe_.in(Failsafe::Action::obey)) return Activity::holding;
+  const bool done_for = failsafe_.in(Failsafe::Action::come_home);
+  if (done_for && !task_ && !initiator_) return Activity::holding;
   if (task_) return Activity::executing;
   if (initiator_) {
     return initiator_->state() == coalition::Initiator::State::monitoring ? Activity::monitoring

@@ -36,7 +36,7 @@ double error_s(const VehicleSpec& vehicle, const TimedPath& timed, double along_
 /// at a speed over the ground that the wind lets it have, as long or short as that makes it.
 void VehicleAgent::Impl::keep_time(Instant now) {
   const Instant time = task_->assignment.time;
-  if (task_->begun || task_->committed || now < time_again_ || time - now < kLookLatest) return;
+  if (task_->in_run() || now < time_again_ || time - now < kLookLatest) return;
   time_again_ = now + kLookPeriod;
   if (now - state_.time > kStateAgeMax || now < task_->plan.timed.start_time) return;
   const double along_m = planning::follow_error(flight_.plan().timed, state_, state_.time).along_m;
