@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# skein_module(NAME LAYER n SOURCES ... HEADERS ... [DEPS ...] [PRIVATE_DEPS ...]
+# skein_module(NAME LAYER n SOURCES ... HEADERS ... [IDL ...] [DEPS ...] [PRIVATE_DEPS ...]
 #              [LIBRARIES ...] [PRIVATE_LIBRARIES ...] [TESTS ...] [TEST_DEPS ...])
 #   A library skein::NAME with its own include root `include/`. DEPS and PRIVATE_DEPS are Skein
 #   modules and must lie in a lower layer, or the configuration fails. A header of a module that was
-#   not named is not on the include path. LIBRARIES are packages. TESTS (x_test.cpp beside the code)
+#   not named is not on the include path. LIBRARIES are packages. IDL names the files of
+#   idl/ whose types are this module's, as skein/idl/FILE.hpp. TESTS (x_test.cpp beside the code)
 #   become one test program NAME_test; TEST_DEPS are what only the tests use.
 #
 # skein_program(NAME SOURCES ... DEPS ... [LIBRARIES ...])
@@ -44,7 +45,7 @@ endfunction()
 
 function(skein_module name)
   cmake_parse_arguments(M "" "LAYER"
-    "SOURCES;HEADERS;DEPS;PRIVATE_DEPS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPS" ${ARGN})
+    "SOURCES;HEADERS;IDL;DEPS;PRIVATE_DEPS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPS" ${ARGN})
   if(M_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "skein_module(${name}): unknown words ${M_UNPARSED_ARGUMENTS}")
   endif()
@@ -61,6 +62,11 @@ function(skein_module name)
     target_sources(skein_${name} INTERFACE FILE_SET HEADERS BASE_DIRS include FILES ${M_HEADERS})
     target_link_libraries(skein_${name} INTERFACE ${deps} ${M_LIBRARIES})
   endif()
+  foreach(file IN LISTS M_IDL)
+    target_sources(skein_${name} PUBLIC FILE_SET idl_${file} TYPE HEADERS BASE_DIRS ${SKEIN_IDL}/types/${file}
+      FILES ${SKEIN_IDL}/types/${file}/skein/idl/${file}.hpp)
+    add_dependencies(skein_${name} skein_idl)
+  endforeach()
   add_library(skein::${name} ALIAS skein_${name})
   set_target_properties(skein_${name} PROPERTIES
     SKEIN_LAYER ${M_LAYER} VERIFY_INTERFACE_HEADER_SETS ON)

@@ -120,6 +120,7 @@ class GroundLoop {
         formation_.on_message(received->message, received->sender, now);
         console_.on_message(received->message, received->sender, now);
       }
+      process::log_misfits(node_);
       take_lines(prompt, now);
       agent_.on_timeout(now);
       formation_.on_timeout(now);

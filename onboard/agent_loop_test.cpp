@@ -169,7 +169,7 @@ TEST(Planner, EndsAPlanInTimeForItsAnswer) {
   request.params.colony.generations = std::numeric_limits<int>::max();
   auto& problem = request.problem;
   problem.site.deliveries = {{0.0, {}}};
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   planning::Candidate candidate;
   candidate.id = VehicleId{1};
   candidate.pose = {-3000.0, 0.0, 0.0};

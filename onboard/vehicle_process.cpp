@@ -102,7 +102,10 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
 AgentLink link_to(network::Node& node) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
-            if (!received) return std::nullopt;
+            if (!received) {
+              process::log_misfits(node);
+              return std::nullopt;
+            }
             return AgentLink::Received{std::move(received->message), received->sender};
           },
           .send = [&node](const mission::Message& message) { node.publish(message); },

@@ -199,7 +199,7 @@ class Team {
     } else if (const auto* c = std::get_if<Cancel>(&message)) {
       m.participant.on_cancel(*c, at);
     } else if (const auto* l = std::get_if<LeaseRenewal>(&message)) {
-      if (m.leads) m.leads->on_rival(l->round, l->stands(), at);
+      if (m.leads) m.leads->on_rival(l->round, stands(*l), at);
       m.participant.on_lease_renewal(*l, at);
     } else if (const auto* n = std::get_if<LeadershipClaim>(&message)) {
       m.participant.on_claim(*n, at);

@@ -65,7 +65,7 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
 }
 
 void Initiator::make_ledger(const std::vector<TaskId>& done) {
-  for (const auto& task : announcement_.site.tasks_after_survey()) {
+  for (const auto& task : tasks_after_survey(announcement_.site)) {
     Entry entry;
     entry.task = task;
     entry.assignment.task = task;

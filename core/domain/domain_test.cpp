@@ -58,11 +58,11 @@ TEST(Site, ListsItsTasksInOrder) {
   site.id = SiteId{3};
   site.deliveries.resize(2);
   site.assessments.resize(1);
-  const auto tasks = site.tasks_after_survey();
+  const auto tasks = tasks_after_survey(site);
   ASSERT_EQ(tasks.size(), 3U);
   EXPECT_EQ(to_string(tasks[1]), "site 3 deliver 2");
   EXPECT_EQ(to_string(tasks[2]), "site 3 assess 1");
-  EXPECT_DOUBLE_EQ(site.total_reward(), 4.0);
+  EXPECT_DOUBLE_EQ(total_reward(site), 4.0);
 }
 
 TEST(Capabilities, BitsSurviveARoundTripAndNothingElseDoes) {

@@ -3,30 +3,30 @@
 
 namespace skein {
 
-std::size_t Site::task_count(TaskKind kind) const {
+std::size_t task_count(const Site& site, TaskKind kind) {
   switch (kind) {
     case TaskKind::survey:
       return 1;
     case TaskKind::deliver:
-      return deliveries.size();
+      return site.deliveries.size();
     case TaskKind::assess:
-      return assessments.size();
+      return site.assessments.size();
     case TaskKind::count:
       break;
   }
   return 0;
 }
 
-double Site::total_reward() const {
-  return reward * static_cast<double>(1 + deliveries.size() + assessments.size());
+double total_reward(const Site& site) {
+  return site.reward * static_cast<double>(1 + site.deliveries.size() + site.assessments.size());
 }
 
-std::vector<TaskId> Site::tasks_after_survey() const {
+std::vector<TaskId> tasks_after_survey(const Site& site) {
   std::vector<TaskId> tasks;
-  tasks.reserve(deliveries.size() + assessments.size());
+  tasks.reserve(site.deliveries.size() + site.assessments.size());
   for (const TaskKind kind : {TaskKind::deliver, TaskKind::assess}) {
-    for (std::size_t i = 0; i < task_count(kind); ++i) {
-      tasks.push_back({id, kind, static_cast<std::uint8_t>(i)});
+    for (std::size_t i = 0; i < task_count(site, kind); ++i) {
+      tasks.push_back({site.id, kind, static_cast<std::uint8_t>(i)});
     }
   }
   return tasks;

@@ -48,7 +48,7 @@ class Planner {
       : request_{request},
         count_{request.transfers.size()},
         apart_m_{request.separation.horizontal_m + request.reserve_m},
-        height_factor_{request.separation.height_factor()} {}
+        height_factor_{height_factor(request.separation)} {}
 
   Result<PlannedChange> plan();
 

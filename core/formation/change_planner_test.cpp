@@ -21,7 +21,7 @@ constexpr MotionLimits kLimits{.speed_mps = 3.0, .acceleration_mps2 = 2.0, .jerk
 double least_by_sampling(const Change& change) {
   const ChangeMotion motion{change};
   const double end = to_seconds(motion.duration());
-  const double factor = change.separation.height_factor();
+  const double factor = height_factor(change.separation);
   constexpr double kStep_s = 0.02;
   double least = std::numeric_limits<double>::infinity();
   std::vector<Vec3> before;

@@ -39,7 +39,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
       self_{self},
       params_{params},
       separation_m_{change.separation.horizontal_m},
-      height_factor_{change.separation.height_factor()},
+      height_factor_{height_factor(change.separation)},
       start_{slot_of(change.start + kSlot - Duration{1})},
       others_(change.movers.size()),
       look_at_(change.movers.size(), 0),

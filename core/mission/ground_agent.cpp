@@ -247,8 +247,8 @@ void GroundAgent::on_event(const MissionEvent& event) {
     granted->second.given_up = granted->second.given_up || (gives_up && !granted->second.begun);
   }
   if (kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
-    done_.emplace(event.task, coalition::MemberStatus::Entry{event.task, coalition::TaskState::done,
-                                                             event.time});
+    done_.emplace(event.task,
+                  coalition::TaskStatus{event.task, coalition::TaskState::done, event.time});
   }
   if (!seen_events_.emplace(event.time, event.vehicle, event.task, event.body).second) {
     return;

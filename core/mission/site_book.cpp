@@ -36,7 +36,7 @@ void SiteBook::on_status(const coalition::MemberStatus& message) {
 
 void SiteBook::note_over(Entry& entry, const TaskId& task) {
   if (task.site != entry.site.id || task.kind == TaskKind::survey) return;
-  if (task.index >= entry.site.task_count(task.kind)) return;
+  if (task.index >= task_count(entry.site, task.kind)) return;
   if (contains(entry.over, task)) return;
   entry.over.push_back(task);
 }

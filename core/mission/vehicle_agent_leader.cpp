@@ -152,7 +152,7 @@ void VehicleAgent::Impl::fly_survey(Instant now) {
 }
 
 void VehicleAgent::Impl::lead(const Site& site, const std::vector<TaskId>& done, Instant now) {
-  if (site.tasks_after_survey().empty()) {
+  if (tasks_after_survey(site).empty()) {
     report(event::SiteDone{}, {}, {site.id, TaskKind::survey, 0}, now);
     return;
   }
@@ -219,7 +219,7 @@ void VehicleAgent::Impl::answer(const Initiator::Output& output, Instant now) {
     pump(now);  // its last messages
     stop_leading(now);
   } else if (std::holds_alternative<Initiator::AllDone>(output)) {
-    report(event::SiteDone{count_of(initiator_->site().tasks_after_survey())}, initiator_->round(),
+    report(event::SiteDone{count_of(tasks_after_survey(initiator_->site()))}, initiator_->round(),
            {site, {}, 0}, now);
     farewells_.push_back({initiator_->farewell(), now, kFarewells});
     if (farewells_.size() > kSitesWaitingMax) farewells_.erase(farewells_.begin());

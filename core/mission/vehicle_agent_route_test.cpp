@@ -219,7 +219,7 @@ TEST(VehicleWithRoute, BidsForATaskOnItsWayAndGoesOnUntilItIsAwarded) {
   announcement.site.id = {5};
   announcement.site.position = {600.0, 900.0};
   announcement.site.deliveries.resize(1);
-  announcement.tasks = announcement.site.tasks_after_survey();
+  announcement.tasks = tasks_after_survey(announcement.site);
   announcement.announced_at = at_seconds(10.0);
   announcement.bids_until = at_seconds(12.0);
   announcement.formed_at = at_seconds(16.0);

@@ -163,7 +163,7 @@ void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now)
                         [&](const coalition::LeaseRenewal& m) {
                           sites_.on_renewal(m, now);
                           if (m.closed) end_closed_site(m, now);
-                          meet_rival(m.site, m.round, m.stands(), now);
+                          meet_rival(m.site, m.round, stands(m), now);
                           participant_.on_lease_renewal(m, now);
                         },
                         [&](const coalition::MemberStatus& m) {

@@ -50,7 +50,7 @@ AllocationProblem random_problem(Random& random, const Shape& shape) {
     site.assessments.push_back({std::nullopt, seconds{20}});
     if (!shape.free_angles) site.assessments.back().start_angle_rad = random.uniform(-kPi, kPi);
   }
-  problem.open_tasks = site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(site);
   problem.start = at_seconds(40.0);
   problem.seed = random.next();
   for (std::size_t i = 0; i < shape.vehicles; ++i) {
@@ -414,7 +414,7 @@ TEST(PlanValue, AddsUpByHand) {
   problem.site.assess_wait = seconds{10};
   problem.site.reward = 5.0;
   problem.site.reward_decay_per_s = 0.01;
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   problem.start = at_seconds(100.0);
   for (std::uint16_t i = 1; i <= 4; ++i) {
     Candidate c;
@@ -532,7 +532,7 @@ TEST(Polynomial, TakesTheFirstToArrive) {
   problem.site.position = {3000.0, 0.0};
   problem.site.deliveries = {{0.0, {}}, {0.0, {}}};
   problem.site.assessments = {{0.0, seconds{20}}};
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   const auto add = [&](std::uint16_t id, double x_m, bool deliver, bool assess) {
     Candidate c;
     c.id = VehicleId{id};

@@ -132,7 +132,7 @@ Fleet random_fleet(Random& random, std::size_t deliveries, std::size_t vehicles)
     problem.site.deliveries.push_back({random.uniform(-kPi, kPi), {}});
   }
   problem.site.reward_decay_per_s = 0.005;
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   fleet.least_s.resize(static_cast<Eigen::Index>(deliveries), static_cast<Eigen::Index>(vehicles));
   for (std::size_t i = 0; i < vehicles; ++i) {
     Candidate c;

@@ -104,7 +104,7 @@ std::optional<Error> AllocationTable::make_rows() {
   rows_.reserve(tasks.size());
   for (const TaskId& task : tasks) {
     const bool known = task.site == site.id && task.kind != TaskKind::survey &&
-                       task.index < site.task_count(task.kind);
+                       task.index < task_count(site, task.kind);
     if (!known) return Error{name() + " has no open task '" + to_string(task) + "'"};
   }
   double first_offset_s = kInfinity;

@@ -50,7 +50,7 @@ Site site_with(std::size_t deliveries, seconds interval, std::size_t assessments
 AllocationProblem random_problem(Random& random, const Site& site, std::size_t vehicles) {
   AllocationProblem problem;
   problem.site = site;
-  problem.open_tasks = site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(site);
   problem.start = at_seconds(40.0);
   for (std::size_t i = 0; i < vehicles; ++i) {
     Candidate c =
@@ -169,7 +169,7 @@ TEST(Allocation, TheFirstDeliveryIsTheBottleneck) {
   AllocationProblem problem;
   problem.site = site_with(2, seconds{0}, 0);
   for (auto& d : problem.site.deliveries) d.bearing_rad = 0.0;
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   for (std::uint16_t i = 0; i < 4; ++i) {
     problem.candidates.push_back(
         candidate(static_cast<std::uint16_t>(9 - i), {1000.0 - 500.0 * i, 3000.0, 0.0}));
@@ -220,7 +220,7 @@ TEST(Allocation, NoOtherChoiceDeliversSooner) {
 TEST(Allocation, WhoAloneCanAssessIsLeftForIt) {
   AllocationProblem problem;
   problem.site = site_with(2, seconds{0}, 1);
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   problem.candidates = {candidate(1, {2000, 3000, 0}), candidate(2, {-3000, 3000, 0}),
                         candidate(3, {-3500, 3000, 0})};
   for (std::size_t i = 1; i < 3; ++i) {
@@ -236,7 +236,7 @@ TEST(Allocation, WhoAloneCanAssessIsLeftForIt) {
 TEST(Allocation, AssessmentsMoveLaterOnlyAsFarAsNeeded) {
   AllocationProblem problem;
   problem.site = site_with(1, seconds{0}, 1);
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   problem.candidates = {candidate(1, {2000, 3000, 0}), candidate(2, {-6000, 3000, 0})};
   problem.candidates[0].capabilities = Capabilities{}.add(TaskKind::deliver);
   problem.site.assessments[0].start_angle_rad = -kPi / 2.0;  // entered from the west, eastwards
@@ -269,7 +269,7 @@ TEST(Allocation, AnArcWithoutAnAngleStartsWhereItIsReachedSoonest) {
   AllocationProblem problem;
   problem.site = site_with(0, seconds{0}, 1);
   problem.site.assessments[0].start_angle_rad.reset();
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   problem.candidates = {candidate(1, {0, 2750, 0})};
   const auto allocation = allocate({}, problem);
   ASSERT_TRUE(allocation.ok()) << allocation.error().message;
@@ -312,7 +312,7 @@ TEST(Allocation, SaysWhatIsMissing) {
 TEST(Allocation, RangeIsRespectedBeforeSpeed) {
   AllocationProblem problem;
   problem.site = site_with(1, seconds{0}, 0);
-  problem.open_tasks = problem.site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(problem.site);
   problem.candidates = {candidate(1, {2000, 3000, 0}), candidate(2, {-2000, 3000, 0})};
   problem.candidates[0].range_left_m = 900.0;
   const auto allocation = allocate({}, problem);

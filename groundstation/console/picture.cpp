@@ -258,7 +258,7 @@ void Picture::on(const coalition::LeaseRenewal& m) {
     return;
   }
   site.leader = m.round.coalition.leader;
-  if (m.stands() && !m.members.empty()) {
+  if (stands(m) && !m.members.empty()) {
     coalition.state = CoalitionState::formed;
     coalition.why = {};
     coalition.members = m.members;

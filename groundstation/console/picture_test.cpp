@@ -69,7 +69,7 @@ coalition::Announcement announcement() {
   coalition::Announcement a;
   a.round = kRound;
   a.site = site();
-  a.tasks = a.site.tasks_after_survey();
+  a.tasks = tasks_after_survey(a.site);
   return a;
 }
 

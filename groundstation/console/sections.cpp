@@ -12,7 +12,10 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
-#include "skein/mission/event_fields.hpp"
+#include "skein/idl/autopilot_fields.hpp"
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::console {
@@ -47,10 +50,11 @@ Json point(const Vec3& p) { return Json::array({metres(p.x()), metres(p.y()), me
 template <class Struct>
 Json fields_of(const Struct& made) {
   Json json = Json::object();
-  mission::for_each_field(made, [&json]<class T>(std::string_view name, const T& value) {
+  codec::for_each_field(made, [&json]<class T>(std::string_view name, const T& value) {
     const std::string key{name};
     if constexpr (std::is_same_v<T, Instant> || std::is_same_v<T, Duration>) {
-      json[key + "_s"] = number(to_seconds(value), 3);
+      constexpr std::string_view kNanoseconds = "_ns";
+      json[key.substr(0, key.size() - kNanoseconds.size()) + "_s"] = number(to_seconds(value), 3);
     } else if constexpr (std::is_same_v<T, std::vector<VehicleId>>) {
       json[key] = Json::array();
       for (const VehicleId id : value) json[key].push_back(id.value);
@@ -236,7 +240,7 @@ Json site_json(SiteId id, const SitePicture& site) {
   };
   add({id, TaskKind::survey, 0}, nullptr);
   if (site.site) {
-    for (const TaskId& task : site.site->tasks_after_survey()) {
+    for (const TaskId& task : tasks_after_survey(*site.site)) {
       add(task, task.kind == TaskKind::deliver
                     ? degrees_of(site.site->deliveries[task.index].bearing_rad)
                     : Json(nullptr));

@@ -280,7 +280,7 @@ CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) 
   std::size_t refusals = 0;
   std::map<std::string, std::size_t> excuses;
   for (const Site& site : record.sites) {
-    std::vector<TaskId> tasks = site.tasks_after_survey();
+    std::vector<TaskId> tasks = tasks_after_survey(site);
     tasks.insert(tasks.begin(), TaskId{site.id, TaskKind::survey, 0});
     const bool no = refused(record, site.id);
     for (const TaskId& task : tasks) {

@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "skein/checks/checks.hpp"
-#include "skein/mission/event_fields.hpp"
+#include "skein/idl/autopilot_fields.hpp"
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
 
 /// A small mission without fault, built by hand, for the tests to spoil.
 namespace skein::checks::testing {
@@ -66,7 +69,7 @@ inline void set_moment(mission::MissionEvent& event, double time_s) {
   const auto set = [time_s](auto /*name*/, auto& value) {
     if constexpr (std::is_same_v<decltype(value), Instant&>) value = at_seconds(time_s);
   };
-  std::visit([&](auto& body) { mission::for_each_field(body, set); }, event.body);
+  std::visit([&](auto& body) { codec::for_each_field(body, set); }, event.body);
 }
 inline mission::MissionEvent event(VehicleId vehicle, double time_s, mission::EventKind kind,
                                    const TaskId& task, double moment_s = 0.0) {

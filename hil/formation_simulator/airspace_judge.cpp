@@ -35,7 +35,7 @@ void AirspaceJudge::step(const std::vector<Body>& bodies, Instant now) {
 void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<Body>& bodies,
                              Instant now) {
   if (!bodies[a].airborne || !bodies[b].airborne) return;
-  const Vec3 stretch{1.0, 1.0, limits_.separation.height_factor()};
+  const Vec3 stretch{1.0, 1.0, height_factor(limits_.separation)};
   const Vec3 begin = (before_[a].position_m - before_[b].position_m).cwiseProduct(stretch);
   const Vec3 end = (bodies[a].position_m - bodies[b].position_m).cwiseProduct(stretch);
   const Vec3 way = end - begin;

@@ -75,7 +75,7 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
                                    [&](const auto& spec) { return spec.id == end.vehicle; }));
   }
   for (const Site& site : record.sites) {
-    std::vector<TaskId> open = site.tasks_after_survey();
+    std::vector<TaskId> open = tasks_after_survey(site);
     std::erase_if(open, [&](const TaskId& t) { return done.contains(t) || unknown.contains(t); });
     const TaskId survey{site.id, TaskKind::survey, 0};
     const bool surveyed = done.contains(survey);

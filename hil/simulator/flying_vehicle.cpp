@@ -5,7 +5,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "skein/mission/event_fields.hpp"
+#include "skein/idl/autopilot_fields.hpp"
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
 #include "skein/planning/path_follower.hpp"
 
 namespace skein::hil {
@@ -86,7 +89,7 @@ mission::MissionEvent FlyingVehicle::in_true_time(mission::MissionEvent event) c
   event.time -= clock_;
   std::visit(
       [this](auto& body) {
-        mission::for_each_field(body, [this](auto /*name*/, auto& value) {
+        codec::for_each_field(body, [this](auto /*name*/, auto& value) {
           if constexpr (std::is_same_v<decltype(value), Instant&>) value -= clock_;
         });
       },

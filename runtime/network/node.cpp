@@ -24,7 +24,9 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <mutex>
+#include <set>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "byte_sample.hpp"
@@ -56,6 +58,7 @@ constexpr Duration kFirstAnnouncementPeriod = std::chrono::milliseconds{200};
 constexpr Duration kWriteWaitMax =
     std::chrono::milliseconds{5};  // for a lock inside DDS, never for a reader
 constexpr std::uint32_t kSocketBufferBytes = 1U << 20U;
+constexpr std::size_t kMisfitsMax = 100;
 
 enum class Counter : std::uint8_t {
   published,
@@ -67,6 +70,7 @@ enum class Counter : std::uint8_t {
   malformed,
   bad_version,
   bad_value,
+  unknown_kind,
   unknown_sender,
   count
 };
@@ -80,6 +84,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCou
     "malformed",
     "bad_version",
     "bad_value",
+    "unknown_kind",
     "unknown_sender"};
 
 Duration_t dds_duration(Duration d) {
@@ -278,7 +283,7 @@ dds::DataWriterQos writer_qos(const TopicInfo& t) {
   qos.endpoint().history_memory_policy = rtps::PREALLOCATED_MEMORY_MODE;
   qos.data_sharing().off();
   if (t.reliable) {
-    qos.reliable_writer_qos().times.heartbeatPeriod = dds_duration(t.heartbeat_period);
+    qos.reliable_writer_qos().times.heartbeatPeriod = dds_duration(codec::kHeartbeatPeriod);
     qos.reliable_writer_qos().times.nackResponseDelay = dds_duration(Duration{});
   }
   return qos;
@@ -322,6 +327,7 @@ class Node::Impl : public dds::DomainParticipantListener {
   bool publish(const mission::Message& message);
   std::optional<Received> poll();
   std::vector<Peer> peers() const;
+  std::vector<Misfit> take_misfits();
   std::map<std::string, std::uint64_t> counters() const;
 
  private:
@@ -347,6 +353,7 @@ class Node::Impl : public dds::DomainParticipantListener {
                                 rtps::ParticipantDiscoveryInfo&& info) override;
   void receive(Topic topic, dds::DataReader& reader);
   void accept(Topic topic, const ByteSample& sample, const rtps::GuidPrefix_t& from);
+  void refuse(Topic topic, const codec::Refusal& refusal, VehicleId sender);
   void matched(const rtps::InstanceHandle_t& handle, std::int32_t change);
   void count(Counter counter) {
     counters_.at(static_cast<std::size_t>(counter)).fetch_add(1, std::memory_order_relaxed);
@@ -357,6 +364,9 @@ class Node::Impl : public dds::DomainParticipantListener {
   std::array<std::atomic<std::uint64_t>, kCounterNames.size()> counters_{};
   mutable std::mutex queue_mutex_;
   BoundedQueue<Received> queue_;
+  std::mutex misfits_mutex_;
+  std::set<std::tuple<VehicleId, Topic, std::uint16_t>> misfits_seen_;
+  std::vector<Misfit> misfits_;
   mutable std::mutex peers_mutex_;
   std::map<rtps::GuidPrefix_t, PeerState> peers_;
   std::array<TopicListener, kTopicCount> listeners_;
@@ -380,17 +390,18 @@ Result<void> Node::Impl::open() {
   if (publisher == nullptr || subscriber == nullptr) {
     return Error{who + ": Fast DDS has no room for a publisher and a subscriber"};
   }
-  for (const TopicInfo& t : kTopics) {
+  for (std::size_t index = 0; index < kTopicCount; ++index) {
+    const TopicInfo& t = kTopics.at(index);
     const bool writes = t.writers.has(config_.role);
     const bool reads = t.readers.has(config_.role);
     if (!writes && !reads) continue;
     const std::string type_name{t.type};
-    const dds::TypeSupport type{new ByteSampleType{type_name, codec::encoded_size_max(t.topic)}};
+    const dds::TypeSupport type{
+        new ByteSampleType{type_name, codec::encoded_size_max(static_cast<Topic>(index))}};
     dds::Topic* topic = nullptr;
     if (type.register_type(participant_) == ReturnCode_t::RETCODE_OK) {
       topic = participant_->create_topic(std::string{t.name}, type_name, dds::TOPIC_QOS_DEFAULT);
     }
-    const auto index = static_cast<std::size_t>(t.topic);
     TopicListener& listener = listeners_.at(index);
     bool made = topic != nullptr;
     if (made && writes) {
@@ -453,16 +464,8 @@ void Node::Impl::accept(Topic topic, const ByteSample& sample, const rtps::GuidP
     return;
   }
   auto decoded = codec::decode(topic, sample.bytes);
-  if (const codec::Fault* fault = std::get_if<codec::Fault>(&decoded)) {
-    switch (*fault) {
-      case codec::Fault::malformed:
-        return count(Counter::malformed);
-      case codec::Fault::bad_version:
-        return count(Counter::bad_version);
-      case codec::Fault::bad_value:
-        return count(Counter::bad_value);
-    }
-    return;
+  if (const auto* refusal = std::get_if<codec::Refusal>(&decoded)) {
+    return refuse(topic, *refusal, *sender);
   }
   bool room = false;
   {
@@ -471,6 +474,29 @@ void Node::Impl::accept(Topic topic, const ByteSample& sample, const rtps::GuidP
   }
   count(room ? Counter::received : Counter::dropped_full);
   if (room && config_.on_received) config_.on_received();
+}
+
+void Node::Impl::refuse(Topic topic, const codec::Refusal& refusal, VehicleId sender) {
+  switch (refusal.fault) {
+    case codec::Fault::malformed:
+      return count(Counter::malformed);
+    case codec::Fault::bad_value:
+      return count(Counter::bad_value);
+    case codec::Fault::unknown_kind:
+      return count(Counter::unknown_kind);
+    case codec::Fault::bad_version:
+      break;
+  }
+  count(Counter::bad_version);
+  const std::lock_guard lock{misfits_mutex_};
+  if (!misfits_seen_.emplace(sender, topic, refusal.version).second) return;
+  if (misfits_seen_.size() > kMisfitsMax) return;
+  misfits_.push_back({sender, codec::text_of(refusal, topic)});
+}
+
+std::vector<Misfit> Node::Impl::take_misfits() {
+  const std::lock_guard lock{misfits_mutex_};
+  return std::exchange(misfits_, {});
 }
 
 void Node::Impl::on_participant_discovery(dds::DomainParticipant*,
@@ -529,6 +555,7 @@ Result<std::unique_ptr<Node>> Node::open(const NodeConfig& config) {
 bool Node::publish(const mission::Message& message) { return impl_->publish(message); }
 std::optional<Received> Node::poll() { return impl_->poll(); }
 std::vector<Peer> Node::peers() const { return impl_->peers(); }
+std::vector<Misfit> Node::take_misfits() { return impl_->take_misfits(); }
 std::map<std::string, std::uint64_t> Node::counters() const { return impl_->counters(); }
 
 }  // namespace skein::network

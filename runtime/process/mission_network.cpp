@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/process/mission_network.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <random>
 #include <utility>
+
+#include "skein/wording/wording.hpp"
 
 namespace skein::process {
 
@@ -24,6 +28,13 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, Vehi
   node.transport_plugin = config.transport_plugin;
   node.on_received = std::move(on_received);
   return node;
+}
+
+void log_misfits(network::Node& node) {
+  for (const network::Misfit& misfit : node.take_misfits()) {
+    spdlog::warn("{}: {}; its messages of that type are dropped until one of the two is updated",
+                 wording::text_of(misfit.sender), misfit.text);
+  }
 }
 
 Traffic traffic_of(const network::Node& node) {

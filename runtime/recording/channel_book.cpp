@@ -12,6 +12,13 @@ bool parse_number(const std::string& text, Number& value) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
+/// Of a type, as its schema begins; "none" where it says none.
+std::string version_in(std::string_view schema) {
+  constexpr std::string_view kVersion = "uint16 VERSION=";
+  if (!schema.starts_with(kVersion)) return "none";
+  return std::string{schema.substr(kVersion.size(), schema.find('\n') - kVersion.size())};
+}
+
 std::string two_digits(VehicleId vehicle) {
   const std::string number = std::to_string(vehicle.value);
   return (number.size() < 2 ? "0" : "") + number;
@@ -66,22 +73,28 @@ Instant instant_of(std::uint64_t log_time_ns, std::int64_t epoch_unix_ns) {
   return Instant{Duration{static_cast<std::int64_t>(since)}};
 }
 
-std::uint16_t ChannelBook::channel(mcap::Writer& file, VehicleId sender, const RecordKind& kind) {
-  const std::pair key{sender, &kind};
-  if (const auto known = channels_.find(key); known != channels_.end()) return known->second;
-  const schemas::Schema& schema = *kind.schema;
-  auto known_schema = schemas_.find(schema.name);
+std::uint16_t ChannelBook::channel(mcap::Writer& file, VehicleId sender, const RecordKind& kind,
+                                   std::string_view schema) {
+  const std::tuple seen{sender, &kind, schema.data()};
+  if (const auto known = known_.find(seen); known != known_.end()) return known->second;
+  const std::string_view name = kind.schema->name;
+  auto known_schema = schemas_.find({name, std::string{schema}});
   if (known_schema == schemas_.end()) {
     const auto number =
-        file.add(mcap::Schema{std::string{schema.name}, kSchemaEncoding, std::string{schema.text}});
-    known_schema = schemas_.emplace(schema.name, number).first;
+        file.add(mcap::Schema{std::string{name}, kSchemaEncoding, std::string{schema}});
+    known_schema = schemas_.emplace(std::pair{name, std::string{schema}}, number).first;
   }
-  const auto number = file.add(mcap::Channel{known_schema->second,
-                                             topic_of(sender, kind),
-                                             kMessageEncoding,
-                                             {{"sender", std::to_string(sender.value)}}});
-  channels_.emplace(key, number);
-  return number;
+  const std::tuple key{sender, &kind, known_schema->second};
+  auto known = channels_.find(key);
+  if (known == channels_.end()) {
+    const auto number = file.add(mcap::Channel{known_schema->second,
+                                               topic_of(sender, kind),
+                                               kMessageEncoding,
+                                               {{"sender", std::to_string(sender.value)}}});
+    known = channels_.emplace(key, number).first;
+  }
+  known_.emplace(seen, known->second);
+  return known->second;
 }
 
 Result<std::optional<KnownChannel>> known_channel(const mcap::Reader& file,
@@ -91,13 +104,22 @@ Result<std::optional<KnownChannel>> known_channel(const mcap::Reader& file,
   const auto sender = channel.metadata.find("sender");
   if (schema == file.schemas().end() || sender == channel.metadata.end()) return none;
   KnownChannel known;
-  known.kind = kind_named(schema->second.name);
-  if (known.kind == nullptr || !parse_number(sender->second, known.sender.value)) return none;
-  if (schema->second.text != known.kind->schema->text ||
-      schema->second.encoding != kSchemaEncoding || channel.encoding != kMessageEncoding) {
-    return Error{file.name() + ": " + channel.topic + " is of another version of Skein (" +
-                 file.library() + "); read it with that one"};
+  // "/vehicle_07/coalition/bid"
+  const std::string_view topic = channel.topic;
+  const auto words = topic.find('/', 1);
+  if (words != std::string_view::npos) known.kind = kind_named(topic.substr(words + 1));
+  if (known.kind == nullptr || schema->second.name != known.kind->schema->name ||
+      !parse_number(sender->second, known.sender.value))
+    return none;
+  const std::string theirs = version_in(schema->second.text);
+  const std::string ours = std::to_string(known.kind->schema->version);
+  if (theirs != ours || schema->second.encoding != kSchemaEncoding ||
+      channel.encoding != kMessageEncoding) {
+    return Error{file.name() + ": " + channel.topic + " is of version " + theirs +
+                 ", ours of version " + ours + "; read it with the Skein that wrote it (" +
+                 file.library() + ")"};
   }
+  known.schema = schema->second.text;
   return std::optional{known};
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "records.hpp"
@@ -36,17 +37,26 @@ inline constexpr const char* kSessionName = "skein";
 /// The channels of a file that is being written, each added with its first record.
 class ChannelBook {
  public:
-  [[nodiscard]] std::uint16_t channel(mcap::Writer& file, VehicleId sender, const RecordKind& kind);
+  [[nodiscard]] std::uint16_t channel(mcap::Writer& file, VehicleId sender,
+                                      const RecordKind& kind) {
+    return channel(file, sender, kind, kind.schema->text);
+  }
+  /// Where the bytes are of an older or later release, whose schema has other fields at its end.
+  [[nodiscard]] std::uint16_t channel(mcap::Writer& file, VehicleId sender, const RecordKind& kind,
+                                      std::string_view schema);
 
  private:
-  std::map<std::string_view, std::uint16_t> schemas_;
-  std::map<std::pair<VehicleId, const RecordKind*>, std::uint16_t> channels_;
+  std::map<std::pair<std::string_view, std::string>, std::uint16_t> schemas_;
+  std::map<std::tuple<VehicleId, const RecordKind*, std::uint16_t>, std::uint16_t> channels_;
+  /// By where the schema's text stands, which spares comparing it.
+  std::map<std::tuple<VehicleId, const RecordKind*, const char*>, std::uint16_t> known_;
 };
 
 /// What a channel of a file that is being read carries.
 struct KnownChannel {
   const RecordKind* kind = nullptr;
   VehicleId sender;
+  std::string schema;  ///< as the file has it
 };
 /// None where it is no channel of a recording; fails where its schema is not ours.
 [[nodiscard]] Result<std::optional<KnownChannel>> known_channel(const mcap::Reader& file,

@@ -48,7 +48,7 @@ Result<std::uint64_t> merge_run(const std::filesystem::path& folder) {
     const KnownChannel& from = files[item->file].channels.at(item->message.channel);
     const auto whose = vehicle_of_event(*from.kind, item->message.data);
     if (whose && *whose != from.sender) continue;  // a copy of what that node noted itself
-    item->message.channel = channels.channel(*merged, from.sender, *from.kind);
+    item->message.channel = channels.channel(*merged, from.sender, *from.kind, from.schema);
     merged->write(item->message);
     ++records;
   }

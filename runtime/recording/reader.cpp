@@ -38,7 +38,7 @@ Result<Recording> read(const std::filesystem::path& folder, VehicleId vehicle) {
     file.reader.for_each([&](const mcap::Message& message) {
       const auto channel = file.channels.find(message.channel);
       // Most records are messages, which nobody asks for here.
-      if (channel == file.channels.end() || channel->second.kind->is_message()) return true;
+      if (channel == file.channels.end() || channel->second.kind->is_message) return true;
       auto content =
           decode(*channel->second.kind, message.data, instant_of(message.log_time_ns, epoch));
       if (!content) {

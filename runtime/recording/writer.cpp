@@ -41,14 +41,16 @@ class Writer::Impl {
   Impl(std::filesystem::path folder, Options options, mcap::Writer file)
       : folder_{std::move(folder)}, options_{std::move(options)}, file_{std::move(file)} {}
 
-  void write(const Encoded& record, VehicleId sender, Instant now) {
-    if (!file_) return;
+  /// What has a value out of its range is not written.
+  void write(const Content& content, VehicleId sender, Instant now) {
+    const auto record = encode(content);
+    if (!file_ || !record) return;
     newest_ = std::max(newest_.value_or(now), now);
     mcap::Message message;
-    message.channel = channels_.channel(*file_, sender, *record.kind);
+    message.channel = channels_.channel(*file_, sender, *record->kind);
     message.log_time_ns = log_time(now, options_.session.epoch_unix_ns);
     message.publish_time_ns = message.log_time_ns;
-    message.data = record.bytes;
+    message.data = record->bytes;
     file_->write(message);
     if (file_->size() >= options_.bytes_max / 2) rotate();
   }
@@ -110,21 +112,19 @@ Result<Writer> Writer::open(const std::filesystem::path& folder, const Options& 
 }
 
 void Writer::write(const TrackPoint& point) {
-  impl_->write(encode(point), impl_->node(), point.state.time);
+  impl_->write(point, impl_->node(), point.state.time);
 }
 void Writer::write(const mission::MissionEvent& event) {
-  if (const auto encoded = encode(event)) impl_->write(*encoded, impl_->node(), event.time);
+  impl_->write(event, impl_->node(), event.time);
 }
-void Writer::write(const PlanRecord& plan) {
-  impl_->write(encode(plan), impl_->node(), plan.since);
-}
+void Writer::write(const PlanRecord& plan) { impl_->write(plan, impl_->node(), plan.since); }
 void Writer::write(const PlaceRecord& place) {
-  impl_->write(encode(place), impl_->node(), impl_->newest());
+  impl_->write(place, impl_->node(), impl_->newest());
 }
-void Writer::write(const Gap& gap) { impl_->write(encode(gap), impl_->node(), impl_->newest()); }
+void Writer::write(const Gap& gap) { impl_->write(gap, impl_->node(), impl_->newest()); }
 
 void Writer::write(const mission::Message& message, VehicleId sender, Instant now) {
-  if (const auto encoded = encode(message)) impl_->write(*encoded, sender, now);
+  impl_->write(message, sender, now);
 }
 
 void Writer::write(const AgentRecord& record) {
@@ -134,7 +134,7 @@ void Writer::write(const AgentRecord& record) {
   std::visit(
       [this]<class Record>(const Record& r) {
         if constexpr (!std::is_same_v<Record, MessageRecord>) {
-          impl_->write(encode(r), impl_->node(), r.now);
+          impl_->write(r, impl_->node(), r.now);
         }
       },
       record);

@@ -41,7 +41,7 @@ AllocationProblem random_problem(Random& random, std::size_t vehicles, std::size
   }
   site.reward = 10.0;
   site.reward_decay_per_s = 0.005;
-  problem.open_tasks = site.tasks_after_survey();
+  problem.open_tasks = tasks_after_survey(site);
   problem.seed = random.next();
   for (std::size_t i = 0; i < vehicles; ++i) {
     Candidate c;

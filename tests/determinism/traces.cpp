@@ -12,7 +12,10 @@
 #include "skein/base/angles.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
-#include "skein/mission/event_fields.hpp"
+#include "skein/idl/autopilot_fields.hpp"
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
 #include "skein/planning/dubins_batch.hpp"
 
 namespace skein {
@@ -21,7 +24,7 @@ namespace {
 /// The moments and figures of an event.
 template <class Struct>
 void print_exactly(const Struct& made) {
-  mission::for_each_field(made, []<class T>(std::string_view /*name*/, const T& value) {
+  codec::for_each_field(made, []<class T>(std::string_view /*name*/, const T& value) {
     if constexpr (std::is_same_v<T, double>) std::printf(" %a", value);
     if constexpr (std::is_same_v<T, Instant> || std::is_same_v<T, Duration>) {
       std::printf(" %a", to_seconds(value));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // Reads a recording of ours with MCAP's own library, decodes every record twice, by the file's
-// ros2msg schema and by our IDL, and compares both with what our program says was written:
-//   node check_recording.mjs RECORDING_VECTORS IDL_FOLDER WORK_FOLDER
+// ros2msg schema and by the IDL of the bytes, and compares both with what our program says was written:
+//   node check_recording.mjs RECORDING_VECTORS WIRE_IDL WORK_FOLDER
 import { execFileSync } from 'node:child_process'
 import { readFileSync, mkdirSync, rmSync } from 'node:fs'
 import { join } from 'node:path'
@@ -13,7 +13,7 @@ import { parseIDL } from '@foxglove/omgidl-parser'
 import { MessageReader as IdlReader } from '@foxglove/omgidl-serialization'
 import { decompress } from 'fzstd'
 
-const [program, idlFolder, work] = process.argv.slice(2)
+const [program, idlFile, work] = process.argv.slice(2)
 const folder = join(work, 'recording')
 rmSync(folder, { recursive: true, force: true })
 mkdirSync(folder, { recursive: true })
@@ -22,101 +22,67 @@ const lines = execFileSync(program, [folder], { encoding: 'utf8', maxBuffer: 1 <
 const bytes = readFileSync(join(folder, 'recording.mcap'))
 const decompressHandlers = { zstd: (packed, size) => decompress(packed, new Uint8Array(Number(size))) }
 
-const unionSchema = 'skein/msg/CoalitionMessage'
 let compared = 0
 function fail(what) {
   console.error(what)
   process.exit(1)
 }
 
-// What our program prints: {a: 1, b: [NAME, "text"]}. Integers become BigInt, names {name}.
-function valueOf(text) {
-  let at = 0
-  const expect = sign => { if (text[at++] !== sign) fail(`expected ${sign} at ${at} of ${text}`) }
-  const items = (end, one) => {
-    while (text[at] !== end) {
-      one()
-      if (text[at] === ',') at += 2
-    }
-    ++at
-  }
-  function value() {
-    if (text[at] === '{') {
-      const object = {}
-      ++at
-      items('}', () => {
-        const name = /[a-z_0-9]+/y
-        name.lastIndex = at
-        const key = name.exec(text)[0]
-        at += key.length
-        expect(':')
-        expect(' ')
-        object[key] = value()
-      })
-      return object
-    }
-    if (text[at] === '[') {
-      const list = []
-      ++at
-      items(']', () => list.push(value()))
-      return list
-    }
-    if (text[at] === '"') {
-      let string = ''
-      for (++at; text[at] !== '"'; ++at) {
-        if (text[at] === '\\') ++at
-        string += text[at]
-      }
-      ++at
-      return string
-    }
-    const word = text.slice(at).match(/^[^,\]}]+/)[0]
-    at += word.length
-    if (word === 'true' || word === 'false') return word === 'true'
-    if (/^-?\d+$/.test(word)) return BigInt(word)
-    return /^[A-Z]/.test(word) ? { name: word } : Number(word)
-  }
-  return value()
-}
+// What the codec adds to the fields of a message, as idl/README.md has it.
+const added = new Set(['version', 'size_bytes', 'kind'])
 
-// `ours` as valueOf() gives it, `theirs` as a library does.
+// `ours` as our program says it in JSON (integers of 64 bits are strings, what is not there is
+// null), `theirs` as a library reads it from the bytes.
 function same(ours, theirs, constants, where) {
   ++compared
-  if (typeof ours === 'object' && ours.name !== undefined && Object.keys(ours).length === 1 &&
-      typeof theirs === 'number') {
-    if (constants.get(ours.name) !== theirs) fail(`${where}: ${ours.name} is not ${theirs}`)
-  } else if (Array.isArray(ours)) {
+  if (Array.isArray(ours)) {
     const list = Array.from(theirs)
     if (ours.length !== list.length) fail(`${where}: ${ours.length} and ${list.length} elements`)
     ours.forEach((one, i) => same(one, list[i], constants, `${where}[${i}]`))
-  } else if (typeof ours === 'object') {
-    const names = Object.keys(theirs)
-    if (Object.keys(ours).join() !== names.join()) fail(`${where}: ${Object.keys(ours)}; ${names}`)
-    for (const key of names) same(ours[key], theirs[key], constants, `${where}.${key}`)
-  } else if (typeof ours === 'bigint' && typeof theirs === 'number') {
-    if (Number(ours) !== theirs) fail(`${where}: ${ours} and ${theirs}`)
-  } else if (typeof ours === 'number' && Number.isNaN(ours)) {
-    if (!Number.isNaN(theirs)) fail(`${where}: ${ours} and ${theirs}`)
-  } else if (typeof ours === 'string' ? ours !== theirs.replace(/[\0-\x1f]/g, ' ') : ours !== theirs) {
+  } else if (ours !== null && typeof ours === 'object') {
+    const fields = Object.keys(theirs).filter(key => !added.has(key) || key in ours)
+    const expected = Object.keys(ours).flatMap(key => `has_${key.replace(/_rad$/, '')}` in theirs
+      ? [`has_${key.replace(/_rad$/, '')}`, key] : [key])
+    if (expected.join() !== fields.join()) fail(`${where}: ${expected}; ${fields}`)
+    for (const key of Object.keys(ours)) {
+      const flag = theirs[`has_${key.replace(/_rad$/, '')}`]
+      if (flag !== undefined && flag !== (ours[key] !== null)) fail(`${where}.${key}: ${flag}`)
+      if (flag !== false) same(ours[key], theirs[key], constants, `${where}.${key}`)
+    }
+  } else if (typeof ours === 'string' && typeof theirs === 'number') {
+    if (constants.get(ours.toUpperCase()) !== theirs) fail(`${where}: ${ours} is not ${theirs}`)
+  } else if (typeof theirs === 'bigint') {
+    if (ours !== theirs.toString()) fail(`${where}: ${ours} and ${theirs}`)
+  } else if (ours !== theirs) {
     fail(`${where}: ${ours} and ${theirs}`)
   }
 }
 
-// A message of the IDL in the shape of the schema: the union's branch instead of the union, of which
-// the schema's name tells. The discriminator is not given.
-function inShapeOf(schema, message, kind) {
-  if (!schema.startsWith(unionSchema)) return message
-  const [branch, ...others] = Object.keys(message.body)
-  const camel = branch.split('_').map(word => word[0].toUpperCase() + word.slice(1)).join('')
-  if (others.length > 0 || unionSchema + camel !== schema) fail(`${schema} has ${branch}`)
-  return { version: message.version, kind, body: message.body[branch] }
+// A message that ends in a union: what a library makes of its branch, in the shape of our JSON.
+function branch_of(ours, theirs) {
+  return 'kind' in ours && 'body' in ours && Object.keys(ours).length === 2
+    ? [ours.body, theirs.body] : [{ ...ours, body: ours.body.body }, theirs]
 }
 
-const idl = parseIDL(['domain', 'coalition', 'formation', 'mission', 'recording']
-  .map(name => readFileSync(join(idlFolder, `${name}.idl`), 'utf8').replace(/^#include.*$/gm, ''))
-  .join('\n'))
-const idlTypes = new Map(idl.filter(d => d.aggregatedKind === 'struct')
-  .map(d => [d.name.split('::').at(-1), d.name]))
+// By IDL a union has its branch's name, by ros2msg it is the field itself; and the schema's name
+// tells which.
+function inShapeOf(schema, message) {
+  const [branch, ...others] = Object.keys(message.body)
+  const camel = branch.split('_').map(word => word[0].toUpperCase() + word.slice(1)).join('')
+  if (others.length > 0 || !schema.endsWith(camel)) fail(`${schema} has ${branch}`)
+  return { ...message, body: message.body[branch] }
+}
+
+const idl = parseIDL(readFileSync(idlFile, 'utf8'))
+const idlTypes = new Set(idl.filter(d => d.aggregatedKind === 'struct').map(d => d.name))
+const withUnion = new Set(['CoalitionMessage', 'MissionEvent'])
+// Of "skein/msg/CoalitionMessageBid": the message whose branch it is.
+function typeOf(schema) {
+  const short = schema.split('/').at(-1)
+  const whole = [...withUnion].find(name => short.startsWith(name)) ?? short
+  if (!idlTypes.has(`skein::wire::${whole}`)) fail(`no IDL for ${schema}`)
+  return whole
+}
 const decoders = new Map()
 function decoderOf(schema) {
   if (decoders.has(schema.id)) return decoders.get(schema.id)
@@ -124,10 +90,11 @@ function decoderOf(schema) {
   const definitions = parseRos(new TextDecoder().decode(schema.data), { ros2: true })
   const constants = new Map(definitions.flatMap(d => d.definitions)
     .filter(d => d.isConstant).map(d => [d.name, Number(d.value)]))
-  const short = schema.name.split('/').at(-1)
-  const type = idlTypes.get(short) ?? idlTypes.get('CoalitionMessage')
-  if (!idlTypes.has(short) && !short.startsWith('CoalitionMessage')) fail(`no IDL for ${short}`)
-  const decoder = { ros: new RosReader(definitions), idl: new IdlReader(type, idl), constants }
+  const type = typeOf(schema.name)
+  const decoder = {
+    ros: new RosReader(definitions), idl: new IdlReader(`skein::wire::${type}`, idl), constants,
+    union: withUnion.has(type)
+  }
   decoders.set(schema.id, decoder)
   return decoder
 }
@@ -159,14 +126,15 @@ for await (const message of reader.readMessages()) {
   if (channel.messageEncoding !== 'cdr') fail(`${where}: ${channel.messageEncoding}`)
   const sender = topic.startsWith('/ground/') ? 0 : Number(topic.match(/^\/vehicle_(\d+)\//)[1])
   if (channel.metadata.get('sender') !== String(sender)) fail(`${where}: the sender is wrong`)
-  const space = text.indexOf(' ')
-  if (schema.name !== text.slice(0, space)) fail(`${where}: ${schema.name}`)
   const decoder = decoderOf(schema)
-  const ours = valueOf(text.slice(space + 1))
+  const ours = JSON.parse(text)
   const byRos = decoder.ros.readMessage(message.data)
-  const byIdl = inShapeOf(schema.name, decoder.idl.readMessage(message.data), byRos.kind)
-  same(ours, byRos, decoder.constants, `${where}, by ros2msg`)
-  same(ours, byIdl, decoder.constants, `${where}, by IDL`)
+  const byIdl = decoder.idl.readMessage(message.data)
+  const pairs = [[byRos, 'ros2msg'], [decoder.union ? inShapeOf(schema.name, byIdl) : byIdl, 'IDL']]
+  for (const [theirs, by] of pairs) {
+    const [mine, yours] = decoder.union ? branch_of(ours, theirs) : [ours, theirs]
+    same(mine, yours, decoder.constants, `${where}, by ${by}`)
+  }
 }
 if (i !== lines.length) fail(`${i} of ${lines.length} records were read`)
 for await (const metadata of reader.readMetadata()) {

@@ -50,14 +50,10 @@ bool is_pure(std::string_view path) {
 
 bool is_cpp_outside_dds(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && !path.starts_with("runtime/network/") &&
-         !path.starts_with("runtime/codec/") && !path.starts_with("runtime/recording/") &&
-         !path.starts_with("hil/radio/") && !path.starts_with("idl/");
+         !path.starts_with("hil/radio/");
 }
 
-bool is_cpp_outside_topics(std::string_view path) {
-  return is_cpp(path) && !is_tidy(path) &&
-         !(path.starts_with("runtime/codec/") && path.find("topics.") != std::string_view::npos);
-}
+bool is_cpp_not_tidy(std::string_view path) { return is_cpp(path) && !is_tidy(path); }
 
 /// node.cpp turns the list of topics into QoS; nobody else has a word in it.
 bool is_cpp_outside_node(std::string_view path) {
@@ -126,25 +122,25 @@ constexpr std::array kLineRules{
              "core depends on the standard library, Eigen and GeographicLib only"},
     LineRule{"dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
              R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
-             "DDS stays in runtime/network/ and hil/radio/, CDR in runtime/codec/ and "
-             "runtime/recording/: use their interfaces"},
+             "DDS stays in runtime/network/ and hil/radio/: use their interfaces"},
     LineRule{"qos-outside", is_cpp_outside_node, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",
-             "a topic's name, type and QoS are one entry of the list in codec (topics.hpp)"},
-    LineRule{"topic-name", is_cpp_outside_topics, LineRule::View::code_and_literals,
+             "a topic's name, type and QoS are one entry of idl/topics.json"},
+    LineRule{"topic-name", is_cpp_not_tidy, LineRule::View::code_and_literals,
              R"x("(rt/)?skein/[a-z_]+")x",
-             "a topic's name, type and QoS are one entry of the list in codec (topics.hpp)"},
+             "a topic's name, type and QoS are one entry of idl/topics.json"},
     // A comparison of a `detail`, of an error's message or of what wording makes; and of anything
     // with a literal of several words.
-    LineRule{"sentence", reads_no_sentence, LineRule::View::code_and_literals,
-             R"(\b(detail|message|sentence)\b(\(\))?\s*(==|!=)(?!\s*nullptr)|)"
-             R"((==|!=)\s*[A-Za-z_][\w.>()-]*(\.|->)(detail|message|sentence)\b|)"
-             R"(\b(detail|message|sentence)(\(\))?\.(r?find\w*|\w+s_with|compare|contains|substr)\(|)"
-             R"(\bwording::\w+\([^;"]*\)\s*(==|!=|\.(r?find|\w+s_with|compare|contains|substr)))"
-             R"(|(==|!=)\s*"[^" ]+ [^"]*[a-z]"|"[^" ]+ [^"]*[a-z]"\s*(==|!=))"
-             R"(|\b(r?find|\w+s_with|compare|contains)\(\s*"[^" ]+ [^"]*[a-z]")",
-             "nobody decides on a sentence: give what you need to know a field of its own"},
+    LineRule{
+        "sentence", reads_no_sentence, LineRule::View::code_and_literals,
+        R"(\b(detail|message|sentence)\b(\(\))?\s*(==|!=)(?!\s*nullptr)|)"
+        R"((==|!=)\s*[A-Za-z_][\w.>()-]*(\.|->)(detail|message|sentence)\b|)"
+        R"(\b(detail|message|sentence)(\(\))?\.(r?find\w*|\w+s_with|compare|contains|substr)\(|)"
+        R"(\bwording::\w+\([^;"]*\)\s*(==|!=|\.(r?find|\w+s_with|compare|contains|substr)))"
+        R"(|(==|!=)\s*"[^" ]+ [^"]*[a-z]"|"[^" ]+ [^"]*[a-z]"\s*(==|!=))"
+        R"(|\b(r?find|\w+s_with|compare|contains)\(\s*"[^" ]+ [^"]*[a-z]")",
+        "nobody decides on a sentence: give what you need to know a field of its own"},
     LineRule{"unfinished", is_text_of_ours, LineRule::View::everything,
              R"(\b(TODO|FIXME|XXX|HACK)\b)", "finish it, or open an issue and say what is missing"},
     LineRule{"machine-path", is_text_of_ours, LineRule::View::everything,

@@ -115,8 +115,7 @@ TEST(Rules, SentencesAreForTestsAndTheirOwnModule) {
   EXPECT_EQ(findings_in("core/mission/agent.cpp", line).size(), 1U);
 }
 
-TEST(Rules, TopicsAreNamedInTheirListAndQosIsSetByTheNode) {
-  EXPECT_TRUE(findings_in("runtime/codec/topics.cpp", "name = \"skein/command\";").empty());
+TEST(Rules, QosIsSetByTheNode) {
   EXPECT_TRUE(findings_in("runtime/network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 

@@ -67,7 +67,7 @@ inline CoupledProblem draw_problem(Random& random, const CoupledDraw& draw) {
     }
     site.reward_decay_per_s = 0.005;
     problem.open_tasks.push_back({site.id, TaskKind::survey, 0});
-    for (const TaskId& task : site.tasks_after_survey()) problem.open_tasks.push_back(task);
+    for (const TaskId& task : tasks_after_survey(site)) problem.open_tasks.push_back(task);
     problem.sites.push_back(site);
   }
   return problem;

@@ -300,7 +300,7 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   for (const TaskId& id : open) {
     const auto site = std::find_if(problem.sites.begin(), problem.sites.end(),
                                    [&](const Site& s) { return s.id == id.site; });
-    if (site == problem.sites.end() || id.index >= site->task_count(id.kind)) {
+    if (site == problem.sites.end() || id.index >= skein::task_count(*site, id.kind)) {
       return Error{"There is no task '" + to_string(id) + "' among the sites of the problem"};
     }
     const auto task = static_cast<Index>(model.tasks.size());

@@ -193,7 +193,7 @@ SeparationJudge::SeparationJudge(std::size_t agents, const formation::Separation
 
 void SeparationJudge::step(std::span<const Vec3> from, std::span<const Vec3> to) {
   SKEIN_ASSERT(from.size() == agents_ && to.size() == agents_);
-  const Vec3 stretched{1.0, 1.0, separation_.height_factor()};
+  const Vec3 stretched{1.0, 1.0, height_factor(separation_)};
   double farthest = 0.0;
   for (std::size_t i = 0; i < agents_; ++i) {
     farthest = std::max(farthest, (to[i] - from[i]).cwiseProduct(stretched).norm());

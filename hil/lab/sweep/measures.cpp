@@ -78,7 +78,7 @@ planning::PlanValue value_of(const hil::TeamMission& mission, const hil::TeamRes
   double reward = 0.0;
   double tasks = 0.0;
   for (const Site& site : mission.sites) {
-    const auto count = static_cast<double>(1 + site.tasks_after_survey().size());
+    const auto count = static_cast<double>(1 + tasks_after_survey(site).size());
     tasks += count;
     reward += site.reward * count;
     for (const auto& [task, run] : done) {
@@ -134,7 +134,7 @@ Measures measures_of(const hil::TeamMission& mission, const checks::RunRecord& r
   m.value = value_of(mission, run.result, done);
   m.tasks_done = static_cast<double>(done.size());
   for (const Site& site : mission.sites)
-    m.tasks += static_cast<double>(1 + site.tasks_after_survey().size());
+    m.tasks += static_cast<double>(1 + tasks_after_survey(site).size());
   for (const auto& [task, flown] : done)
     m.last_done_s = std::max(m.last_done_s.value_or(0.0), to_seconds(flown.time));
   if (m.tasks_done == m.tasks) m.mission_s = m.last_done_s;

@@ -5,7 +5,7 @@ import { a_vehicle } from "../wire/samples";
 import { hold_progress, told_to_hold } from "./hold_watch";
 import { command } from "./orders";
 
-const holding = { activity: "holding" };
+const holding = { activity: "holding" as const };
 
 test("who is told to hold", () => {
   const vehicles = [a_vehicle(1), a_vehicle(2), a_vehicle(3, { heard_age_s: null })];

@@ -2,6 +2,8 @@
 // What skein-ground and the page say to each other (docs/console-socket.md). Positions are metres
 // east, north and up of the origin, directions compass degrees, times mission seconds.
 
+import type { Activity, EventKind, TaskKind } from "./messages";
+
 export type Level = "info" | "warning";
 export type Role = "operator" | "observer";
 
@@ -68,7 +70,7 @@ export interface Problem {
 
 export interface VehicleTask {
   site: number;
-  kind: string;
+  kind: TaskKind;
   index: number;
   time_s: number | null;
   state: string;
@@ -86,7 +88,7 @@ export interface Vehicle {
   course_deg: number | null;
   groundspeed: number | null;
   airspeed: number | null;
-  activity: string | null;
+  activity: Activity | null;
   task: VehicleTask | null;
   heard_age_s: number | null;
   clock_offset_ms: number | null;
@@ -112,7 +114,7 @@ export interface Plan {
 }
 
 export interface SiteTask {
-  kind: string;
+  kind: TaskKind;
   index: number;
   bearing_deg: number | null;
   vehicle: number | null;
@@ -209,7 +211,7 @@ export interface Formation {
   places: Place[];
 }
 
-export type Span = [activity: string, from_s: number, to_s: number | null, site: number | null];
+export type Span = [activity: Activity, from_s: number, to_s: number | null, site: number | null];
 
 export interface AuditEntry {
   seq: number;
@@ -247,7 +249,7 @@ export interface MissionEvent {
   seq: number;
   time_s: number;
   vehicle: number;
-  kind: string;
+  kind: EventKind;
   level: Level;
   site: number | null;
   task: string | null;

@@ -147,7 +147,7 @@ class Participant {
   };
   struct Finished {
     Round round;
-    MemberStatus::Entry entry;
+    TaskStatus entry;
     Instant report_until{};
   };
   void finish(const TaskId& task, TaskState state, Instant now);

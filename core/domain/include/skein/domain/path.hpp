@@ -7,16 +7,9 @@
 #include "skein/base/geometry.hpp"
 #include "skein/base/static_vector.hpp"
 #include "skein/base/time.hpp"
+#include "skein/idl/domain.hpp"
 
 namespace skein {
-
-/// A piece of constant curvature: a line (0) or an arc (1/m, positive turns left).
-struct Segment {
-  double curvature_per_m = 0.0;
-  double length_m = 0.0;  ///< >= 0
-};
-
-inline constexpr std::size_t kPathSegmentsMax = 64;
 
 /// A planar path of lines and arcs, continuous in position and heading. Trivially copyable.
 struct Path {

@@ -12,35 +12,9 @@
 #include "skein/base/time.hpp"
 #include "skein/formation/limits.hpp"
 #include "skein/formation/motion_profile.hpp"
+#include "skein/idl/formation.hpp"
 
 namespace skein::formation {
-
-/// A disc that vehicles keep on their left: straight to it, along its rim, straight on. With
-/// everybody turning the same way round, paths that would all cross in one point do not.
-struct Roundabout {
-  Vec2 centre{0.0, 0.0};
-  double radius_m = 0.0;
-};
-
-/// One vehicle in a change: from rest at the first point to rest at the last, by way of the others,
-/// at rest in each. Who only waits has one point, or equal ones.
-struct Mover {
-  VehicleId vehicle;
-  std::vector<Vec3> points;  ///< mission frame; Change::stages + 1 of them
-  bool around = false;       ///< straight legs that cut the roundabout go around it
-};
-
-/// A planned change of formation: where everybody flies, in one plan time. In each stage all leave
-/// together and arrive together, each at a speed in proportion to its way (Zheng 2020, eq. 6-8).
-struct Change {
-  std::uint32_t number = 0;  ///< grows; a newer change replaces an older one
-  Instant start{};           ///< of plan time
-  MotionLimits limits;       ///< of whoever has the longest way
-  Separation separation;     ///< that the vehicles' references keep, see passage.hpp
-  std::size_t stages = 1;
-  std::optional<Roundabout> roundabout;
-  std::vector<Mover> movers;
-};
 
 /// Which of the movers the vehicle is.
 [[nodiscard]] std::optional<std::size_t> mover_of(const Change& change, VehicleId vehicle);
@@ -107,8 +81,6 @@ class ChangeMotion {
   Duration duration_{};
 };
 
-inline constexpr std::size_t kMoversMax = 128;  ///< that a message can carry
-inline constexpr std::size_t kStagesMax = 3;
 /// From full speed at the full acceleration: what a MotionTrack has room for.
 inline constexpr double kStopWithin_s = 6.0;
 

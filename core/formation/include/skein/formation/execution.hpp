@@ -9,6 +9,7 @@
 #include "skein/base/attitude.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/motion_track.hpp"
+#include "skein/idl/formation.hpp"
 
 namespace skein::formation {
 
@@ -24,16 +25,6 @@ enum class Avoidance : std::uint8_t {
 [[nodiscard]] constexpr std::string_view to_string(Avoidance avoidance) {
   return avoidance == Avoidance::passage ? "passage" : "field";
 }
-
-/// How far a vehicle is in its change, in grains of plan time (Passage).
-struct Progress {
-  std::uint32_t change = 0;
-  Instant at{};            ///< a multiple of kSlot; up to one slot ahead
-  std::uint32_t done = 0;  ///< grains, at `at`
-  std::uint16_t rate = 0;  ///< of plan time by time, at `at`: Passage::full_rate() is 1
-  double off_m = 0.0;      ///< how far the vehicle itself is from its reference
-  friend bool operator==(const Progress&, const Progress&) = default;
-};
 
 /// Flies one vehicle's part of a change, from rest to rest. Deterministic.
 class Execution {

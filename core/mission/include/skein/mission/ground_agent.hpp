@@ -145,7 +145,7 @@ class GroundAgent {
   std::map<SiteId, std::size_t> scripted_;  ///< decisions that the script has taken so far
   Instant script_again_{Instant::min()};    ///< after a decision that could not be taken
   std::map<TaskId, Granted> granted_;
-  std::map<TaskId, coalition::MemberStatus::Entry> done_;
+  std::map<TaskId, coalition::TaskStatus> done_;
   std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
   std::vector<Hazard> hazards_;  ///< of the operator

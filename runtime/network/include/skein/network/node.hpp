@@ -58,6 +58,12 @@ struct Peer {
   codec::Role role = codec::Role::vehicle;
 };
 
+/// A node of another release, one of whose types we cannot read.
+struct Misfit {
+  VehicleId sender;
+  std::string text;  ///< "its skein::wire::Health is of version 9, ours of version 8"
+};
+
 /// This process on the mission network. All functions may be called from any thread, but poll()
 /// from one at a time. Nothing here waits for another node: not even a silent or a hostile one can
 /// stop the caller.
@@ -80,6 +86,9 @@ class Node {
   [[nodiscard]] std::optional<Received> poll();
 
   [[nodiscard]] std::vector<Peer> peers() const;
+
+  /// Those that were found since the last call: each sender, type and version once.
+  [[nodiscard]] std::vector<Misfit> take_misfits();
 
   /// What happened since open(): received, published, and by name whatever was dropped.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const;

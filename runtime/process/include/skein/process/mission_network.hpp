@@ -27,4 +27,7 @@ struct Traffic {
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 
+/// Tells the log of nodes whose messages cannot be read for their version, each type once.
+void log_misfits(network::Node& node);
+
 }  // namespace skein::process

@@ -34,7 +34,7 @@ struct Entry {
 
 /// The record's bytes as they stand in files. Empty where a value is out of its range.
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(const Content& content);
-/// All of it for people, in one line: "skein/msg/Command {version: 7, vehicle: 1, ...}".
+/// All of it for people, in one line of JSON.
 [[nodiscard]] std::string text_of(const Content& content);
 
 /// What a file has of one topic.

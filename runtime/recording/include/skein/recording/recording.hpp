@@ -13,36 +13,13 @@
 #include "skein/base/time.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/idl/recording.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/onboard_agent.hpp"
 
 /// What every process writes while it runs and every judge reads afterwards: MCAP files, one folder
 /// a node (docs/recordings.md). Everything in them is exact.
 namespace skein::recording {
-
-/// How a vehicle flew, at one moment.
-struct TrackPoint {
-  VehicleState state;
-  std::uint32_t plan_number = 0;  ///< of the plan that control followed then; 0 before the first
-  double along_error_m = 0.0;     ///< positive when ahead of time
-  double cross_error_m = 0.0;     ///< positive when left of the path
-};
-
-/// A flight plan, and when control began to follow it. It was in force until the next one's
-/// `since`.
-struct PlanRecord {
-  std::uint32_t number = 0;
-  Instant since{};
-  TimedPath plan;
-};
-
-/// Where a vehicle is to be at the end of a change of formation.
-struct PlaceRecord {
-  std::uint32_t change = 0;
-  Instant start{};
-  VehicleId vehicle;
-  Vec3 place_m = Vec3::Zero();
-};
 
 /// A message of the mission network, as the node sent it, or as it was given it.
 struct MessageRecord {
@@ -51,57 +28,8 @@ struct MessageRecord {
   Instant now{};
 };
 
-/// So many records had no room on their way to the file, since the last that says so.
-struct Gap {
-  std::uint64_t lost = 0;
-};
-
-/// What a vehicle's node is given besides messages, and what it gives besides them, each at the
-/// `now` of the step that it was given in.
-struct AgentStart {
-  InstanceId instance;
-  std::string program;  ///< as it names itself
-  Instant now{};
-};
-struct StateGiven {
-  VehicleState state;
-  Instant now{};
-};
-struct PlanningGiven {
-  coalition::Round round;
-  std::uint64_t expired_after = 0;  ///< its budget was spent when asked this often; 0: never
-  Duration took{};
-  Instant now{};
-};
-struct TimeoutGiven {
-  Instant now{};
-};
-struct NoticeGiven {
-  mission::FlightNotice notice;
-  Instant now{};
-};
-struct ConditionGiven {
-  mission::Condition condition;
-  Instant now{};
-};
-/// The next message under this vehicle's number was given, not said: another node has it too.
-struct NamesakeHeard {
-  Instant now{};
-};
-struct PlanMade {
-  std::shared_ptr<const mission::FlightPlan> plan;  ///< never null; large, so kept elsewhere
-  Instant now{};
-};
-/// A motion track, of which there is one in every slot, by its digest.
-struct TrackMade {
-  std::uint32_t number = 0;
-  Instant start{};
-  std::uint16_t points = 0;
-  Vec3 first_m = Vec3::Zero();
-  std::uint64_t digest = 0;  ///< FNV-1a of all its values
-  Instant now{};
-};
 using GuidanceMade = std::variant<PlanMade, TrackMade>;
+/// A motion track by its digest.
 [[nodiscard]] GuidanceMade made(const mission::Guidance& guidance, Instant now);
 
 /// What the agent's thread leaves for the recorder, in its order.
