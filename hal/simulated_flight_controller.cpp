@@ -6,8 +6,8 @@
 namespace skein::hal {
 
 SimulatedFlightController::SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
-                                                     const models::WindParams& wind)
-    : model_{vehicle, models::Wind{wind}, start, Instant{}} {}
+                                                     const models::WindParams& wind, Instant from)
+    : model_{vehicle, models::Wind{wind}, start, from} {}
 
 void SimulatedFlightController::advance_to(Instant now) {
   if (now > model_.state().time) model_.advance_to(now);
@@ -16,7 +16,7 @@ void SimulatedFlightController::advance_to(Instant now) {
 std::optional<VehicleState> SimulatedFlightController::state(Instant now) {
   advance_to(now);
   VehicleState state = model_.state();
-  state.time = std::min(now, state.time);  // at rest before mission time 0, yet not out of date
+  state.time = std::min(now, state.time);  // at rest before `from`, yet not out of date
   return state;
 }
 

@@ -110,9 +110,11 @@ VehicleNode& VehicleNode::operator=(VehicleNode&&) noexcept = default;
 
 void VehicleNode::on_state(const VehicleState& state, Instant now) {
   impl_->state = state;
-  if (now < Instant{} || state.time < Instant{}) return;
-  impl_->agent->on_state(state, now);
-  impl_->take_guidance();
+  if (now >= Instant{} && state.time >= Instant{}) {
+    impl_->agent->on_state(state, now);
+    impl_->take_guidance();
+  }
+  impl_->report_itself(now);
 }
 
 void VehicleNode::on_message(const Message& message, VehicleId sender, Instant now) {
@@ -167,6 +169,7 @@ Instant VehicleNode::next_timeout() const {
       {impl_->next_telemetry, impl_->self_report.next_due(), impl_->agent->next_timeout()});
 }
 
+const OnboardAgent& VehicleNode::agent() const { return *impl_->agent; }
 VehicleId VehicleNode::vehicle() const { return impl_->self; }
 InstanceId VehicleNode::instance() const { return impl_->agent->telemetry().instance; }
 Counters VehicleNode::counters() const { return impl_->counters(); }

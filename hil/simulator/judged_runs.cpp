@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
-#include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hil/team_record.hpp"
@@ -30,17 +29,6 @@ checks::CheckResult protocol_errors(const TeamResult& result) {
 }
 
 }  // namespace
-
-Result<TeamMission> seeded_mission(const configuration::Scenario& scenario, std::uint64_t seed,
-                                   const std::string& faults) {
-  const auto params = fault_params(faults, seed);
-  if (!params) return params.error();
-  configuration::Scenario seeded = scenario;
-  seeded.seed = seed;
-  TeamMission mission = team_mission(seeded);
-  add_faults(mission, *params);
-  return mission;
-}
 
 JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
                      const TeamObserver& watcher, checks::RunRecord* record) {

@@ -34,12 +34,12 @@ SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
   return {vehicle, {specs_[vehicle].id, site}};
 }
 
-std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<FlyingVehicle>& vehicles) {
+std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<Aircraft>& vehicles) {
   std::vector<Found> all;
   if (sensors_.hidden().empty()) return all;
   std::map<VehicleId, Vec2> positions;
   for (const auto& v : vehicles) {
-    if (v.agent() != nullptr) positions[v.spec().id] = v.state().position().horizontal();
+    if (v.running()) positions[v.spec().id] = v.state().position().horizontal();
   }
   for (const auto& report : sensors_.update(positions)) {
     const auto finder = std::find_if(specs_.begin(), specs_.end(),
@@ -49,7 +49,7 @@ std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<FlyingVehicle>
   return all;
 }
 
-std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<FlyingVehicle>& vehicles,
+std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft>& vehicles,
                                                       Instant now) {
   std::vector<Found> all;
   std::set<std::size_t> told;
@@ -60,9 +60,9 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<FlyingVe
       return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
     };
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
-      const auto* agent = vehicles[i].agent();
-      const bool can = agent != nullptr && specs_[i].capabilities.has(TaskKind::survey) &&
-                       agent->activity() == mission::Activity::searching && !told.contains(i);
+      const bool can = vehicles[i].in_coalitions() &&
+                       specs_[i].capabilities.has(TaskKind::survey) &&
+                       vehicles[i].activity() == mission::Activity::searching && !told.contains(i);
       if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
     }
     if (!nearest) return false;
@@ -73,7 +73,7 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<FlyingVe
   return all;
 }
 
-std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<FlyingVehicle>& vehicles) {
+std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft>& vehicles) {
   std::vector<Found> all;
   std::vector<Site> nobody;
   std::set<std::size_t> busy;
@@ -84,7 +84,7 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<FlyingVe
     };
     const auto consider = [&](bool also_busy) {
       for (std::size_t i = 0; i < vehicles.size(); ++i) {
-        const bool can = vehicles[i].agent() != nullptr &&
+        const bool can = vehicles[i].in_coalitions() &&
                          specs_[i].capabilities.has(TaskKind::survey) &&
                          (also_busy || !busy.contains(i));
         if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include "flying_vehicle.hpp"
+#include "aircraft.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_simulator.hpp"
 
@@ -24,13 +24,12 @@ class SiteFinder {
     mission::SiteReport report;
   };
   /// What the sensors see now.
-  [[nodiscard]] std::vector<Found> look(const std::vector<FlyingVehicle>& vehicles);
+  [[nodiscard]] std::vector<Found> look(const std::vector<Aircraft>& vehicles);
   /// The sites whose time to be reported has come (TeamMission::reported).
-  [[nodiscard]] std::vector<Found> report_due(const std::vector<FlyingVehicle>& vehicles,
-                                              Instant now);
+  [[nodiscard]] std::vector<Found> report_due(const std::vector<Aircraft>& vehicles, Instant now);
   /// Every site that is hidden still is reported, each to the nearest vehicle that can survey it;
   /// to different ones as long as there are some.
-  [[nodiscard]] std::vector<Found> report_all(const std::vector<FlyingVehicle>& vehicles);
+  [[nodiscard]] std::vector<Found> report_all(const std::vector<Aircraft>& vehicles);
 
   void on_event(const mission::MissionEvent& event);
   void on_agent_end(std::size_t vehicle);

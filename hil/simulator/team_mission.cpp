@@ -1,9 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/hil/team_mission.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <chrono>
+
+#include "skein/base/random.hpp"
+#include "skein/hil/fault_profiles.hpp"
 
 namespace skein::hil {
+namespace {
+
+/// Without faults a script takes some minutes; then it is going round in circles.
+constexpr Duration kLongest = std::chrono::minutes{20};
+constexpr std::uint64_t kScriptStream = 0x666f726d73637201;
+constexpr std::size_t kShapes = 3;
+
+/// Take-off, rally, shapes somewhere above the rally, rally, land.
+std::vector<std::string> random_script(const configuration::FormationConfig& formation,
+                                       std::size_t vehicles, Random& random) {
+  std::vector<std::string> shapes{"line-abreast", "column", "echelon", "wedge", "pentagon"};
+  for (const auto& shape : formation.shapes) shapes.push_back(shape.name);
+  std::vector<std::string> script{"take-off", "rally"};
+  const double room = 8.0 * static_cast<double>(vehicles);
+  for (std::size_t i = 0; i < kShapes; ++i) {
+    const Vec3& rally = formation.rally.centre;
+    script.push_back(fmt::format(
+        "form {} spacing {:.1f} heading {:.0f} at {:.1f} {:.1f} {:.1f}",
+        shapes[random.index(shapes.size())], formation.rally.spacing_m * random.uniform(0.8, 1.3),
+        random.uniform(0.0, 359.0), rally.x() + random.uniform(-room, room),
+        rally.y() + random.uniform(-room, room), rally.z() + random.uniform(0.0, 15.0)));
+    if (random.chance(0.3)) {
+      script.back() += fmt::format(" places {}", 1 + random.index(vehicles));
+    }
+    script.emplace_back("wait 1");
+  }
+  script.emplace_back("rally");
+  script.emplace_back("land");
+  return script;
+}
+
+/// Shapes and gusts are drawn with the faults; so much of take-off, rally and landing is besides.
+Result<void> add_formation_faults(TeamMission& mission, const std::string& profiles) {
+  std::vector<VehicleId> ids;
+  for (const auto& v : mission.vehicles) {
+    if (v.flies_formation) ids.push_back(v.spec.id);
+  }
+  std::sort(ids.begin(), ids.end());
+  std::size_t changes = 1;
+  if (profiles != "none") {
+    Random random{mission.seed ^ kScriptStream};
+    mission.formation->script = random_script(*mission.formation, ids.size(), random);
+    mission.gust_error_m = random.uniform(0.02, 0.1);
+    changes = kShapes + 4;
+  }
+  const auto drawn = formation_faults(profiles, ids, changes, mission.seed);
+  if (!drawn) return drawn.error();
+  mission.faults.insert(mission.faults.end(), drawn->begin(), drawn->end());
+  return {};
+}
+
+}  // namespace
 
 std::vector<mission::ScriptedDecision> scripted_decisions(
     const std::vector<configuration::OperatorDecision>& decisions) {
@@ -28,7 +86,12 @@ radio::RadioParams radio_params(const configuration::RadioConfig& radio) {
 
 TeamMission team_mission(const configuration::Scenario& scenario) {
   TeamMission team;
-  for (const auto& v : scenario.vehicles) team.vehicles.push_back({v.spec, v.start, v.search});
+  for (const auto& v : scenario.vehicles) {
+    const bool multirotor = configuration::is_multirotor(v);
+    team.vehicles.push_back({v.spec, v.start, v.search,
+                             multirotor ? Body::multirotor : Body::heading_dynamics, multirotor});
+  }
+  if (scenario.flies_formation()) team.formation = scenario.formation;
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.protocol = scenario.protocol;
@@ -37,9 +100,24 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   team.radio = radio_params(scenario.radio);
   team.faults = faults_of(scenario);
   team.wind = wind_params(scenario.wind, scenario.seed);
-  team.duration_max = scenario.duration_max;
+  team.duration_max = scenario.flies_formation() ? kLongest : scenario.duration_max;
   team.seed = scenario.seed;
   return team;
+}
+
+Result<TeamMission> seeded_mission(const configuration::Scenario& scenario, std::uint64_t seed,
+                                   const std::string& profiles) {
+  configuration::Scenario seeded = scenario;
+  seeded.seed = seed;
+  TeamMission mission = team_mission(seeded);
+  if (mission.formation) {
+    if (const auto drawn = add_formation_faults(mission, profiles); !drawn) return drawn.error();
+    return mission;
+  }
+  const auto params = fault_params(profiles, seed);
+  if (!params) return params.error();
+  add_faults(mission, *params);
+  return mission;
 }
 
 checks::Limits limits_of(const configuration::Expectations& expect) {

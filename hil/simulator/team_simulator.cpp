@@ -13,8 +13,10 @@
 #include <variant>
 #include <vector>
 
-#include "flying_vehicle.hpp"
+#include "aircraft.hpp"
+#include "ground_station.hpp"
 #include "in_flight.hpp"
+#include "multirotor_body.hpp"
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/hil/fault_timeline.hpp"
@@ -24,29 +26,35 @@ namespace skein::hil {
 namespace {
 
 constexpr Duration kControlPeriod = std::chrono::milliseconds{20};
-constexpr Duration kAgentPeriod = std::chrono::milliseconds{40};
+constexpr Duration kNodePeriod = std::chrono::milliseconds{40};
+constexpr Duration kFormationNodePeriod = std::chrono::milliseconds{20};
 constexpr Duration kSensorPeriod = std::chrono::milliseconds{100};
-constexpr Duration kTelemetryPeriod = std::chrono::milliseconds{200};
 constexpr Duration kTrackPeriod = std::chrono::milliseconds{100};
 constexpr Duration kAfterwards = std::chrono::seconds{5};
 /// How long the track of a vehicle goes on that nobody hears of any more: what it has just done can
 /// be judged.
 constexpr Duration kSeenWhenGone = std::chrono::seconds{2};
+/// A formation is at rest for so long once its script is done.
+constexpr Duration kAtRest = std::chrono::seconds{2};
+/// Or, where it is not: nothing comes any more. Longer than the ground station takes to know that a
+/// vehicle is lost, and to give an order again.
+constexpr Duration kIdle = std::chrono::seconds{30};
+/// Slower, a reference stands still.
+constexpr double kStill_mps = 1e-3;
+constexpr std::uint64_t kGustStream = 0x666f726d67757301;
 
 bool due(Instant now, Duration period) {
   return now.time_since_epoch() % period == Duration::zero();
 }
 
-mission::GroundAgentConfig ground_config(const TeamMission& mission) {
-  mission::GroundAgentConfig config;
-  for (const auto& v : mission.vehicles) config.expected.push_back(v.spec.id);
-  config.decisions = mission.decisions;
-  return config;
+/// What no program of the team reads: people do, and nobody watches here.
+bool is_for_watchers(const mission::Message& message) {
+  return std::holds_alternative<mission::PlanReport>(message) ||
+         std::holds_alternative<mission::Health>(message);
 }
 
-bool has_role(const mission::VehicleAgent& agent, Role role) {
+bool has_role(mission::Activity activity, Role role) {
   using mission::Activity;
-  const Activity activity = agent.activity();
   switch (role) {
     case Role::any:
       return true;
@@ -73,16 +81,17 @@ class Team {
         radio_{mission.radio, mission.seed},
         timeline_{mission.faults},
         healing_{healing_of(mission.faults)},
-        finder_{mission} {
-    const models::Wind wind{mission.wind};
+        finder_{mission},
+        ground_{mission} {
+    Random gusts{mission.seed ^ kGustStream};
     for (const auto& v : mission.vehicles) {
-      vehicles_.emplace_back(mission, v, wind);
+      vehicles_.emplace_back(mission, v, gusts.fork());
       nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
     }
     nodes_.push_back({{kGroundStation, std::nullopt}, true});
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
-    start_ground(Instant{});
+    ground_.start(Instant{});
     for (const auto& h : mission.hazards) {
       if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
     }
@@ -99,12 +108,16 @@ class Team {
       deliver(now);
       control(now);
       if (due(now, kSensorPeriod)) sense(now);
-      if (due(now, kAgentPeriod)) step_agents(now);
+      step_nodes(now);
+      if (due(now, kNodePeriod)) step_ground(now);
+      if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
-      if (!stop_at && sites_over_.size() == mission_.sites.size()) {
-        stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + kAfterwards);
+      if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now)) {
+        const Duration afterwards = mission_.sites.empty() ? Duration{} : kAfterwards;
+        stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + afterwards);
       }
     }
+    result_.ground_gone = gone_at_.back().has_value();
     result_.sites_done = sites_done_.size();
     for (std::size_t i = 0; i < vehicles_.size(); ++i) sum_up(i);
     return result_;
@@ -130,9 +143,10 @@ class Team {
       if (!restart_at_[i] || now < *restart_at_[i]) continue;
       restart_at_[i].reset();
       if (i == ground_index()) {
-        start_ground(now);
+        ground_.start(now);
+        result_.ground_warning.reset();
       } else {
-        vehicles_[i].start_agent(hazards_);
+        vehicles_[i].start_program(hazards_);
       }
       nodes_[i].on = true;
       tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);
@@ -141,8 +155,8 @@ class Team {
 
   [[nodiscard]] std::vector<VehicleId> having(Role role) const {
     std::vector<VehicleId> some;
-    for (const FlyingVehicle& v : vehicles_) {
-      if (v.agent() != nullptr && has_role(*v.agent(), role)) some.push_back(v.spec().id);
+    for (const Aircraft& v : vehicles_) {
+      if (v.in_coalitions() && has_role(v.activity(), role)) some.push_back(v.spec().id);
     }
     return some;
   }
@@ -180,19 +194,23 @@ class Team {
       // to keep its distance.
       if (fault.when.role && !vehicles_[i].can_hold(hazards_)) return false;
     }
-    for (const VehicleId id : who) end_program(index_of(id), fault.lasts, now);
+    const auto& sinks_after = std::get<ProgramsEnd>(fault.what).sinks_after;
+    for (const VehicleId id : who) {
+      end_program(index_of(id), fault.lasts, now);
+      if (sinks_after) vehicles_[index_of(id)].sink(now + *sinks_after);
+    }
     return true;
   }
 
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now) {
     if (!nodes_[i].on) return;  // down already
     if (i == ground_index()) {
-      ground_.reset();
+      ground_.end();
     } else {
       count_errors(i);
-      vehicles_[i].end_agent(now, hazards_);
+      vehicles_[i].end_program(now, hazards_);
       finder_.on_agent_end(i);
-      if (observer_.plan) observer_.plan(vehicles_[i].spec().id, vehicles_[i].plan(), now);
+      tell_plan(vehicles_[i], now);
     }
     nodes_[i].on = false;
     if (down_for) {
@@ -203,7 +221,9 @@ class Team {
     tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id);
   }
 
-  void start_ground(Instant now) { ground_.emplace(ground_config(mission_), now); }
+  void tell_plan(const Aircraft& v, Instant now) {
+    if (observer_.plan && v.plan() != nullptr) observer_.plan(v.spec().id, *v.plan(), now);
+  }
 
   void take_off(std::size_t i, Instant now) {
     vehicles_[i].take_off(now);
@@ -235,18 +255,17 @@ class Team {
   void deliver(Instant now) {
     while (const auto parcel = air_.pop_due(now)) {
       if (parcel->to == ground_index()) {
-        if (!ground_) continue;
-        ground_->on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
+        if (!ground_.running()) continue;
+        ground_.on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
         drain_ground(now);
         continue;
       }
-      const FlyingVehicle& v = vehicles_[parcel->to];
-      if (v.agent() == nullptr) continue;
+      Aircraft& v = vehicles_[parcel->to];
+      if (!v.running()) continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
-        if (parcel->life == v.life()) v.agent()->on_planning_result(*planned, v.local(now));
+        if (parcel->life == v.life()) v.node()->on_planning_result(*planned, v.local(now));
       } else {
-        v.agent()->on_message(std::get<mission::Message>(*parcel->what), parcel->from,
-                              v.local(now));
+        v.node()->on_message(std::get<mission::Message>(*parcel->what), parcel->from, v.local(now));
       }
       drain(parcel->to, now);
     }
@@ -254,12 +273,13 @@ class Team {
 
   void control(Instant now) {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      FlyingVehicle& v = vehicles_[i];
-      if (!v.flying() || (gone_at_[i] && now > *gone_at_[i] + kSeenWhenGone)) continue;
+      Aircraft& v = vehicles_[i];
+      const bool unseen = gone_at_[i] && now > *gone_at_[i] + kSeenWhenGone;
+      if (!v.flying() || (unseen && !v.what().flies_formation)) continue;
       const bool follows = v.control(now);
       nodes_[i].node.position = v.state().position().horizontal();
-      if (follows && due(now, kTrackPeriod) && observer_.track) {
-        observer_.track(v.spec().id, v.state(), v.plan());
+      if (follows && due(now, kTrackPeriod) && observer_.track && v.plan() != nullptr) {
+        observer_.track(v.spec().id, v.state(), *v.plan());
       }
     }
   }
@@ -288,31 +308,35 @@ class Team {
     }
   }
 
-  void step_agents(Instant now) {
+  void step_nodes(Instant now) {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      const FlyingVehicle& v = vehicles_[i];
-      if (v.agent() == nullptr) continue;
-      v.agent()->on_state(v.local_state(), v.local(now));
+      Aircraft& v = vehicles_[i];
+      const Duration period = v.what().flies_formation ? kFormationNodePeriod : kNodePeriod;
+      if (!v.running() || !due(now, period)) continue;
+      v.node()->on_state(v.local_state(), v.local(now));
       drain(i, now);
-      if (due(now, kTelemetryPeriod)) broadcast(i, mission::Message{v.agent()->telemetry()}, now);
     }
-    if (!ground_) return;
-    ground_->on_timeout(now);
+  }
+
+  void step_ground(Instant now) {
+    if (!ground_.running()) return;
+    ground_.on_timeout(now);
     drain_ground(now);
   }
 
   void drain(std::size_t i, Instant now) {
-    FlyingVehicle& v = vehicles_[i];
-    while (const auto message = v.agent()->poll_message()) {
-      ++result_.messages;
+    Aircraft& v = vehicles_[i];
+    while (const auto message = v.node()->poll_message()) {
+      if (is_for_watchers(*message)) continue;
+      if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, *message, now);
     }
-    while (const auto event = v.agent()->poll_event()) on_event(v, *event);
-    while (const auto guidance = v.agent()->poll_guidance()) {
-      v.follow(std::get<mission::FlightPlan>(*guidance));
-      if (observer_.plan) observer_.plan(v.spec().id, v.plan(), now);
+    while (const auto event = v.node()->poll_event()) on_event(v, *event);
+    while (const auto guidance = v.node()->poll_guidance()) {
+      v.follow(*guidance);
+      tell_plan(v, now);
     }
-    while (const auto request = v.agent()->poll_planning_request()) {
+    while (const auto request = v.node()->poll_planning_request()) {
       const mission::PlanningResult planned{request->round,
                                             planning::allocate(request->params, request->problem),
                                             mission_.allocation_takes};
@@ -321,7 +345,7 @@ class Team {
     }
   }
 
-  void on_event(FlyingVehicle& v, const mission::MissionEvent& event) {
+  void on_event(Aircraft& v, const mission::MissionEvent& event) {
     using mission::EventKind;
     finder_.on_event(event);
     if (event.kind() == EventKind::site_done) sites_done_.insert(event.task.site);
@@ -333,13 +357,43 @@ class Team {
   }
 
   void drain_ground(Instant now) {
-    while (const auto message = ground_->poll_message()) {
-      broadcast(ground_index(), *message, now);
+    while (const auto message = ground_.poll_message()) broadcast(ground_index(), *message, now);
+    while (const auto event = ground_.poll_event()) {
+      if (observer_.event) observer_.event(*event);
+      if (mission_.formation) on_formation_event(*event, now);
     }
-    while (const auto event = ground_->poll_event()) {
-      // Those of the vehicles have been seen at their source.
-      if (event->vehicle == kGroundStation && observer_.event) observer_.event(*event);
+  }
+
+  // --- the formation ---
+
+  void on_formation_event(const mission::MissionEvent& event, Instant now) {
+    using mission::EventKind;
+    moved_at_ = now;
+    if (event.kind() == EventKind::change_begun) {
+      timeline_.on_change_begun(now);
+      result_.ground_warning.reset();
     }
+    if (mission::is_warning(event.kind())) result_.ground_warning = event;
+    script_done_ = script_done_ || event.kind() == EventKind::script_done;
+  }
+
+  void watch_formation(Instant now) {
+    std::vector<SeenBody> bodies;
+    for (const Aircraft& v : vehicles_) {
+      if (!v.what().flies_formation) continue;
+      const Vec3 position = v.position();
+      const auto reference = v.reference(now);
+      if (reference && reference->velocity_mps.norm() > kStill_mps) moved_at_ = now;
+      bodies.push_back({v.spec().id, position, position.z() > MultirotorBody::kAirborne_m,
+                        reference ? (position - reference->position_m).norm() : 0.0});
+    }
+    if (observer_.bodies) observer_.bodies(now, bodies);
+  }
+
+  [[nodiscard]] bool formation_over(Instant now) const {
+    if (!mission_.formation) return true;
+    if (script_done_) return now - moved_at_ > kAtRest;
+    return now - std::max(moved_at_, timeline_.quiet_from()) > kIdle;
   }
 
   /// From a sensor on board: no radio lies between.
@@ -348,18 +402,19 @@ class Team {
   }
 
   void count_errors(std::size_t i) {
-    const auto counters = vehicles_[i].agent()->counters();
+    const auto counters = vehicles_[i].node()->counters();
     result_.protocol_errors += counters.protocol_errors;
     result_.dropped += counters.messages_dropped + counters.events_dropped;
   }
 
   void sum_up(std::size_t i) {
-    const FlyingVehicle& v = vehicles_[i];
-    if (v.agent() != nullptr) count_errors(i);
+    const Aircraft& v = vehicles_[i];
+    if (v.running()) count_errors(i);
     VehicleEnd end;
     end.vehicle = v.spec().id;
     end.gone = gone_at_[i].has_value();
     end.loads = v.loads_left();
+    end.in_place = v.in_place();
     if (v.flying()) {
       end.range_left_m = v.spec().range_m - v.state().distance_flown_m;
       end.position = v.state().position().horizontal();
@@ -374,8 +429,8 @@ class Team {
   FaultTimeline timeline_;
   std::optional<Instant> healing_;
   SiteFinder finder_;
-  std::optional<mission::GroundAgent> ground_;  ///< none while its program is down
-  std::vector<FlyingVehicle> vehicles_;
+  GroundStation ground_;
+  std::vector<Aircraft> vehicles_;
   std::vector<Station> nodes_;   ///< the vehicles, then the ground station
   std::vector<Hazard> hazards_;  ///< that exist by now
   std::set<HazardId> told_;
@@ -383,6 +438,8 @@ class Team {
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator
   std::vector<std::optional<Instant>> restart_at_;  ///< of each node
   std::vector<std::optional<Instant>> gone_at_;
+  bool script_done_ = false;  ///< of the formation
+  Instant moved_at_{};        ///< it did, or was given an order
   TeamResult result_;
 };
 
@@ -402,15 +459,19 @@ std::string trace_line(const mission::MissionEvent& event) {
   return head.data() + to_string(event.task) + "  " + wording::news_of(event);
 }
 
-std::string trace_line(const FaultEvent& event) {
+std::string text_of(const FaultEvent& event) {
   static constexpr std::array<const char*, 8> kNames{
       "its program ends", "its program ends for good", "starts anew", "joins", "is told of",
       "appears",          "the radio heals",           "the radio,"};
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(), "%12.6f  %3u  FAULT: %s", to_seconds(event.time),
-                static_cast<unsigned>(event.vehicle.value),
-                kNames.at(static_cast<std::size_t>(event.kind)));
-  return line.data() + (event.text.empty() ? "" : " " + event.text);
+  return kNames.at(static_cast<std::size_t>(event.kind)) +
+         (event.text.empty() ? "" : " " + event.text);
+}
+
+std::string trace_line(const FaultEvent& event) {
+  std::array<char, 48> line{};
+  std::snprintf(line.data(), line.size(), "%12.6f  %3u  FAULT: ", to_seconds(event.time),
+                static_cast<unsigned>(event.vehicle.value));
+  return line.data() + text_of(event);
 }
 
 std::string describe(const TeamMission& mission) {

@@ -7,8 +7,9 @@
 
 #include "commands.hpp"
 #include "progress_line.hpp"
-#include "skein/hil/change_trials.hpp"
-#include "skein/hil/formation_simulator.hpp"
+#include "skein/change_trials/change_trials.hpp"
+#include "skein/hil/formation_runs.hpp"
+#include "skein/hil/judged_runs.hpp"
 #include "skein/hil/run_parallel.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -30,24 +31,25 @@ void print_violations(const FormationRun& run) {
 }
 
 int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
-  const auto mission = formation_mission(scenario, scenario.seed, arguments.faults);
+  const auto mission = seeded_mission(scenario, scenario.seed, arguments.faults);
   if (!mission) {
     fmt::print(stderr, "{}\n", mission.error().message);
     return kExitBadInput;
   }
   if (arguments.trace) {
-    for (const auto& line : mission->formation.script) fmt::print("script: {}\n", line);
-    for (const Fault& fault : mission->faults) fmt::print("fault: {}\n", describe(fault));
+    for (const auto& line : mission->formation->script) fmt::print("script: {}\n", line);
+    fmt::print("{}", describe(*mission));
   }
-  FormationObserver watcher;
+  TeamObserver watcher;
   watcher.event = [&](const mission::MissionEvent& event) {
     const bool news = event.vehicle == kGroundStation || mission::is_warning(event.kind());
     if (!arguments.trace && !news) return;
     fmt::print("{:8.2f} {:<4} {} {}\n", to_seconds(event.time), who(event.vehicle),
                mission::to_string(event.kind()), wording::news_of(event));
   };
-  watcher.fault = [](Instant now, const std::string& text) {
-    fmt::print("{:8.2f} FAULT {}\n", to_seconds(now), text);
+  watcher.fault = [](const FaultEvent& event) {
+    fmt::print("{:8.2f} {:<4} FAULT {}\n", to_seconds(event.time), who(event.vehicle),
+               text_of(event));
   };
   const auto run = fly_formation(*mission, watcher);
   if (!run) {
@@ -127,9 +129,10 @@ int simulate_formation(const configuration::Scenario& scenario,
 
 int changes(const ChangesArguments& arguments) {
   ProgressLine line{arguments.runs};
-  const auto all =
-      try_changes(arguments.first_seed, arguments.runs, jobs_of(arguments.jobs),
-                  [&](const JudgedChange& change) { line.count(change.violation.empty()); });
+  using change_trials::JudgedChange;
+  const auto all = change_trials::try_changes(
+      arguments.first_seed, arguments.runs, jobs_of(arguments.jobs),
+      [&](const JudgedChange& change) { line.count(change.violation.empty()); });
   line.clear();
   std::map<std::string, std::size_t> ways;
   std::size_t violated = 0;

@@ -8,11 +8,11 @@
 namespace skein::hal {
 
 /// A flight controller with its fixed wing, in this process: models::HeadingDynamics, integrated up
-/// to `now` whenever it is asked. Until mission time 0 it stays at its start.
+/// to `now` whenever it is asked. Until `from` it stays at its start.
 class SimulatedFlightController final : public FlightController {
  public:
   SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
-                            const models::WindParams& wind);
+                            const models::WindParams& wind, Instant from = Instant{});
 
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
   void command(const Demand& demand, Instant now) override;

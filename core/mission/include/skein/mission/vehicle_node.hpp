@@ -54,6 +54,8 @@ class VehicleNode {
   [[nodiscard]] std::optional<Instant> poll_give_back();
   [[nodiscard]] Instant next_timeout() const;
 
+  /// What decides, for whoever looks on.
+  [[nodiscard]] const OnboardAgent& agent() const;
   [[nodiscard]] VehicleId vehicle() const;
   [[nodiscard]] InstanceId instance() const;
   [[nodiscard]] Counters counters() const;

@@ -11,6 +11,7 @@
 #include "skein/checks/checks.hpp"
 #include "skein/checks/run_record.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/hil/team_mission.hpp"
 #include "skein/hil/team_simulator.hpp"
 
 namespace skein::hil {
@@ -24,11 +25,6 @@ struct JudgedRun {
   std::vector<checks::Violation> excused;   ///< of all checks: proven to be unavoidable
   [[nodiscard]] bool held() const { return broken.empty(); }
 };
-
-/// The scenario with this seed in place of its own, and the faults that the profiles draw with it
-/// ("none": none). Fails for a profile that there is not.
-[[nodiscard]] Result<TeamMission> seeded_mission(const configuration::Scenario& scenario,
-                                                 std::uint64_t seed, const std::string& faults);
 
 /// Flies the mission once, in the calling thread, and judges it. `watcher` sees the run; what the
 /// judges read is copied to `record` where one is wanted.

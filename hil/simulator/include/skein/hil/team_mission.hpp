@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "skein/base/result.hpp"
 #include "skein/checks/run_record.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/team_simulator.hpp"
@@ -9,6 +14,12 @@ namespace skein::hil {
 
 /// The scenario as the simulator flies it, with the faults of its time line.
 [[nodiscard]] TeamMission team_mission(const configuration::Scenario& scenario);
+
+/// The scenario with this seed in place of its own, and with the faults that the profiles draw with
+/// it besides ("none": none). In a formation the shapes and the gusts are drawn then too; with
+/// "none" the scenario's script is flown. Fails for a profile that there is not for such a mission.
+[[nodiscard]] Result<TeamMission> seeded_mission(const configuration::Scenario& scenario,
+                                                 std::uint64_t seed, const std::string& profiles);
 
 /// The scripted decisions as the ground agent takes them.
 [[nodiscard]] std::vector<mission::ScriptedDecision> scripted_decisions(

@@ -4,12 +4,16 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "skein/base/attitude.hpp"
 #include "skein/base/geometry.hpp"
+#include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/formation_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -23,10 +27,20 @@
 
 namespace skein::hil {
 
+/// What a simulated vehicle is under its flight controller (hal::FlightController).
+enum class Body : std::uint8_t {
+  heading_dynamics,  ///< a fixed wing, by models::HeadingDynamics
+  multirotor,        ///< a point that follows its reference as well as gusts let it
+  hexarotor          ///< six degrees of freedom, by hal::SimulatedMultirotor
+};
+
 struct SimulatedVehicle {
   VehicleSpec spec;
   Pose2 start;
   std::vector<Vec2> search;
+  Body body = Body::heading_dynamics;
+  /// By orders of the ground station; otherwise it works in coalitions.
+  bool flies_formation = false;
 };
 
 /// A hazard and when it comes into being; everyone is told then.
@@ -51,7 +65,11 @@ struct TeamMission {
   Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
   Duration duration_max = std::chrono::seconds{300};
   std::uint64_t seed = 1;
-  std::vector<Fault> faults;  ///< of the scenario, and drawn by add_faults()
+  std::vector<Fault> faults;  ///< of the scenario, and drawn ones
+  /// With the script that is flown; there is one where some vehicle flies in formation.
+  std::optional<configuration::FormationConfig> formation;
+  /// Of how far gusts push a multirotor from its reference, per axis; never beyond 0.3 m.
+  double gust_error_m = 0.05;
 };
 
 /// A fault, or a part of its mending, that took place.
@@ -72,6 +90,14 @@ struct FaultEvent {
   std::string text;
 };
 
+/// A body as whoever watches from outside sees it.
+struct SeenBody {
+  VehicleId vehicle;
+  Vec3 position_m = Vec3::Zero();
+  bool airborne = false;
+  double off_m = 0.0;  ///< from its reference, while it has one
+};
+
 /// What is observed while it runs; called in the order of time, and all times are true mission
 /// time, whatever a vehicle's clock says.
 struct TeamObserver {
@@ -80,6 +106,8 @@ struct TeamObserver {
   std::function<void(VehicleId, const mission::FlightPlan&, Instant)> plan;
   std::function<void(VehicleId, const VehicleState&, const mission::FlightPlan&)> track;
   std::function<void(const FaultEvent&)> fault;
+  /// All that fly in formation, in the mission's order, at every control step.
+  std::function<void(Instant, const std::vector<SeenBody>&)> bodies;
 };
 
 /// A vehicle when the mission ended.
@@ -89,23 +117,33 @@ struct VehicleEnd {
   std::uint8_t loads = 0;
   double range_left_m = 0.0;
   Vec2 position{0.0, 0.0};
+  bool in_place = true;  ///< it has come to where its newest change of formation ends
 };
 
 struct TeamResult {
   Instant ended_at{};
   std::size_t sites_done = 0;
-  std::uint64_t messages = 0;         ///< sent, counted once for each sender
+  std::uint64_t messages = 0;         ///< of vehicles, but telemetry; counted once for each sender
   std::uint64_t protocol_errors = 0;  ///< sum over the vehicles
   std::uint64_t dropped = 0;  ///< messages and events that an agent's queues had no room for
   std::vector<VehicleEnd> vehicles;
+  bool ground_gone = false;  ///< its program ended for good
+  /// What it last said in the newest change of the formation.
+  std::optional<mission::MissionEvent> ground_warning;
 };
 
-/// Flies the mission with the production agents, guidance and vehicle model, in one thread and in
-/// virtual time, until all sites are done or refused by the operator (and 5 s more, and not before
-/// the radio has healed) or duration_max. Nothing in it reads a clock or an unseeded generator: the
+/// Fails where the formation's script, or a shape's file, cannot be read.
+[[nodiscard]] Result<void> check_script(const TeamMission& mission);
+
+/// Flies the mission with the production agents and ground station, guidance and vehicle models, in
+/// one thread and in virtual time. It ends at duration_max, or before it when all is done: the
+/// sites, by work or by the operator's refusal (and 5 s more, and not before the radio has healed);
+/// the formation's script (and 2 s of rest more; 30 s where it is not done, and nothing moves any
+/// more). Precondition: check_script(). Nothing in it reads a clock or an unseeded generator: the
 /// same mission gives the same calls, byte for byte.
 TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer);
 
+[[nodiscard]] std::string text_of(const FaultEvent& event);
 /// One line an event, for traces and their comparison.
 [[nodiscard]] std::string trace_line(const mission::MissionEvent& event);
 [[nodiscard]] std::string trace_line(const FaultEvent& event);

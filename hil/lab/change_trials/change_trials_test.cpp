@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/hil/change_trials.hpp"
+#include "skein/change_trials/change_trials.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
 
-namespace skein::hil {
+namespace skein::change_trials {
 namespace {
 
 void expect_separation(std::size_t changes, std::size_t jobs) {
@@ -52,4 +52,4 @@ TEST(ChangeTrials, TheJudgeFindsWhatThePlannerWouldHaveToFind) {
 }
 
 }  // namespace
-}  // namespace skein::hil
+}  // namespace skein::change_trials

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/hil/change_trials.hpp"
+#include "skein/change_trials/change_trials.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "skein/formation/shapes.hpp"
 #include "skein/hil/run_parallel.hpp"
 
-namespace skein::hil {
+namespace skein::change_trials {
 namespace {
 
 using formation::ChangeRequest;
@@ -238,9 +238,9 @@ JudgedChange try_change(std::uint64_t seed) {
 std::vector<JudgedChange> try_changes(std::uint64_t first_seed, std::size_t runs, std::size_t jobs,
                                       const std::function<void(const JudgedChange&)>& on_done) {
   const auto fly = [&](std::size_t i) { return try_change(first_seed + i); };
-  auto all = run_parallel<JudgedChange>(runs, jobs, fly, on_done);
+  auto all = hil::run_parallel<JudgedChange>(runs, jobs, fly, on_done);
   SKEIN_ASSERT(all.ok());
   return std::move(*all);
 }
 
-}  // namespace skein::hil
+}  // namespace skein::change_trials

@@ -2,14 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "skein/base/attitude.hpp"
 #include "skein/formation/limits.hpp"
-#include "skein/hil/formation_simulator.hpp"
+#include "skein/hil/formation_runs.hpp"
 
 namespace skein::hil {
 
@@ -22,29 +22,23 @@ class AirspaceJudge {
     double ceiling_m = 0.0;
     double tracking_m = 0.0;  ///< what references allow for
   };
-  AirspaceJudge(const Limits& limits, std::vector<VehicleId> vehicles);
+  explicit AirspaceJudge(const Limits& limits) : limits_{limits} {}
 
-  struct Body {
-    Vec3 position_m = Vec3::Zero();
-    bool airborne = false;
-    double off_m = 0.0;  ///< from its reference
-  };
-  void step(const std::vector<Body>& bodies, Instant now);
+  /// Always the same bodies.
+  void step(const std::vector<SeenBody>& bodies, Instant now);
 
   [[nodiscard]] std::vector<FormationViolation> take() { return std::move(violations_); }
   [[nodiscard]] double least_m() const { return least_m_; }
   [[nodiscard]] double farthest_m() const { return farthest_m_; }
 
  private:
-  void see_pair(std::size_t a, std::size_t b, const std::vector<Body>& bodies, Instant now);
-  [[nodiscard]] std::string name(std::size_t i) const;
+  void see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies, Instant now);
 
   Limits limits_;
-  std::vector<VehicleId> vehicles_;
-  std::vector<Body> before_;
+  std::vector<SeenBody> before_;
   std::set<std::pair<std::size_t, std::size_t>> told_;
   std::vector<FormationViolation> violations_;
-  double least_m_;
+  double least_m_ = std::numeric_limits<double>::infinity();
   double farthest_m_ = 0.0;
 };
 

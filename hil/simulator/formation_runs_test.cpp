@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/hil/formation_simulator.hpp"
+#include "skein/hil/formation_runs.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "skein/hil/team_mission.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
@@ -30,8 +32,8 @@ std::string text_of(const FormationRun& run) {
   return text;
 }
 
-TEST(FormationSimulator, ThePapersFlightComesToItsEnd) {
-  const auto mission = formation_mission(five(), 1, "none");
+TEST(FormationRuns, ThePapersFlightComesToItsEnd) {
+  const auto mission = seeded_mission(five(), 1, "none");
   ASSERT_TRUE(mission) << mission.error().message;
   const auto run = fly_formation(*mission);
   ASSERT_TRUE(run) << run.error().message;
@@ -42,18 +44,18 @@ TEST(FormationSimulator, ThePapersFlightComesToItsEnd) {
   EXPECT_GE(run->changes, 10U);
 }
 
-TEST(FormationSimulator, ThePapersFieldComesToItsEndMoreSlowly) {
+TEST(FormationRuns, ThePapersFieldComesToItsEndMoreSlowly) {
   configuration::Scenario scenario = five();
-  const auto passage = fly_formation(*formation_mission(scenario, 1, "none"));
+  const auto passage = fly_formation(*seeded_mission(scenario, 1, "none"));
   scenario.formation.avoidance = formation::Avoidance::field;
-  const auto field = fly_formation(*formation_mission(scenario, 1, "none"));
+  const auto field = fly_formation(*seeded_mission(scenario, 1, "none"));
   ASSERT_TRUE(passage && field);
   EXPECT_TRUE(field->held()) << text_of(*field);
   EXPECT_TRUE(field->script_done);
   EXPECT_GT(field->ended_at, passage->ended_at);
 }
 
-TEST(FormationSimulator, AHundredTeamsWithFaultsHold) {
+TEST(FormationRuns, AHundredTeamsWithFaultsHold) {
   const auto runs = fly_formations(five(), {"mixed", 1, 100, 1});
   ASSERT_TRUE(runs) << runs.error().message;
   std::size_t done = 0;
@@ -65,18 +67,21 @@ TEST(FormationSimulator, AHundredTeamsWithFaultsHold) {
   EXPECT_GT(done, 40U);
 }
 
-TEST(FormationSimulator, TheSameSeedGivesTheSameBytes) {
-  const auto mission = formation_mission(five(), 3, "mixed");
+TEST(FormationRuns, TheSameSeedGivesTheSameBytes) {
+  const auto mission = seeded_mission(five(), 3, "mixed");
   ASSERT_TRUE(mission);
   const auto trace = [&] {
     std::string text;
-    FormationObserver observer;
+    TeamObserver observer;
     observer.event = [&](const mission::MissionEvent& event) {
       text += fmt::format("{} {} {}\n", event.time.time_since_epoch().count(),
                           mission::to_string(event.kind()), wording::news_of(event));
     };
-    observer.body = [&](Instant, VehicleId, const Vec3& p) {
-      text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+    observer.bodies = [&](Instant, const std::vector<SeenBody>& bodies) {
+      for (const SeenBody& body : bodies) {
+        const Vec3& p = body.position_m;
+        text += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+      }
     };
     EXPECT_TRUE(fly_formation(*mission, observer));
     return text;
@@ -94,10 +99,10 @@ Fault fault(std::vector<VehicleId> who, double after_s, std::optional<double> la
 }
 
 FormationRun fly(const std::vector<Fault>& faults) {
-  auto mission = formation_mission(five(), 1, "none");
+  auto mission = seeded_mission(five(), 1, "none");
   EXPECT_TRUE(mission);
-  mission->formation.script = {"take-off", "rally", "form column spacing 5 at 0 60 20", "rally",
-                               "land"};
+  mission->formation->script = {"take-off", "rally", "form column spacing 5 at 0 60 20", "rally",
+                                "land"};
   mission->faults = faults;
   auto run = fly_formation(*mission);
   EXPECT_TRUE(run);
@@ -105,29 +110,29 @@ FormationRun fly(const std::vector<Fault>& faults) {
   return *run;
 }
 
-TEST(FormationSimulator, WhoStartsAnewOnItsWayIsTakenAlong) {
+TEST(FormationRuns, WhoStartsAnewOnItsWayIsTakenAlong) {
   const auto run = fly({fault({VehicleId{3}}, 4.0, 1.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
-TEST(FormationSimulator, WhoStartsAnewInItsPlaceIsTakenAlong) {
+TEST(FormationRuns, WhoStartsAnewInItsPlaceIsTakenAlong) {
   const auto run = fly({fault({VehicleId{3}}, 25.0, 1.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
-TEST(FormationSimulator, ANewGroundStationGoesOnOnceAllAreHeard) {
+TEST(FormationRuns, ANewGroundStationGoesOnOnceAllAreHeard) {
   const auto run = fly({fault({kGroundStation}, 4.0, 6.0)});
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
-TEST(FormationSimulator, ANewGroundStationGivesNoOrderWhileOneMayBeInTheWay) {
+TEST(FormationRuns, ANewGroundStationGivesNoOrderWhileOneMayBeInTheWay) {
   const auto run =
       fly({fault({kGroundStation}, 4.0, 6.0), fault({VehicleId{4}}, 5.0, std::nullopt)});
   EXPECT_FALSE(run.script_done);
   EXPECT_NE(run.reason.find("not heard yet: 4"), std::string::npos) << run.reason;
 }
 
-TEST(FormationSimulator, WithoutGroundStationEverybodyComesToItsPlace) {
+TEST(FormationRuns, WithoutGroundStationEverybodyComesToItsPlace) {
   const auto run = fly({fault({kGroundStation}, 4.0, std::nullopt)});
   EXPECT_EQ(run.reason, "the ground station is lost");
 }
@@ -144,7 +149,7 @@ FormationRun fly_scenario_with(configuration::FaultKind kind, double at_s, doubl
   fault.groups = {who};
   fault.loss_ratio = 1.0;
   scenario.faults = {fault};
-  const auto mission = formation_mission(scenario, 1, "none");
+  const auto mission = seeded_mission(scenario, 1, "none");
   EXPECT_TRUE(mission);
   const auto run = fly_formation(*mission);
   EXPECT_TRUE(run);
@@ -152,9 +157,9 @@ FormationRun fly_scenario_with(configuration::FaultKind kind, double at_s, doubl
   return *run;
 }
 
-TEST(FormationSimulator, AScenariosFaultsAreDone) {
+TEST(FormationRuns, AScenariosFaultsAreDone) {
   using configuration::FaultKind;
-  const auto undisturbed = fly_formation(*formation_mission(five(), 1, "none"));
+  const auto undisturbed = fly_formation(*seeded_mission(five(), 1, "none"));
   ASSERT_TRUE(undisturbed);
   EXPECT_EQ(fly_scenario_with(FaultKind::kill_vehicle, 40.0, 0.0, {{2}}).lost, 1U);
   EXPECT_EQ(fly_scenario_with(FaultKind::kill_vehicle, 40.0, 0.0, {kGroundStation}).reason,
@@ -166,27 +171,67 @@ TEST(FormationSimulator, AScenariosFaultsAreDone) {
   }
 }
 
-TEST(FormationSimulator, TheJudgeSeesWhoComesTooNear) {
-  auto mission = formation_mission(five(), 1, "none");
+TEST(FormationRuns, TheJudgeSeesWhoComesTooNear) {
+  auto mission = seeded_mission(five(), 1, "none");
   ASSERT_TRUE(mission);
   // Two vehicles that no ground station asks to keep apart.
-  mission->vehicles[1].start = mission->vehicles[0].start + Vec3{1.0, 0.0, 0.0};
-  mission->formation.script = {"take-off"};
-  mission->formation.separation = {0.5, 0.5};
-  mission->formation.tracking_m = 0.1;
-  mission->formation.reserve_m = 0.1;
+  mission->vehicles[1].start = mission->vehicles[0].start;
+  mission->vehicles[1].start.x_m += 1.0;
+  mission->formation->script = {"take-off"};
+  mission->formation->separation = {0.5, 0.5};
+  mission->formation->tracking_m = 0.1;
+  mission->formation->reserve_m = 0.1;
   auto run = fly_formation(*mission);
   ASSERT_TRUE(run);
   EXPECT_NEAR(run->least_m, 1.0, 0.5);
-  mission->formation.separation = {2.0, 2.0};
+  mission->formation->separation = {2.0, 2.0};
   run = fly_formation(*mission);
   ASSERT_TRUE(run);
   EXPECT_FALSE(run->script_done);
   EXPECT_NE(run->reason.find("of each other"), std::string::npos) << run->reason;
 }
 
-TEST(FormationSimulator, FaultsThatThereAreNotAreRefused) {
-  EXPECT_FALSE(formation_mission(five(), 1, "lossy"));
+TEST(FormationRuns, BodiesOfSixDegreesOfFreedomFlyItToo) {
+  auto mission = seeded_mission(five(), 1, "none");
+  ASSERT_TRUE(mission);
+  for (auto& vehicle : mission->vehicles) vehicle.body = Body::hexarotor;
+  mission->formation->script = {"take-off", "form wedge spacing 5 at 0 40 20", "land"};
+  const auto run = fly_formation(*mission);
+  ASSERT_TRUE(run);
+  EXPECT_TRUE(run->held()) << text_of(*run);
+  EXPECT_TRUE(run->script_done) << run->reason;
+}
+
+TEST(FormationRuns, PlanesInCoalitionsAndCoptersInFormationFlyInOneMission) {
+  auto scenario =
+      configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/coalition-6.yaml");
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  TeamMission mission = team_mission(*scenario);
+  const auto formation = seeded_mission(five(), 1, "none");
+  ASSERT_TRUE(formation);
+  for (SimulatedVehicle copter : formation->vehicles) {
+    copter.spec.id.value = static_cast<std::uint16_t>(copter.spec.id.value + 100);
+    mission.vehicles.push_back(copter);
+  }
+  mission.formation = formation->formation;
+  mission.formation->script = {"take-off", "form wedge spacing 5 at 0 40 20", "land"};
+  std::size_t changes = 0;
+  TeamObserver watcher;
+  watcher.event = [&](const mission::MissionEvent& event) {
+    if (event.kind() == mission::EventKind::change_begun && event.vehicle == kGroundStation) {
+      ++changes;
+    }
+  };
+  const auto run = fly_formation(mission, watcher);
+  ASSERT_TRUE(run);
+  EXPECT_TRUE(run->held()) << text_of(*run);
+  EXPECT_TRUE(run->script_done) << run->reason;
+  EXPECT_EQ(changes, 3U);
+  EXPECT_EQ(simulate_team(mission, {}).sites_done, mission.sites.size());
+}
+
+TEST(FormationRuns, FaultsThatThereAreNotAreRefused) {
+  EXPECT_FALSE(seeded_mission(five(), 1, "lossy"));
 }
 
 }  // namespace

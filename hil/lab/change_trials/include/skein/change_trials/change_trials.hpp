@@ -10,7 +10,7 @@
 #include "skein/formation/change_planner.hpp"
 
 /// Random changes of formation, planned and then judged by code apart from the planner.
-namespace skein::hil {
+namespace skein::change_trials {
 
 struct ChangeTrial {
   std::uint64_t seed = 0;
@@ -46,4 +46,4 @@ struct JudgedChange {
     std::uint64_t first_seed, std::size_t runs, std::size_t jobs,
     const std::function<void(const JudgedChange&)>& on_done = {});
 
-}  // namespace skein::hil
+}  // namespace skein::change_trials

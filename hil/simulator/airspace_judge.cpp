@@ -4,27 +4,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace skein::hil {
 
-AirspaceJudge::AirspaceJudge(const Limits& limits, std::vector<VehicleId> vehicles)
-    : limits_{limits},
-      vehicles_{std::move(vehicles)},
-      least_m_{std::numeric_limits<double>::infinity()} {}
+namespace {
 
-std::string AirspaceJudge::name(std::size_t i) const {
-  return fmt::format("U{}", vehicles_[i].value);
-}
+std::string name(const SeenBody& body) { return fmt::format("U{}", body.vehicle.value); }
 
-void AirspaceJudge::step(const std::vector<Body>& bodies, Instant now) {
+}  // namespace
+
+void AirspaceJudge::step(const std::vector<SeenBody>& bodies, Instant now) {
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
+    const SeenBody& body = bodies[i];
     farthest_m_ = std::max(farthest_m_, body.off_m);
     if (body.position_m.z() > limits_.ceiling_m + limits_.tracking_m &&
         told_.insert({i, i}).second) {
       violations_.push_back({now, "ceiling",
-                             fmt::format("{} is {:.2f} m high; the ceiling is {:g} m", name(i),
+                             fmt::format("{} is {:.2f} m high; the ceiling is {:g} m", name(body),
                                          body.position_m.z(), limits_.ceiling_m)});
     }
     for (std::size_t k = 0; k < i && !before_.empty(); ++k) see_pair(k, i, bodies, now);
@@ -32,7 +28,7 @@ void AirspaceJudge::step(const std::vector<Body>& bodies, Instant now) {
   before_ = bodies;
 }
 
-void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<Body>& bodies,
+void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies,
                              Instant now) {
   if (!bodies[a].airborne || !bodies[b].airborne) return;
   const Vec3 stretch{1.0, 1.0, height_factor(limits_.separation)};
@@ -48,8 +44,8 @@ void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<Bod
       {now, "separation",
        fmt::format("{} at ({:.2f} {:.2f} {:.2f}) and {} at ({:.2f} {:.2f} {:.2f}) are {:.2f} m "
                    "apart; {:g} m are wanted",
-                   name(a), bodies[a].position_m.x(), bodies[a].position_m.y(),
-                   bodies[a].position_m.z(), name(b), bodies[b].position_m.x(),
+                   name(bodies[a]), bodies[a].position_m.x(), bodies[a].position_m.y(),
+                   bodies[a].position_m.z(), name(bodies[b]), bodies[b].position_m.x(),
                    bodies[b].position_m.y(), bodies[b].position_m.z(), apart,
                    limits_.separation.horizontal_m)});
 }

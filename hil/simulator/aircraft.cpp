@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "aircraft.hpp"
+
+#include <algorithm>
+#include <type_traits>
+#include <utility>
+
+#include "multirotor_body.hpp"
+#include "skein/hal/simulated_flight_controller.hpp"
+#include "skein/hal/simulated_multirotor.hpp"
+#include "skein/idl/autopilot_fields.hpp"
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
+
+namespace skein::hil {
+namespace {
+
+/// An orbit in wind is flown some metres off its circle.
+constexpr double kOrbitClearance_m = 15.0;
+constexpr double kSink_mps = 1.0;
+constexpr Duration kTelemetryPeriod = std::chrono::milliseconds{200};
+
+/// A number for an instance that no other life of any vehicle has.
+InstanceId instance(VehicleId vehicle, std::uint32_t life) {
+  return {static_cast<std::uint64_t>(life) << 32U | vehicle.value};
+}
+
+std::unique_ptr<hal::FlightController> body_of(const TeamMission& mission,
+                                               const SimulatedVehicle& what, const Random& gusts,
+                                               Instant now) {
+  if (what.body == Body::heading_dynamics) {
+    return std::make_unique<hal::SimulatedFlightController>(what.spec, what.start, mission.wind,
+                                                            now);
+  }
+  const Vec2 place = what.start.position();
+  if (what.body == Body::multirotor) {
+    return std::make_unique<MultirotorBody>(place, mission.gust_error_m, gusts, now);
+  }
+  hal::SimulatedMultirotorParams params;
+  params.start = {place.x(), place.y(), 0.0};
+  params.yaw_rad = what.start.heading_rad;
+  params.wind_mps = mission.wind.steady_mps;
+  params.gust_mps = mission.wind.gust_mps;
+  params.seed = mission.seed + what.spec.id.value;
+  return std::make_unique<hal::SimulatedMultirotor>(params);
+}
+
+}  // namespace
+
+Aircraft::Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Random gusts)
+    : mission_{mission},
+      what_{what},
+      gusts_{gusts},
+      clock_{clock_offset(mission.faults, what.spec.id)},
+      loads_left_{what.spec.loads} {}
+
+void Aircraft::take_off(Instant now) {
+  body_ = body_of(mission_, what_, gusts_, now);
+  state_ = *body_->state(now);
+  std::vector<Hazard> known;
+  for (const auto& h : mission_.hazards) {
+    if (h.known_from <= now) known.push_back(h.hazard);
+  }
+  start_program(known);
+}
+
+mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) const {
+  mission::VehicleNodeConfig config;
+  config.program = "skein-hil simulate";
+  config.flight_controller = "simulated";
+  config.telemetry_period = kTelemetryPeriod;
+  const InstanceId self = instance(what_.spec.id, life_);
+  if (what_.flies_formation) {
+    mission::FormationAgentConfig agent;
+    agent.vehicle = what_.spec.id;
+    agent.instance = self;
+    agent.limits = mission_.formation->limits;
+    agent.avoidance = mission_.formation->avoidance;
+    agent.passage.tolerance_m = mission_.formation->tracking_m;
+    config.agent = agent;
+    return config;
+  }
+  mission::VehicleAgentConfig agent;
+  agent.vehicle = what_.spec;
+  agent.vehicle.loads = loads_left_;
+  agent.instance = self;
+  agent.protocol = mission_.protocol;
+  agent.planning = mission_.planning;
+  agent.search = what_.search;
+  agent.hazards = hazards;
+  config.agent = agent;
+  return config;
+}
+
+void Aircraft::start_program(const std::vector<Hazard>& hazards) {
+  numbers_before_ = recorded_.number;
+  node_.emplace(config(hazards), local(state_.time));
+}
+
+bool Aircraft::in_place() const {
+  if (!running()) return true;
+  const auto* agent = dynamic_cast<const mission::FormationAgent*>(&node_->agent());
+  return agent == nullptr || agent->execution() == nullptr || agent->execution()->finished();
+}
+
+std::optional<double> Aircraft::hold_curvature(const std::vector<Hazard>& hazards) const {
+  const double radius = what_.spec.planning_radius_m();
+  const Pose2 here = state_.pose();
+  for (const double side : {1.0, -1.0}) {
+    const Vec2 centre = here.position() + side * radius * left_of(unit_vector(here.heading_rad));
+    const bool clear = std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
+      return std::abs((h.centre - centre).norm() - radius) > h.radius_m + kOrbitClearance_m;
+    });
+    if (clear) return side / radius;
+  }
+  return std::nullopt;
+}
+
+bool Aircraft::can_hold(const std::vector<Hazard>& hazards) const {
+  return what_.body != Body::heading_dynamics || hold_curvature(hazards).has_value();
+}
+
+void Aircraft::end_program(Instant now, const std::vector<Hazard>& hazards) {
+  node_.reset();
+  ++life_;
+  if (what_.body == Body::heading_dynamics) hold_orbit(now, hazards);
+}
+
+void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
+  mission::FlightPlan orbit = recorded_;
+  ++orbit.number;
+  orbit.timed = {};
+  orbit.timed.start_time = local(now);
+  orbit.timed.speed_mps = what_.spec.cruise_speed_mps;
+  orbit.timed.path.start = state_.pose();
+  orbit.timed.tail_curvature_per_m =
+      hold_curvature(hazards).value_or(1.0 / what_.spec.planning_radius_m());
+  guidance_ = orbit;
+  recorded_ = orbit;
+  recorded_.timed.start_time = now;
+}
+
+mission::MissionEvent Aircraft::in_true_time(mission::MissionEvent event) const {
+  event.time -= clock_;
+  std::visit(
+      [this](auto& body) {
+        codec::for_each_field(body, [this](auto /*name*/, auto& value) {
+          if constexpr (std::is_same_v<decltype(value), Instant&>) value -= clock_;
+        });
+      },
+      event.body);
+  return event;
+}
+
+VehicleState Aircraft::local_state() const {
+  VehicleState state = state_;
+  state.time += clock_;
+  return state;
+}
+
+void Aircraft::follow(const mission::Guidance& guidance) {
+  guidance_ = guidance;
+  auto* const plan = std::get_if<mission::FlightPlan>(&*guidance_);
+  if (plan == nullptr) return;
+  plan->number += numbers_before_;
+  recorded_ = *plan;
+  recorded_.timed.start_time -= clock_;
+}
+
+void Aircraft::sink_at(Instant now) {
+  PositionSetpoint down;
+  down.x_m = state_.x_m;
+  down.y_m = state_.y_m;
+  down.z_m = state_.z_m;
+  down.vz_mps = -kSink_mps;
+  body_->command(down, now);
+}
+
+bool Aircraft::control(Instant now) {
+  state_ = *body_->state(now);
+  if (sinks(now)) {
+    sink_at(now);
+    return true;
+  }
+  if (!guidance_) return false;
+  body_->command(mission::follow(*guidance_, {}, what_.spec, local_state(), local(now)), now);
+  return true;
+}
+
+const mission::FlightPlan* Aircraft::plan() const {
+  return recorded_.number > 0 ? &recorded_ : nullptr;
+}
+
+Vec3 Aircraft::position() const {
+  return flying() ? state_.position().metres() : Vec3{what_.start.x_m, what_.start.y_m, 0.0};
+}
+
+std::optional<MotionTrack::Moment> Aircraft::reference(Instant now) const {
+  if (sinks(now)) return std::nullopt;
+  if (!guidance_) return MotionTrack::Moment{.position_m = {what_.start.x_m, what_.start.y_m, 0.0}};
+  const auto* track = std::get_if<MotionTrack>(&*guidance_);
+  if (track == nullptr) return std::nullopt;
+  return track->at(local(now));
+}
+
+}  // namespace skein::hil

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "skein/base/random.hpp"
+#include "skein/hal/flight_controller.hpp"
+#include "skein/hil/team_simulator.hpp"
+#include "skein/mission/vehicle_node.hpp"
+
+namespace skein::hil {
+
+/// One aircraft of the simulated team: its body under its flight controller, its clock, and the
+/// node on board while its program runs. Times are true mission time but for what the node is given
+/// and gives.
+class Aircraft {
+ public:
+  /// `gusts` are a multirotor's own; all fixed wings fly in the mission's wind.
+  Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Random gusts);
+
+  /// From its start, with a node on board.
+  void take_off(Instant now);
+  [[nodiscard]] bool flying() const { return body_ != nullptr; }
+
+  /// The program ends. The flight controller holds: an orbit where a fixed wing is; a multirotor
+  /// comes to rest where its track ends.
+  void end_program(Instant now, const std::vector<Hazard>& hazards);
+  /// Is there an orbit here that is clear of the hazards?
+  [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
+  /// A new node that remembers nothing, in what state the vehicle is.
+  void start_program(const std::vector<Hazard>& hazards);
+  /// A multirotor comes down where it is then.
+  void sink(Instant from) { sinks_from_ = from; }
+
+  /// Null while no program runs. Its times are of this vehicle's clock.
+  [[nodiscard]] mission::VehicleNode* node() { return node_ ? &*node_ : nullptr; }
+  [[nodiscard]] bool running() const { return node_.has_value(); }
+  /// Its program runs, and it can be found a leader or member of a coalition.
+  [[nodiscard]] bool in_coalitions() const { return running() && !what_.flies_formation; }
+  /// Precondition: running().
+  [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
+  /// It has come to where its newest change of formation ends, or there is none.
+  [[nodiscard]] bool in_place() const;
+  [[nodiscard]] std::uint32_t life() const { return life_; }  ///< counts its nodes
+  [[nodiscard]] Instant local(Instant now) const { return now + clock_; }
+  /// An event of the node with its times in true mission time.
+  [[nodiscard]] mission::MissionEvent in_true_time(mission::MissionEvent event) const;
+  [[nodiscard]] VehicleState local_state() const;
+
+  /// Follows what the node gives from now on.
+  void follow(const mission::Guidance& guidance);
+  /// One control period; false while there is nothing to follow.
+  bool control(Instant now);
+
+  [[nodiscard]] const SimulatedVehicle& what() const { return what_; }
+  [[nodiscard]] const VehicleSpec& spec() const { return what_.spec; }
+  /// At the last control period. Precondition: flying().
+  [[nodiscard]] const VehicleState& state() const { return state_; }
+  /// The same, and at its start on the ground before.
+  [[nodiscard]] Vec3 position() const;
+  /// As it is recorded: in true time, with numbers that grow over all nodes. Null of a multirotor.
+  [[nodiscard]] const mission::FlightPlan* plan() const;
+  /// Where a multirotor should be, and how fast; nothing while it sinks.
+  [[nodiscard]] std::optional<MotionTrack::Moment> reference(Instant now) const;
+  [[nodiscard]] std::uint8_t loads_left() const { return loads_left_; }
+  void began_delivery() { loads_left_ = loads_left_ > 0 ? loads_left_ - 1 : 0; }
+
+ private:
+  [[nodiscard]] mission::VehicleNodeConfig config(const std::vector<Hazard>& hazards) const;
+  [[nodiscard]] std::optional<double> hold_curvature(const std::vector<Hazard>& hazards) const;
+  [[nodiscard]] bool sinks(Instant now) const { return sinks_from_ && now >= *sinks_from_; }
+  void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
+  void sink_at(Instant now);
+
+  const TeamMission& mission_;
+  const SimulatedVehicle& what_;
+  Random gusts_;
+  Duration clock_{};
+  std::unique_ptr<hal::FlightController> body_;
+  VehicleState state_;
+  std::optional<mission::VehicleNode> node_;
+  std::uint32_t life_ = 0;
+  std::optional<mission::Guidance> guidance_;  ///< in this vehicle's time; the recorded number
+  mission::FlightPlan recorded_;
+  std::uint32_t numbers_before_ = 0;  ///< plans of earlier nodes and of the flight controller
+  std::optional<Instant> sinks_from_;
+  std::uint8_t loads_left_ = 0;
+};
+
+}  // namespace skein::hil

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "skein/groundstation/formation_desk.hpp"
+#include "skein/hil/team_simulator.hpp"
+#include "skein/mission/ground_agent.hpp"
+
+namespace skein::hil {
+
+/// The ground station of the simulated team, while its program runs: who decides about the sites,
+/// and who commands the formation, where there is one. Times are true mission time, and so are
+/// those of its events.
+class GroundStation {
+ public:
+  explicit GroundStation(const TeamMission& mission);
+
+  /// It knows nothing of what was before, but for the lines of the script that are done: the
+  /// operator goes on with the next. Precondition: the script can be read (check_script()).
+  void start(Instant now);
+  void end();
+  [[nodiscard]] bool running() const { return agent_.has_value() || desk_.has_value(); }
+
+  // As of an agent.
+  void on_message(const mission::Message& message, VehicleId sender, Instant now);
+  void on_timeout(Instant now);
+  [[nodiscard]] std::optional<mission::Message> poll_message();
+  [[nodiscard]] std::optional<mission::MissionEvent> poll_event();
+
+ private:
+  const TeamMission& mission_;
+  Duration clock_;
+  std::optional<mission::GroundAgent> agent_;
+  std::optional<groundstation::FormationDesk> desk_;
+  std::size_t script_done_ = 0;  ///< lines, of desks before this one
+};
+
+}  // namespace skein::hil
