@@ -119,12 +119,12 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event) {
   if (server_) events_.push_back(console::event_json(event, seq));
 }
 
-void ConsoleDesk::on_timeout(const std::string& audit, Instant now) {
+void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now) {
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
   if (now < next_state_ || !server_->watched()) return;
   next_state_ = now + kStatePeriod;
-  auto sections = console::sections_of(picture_, origin_, version(), now);
+  auto sections = console::sections_of(picture_, fleet, origin_, version(), now);
   sections[static_cast<std::size_t>(console::Section::audit)] = audit;
   server_->publish(to_seconds(now), std::move(sections));
 }
@@ -138,8 +138,9 @@ std::optional<console::Server::Line> ConsoleDesk::next() {
   return std::nullopt;
 }
 
-std::string ConsoleDesk::section(console::Section section, Instant now) const {
-  return console::section_of(section, picture_, origin_, version(), now);
+std::string ConsoleDesk::section(console::Section section, const mission::Fleet& fleet,
+                                 Instant now) const {
+  return console::section_of(section, picture_, fleet, origin_, version(), now);
 }
 
 }  // namespace skein::groundstation

@@ -17,21 +17,6 @@ constexpr Duration kTryAgain = std::chrono::seconds{1};
 /// Who is not heard by then is told of.
 constexpr Duration kTeamWait = std::chrono::seconds{10};
 
-mission::FormationGroundConfig ground_config(const configuration::FormationConfig& config,
-                                             const std::vector<VehicleId>& vehicles) {
-  mission::FormationGroundConfig ground;
-  ground.vehicles = vehicles;
-  ground.rally = config.rally;
-  ground.limits = config.limits;
-  ground.separation = config.separation;
-  ground.tracking_m = config.tracking_m;
-  ground.reserve_m = config.reserve_m;
-  ground.ceiling_m = config.ceiling_m;
-  ground.place_tolerance_m = config.place_tolerance_m;
-  ground.assignment.method = config.assignment;
-  return ground;
-}
-
 std::string text_of(const mission::FormationPreview& preview) {
   const auto& planned = preview.planned;
   std::string text = fmt::format("{} vehicles, {}, {:.1f} s, separation {:.2f} m at least\n",
@@ -68,13 +53,29 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
 
 }  // namespace
 
+mission::FormationGroundConfig formation_ground(const configuration::FormationConfig& config,
+                                                const std::vector<VehicleId>& vehicles) {
+  mission::FormationGroundConfig ground;
+  ground.vehicles = vehicles;
+  ground.rally = config.rally;
+  ground.limits = config.limits;
+  ground.separation = config.separation;
+  ground.tracking_m = config.tracking_m;
+  ground.reserve_m = config.reserve_m;
+  ground.ceiling_m = config.ceiling_m;
+  ground.place_tolerance_m = config.place_tolerance_m;
+  ground.assignment.method = config.assignment;
+  return ground;
+}
+
 FormationDesk::FormationDesk(const configuration::FormationConfig& config,
-                             const std::vector<VehicleId>& vehicles, Instant now)
-    : config_{config}, vehicles_{vehicles}, ground_{ground_config(config, vehicles), now} {}
+                             const std::vector<VehicleId>& vehicles, mission::GroundNode& node)
+    : config_{config}, vehicles_{vehicles}, node_{&node} {}
 
 Result<FormationDesk> FormationDesk::open(const configuration::FormationConfig& config,
-                                          const std::vector<VehicleId>& vehicles, Instant now) {
-  FormationDesk desk{config, vehicles, now};
+                                          const std::vector<VehicleId>& vehicles,
+                                          mission::GroundNode& node) {
+  FormationDesk desk{config, vehicles, node};
   for (const configuration::NamedShape& shape : config.shapes) {
     if (auto loaded = desk.load(shape.name, shape.file); !loaded) return loaded.error();
   }
@@ -140,16 +141,17 @@ Result<FormationDesk::Outcome> FormationDesk::answer(const Formation& input, Ins
   }
   const auto order = completed(input);
   if (!order) return order.error();
-  const auto result = input.preview ? ground_.preview(*order) : ground_.command(*order, now);
+  const auto result =
+      input.preview ? ground().preview(*order) : node_->formation().command(*order, now);
   if (!result) return result.error();
   return Outcome{(input.preview ? "preview: " : "begun: ") + text_of(*result),
                  data_of(*result, input.preview)};
 }
 
 std::string FormationDesk::places_table(Instant now) const {
-  if (ground_.members().empty()) return "no vehicle of the formation is heard\n";
+  if (ground().members().empty()) return "no vehicle of the formation is heard\n";
   std::string text = "vehicle  heard     east    north   height  from its place  change\n";
-  for (const auto& [vehicle, member] : ground_.members()) {
+  for (const auto& [vehicle, member] : ground().members()) {
     const Vec3& at = member.status.position_m;
     text += fmt::format("{:>7}  {:>5.1f}  {:7.1f}  {:7.1f}  {:7.1f}  {:>12.2f} m  {}{}\n",
                         vehicle.value, to_seconds(now - member.heard_at), at.x(), at.y(), at.z(),
@@ -158,30 +160,29 @@ std::string FormationDesk::places_table(Instant now) const {
                         : member.status.at_rest ? ""
                                                 : ", moving");
   }
-  text += ground_.in_place() ? "in formation\n" : "not in formation\n";
+  text += ground().in_place() ? "in formation\n" : "not in formation\n";
   return text;
 }
 
 void FormationDesk::on_timeout(Instant now) {
-  ground_.on_timeout(now);
   if (next_line_ < script_.size()) work_off_script(now);
 }
 
 void FormationDesk::work_off_script(Instant now) {
   if (now < Instant{} || now < try_again_) return;
   // The first order is for the whole team.
-  if (next_line_ == 0 && !given_ && ground_.members().size() < vehicles_.size()) {
+  if (next_line_ == 0 && !given_ && ground().members().size() < vehicles_.size()) {
     if (!team_by_) team_by_ = now + kTeamWait;
     if (now < *team_by_ || std::exchange(told_awaited_, true)) return;
     mission::event::FormationWarning awaited{mission::event::FormationNews::awaited};
     for (const VehicleId vehicle : vehicles_) {
-      if (!ground_.members().contains(vehicle)) awaited.vehicles.push_back(vehicle);
+      if (!ground().members().contains(vehicle)) awaited.vehicles.push_back(vehicle);
     }
     report(std::move(awaited), now);
     return;
   }
   if (given_) {
-    if (!ground_.in_place()) return;
+    if (!ground().in_place()) return;
     given_ = false;
     ++next_line_;
   } else if (wait_until_) {
@@ -212,21 +213,8 @@ void FormationDesk::work_off_script(Instant now) {
          now);
 }
 
-std::optional<mission::MissionEvent> FormationDesk::poll_event() {
-  take_events();
-  if (events_.empty()) return std::nullopt;
-  mission::MissionEvent first = std::move(events_.front());
-  events_.pop_front();
-  return first;
-}
-
-void FormationDesk::take_events() {
-  while (auto event = ground_.poll_event()) events_.push_back(std::move(*event));
-}
-
 void FormationDesk::report(mission::EventBody body, Instant now) {
-  take_events();  // which were before this one
-  events_.push_back({kGroundStation, now, {}, {}, std::move(body)});
+  node_->say({kGroundStation, now, {}, {}, std::move(body)});
 }
 
 }  // namespace skein::groundstation

@@ -12,7 +12,9 @@ using ::testing::HasSubstr;
 TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
   configuration::FormationConfig config;
   config.script = {"take-off"};
-  auto desk = FormationDesk::open(config, {{1}, {2}}, Instant{});
+  mission::GroundNode node{{.agent = {}, .formation = formation_ground(config, {{1}, {2}})},
+                           Instant{}};
+  auto desk = FormationDesk::open(config, {{1}, {2}}, node);
   ASSERT_TRUE(desk.ok()) << desk.error().message;
   std::vector<mission::MissionEvent> warnings;
   for (int i = 1; i <= 30; ++i) {
@@ -21,10 +23,11 @@ TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
       mission::FormationStatus status;
       status.vehicle = {id};
       status.reference_m.x() = id == 1 ? 0.0 : 1.0 + 0.01 * i;  // gusts move it, and it is too near
-      desk->on_message(status, {id}, now);
+      node.on_message(status, {id}, now);
     }
+    node.on_timeout(now);
     desk->on_timeout(now);
-    while (const auto event = desk->poll_event()) {
+    while (const auto event = node.poll_event()) {
       if (mission::is_warning(event->kind())) warnings.push_back(*event);
     }
   }
@@ -36,17 +39,19 @@ TEST(FormationDesk, TheScriptSaysOnceWhyItWaitsThoughTheNumbersChange) {
 }
 
 TEST(FormationDesk, RefusesOrdersBeforeTheMissionBegins) {
-  auto desk = FormationDesk::open({}, {{1}}, at_seconds(-5.0));
+  mission::GroundNode node{{.agent = {}, .formation = formation_ground({}, {{1}})},
+                           at_seconds(-5.0)};
+  auto desk = FormationDesk::open({}, {{1}}, node);
   ASSERT_TRUE(desk.ok()) << desk.error().message;
   mission::FormationStatus status;
   status.vehicle = {1};
-  desk->on_message(status, {1}, at_seconds(-4.0));
+  node.on_message(status, {1}, at_seconds(-4.0));
   Formation order;
   order.order.kind = mission::OrderKind::take_off;
   const auto early = desk->answer(order, at_seconds(-3.0));
   ASSERT_FALSE(early.ok());
   EXPECT_THAT(early.error().message, HasSubstr("the mission has not begun"));
-  desk->on_message(status, {1}, at_seconds(1.0));
+  node.on_message(status, {1}, at_seconds(1.0));
   EXPECT_TRUE(desk->answer(order, at_seconds(1.0)).ok());
 }
 

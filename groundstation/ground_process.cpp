@@ -21,7 +21,7 @@
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/views.hpp"
-#include "skein/mission/ground_agent.hpp"
+#include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
 #include "skein/process/close_limit.hpp"
 #include "skein/process/log.hpp"
@@ -41,8 +41,9 @@ constexpr Duration kFlushPeriod = std::chrono::seconds{1};
 constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop from its deadlines
 constexpr std::string_view kJsonPrefix = "json ";
 
-mission::GroundAgentConfig agent_config(const configuration::GroundConfig& config) {
-  mission::GroundAgentConfig agent;
+mission::GroundNodeConfig node_config(const configuration::GroundConfig& config) {
+  mission::GroundNodeConfig node;
+  mission::GroundAgentConfig& agent = node.agent;
   agent.expected = config.vehicles;
   for (const Hazard& hazard : config.hazards) agent.hazards.push_back(hazard.id);
   for (const auto& decision : config.operator_decisions) {
@@ -51,7 +52,8 @@ mission::GroundAgentConfig agent_config(const configuration::GroundConfig& confi
                                .reaction = decision.reaction,
                                .not_before = decision.not_before});
   }
-  return agent;
+  node.formation = formation_ground(config.formation, config.vehicles);
+  return node;
 }
 
 void print(const std::string& text) {
@@ -86,25 +88,25 @@ std::string json_of(const Answer& answer) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Carries messages and lines to the agent, and its messages, events and requests away.
+/// Carries messages and lines to the node, and its messages, events and requests away.
 class GroundLoop {
  public:
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
-             const process::Shutdown& shutdown, network::Node& node, process::Wake& wake,
+             const process::Shutdown& shutdown, network::Node& network, process::Wake& wake,
              recording::Writer::Options recorder, std::optional<recording::Writer> writer,
-             FormationDesk formation, std::unique_ptr<ControlSocket> control, ConsoleDesk console,
-             Audit audit)
-      : agent_config_{agent_config(config)},
-        origin_{origin},
+             mission::GroundNode& node, FormationDesk formation,
+             std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
+      : origin_{origin},
         operator_name_{std::move(operator_name)},
         clock_{clock},
         shutdown_{shutdown},
-        node_{node},
+        network_{network},
         wake_{wake},
         recorder_{std::move(recorder)},
         writer_{std::move(writer)},
-        agent_{agent_config_, clock.now()},
+        decisions_{config.operator_decisions},
+        node_{node},
         formation_{std::move(formation)},
         control_{std::move(control)},
         console_{std::move(console)},
@@ -114,21 +116,20 @@ class GroundLoop {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
     while (!stopping_) {
       const Instant now = clock_.now();
-      while (const auto received = node_.poll()) {
+      while (const auto received = network_.poll()) {
         if (writer_) writer_->write(received->message, received->sender, now);
-        agent_.on_message(received->message, received->sender, now);
-        formation_.on_message(received->message, received->sender, now);
+        if (!node_.on_message(received->message, received->sender, now)) continue;
         console_.on_message(received->message, received->sender, now);
       }
-      process::log_misfits(node_);
+      process::log_misfits(network_);
       take_lines(prompt, now);
-      agent_.on_timeout(now);
+      node_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
       const Instant soonest = now + kStepSpacing;
       clock_.sleep_until(soonest);
       wake_.wait_until(
-          clock_.steady_time_of(std::clamp(agent_.next_timeout(), soonest, now + kStepPeriod)));
+          clock_.steady_time_of(std::clamp(node_.next_timeout(), soonest, now + kStepPeriod)));
     }
     flush();
   }
@@ -194,17 +195,17 @@ class GroundLoop {
   Answer order(const Input& input, const Asker& asker, Instant now) {
     if (const auto* decision = std::get_if<Decision>(&input)) {
       if (decision->plan) {
-        return answer_to(
-            agent_.decide_on(*decision->plan, decision->site, decision->grant, asker.who, now));
+        return answer_to(node_.agent().decide_on(*decision->plan, decision->site, decision->grant,
+                                                 asker.who, now));
       }
-      return answer_to(decision->grant ? agent_.authorise(decision->site, asker.who, now)
-                                       : agent_.refuse(decision->site, asker.who, now));
+      return answer_to(decision->grant ? node_.agent().authorise(decision->site, asker.who, now)
+                                       : node_.agent().refuse(decision->site, asker.who, now));
     }
     if (const auto* order = std::get_if<Order>(&input)) {
-      return answer_to(agent_.command(order->vehicle, order->kind, now));
+      return answer_to(node_.agent().command(order->vehicle, order->kind, now));
     }
     if (const auto* hazard = std::get_if<NewHazard>(&input)) {
-      const auto added = agent_.add_hazard(hazard->centre_m, hazard->radius_m, now);
+      const auto added = node_.agent().add_hazard(hazard->centre_m, hazard->radius_m, now);
       if (!added) return refusal(added.error());
       return {true, fmt::format("hazard {} is told to all\n", added->value)};
     }
@@ -248,11 +249,11 @@ class GroundLoop {
       case View::help:
         return help_text();
       case View::status:
-        return fleet_table(agent_.fleet(), agent_config_.expected, now);
+        return fleet_table(node_.fleet().vehicles(), now);
       case View::sites:
         return sites_.text();
       case View::pending:
-        return pending_text(agent_.authorisations(), origin_, now);
+        return pending_text(node_.agent().authorisations(), origin_, now);
       case View::places:
         return formation_.places_table(now);
       case View::coalitions:
@@ -268,7 +269,7 @@ class GroundLoop {
   [[nodiscard]] std::string data_of(View view, Instant now) const {
     if (view == View::audit) return audit_.json();
     const auto section = section_of(view);
-    return section ? console_.section(*section, now) : "";
+    return section ? console_.section(*section, node_.fleet(), now) : "";
   }
 
   static Answer refusal(const Error& error) { return {false, error.message + "\n"}; }
@@ -277,27 +278,22 @@ class GroundLoop {
   }
 
   void send(const mission::Message& message, Instant now) {
-    node_.publish(message);
+    network_.publish(message);
     if (writer_) writer_->write(message, kGroundStation, now);
     console_.on_message(message, kGroundStation, now);
   }
 
   void hand_out(Instant now) {
-    while (const auto message = agent_.poll_message()) send(*message, now);
-    while (const auto message = formation_.poll_message()) {
+    while (const auto message = node_.poll_message()) {
       send(*message, now);
       if (const auto* change = std::get_if<formation::Change>(&*message)) record(*change);
     }
-    while (const auto event = formation_.poll_event()) {
-      send(mission::Message{*event}, now);
-      tell_of(*event);
-    }
-    while (const auto event = agent_.poll_event()) {
+    while (const auto event = node_.poll_event()) {
       sites_.on_event(*event);
       tell_of(*event);
     }
-    console_.on_timeout(audit_.json(), now);
-    for (const auto& pending : agent_.authorisations()) {
+    console_.on_timeout(node_.fleet(), audit_.json(), now);
+    for (const auto& pending : node_.agent().authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
       if (!shown_.emplace(pending.request.site, pending.request.round).second) continue;
       print(request_text(pending, origin_, now));
@@ -334,20 +330,21 @@ class GroundLoop {
   }
 
   [[nodiscard]] bool is_scripted(SiteId site) const {
-    return std::any_of(agent_config_.decisions.begin(), agent_config_.decisions.end(),
+    return std::any_of(decisions_.begin(), decisions_.end(),
                        [&](const auto& decision) { return decision.site == site; });
   }
 
-  mission::GroundAgentConfig agent_config_;
   MissionOrigin origin_;
   std::string operator_name_;
   const process::MissionClock& clock_;
   const process::Shutdown& shutdown_;
-  network::Node& node_;
+  network::Node& network_;
   process::Wake& wake_;
   recording::Writer::Options recorder_;
   std::optional<recording::Writer> writer_;
-  mission::GroundAgent agent_;
+  std::vector<configuration::OperatorDecision>
+      decisions_;  ///< of the scenario, in the operator's place
+  mission::GroundNode& node_;
   FormationDesk formation_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
@@ -358,6 +355,12 @@ class GroundLoop {
   Instant next_flush_{Instant::min()};
   std::atomic<bool> stopping_{false};
 };
+
+std::string who_decides(const configuration::GroundConfig& config,
+                        const std::string& operator_name) {
+  if (!config.operator_decisions.empty()) return "with decisions scripted by the scenario";
+  return "decisions by " + operator_name;
+}
 
 }  // namespace
 
@@ -409,7 +412,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     spdlog::critical("the mission origin is unusable: {}", origin.error().message);
     return process::kExitBadInput;
   }
-  auto formation = FormationDesk::open(config.formation, config.vehicles, clock.now());
+  mission::GroundNode ground{node_config(config), clock.now()};
+  auto formation = FormationDesk::open(config.formation, config.vehicles, ground);
   if (!formation) {
     spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
@@ -441,9 +445,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   }
 
   spdlog::info("ground station of {} vehicles, {}; type help", config.vehicles.size(),
-               config.operator_decisions.empty()
-                   ? "decisions by " + operator_name
-                   : std::string{"with decisions scripted by the scenario"});
+               who_decides(config, operator_name));
   GroundLoop loop{config,
                   *origin,
                   operator_name,
@@ -453,6 +455,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   wake,
                   options,
                   std::move(*writer),
+                  ground,
                   std::move(*formation),
                   open_control(config, wake),
                   std::move(console),
@@ -462,8 +465,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   loop.stop();
   thread.join();
   const auto traffic = process::traffic_of(**node);
-  spdlog::info("ended: messages sent {}, received {}, dropped {}", traffic.sent, traffic.received,
-               traffic.dropped);
+  spdlog::info("ended: messages sent {}, received {}, dropped {}, refused of their senders {}",
+               traffic.sent, traffic.received, traffic.dropped, ground.refused());
   close_limit.start(process::kCloseWithin);
   return 0;
 }

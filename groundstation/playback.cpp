@@ -9,6 +9,7 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/console/sections.hpp"
+#include "skein/mission/may_say.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -45,11 +46,10 @@ Result<Setting> setting_of(const std::vector<recording::Session>& sessions) {
 
 }  // namespace
 
-Playback::Playback(recording::Log log, MissionOrigin origin, console::Picture picture,
-                   std::string version)
+Playback::Playback(recording::Log log, MissionOrigin origin, Seen seen, std::string version)
     : log_{std::move(log)},
       origin_{origin},
-      picture_{std::move(picture)},
+      seen_{std::move(seen)},
       version_{std::move(version)},
       begin_{log_.begin()},
       end_{log_.end()} {}
@@ -62,7 +62,10 @@ Result<Playback> Playback::open(const std::filesystem::path& path,
   if (!setting) return Error{path.string() + ": " + setting.error().message};
   const auto origin = MissionOrigin::make(setting->origin);
   if (!origin) return Error{path.string() + ": " + origin.error().message};
-  Playback playback{std::move(*log), *origin, console::Picture{std::move(setting->picture)},
+  mission::Fleet fleet{{.expected = setting->picture.expected}};
+  Playback playback{std::move(*log),
+                    *origin,
+                    {console::Picture{std::move(setting->picture)}, std::move(fleet)},
                     std::move(setting->version)};
   playback.read_all(progress);
   return playback;
@@ -70,11 +73,11 @@ Result<Playback> Playback::open(const std::filesystem::path& path,
 
 void Playback::read_all(const std::function<void(double)>& progress) {
   const Duration every = std::max<Duration>(kCopyEvery, (end_ - begin_) / kCopiesMax);
-  copies_.push_back({begin_, picture_});
+  copies_.push_back({begin_, seen_});
   log_.seek(begin_);
   while (const auto entry = log_.next()) {
     if (entry->time >= copies_.back().time + every) {
-      copies_.push_back({entry->time, picture_});
+      copies_.push_back({entry->time, seen_});
       if (progress) progress(to_seconds(entry->time - begin_) / to_seconds(end_ - begin_));
     }
     take(*entry);
@@ -83,16 +86,19 @@ void Playback::read_all(const std::function<void(double)>& progress) {
     }
     end_ = std::max(end_, entry->time);  // of a file that was cut
   }
-  picture_ = copies_.front().picture;
+  seen_ = copies_.front().seen;
   log_.seek(begin_);
   now_ = begin_;
 }
 
 void Playback::take(const recording::Entry& entry) {
+  tell_time(entry.time);
   if (const auto* message = std::get_if<mission::Message>(&entry.content)) {
-    picture_.on_message(*message, entry.sender, entry.time);
+    if (!mission::may_say(*message, entry.sender)) return;
+    seen_.fleet.on_message(*message, entry.time);
+    seen_.picture.on_message(*message, entry.sender, entry.time);
   } else if (const auto* event = std::get_if<mission::MissionEvent>(&entry.content)) {
-    picture_.on_event(*event);
+    seen_.picture.on_event(*event);
   }
 }
 
@@ -103,7 +109,7 @@ void Playback::go_to(Instant time) {
                        [](Instant wanted, const Copy& copy) { return wanted < copy.time; });
   const Copy& nearest = *std::prev(after);
   if (time < now_ || nearest.time > now_) {
-    picture_ = nearest.picture;
+    seen_ = nearest.seen;
     ahead_.reset();
     log_.seek(nearest.time);
   }
@@ -117,7 +123,15 @@ void Playback::play_until(Instant time) {
     take(*ahead_);
     ahead_.reset();
   }
+  tell_time(time);
   now_ = time;
+}
+
+/// The news were told when they were new.
+void Playback::tell_time(Instant time) {
+  seen_.fleet.on_timeout(time);
+  while (seen_.fleet.poll_news()) {
+  }
 }
 
 std::size_t Playback::events_so_far() const {

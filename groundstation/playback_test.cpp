@@ -32,6 +32,7 @@ class PlaybackTest : public ::testing::Test {
     auto writer = recording::Writer::open(folder_, options);
     ASSERT_TRUE(writer.ok());
     console::Picture picture{{.expected = config.vehicles}};
+    mission::Fleet fleet{{.expected = config.vehicles}};
     for (int i = 0; i <= 1200; ++i) {
       const Instant now = at_seconds(0.1 * i);
       for (const VehicleId vehicle : config.vehicles) {
@@ -42,6 +43,7 @@ class PlaybackTest : public ::testing::Test {
         t.state.x_m = i;
         t.activity = i < 500 ? mission::Activity::searching : mission::Activity::leading;
         writer->write(mission::Message{t}, vehicle, now);
+        fleet.on_message(t, now);
         picture.on_message(t, vehicle, now);
       }
       if (i % 100 == 50) {
@@ -53,23 +55,28 @@ class PlaybackTest : public ::testing::Test {
         writer->write(event);
         picture.on_event(event);
       }
-      if (i % 300 == 0) was_.emplace_back(now, picture);
+      if (i % 300 == 0) was_.push_back({now, shown(picture, fleet, now)});
     }
     ASSERT_TRUE(writer->flush().ok());
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  static std::string shown(const console::Picture& picture, Instant now) {
+  static std::string shown(const console::Picture& picture, mission::Fleet fleet, Instant now) {
+    fleet.on_timeout(now);
     std::string all = console::series_of(picture);
     const auto origin = MissionOrigin::make({47.0, 8.0, 500.0});
-    for (const std::string& section : console::sections_of(picture, *origin, "1.0", now)) {
+    for (const std::string& section : console::sections_of(picture, fleet, *origin, "1.0", now)) {
       all += section;
     }
     return all;
   }
 
   std::filesystem::path folder_;
-  std::vector<std::pair<Instant, console::Picture>> was_;
+  struct Moment {
+    Instant time{};
+    std::string shown;
+  };
+  std::vector<Moment> was_;
 };
 
 TEST_F(PlaybackTest, ShowsEveryMomentAsItWasWhateverTheOrder) {
@@ -80,16 +87,16 @@ TEST_F(PlaybackTest, ShowsEveryMomentAsItWasWhateverTheOrder) {
   EXPECT_EQ(playback->version(), "1.0");
   ASSERT_EQ(was_.size(), 5U);
   for (const std::size_t index : {0U, 4U, 2U, 3U, 1U, 0U, 4U}) {
-    const auto& [time, picture] = was_[index];
+    const auto& [time, was] = was_[index];
     playback->go_to(time);
     EXPECT_EQ(playback->now(), time);
-    EXPECT_EQ(shown(playback->picture(), time), shown(picture, time)) << index;
+    EXPECT_EQ(shown(playback->picture(), playback->fleet(), time), was) << index;
   }
   // Step by step, as it is played.
   playback->go_to(playback->begin());
   for (double t = 0.0; t < 60.0; t += 0.37) playback->go_to(at_seconds(t));
-  playback->go_to(was_[2].first);
-  EXPECT_EQ(shown(playback->picture(), was_[2].first), shown(was_[2].second, was_[2].first));
+  playback->go_to(was_[2].time);
+  EXPECT_EQ(shown(playback->picture(), playback->fleet(), was_[2].time), was_[2].shown);
 }
 
 TEST_F(PlaybackTest, HasEveryEventOnceByTime) {

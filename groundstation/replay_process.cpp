@@ -115,8 +115,9 @@ class ReplayLoop {
   [[nodiscard]] Answer look(View view) const {
     const auto section = section_of(view);
     if (!section) return {true, std::string{kOrders} + "\n"};
-    const std::string data = console::section_of(*section, playback_.picture(), playback_.origin(),
-                                                 playback_.version(), playback_.now());
+    const std::string data =
+        console::section_of(*section, playback_.picture(), playback_.fleet(), playback_.origin(),
+                            playback_.version(), playback_.now());
     return {true, data + "\n", data};
   }
 
@@ -165,7 +166,7 @@ class ReplayLoop {
   void show() {
     if (!shown_again_ || !server_->watched()) return;
     shown_again_ = false;
-    auto sections = console::sections_of(playback_.picture(), playback_.origin(),
+    auto sections = console::sections_of(playback_.picture(), playback_.fleet(), playback_.origin(),
                                          playback_.version(), playback_.now());
     sections[static_cast<std::size_t>(console::Section::audit)] = "[]";
     sections[static_cast<std::size_t>(console::Section::replay)] = nlohmann::ordered_json{

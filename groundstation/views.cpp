@@ -13,14 +13,14 @@
 namespace skein::groundstation {
 namespace {
 
-std::string health_of(const mission::FleetEntry& entry, bool expected) {
+std::string health_of(const mission::FleetEntry& entry) {
   if (entry.duplicate) return "TWO VEHICLES WITH THIS ID";
   if (!entry.telemetry) return "never heard";
   std::string health;
   const auto add = [&health](const std::string& text) {
     health += (health.empty() ? "" : ", ") + text;
   };
-  if (!expected) add("not in the fleet");
+  if (!entry.expected) add("not in the fleet");
   if (entry.silent) add("SILENT");
   const auto& telemetry = *entry.telemetry;
   if (telemetry.control_overruns > 0) {
@@ -48,21 +48,19 @@ bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {
 
 }  // namespace
 
-std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
-                        const std::vector<VehicleId>& expected, Instant now) {
+std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet, Instant now) {
   std::string text = fmt::format("{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", "vehicle", "activity",
                                  "heard", "range left", "loads", "health");
   for (const auto& [vehicle, entry] : fleet) {
-    const bool known = std::find(expected.begin(), expected.end(), vehicle) != expected.end();
     auto line = std::back_inserter(text);
     if (entry.telemetry) {
       fmt::format_to(line, "{:>7}  {:<11}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
                      to_string(entry.telemetry->activity), to_seconds(now - entry.heard_at),
                      entry.telemetry->range_left_m / 1000.0, entry.telemetry->loads,
-                     health_of(entry, known));
+                     health_of(entry));
     } else {
       fmt::format_to(line, "{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-", "-", "-",
-                     health_of(entry, known));
+                     health_of(entry));
     }
   }
   return text;

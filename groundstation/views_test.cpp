@@ -42,9 +42,10 @@ TEST(FleetTable, ShowsStateAndHealth) {
   fleet[{3}].silent = true;
   fleet[{4}] = heard(9.5);
   fleet[{4}].duplicate = true;
+  for (auto& [vehicle, entry] : fleet) entry.expected = true;
   fleet[{9}] = heard(9.5);
   fleet[{9}].telemetry->control_overruns = 7;
-  const auto table = fleet_table(fleet, {{1}, {2}, {3}, {4}}, at_seconds(10.0));
+  const auto table = fleet_table(fleet, at_seconds(10.0));
   EXPECT_THAT(line_of(table, "good"),
               AllOf(HasSubstr("1  executing"), HasSubstr("0.5 s"), HasSubstr("12.3 km")));
   EXPECT_THAT(line_of(table, "never heard"), HasSubstr("2  -"));

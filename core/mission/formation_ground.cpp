@@ -239,9 +239,9 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
 
 // --- what is heard -------------------------------------------------------------------------------
 
-void FormationGround::on_message(const Message& message, VehicleId sender, Instant now) {
+void FormationGround::on_message(const Message& message, Instant now) {
   if (const auto* status = std::get_if<FormationStatus>(&message)) {
-    if (status->vehicle == sender && contains(config_.vehicles, sender)) on_status(*status, now);
+    if (contains(config_.vehicles, status->vehicle)) on_status(*status, now);
   }
 }
 

@@ -93,7 +93,7 @@ class Team {
     return config;
   }
   void hear(const Message& message, VehicleId sender) {
-    if (sender != kGroundStation) ground_.on_message(message, sender, now);
+    if (sender != kGroundStation) ground_.on_message(message, now);
     for (Vehicle& v : vehicles_) {
       if (v.id != sender) v.agent.on_message(message, sender, now);
     }

@@ -12,16 +12,12 @@
 namespace skein::mission {
 namespace {
 
-using event::FleetNews;
-
 constexpr Duration kAuthorisationRepeat = std::chrono::milliseconds{500};
 constexpr Duration kHazardRepeat = std::chrono::seconds{5};
 constexpr Duration kCommandRepeat = std::chrono::seconds{1};
 constexpr Duration kCommandRepeatedFor = std::chrono::seconds{5};
 // What a flood from the network can make us remember.
 constexpr std::size_t kAuthorisationsMax = 64;
-constexpr std::size_t kStrangersMax = 64;
-constexpr std::size_t kInstancesMax = 8;
 constexpr std::size_t kSeenEventsMax = 8192;
 constexpr std::size_t kTasksRememberedMax = 1024;
 constexpr std::size_t kSitesRememberedMax = 64;
@@ -40,15 +36,14 @@ Instant last_delivery(const AuthorisationRequest& request) {
 
 }  // namespace
 
-GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/) : config_{config} {
-  for (const auto vehicle : config_.expected) fleet_[vehicle];
+GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/)
+    : config_{config}, fleet_{{.expected = config.expected, .silence = config.silence}} {
   taken_hazards_.insert(config_.hazards.begin(), config_.hazards.end());
 }
 
-void GroundAgent::on_message(const Message& message, VehicleId sender, Instant now) {
-  if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
-    if (telemetry->vehicle == sender) on_telemetry(*telemetry, now);
-  } else if (const auto* request = std::get_if<AuthorisationRequest>(&message)) {
+void GroundAgent::on_message(const Message& message, Instant now) {
+  fleet_.on_message(message, now);
+  if (const auto* request = std::get_if<AuthorisationRequest>(&message)) {
     on_request(*request, now);
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
@@ -63,63 +58,10 @@ void GroundAgent::on_message(const Message& message, VehicleId sender, Instant n
 }
 
 void GroundAgent::on_timeout(Instant now) {
-  mark_silent(now);
-  mark_mended(now);
+  fleet_.on_timeout(now);
+  while (const auto news = fleet_.poll_news()) report(*news, {}, {}, now);
   decide_by_script(now);
   send_again(now);
-}
-
-bool GroundAgent::expects(VehicleId vehicle) const { return contains(config_.expected, vehicle); }
-
-void GroundAgent::on_telemetry(const Telemetry& telemetry, Instant now) {
-  const VehicleId vehicle = telemetry.vehicle;
-  if (!fleet_.contains(vehicle)) {
-    if (fleet_.size() >= config_.expected.size() + kStrangersMax) return;
-    warn(FleetNews::stranger, vehicle, now);
-  }
-  FleetEntry& entry = fleet_[vehicle];
-
-  // A restarted vehicle has a new instance and its old one never speaks again. Two vehicles with
-  // one id take turns: the one that we took for replaced is heard once more.
-  auto& instances = instances_[vehicle];
-  std::erase_if(instances, [&](const auto& i) { return i.second + config_.silence <= now; });
-  const bool known = instances.contains(telemetry.instance);
-  const bool changed = entry.telemetry && entry.telemetry->instance != telemetry.instance;
-  if (known || instances.size() < kInstancesMax) instances[telemetry.instance] = now;
-  if (changed && known && !entry.duplicate) {
-    entry.duplicate = true;
-    warn(FleetNews::duplicate, vehicle, now);
-  } else if (changed && !known && !entry.duplicate) {
-    warn(FleetNews::restarted, vehicle, now);
-  }
-
-  const bool older =
-      entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;
-  if (!older) entry.telemetry = telemetry;
-  if (entry.silent) {
-    entry.silent = false;
-    warn(FleetNews::heard_again, vehicle, now, now - entry.heard_at);
-  }
-  entry.heard_at = now;
-}
-
-void GroundAgent::mark_silent(Instant now) {
-  for (auto& [vehicle, entry] : fleet_) {
-    if (!entry.telemetry || entry.silent || now < entry.heard_at + config_.silence) continue;
-    entry.silent = true;
-    warn(FleetNews::silent, vehicle, now);
-  }
-}
-
-void GroundAgent::mark_mended(Instant now) {
-  for (auto& [vehicle, entry] : fleet_) {
-    if (!entry.duplicate) continue;
-    auto& instances = instances_[vehicle];
-    std::erase_if(instances, [&](const auto& i) { return i.second + config_.silence <= now; });
-    if (instances.size() > 1) continue;
-    entry.duplicate = false;
-    warn(FleetNews::unique, vehicle, now);
-  }
 }
 
 void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
@@ -311,9 +253,8 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
       return Error{"a delivery of this plan is over by now; its leader will ask again"};
     }
     for (const auto& delivery : request.deliveries) {
-      const auto member = fleet_.find(delivery.assignment.vehicle);
-      if (member == fleet_.end() || !member->second.duplicate) continue;
-      return Error{"two vehicles answer to the id of " + name_of(member->first) +
+      if (!fleet_.duplicate(delivery.assignment.vehicle)) continue;
+      return Error{"two vehicles answer to the id of " + name_of(delivery.assignment.vehicle) +
                    ", which is part of this plan; stop or renumber one of them first"};
     }
   }
@@ -372,8 +313,8 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
     return Error{all ? "an aircraft is given back one at a time"
                      : "an aircraft cannot be given back before mission time 0"};
   }
-  if (!all && !expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
-  for (const auto& [id, entry] : fleet_) {
+  if (!all && !fleet_.expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
+  for (const auto& [id, entry] : fleet_.vehicles()) {
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
     if (!concerned || !entry.duplicate) continue;
     return Error{"two vehicles answer to the id of " + name_of(id) +
@@ -448,18 +389,11 @@ std::optional<Message> GroundAgent::poll_message() { return messages_.pop(); }
 std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
 
 Instant GroundAgent::next_timeout() const {
-  Instant next = std::min(next_repeat_, next_hazards_);
+  Instant next = std::min({next_repeat_, next_hazards_, fleet_.next_timeout()});
   for (const auto& sent : commands_) next = std::min(next, sent.next);
   for (const auto& [site, led] : led_) {
     if (led.last.closed && led.times_closed < kClosedTimes) {
       next = std::min(next, led.passed_on_at + kClosedPassedOn);
-    }
-  }
-  for (const auto& [vehicle, entry] : fleet_) {
-    if (entry.telemetry && !entry.silent) next = std::min(next, entry.heard_at + config_.silence);
-    if (!entry.duplicate) continue;
-    for (const auto& [instance, heard_at] : instances_.at(vehicle)) {
-      next = std::min(next, heard_at + config_.silence);
     }
   }
   for (const auto& pending : pending_) {
@@ -472,10 +406,6 @@ Instant GroundAgent::next_timeout() const {
 void GroundAgent::report(EventBody body, const coalition::Round& round, const TaskId& task,
                          Instant now) {
   events_.push({kGroundStation, now, round, task, std::move(body)});
-}
-
-void GroundAgent::warn(FleetNews news, VehicleId vehicle, Instant now, Duration silence) {
-  report(event::FleetWarning{news, vehicle, silence}, {}, {}, now);
 }
 
 }  // namespace skein::mission

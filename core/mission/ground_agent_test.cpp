@@ -44,10 +44,10 @@ struct Bench {
   explicit Bench(const GroundAgentConfig& config = fleet_of_three()) : agent{config, Instant{}} {}
 
   void hear(const Telemetry& t, double seconds) {
-    agent.on_message(Message{t}, t.vehicle, at_seconds(seconds));
+    agent.on_message(Message{t}, at_seconds(seconds));
   }
   void ask(const AuthorisationRequest& r, double seconds) {
-    agent.on_message(Message{r}, kLeader, at_seconds(seconds));
+    agent.on_message(Message{r}, at_seconds(seconds));
   }
   template <class T>
   std::vector<T> sent() {
@@ -78,8 +78,8 @@ struct Bench {
 
 TEST(GroundAgent, KnowsItsFleetBeforeItSpeaks) {
   const Bench bench;
-  ASSERT_EQ(bench.agent.fleet().size(), 3U);
-  EXPECT_FALSE(bench.agent.fleet().at({2}).telemetry);
+  ASSERT_EQ(bench.agent.fleet().vehicles().size(), 3U);
+  EXPECT_FALSE(bench.agent.fleet().vehicles().at({2}).telemetry);
   EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
 }
 
@@ -96,12 +96,12 @@ TEST(GroundAgent, TellsSilenceAndReturn) {
   bench.hear(telemetry_of({1}, 10, 1.0), 1.0);
   EXPECT_EQ(bench.agent.next_timeout(), at_seconds(6.0));
   bench.run_until(6.0);
-  EXPECT_TRUE(bench.agent.fleet().at({1}).silent);
+  EXPECT_TRUE(bench.agent.fleet().vehicles().at({1}).silent);
   auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::silent, {1}}));
   bench.hear(telemetry_of({1}, 10, 9.0), 9.0);
-  EXPECT_FALSE(bench.agent.fleet().at({1}).silent);
+  EXPECT_FALSE(bench.agent.fleet().vehicles().at({1}).silent);
   events = bench.events();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::heard_again, {1}, from_seconds(8.0)}));
@@ -111,16 +111,16 @@ TEST(GroundAgent, TwoInstancesWithOneIdAreADuplicateUntilMended) {
   Bench bench;
   bench.hear(telemetry_of({1}, 10, 1.0), 1.0);
   bench.hear(telemetry_of({1}, 11, 1.1), 1.1);
-  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);  // could be a restart
+  EXPECT_FALSE(bench.agent.fleet().vehicles().at({1}).duplicate);  // could be a restart
   bench.hear(telemetry_of({1}, 10, 1.2), 1.2);
-  EXPECT_TRUE(bench.agent.fleet().at({1}).duplicate);
+  EXPECT_TRUE(bench.agent.fleet().vehicles().at({1}).duplicate);
   EXPECT_FALSE(bench.agent.command({1}, CommandKind::hold, at_seconds(1.3)).ok());
   EXPECT_FALSE(bench.agent.command(kGroundStation, CommandKind::resume, at_seconds(1.3)).ok());
   EXPECT_TRUE(bench.agent.command(kGroundStation, CommandKind::hold, at_seconds(1.3)).ok());
   for (int i = 0; i < 60; ++i) {
     bench.hear(telemetry_of({1}, 10, 1.4 + 0.1 * i), 1.4 + 0.1 * i);
   }
-  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);
+  EXPECT_FALSE(bench.agent.fleet().vehicles().at({1}).duplicate);
   EXPECT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(8.0)).ok());
 }
 
@@ -128,7 +128,7 @@ TEST(GroundAgent, ARestartIsNoDuplicate) {
   Bench bench;
   for (int i = 0; i < 10; ++i) bench.hear(telemetry_of({1}, 10, 0.1 * i), 0.1 * i);
   for (int i = 10; i < 100; ++i) bench.hear(telemetry_of({1}, 11, 0.1 * i), 0.1 * i);
-  EXPECT_FALSE(bench.agent.fleet().at({1}).duplicate);
+  EXPECT_FALSE(bench.agent.fleet().vehicles().at({1}).duplicate);
   const auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(news_of(events[0]), (FleetWarning{FleetNews::restarted, {1}}));
@@ -147,16 +147,16 @@ TEST(GroundAgent, WarnsOnceOfAStranger) {
 TEST(GroundAgent, AFloodOfStrangersIsBounded) {
   Bench bench;
   for (std::uint16_t id = 100; id < 5000; ++id) bench.hear(telemetry_of({id}, 1, 1.0), 1.0);
-  EXPECT_LE(bench.agent.fleet().size(), 3U + 64U);
+  EXPECT_LE(bench.agent.fleet().vehicles().size(), 3U + 64U);
 }
 
 TEST(GroundAgent, ForwardsEveryEventOnce) {
   Bench bench;
   MissionEvent event{{2}, at_seconds(4.0), {}, {kSite, TaskKind::deliver, 1}, event::TaskDone{}};
-  bench.agent.on_message(Message{event}, {2}, at_seconds(4.1));
-  bench.agent.on_message(Message{event}, {2}, at_seconds(4.2));
+  bench.agent.on_message(Message{event}, at_seconds(4.1));
+  bench.agent.on_message(Message{event}, at_seconds(4.2));
   event.task.index = 2;
-  bench.agent.on_message(Message{event}, {2}, at_seconds(4.2));
+  bench.agent.on_message(Message{event}, at_seconds(4.2));
   EXPECT_EQ(bench.events().size(), 2U);
 }
 
@@ -231,12 +231,12 @@ TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   };
   for (const MissionEvent& holds :
        {ends(coalition::Reason::task_done, false), ends(coalition::Reason::lease_ran_out, true)}) {
-    bench.agent.on_message(Message{holds}, {3}, at_seconds(15.0));
+    bench.agent.on_message(Message{holds}, at_seconds(15.0));
     bench.ask(request(2, 25.0, 40.0), 15.2);
     EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(15.2)).ok());
   }
   const MissionEvent gives_up = ends(coalition::Reason::bid_again, false);
-  bench.agent.on_message(Message{gives_up}, {3}, at_seconds(15.0));
+  bench.agent.on_message(Message{gives_up}, at_seconds(15.0));
   bench.ask(request(2, 25.0, 40.0), 15.5);
   EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0)).ok());
 }
@@ -306,7 +306,7 @@ TEST(GroundAgent, TellsOfAHazardAgainAndAgain) {
   GroundAgentConfig config = fleet_of_three();
   config.hazards = {{10'001}};
   Bench bench{config};
-  bench.agent.on_message(Message{HazardReport{{{10'002}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.5));
+  bench.agent.on_message(Message{HazardReport{{{10'002}, {0.0, 0.0}, 10.0}}}, at_seconds(0.5));
   const auto id = bench.agent.add_hazard({100.0, -200.0}, 300.0, at_seconds(1.0));
   ASSERT_TRUE(id.ok());
   EXPECT_EQ(*id, HazardId{10'003});  // none that is known
@@ -334,7 +334,7 @@ TEST(GroundAgent, AHazardAfterANewStartIsANewOne) {
   EXPECT_NE(after.agent.add_hazard({5.0, 5.0}, 1.0, at_seconds(110.0)).value(), *first);
   // However long the mission is, and whatever others say.
   Bench late;
-  late.agent.on_message(Message{HazardReport{{{65'535}, {0.0, 0.0}, 10.0}}}, {2}, at_seconds(0.0));
+  late.agent.on_message(Message{HazardReport{{{65'535}, {0.0, 0.0}, 10.0}}}, at_seconds(0.0));
   EXPECT_EQ(late.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(1e6)).value(), HazardId{65'534});
 }
 

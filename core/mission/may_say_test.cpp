@@ -86,7 +86,13 @@ TEST(MaySay, OrdersAreTheGroundStations) {
   EXPECT_EQ(of(formation::Change{}), kGroundOnly);
 }
 
-TEST(MaySay, AnyoneTellsOfHazards) { EXPECT_EQ(of(HazardReport{}), (Sayers{true, true, true})); }
+TEST(MaySay, SensorsAndTheGroundStationTellOfSitesAndHazards) {
+  EXPECT_EQ(of(HazardReport{}), kGroundOnly);
+  EXPECT_EQ(of(SiteReport{}), kGroundOnly);
+  EXPECT_TRUE(may_say(HazardReport{}, kSensors));
+  EXPECT_TRUE(may_say(SiteReport{}, kSensors));
+  EXPECT_FALSE(may_say(Command{kSelf, 1, CommandKind::hold}, kSensors));
+}
 
 }  // namespace
 }  // namespace skein::mission

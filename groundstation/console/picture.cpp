@@ -10,9 +10,6 @@ namespace skein::console {
 namespace {
 
 constexpr Duration kDelayWindow = std::chrono::seconds{10};
-/// A speaker with a vehicle's id that has been quiet for so long is gone.
-constexpr Duration kInstanceLasts = std::chrono::seconds{5};
-constexpr std::size_t kInstancesMax = 8;
 
 template <class... F>
 struct Overloaded : F... {
@@ -54,7 +51,7 @@ std::string_view to_string(CoalitionState state) {
 }
 
 Picture::Picture(PictureParams params) : params_{std::move(params)} {
-  for (const VehicleId id : params_.expected) vehicles_[id].expected = true;
+  for (const VehicleId id : params_.expected) vehicles_[id];
   for (const Hazard& hazard : params_.hazards) hazards_[hazard.id] = hazard;
 }
 
@@ -67,12 +64,6 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
   if (!is_known(sender)) return;
   std::visit(Overloaded{[&](const mission::Telemetry& m) {
                           if (m.vehicle == sender) on(m, now);
-                        },
-                        [&](const mission::Health& m) {
-                          if (m.vehicle != sender) return;
-                          VehiclePicture& vehicle = vehicles_[m.vehicle];
-                          vehicle.health = m;
-                          speaks(vehicle, m.instance, now);
                         },
                         [&](const mission::PlanReport& m) {
                           if (m.vehicle == sender) vehicles_[m.vehicle].plan = m;
@@ -99,18 +90,16 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                                                 [&](const auto& said) { on(said); }},
                                      m);
                         },
-                        [](const mission::MissionEvent&) {}, [](const mission::Command&) {}},
+                        [](const mission::MissionEvent&) {}, [](const mission::Command&) {},
+                        [](const mission::Health&) {}},
              message);
 }
 
 void Picture::on(const mission::Telemetry& telemetry, Instant now) {
   VehiclePicture& vehicle = vehicles_[telemetry.vehicle];
-  speaks(vehicle, telemetry.instance, now);
   const Duration delay = now - telemetry.state.time;
   vehicle.delays.emplace_back(now, delay);
   while (now - vehicle.delays.front().first > kDelayWindow) vehicle.delays.pop_front();
-  vehicle.telemetry = telemetry;
-  vehicle.heard_at = now;
   if (vehicle.series.empty() || now - vehicle.series.back().time >= params_.series_period) {
     const VehicleState& s = telemetry.state;
     vehicle.series.push_back(
@@ -321,29 +310,6 @@ void Picture::on_event(const mission::MissionEvent& event) {
   }
 }
 
-bool Picture::silent(const VehiclePicture& vehicle, Instant now) const {
-  return vehicle.telemetry && now - vehicle.heard_at > params_.silence;
-}
-
-void Picture::speaks(VehiclePicture& vehicle, InstanceId instance, Instant now) {
-  std::erase_if(vehicle.instances,
-                [now](const auto& entry) { return now - entry.second.last > kInstanceLasts; });
-  if (vehicle.instances.size() >= kInstancesMax && !vehicle.instances.contains(instance)) return;
-  vehicle.instances.try_emplace(instance, VehiclePicture::Spoken{now, now}).first->second.last =
-      now;
-}
-
-/// One that has started anew is silent before its successor speaks.
-bool Picture::duplicate(const VehiclePicture& vehicle, Instant now) const {
-  for (const auto& [one, a] : vehicle.instances) {
-    for (const auto& [other, b] : vehicle.instances) {
-      const bool both = one < other && now - std::min(a.last, b.last) <= kInstanceLasts;
-      if (both && a.last >= b.first && b.last >= a.first) return true;
-    }
-  }
-  return false;
-}
-
 std::optional<std::pair<TaskId, TaskPicture>> Picture::task_of(VehicleId vehicle) const {
   std::optional<std::pair<TaskId, TaskPicture>> next;
   for (const auto& [id, site] : sites_) {
@@ -360,9 +326,11 @@ std::optional<std::pair<TaskId, TaskPicture>> Picture::task_of(VehicleId vehicle
   return next;
 }
 
-std::optional<Duration> clock_offset(const VehiclePicture& vehicle) {
-  if (vehicle.delays.empty()) return std::nullopt;
-  return std::min_element(vehicle.delays.begin(), vehicle.delays.end(),
+std::optional<Duration> Picture::clock_offset(VehicleId vehicle) const {
+  const auto known = vehicles_.find(vehicle);
+  if (known == vehicles_.end() || known->second.delays.empty()) return std::nullopt;
+  const auto& delays = known->second.delays;
+  return std::min_element(delays.begin(), delays.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; })
       ->second;
 }

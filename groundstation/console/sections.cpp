@@ -16,6 +16,7 @@
 #include "skein/idl/coalition_fields.hpp"
 #include "skein/idl/domain_fields.hpp"
 #include "skein/idl/events_fields.hpp"
+#include "skein/mission/formation_ground.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::console {
@@ -89,27 +90,28 @@ std::string version_of(const std::string& program) {
   return space == std::string::npos ? program : program.substr(space + 1);
 }
 
-Json problems_of(const Picture& picture, VehicleId id, const VehiclePicture& vehicle,
-                 const std::string& version, Instant now) {
+Json problems_of(VehicleId id, const mission::FleetEntry& entry,
+                 const std::optional<Duration>& offset, const std::string& version, Instant now) {
   Json all = Json::array();
-  if (picture.duplicate(vehicle, now)) {
+  if (entry.duplicate) {
     all.push_back(
         problem("alarm", fmt::format("two programs call themselves vehicle {}", id.value)));
   }
-  if (picture.silent(vehicle, now)) {
-    all.push_back(problem(
-        "alarm", fmt::format("not heard for {:.0f} s", to_seconds(now - vehicle.heard_at))));
+  if (entry.silent) {
+    all.push_back(
+        problem("alarm", fmt::format("not heard for {:.0f} s", to_seconds(now - entry.heard_at))));
   }
-  if (vehicle.telemetry && vehicle.telemetry->range_left_m < 0.0) {
+  const auto& telemetry = entry.telemetry;
+  if (telemetry && telemetry->range_left_m < 0.0) {
     all.push_back(problem("alarm", "its range is overdrawn"));
   }
-  if (!vehicle.expected) all.push_back(problem("alarm", "it is not of this fleet"));
-  if (!vehicle.telemetry) all.push_back(problem("warning", "it was never heard"));
-  if (vehicle.health) {
-    for (const std::string& text : vehicle.health->problems) {
+  if (!entry.expected) all.push_back(problem("alarm", "it is not of this fleet"));
+  if (!telemetry) all.push_back(problem("warning", "it was never heard"));
+  if (entry.health) {
+    for (const std::string& text : entry.health->problems) {
       all.push_back(problem("warning", text));
     }
-    const std::string theirs = version_of(vehicle.health->program);
+    const std::string theirs = version_of(entry.health->program);
     if (theirs != version) {
       all.push_back(problem("warning", fmt::format("its program is of version {}, the ground "
                                                    "station's of {}",
@@ -117,12 +119,10 @@ Json problems_of(const Picture& picture, VehicleId id, const VehiclePicture& veh
     }
   }
   // A multirotor counts none, and says 0.
-  if (vehicle.telemetry && vehicle.telemetry->range_left_m > 0.0 &&
-      vehicle.telemetry->range_left_m < kRangeWarningM) {
-    all.push_back(problem("warning", fmt::format("{:.1f} km of range are left",
-                                                 vehicle.telemetry->range_left_m / 1000.0)));
+  if (telemetry && telemetry->range_left_m > 0.0 && telemetry->range_left_m < kRangeWarningM) {
+    all.push_back(problem(
+        "warning", fmt::format("{:.1f} km of range are left", telemetry->range_left_m / 1000.0)));
   }
-  const auto offset = clock_offset(vehicle);
   if (offset && std::chrono::abs(*offset) > kOffsetWarning) {
     all.push_back(problem("warning", fmt::format("its clock is {:.1f} s off, or its link is slow",
                                                  to_seconds(*offset))));
@@ -130,14 +130,15 @@ Json problems_of(const Picture& picture, VehicleId id, const VehiclePicture& veh
   return all;
 }
 
-Json vehicles_json(const Picture& picture, const std::string& version, Instant now) {
+Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const std::string& version,
+                   Instant now) {
   Json all = Json::array();
-  for (const auto& [id, vehicle] : picture.vehicles()) {
+  for (const auto& [id, entry] : fleet.vehicles()) {
     Json v{{"id", id.value},
-           {"expected", vehicle.expected},
-           {"silent", picture.silent(vehicle, now)},
-           {"duplicate", picture.duplicate(vehicle, now)}};
-    const auto& t = vehicle.telemetry;
+           {"expected", entry.expected},
+           {"silent", entry.silent},
+           {"duplicate", entry.duplicate}};
+    const auto& t = entry.telemetry;
     const auto set = [&](const char* name, auto value) { v[name] = t ? value() : Json(nullptr); };
     set("x", [&] { return metres(t->state.x_m); });
     set("y", [&] { return metres(t->state.y_m); });
@@ -150,17 +151,17 @@ Json vehicles_json(const Picture& picture, const std::string& version, Instant n
     const auto task = picture.task_of(id);
     v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);
     set("heard_age_s",
-        [now, heard_at = vehicle.heard_at] { return number(to_seconds(now - heard_at), 1); });
-    const auto offset = clock_offset(vehicle);
+        [now, heard_at = entry.heard_at] { return number(to_seconds(now - heard_at), 1); });
+    const auto offset = picture.clock_offset(id);
     v["clock_offset_ms"] = offset ? number(to_seconds(*offset) * 1e3, 0) : Json(nullptr);
     set("range_left_m", [&] { return number(t->range_left_m, 0); });
     set("loads", [&] { return Json(t->loads); });
     set("plan_number", [&] { return Json(t->plan_number); });
-    const auto& h = vehicle.health;
+    const auto& h = entry.health;
     v["version"] = h ? Json(version_of(h->program)) : Json(nullptr);
     v["flight_controller"] = h ? Json(h->flight_controller) : Json(nullptr);
     v["mode"] = h && !h->mode.empty() ? Json(h->mode) : Json(nullptr);
-    v["problems"] = problems_of(picture, id, vehicle, version, now);
+    v["problems"] = problems_of(id, entry, offset, version, now);
     v["links"] = Json::array();
     if (h) {
       for (const auto& heard : h->heard) {
@@ -406,7 +407,7 @@ Json formation_json(const Picture& picture, Instant now) {
   Json places = Json::array();
   for (const auto& [id, member] : formation.members) {
     const auto& status = member.status;
-    const bool lost = now - member.heard_at > picture.params().silence;
+    const bool lost = now - member.heard_at > mission::kFormationSilence;
     at_rest = at_rest && (status.at_rest || lost);
     in_place = in_place && !lost && is_in_place(formation, id, status);
     places.push_back({{"id", id.value},
@@ -477,11 +478,11 @@ std::string key_of(const coalition::CoalitionId& id) {
   return fmt::format("{}-{:016x}-{}", id.leader.value, id.instance.value, id.number);
 }
 
-std::string section_of(Section section, const Picture& picture, const MissionOrigin& origin,
-                       const std::string& version, Instant now) {
+std::string section_of(Section section, const Picture& picture, const mission::Fleet& fleet,
+                       const MissionOrigin& origin, const std::string& version, Instant now) {
   switch (section) {
     case Section::vehicles:
-      return text_of(vehicles_json(picture, version, now));
+      return text_of(vehicles_json(picture, fleet, version, now));
     case Section::plans:
       return text_of(plans_json(picture));
     case Section::sites:
@@ -504,11 +505,11 @@ std::string section_of(Section section, const Picture& picture, const MissionOri
   return "";
 }
 
-Sections sections_of(const Picture& picture, const MissionOrigin& origin,
-                     const std::string& version, Instant now) {
+Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
+                     const MissionOrigin& origin, const std::string& version, Instant now) {
   Sections all;
   for (std::size_t i = 0; i < kSectionCount; ++i) {
-    all[i] = section_of(static_cast<Section>(i), picture, origin, version, now);
+    all[i] = section_of(static_cast<Section>(i), picture, fleet, origin, version, now);
   }
   return all;
 }

@@ -28,6 +28,7 @@
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
 #include "skein/recording/writer.hpp"
 #include "skein/wording/wording.hpp"
@@ -39,7 +40,7 @@ using std::chrono::steady_clock;
 using std::chrono::system_clock;
 
 /// The bench's own node: it hears everybody and is in no radio's table.
-constexpr VehicleId kBench{255};
+constexpr VehicleId kBench = mission::kSensors;
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};

@@ -5,83 +5,100 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
 
 namespace skein::hil {
 namespace {
 
-/// In the order of their numbers.
-std::vector<VehicleId> some_of(const TeamMission& mission, bool formation) {
+std::vector<VehicleId> formation_of(const TeamMission& mission) {
   std::vector<VehicleId> ids;
   for (const auto& v : mission.vehicles) {
-    if (v.flies_formation == formation) ids.push_back(v.spec.id);
+    if (v.flies_formation) ids.push_back(v.spec.id);
   }
-  if (formation) std::sort(ids.begin(), ids.end());
+  std::sort(ids.begin(), ids.end());
   return ids;
 }
 
+mission::GroundNodeConfig node_config(const TeamMission& mission) {
+  mission::GroundNodeConfig node;
+  for (const auto& v : mission.vehicles) node.agent.expected.push_back(v.spec.id);
+  node.agent.decisions = mission.decisions;
+  if (mission.formation) {
+    node.formation = groundstation::formation_ground(*mission.formation, formation_of(mission));
+  }
+  return node;
+}
+
 Result<groundstation::FormationDesk> open_desk(const TeamMission& mission, std::size_t lines_done,
-                                               Instant now) {
+                                               mission::GroundNode& node) {
   configuration::FormationConfig config = *mission.formation;
   config.script.erase(config.script.begin(),
                       config.script.begin() + static_cast<std::ptrdiff_t>(lines_done));
-  return groundstation::FormationDesk::open(config, some_of(mission, true), now);
+  return groundstation::FormationDesk::open(config, formation_of(mission), node);
 }
 
 }  // namespace
 
 Result<void> check_script(const TeamMission& mission) {
   if (!mission.formation) return {};
-  const auto desk = open_desk(mission, 0, Instant{});
+  mission::GroundNode node{node_config(mission), Instant{}};
+  const auto desk = open_desk(mission, 0, node);
   if (!desk) return desk.error();
   return {};
 }
 
 GroundStation::GroundStation(const TeamMission& mission)
-    : mission_{mission}, clock_{clock_offset(mission.faults, kGroundStation)} {}
+    : mission_{mission},
+      formation_{formation_of(mission)},
+      clock_{clock_offset(mission.faults, kGroundStation)} {}
 
 void GroundStation::start(Instant now) {
-  mission::GroundAgentConfig config;
-  config.expected = some_of(mission_, false);
-  config.decisions = mission_.decisions;
-  if (!config.expected.empty()) agent_.emplace(config, now + clock_);
+  node_.emplace(node_config(mission_), now + clock_);
   if (!mission_.formation) return;
-  auto desk = open_desk(mission_, script_done_, now + clock_);
+  auto desk = open_desk(mission_, script_done_, *node_);
   SKEIN_ASSERT(desk.ok());
   desk_ = std::move(*desk);
 }
 
 void GroundStation::end() {
   if (desk_) script_done_ += desk_->script_line();
-  agent_.reset();
   desk_.reset();
+  node_.reset();
 }
 
 void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {
-  if (agent_) agent_->on_message(message, sender, now + clock_);
-  if (desk_) desk_->on_message(message, sender, now + clock_);
+  if (node_) node_->on_message(message, sender, now + clock_);
 }
 
 void GroundStation::on_timeout(Instant now) {
-  if (agent_) agent_->on_timeout(now + clock_);
+  if (node_) node_->on_timeout(now + clock_);
   if (desk_) desk_->on_timeout(now + clock_);
 }
 
 std::optional<mission::Message> GroundStation::poll_message() {
-  if (agent_) {
-    if (auto message = agent_->poll_message()) return message;
-  }
-  return desk_ ? desk_->poll_message() : std::nullopt;
+  std::optional<mission::Message> message;
+  do {
+    message = node_ ? node_->poll_message() : std::nullopt;
+  } while (message &&
+           std::holds_alternative<mission::MissionEvent>(*message));  // read on the ground
+  return message;
 }
 
 std::optional<mission::MissionEvent> GroundStation::poll_event() {
   std::optional<mission::MissionEvent> event;
-  // Of the vehicles' own, which the agent passes on, nobody has to be told again.
   do {
-    event = agent_ ? agent_->poll_event() : std::nullopt;
-  } while (event && event->vehicle != kGroundStation);
-  if (!event && desk_) event = desk_->poll_event();
+    event = node_ ? node_->poll_event() : std::nullopt;
+  } while (event && is_told_elsewhere(*event));
   if (event) event->time -= clock_;
   return event;
+}
+
+/// Of the vehicles' own events, which the node passes on, nobody has to be told again; who of the
+/// formation is silent, or back, its desk says.
+bool GroundStation::is_told_elsewhere(const mission::MissionEvent& event) const {
+  const auto* fleet = std::get_if<mission::event::FleetWarning>(&event.body);
+  return event.vehicle != kGroundStation ||
+         (fleet != nullptr && contains(formation_, fleet->vehicle));
 }
 
 }  // namespace skein::hil

@@ -7,7 +7,7 @@
 
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/hil/team_simulator.hpp"
-#include "skein/mission/ground_agent.hpp"
+#include "skein/mission/ground_node.hpp"
 
 namespace skein::hil {
 
@@ -22,7 +22,7 @@ class GroundStation {
   /// operator goes on with the next. Precondition: the script can be read (check_script()).
   void start(Instant now);
   void end();
-  [[nodiscard]] bool running() const { return agent_.has_value() || desk_.has_value(); }
+  [[nodiscard]] bool running() const { return node_.has_value(); }
 
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
@@ -31,9 +31,12 @@ class GroundStation {
   [[nodiscard]] std::optional<mission::MissionEvent> poll_event();
 
  private:
+  [[nodiscard]] bool is_told_elsewhere(const mission::MissionEvent& event) const;
+
   const TeamMission& mission_;
+  std::vector<VehicleId> formation_;
   Duration clock_;
-  std::optional<mission::GroundAgent> agent_;
+  std::optional<mission::GroundNode> node_;
   std::optional<groundstation::FormationDesk> desk_;
   std::size_t script_done_ = 0;  ///< lines, of desks before this one
 };

@@ -20,6 +20,7 @@
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/hil/fault_timeline.hpp"
+#include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
@@ -398,7 +399,7 @@ class Team {
 
   /// From a sensor on board: no radio lies between.
   void hand_over(Instant now, std::size_t to, const std::shared_ptr<const Content>& what) {
-    air_.post({now, 0, to, vehicles_[to].spec().id, 0, what});
+    air_.post({now, 0, to, mission::kSensors, 0, what});
   }
 
   void count_errors(std::size_t i) {

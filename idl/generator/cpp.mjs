@@ -254,11 +254,11 @@ const leaves = (model, name) => {
 }
 
 function sayers(t) {
-  const words = t.notes.said_by ?? fail(`${t.name}: who may say it? @said_by("vehicle"), ("ground"), ("anyone") ...`)
-  if (words === 'anyone') return { code: 'true', text: 'anyone' }
-  const each = words.split(' or ').map(w => w === 'ground'
-    ? { code: 'sender == kGroundStation', text: 'the ground station' }
-    : { code: `m.${w} == sender`, text: `its \`${w}\`` })
+  const words = t.notes.said_by ?? fail(`${t.name}: who may say it? @said_by("vehicle"), ("ground"), ("sensors") ...`)
+  const nodes = new Map([
+    ['ground', { code: 'sender == kGroundStation', text: 'the ground station' }],
+    ['sensors', { code: 'sender == kSensors', text: 'a node that stands for sensors' }]])
+  const each = words.split(' or ').map(w => nodes.get(w) ?? { code: `m.${w} == sender`, text: `its \`${w}\`` })
   return { code: each.map(e => e.code).join(' || '), text: each.map(e => e.text).join(' or ') }
 }
 

@@ -109,8 +109,8 @@ void look(benchmark::State& state) {
   for (auto _ : state) {
     const auto begun = std::chrono::steady_clock::now();
     playback->go_to(at_seconds(random.uniform(0.0, kSeconds)));
-    benchmark::DoNotOptimize(
-        console::sections_of(playback->picture(), playback->origin(), "1.0", playback->now()));
+    benchmark::DoNotOptimize(console::sections_of(playback->picture(), playback->fleet(),
+                                                  playback->origin(), "1.0", playback->now()));
     benchmark::DoNotOptimize(console::series_of(playback->picture()));
     all.push_back(
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begun)

@@ -86,6 +86,7 @@ int main(int argc, char** argv) {
   console::PictureParams params;
   for (std::uint16_t i = 1; i <= vehicles; ++i) params.expected.push_back({i});
   console::Picture picture{params};
+  mission::Fleet fleet{{.expected = params.expected}};
   const auto origin = MissionOrigin::make({47.0, 8.0, 500.0});
   console::ServerConfig config;
   config.port = 0;
@@ -108,15 +109,19 @@ int main(int argc, char** argv) {
     }
     ended = true;
   }};
+  const auto hear = [&](const mission::Message& message, VehicleId sender, Instant now) {
+    fleet.on_message(message, now);
+    picture.on_message(message, sender, now);
+  };
   std::uint64_t seq = 0;
   for (long period = 0; !ended; ++period) {
     const double now_s = std::chrono::duration<double>(Clock::now() - begun).count();
     for (const VehicleId vehicle : params.expected) {
       if ((period + vehicle.value) % kTelemetryEvery == 0) {
-        picture.on_message(telemetry(vehicle, now_s), vehicle, at_seconds(now_s));
+        hear(telemetry(vehicle, now_s), vehicle, at_seconds(now_s));
       }
       if ((period + vehicle.value) % (10 * kTelemetryEvery) == 0) {
-        picture.on_message(health(vehicle, vehicles, now_s), vehicle, at_seconds(now_s));
+        hear(health(vehicle, vehicles, now_s), vehicle, at_seconds(now_s));
       }
     }
     if (period % 100 == 0) {
@@ -132,7 +137,7 @@ int main(int argc, char** argv) {
       }
     }
     if (period % kTelemetryEvery == 0) {
-      auto sections = console::sections_of(picture, *origin, "1.0", at_seconds(now_s));
+      auto sections = console::sections_of(picture, fleet, *origin, "1.0", at_seconds(now_s));
       (*server)->publish(now_s, std::move(sections));
     }
     std::this_thread::sleep_until(begun + (period + 1) * kPeriod);

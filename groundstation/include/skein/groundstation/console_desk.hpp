@@ -34,10 +34,11 @@ class ConsoleDesk {
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event);
   /// `audit` is its section.
-  void on_timeout(const std::string& audit, Instant now);
+  void on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now);
 
   [[nodiscard]] std::optional<console::Server::Line> next();
-  [[nodiscard]] std::string section(console::Section section, Instant now) const;
+  [[nodiscard]] std::string section(console::Section section, const mission::Fleet& fleet,
+                                    Instant now) const;
   [[nodiscard]] const console::Picture& picture() const { return picture_; }
   /// Empty where none is served.
   [[nodiscard]] std::string url() const { return server_ ? server_->url() : ""; }

@@ -12,6 +12,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
 #include "skein/console/picture.hpp"
+#include "skein/mission/fleet.hpp"
 #include "skein/recording/log.hpp"
 
 namespace skein::groundstation {
@@ -33,7 +34,8 @@ class Playback {
   [[nodiscard]] Instant begin() const { return begin_; }
   [[nodiscard]] Instant end() const { return end_; }
   [[nodiscard]] Instant now() const { return now_; }
-  [[nodiscard]] const console::Picture& picture() const { return picture_; }
+  [[nodiscard]] const console::Picture& picture() const { return seen_.picture; }
+  [[nodiscard]] const mission::Fleet& fleet() const { return seen_.fleet; }
   [[nodiscard]] const MissionOrigin& origin() const { return origin_; }
   /// All, as event_json() gives them, by time.
   struct Event {
@@ -52,23 +54,28 @@ class Playback {
   void go_to(Instant time);
 
  private:
+  struct Seen {
+    console::Picture picture;
+    mission::Fleet fleet;
+  };
   struct Copy {
     Instant time{};
-    console::Picture picture;
+    Seen seen;
   };
-  Playback(recording::Log log, MissionOrigin origin, console::Picture picture, std::string version);
+  Playback(recording::Log log, MissionOrigin origin, Seen seen, std::string version);
   void read_all(const std::function<void(double)>& progress);
   void take(const recording::Entry& entry);
   void play_until(Instant time);
+  void tell_time(Instant time);
 
   recording::Log log_;
   MissionOrigin origin_;
-  console::Picture picture_;
+  Seen seen_;
   std::string version_;
   Instant begin_{};
   Instant end_{};
   Instant now_{};
-  std::optional<recording::Entry> ahead_;  ///< read, and not yet in the picture
+  std::optional<recording::Entry> ahead_;  ///< read, and not yet seen
   std::vector<Copy> copies_;
   std::vector<Event> events_;
 };

@@ -18,7 +18,7 @@ namespace skein::groundstation {
 
 /// One line a vehicle: number, activity, seconds since it was heard, range left, loads, health.
 [[nodiscard]] std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
-                                      const std::vector<VehicleId>& expected, Instant now);
+                                      Instant now);
 
 /// What, where, when, who, until when, and what to type.
 [[nodiscard]] std::string request_text(const mission::PendingAuthorisation& pending,

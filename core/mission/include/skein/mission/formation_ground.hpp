@@ -18,6 +18,9 @@
 
 namespace skein::mission {
 
+/// Whose status is not heard for so long is lost to its formation.
+inline constexpr Duration kFormationSilence = std::chrono::seconds{3};
+
 struct FormationGroundConfig {
   std::vector<VehicleId> vehicles;
   formation::ShapeSpec rally;  ///< where vehicles gather, and wait that have no place
@@ -29,7 +32,7 @@ struct FormationGroundConfig {
   double place_tolerance_m = 0.3;              ///< to be in place
   Duration settle = std::chrono::seconds{1};   ///< in place for so long, all: the formation holds
   Duration lead = std::chrono::seconds{1};     ///< from an order to the start of its change
-  Duration silence = std::chrono::seconds{3};  ///< then a vehicle is lost
+  Duration silence = kFormationSilence;
   formation::PlaceParams assignment{};
   std::uint64_t seed = 1;  ///< of the ant colony
 };
@@ -61,7 +64,8 @@ class FormationGround {
   [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order) const;
   Result<FormationPreview> command(const FormationOrder& order, Instant now);
 
-  void on_message(const Message& message, VehicleId sender, Instant now);
+  /// Of who may say it (may_say()).
+  void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }

@@ -12,6 +12,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/mission/fleet.hpp"
 #include "skein/mission/messages.hpp"
 
 namespace skein::mission {
@@ -30,14 +31,6 @@ struct GroundAgentConfig {
   std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
   std::vector<HazardId> hazards = {};       ///< numbers that are taken
   Duration silence = std::chrono::seconds{5};
-};
-
-/// The fleet as the ground station sees it.
-struct FleetEntry {
-  std::optional<Telemetry> telemetry;
-  Instant heard_at{};
-  bool silent = false;     ///< was heard, and not since GroundAgentConfig::silence
-  bool duplicate = false;  ///< two instances speak with this id
 };
 
 /// One request for authorisation, and what became of it.
@@ -61,7 +54,8 @@ class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
 
-  void on_message(const Message& message, VehicleId sender, Instant now);
+  /// Of who may say it (may_say()).
+  void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
 
   /// The operator's decision on the newest request for that site. Fails when there is none waiting,
@@ -89,7 +83,7 @@ class GroundAgent {
   poll_event();  ///< its own and those of vehicles, once each
   [[nodiscard]] Instant next_timeout() const;
 
-  [[nodiscard]] const std::map<VehicleId, FleetEntry>& fleet() const { return fleet_; }
+  [[nodiscard]] const Fleet& fleet() const { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
 
  private:
@@ -115,7 +109,6 @@ class GroundAgent {
     Instant repeat_until{};
   };
 
-  void on_telemetry(const Telemetry& telemetry, Instant now);
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
   void on_status(const coalition::MemberStatus& status);
@@ -124,23 +117,17 @@ class GroundAgent {
   bool tell_what_is_over(const AuthorisationRequest& request, Instant now);
   [[nodiscard]] const Granted* granted_to_another(const AuthorisationRequest& request) const;
   [[nodiscard]] const Authorisation* granted_before(const AuthorisationRequest& request) const;
-  void mark_silent(Instant now);
-  void mark_mended(Instant now);
   void decide_by_script(Instant now);
   void send_again(Instant now);
   [[nodiscard]] const ScriptedDecision* script_for(SiteId site) const;
-  [[nodiscard]] bool expects(VehicleId vehicle) const;
   [[nodiscard]] std::optional<Instant> script_due(const PendingAuthorisation& pending) const;
   Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
   Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                       Instant now);
   void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
-  void warn(event::FleetNews news, VehicleId vehicle, Instant now, Duration silence = {});
 
   GroundAgentConfig config_;
-  std::map<VehicleId, FleetEntry> fleet_;
-  /// Who spoke with each id lately, and when.
-  std::map<VehicleId, std::map<InstanceId, Instant>> instances_;
+  Fleet fleet_;
   std::vector<PendingAuthorisation> pending_;
   std::map<SiteId, std::size_t> scripted_;  ///< decisions that the script has taken so far
   Instant script_again_{Instant::min()};    ///< after a decision that could not be taken

@@ -6,6 +6,10 @@
 
 namespace skein::mission {
 
+/// The number of a node that stands for sensors: it tells of sites and hazards, and of nothing
+/// else.
+inline constexpr VehicleId kSensors{255};
+
 /// Whether the message is its sender's to say: a vehicle speaks for itself, a leader for its
 /// rounds, the ground station for the operator. It also passes on what leaders announce and renew,
 /// for those who do not hear them. What is not the sender's to say is to be dropped where it is

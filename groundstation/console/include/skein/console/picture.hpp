@@ -16,7 +16,6 @@ namespace skein::console {
 struct PictureParams {
   std::vector<VehicleId> expected = {};  ///< the fleet
   std::vector<Hazard> hazards = {};      ///< known before the mission
-  Duration silence = std::chrono::seconds{5};
   Duration series_period = std::chrono::seconds{1};
   std::size_t series_max = 600;  ///< samples of a vehicle: ten minutes
   std::size_t spans_max = 1000;  ///< of a vehicle's activities
@@ -28,18 +27,9 @@ struct PictureParams {
   std::size_t hazards_max = 1000;
 };
 
-/// What an operator sees of one vehicle.
+/// What an operator sees of one vehicle besides its entry in mission::Fleet.
 struct VehiclePicture {
-  bool expected = false;
-  std::optional<mission::Telemetry> telemetry;
-  std::optional<mission::Health> health;
   std::optional<mission::PlanReport> plan;
-  Instant heard_at{};  ///< its newest telemetry
-  struct Spoken {
-    Instant first{};
-    Instant last{};
-  };
-  std::map<InstanceId, Spoken> instances;  ///< who spoke with its id lately, and when
   /// Arrival less sending of its telemetry: what its clock is behind ours, and the link.
   std::deque<std::pair<Instant, Duration>> delays;
   struct Sample {
@@ -113,9 +103,10 @@ struct FormationPicture {
   std::map<VehicleId, Member> members;
 };
 
-/// Everything that the ground station has heard and said, put together for people. It decides
-/// nothing. Pure and copyable: of a recording, copies taken on the way make every moment quick to
-/// reach. `now` never decreases. Every container has a limit; the oldest gives way.
+/// Everything that the ground station has heard and said, put together for people: what was said
+/// over time, beside the fleet as it is now (mission::Fleet). It decides nothing. Pure and
+/// copyable: of a recording, copies taken on the way make every moment quick to reach. `now` never
+/// decreases. Every container has a limit; the oldest gives way.
 class Picture {
  public:
   explicit Picture(PictureParams params);
@@ -138,15 +129,13 @@ class Picture {
   [[nodiscard]] const std::map<HazardId, Hazard>& hazards() const { return hazards_; }
   [[nodiscard]] const FormationPicture& formation() const { return formation_; }
 
-  [[nodiscard]] bool silent(const VehiclePicture& vehicle, Instant now) const;
-  /// Two programs speak with this id.
-  [[nodiscard]] bool duplicate(const VehiclePicture& vehicle, Instant now) const;
   /// The task that the vehicle does now or next.
   [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> task_of(VehicleId vehicle) const;
+  /// The least delay of its telemetry lately.
+  [[nodiscard]] std::optional<Duration> clock_offset(VehicleId vehicle) const;
 
  private:
   [[nodiscard]] bool is_known(VehicleId sender) const;
-  static void speaks(VehiclePicture& vehicle, InstanceId instance, Instant now);
   void on(const mission::Telemetry& telemetry, Instant now);
   void on(const mission::AuthorisationRequest& request, Instant now);
   void on(const mission::Authorisation& decision);
@@ -169,8 +158,5 @@ class Picture {
   std::map<HazardId, Hazard> hazards_;
   FormationPicture formation_;
 };
-
-/// The least delay lately.
-[[nodiscard]] std::optional<Duration> clock_offset(const VehiclePicture& vehicle);
 
 }  // namespace skein::console

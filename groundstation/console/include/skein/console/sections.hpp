@@ -9,8 +9,9 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/console/picture.hpp"
+#include "skein/mission/fleet.hpp"
 
-/// The picture as JSON, by the sections of docs/console-socket.md.
+/// Picture and fleet as JSON, by the sections of docs/console-socket.md.
 namespace skein::console {
 
 enum class Section : std::uint8_t {
@@ -34,11 +35,12 @@ using Sections = std::array<std::string, kSectionCount>;
 
 /// All but `audit` and `replay`, which are not of the picture. `program` is what vehicles should
 /// run, so that others are named.
-[[nodiscard]] Sections sections_of(const Picture& picture, const MissionOrigin& origin,
-                                   const std::string& version, Instant now);
+[[nodiscard]] Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
+                                   const MissionOrigin& origin, const std::string& version,
+                                   Instant now);
 [[nodiscard]] std::string section_of(Section section, const Picture& picture,
-                                     const MissionOrigin& origin, const std::string& version,
-                                     Instant now);
+                                     const mission::Fleet& fleet, const MissionOrigin& origin,
+                                     const std::string& version, Instant now);
 
 /// The `series` of a history message: a JSON array.
 [[nodiscard]] std::string series_of(const Picture& picture);

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/fleet.hpp"
+
+#include <algorithm>
+
+namespace skein::mission {
+
+using event::FleetNews;
+
+Fleet::Fleet(const FleetParams& params) : params_{params} {
+  for (const VehicleId vehicle : params.expected) vehicles_[vehicle].expected = true;
+}
+
+void Fleet::on_message(const Message& message, Instant now) {
+  if (const auto* telemetry = std::get_if<Telemetry>(&message)) on_telemetry(*telemetry, now);
+  if (const auto* health = std::get_if<Health>(&message)) {
+    const auto known = vehicles_.find(health->vehicle);
+    if (known != vehicles_.end()) known->second.health = *health;
+  }
+}
+
+void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
+  const VehicleId vehicle = telemetry.vehicle;
+  if (!vehicles_.contains(vehicle)) {
+    if (vehicles_.size() >= params_.expected.size() + kStrangersMax) return;
+    warn(FleetNews::stranger, vehicle);
+  }
+  FleetEntry& entry = vehicles_[vehicle];
+
+  // A restarted vehicle has a new instance and its old one never speaks again. Two vehicles with
+  // one id take turns: the one that we took for replaced is heard once more.
+  forget_instances(entry, now);
+  auto& instances = entry.instances;
+  const bool known = instances.contains(telemetry.instance);
+  const bool changed = entry.telemetry && entry.telemetry->instance != telemetry.instance;
+  if (known || instances.size() < kInstancesMax) instances[telemetry.instance] = now;
+  if (changed && known && !entry.duplicate) {
+    entry.duplicate = true;
+    warn(FleetNews::duplicate, vehicle);
+  } else if (changed && !known && !entry.duplicate) {
+    warn(FleetNews::restarted, vehicle);
+  }
+
+  const bool older =
+      entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;
+  if (!older) entry.telemetry = telemetry;
+  if (entry.silent) {
+    entry.silent = false;
+    warn(FleetNews::heard_again, vehicle, now - entry.heard_at);
+  }
+  entry.heard_at = now;
+}
+
+void Fleet::on_timeout(Instant now) {
+  for (auto& [vehicle, entry] : vehicles_) {
+    if (entry.telemetry && !entry.silent && now >= entry.heard_at + params_.silence) {
+      entry.silent = true;
+      warn(FleetNews::silent, vehicle);
+    }
+  }
+  for (auto& [vehicle, entry] : vehicles_) {
+    if (!entry.duplicate) continue;
+    forget_instances(entry, now);
+    if (entry.instances.size() > 1) continue;
+    entry.duplicate = false;
+    warn(FleetNews::unique, vehicle);
+  }
+}
+
+Instant Fleet::next_timeout() const {
+  Instant next = Instant::max();
+  for (const auto& [vehicle, entry] : vehicles_) {
+    if (entry.telemetry && !entry.silent) next = std::min(next, entry.heard_at + params_.silence);
+    if (!entry.duplicate) continue;
+    for (const auto& [instance, at] : entry.instances) next = std::min(next, at + params_.silence);
+  }
+  return next;
+}
+
+bool Fleet::expects(VehicleId vehicle) const {
+  const auto found = vehicles_.find(vehicle);
+  return found != vehicles_.end() && found->second.expected;
+}
+
+bool Fleet::duplicate(VehicleId vehicle) const {
+  const auto found = vehicles_.find(vehicle);
+  return found != vehicles_.end() && found->second.duplicate;
+}
+
+void Fleet::forget_instances(FleetEntry& entry, Instant now) const {
+  std::erase_if(entry.instances, [&](const auto& i) { return i.second + params_.silence <= now; });
+}
+
+void Fleet::warn(FleetNews news, VehicleId vehicle, Duration silence) {
+  news_.push({news, vehicle, silence});
+}
+
+}  // namespace skein::mission

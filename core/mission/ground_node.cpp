@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_node.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/mission/may_say.hpp"
+
+namespace skein::mission {
+
+bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
+  if (!may_say(message, sender)) {
+    ++refused_;
+    return false;
+  }
+  agent_.on_message(message, now);
+  formation_.on_message(message, now);
+  return true;
+}
+
+void GroundNode::on_timeout(Instant now) {
+  agent_.on_timeout(now);
+  formation_.on_timeout(now);
+}
+
+void GroundNode::say(MissionEvent event) {
+  take_events();  // which were before this one
+  messages_.push(event);
+  events_.push(std::move(event));
+}
+
+void GroundNode::take_events() {
+  while (auto event = formation_.poll_event()) {
+    messages_.push(*event);
+    events_.push(std::move(*event));
+  }
+}
+
+std::optional<Message> GroundNode::poll_message() {
+  take_events();
+  if (auto message = agent_.poll_message()) return message;
+  if (auto message = formation_.poll_message()) return message;
+  return messages_.pop();
+}
+
+std::optional<MissionEvent> GroundNode::poll_event() {
+  take_events();
+  if (auto event = events_.pop()) return event;
+  return agent_.poll_event();
+}
+
+Instant GroundNode::next_timeout() const {
+  return std::min(agent_.next_timeout(), formation_.next_timeout());
+}
+
+}  // namespace skein::mission

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_node.hpp"
+
+#include <gtest/gtest.h>
+
+namespace skein::mission {
+namespace {
+
+constexpr VehicleId kVehicle{2};
+constexpr SiteId kSite{3};
+const coalition::Round kRound{{kVehicle, {77}, 1}, 1};
+
+GroundNode node() {
+  GroundNodeConfig config;
+  config.agent.expected = {{1}, {2}, {3}};
+  config.formation.vehicles = {{1}, {2}, {3}};
+  return {config, Instant{}};
+}
+
+TEST(GroundNode, AnEventCountsOnlyWhereItsVehicleSaysIt) {
+  GroundNode ground = node();
+  MissionEvent done;
+  done.vehicle = kVehicle;
+  done.time = at_seconds(1.0);
+  done.round = kRound;
+  done.task = {kSite, TaskKind::deliver, 0};
+  done.body = event::TaskDone{};
+  EXPECT_FALSE(ground.on_message(done, {9}, at_seconds(1.0)));
+  EXPECT_EQ(ground.refused(), 1U);
+  EXPECT_FALSE(ground.poll_event());
+  EXPECT_TRUE(ground.on_message(done, kVehicle, at_seconds(1.0)));
+  EXPECT_EQ(ground.refused(), 1U);
+  const auto told = ground.poll_event();
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->vehicle, kVehicle);
+}
+
+TEST(GroundNode, OnlyTheLeaderOfARoundAsksForItsAuthorisation) {
+  GroundNode ground = node();
+  AuthorisationRequest request;
+  request.round = kRound;
+  request.site = kSite;
+  request.decide_by = at_seconds(20.0);
+  EXPECT_FALSE(ground.on_message(request, {9}, at_seconds(1.0)));
+  EXPECT_TRUE(ground.agent().authorisations().empty());
+  EXPECT_TRUE(ground.on_message(request, kVehicle, at_seconds(1.0)));
+  EXPECT_EQ(ground.agent().authorisations().size(), 1U);
+}
+
+TEST(GroundNode, HearsOfAFormationAndTellsOfIt) {
+  GroundNode ground = node();
+  FormationStatus status;
+  status.vehicle = kVehicle;
+  ASSERT_TRUE(ground.on_message(status, kVehicle, at_seconds(1.0)));
+  ASSERT_TRUE(ground.formation().members().contains(kVehicle));
+  ground.on_timeout(at_seconds(10.0));
+  // Silent: both the log and whoever listens are told.
+  const auto event = ground.poll_event();
+  ASSERT_TRUE(event);
+  const auto* warning = std::get_if<event::FormationWarning>(&event->body);
+  ASSERT_NE(warning, nullptr);
+  EXPECT_EQ(warning->news, event::FormationNews::lost);
+  const auto message = ground.poll_message();
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(std::holds_alternative<MissionEvent>(*message));
+}
+
+TEST(GroundNode, TwoThatAnswerToOneIdAreFoundInTheOneFleetPicture) {
+  GroundNode ground = node();
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  const auto hear = [&](std::uint64_t instance, double seconds) {
+    telemetry.instance = {instance};
+    telemetry.state.time = at_seconds(seconds);
+    ground.on_message(telemetry, kVehicle, at_seconds(seconds));
+  };
+  hear(1, 1.0);
+  hear(2, 1.1);
+  EXPECT_FALSE(ground.fleet().duplicate(kVehicle));  // could be a restart
+  hear(1, 1.2);
+  EXPECT_TRUE(ground.fleet().duplicate(kVehicle));
+  EXPECT_FALSE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.3)).ok());
+  ground.on_timeout(at_seconds(7.0));
+  EXPECT_FALSE(ground.fleet().duplicate(kVehicle));
+}
+
+}  // namespace
+}  // namespace skein::mission

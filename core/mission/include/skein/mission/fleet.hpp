@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/base/time.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// One vehicle as the ground station hears it.
+struct FleetEntry {
+  bool expected = false;
+  std::optional<Telemetry> telemetry;            ///< the newest
+  Instant heard_at{};                            ///< of it
+  std::optional<Health> health;                  ///< the newest
+  bool silent = false;                           ///< was heard, and not since FleetParams::silence
+  bool duplicate = false;                        ///< two instances speak with this id
+  std::map<InstanceId, Instant> instances = {};  ///< who spoke with it lately, and when
+};
+
+struct FleetParams {
+  std::vector<VehicleId> expected;
+  Duration silence = std::chrono::seconds{5};
+};
+
+/// Which vehicles there are and how they are heard: the one place that finds silence, new starts
+/// and ids that are used twice. Operator's decisions, prompt and page read it. Messages must be
+/// their senders' to say. Copyable; `now` never decreases.
+class Fleet {
+ public:
+  static constexpr std::size_t kStrangersMax = 64;
+  static constexpr std::size_t kInstancesMax = 8;
+
+  explicit Fleet(const FleetParams& params);
+
+  /// Takes telemetry and health from it.
+  void on_message(const Message& message, Instant now);
+  void on_timeout(Instant now);
+  /// What the operator should know.
+  [[nodiscard]] std::optional<event::FleetWarning> poll_news() { return news_.pop(); }
+
+  [[nodiscard]] Instant next_timeout() const;
+
+  [[nodiscard]] const std::map<VehicleId, FleetEntry>& vehicles() const { return vehicles_; }
+  [[nodiscard]] bool expects(VehicleId vehicle) const;
+  [[nodiscard]] bool duplicate(VehicleId vehicle) const;
+
+ private:
+  void on_telemetry(const Telemetry& telemetry, Instant now);
+  void warn(event::FleetNews news, VehicleId vehicle, Duration silence = {});
+  void forget_instances(FleetEntry& entry, Instant now) const;
+
+  FleetParams params_;
+  std::map<VehicleId, FleetEntry> vehicles_;
+  BoundedQueue<event::FleetWarning> news_{256};
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/mission/fleet.hpp"
+#include "skein/mission/formation_ground.hpp"
+#include "skein/mission/ground_agent.hpp"
+
+namespace skein::mission {
+
+struct GroundNodeConfig {
+  GroundAgentConfig agent;
+  FormationGroundConfig formation;
+};
+
+/// Everything that the ground station decides and says: its agents and the one picture of the fleet
+/// that they, the prompt and the page read. A message that is not its sender's to say is refused
+/// and counted, whatever it is. Calling rules as of VehicleNode.
+class GroundNode {
+ public:
+  GroundNode(const GroundNodeConfig& config, Instant now)
+      : agent_{config.agent, now}, formation_{config.formation, now} {}
+
+  /// False where it is refused.
+  bool on_message(const Message& message, VehicleId sender, Instant now);
+  void on_timeout(Instant now);
+
+  /// Tells all of what was decided around the node: where the script of the formation stands.
+  void say(MissionEvent event);
+
+  /// To be sent: all that the ground station says.
+  [[nodiscard]] std::optional<Message> poll_message();
+  /// To recorder, log and page: its own and those of vehicles, once each.
+  [[nodiscard]] std::optional<MissionEvent> poll_event();
+  [[nodiscard]] Instant next_timeout() const;
+
+  /// Whom the operator decides with.
+  [[nodiscard]] GroundAgent& agent() { return agent_; }
+  [[nodiscard]] const GroundAgent& agent() const { return agent_; }
+  [[nodiscard]] FormationGround& formation() { return formation_; }
+  [[nodiscard]] const FormationGround& formation() const { return formation_; }
+
+  [[nodiscard]] const Fleet& fleet() const { return agent_.fleet(); }
+  [[nodiscard]] std::uint64_t refused() const { return refused_; }
+
+ private:
+  void take_events();
+
+  GroundAgent agent_;
+  FormationGround formation_;
+  std::uint64_t refused_ = 0;
+  BoundedQueue<Message> messages_{64};  ///< the node's own
+  BoundedQueue<MissionEvent> events_{64};
+};
+
+}  // namespace skein::mission
