@@ -106,7 +106,7 @@ TEST(FormationChecks, FindThoseThatComeTooNear) {
 
 TEST(FormationChecks, ACorrectionOfDriftKeepsThePlaces) {
   RunRecord record = flown(0.0, 9.0);
-  record.ground_events[2].text = "correction of form, straight: 2 vehicles";
+  std::get<ChangeBegun>(record.ground_events[2].body).correction = true;
   record.places.push_back({8, at_seconds(20.0), {1}, {10.5, 0.0, 20.0}});  // with its trim
   EXPECT_TRUE(check_places(record, {}).held());
 }

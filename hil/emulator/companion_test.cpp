@@ -10,6 +10,7 @@
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/hil/emulated_flight_controller.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
@@ -110,7 +111,7 @@ class Bench {
       controller_.pop();
     }
     link_.step(now_);
-    while (const auto notice = companion().poll_notice()) log_ += notice->text + "\n";
+    while (const auto notice = companion().poll_notice()) log_ += wording::text_of(notice->what) + "\n";
   }
 
   std::deque<can::Frame> up_;

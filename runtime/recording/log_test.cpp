@@ -15,6 +15,7 @@
 
 #include "records.hpp"
 #include "skein/base/random.hpp"
+#include "skein/mcap/reader.hpp"
 #include "skein/mcap/writer.hpp"
 #include "skein/random_messages/random_messages.hpp"
 #include "skein/recording/merge.hpp"
@@ -158,7 +159,7 @@ TEST_F(LogTest, WhatAnAgentWasGivenComesBackExactly) {
   EXPECT_EQ(std::get<TimeoutGiven>(contents[3]).now, now);
   const auto& notice = std::get<NoticeGiven>(contents[4]).notice;
   EXPECT_EQ(notice.what.news, AutopilotNews::text);
-  EXPECT_EQ(notice.what.detail, "says \"so\",\nand this");
+  EXPECT_EQ(notice.what.detail, "says \"so\", and this");  // no control characters in texts
   EXPECT_TRUE(notice.warning);
   EXPECT_EQ(notice.time, now);
   const auto& plan = *std::get<PlanMade>(contents[5]).plan;
@@ -331,7 +332,44 @@ TEST_F(LogTest, WhatIsNoRecordingIsRefusedWithTheReason) {
     (void)older->add(mcap::Channel{schema, "/vehicle_01/track", "cdr", {{"sender", "1"}}});
   }
   EXPECT_THAT(Log::open(folder_ / "older.mcap").error().message,
-              HasSubstr("/vehicle_01/track is of another version of Skein (skein 0.0)"));
+              HasSubstr("/vehicle_01/track is of version none, ours of version "));
+  EXPECT_THAT(Log::open(folder_ / "older.mcap").error().message,
+              HasSubstr("read it with the Skein that wrote it (skein 0.0)"));
+}
+
+TEST_F(LogTest, ALaterReleasesRecordsAreReadAndKeepTheirSchema) {
+  const RecordKind* kind = kind_named("agent/timeout");
+  ASSERT_NE(kind, nullptr);
+  const std::string later = std::string{kind->schema->text} + "uint32 later\n";
+  Bytes bytes = encode(TimeoutGiven{})->bytes;
+  const std::size_t end = bytes.size();
+  bytes.resize(end + 4, 5);
+  bytes[3] = 0;  // nothing only fills up
+  const auto folder = folder_ / folder_name(VehicleId{1});
+  std::filesystem::create_directories(folder);
+  {
+    auto file = mcap::Writer::open(folder / kFileName, {.profile = "ros2", .library = "skein 9.0"});
+    ASSERT_TRUE(file.ok());
+    file->add(mcap::Metadata{"skein", {{"node", "1"}, {"instance", "2"}, {"epoch_unix_ns", "3"}}});
+    const auto schema = file->add(mcap::Schema{"skein/msg/TimeoutGiven", "ros2msg", later});
+    mcap::Message message;
+    message.channel =
+        file->add(mcap::Channel{schema, "/vehicle_01/agent/timeout", "cdr", {{"sender", "1"}}});
+    message.log_time_ns = 10;
+    message.data = bytes;
+    file->write(message);
+  }
+  const auto records = merge_run(folder_);
+  ASSERT_TRUE(records.ok()) << records.error().message;
+  EXPECT_EQ(*records, 1U);
+  Log log = read(folder_);
+  const auto entry = log.next();
+  ASSERT_TRUE(entry);
+  EXPECT_EQ(std::get<TimeoutGiven>(entry->content).now, Instant{Duration{7}});
+  const auto merged = mcap::Reader::open(folder_ / kRunFileName);
+  ASSERT_TRUE(merged.ok());
+  ASSERT_EQ(merged->schemas().size(), 1U);
+  EXPECT_EQ(merged->schemas().begin()->second.text, later);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/hil/emulated_flight_controller.hpp"
 #include "skein/planning/path_follower.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein {
 namespace {
@@ -130,7 +131,7 @@ struct Flight {
     }
     link->step(now);
     while (const auto notice = link->companion().poll_notice()) {
-      if (notice->warning) last_warning = notice->text;
+      if (notice->warning) last_warning = wording::text_of(notice->what);
     }
   }
   void run_until(double seconds) {
