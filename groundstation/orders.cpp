@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "skein/base/angles.hpp"
 
@@ -11,41 +13,15 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  switch (view) {
-    case View::help:
-      return "help";
-    case View::status:
-      return "status";
-    case View::sites:
-      return "sites";
-    case View::pending:
-      return "pending";
-    case View::places:
-      return "places";
-    case View::coalitions:
-      return "coalitions";
-    case View::hazards:
-      return "hazards";
-    case View::audit:
-      return "audit";
-  }
-  return "";
+  static constexpr std::array<std::string_view, 8> kWords{
+      "help", "status", "sites", "pending", "places", "coalitions", "hazards", "audit"};
+  return kWords.at(static_cast<std::size_t>(view));
 }
 
 std::string_view verb_of(mission::CommandKind kind) {
-  switch (kind) {
-    case mission::CommandKind::hold:
-      return "hold";
-    case mission::CommandKind::resume:
-      return "resume";
-    case mission::CommandKind::return_home:
-      return "return";
-    case mission::CommandKind::give_back:
-      return "give-back";
-    case mission::CommandKind::count:
-      break;
-  }
-  return "";
+  static constexpr std::array<std::string_view, 4> kVerbs{"hold", "resume", "return", "give-back"};
+  static_assert(kVerbs.size() == static_cast<std::size_t>(mission::CommandKind::count));
+  return kVerbs.at(static_cast<std::size_t>(kind));
 }
 
 struct Line {

@@ -190,7 +190,7 @@ void add_swap(CLI::App& app, int& status) {
       "are judged in continuous time. The same seed gives the same run. Ends with status 0 if no\n"
       "pair came nearer than the separation and all arrived, 1 if not, 2 for bad input.\n"
       "Examples: skein-hil swap --agents 32 --seeds 100 --method orca\n"
-      "          skein-hil swap --agents 5,32,100 --method field,orca --csv arguments->csv\n"
+      "          skein-hil swap --agents 5,32,100 --method field,orca --csv swap.csv\n"
       "          skein-hil swap --agents 5 --delay 0 --loss 0 --seeds 1 --plots .");
   command->callback([arguments, &status] { status = swap(*arguments); });
 }

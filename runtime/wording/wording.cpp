@@ -78,66 +78,42 @@ constexpr std::array kReasons{
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 
+/// In the order of an enumeration that ends with `count`.
+template <class Enum>
+using Sentences = std::array<std::string_view, static_cast<std::size_t>(Enum::count)>;
+
+template <class Enum>
+std::string_view sentence_in(const Sentences<Enum>& sentences, Enum value) {
+  return value < Enum::count ? sentences.at(static_cast<std::size_t>(value)) : "";
+}
+
 std::string_view sentence_of(event::Lateness why) {
-  switch (why) {
-    case event::Lateness::no_decision:
-      return "no decision: the plan is timed anew";
-    case event::Lateness::not_authorised:
-      return "holding at the gate";
-    case event::Lateness::lease_too_short:
-      return "the lease does not reach over the delivery";
-    case event::Lateness::not_certain:
-      return "its deliveries or its lease are not certain";
-    case event::Lateness::count:
-      break;
-  }
-  return "";
+  static constexpr Sentences<event::Lateness> kSentences{
+      "no decision: the plan is timed anew", "holding at the gate",
+      "the lease does not reach over the delivery", "its deliveries or its lease are not certain"};
+  return sentence_in(kSentences, why);
 }
 
 std::string_view sentence_of(event::TaskFailure why) {
-  switch (why) {
-    case event::TaskFailure::no_plan:
-      return "";
-    case event::TaskFailure::out_of_range:
-      return "not enough range left";
-    case event::TaskFailure::path_too_long:
-      return "the path has too many pieces";
-    case event::TaskFailure::off_path:
-      return "off the planned path";
-    case event::TaskFailure::released_within:
-      return "released within it";
-    case event::TaskFailure::count:
-      break;
-  }
-  return "";
+  static constexpr Sentences<event::TaskFailure> kSentences{
+      "", "not enough range left", "the path has too many pieces", "off the planned path",
+      "released within it"};
+  return sentence_in(kSentences, why);
 }
 
 std::string_view sentence_of(event::Trouble trouble) {
-  switch (trouble) {
-    case event::Trouble::untimely:
-      return "neither its speed nor another path keeps its time in this wind";
-    case event::Trouble::route_not_flown:
-      return "it is not where its route has it at this time: the route is not flown";
-    case event::Trouble::id_in_use:
-      return "another vehicle uses this id; this one bids and leads no more";
-    case event::Trouble::count:
-      break;
-  }
-  return "";
+  static constexpr Sentences<event::Trouble> kSentences{
+      "neither its speed nor another path keeps its time in this wind",
+      "it is not where its route has it at this time: the route is not flown",
+      "another vehicle uses this id; this one bids and leads no more"};
+  return sentence_in(kSentences, trouble);
 }
 
 std::string_view sentence_of(event::ChangeRefusal why) {
-  switch (why) {
-    case event::ChangeRefusal::another_is_flown:
-      return "the one before is still flown";
-    case event::ChangeRefusal::too_fast:
-      return "it is faster than this vehicle";
-    case event::ChangeRefusal::begins_elsewhere:
-      return "it begins somewhere else";
-    case event::ChangeRefusal::count:
-      break;
-  }
-  return "";
+  static constexpr Sentences<event::ChangeRefusal> kSentences{"the one before is still flown",
+                                                              "it is faster than this vehicle",
+                                                              "it begins somewhere else"};
+  return sentence_in(kSentences, why);
 }
 
 std::string_view sentence_of(Given given) {

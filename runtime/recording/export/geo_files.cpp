@@ -2,12 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "flights.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::recording_export {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 const Error kNoOrigin{
     "the recording does not say where the mission's origin is; CSV needs none: --csv"};
@@ -21,13 +26,9 @@ const recording::TrackPoint* point_at(const recording::Recording& flight, Instan
   return flight.track.empty() ? nullptr : &flight.track.front();
 }
 
-std::string json_escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-  }
-  return out;
+double decimals(double value, int count) {
+  const double scale = std::pow(10.0, count);
+  return std::round(value * scale) / scale;
 }
 
 std::string xml_escaped(const std::string& text) {
@@ -38,9 +39,15 @@ std::string xml_escaped(const std::string& text) {
   return out;
 }
 
-std::string geojson_position(const MissionOrigin& origin, const VehicleState& s) {
+Json geojson_position(const MissionOrigin& origin, const VehicleState& s) {
   const Wgs84 p = origin.to_wgs84(s.position());
-  return fmt::format("[{:.7f},{:.7f},{:.1f}]", p.longitude_deg, p.latitude_deg, p.height_m);
+  return {decimals(p.longitude_deg, 7), decimals(p.latitude_deg, 7), decimals(p.height_m, 1)};
+}
+
+Json feature(const char* type, Json coordinates, Json properties) {
+  return {{"type", "Feature"},
+          {"geometry", {{"type", type}, {"coordinates", std::move(coordinates)}}},
+          {"properties", std::move(properties)}};
 }
 
 std::string kml_position(const MissionOrigin& origin, const VehicleState& s) {
@@ -52,36 +59,33 @@ std::string kml_position(const MissionOrigin& origin, const VehicleState& s) {
 
 Result<std::string> geojson(const Flights& flights) {
   if (!flights.origin) return kNoOrigin;
-  std::string text = "{\"type\":\"FeatureCollection\",\"features\":[";
-  bool first = true;
-  const auto feature = [&](const std::string& geometry, const std::string& properties) {
-    text += fmt::format("{}\n{{\"type\":\"Feature\",\"geometry\":{},\"properties\":{{{}}}}}",
-                        first ? "" : ",", geometry, properties);
-    first = false;
-  };
+  Json features = Json::array();
   for (const auto& [vehicle, flight] : flights.by_node) {
     if (flight.track.size() >= 2) {
-      std::string line;
+      Json line = Json::array();
       for (const auto& point : flight.track) {
-        line += (line.empty() ? "" : ",") + geojson_position(*flights.origin, point.state);
+        line.push_back(geojson_position(*flights.origin, point.state));
       }
-      feature(fmt::format("{{\"type\":\"LineString\",\"coordinates\":[{}]}}", line),
-              fmt::format("\"vehicle\":{},\"from_s\":{:.3f},\"to_s\":{:.3f}", vehicle.value,
-                          to_seconds(flight.track.front().state.time),
-                          to_seconds(flight.track.back().state.time)));
+      features.push_back(
+          feature("LineString", std::move(line),
+                  {{"vehicle", vehicle.value},
+                   {"from_s", decimals(to_seconds(flight.track.front().state.time), 3)},
+                   {"to_s", decimals(to_seconds(flight.track.back().state.time), 3)}}));
     }
     for (const auto& event : flight.events) {
       const auto* at = point_at(flight, event.time);
       if (at == nullptr) continue;
-      feature(fmt::format("{{\"type\":\"Point\",\"coordinates\":{}}}",
-                          geojson_position(*flights.origin, at->state)),
-              fmt::format("\"vehicle\":{},\"time_s\":{:.3f},\"event\":\"{}\",\"site\":{},"
-                          "\"text\":\"{}\"",
-                          vehicle.value, to_seconds(event.time), to_string(event.kind()),
-                          event.task.site.value, json_escaped(wording::news_of(event))));
+      features.push_back(feature("Point", geojson_position(*flights.origin, at->state),
+                                 {{"vehicle", vehicle.value},
+                                  {"time_s", decimals(to_seconds(event.time), 3)},
+                                  {"event", to_string(event.kind())},
+                                  {"site", event.task.site.value},
+                                  {"text", wording::news_of(event)}}));
     }
   }
-  return text + "\n]}\n";
+  return Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump(
+             -1, ' ', false, Json::error_handler_t::replace) +  // what others sent may be no UTF-8
+         "\n";
 }
 
 Result<std::string> kml(const Flights& flights) {

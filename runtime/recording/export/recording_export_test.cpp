@@ -89,10 +89,10 @@ TEST_F(RecordingExport, CsvHasEverythingExactly) {
 TEST_F(RecordingExport, GeojsonAndKmlSayWhereItWas) {
   ASSERT_TRUE(write(folder_, Format::geojson, folder_ / "out").ok());
   const auto geojson = text_of("flight.geojson");
-  EXPECT_THAT(geojson, HasSubstr("\"LineString\",\"coordinates\":[[8.0000000,47.0000000,500.3],"));
+  EXPECT_THAT(geojson, HasSubstr("\"LineString\",\"coordinates\":[[8.0,47.0,500.3],"));
   EXPECT_THAT(geojson, HasSubstr("\"event\":\"authorised\""));
   EXPECT_THAT(geojson, HasSubstr("\\\"her\\\" <there>"));
-  EXPECT_THAT(geojson, HasSubstr("\"Point\",\"coordinates\":[8.0000000,47.0089"));
+  EXPECT_THAT(geojson, HasSubstr("\"Point\",\"coordinates\":[8.0,47.0089"));
   ASSERT_TRUE(write(folder_, Format::kml, folder_ / "out").ok());
   const auto kml = text_of("flight.kml");
   EXPECT_THAT(kml, HasSubstr("8.0000000,47.0000000,0.3 8.0000000,47.0089"));
