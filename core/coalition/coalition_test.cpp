@@ -114,7 +114,8 @@ class Team {
       if (m.leads) {
         text += ", leads, " + std::string{to_string(m.leads->state())} + ", round " +
                 std::to_string(m.leads->round().number) + ", open";
-        for (const auto& task : m.leads->announcement().tasks) text += " " + to_string(task);
+        for (const auto& task : m.leads->announcement().tasks)
+          text.append(" ").append(to_string(task));
       }
     }
     return text;

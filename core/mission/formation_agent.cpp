@@ -171,7 +171,10 @@ void FormationAgent::tell_of_wait(Instant now) {
   report(waiting, now);
 }
 
-std::optional<Guidance> FormationAgent::poll_guidance() { return std::exchange(track_, {}); }
+std::optional<Guidance> FormationAgent::poll_guidance() {
+  if (!track_) return std::nullopt;  // what is not there is kilobytes to copy, too
+  return std::exchange(track_, {});
+}
 
 Telemetry FormationAgent::telemetry() const {
   Telemetry telemetry;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -26,7 +25,15 @@ class SelfReport {
   /// What does not change is in `base`: vehicle, instance, program, flight controller.
   SelfReport(Health base, Instant now) : base_{std::move(base)}, next_health_{now} {}
 
-  void on_heard(VehicleId sender, Instant now) { heard_[sender] = now; }
+  void on_heard(VehicleId sender, Instant now) {
+    const auto before = [](const auto& entry, VehicleId id) { return entry.first < id; };
+    const auto at = std::lower_bound(heard_.begin(), heard_.end(), sender, before);
+    if (at != heard_.end() && at->first == sender) {
+      at->second = now;
+    } else {
+      heard_.emplace(at, sender, now);
+    }
+  }
   void on_plan(const FlightPlan& plan);
 
   /// What can be wrong, counted since the start.
@@ -45,7 +52,7 @@ class SelfReport {
   [[nodiscard]] std::vector<std::string> problems(const Facts& facts, Instant now) const;
 
   Health base_;
-  std::map<VehicleId, Instant> heard_;
+  std::vector<std::pair<VehicleId, Instant>> heard_;  ///< by id; a map is slow at every message
   std::optional<FlightPlan> plan_;
   Instant next_plan_ = Instant::max();
   Instant next_health_;

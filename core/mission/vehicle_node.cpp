@@ -154,7 +154,10 @@ std::optional<Message> VehicleNode::poll_message() {
   if (auto message = impl_->agent->poll_message()) return message;
   return impl_->messages.pop();
 }
-std::optional<Guidance> VehicleNode::poll_guidance() { return std::exchange(impl_->guidance, {}); }
+std::optional<Guidance> VehicleNode::poll_guidance() {
+  if (!impl_->guidance) return std::nullopt;  // what is not there is kilobytes to copy, too
+  return std::exchange(impl_->guidance, {});
+}
 std::optional<PlanningRequest> VehicleNode::poll_planning_request() {
   return impl_->agent->poll_planning_request();
 }

@@ -134,7 +134,8 @@ class Checker {
 
   CheckReport run() {
     if (plan_.routes.size() != problem_.vehicles.size()) {
-      report_.violations.push_back({{}, "the plan does not have one route for each vehicle"});
+      Violation& broken = report_.violations.emplace_back();
+      broken.message = "the plan does not have one route for each vehicle";
       return report_;
     }
     for (std::size_t i = 0; i < problem_.vehicles.size(); ++i) {

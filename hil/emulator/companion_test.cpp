@@ -111,7 +111,8 @@ class Bench {
       controller_.pop();
     }
     link_.step(now_);
-    while (const auto notice = companion().poll_notice()) log_ += wording::text_of(notice->what) + "\n";
+    while (const auto notice = companion().poll_notice())
+      log_ += wording::text_of(notice->what) + "\n";
   }
 
   std::deque<can::Frame> up_;

@@ -84,9 +84,9 @@ std::string shapes_svg(const std::vector<ShapePanel>& panels, double spacing_m,
   for (std::size_t i = 0; i < panels.size(); ++i) {
     const std::size_t row = i / columns;
     const std::size_t column = i % columns;
-    svg += "\n" + draw_panel(panels[i], spacing_m,
-                             {kSide * static_cast<double>(column),
-                              panel_height * static_cast<double>(row)});
+    svg.append("\n").append(
+        draw_panel(panels[i], spacing_m,
+                   {kSide * static_cast<double>(column), panel_height * static_cast<double>(row)}));
   }
   return svg + "</svg>\n";
 }

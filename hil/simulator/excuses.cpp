@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <set>
+#include <string_view>
 
 #include "skein/checks/task_runs.hpp"
 
@@ -57,13 +58,18 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
                                     const std::vector<VehicleEnd>& vehicles) {
   std::vector<checks::Excuse> all;
   std::set<TaskId> done;
+  const auto excuse = [&all](const TaskId& task, std::string_view why) {
+    checks::Excuse& added = all.emplace_back();
+    added.task = task;
+    added.why = why;
+  };
   std::set<TaskId> unknown = may_have_been_flown(record);
   for (const auto& run : checks::task_runs(record)) {
     if (run.done && !run.failed) done.insert(run.task);
     if (run.cut_off && run.task.kind == TaskKind::deliver) unknown.insert(run.task);
   }
   for (const TaskId& task : unknown) {
-    if (!done.contains(task)) all.push_back({task, "may have been flown by who fell silent"});
+    if (!done.contains(task)) excuse(task, "may have been flown by who fell silent");
   }
 
   std::vector<const VehicleSpec*> specs;
@@ -89,7 +95,7 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
         });
     if (surveyable && all_matched(open.size(), left.size(), can)) continue;
     if (!surveyed) open.push_back(survey);
-    for (const TaskId& task : open) all.push_back({task, "beyond the vehicles that are left"});
+    for (const TaskId& task : open) excuse(task, "beyond the vehicles that are left");
   }
   return all;
 }

@@ -131,8 +131,7 @@ TEST(Codec, EncodingIsTheGoldenOne) {
 }
 
 TEST(Topics, DocumentIsUpToDate) {
-  expect_golden(std::string{SKEIN_SOURCE_DIR} + "/docs/topics.md",
-                read(SKEIN_IDL_GENERATED "/topics.md"));
+  expect_golden(SKEIN_SOURCE_DIR "/docs/topics.md", read(SKEIN_IDL_GENERATED "/topics.md"));
 }
 
 TEST(Codec, CountsAnotherVersionAsSuch) {
@@ -230,7 +229,7 @@ TEST(Codec, WhatIsIncompatibleIsToldWithBothVersions) {
 
 TEST(Codec, CutsLongTextsAtACharacter) {
   coalition::Cancel m;
-  m.why.detail = std::string(kTextMax - 1, 'x') + "ä" + "more";
+  m.why.detail = std::string(kTextMax - 1, 'x').append("ä").append("more");
   const auto decoded = decode(Topic::coalition, encode(coalition::Message{m}).value());
   const auto& received = std::get<coalition::Cancel>(
       std::get<coalition::Message>(std::get<mission::Message>(decoded)));

@@ -381,9 +381,9 @@ std::string text_of(const mission::event::ChangeBegun& change) {
   std::string text = change.correction ? "correction of " : "";
   text += to_string(change.order);
   if (change.order == mission::OrderKind::form) {
-    text += " " + std::string{formation::to_string(change.shape)};
+    text.append(" ").append(formation::to_string(change.shape));
   }
-  return text + ", " + std::string{formation::to_string(change.way)};
+  return text.append(", ").append(formation::to_string(change.way));
 }
 
 std::string text_of(const AutopilotNotice& notice) {

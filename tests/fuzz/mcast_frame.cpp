@@ -25,11 +25,11 @@ void run(std::span<const std::uint8_t> input) {
   if (input.size() < can::kMcastHeader) return;
   std::vector<std::uint8_t> mended{input.begin(), input.end()};
   can::Crc16 crc;
-  crc.add(std::span{mended}.subspan(4));
+  crc.process_bytes(mended.data() + 4, mended.size() - 4);
   mended[0] = 0x34;
   mended[1] = 0x29;
-  mended[2] = static_cast<std::uint8_t>(crc.value());
-  mended[3] = static_cast<std::uint8_t>(crc.value() >> 8U);
+  mended[2] = static_cast<std::uint8_t>(crc.checksum());
+  mended[3] = static_cast<std::uint8_t>(crc.checksum() >> 8U);
   read(mended);
 }
 

@@ -29,9 +29,9 @@ struct FormationGroundConfig {
   double tracking_m = 0.5;             ///< how far a vehicle may be from its reference
   double reserve_m = 1.0;              ///< see formation::ChangeRequest
   double ceiling_m = 120.0;
-  double place_tolerance_m = 0.3;              ///< to be in place
-  Duration settle = std::chrono::seconds{1};   ///< in place for so long, all: the formation holds
-  Duration lead = std::chrono::seconds{1};     ///< from an order to the start of its change
+  double place_tolerance_m = 0.3;             ///< to be in place
+  Duration settle = std::chrono::seconds{1};  ///< in place for so long, all: the formation holds
+  Duration lead = std::chrono::seconds{1};    ///< from an order to the start of its change
   Duration silence = kFormationSilence;
   formation::PlaceParams assignment{};
   std::uint64_t seed = 1;  ///< of the ant colony
