@@ -24,6 +24,12 @@ AgentLoop::AgentLoop(const mission::VehicleNodeConfig& config, AgentLink link,
 
 void AgentLoop::step(Instant now) {
   stepped_at_ = now;
+  // First: what the node tells of itself follows its state.
+  if (auto newest = condition(); newest != condition_) {
+    condition_ = std::move(newest);
+    note(recording::ConditionGiven{condition_, now});
+    node_.on_condition(condition_);
+  }
   if (const auto* state = control_->state.read()) {
     note(recording::StateGiven{*state, now});
     node_.on_state(*state, now);
@@ -46,11 +52,6 @@ void AgentLoop::step(Instant now) {
     note(recording::NoticeGiven{*notice, now});
     node_.on_notice(*notice);
     hand_out();
-  }
-  if (auto newest = condition(); newest != condition_) {
-    condition_ = std::move(newest);
-    note(recording::ConditionGiven{condition_, now});
-    node_.on_condition(condition_);
   }
   note(recording::TimeoutGiven{now});
   node_.on_timeout(now);

@@ -307,7 +307,7 @@ TEST_F(ReexecutionTest, EveryKindOfInputCounts) {
     return std::holds_alternative<recording::NoticeGiven>(content);
   });
   ASSERT_TRUE(notice.ok());
-  EXPECT_THAT(notice->difference, HasSubstr("MODE_CHANGED"));
+  EXPECT_THAT(notice->difference, HasSubstr("mode_changed"));
   const auto namesake = without("vehicle-02", [](const Content& content) {
     return std::holds_alternative<recording::NamesakeHeard>(content);
   });

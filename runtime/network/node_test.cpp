@@ -83,7 +83,7 @@ std::vector<std::string> some_of_every_kind(Role writer, std::uint64_t seed,
     const Role reader = writer == Role::ground ? Role::vehicle : Role::ground;
     if (!info(topic).writers.has(writer) || !info(topic).readers.has(reader)) continue;
     // Best effort promises nothing, and only the last of a burst is kept: one is enough.
-    if (!info(topic).reliable && i > kMessageKinds) {
+    if (!info(topic).reliable && i >= kMessageKinds) {
       continue;
     }
     encoded.push_back(bytes_of(message));

@@ -159,13 +159,20 @@ std::vector<std::uint8_t> bytes_of(const Content& content) {
   return encoded ? std::move(encoded->bytes) : Bytes{};
 }
 
+namespace {
+template <class T>
+std::string named_text(const T& value) {
+  return std::string{codec::Type<T>::kName}.append(" ").append(codec::JsonWriter::of(value).dump());
+}
+}  // namespace
+
 std::string text_of(const Content& content) {
   return std::visit(
       []<class T>(const T& value) {
         if constexpr (std::is_same_v<T, mission::Message>) {
-          return codec::json_of(value);
+          return std::visit([](const auto& message) { return named_text(message); }, value);
         } else {
-          return codec::JsonWriter::of(value).dump();
+          return named_text(value);
         }
       },
       content);
