@@ -172,7 +172,7 @@ TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
   EXPECT_NE(text_of(told).find("preview: "), std::string::npos) << text_of(told);
   EXPECT_EQ(tell({"form", "wedge", "spacing", "0.6"}), "exit status 1") << text_of(told);
   EXPECT_EQ(tell({"take-off"}), "exit status 0") << text_of(told);
-  EXPECT_TRUE(wait_for_output("formation_held")) << output();
+  EXPECT_TRUE(wait_for_output("formation held")) << output();
   bench.signal(SIGINT);
   EXPECT_TRUE(bench.wait(60s));
 }
