@@ -155,10 +155,12 @@ class GroundLoop {
     for (int i = 0; i < kConsoleLinesPerStep; ++i) {
       const auto line = console_.next();
       if (!line) break;
-      const Answer given =
-          line->order.empty()
-              ? answer(line->line, {line->user, kConsole, line->may_order}, now)
-              : answer(read_order(line->order), "", {line->user, kConsole, line->may_order}, now);
+      const Asker asker{line->user, kConsole, line->may_order};
+      const Result<Input> asked =
+          line->order.empty() ? parse_input(line->line) : read_order(line->order);
+      // The audit has the words of what could not be read, too.
+      const std::string words = line->order.empty() ? line->line : asked ? "" : line->order;
+      const Answer given = answer(asked, words, asker, now);
       line->reply(given.done, given.text, given.data);
     }
   }

@@ -372,6 +372,11 @@ TEST(Coalition, ARefusedAwardReleasesEveryoneAndIsTriedAgain) {
   team.unable = {VehicleId{2}};
   ASSERT_TRUE(
       team.run_until([&] { return team.leader().state() == Initiator::State::monitoring; }, 3s));
+  const auto* told = std::get_if<Initiator::NotFormed>(&team.leader_outputs.back());
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(told->why.reason, Reason::award_refused);
+  EXPECT_EQ(told->why.vehicle, VehicleId{2});
+  EXPECT_EQ(told->why.detail, "no path");
   team.run_for(300ms);
   EXPECT_TRUE(team.everyone_free());
   team.unable.clear();

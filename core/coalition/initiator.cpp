@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <set>
+#include <string>
 #include <utility>
 
 #include "skein/base/contains.hpp"
@@ -287,7 +288,12 @@ void Initiator::on_confirmation(const Confirmation& message, Instant now) {
       }
     }
     if (machine_.in(State::awarding)) {
-      not_formed(Event::not_confirmed, {Reason::award_refused, message.member, message.why.detail},
+      std::string detail = message.why.detail;
+      if (detail.empty()) {
+        detail = to_string(message.why.reason);
+        std::ranges::replace(detail, '_', ' ');
+      }
+      not_formed(Event::not_confirmed, {Reason::award_refused, message.member, std::move(detail)},
                  now);
     }
     return;

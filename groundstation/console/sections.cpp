@@ -463,9 +463,9 @@ std::optional<coalition::CoalitionId> coalition_of(std::string_view key) {
   const char* const end = at + key.size();
   const auto take = [&](auto& value, int base, bool last) {
     const auto [next, error] = std::from_chars(at, end, value, base);
-    const bool taken = error == std::errc{} && (last ? next == end : next != end && *next == '-');
+    if (error != std::errc{} || (last ? next != end : next == end || *next != '-')) return false;
     at = last ? next : next + 1;
-    return taken;
+    return true;
   };
   if (take(id.leader.value, 10, false) && take(id.instance.value, 16, false) &&
       take(id.number, 10, true)) {

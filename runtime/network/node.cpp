@@ -489,8 +489,8 @@ void Node::Impl::refuse(Topic topic, const codec::Refusal& refusal, VehicleId se
   }
   count(Counter::bad_version);
   const std::lock_guard lock{misfits_mutex_};
+  if (misfits_seen_.size() >= kMisfitsMax) return;  // or a stranger fills the memory
   if (!misfits_seen_.emplace(sender, topic, refusal.version).second) return;
-  if (misfits_seen_.size() > kMisfitsMax) return;
   misfits_.push_back({sender, codec::text_of(refusal, topic)});
 }
 
