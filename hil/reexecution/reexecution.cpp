@@ -69,7 +69,7 @@ class Rerun {
     while (!asked_.empty() && asked_.front().round != given.round) asked_.pop_front();
     if (asked_.empty()) {
       differ(entry.time, "the planner answered, in the recording, what the agent does not ask now",
-             recording::text_of(entry.content), "nothing");
+             named(entry.content), "nothing");
       return;
     }
     const mission::PlanningRequest request = std::move(asked_.front());
@@ -138,24 +138,26 @@ class Rerun {
     }
   }
 
+  static std::string named(const Content& content) {
+    return recording::type_of(content).append(" ").append(recording::text_of(content));
+  }
+
   void compare(const Entry& entry) {
     if (!node_) return;
     if (given_.empty()) {
-      differ(entry.time, "recorded, and not given now", recording::text_of(entry.content),
-             "nothing");
+      differ(entry.time, "recorded, and not given now", named(entry.content), "nothing");
       return;
     }
     const Content now = std::move(given_.front());
     given_.pop_front();
     if (now.index() != entry.content.index() || bytes_of(now) != bytes_of(entry.content)) {
-      differ(entry.time, "recorded, and given now otherwise", recording::text_of(entry.content),
-             recording::text_of(now));
+      differ(entry.time, "recorded, and given now otherwise", named(entry.content), named(now));
     }
   }
 
   void expect_nothing_left(Instant time) {
     if (given_.empty()) return;
-    differ(time, "given now, and not recorded", "nothing", recording::text_of(given_.front()));
+    differ(time, "given now, and not recorded", "nothing", named(given_.front()));
   }
 
   void differ(Instant time, const std::string& what, const std::string& recorded,

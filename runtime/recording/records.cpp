@@ -159,20 +159,26 @@ std::vector<std::uint8_t> bytes_of(const Content& content) {
   return encoded ? std::move(encoded->bytes) : Bytes{};
 }
 
-namespace {
-template <class T>
-std::string named_text(const T& value) {
-  return std::string{codec::Type<T>::kName}.append(" ").append(codec::JsonWriter::of(value).dump());
-}
-}  // namespace
-
 std::string text_of(const Content& content) {
   return std::visit(
       []<class T>(const T& value) {
         if constexpr (std::is_same_v<T, mission::Message>) {
-          return std::visit([](const auto& message) { return named_text(message); }, value);
+          return codec::json_of(value);
         } else {
-          return named_text(value);
+          return codec::JsonWriter::of(value).dump();
+        }
+      },
+      content);
+}
+
+std::string type_of(const Content& content) {
+  const auto name = []<class T>(const T& /*value*/) { return std::string{codec::Type<T>::kName}; };
+  return std::visit(
+      [name]<class T>(const T& value) {
+        if constexpr (std::is_same_v<T, mission::Message>) {
+          return std::visit(name, value);
+        } else {
+          return name(value);
         }
       },
       content);

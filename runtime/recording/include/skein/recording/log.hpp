@@ -36,6 +36,8 @@ struct Entry {
 [[nodiscard]] std::vector<std::uint8_t> bytes_of(const Content& content);
 /// All of it for people, in one line of JSON.
 [[nodiscard]] std::string text_of(const Content& content);
+/// The name of its type in tools, such as skein::wire::Telemetry.
+[[nodiscard]] std::string type_of(const Content& content);
 
 /// What a file has of one topic.
 struct TopicCount {
