@@ -41,7 +41,7 @@ test("a shape is previewed, given, acknowledged by each vehicle and flown", asyn
   await until("five vehicles", async () => (await view.part("count-heard").innerText()).includes("5/5"));
   await view.part("tab-orders").click();
   await until("the mission's begin", async () => !(await view.part("mission-time").innerText()).startsWith("−") && !(await view.part("mission-time").innerText()).startsWith("-"));
-  await order("take-off");
+  await order("take_off");
   await until("all in the air", all_at_rest);
   await order("form", { shape: "wedge", spacing: "5" });
   await until("five acknowledgements", async () => (await view.page.locator('[data-testid^="place-"][data-taken="true"]').count()) === 5);

@@ -53,7 +53,7 @@ before(async () => {
 test("Foxglove's own client hears telemetry live", async () => {
   const heard = await hear(mission.url, "/vehicle_03/telemetry", 5);
   for (const telemetry of heard) assert.equal(telemetry.vehicle, 3);
-  assert.ok(heard.at(-1).time_ns > heard[0].time_ns);
+  assert.ok(heard.at(-1).state.time_ns > heard[0].state.time_ns);
 });
 
 // The client above knows the older name only; what is said is the same.
