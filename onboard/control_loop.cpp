@@ -40,7 +40,7 @@ void ControlLoop::step(Instant now) {
     recorded_ = state->time;
     recording::TrackPoint point{.state = *state};
     if (guidance_) {
-      const auto off = mission::deviation(*guidance_, *state, now);
+      const auto off = mission::deviation(*guidance_, vehicle_, *state, now);
       point.plan_number = off.number;
       point.along_error_m = off.along_error_m;
       point.cross_error_m = off.cross_error_m;

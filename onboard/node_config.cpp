@@ -37,7 +37,7 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
                                        const std::optional<TimedPath>& route, InstanceId instance,
                                        std::string program) {
   mission::VehicleNodeConfig node;
-  if (config.flight_controller.is_multirotor()) {
+  if (configuration::flies_formation(config.vehicle)) {
     node.agent = formation_agent(config, instance);
   } else {
     node.agent = vehicle_agent(config, route, instance);

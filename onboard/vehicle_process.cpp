@@ -40,9 +40,7 @@ ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) 
   ardupilot::CompanionParams& companion = params.companion;
   companion.vehicle = config.vehicle;
   companion.system_id = fc.system_id;
-  companion.airframe = config.flight_controller.airframe == configuration::AirframeKind::copter
-                           ? ardupilot::Airframe::copter
-                           : ardupilot::Airframe::plane;
+  companion.airframe = config.vehicle.airframe;
   switch (fc.take_over) {
     case configuration::TakeOverKind::in_flight:
       companion.take_over = ardupilot::TakeOver::in_flight;
@@ -81,7 +79,7 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
     return made;
   }
   const auto& wind = config.flight_controller.wind;
-  if (config.flight_controller.is_multirotor()) {
+  if (config.vehicle.is_copter()) {
     hal::SimulatedMultirotorParams params;
     params.start = {config.start.x_m, config.start.y_m, 0.0};
     params.yaw_rad = config.start.heading_rad;

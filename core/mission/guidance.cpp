@@ -24,23 +24,58 @@ PositionSetpoint setpoint_on(const MotionTrack& track, Instant now) {
   return setpoint;
 }
 
+/// The path's point at `now`: velocity along it, acceleration towards the centre of its arc.
+PositionSetpoint setpoint_on(const TimedPath& path, const VehicleSpec& vehicle, Instant now) {
+  const double distance_m = path.distance_at(now);
+  const Pose2 pose = path.pose_at_distance(distance_m);
+  const double speed_mps = now < path.start_time ? 0.0 : path.speed_mps;
+  const Vec2 velocity = speed_mps * unit_vector(pose.heading_rad);
+  const Vec2 acceleration = speed_mps * path.curvature_at_distance(distance_m) * left_of(velocity);
+  PositionSetpoint setpoint;
+  setpoint.x_m = pose.x_m;
+  setpoint.y_m = pose.y_m;
+  setpoint.z_m = vehicle.height_m;
+  setpoint.vx_mps = velocity.x();
+  setpoint.vy_mps = velocity.y();
+  setpoint.ax_mps2 = acceleration.x();
+  setpoint.ay_mps2 = acceleration.y();
+  setpoint.yaw_rad = pose.heading_rad;
+  return setpoint;
+}
+
+/// Followed without the way that a state has made since it was measured, as by a copter.
+Deviation off_track(const MotionTrack& track, const VehicleState& state) {
+  const Vec3 off = state.position().metres() - track.at(state.time).position_m;
+  return {track.number, 0.0, off.norm()};
+}
+
+Deviation off_point(const FlightPlan& plan, const VehicleState& state) {
+  const Pose2 pose = plan.timed.pose_at(state.time);
+  const Vec2 forward = unit_vector(pose.heading_rad);
+  const Vec2 off = Vec2{state.x_m, state.y_m} - pose.position();
+  return {plan.number, forward.dot(off), left_of(forward).dot(off)};
+}
+
+Deviation off_path(const FlightPlan& plan, const VehicleState& state, Instant now) {
+  const auto error = planning::follow_error(plan.timed, state, now);
+  return {plan.number, error.along_m, error.cross_m};
+}
+
 }  // namespace
 
 Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,
               const VehicleSpec& vehicle, const VehicleState& state, Instant now) {
   if (const auto* track = std::get_if<MotionTrack>(&guidance)) return setpoint_on(*track, now);
-  return planning::follow_path(params, vehicle, std::get<FlightPlan>(guidance).timed, state, now);
+  const auto& plan = std::get<FlightPlan>(guidance);
+  if (vehicle.is_copter()) return setpoint_on(plan.timed, vehicle, now);
+  return planning::follow_path(params, vehicle, plan.timed, state, now);
 }
 
-Deviation deviation(const Guidance& guidance, const VehicleState& state, Instant now) {
-  if (const auto* track = std::get_if<MotionTrack>(&guidance)) {
-    // A track is followed without the way that a state has made since it was measured.
-    const Vec3 off = state.position().metres() - track->at(state.time).position_m;
-    return {track->number, 0.0, off.norm()};
-  }
+Deviation deviation(const Guidance& guidance, const VehicleSpec& vehicle, const VehicleState& state,
+                    Instant now) {
+  if (const auto* track = std::get_if<MotionTrack>(&guidance)) return off_track(*track, state);
   const auto& plan = std::get<FlightPlan>(guidance);
-  const auto error = planning::follow_error(plan.timed, state, now);
-  return {plan.number, error.along_m, error.cross_m};
+  return vehicle.is_copter() ? off_point(plan, state) : off_path(plan, state, now);
 }
 
 }  // namespace skein::mission

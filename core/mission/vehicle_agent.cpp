@@ -19,7 +19,7 @@ void VehicleAgent::on_planning_result(const PlanningResult& result, Instant now)
 void VehicleAgent::on_timeout(Instant now) { impl_->on_timeout(now); }
 
 std::optional<Message> VehicleAgent::poll_message() { return impl_->messages.pop(); }
-std::optional<Guidance> VehicleAgent::poll_guidance() { return impl_->poll_plan(); }
+std::optional<Guidance> VehicleAgent::poll_guidance() { return impl_->poll_guidance(); }
 std::optional<MissionEvent> VehicleAgent::poll_event() { return impl_->events.pop(); }
 std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
   return impl_->planning_requests.pop();

@@ -15,6 +15,7 @@
 #include "skein/coalition/initiator.hpp"
 #include "skein/coalition/participant.hpp"
 #include "skein/mission/vehicle_agent.hpp"
+#include "take_off.hpp"
 #include "task_flight.hpp"
 
 namespace skein::mission {
@@ -32,7 +33,7 @@ class VehicleAgent::Impl {
   void on_message(const Message& message, VehicleId sender, Instant now);
   void on_planning_result(const PlanningResult& result, Instant now);
   void on_timeout(Instant now);
-  [[nodiscard]] std::optional<FlightPlan> poll_plan() { return flight_.poll_plan(); }
+  [[nodiscard]] std::optional<Guidance> poll_guidance();
   [[nodiscard]] Instant next_timeout() const;
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
@@ -113,6 +114,7 @@ class VehicleAgent::Impl {
   Failsafe::Facts facts_;
   Failsafe failsafe_;  ///< of facts_: see note()
   VehicleState state_;
+  TakeOff take_off_;
   Flight flight_;
   std::vector<Hazard> hazards_;
   Instant range_again_{};  ///< when its range is looked at next

@@ -33,6 +33,7 @@ Overloaded(Fs...) -> Overloaded<Fs...>;
 VehicleAgent::Impl::Impl(const VehicleAgentConfig& config, Instant /*now*/)
     : config_{with_margin(config)},
       loads_{config.vehicle.loads},
+      take_off_{config.vehicle},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
       participant_{config.protocol, config.vehicle.id, config.instance} {}
@@ -48,6 +49,7 @@ bool VehicleAgent::Impl::is_there(const TimedPath& route, const VehicleState& st
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   state_ = state;
   if (!flight_.started()) {
+    if (!take_off_.done(state, now)) return;
     if (config_.route && is_there(*config_.route, state)) {
       flight_.start_route(*config_.route);
     } else {
@@ -58,6 +60,11 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
     }
   }
   step(now);
+}
+
+std::optional<Guidance> VehicleAgent::Impl::poll_guidance() {
+  if (!flight_.started()) return take_off_.poll_track();
+  return flight_.poll_plan();
 }
 
 void VehicleAgent::Impl::on_timeout(Instant now) { step(now); }

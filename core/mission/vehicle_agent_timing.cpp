@@ -35,6 +35,7 @@ double error_s(const VehicleSpec& vehicle, const TimedPath& timed, double along_
 /// Control keeps the time by speed. Where the wind takes more than that has, another path keeps it:
 /// at a speed over the ground that the wind lets it have, as long or short as that makes it.
 void VehicleAgent::Impl::keep_time(Instant now) {
+  if (config_.vehicle.is_copter()) return;  // flown by position: on time wherever it can be at all
   const Instant time = task_->assignment.time;
   if (task_->in_run() || now < time_again_ || time - now < kLookLatest) return;
   time_again_ = now + kLookPeriod;

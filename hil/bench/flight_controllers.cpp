@@ -66,7 +66,7 @@ std::vector<std::string> flight_controller_command(const std::filesystem::path& 
           "--companion", std::to_string(fc.companion_node_id),
           "--system", std::to_string(fc.system_id),
           "--serial", std::to_string(fc.serial_id),
-          "--airframe", vehicle.flight_controller.airframe == configuration::AirframeKind::copter ? "copter" : "plane",
+          "--airframe", spec.is_copter() ? "copter" : "plane",
           "--origin", number(vehicle.origin.latitude_deg), number(vehicle.origin.longitude_deg),
           number(vehicle.origin.height_m - fc.geoid_height_m),
           "--airborne", "--mode", "LOITER",

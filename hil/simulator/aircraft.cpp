@@ -33,12 +33,11 @@ std::unique_ptr<hal::FlightController> body_of(const TeamMission& mission,
     return std::make_unique<hal::SimulatedFlightController>(what.spec, what.start, mission.wind,
                                                             now);
   }
-  const Vec2 place = what.start.position();
   if (what.body == Body::multirotor) {
-    return std::make_unique<MultirotorBody>(place, mission.gust_error_m, gusts, now);
+    return std::make_unique<MultirotorBody>(what.start, mission.gust_error_m, gusts, now);
   }
   hal::SimulatedMultirotorParams params;
-  params.start = {place.x(), place.y(), 0.0};
+  params.start = {what.start.x_m, what.start.y_m, 0.0};
   params.yaw_rad = what.start.heading_rad;
   params.wind_mps = mission.wind.steady_mps;
   params.gust_mps = mission.wind.gust_mps;
@@ -118,13 +117,13 @@ std::optional<double> Aircraft::hold_curvature(const std::vector<Hazard>& hazard
 }
 
 bool Aircraft::can_hold(const std::vector<Hazard>& hazards) const {
-  return what_.body != Body::heading_dynamics || hold_curvature(hazards).has_value();
+  return !holds_orbit() || hold_curvature(hazards).has_value();
 }
 
 void Aircraft::end_program(Instant now, const std::vector<Hazard>& hazards) {
   node_.reset();
   ++life_;
-  if (what_.body == Body::heading_dynamics) hold_orbit(now, hazards);
+  if (holds_orbit()) hold_orbit(now, hazards);
 }
 
 void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {

@@ -25,8 +25,8 @@ class Aircraft {
   void take_off(Instant now);
   [[nodiscard]] bool flying() const { return body_ != nullptr; }
 
-  /// The program ends. The flight controller holds: an orbit where a fixed wing is; a multirotor
-  /// comes to rest where its track ends.
+  /// The program ends. The flight controller holds: an orbit where a vehicle is that follows flight
+  /// plans; one that follows a track comes to rest where that ends.
   void end_program(Instant now, const std::vector<Hazard>& hazards);
   /// Is there an orbit here that is clear of the hazards?
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
@@ -61,7 +61,8 @@ class Aircraft {
   [[nodiscard]] const VehicleState& state() const { return state_; }
   /// The same, and at its start on the ground before.
   [[nodiscard]] Vec3 position() const;
-  /// As it is recorded: in true time, with numbers that grow over all nodes. Null of a multirotor.
+  /// As it is recorded: in true time, with numbers that grow over all nodes. Null of a vehicle in a
+  /// formation, and of a copter that has not come to its height yet.
   [[nodiscard]] const mission::FlightPlan* plan() const;
   /// Where a multirotor should be, and how fast; nothing while it sinks.
   [[nodiscard]] std::optional<MotionTrack::Moment> reference(Instant now) const;
@@ -72,6 +73,9 @@ class Aircraft {
   [[nodiscard]] mission::VehicleNodeConfig config(const std::vector<Hazard>& hazards) const;
   [[nodiscard]] std::optional<double> hold_curvature(const std::vector<Hazard>& hazards) const;
   [[nodiscard]] bool sinks(Instant now) const { return sinks_from_ && now >= *sinks_from_; }
+  [[nodiscard]] bool holds_orbit() const {
+    return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);
+  }
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
   void sink_at(Instant now);
 

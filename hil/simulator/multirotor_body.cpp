@@ -20,14 +20,16 @@ constexpr double kAccelerationMax_mps2 = 8.0;
 
 }  // namespace
 
-MultirotorBody::MultirotorBody(const Vec2& place, double gust_error_m, Random random, Instant start)
-    : position_{place.x(), place.y(), 0.0},
+MultirotorBody::MultirotorBody(const Pose2& place, double gust_error_m, Random random,
+                               Instant start)
+    : position_{place.x_m, place.y_m, 0.0},
       gust_error_m_{gust_error_m},
       random_{random},
       setpoint_at_{start},
       flown_to_{start} {
-  setpoint_.x_m = place.x();
-  setpoint_.y_m = place.y();
+  setpoint_.x_m = place.x_m;
+  setpoint_.y_m = place.y_m;
+  setpoint_.yaw_rad = place.heading_rad;
 }
 
 std::optional<VehicleState> MultirotorBody::state(Instant now) {
@@ -37,7 +39,9 @@ std::optional<VehicleState> MultirotorBody::state(Instant now) {
   state.x_m = position_.x();
   state.y_m = position_.y();
   state.z_m = position_.z();
+  state.heading_rad = setpoint_.yaw_rad;
   state.groundspeed_mps = std::hypot(velocity_.x(), velocity_.y());
+  state.airspeed_mps = state.groundspeed_mps;  // it knows no wind
   state.course_rad = std::atan2(velocity_.y(), velocity_.x());
   state.climb_mps = velocity_.z();
   state.distance_flown_m = distance_flown_m_;

@@ -12,14 +12,15 @@ namespace skein::hil {
 
 /// A multirotor under position control as a mass on a damped spring that its reference pulls, and
 /// gusts push: an acceleration that wanders (Ornstein and Uhlenbeck) and is never so strong that
-/// the body rests more than 0.3 m off. On the ground it stands until it is lifted.
+/// the body rests more than 0.3 m off. Its nose is where it should be at once. On the ground it
+/// stands until it is lifted.
 class MultirotorBody final : public hal::FlightController {
  public:
   /// Higher, it flies.
   static constexpr double kAirborne_m = 0.05;
 
   /// On the ground; it is there at `start`.
-  MultirotorBody(const Vec2& place, double gust_error_m, Random random, Instant start);
+  MultirotorBody(const Pose2& place, double gust_error_m, Random random, Instant start);
 
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
   void command(const Demand& demand, Instant now) override;

@@ -87,9 +87,9 @@ radio::RadioParams radio_params(const configuration::RadioConfig& radio) {
 TeamMission team_mission(const configuration::Scenario& scenario) {
   TeamMission team;
   for (const auto& v : scenario.vehicles) {
-    const bool multirotor = configuration::is_multirotor(v);
     team.vehicles.push_back({v.spec, v.start, v.search,
-                             multirotor ? Body::multirotor : Body::heading_dynamics, multirotor});
+                             v.spec.is_copter() ? Body::multirotor : Body::heading_dynamics,
+                             configuration::flies_formation(v.spec)});
   }
   if (scenario.flies_formation()) team.formation = scenario.formation;
   team.sites = scenario.sites;

@@ -44,6 +44,9 @@ constexpr Duration kIdle = std::chrono::seconds{30};
 constexpr double kStill_mps = 1e-3;
 constexpr std::uint64_t kGustStream = 0x666f726d67757301;
 
+/// Of a copter on its way up.
+const mission::FlightPlan kNoPlan;
+
 bool due(Instant now, Duration period) {
   return now.time_since_epoch() % period == Duration::zero();
 }
@@ -279,8 +282,8 @@ class Team {
       if (!v.flying() || (unseen && !v.what().flies_formation)) continue;
       const bool follows = v.control(now);
       nodes_[i].node.position = v.state().position().horizontal();
-      if (follows && due(now, kTrackPeriod) && observer_.track && v.plan() != nullptr) {
-        observer_.track(v.spec().id, v.state(), *v.plan());
+      if (follows && due(now, kTrackPeriod) && observer_.track && !v.what().flies_formation) {
+        observer_.track(v.spec().id, v.state(), v.plan() != nullptr ? *v.plan() : kNoPlan);
       }
     }
   }

@@ -92,8 +92,11 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
       "system_id: 7, airframe: copter, take_over: from_ground, takeoff_height_m: 25, "
       "geoid_height_m: -38.5, "
       "turn_lead_s: 0.75}\n";
-  const auto config = parse_vehicle_config(kVehicle + keys, "v.yaml");
+  const std::string in_formation =
+      replaced(kVehicle, "capabilities: [survey, deliver]", "capabilities: []");
+  const auto config = parse_vehicle_config(in_formation + keys, "v.yaml");
   ASSERT_TRUE(config.ok()) << config.error().message;
+  EXPECT_TRUE(flies_formation(config->vehicle));
   for (const auto& c : {*config, parse_vehicle_config(to_yaml(*config), "again.yaml").value()}) {
     const ArdupilotConfig& fc = c.flight_controller.ardupilot;
     EXPECT_EQ(c.flight_controller.kind, FlightControllerKind::ardupilot);
@@ -101,7 +104,7 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
     EXPECT_EQ(fc.node_id, 11);
     EXPECT_EQ(fc.companion_node_id, 43);
     EXPECT_EQ(fc.system_id, 7);
-    EXPECT_EQ(c.flight_controller.airframe, AirframeKind::copter);
+    EXPECT_EQ(c.vehicle.airframe, Airframe::copter);
     EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
     EXPECT_EQ(fc.takeoff_height_m, 25.0);
     EXPECT_EQ(fc.geoid_height_m, -38.5);
@@ -180,6 +183,9 @@ constexpr auto kMistakes = std::to_array<Mistake>({
      "on a bus has its own"},
     {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
      "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
+    {"start:", "flight_controller: {airframe: copter}\nstart:",
+     "v.yaml:1: vehicle.turn_radius_m: is less than cruise_speed_mps^2 / acceleration_max_mps2, "
+     "which a copter's turn takes; raise it or lower cruise_speed_mps"},
     {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
      "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},
 });
@@ -371,6 +377,97 @@ TEST(ScenarioCheck, SaysWhyAMissionIsImpossible) {
     const auto checked = check(*parsed);
     EXPECT_EQ(checked.ok() ? "no error" : checked.error().message, m.message);
   }
+}
+
+TEST(ScenarioFile, ACopterThatTakesTasksMustBeAbleToFlyItsPlans) {
+  const std::string scout = "scout: {capabilities: [survey, assess],";
+  const std::string copter = scout +
+                             " flight_controller: {airframe: copter}, cruise_speed_mps: 9, "
+                             "speed_min_mps: 0.5, speed_max_mps: 12,";
+  EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 27,"), "no error") << "81 / 27 = 3";
+  EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 26,"),
+            "s.yaml:11: vehicles[1].turn_radius_m: is less than cruise_speed_mps^2 / "
+            "acceleration_max_mps2, which a copter's turn takes; raise it or lower "
+            "cruise_speed_mps");
+  EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 26, acceleration_max_mps2: 3.2,"),
+            "no error");
+  const auto low = replaced(replaced(kScenario, scout, copter + " turn_radius_m: 30,"),
+                            "heading_deg: 0, height_m: 100", "heading_deg: 0, height_m: 4");
+  EXPECT_EQ(parse_scenario(low, "s.yaml").error().message,
+            "s.yaml:11: vehicles[1].height_m: is below 5 m, and a copter takes off to it; raise "
+            "it");
+}
+
+/// Its vehicle 1 is a copter.
+Scenario mixed() {
+  Scenario s = scenario();
+  VehicleSpec& copter = s.vehicles[0].spec;
+  copter.airframe = Airframe::copter;
+  copter.cruise_speed_mps = 8.0;
+  copter.speed_min_mps = 0.5;
+  copter.speed_max_mps = 12.0;
+  copter.turn_radius_m = 30.0;
+  copter.height_m = 40.0;
+  return s;
+}
+
+std::string check_error(const Scenario& s) {
+  const auto checked = check(s);
+  return checked.ok() ? "no error" : checked.error().message;
+}
+
+TEST(ScenarioCheck, CoptersAndPlanesFlyOneMissionWhereEachCan) {
+  EXPECT_EQ(check_error(mixed()), "no error");
+  Scenario s = mixed();
+  s.vehicles[0].spec.height_m = 115.0;
+  EXPECT_EQ(check_error(s),
+            "vehicle 1 would take off through the height of vehicle 2, a plane at 110 m; give "
+            "copters a lower height_m than planes");
+  s = mixed();
+  s.wind.speed_mps = 5.0;
+  EXPECT_EQ(
+      check_error(s),
+      "vehicle 1 cannot keep its cruise_speed_mps 8 m/s against the wind of 5 m/s with gusts: "
+      "its speed_max_mps is 12 m/s; lower cruise_speed_mps or the wind");
+  s = mixed();
+  s.vehicles.push_back(s.vehicles[0]);
+  s.vehicles.back().spec.id = VehicleId{4};
+  s.vehicles.back().spec.height_m = 50.0;
+  s.vehicles.back().start.x_m += 6.0;
+  EXPECT_EQ(check_error(s),
+            "vehicle 1 and vehicle 4 take off only 6 m from each other, "
+            "expect.separation_horizontal_m is 20 m; move one's start");
+  s.vehicles.back().start.x_m += 60.0;
+  EXPECT_EQ(check_error(s), "no error");
+  s.vehicles.back().spec.height_m = 42.0;
+  EXPECT_EQ(check_error(s),
+            "vehicle 1 and vehicle 4 fly only 2 m apart in height, expect.separation_vertical_m is "
+            "5 m; give each its own height_m");
+  s = mixed();
+  s.routes.approaches.push_back({.vehicle = VehicleId{1}});
+  EXPECT_EQ(check_error(s),
+            "routes.approaches names vehicle 1, a copter; routes are flown by planes: take its "
+            "approach away");
+}
+
+TEST(ScenarioCheck, ACopterWithoutCapabilitiesIsForFormations) {
+  Scenario s = mixed();
+  s.vehicles.push_back(s.vehicles[0]);
+  s.vehicles.back().spec.id = VehicleId{4};
+  s.vehicles.back().spec.capabilities = {};
+  EXPECT_TRUE(s.flies_formation());
+  EXPECT_EQ(check_error(s),
+            "vehicle 4 is a copter without capabilities, which flies in formation, and others do "
+            "not; give it capabilities such as [survey, assess], or fly them in two missions\n"
+            "vehicle 4 is a copter without capabilities, which flies in formation and does no "
+            "tasks at sites; give it capabilities such as [survey, assess], or take the sites "
+            "away");
+  s = mixed();
+  EXPECT_FALSE(s.flies_formation());
+  s.formation.script = {"take-off"};
+  EXPECT_EQ(check_error(s),
+            "formation.script has orders, but no vehicle flies in formation; give vehicles "
+            "flight_controller: {airframe: copter} and capabilities: []");
 }
 
 std::vector<std::filesystem::path> shipped() {

@@ -16,24 +16,13 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(FlightController
     kFlightControllers{"simulated", "ardupilot"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Recovery::count)> kRecoveries{
     "home", "anywhere"};
-constexpr std::array<std::string_view, static_cast<std::size_t>(AirframeKind::count)> kAirframes{
+constexpr std::array<std::string_view, static_cast<std::size_t>(Airframe::count)> kAirframes{
     "plane", "copter"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(TakeOverKind::count)> kTakeOvers{
     "when_guided", "in_flight", "from_ground"};
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
 constexpr Range kPort{1.0, 65535.0};
-
-void capabilities(FieldVisitor& v, const Field& field, Capabilities& value) {
-  std::vector<std::size_t> kinds;
-  for (std::size_t k = 0; k < kTaskKinds.size(); ++k) {
-    if (value.has(static_cast<TaskKind>(k))) kinds.push_back(k);
-  }
-  v.list(field, list_of(kinds, kTaskKinds.size(), [](FieldVisitor& inner, std::size_t& kind) {
-           inner.choice({}, kTaskKinds, kind);
-         }));
-  value = {};
-  for (const std::size_t kind : kinds) value.add(static_cast<TaskKind>(kind));
-}
+constexpr double kCopterHeightMin_m = 5.0;
 
 template <class Choice, std::size_t Count>
 void choice_of(FieldVisitor& v, const Field& field,
@@ -45,15 +34,30 @@ void choice_of(FieldVisitor& v, const Field& field,
 
 }  // namespace
 
-void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, bool bus_required) {
+void task_kinds(FieldVisitor& v, const Field& field, Capabilities& value) {
+  std::vector<std::size_t> kinds;
+  for (std::size_t k = 0; k < kTaskKinds.size(); ++k) {
+    if (value.has(static_cast<TaskKind>(k))) kinds.push_back(k);
+  }
+  v.list(field, list_of(kinds, kTaskKinds.size(), [](FieldVisitor& inner, std::size_t& kind) {
+           inner.choice({}, kTaskKinds, kind);
+         }));
+  value = {};
+  for (const std::size_t kind : kinds) value.add(static_cast<TaskKind>(kind));
+}
+
+void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, Airframe& airframe,
+                              bool bus_required) {
   const Range node{1.0, 127.0};
   ArdupilotConfig& fc = config.ardupilot;
   choice_of(v, {"kind", "what flies the vehicle; the keys below `can` are for an ardupilot"},
             kFlightControllers, config.kind);
-  choice_of(v,
-            {"airframe",
-             "plane: a fixed wing, flown along paths; copter: a multirotor, flown in formations"},
-            kAirframes, config.airframe);
+  choice_of(
+      v,
+      {"airframe",
+       "plane: a fixed wing; copter: a multirotor, which takes off to its height_m and does what "
+       "its capabilities say; without any it flies in formations"},
+      kAirframes, airframe);
   v.text({"can", bus_required ? "bus of an ardupilot: can0, vcan0, mcast:0"
                               : "bus of an ardupilot: vcan0, mcast:0; empty: the bench chooses bus "
                                 "and nodes"},
@@ -131,6 +135,8 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
        "paths are planned at this many times the turn radius; to be held in wind w at speed v it "
        "takes (v / (v - w))^2"},
       {1.0, 3.0}, spec.turn_radius_margin);
+  v.number({"acceleration_max_mps2", "of a copter, horizontal: what its turns may take"},
+           {0.1, 20.0, "m/s2"}, spec.acceleration_max_mps2);
   v.number({"heading_gain_per_s", "of the autopilot: turn rate per radian of heading error"},
            {0.05, 20.0, "1/s"}, spec.heading_gain_per_s);
   v.number({"range_m", "distance that the vehicle can fly", kRequired}, {100.0, 1e7, "m"},
@@ -141,7 +147,7 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
             "`anywhere`, where its range ends"},
            kRecoveries, recovery);
   spec.recovery = static_cast<Recovery>(recovery);
-  capabilities(v, {"capabilities", "tasks that the vehicle can do", kRequired}, spec.capabilities);
+  task_kinds(v, {"capabilities", "tasks that the vehicle can do", kRequired}, spec.capabilities);
   v.number({"sensor_radius_m", "detects sites within it and surveys on a circle of it"},
            {0.0, 20000.0, "m"}, spec.sensor_radius_m);
   v.number({"assess_radius_m", "assesses on a circle of it"}, {0.0, 20000.0, "m"},
@@ -151,6 +157,17 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
            spec.final_approach_m);
   v.number({"height_m", "the vehicle's layer, above the origin", kRequired}, {0.0, 10000.0, "m"},
            spec.height_m);
+}
+
+void copter_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix) {
+  const bool flies_plans = spec.is_copter() && !flies_formation(spec);
+  const double turn_mps2 = spec.cruise_speed_mps * spec.cruise_speed_mps / spec.turn_radius_m;
+  v.require(!flies_plans || turn_mps2 <= spec.acceleration_max_mps2 * (1.0 + 1e-9),
+            prefix + "turn_radius_m",
+            "is less than cruise_speed_mps^2 / acceleration_max_mps2, which a copter's turn takes; "
+            "raise it or lower cruise_speed_mps");
+  v.require(!flies_plans || spec.height_m >= kCopterHeightMin_m, prefix + "height_m",
+            "is below 5 m, and a copter takes off to it; raise it");
 }
 
 void search_list(FieldVisitor& v, std::vector<Vec2>& search) {
@@ -374,6 +391,10 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
 
 }  // namespace
 
+bool flies_formation(const VehicleSpec& vehicle) {
+  return vehicle.is_copter() && vehicle.capabilities == Capabilities{};
+}
+
 void fields(FieldVisitor& v, VehicleConfig& config) {
   version_field(v);
   v.section({"vehicle", "what it is", kRequired},
@@ -384,9 +405,10 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   search_list(v, config.search);
   flight_route_section(v, config.route);
   v.section({"flight_controller", "what flies it"}, [&config](FieldVisitor& inner) {
-    flight_controller_fields(inner, config.flight_controller, true);
+    flight_controller_fields(inner, config.flight_controller, config.vehicle.airframe, true);
     wind_fields(inner, config.flight_controller.wind, "wind_");
   });
+  copter_rules(v, config.vehicle, "vehicle.");
   v.section({"protocol", "the contract net; the same for the whole fleet"},
             [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });
   v.section({"planning", "how tasks are given to vehicles; the same for the whole fleet"},

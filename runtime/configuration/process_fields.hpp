@@ -17,12 +17,16 @@ namespace skein::configuration {
 inline constexpr int kVersion = 1;
 
 void version_field(FieldVisitor& v);
+void task_kinds(FieldVisitor& v, const Field& field, Capabilities& value);
 void origin_section(FieldVisitor& v, Wgs84& origin);
 void wind_fields(FieldVisitor& v, WindConfig& wind, const std::string& prefix);
 /// `bus_required`: whether a flight controller on CAN must name its bus.
-void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, bool bus_required);
+void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, Airframe& airframe,
+                              bool bus_required);
 void pose_fields(FieldVisitor& v, Pose2& pose);
 void spec_fields(FieldVisitor& v, VehicleSpec& spec);
+/// What a copter that takes tasks must keep to; after spec and flight controller.
+void copter_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);

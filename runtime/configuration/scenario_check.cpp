@@ -32,6 +32,7 @@ class Check {
     for (const ScenarioVehicle& vehicle : s_.vehicles) check_vehicle(vehicle);
     check_heights();
     check_formation();
+    check_copters_fly();
     check_buses();
     for (const Site& site : s_.sites) check_site(site);
     check_names();
@@ -62,22 +63,61 @@ class Check {
     }
   }
 
+  /// A mission is of coalitions or of a formation.
   void check_formation() {
-    const auto multirotors = static_cast<std::size_t>(
-        std::count_if(s_.vehicles.begin(), s_.vehicles.end(), is_multirotor));
-    if (multirotors != 0 && multirotors != s_.vehicles.size()) {
-      problem("the fleet has multirotors and fixed wings; fly them in two missions");
-    }
-    if (s_.flies_formation() && s_.flies_routes()) {
-      problem("multirotors fly in formation and by no planned routes; take the routes away");
-    }
-    if (s_.flies_formation() && !s_.sites.empty()) {
-      problem("multirotors fly in formation and do no tasks at sites; take the sites away");
-    }
-    if (!s_.flies_formation() && !s_.formation.script.empty()) {
+    const auto in_formation = [](const ScenarioVehicle& v) { return flies_formation(v.spec); };
+    const auto one = std::find_if(s_.vehicles.begin(), s_.vehicles.end(), in_formation);
+    if (one == s_.vehicles.end()) {
+      if (s_.formation.script.empty()) return;
       problem(
-          "formation.script has orders, but no vehicle is a multirotor; give vehicles "
-          "flight_controller: {airframe: copter}");
+          "formation.script has orders, but no vehicle flies in formation; give vehicles "
+          "flight_controller: {airframe: copter} and capabilities: []");
+      return;
+    }
+    const std::string who = name(*one) + " is a copter without capabilities, which flies in ";
+    if (!std::all_of(s_.vehicles.begin(), s_.vehicles.end(), in_formation)) {
+      problem(who +
+              "formation, and others do not; give it capabilities such as [survey, assess], or "
+              "fly them in two missions");
+    }
+    if (!s_.sites.empty()) {
+      problem(who +
+              "formation and does no tasks at sites; give it capabilities such as [survey, "
+              "assess], or take the sites away");
+    }
+    if (s_.flies_routes()) {
+      problem(who + "formation and by no planned routes; take the routes away");
+    }
+  }
+
+  /// A copter that takes tasks climbs where it stands to its height.
+  void check_take_off(const ScenarioVehicle& copter) {
+    const double wind_mps = s_.wind.speed_mps + s_.wind.gust_mps;
+    if (copter.spec.cruise_speed_mps + wind_mps > copter.spec.speed_max_mps) {
+      problem(name(copter) + " cannot keep its cruise_speed_mps " +
+              rounded(copter.spec.cruise_speed_mps) + " m/s against the wind of " +
+              rounded(wind_mps) + " m/s with gusts: its speed_max_mps is " +
+              rounded(copter.spec.speed_max_mps) + " m/s; lower cruise_speed_mps or the wind");
+    }
+    for (const ScenarioVehicle& other : s_.vehicles) {
+      if (&other == &copter) continue;
+      if (!other.spec.is_copter() && other.spec.height_m < copter.spec.height_m) {
+        problem(name(copter) + " would take off through the height of " + name(other) +
+                ", a plane at " + rounded(other.spec.height_m) +
+                " m; give copters a lower height_m than planes");
+      }
+      const double apart = (other.start.position() - copter.start.position()).norm();
+      const bool once = other.spec.id < copter.spec.id;  // a pair is told of once
+      if (other.spec.is_copter() && once && apart < s_.expect.separation_horizontal_m) {
+        problem(name(other) + " and " + name(copter) + " take off only " + rounded(apart) +
+                " m from each other, expect.separation_horizontal_m is " +
+                rounded(s_.expect.separation_horizontal_m) + " m; move one's start");
+      }
+    }
+    for (const RouteApproach& approach : s_.routes.approaches) {
+      if (approach.vehicle != copter.spec.id) continue;
+      problem("routes.approaches names " + name(copter) +
+              ", a copter; routes are flown by planes: take its approach away");
     }
   }
 
@@ -94,7 +134,8 @@ class Check {
     if (spec.capabilities.has(TaskKind::deliver) && spec.loads == 0) {
       problem(name(v) + " can deliver but has no loads; give it loads or take the capability away");
     }
-    if (!is_multirotor(v) && s_.wind.speed_mps + s_.wind.gust_mps >= spec.speed_min_mps) {
+    if (v.spec.is_copter() && !flies_formation(v.spec)) check_take_off(v);
+    if (!v.spec.is_copter() && s_.wind.speed_mps + s_.wind.gust_mps >= spec.speed_min_mps) {
       problem(name(v) + " cannot hold its course: the wind of " +
               rounded(s_.wind.speed_mps + s_.wind.gust_mps) +
               " m/s with gusts reaches its speed_min_mps " + rounded(spec.speed_min_mps) +
@@ -116,13 +157,26 @@ class Check {
   void check_heights() {
     for (std::size_t i = 0; i < s_.vehicles.size(); ++i) {
       for (std::size_t j = i + 1; j < s_.vehicles.size(); ++j) {
-        if (is_multirotor(s_.vehicles[i]) || is_multirotor(s_.vehicles[j])) continue;
+        if (flies_formation(s_.vehicles[i].spec) || flies_formation(s_.vehicles[j].spec)) continue;
         const double apart = std::abs(s_.vehicles[i].spec.height_m - s_.vehicles[j].spec.height_m);
         if (apart >= s_.expect.separation_vertical_m) continue;
         problem(name(s_.vehicles[i]) + " and " + name(s_.vehicles[j]) + " fly only " +
                 rounded(apart) + " m apart in height, expect.separation_vertical_m is " +
                 rounded(s_.expect.separation_vertical_m) + " m; give each its own height_m");
       }
+    }
+  }
+
+  void check_copters_fly() {
+    for (const TaskKind kind : {TaskKind::survey, TaskKind::deliver, TaskKind::assess}) {
+      if (!s_.expect.copters_fly.has(kind)) continue;
+      if (std::any_of(s_.vehicles.begin(), s_.vehicles.end(), [kind](const ScenarioVehicle& v) {
+            return v.spec.is_copter() && v.spec.capabilities.has(kind);
+          })) {
+        continue;
+      }
+      problem("expect.copters_fly names " + std::string{to_string(kind)} +
+              ", but no copter has it among its capabilities; give it to one or take it away");
     }
   }
 
@@ -278,12 +332,10 @@ class Check {
 
 }  // namespace
 
-bool is_multirotor(const ScenarioVehicle& vehicle) {
-  return vehicle.flight_controller.is_multirotor();
-}
-
 bool Scenario::flies_formation() const {
-  return std::any_of(vehicles.begin(), vehicles.end(), is_multirotor);
+  return std::any_of(vehicles.begin(), vehicles.end(), [](const ScenarioVehicle& v) {
+    return configuration::flies_formation(v.spec);
+  });
 }
 
 Result<void> check(const Scenario& scenario) { return Check{scenario}.run(); }

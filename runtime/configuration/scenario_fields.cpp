@@ -168,6 +168,8 @@ void expect_fields(FieldVisitor& v, Expectations& e) {
   ids(v, {"first_attempt_fails", "ids of sites whose leader must monitor before it can form"},
       e.first_attempt_fails, "site");
   ids(v, {"vehicles_lost", "ids of vehicles that faults end"}, e.vehicles_lost, "vehicle");
+  task_kinds(v, {"copters_fly", "kinds of tasks of which copters have flown one at least"},
+             e.copters_fly);
 }
 
 void world_fields(FieldVisitor& v, Scenario& s) {
@@ -192,8 +194,9 @@ void fields(FieldVisitor& v, ScenarioVehicle& vehicle) {
   pose_fields(v, vehicle.start);
   search_list(v, vehicle.search);
   v.section({"flight_controller", "what flies it"}, [&vehicle](FieldVisitor& inner) {
-    flight_controller_fields(inner, vehicle.flight_controller, false);
+    flight_controller_fields(inner, vehicle.flight_controller, vehicle.spec.airframe, false);
   });
+  copter_rules(v, vehicle.spec, "");
 }
 
 void fields(FieldVisitor& v, Scenario& s) {

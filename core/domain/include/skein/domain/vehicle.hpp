@@ -18,6 +18,9 @@ namespace skein {
 /// Where a vehicle ends its flight: at its start, for which it keeps the range, or where it is.
 enum class Recovery : std::uint8_t { home, anywhere, count };
 
+/// What it flies as: a fixed wing, by heading and airspeed; or a multirotor, by position.
+enum class Airframe : std::uint8_t { plane, copter, count };
+
 /// What a vehicle is (Wang 2022, eq. 2-4).
 struct VehicleSpec {
   VehicleId id;
@@ -37,7 +40,10 @@ struct VehicleSpec {
   /// Paths are planned at this factor times turn_radius_m, so that wind and tracking errors can be
   /// corrected without flying below the turn radius. >= 1.
   double turn_radius_margin = 1.1;
+  Airframe airframe = Airframe::plane;
+  double acceleration_max_mps2 = 3.0;  ///< horizontal, of a copter; a plane's is in its turn radius
 
+  [[nodiscard]] bool is_copter() const { return airframe == Airframe::copter; }
   [[nodiscard]] double planning_radius_m() const { return turn_radius_m * turn_radius_margin; }
 };
 

@@ -12,16 +12,17 @@
 
 namespace skein::mission {
 
-/// What control follows: a path, of a vehicle that is flown by its heading and speed, or a point
-/// that moves, of one that is flown by its position. Each ends in a hold. A newer one replaces an
+/// What control follows: a path at a speed, at the vehicle's height, or a point that moves, of one
+/// that is flown by its position. Each ends in a hold. A newer one replaces an
 /// older one of either kind. Trivially copyable.
 using Guidance = std::variant<FlightPlan, MotionTrack>;
 
 /// Without a state for so long the flight controller is silent: nothing is asked of it.
 inline constexpr Duration kFlightControllerSilence = std::chrono::milliseconds{500};
 
-/// What is asked of the flight controller at `now`, to follow it. Allocates nothing and takes
-/// bounded time.
+/// What is asked of the flight controller at `now`, to follow it: of a plane's, to fly a heading
+/// and a speed that lead it back to its path and time; of a copter's, to be where the path is now,
+/// its nose along it. Allocates nothing and takes bounded time.
 [[nodiscard]] Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,
                             const VehicleSpec& vehicle, const VehicleState& state, Instant now);
 
@@ -31,6 +32,7 @@ struct Deviation {
   double along_error_m = 0.0;  ///< of a path: positive when ahead of time
   double cross_error_m = 0.0;  ///< positive when left of the path; of a track: the distance
 };
-[[nodiscard]] Deviation deviation(const Guidance& guidance, const VehicleState& state, Instant now);
+[[nodiscard]] Deviation deviation(const Guidance& guidance, const VehicleSpec& vehicle,
+                                  const VehicleState& state, Instant now);
 
 }  // namespace skein::mission

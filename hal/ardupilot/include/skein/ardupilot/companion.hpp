@@ -20,7 +20,7 @@
 
 namespace skein::ardupilot {
 
-enum class Airframe : std::uint8_t { plane, copter, count };
+using skein::Airframe;
 
 /// When the companion takes the aircraft. It arms and takes off only where that is asked for.
 enum class TakeOver : std::uint8_t {

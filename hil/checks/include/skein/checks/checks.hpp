@@ -34,8 +34,8 @@ struct CheckResult {
 /// Every vehicle left a track without gaps, its events and at least one plan.
 [[nodiscard]] CheckResult check_recordings(const RunRecord& record, const Limits& limits);
 
-/// Plans exactly: no segment and no hold turns tighter than the turn radius. Tracks: heading change
-/// over air distance, within Limits::turn_share.
+/// Plans exactly: no segment and no hold turns tighter than the turn radius. Tracks of planes:
+/// heading change over air distance, within Limits::turn_share.
 [[nodiscard]] CheckResult check_turn_radius(const RunRecord& record, const Limits& limits);
 /// A plan starts where the one that it replaces is at that time; the first where the vehicle is.
 [[nodiscard]] CheckResult check_continuity(const RunRecord& record, const Limits& limits);

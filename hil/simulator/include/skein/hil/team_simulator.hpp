@@ -104,6 +104,7 @@ struct TeamObserver {
   std::function<void(const mission::MissionEvent&)>
       event;  ///< of vehicles and of the ground (id 0)
   std::function<void(VehicleId, const mission::FlightPlan&, Instant)> plan;
+  /// The plan has number 0 while a copter takes off.
   std::function<void(VehicleId, const VehicleState&, const mission::FlightPlan&)> track;
   std::function<void(const FaultEvent&)> fault;
   /// All that fly in formation, in the mission's order, at every control step.

@@ -86,6 +86,7 @@ struct Expectations {
   int coalitions = 0;                       ///< that form and finish
   std::vector<SiteId> first_attempt_fails;  ///< sites whose leader has to monitor first
   std::vector<VehicleId> vehicles_lost;     ///< by faults
+  Capabilities copters_fly;                 ///< each of these kinds at least once
 };
 
 /// A mission: the fleet, the sites, the world and what must come out (docs/scenarios.md).
@@ -109,13 +110,11 @@ struct Scenario {
   std::vector<ReferenceSite> reference;
   Expectations expect;
 
-  /// Multirotors, by orders of the ground station.
+  /// Some vehicle does, by orders of the ground station.
   [[nodiscard]] bool flies_formation() const;
   /// Planned before the mission.
   [[nodiscard]] bool flies_routes() const { return !routes.approaches.empty(); }
 };
-
-[[nodiscard]] bool is_multirotor(const ScenarioVehicle& vehicle);
 
 /// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
 /// Call check() too: it finds what is well written and cannot be flown.

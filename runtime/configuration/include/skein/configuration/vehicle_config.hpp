@@ -29,7 +29,6 @@ struct WindConfig {
 };
 
 enum class FlightControllerKind : std::uint8_t { simulated, ardupilot, count };
-enum class AirframeKind : std::uint8_t { plane, copter, count };
 /// When the companion takes the aircraft from its pilot (docs/ardupilot.md).
 enum class TakeOverKind : std::uint8_t { when_guided, in_flight, from_ground, count };
 
@@ -48,15 +47,17 @@ struct ArdupilotConfig {
 
 struct FlightControllerConfig {
   FlightControllerKind kind = FlightControllerKind::simulated;
-  AirframeKind airframe = AirframeKind::plane;
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
 
-  [[nodiscard]] bool is_multirotor() const { return airframe == AirframeKind::copter; }
   [[nodiscard]] double turn_lead_s() const {
     return kind == FlightControllerKind::ardupilot ? ardupilot.turn_lead_s : 0.0;
   }
 };
+
+/// By orders of the ground station: a copter that can do no tasks. Every other vehicle works in
+/// coalitions.
+[[nodiscard]] bool flies_formation(const VehicleSpec& vehicle);
 
 /// Everything that skein-onboard needs to know (docs/configuration.md).
 struct VehicleConfig {
@@ -70,7 +71,7 @@ struct VehicleConfig {
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
   std::vector<Hazard> hazards;  ///< known before the mission
-  FormationConfig formation;    ///< of a multirotor
+  FormationConfig formation;    ///< of a vehicle that flies in formation
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded
   std::uint32_t recording_limit_mb = 1000;
