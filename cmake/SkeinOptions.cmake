@@ -23,7 +23,8 @@ endif()
 add_library(skein_warnings INTERFACE)
 target_compile_options(skein_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)  # false alarms on "x" + string in GCC 12 (its bug 105651)
+  # False alarms on sums of strings in GCC 12 (its bug 105651). Clang, which lints and fuzzes, has them.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>)
 
 # Every object: the same doubles on every compiler (no fused multiply-add), sanitizers where asked.
 add_compile_options(-ffp-contract=off)

@@ -109,12 +109,12 @@ class ReplayLoop {
       if (const auto* view = std::get_if<View>(&*input)) return look(*view);
       if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
     }
-    return {false, std::string{kOrders} + "; status, sites, coalitions and the other views look\n"};
+    return {false, fmt::format("{}; status, sites, coalitions and the other views look\n", kOrders)};
   }
 
   [[nodiscard]] Answer look(View view) const {
     const auto section = section_of(view);
-    if (!section) return {true, std::string{kOrders} + "\n"};
+    if (!section) return {true, fmt::format("{}\n", kOrders)};
     const std::string data =
         console::section_of(*section, playback_.picture(), playback_.fleet(), playback_.origin(),
                             playback_.version(), playback_.now());

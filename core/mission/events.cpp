@@ -9,7 +9,7 @@ namespace skein::mission {
 namespace {
 template <std::size_t Index = 0>
 EventBody body_at(std::size_t kind) {
-  if constexpr (Index + 1 < std::variant_size_v<EventBody>) {
+  if constexpr (Index + 1 < std::variant_size_v<EventBody::variant>) {
     if (kind != Index) return body_at<Index + 1>(kind);
   }
   return EventBody{std::in_place_index<Index>};

@@ -111,7 +111,32 @@ function enum_text(t) {
 
 function union_text(types, t, within) {
   const branches = t.branches.map(b => seen_from(within, type_name(types.get(b.type))))
-  return doc(t.before) + listed(`using ${last(t.name)} = std::variant<`, branches, '>;')
+  return doc(t.before) + variant_text(last(t.name), branches)
+}
+
+// A variant whose copies are made in one source: a source that copies, moves and destroys forty
+// alternatives itself takes seconds longer to compile.
+function variant_text(name, alternatives) {
+  return listed(`struct ${name} : std::variant<`, alternatives, '> {') + `  using variant::variant;\n` +
+    `  ${name}();\n  ${name}(const ${name}&);\n  ${name}(${name}&&) noexcept;\n` +
+    `  ${name}& operator=(const ${name}&);\n  ${name}& operator=(${name}&&) noexcept;\n  ~${name}();\n};\n`
+}
+
+// What variant_text() has declared; `names` are whole.
+function variants_text(names) {
+  return in_namespaces(names.map(name => {
+    const n = last(name)
+    return [scope_of(name), `${n}::${n}() = default;\n${n}::${n}(const ${n}&) = default;\n` +
+      `${n}::${n}(${n}&&) noexcept = default;\n${n}& ${n}::operator=(const ${n}&) = default;\n` +
+      `${n}& ${n}::operator=(${n}&&) noexcept = default;\n${n}::~${n}() = default;\n`]
+  }))
+}
+
+// The source that a file with unions needs; empty for one without.
+export function variants_source(file) {
+  const names = file.declarations.filter(t => t.kind === 'union').map(t => t.name)
+  if (names.length === 0) return ''
+  return made_from(`idl/${file.name}.idl`) + include(`skein/idl/${file.name}.hpp`) + variants_text(names)
 }
 
 function declaration(types, t, within) {
@@ -231,8 +256,11 @@ export function message_header(model, topics) {
   const file_of = name => model.files.find(f => f.declarations.some(t => t.name === name)).name
   const headers = [...new Set(topics.map(t => `skein/idl/${file_of(t.type)}.hpp`))].sort()
   return `${made_from('idl/topics.json')}#pragma once\n\n#include <variant>\n\n${headers.map(include).join('')}` +
-    `\nnamespace skein::mission {\n\n/// In the order of the topics.\n${listed('using Message = std::variant<', alternatives, '>;')}\n}  // namespace skein::mission\n`
+    `\nnamespace skein::mission {\n\n/// In the order of the topics.\n${variant_text('Message', alternatives)}\n}  // namespace skein::mission\n`
 }
+
+export const message_source = () =>
+  made_from('idl/topics.json') + include('skein/idl/message.hpp') + variants_text(['skein::mission::Message'])
 
 export function topics_header(model, topics) {
   const sets = { vehicles: 'kVehicles', ground: 'kGround', all: 'kAll' }

@@ -4,7 +4,7 @@
 // file that would not change is left alone, so that nothing is built anew for it.
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs'
 import { dirname, join } from 'node:path'
-import { fields_header, may_say_source, message_header, topics_document, topics_header, types_header } from './cpp.mjs'
+import { fields_header, may_say_source, message_header, message_source, topics_document, topics_header, types_header, variants_source } from './cpp.mjs'
 import { load } from './model.mjs'
 import { schemas_source, typescript, wire_idl } from './schemas.mjs'
 
@@ -22,8 +22,11 @@ try {
   for (const file of model.files) {
     write(`types/${file.name}/skein/idl/${file.name}.hpp`, types_header(model, file))
     write(`fields/skein/idl/${file.name}_fields.hpp`, fields_header(model, file))
+    const variants = variants_source(file)
+    if (variants) write(`${file.name}.cpp`, variants)
   }
   write('types/message/skein/idl/message.hpp', message_header(model, topics))
+  write('message.cpp', message_source())
   write('fields/skein/idl/topics.hpp', topics_header(model, topics))
   write('may_say.cpp', may_say_source(model, topics))
   write('schemas.cpp', schemas_source(model))

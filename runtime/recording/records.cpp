@@ -53,8 +53,8 @@ std::optional<Content> decode_message(std::span<const std::uint8_t> bytes, Insta
 /// Which of a union's members a value holds; 0 where it has no union.
 class BranchFinder {
  public:
-  template <class... Branches>
-  static std::size_t of(const std::variant<Branches...>& value) {
+  template <codec::Union T>
+  static std::size_t of(const T& value) {
     return value.index();
   }
   template <class T>
@@ -77,7 +77,7 @@ class BranchFinder {
 class Kinds {
  public:
   Kinds() {
-    for (std::size_t i = 0; i < std::variant_size_v<mission::Message>; ++i) {
+    for (std::size_t i = 0; i < std::variant_size_v<mission::Message::variant>; ++i) {
       codec::with_alternative<mission::Message>(i, [&]<class T>() {
         const std::string_view topic = codec::info(static_cast<codec::Topic>(i)).name;
         add<T>(topic.substr(kTopicPrefix.size()), &decode_message<T>, true);

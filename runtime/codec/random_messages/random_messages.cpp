@@ -60,10 +60,10 @@ class RandomMaker {
   void operator()(const char*, T& value, Part) {
     fields(value, *this);
   }
-  template <class... Branches>
-  void operator()(const char*, std::variant<Branches...>& value, Choice) {
-    with_alternative<std::variant<Branches...>>(
-        random_.index(sizeof...(Branches)),
+  template <Union T>
+  void operator()(const char*, T& value, Choice) {
+    with_alternative<T>(
+        random_.index(std::variant_size_v<VariantOf<T>>),
         [&]<class Branch>() { fields(value.template emplace<Branch>(), *this); });
   }
   template <class T, class Element>
@@ -100,15 +100,18 @@ template <class T>
 void add_kinds(std::vector<Kind>& kinds, const T*) {
   kinds.push_back({Type<T>::kName, &made<T, T>});
 }
-template <class... Branches>
-void add_kinds(std::vector<Kind>& kinds, const std::variant<Branches...>*) {
-  (kinds.push_back({Type<Branches>::kName, &made<Branches, std::variant<Branches...>>}), ...);
+template <Union T>
+void add_kinds(std::vector<Kind>& kinds, const T*) {
+  for (std::size_t i = 0; i < std::variant_size_v<VariantOf<T>>; ++i) {
+    with_alternative<T>(
+        i, [&]<class Branch>() { kinds.push_back({Type<Branch>::kName, &made<Branch, T>}); });
+  }
 }
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> kAll = [] {
     std::vector<Kind> all;
-    for (std::size_t i = 0; i < std::variant_size_v<mission::Message>; ++i) {
+    for (std::size_t i = 0; i < std::variant_size_v<mission::Message::variant>; ++i) {
       with_alternative<mission::Message>(
           i, [&]<class T>() { add_kinds(all, static_cast<const T*>(nullptr)); });
     }

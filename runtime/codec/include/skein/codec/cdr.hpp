@@ -149,8 +149,8 @@ class CdrWriter {
   void content(const T& value) {
     fields(value, *this);
   }
-  template <class... Branches>
-  void content(const std::variant<Branches...>& value) {
+  template <Union T>
+  void content(const T& value) {
     put(static_cast<std::uint32_t>(value.index()));
     std::visit([this](const auto& branch) { part(branch); }, value);
   }
@@ -290,13 +290,12 @@ class CdrReader {
   void content(T& value) {
     fields(value, *this);
   }
-  template <class... Branches>
-  void content(std::variant<Branches...>& value) {
+  template <Union T>
+  void content(T& value) {
     const std::size_t kind = take<std::uint32_t>();
-    require(kind < sizeof...(Branches), Fault::unknown_kind);
+    require(kind < std::variant_size_v<VariantOf<T>>, Fault::unknown_kind);
     if (refusal_) return;
-    with_alternative<std::variant<Branches...>>(
-        kind, [&]<class Branch>() { part(value.template emplace<Branch>()); });
+    with_alternative<T>(kind, [&]<class Branch>() { part(value.template emplace<Branch>()); });
   }
 
   std::span<const std::uint8_t> bytes_;

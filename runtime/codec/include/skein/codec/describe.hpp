@@ -109,17 +109,25 @@ void for_each_field(T& made, F f) {
   fields(made, NameAndValue<F>{f});
 }
 
+/// A union of the IDL is a std::variant or derived from one: this one.
+template <class... Branches>
+std::variant<Branches...> variant_of(const std::variant<Branches...>& value);
+template <class T>
+using VariantOf = decltype(variant_of(std::declval<const T&>()));
+template <class T>
+concept Union = requires(const T& value) { variant_of(value); };
+
 /// Calls f.template operator()<Alternative>() for the i-th type of a variant. Precondition: i is
 /// less than their number.
-template <class Variant, class F>
+template <Union Variant, class F>
 void with_alternative(std::size_t i, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     const bool found =
-        ((i == I && (f.template operator()<std::variant_alternative_t<I, Variant>>(), true)) ||
+        ((i == I && (f.template operator()<std::variant_alternative_t<I, VariantOf<Variant>>>(), true)) ||
          ...);
     static_cast<void>(found);
   }
-  (std::make_index_sequence<std::variant_size_v<Variant>>{});
+  (std::make_index_sequence<std::variant_size_v<VariantOf<Variant>>>{});
 }
 
 }  // namespace skein::codec

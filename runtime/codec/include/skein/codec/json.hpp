@@ -24,8 +24,8 @@ class JsonWriter {
     fields(value, writer);
     return std::move(writer.json_);
   }
-  template <class... Branches>
-  [[nodiscard]] static Json of(const std::variant<Branches...>& value) {
+  template <Union T>
+  [[nodiscard]] static Json of(const T& value) {
     return std::visit(
         []<class Branch>(const Branch& branch) {
           return Json{{"kind", Type<Branch>::kName}, {"body", of(branch)}};

@@ -10,7 +10,7 @@ namespace skein::codec {
   return kTopics.at(static_cast<std::size_t>(topic));
 }
 
-static_assert(kTopicCount == std::variant_size_v<mission::Message>);
+static_assert(kTopicCount == std::variant_size_v<mission::Message::variant>);
 
 /// The topic that carries the message.
 [[nodiscard]] inline Topic topic_of(const mission::Message& message) {
