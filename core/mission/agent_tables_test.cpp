@@ -5,7 +5,10 @@
 #include <fstream>
 #include <sstream>
 
+#include "activity.hpp"
 #include "failsafe.hpp"
+#include "leader.hpp"
+#include "scout.hpp"
 #include "task_flight.hpp"
 
 namespace skein::mission {
@@ -58,29 +61,39 @@ TEST(TaskFlight, WhoIsLateBeginsNoMore) {
   }
 }
 
-TEST(TaskFlight, EveryStateIsReachedAndNoEntryStandsTwice) {
-  for (std::size_t i = 1; i < static_cast<std::size_t>(State::count); ++i) {
-    EXPECT_TRUE(std::any_of(TaskFlight::kTable.begin(), TaskFlight::kTable.end(),
-                            [&](const auto& t) { return t.to == static_cast<State>(i); }));
+template <class Part>
+void expect_complete(std::string_view part) {
+  const auto& table = Part::kTable;
+  for (std::size_t i = 1; i < static_cast<std::size_t>(Part::State::count); ++i) {
+    const auto state = static_cast<typename Part::State>(i);
+    EXPECT_TRUE(
+        std::any_of(table.begin(), table.end(), [&](const auto& t) { return t.to == state; }))
+        << part << " never comes to " << to_string(state);
   }
-  for (const auto& a : TaskFlight::kTable) {
-    EXPECT_EQ(std::count_if(TaskFlight::kTable.begin(), TaskFlight::kTable.end(),
+  for (const auto& a : table) {
+    EXPECT_EQ(std::count_if(table.begin(), table.end(),
                             [&](const auto& b) { return a.from == b.from && a.event == b.event; }),
-              1);
+              1)
+        << part << ": " << to_string(a.from) << ", " << to_string(a.event);
   }
 }
 
-TEST(Failsafe, LaterRulesTakePrecedence) {
+TEST(AgentTables, EveryStateIsReachedAndNoEntryStandsTwice) {
+  expect_complete<TaskFlight>("TaskFlight");
+  expect_complete<Scout>("Scout");
+  expect_complete<Leader>("Leader");
+}
+
+TEST(AgentTables, AnActivityIsThatOfTheFirstRuleThatHolds) {
+  EXPECT_EQ(activity_of({}), Activity::searching);
+  EXPECT_EQ(activity_of({.bids = true, .en_route = true}), Activity::bidding);
+  EXPECT_EQ(activity_of({.leads = true, .bids = true}), Activity::leading);
+  EXPECT_EQ(activity_of({.leads = true, .monitors = true}), Activity::monitoring);
+  EXPECT_EQ(activity_of({.has_task = true, .leads = true}), Activity::executing);
   using Action = Failsafe::Action;
-  Failsafe failsafe;
-  EXPECT_EQ(failsafe.update({}), Action::none);
-  EXPECT_EQ(failsafe.reason(), coalition::Reason::none);
-  EXPECT_EQ(failsafe.update({.id_in_use = true}), Action::take_up_nothing);
-  EXPECT_EQ(failsafe.update({.id_in_use = true, .range_spent = true}), Action::come_home);
-  EXPECT_EQ(failsafe.update({.id_in_use = true, .range_spent = true, .ordered = true}),
-            Action::obey);
-  EXPECT_EQ(failsafe.reason(), coalition::Reason::held_by_operator);
-  EXPECT_EQ(failsafe.update({.range_spent = true}), Action::come_home);
+  EXPECT_EQ(activity_of({.failsafe = Action::come_home, .bids = true}), Activity::holding);
+  EXPECT_EQ(activity_of({.failsafe = Action::come_home, .leads = true}), Activity::leading);
+  EXPECT_EQ(activity_of({.failsafe = Action::obey, .has_task = true}), Activity::holding);
 }
 
 /// After a change of a table, paste what this prints into docs/protocol.md.
@@ -89,7 +102,10 @@ TEST(AgentTables, AreInTheProtocolDocument) {
   std::stringstream document;
   document << file.rdbuf();
   for (const std::string& table :
-       {mermaid<State, Event>(TaskFlight::kTable, State::planned), failsafe_document()}) {
+       {mermaid<State, Event>(TaskFlight::kTable, State::planned),
+        mermaid<Scout::State, Scout::Event>(Scout::kTable, Scout::State::idle),
+        mermaid<Leader::State, Leader::Event>(Leader::kTable, Leader::State::idle),
+        failsafe_document(), responses_document()}) {
     EXPECT_NE(document.str().find(table), std::string::npos) << "docs/protocol.md lacks:\n"
                                                              << table;
   }

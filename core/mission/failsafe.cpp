@@ -1,7 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "failsafe.hpp"
 
+#include <algorithm>
+
 namespace skein::mission {
+namespace {
+/// At least, between two looks at the range left. What is flown in it twice is less than an orbit.
+constexpr Duration kRangePeriod = std::chrono::seconds{1};
+
+const Failsafe::Response* response_to(CommandKind order) {
+  switch (order) {
+    case CommandKind::hold:
+      return &Failsafe::kHold;
+    case CommandKind::return_home:
+      return &Failsafe::kReturnHome;
+    case CommandKind::resume:
+      return &Failsafe::kResume;
+    case CommandKind::give_back:  // of the flight controller: the node's, not the agent's
+    case CommandKind::count:
+      break;
+  }
+  return nullptr;
+}
+}  // namespace
+
+const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
+  const Response* response = nullptr;
+  if (news.path_barred) response = &kPathBarred;
+  if (news.id_in_use && !facts_.id_in_use) {
+    facts_.id_in_use = true;
+    response = &kIdInUse;
+  }
+  if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
+  if (news.order) response = response_to(*news.order);
+  if (response == &kHold || response == &kReturnHome) facts_.ordered = true;
+  if (response == &kResume) facts_.ordered = false;
+  rule_ = nullptr;
+  for (const Rule& rule : kRules) {
+    if (facts_.*rule.holds) rule_ = &rule;
+  }
+  return response;
+}
+
+/// True when it is news that the range is spent.
+bool Failsafe::watch_range(double spare_s, Instant now) {
+  if (facts_.range_spent) return false;
+  range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
+  facts_.range_spent = spare_s <= 0.0;
+  return facts_.range_spent;
+}
 
 std::string_view to_string(Failsafe::Action action) {
   static constexpr std::array<std::string_view, 4> kNames{"none", "take_up_nothing", "come_home",
@@ -10,11 +57,40 @@ std::string_view to_string(Failsafe::Action action) {
   return kNames.at(static_cast<std::size_t>(action));
 }
 
+std::string_view to_string(Failsafe::Lead lead) {
+  static constexpr std::array<std::string_view, 3> kNames{"kept", "handed_on", "put_off"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Failsafe::Lead::count));
+  return kNames.at(static_cast<std::size_t>(lead));
+}
+
+std::string_view to_string(Failsafe::Manoeuvre manoeuvre) {
+  static constexpr std::array<std::string_view, 5> kNames{"none", "hold", "fly_home", "come_home",
+                                                          "search"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Failsafe::Manoeuvre::count));
+  return kNames.at(static_cast<std::size_t>(manoeuvre));
+}
+
 std::string failsafe_document() {
   std::string text = "| fact | action | it neither bids nor leads: |\n|---|---|---|\n";
   for (const Failsafe::Rule& rule : Failsafe::kRules) {
     text += "| `" + std::string{rule.fact} + "` | `" + std::string{to_string(rule.action)} +
             "` | `" + std::string{coalition::to_string(rule.reason)} + "` |\n";
+  }
+  return text;
+}
+
+std::string responses_document() {
+  std::string text =
+      "| news | withdraws from its coalition | scouting | its lead | flies "
+      "|\n|---|---|---|---|---|\n";
+  for (const Failsafe::Response& response : Failsafe::kResponses) {
+    const bool stays = response.withdraws == coalition::Reason::none;
+    text.append("| `").append(response.news).append("` | ");
+    text.append(stays ? "stays" : "`")
+        .append(stays ? "" : coalition::to_string(response.withdraws));
+    text.append(stays ? " | " : "` | ").append(response.ends_scouting ? "ends" : "goes on");
+    text.append(" | `").append(to_string(response.lead));
+    text.append("` | `").append(to_string(response.manoeuvre)).append("` |\n");
   }
   return text;
 }

@@ -3,15 +3,18 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "skein/coalition/messages.hpp"
+#include "skein/mission/messages.hpp"
 
 namespace skein::mission {
 
-/// What a vehicle does whatever it was about. Several facts may hold at once: one action follows,
-/// that of the last rule whose fact holds.
+/// What a vehicle does whatever it was about. Facts that hold decide on its action for as long as
+/// they do: several may, and the action is that of the last rule whose fact holds. News asks for a
+/// response at once, besides.
 class Failsafe {
  public:
   enum class Action : std::uint8_t {
@@ -39,13 +42,61 @@ class Failsafe {
       Rule{"ordered", &Facts::ordered, Action::obey, coalition::Reason::held_by_operator},
   };
 
-  Action update(const Facts& facts) {
-    rule_ = nullptr;
-    for (const Rule& rule : kRules) {
-      if (facts.*rule.holds) rule_ = &rule;
-    }
-    return action();
+  /// What becomes of the site that it leads.
+  enum class Lead : std::uint8_t {
+    kept,
+    handed_on,  ///< to the others, as soon as nobody flies what it awarded
+    put_off,    ///< it is led here later
+    count
+  };
+  enum class Manoeuvre : std::uint8_t {
+    none,       ///< as before
+    hold,       ///< an orbit here
+    fly_home,   ///< and an orbit there
+    come_home,  ///< the same, or hold where it is recovered anywhere
+    search,     ///< unless it has a task or a survey; where its range is spent: come_home
+    count
+  };
+  struct Response {
+    std::string_view news;
+    coalition::Reason withdraws;  ///< from its coalition, for that reason; none: it stays
+    bool ends_scouting;           ///< what it was to survey waits
+    Lead lead;
+    Manoeuvre manoeuvre;
+  };
+  using Reason = coalition::Reason;
+  static constexpr Response kPathBarred{"path_barred", Reason::path_barred, false, Lead::kept,
+                                        Manoeuvre::hold};
+  static constexpr Response kIdInUse{"id_in_use", Reason::none, false, Lead::kept, Manoeuvre::none};
+  static constexpr Response kRangeSpent{"range_spent", Reason::out_of_range, true, Lead::handed_on,
+                                        Manoeuvre::come_home};
+  static constexpr Response kHold{"hold", Reason::held_by_operator, true, Lead::put_off,
+                                  Manoeuvre::hold};
+  static constexpr Response kReturnHome{"return_home", Reason::sent_home, true, Lead::put_off,
+                                        Manoeuvre::fly_home};
+  static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
+  static constexpr std::array kResponses{kPathBarred, kIdInUse,    kRangeSpent,
+                                         kHold,       kReturnHome, kResume};
+
+  /// One of these at a time.
+  struct News {
+    bool path_barred = false;  ///< by a hazard, and there is no other way to its task
+    bool id_in_use = false;    ///< another vehicle was heard under its number
+    std::optional<double> spare_s =
+        {};  ///< for how long it can surely fly on before it must turn for home
+    std::optional<CommandKind> order = {};  ///< new, from the operator
+  };
+  /// The response that the news asks for; null where it is none.
+  const Response* update(Instant now, const News& news);
+  /// Is it time to look at the range again? Then News::spare_s is wanted. It costs a path to
+  /// compute, so it is asked for as rarely as it can matter.
+  [[nodiscard]] bool wants_range(Instant now) const {
+    return !facts_.range_spent && now >= range_again_;
   }
+  /// The way home may have become longer.
+  void on_hazard(Instant now) { range_again_ = now; }
+
+  [[nodiscard]] const Facts& facts() const { return facts_; }
   [[nodiscard]] Action action() const { return rule_ == nullptr ? Action::none : rule_->action; }
   [[nodiscard]] bool in(Action action) const { return this->action() == action; }
   /// Why it neither bids nor leads; none where it may.
@@ -54,10 +105,17 @@ class Failsafe {
   }
 
  private:
-  const Rule* rule_ = nullptr;
+  [[nodiscard]] bool watch_range(double spare_s, Instant now);
+
+  Facts facts_;
+  const Rule* rule_ = nullptr;  ///< that decides
+  Instant range_again_{};
 };
 [[nodiscard]] std::string_view to_string(Failsafe::Action action);
-/// The rules as a table of docs/protocol.md.
+[[nodiscard]] std::string_view to_string(Failsafe::Lead lead);
+[[nodiscard]] std::string_view to_string(Failsafe::Manoeuvre manoeuvre);
+/// The rules, and the responses, as tables of docs/protocol.md.
 [[nodiscard]] std::string failsafe_document();
+[[nodiscard]] std::string responses_document();
 
 }  // namespace skein::mission

@@ -9,6 +9,12 @@
 
 namespace skein::mission {
 
+/// A surveyed site that needs a leader.
+struct SurveyedSite {
+  Site site;
+  std::vector<TaskId> over;  ///< its tasks that need nobody, as far as is known here
+};
+
 /// What a vehicle has heard of the sites that others lead, so that a site whose leader is lost is
 /// not forgotten: whoever is free flies there, and leads it if it is still silent there.
 class SiteBook {

@@ -101,17 +101,4 @@ class TaskFlight {
 [[nodiscard]] std::string_view to_string(TaskFlight::State state);
 [[nodiscard]] std::string_view to_string(TaskFlight::Event event);
 
-/// A survey on its way, or (`relief`) a flight to a surveyed site whose leader is lost.
-struct SurveyFlight {
-  Site site;
-  planning::TaskPlan plan;
-  bool relief = false;
-  bool begun = false;
-
-  [[nodiscard]] Instant begin_time() const {
-    return plan.timed.start_time + from_seconds(plan.gate_m / plan.timed.speed_mps);
-  }
-  [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
-};
-
 }  // namespace skein::mission

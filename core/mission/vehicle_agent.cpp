@@ -1,28 +1,186 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/vehicle_agent.hpp"
 
+#include <algorithm>
+
+#include "activity.hpp"
+#include "skein/base/assert.hpp"
+#include "skein/base/overloaded.hpp"
 #include "vehicle_agent_impl.hpp"
 
 namespace skein::mission {
 
-VehicleAgent::VehicleAgent(const VehicleAgentConfig& config, Instant now)
-    : impl_{std::make_unique<Impl>(config, now)} {}
+void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
+  if (!ownship_.on_state(state, now)) {
+    outbox.report(event::VehicleTrouble{event::Trouble::route_not_flown}, {}, {}, now);
+  }
+  step(now);
+}
+
+void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
+  std::visit(Overloaded{[&](const coalition::Message& m) { receive(m, now); },
+                        [&](const Authorisation& m) { on_authorisation(m, now); },
+                        [&](const Command& m) { on_command(m, now); },
+                        [&](const SiteReport& m) { scout_.on_site_report(m, now); },
+                        [&](const HazardReport& m) { on_hazard(m.hazard, now); },
+                        [&](const Telemetry& m) { on_telemetry(m, now); },
+                        [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
+                        [](const formation::Change&) {}, [](const FormationStatus&) {},
+                        [](const PlanReport&) {}, [](const Health&) {}},
+             message);
+  step(now);
+}
+
+void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instant now) {
+  if (leader_.on_planning_result(result, now)) step(now);
+}
+
+void VehicleAgent::Impl::step(Instant now) {
+  if (!ownship_.flight().started()) return;
+  leader_.on_timeout(now);
+  flyer_.fly_begun(now);
+  flyer_.on_timeout(!leader_.leading() && !scout_.flying() && failsafe_.in(Failsafe::Action::none),
+                    now);
+  pump(now);
+  leader_.repeat(now);
+  pump(now);
+  flyer_.fly(now);
+  if (const auto site = scout_.fly(now)) leader_.lead(*site, now);
+  pump(now);
+  watch_range(now);
+  idle(now);
+  pump(now);
+  check();
+}
+
+/// Each pass hands on what the last one brought forth; what a vehicle leads it also takes part in.
+void VehicleAgent::Impl::pump(Instant now) {
+  for (;;) {
+    if (const auto words = leader_.poll_message()) {
+      send(*words, now);
+    } else if (leader_.answer_next(now)) {
+      continue;
+    } else if (const auto message = flyer_.poll_message()) {
+      send(*message, now);
+    } else if (const auto output = flyer_.poll_output()) {
+      answer(*output, now);
+    } else {
+      break;
+    }
+  }
+  leader_.part();
+}
+
+/// What holds between the parts when everything is worked off.
+void VehicleAgent::Impl::check() const {
+  SKEIN_ASSERT(!(leader_.leading() && scout_.flying()));
+  SKEIN_ASSERT(!(flyer_.flying() && scout_.flying()));
+  SKEIN_ASSERT(!flyer_.flying() || !flyer_.free());  // it holds its task, or awaits a successor
+}
+
+void VehicleAgent::Impl::send(const coalition::Message& message, Instant now) {
+  outbox.messages.push(Message{message});
+  receive(message, now);  // its own leader, or its own member
+}
+
+void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now) {
+  if (!ownship_.flight().started()) return;
+  scout_.on_message(message, now);
+  if (const auto site = leader_.on_message(message, now)) scout_.put_off(*site);
+  say_last_words(now);  // before its own member bids for the leader that it gives way to
+  flyer_.on_message(message, now);
+}
+
+void VehicleAgent::Impl::say_last_words(Instant now) {
+  while (const auto words = leader_.poll_last_words()) send(*words, now);
+}
+
+void VehicleAgent::Impl::answer(const coalition::Participant::Output& output, Instant now) {
+  if (const auto* call = std::get_if<coalition::Participant::BidWanted>(&output)) {
+    flyer_.answer_call(call->announcement, otherwise_engaged(call->announcement), now);
+  } else if (const auto* won = std::get_if<coalition::Participant::LeadershipWon>(&output)) {
+    leader_.take_over(*won, now);
+  } else {
+    flyer_.answer(output, now);
+  }
+}
+
+coalition::Reason VehicleAgent::Impl::otherwise_engaged(const coalition::Announcement& call) const {
+  if (!failsafe_.in(Failsafe::Action::none)) return failsafe_.reason();
+  if (scout_.flying()) return coalition::Reason::surveying;
+  if (leader_.leads_other(call.round.coalition)) return coalition::Reason::leading;
+  return coalition::Reason::none;
+}
+
+void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant now) {
+  flyer_.on_authorisation(message, now);
+  if (!message.granted) scout_.close(message.site);
+  leader_.on_authorisation(message, now);
+  say_last_words(now);
+}
+
+/// Nothing to do: search on, or take up a site that waits.
+void VehicleAgent::Impl::idle(Instant now) {
+  if (failsafe_.in(Failsafe::Action::obey) || flyer_.flying() || scout_.flying()) return;
+  if (!flyer_.free() || ownship_.flight().en_route(now)) return;
+  if (failsafe_.in(Failsafe::Action::come_home)) {
+    if (ownship_.comes_home()) ownship_.come_home(now);
+    return;
+  }
+  if (leader_.leading()) return;  // it keeps circling its site
+  if (failsafe_.in(Failsafe::Action::none)) {
+    if (const auto site = scout_.take_up(now)) leader_.lead(*site, now);
+  }
+  if (scout_.flying() || leader_.leading() || ownship_.flight().searching()) return;
+  ownship_.search(now);
+}
+
+Instant VehicleAgent::Impl::next_timeout() const {
+  return std::min({leader_.next_timeout(), flyer_.next_timeout(), scout_.next_timeout()});
+}
+
+Activity VehicleAgent::Impl::activity() const {
+  return activity_of({.failsafe = failsafe_.action(),
+                      .has_task = flyer_.flying(),
+                      .leads = leader_.leading(),
+                      .monitors = leader_.monitoring(),
+                      .scouts = scout_.flying(),
+                      .bids = !flyer_.free(),
+                      .en_route = ownship_.flight().en_route(ownship_.state().time)});
+}
+
+Telemetry VehicleAgent::Impl::telemetry() const {
+  Telemetry telemetry = ownship_.telemetry();
+  telemetry.activity = activity();
+  return telemetry;
+}
+
+Counters VehicleAgent::Impl::counters() const {
+  Counters all;
+  all.protocol_errors = flyer_.protocol_errors() + leader_.protocol_errors();
+  all.messages_dropped = outbox.messages.dropped();
+  all.events_dropped = outbox.events.dropped();
+  return all;
+}
+
+VehicleAgent::VehicleAgent(const VehicleAgentConfig& config, Instant /*now*/)
+    : impl_{std::make_unique<Impl>(config)} {}
 VehicleAgent::~VehicleAgent() = default;
 
 void VehicleAgent::on_state(const VehicleState& state, Instant now) { impl_->on_state(state, now); }
-void VehicleAgent::on_message(const Message& message, VehicleId sender, Instant now) {
-  impl_->on_message(message, sender, now);
+void VehicleAgent::on_message(const Message& message, VehicleId /*sender*/, Instant now) {
+  impl_->on_message(message, now);
 }
 void VehicleAgent::on_planning_result(const PlanningResult& result, Instant now) {
   impl_->on_planning_result(result, now);
 }
 void VehicleAgent::on_timeout(Instant now) { impl_->on_timeout(now); }
 
-std::optional<Message> VehicleAgent::poll_message() { return impl_->messages.pop(); }
+std::optional<Message> VehicleAgent::poll_message() { return impl_->outbox.messages.pop(); }
 std::optional<Guidance> VehicleAgent::poll_guidance() { return impl_->poll_guidance(); }
-std::optional<MissionEvent> VehicleAgent::poll_event() { return impl_->events.pop(); }
+std::optional<MissionEvent> VehicleAgent::poll_event() { return impl_->outbox.events.pop(); }
 std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
-  return impl_->planning_requests.pop();
+  return impl_->outbox.planning_requests.pop();
 }
 Instant VehicleAgent::next_timeout() const { return impl_->next_timeout(); }
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "outbox.hpp"
+#include "ownship.hpp"
+#include "skein/base/angles.hpp"
+
+namespace skein::mission {
+
+inline constexpr double kTestSpeed_mps = 25.0;
+
+/// A plane that can do everything, near the origin, with much room and range.
+[[nodiscard]] inline VehicleAgentConfig plane_config() {
+  VehicleAgentConfig config;
+  config.instance = {9};
+  config.search = {{2000.0, 0.0}};
+  config.protocol.radio_range_m = 5000.0;
+  VehicleSpec& vehicle = config.vehicle;
+  vehicle.id = {4};
+  vehicle.cruise_speed_mps = kTestSpeed_mps;
+  vehicle.speed_min_mps = 20.0;
+  vehicle.speed_max_mps = 30.0;
+  vehicle.turn_radius_m = 60.0;
+  vehicle.range_m = 50'000.0;
+  vehicle.sensor_radius_m = vehicle.assess_radius_m = vehicle.final_approach_m = 100.0;
+  vehicle.loads = 1;
+  vehicle.capabilities.add(TaskKind::survey).add(TaskKind::deliver).add(TaskKind::assess);
+  return config;
+}
+
+/// With one delivery, to the north.
+[[nodiscard]] inline Site test_site(std::uint16_t id) {
+  Site site;
+  site.id = {id};
+  site.position = {600.0, 300.0};
+  site.survey.dwell = std::chrono::seconds{4};
+  site.deliveries.push_back({kPi / 2.0, {}});
+  return site;
+}
+
+/// What a part of an agent needs around it: a vehicle that is exactly where its plan has it.
+struct PartsBench {
+  explicit PartsBench(const VehicleAgentConfig& config = plane_config())
+      : ownship{config}, outbox{config.vehicle.id} {
+    be_at(0.0);
+  }
+
+  void be_at(double seconds) {
+    now = at_seconds(seconds);
+    VehicleState state;
+    state.time = now;
+    const Pose2 pose = ownship.flight().started() ? ownship.flight().pose_at(now) : Pose2{};
+    state.x_m = pose.x_m;
+    state.y_m = pose.y_m;
+    state.heading_rad = state.course_rad = pose.heading_rad;
+    state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
+    state.distance_flown_m = seconds * kTestSpeed_mps;
+    ownship.on_state(state, now);
+  }
+
+  /// How often that was reported since the last call of it.
+  [[nodiscard]] int reported(EventKind kind) {
+    while (auto event = outbox.events.pop()) kinds.push_back(event->kind());
+    return static_cast<int>(std::erase(kinds, kind));
+  }
+  /// The first message of that type that was sent since the last call; older ones are dropped.
+  template <class T>
+  [[nodiscard]] std::optional<T> sent() {
+    std::optional<T> found;
+    while (auto message = outbox.messages.pop()) {
+      if (const auto* wanted = std::get_if<T>(&*message); wanted != nullptr && !found) {
+        found = *wanted;
+      }
+    }
+    return found;
+  }
+
+  Instant now{};
+  Ownship ownship;
+  Outbox outbox;
+  std::vector<EventKind> kinds;
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "failsafe.hpp"
+
+#include <gtest/gtest.h>
+
+namespace skein::mission {
+namespace {
+
+using Action = Failsafe::Action;
+
+TEST(Failsafe, LaterRulesTakePrecedence) {
+  const Instant now = at_seconds(10.0);
+  Failsafe failsafe;
+  EXPECT_EQ(failsafe.update(now, {}), nullptr);
+  EXPECT_EQ(failsafe.action(), Action::none);
+  EXPECT_EQ(failsafe.reason(), coalition::Reason::none);
+  EXPECT_EQ(failsafe.update(now, {.id_in_use = true}), &Failsafe::kIdInUse);
+  EXPECT_EQ(failsafe.update(now, {.id_in_use = true}), nullptr) << "it is news once";
+  EXPECT_EQ(failsafe.action(), Action::take_up_nothing);
+  EXPECT_EQ(failsafe.update(now, {.spare_s = 0.0}), &Failsafe::kRangeSpent);
+  EXPECT_EQ(failsafe.action(), Action::come_home);
+  EXPECT_EQ(failsafe.update(now, {.order = CommandKind::hold}), &Failsafe::kHold);
+  EXPECT_EQ(failsafe.action(), Action::obey);
+  EXPECT_EQ(failsafe.reason(), coalition::Reason::held_by_operator);
+  EXPECT_EQ(failsafe.update(now, {.order = CommandKind::resume}), &Failsafe::kResume);
+  EXPECT_EQ(failsafe.action(), Action::come_home) << "the range stays spent";
+}
+
+TEST(Failsafe, EveryOrderIsObeyedAtOnce) {
+  Failsafe failsafe;
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::hold}), &Failsafe::kHold);
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::return_home}), &Failsafe::kReturnHome);
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::give_back}), nullptr);
+  EXPECT_EQ(failsafe.action(), Action::obey);
+}
+
+TEST(Failsafe, ABarredPathEndsTheTaskAndNothingElse) {
+  Failsafe failsafe;
+  const auto* response = failsafe.update({}, {.path_barred = true});
+  ASSERT_EQ(response, &Failsafe::kPathBarred);
+  EXPECT_EQ(response->lead, Failsafe::Lead::kept);
+  EXPECT_EQ(failsafe.action(), Action::none);
+}
+
+TEST(Failsafe, LooksAtTheRangeAsRarelyAsItCanMatter) {
+  Failsafe failsafe;
+  EXPECT_TRUE(failsafe.wants_range(at_seconds(0.0)));
+  EXPECT_EQ(failsafe.update(at_seconds(0.0), {.spare_s = 60.0}), nullptr);
+  EXPECT_FALSE(failsafe.wants_range(at_seconds(59.9)));
+  EXPECT_TRUE(failsafe.wants_range(at_seconds(60.0)));
+  failsafe.on_hazard(at_seconds(5.0));
+  EXPECT_TRUE(failsafe.wants_range(at_seconds(5.0)));
+  EXPECT_EQ(failsafe.update(at_seconds(5.0), {.spare_s = 0.01}), nullptr);
+  EXPECT_FALSE(failsafe.wants_range(at_seconds(5.9))) << "but not at every step";
+  EXPECT_EQ(failsafe.update(at_seconds(6.0), {.spare_s = -1.0}), &Failsafe::kRangeSpent);
+  EXPECT_FALSE(failsafe.wants_range(at_seconds(100.0))) << "spent is spent";
+  EXPECT_EQ(failsafe.update(at_seconds(100.0), {.spare_s = 50.0}), nullptr);
+  EXPECT_TRUE(failsafe.facts().range_spent);
+}
+
+}  // namespace
+}  // namespace skein::mission

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "outbox.hpp"
+#include "ownship.hpp"
+#include "site_book.hpp"
+#include "skein/base/state_table.hpp"
+#include "skein/coalition/initiator.hpp"
+#include "skein/coalition/participant.hpp"
+
+namespace skein::mission {
+
+/// The vehicle as the leader of one site at a time: what its Initiator asks for (an allocation, the
+/// operator's decision), whom it gives way to, and what is said when a coalition is over. After
+/// each call: poll_message() is for everybody, this vehicle's own member included; answer_next()
+/// works off what the Initiator asked; when both have nothing more, part().
+class Leader {
+ public:
+  enum class State : std::uint8_t {
+    idle,
+    leading,            ///< how far its round has come is the Initiator's state
+    awaiting_decision,  ///< the operator's, on the deliveries of the round that has formed
+    parting,            ///< its coalition is over: its last words are being said
+    count
+  };
+  enum class Event : std::uint8_t {
+    taken_up,     ///< a surveyed site, or the plan of a lost leader
+    asked,        ///< for the operator's decision
+    granted,      ///< by the operator
+    round_ended,  ///< it did not form, or its time is over: there is another
+    over,         ///< everything is done, or another leads the site
+    ended,
+    count
+  };
+  static constexpr std::array kTable{
+      Transition<State, Event>{State::idle, Event::taken_up, State::leading},
+      Transition<State, Event>{State::leading, Event::asked, State::awaiting_decision},
+      Transition<State, Event>{State::leading, Event::round_ended, State::leading},
+      Transition<State, Event>{State::leading, Event::over, State::parting},
+      Transition<State, Event>{State::leading, Event::ended, State::idle},
+      Transition<State, Event>{State::awaiting_decision, Event::granted, State::leading},
+      Transition<State, Event>{State::awaiting_decision, Event::round_ended, State::leading},
+      Transition<State, Event>{State::awaiting_decision, Event::over, State::parting},
+      Transition<State, Event>{State::awaiting_decision, Event::ended, State::idle},
+      Transition<State, Event>{State::parting, Event::ended, State::idle},
+  };
+
+  Leader(const Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
+
+  /// From now on it leads that site, unless nothing is to be done there. Precondition: idle.
+  void lead(const SurveyedSite& what, Instant now);
+  /// It goes on with the plan of a leader that is lost, unless it leads already.
+  void take_over(const coalition::Participant::LeadershipWon& won, Instant now);
+
+  /// Its own messages and those of others. The site that it led, where it gives way to the leader
+  /// of another one: to be led later.
+  [[nodiscard]] std::optional<Site> on_message(const coalition::Message& message, Instant now);
+  void on_authorisation(const Authorisation& message, Instant now);
+  /// False where it is not of the round being led.
+  bool on_planning_result(const PlanningResult& result, Instant now);
+  void on_timeout(Instant now);
+  /// Says again what has to be: farewells, and the request that awaits its decision.
+  void repeat(Instant now);
+
+  /// Gives the site up for now, by the operator's order: it is to be led later.
+  [[nodiscard]] std::optional<Site> put_off(Instant now);
+  /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
+  /// silence tells the others to take the site up.
+  void hand_on(coalition::Reason why, Instant now);
+
+  [[nodiscard]] std::optional<coalition::Message> poll_message();
+  /// Of these only what is left to say of a site that was given up. A part that is told of the same
+  /// input next must have heard it.
+  [[nodiscard]] std::optional<coalition::Message> poll_last_words() { return last_words_.pop(); }
+  /// Works off one thing that the Initiator asked for; false when there is none.
+  bool answer_next(Instant now);
+  /// Ends what is over.
+  void part();
+
+  [[nodiscard]] State state() const { return machine_.state(); }
+  [[nodiscard]] bool leading() const { return !machine_.in(State::idle); }
+  /// It leads another coalition than that one.
+  [[nodiscard]] bool leads_other(const coalition::CoalitionId& than) const;
+  /// Its last round came to nothing: it waits before the next.
+  [[nodiscard]] bool monitoring() const;
+  [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] std::uint64_t protocol_errors() const;
+
+ private:
+  using Initiator = coalition::Initiator;
+  struct Farewell {
+    coalition::LeaseRenewal last;
+    Instant next{};
+    int times = 0;  ///< still to be said
+  };
+  void fire(Event event);
+  void answer(const Initiator::AllocationWanted& wanted, Instant now);
+  void answer(const Initiator::Formed& formed, Instant now);
+  void answer(const Initiator::NotFormed& failed, Instant now);
+  void answer(const Initiator::TaskLost& lost, Instant now);
+  void answer(const Initiator::TaskUnknown& unknown, Instant now);
+  void answer(const Initiator::Superseded& superseded, Instant now);
+  void answer(const Initiator::AllDone& done, Instant now);
+  void ask_operator(const Initiator::Formed& formed, Instant now);
+  void say_farewell(Instant now);
+  void watch_decision(Instant now);
+  void meet_rival(SiteId site, const coalition::Round& rival, bool stands, Instant now);
+  [[nodiscard]] bool yields_to(const coalition::Announcement& other, Instant now) const;
+  void give_up(const coalition::Why& why, Instant now);
+  void end();
+  [[nodiscard]] coalition::CoalitionId next_coalition();
+  [[nodiscard]] Vec2 position_at_formation(Instant now) const;
+  [[nodiscard]] TaskId about_site() const { return {initiator_->site().id, {}, 0}; }
+
+  const Ownship& ownship_;
+  Outbox& outbox_;
+  StateMachine<State, Event> machine_{kTable, State::idle};
+  std::optional<Initiator> initiator_;  ///< unless idle
+  AuthorisationRequest request_;        ///< that awaits its decision
+  Instant request_again_{};
+  std::map<VehicleId, coalition::Bid> bids_;  ///< of the round being allocated or flown
+  std::vector<coalition::Round> granted_;  ///< rounds that the operator has authorised, newest last
+  std::vector<Farewell> farewells_;        ///< of the coalitions that were led here to the end
+  BoundedQueue<coalition::Message> last_words_{64};  ///< of one that has been given up
+  std::uint32_t coalitions_led_ = 0;
+  std::uint64_t protocol_errors_ = 0;  ///< of coalitions that were led here before
+};
+[[nodiscard]] std::string_view to_string(Leader::State state);
+[[nodiscard]] std::string_view to_string(Leader::Event event);
+
+}  // namespace skein::mission

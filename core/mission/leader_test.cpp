@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "leader.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agent_parts_test.hpp"
+
+namespace skein::mission {
+namespace {
+
+using State = Leader::State;
+constexpr VehicleId kMember{5};
+
+/// A leader of a site with one delivery, and another vehicle that does what it is asked.
+struct Leading : PartsBench {
+  Leading() { leader.lead({test_site(1), {}}, now); }
+
+  template <class T>
+  [[nodiscard]] std::optional<T> said() {
+    std::optional<T> found;
+    while (auto message = leader.poll_message()) {
+      if (const auto* wanted = std::get_if<T>(&*message)) found = *wanted;
+    }
+    return found;
+  }
+  void hear(const coalition::Message& message) {
+    EXPECT_FALSE(leader.on_message(message, now));
+    work();
+  }
+  void work() {
+    while (leader.answer_next(now)) {
+    }
+  }
+  void wait_until(double seconds) {
+    be_at(seconds);
+    leader.on_timeout(now);
+    leader.repeat(now);
+    work();
+  }
+  /// The coalition stands: the member has bid, was awarded the delivery, due then, and has
+  /// confirmed.
+  void form(Duration due = std::chrono::seconds{60}) {
+    const auto call = said<coalition::Announcement>();
+    ASSERT_TRUE(call);
+    coalition::Bid bid;
+    bid.round = call->round;
+    bid.bidder = kMember;
+    bid.speed_mps = kTestSpeed_mps;
+    bid.final_approach_m = 100.0;
+    hear(coalition::Message{bid});
+    wait_until(to_seconds(call->bids_until));
+    const auto request = outbox.planning_requests.pop();
+    ASSERT_TRUE(request);
+    planning::Allocation plan;
+    plan.assignments = {{call->tasks.front(), kMember, now + due}};
+    EXPECT_TRUE(leader.on_planning_result({request->round, plan}, now));
+    hear(coalition::Message{coalition::Confirmation{call->round, kMember, true, {}}});
+  }
+
+  Leader leader{ownship, outbox};
+};
+
+TEST(Leader, AwaitsTheDecisionOnWhatHasFormed) {
+  Leading l;
+  EXPECT_EQ(l.leader.state(), State::leading);
+  l.form();
+  EXPECT_EQ(l.reported(EventKind::coalition_formed), 1);
+  EXPECT_EQ(l.leader.state(), State::awaiting_decision);
+  l.wait_until(2.0);
+  const auto request = l.sent<AuthorisationRequest>();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->deliveries.size(), 1U);
+  auto other = request->round;
+  ++other.number;
+  l.leader.on_authorisation({other, {1}, true, "", {}}, l.now);
+  EXPECT_EQ(l.leader.state(), State::awaiting_decision) << "it is for its round";
+  l.leader.on_authorisation({request->round, {1}, true, "", {}}, l.now);
+  EXPECT_EQ(l.leader.state(), State::leading);
+  l.wait_until(4.0);
+  EXPECT_FALSE(l.sent<AuthorisationRequest>());
+}
+
+TEST(Leader, ARefusalEndsItsCoalition) {
+  Leading l;
+  l.form();
+  l.wait_until(2.0);
+  const auto request = l.sent<AuthorisationRequest>();
+  ASSERT_TRUE(request);
+  EXPECT_TRUE(l.said<coalition::Award>());
+  l.leader.on_authorisation({request->round, {1}, false, "", {}}, l.now);
+  EXPECT_EQ(l.leader.state(), State::idle);
+  EXPECT_EQ(l.reported(EventKind::authorisation_refused), 1);
+  EXPECT_TRUE(l.leader.poll_last_words()) << "its members are released";
+}
+
+TEST(Leader, WithoutADecisionInTimeItOpensAnotherRound) {
+  Leading l;
+  l.form(std::chrono::seconds{9});  // 4 s of it are the final approach
+  EXPECT_TRUE(l.said<coalition::Award>());
+  l.wait_until(3.0);
+  EXPECT_EQ(l.leader.state(), State::awaiting_decision);
+  l.wait_until(3.5);
+  EXPECT_EQ(l.reported(EventKind::authorisation_late), 1);
+  EXPECT_EQ(l.leader.state(), State::leading);
+  const auto call = l.said<coalition::Announcement>();
+  ASSERT_TRUE(call);
+  EXPECT_EQ(call->round.number, 2U);
+}
+
+TEST(Leader, SaysFarewellWhenEverythingIsDone) {
+  Leading l;
+  l.form();
+  const auto award = l.said<coalition::Award>();
+  ASSERT_TRUE(award);
+  const TaskId task = award->assignments.front().task;
+  l.hear(coalition::Message{
+      coalition::MemberStatus{award->round, kMember, {{task, coalition::TaskState::done, l.now}}}});
+  EXPECT_EQ(l.leader.state(), State::parting);
+  const auto last = l.said<coalition::LeaseRenewal>();
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(last->closed);
+  l.leader.part();
+  EXPECT_EQ(l.leader.state(), State::idle);
+  EXPECT_EQ(l.reported(EventKind::site_done), 1);
+  l.leader.repeat(l.now);
+  EXPECT_TRUE(l.sent<coalition::Message>()) << "once more, for who has not heard it";
+}
+
+TEST(Leader, YieldsToALargerRewardAndLeadsItsSiteLater) {
+  Leading l;
+  coalition::Announcement other;
+  other.round = {{{7}, {1}, 1}, 1};
+  other.site = test_site(2);
+  other.bids_until = l.now + std::chrono::seconds{1};
+  other.reward = 0.5;
+  EXPECT_FALSE(l.leader.on_message(coalition::Message{other}, l.now));
+  EXPECT_EQ(l.leader.state(), State::leading);
+  other.reward = 100.0;
+  const auto own = l.leader.on_message(coalition::Message{other}, l.now);
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->id, SiteId{1});
+  EXPECT_EQ(l.leader.state(), State::idle);
+  EXPECT_EQ(l.reported(EventKind::conflict_yielded), 1);
+}
+
+TEST(Leader, HandsOnOnlyWhatNobodyFlies) {
+  Leading l;
+  l.form();
+  l.leader.hand_on(coalition::Reason::out_of_range, l.now);
+  EXPECT_TRUE(l.leader.leading());
+  Leading free;
+  free.leader.hand_on(coalition::Reason::out_of_range, free.now);
+  EXPECT_FALSE(free.leader.leading());
+  EXPECT_EQ(free.reported(EventKind::cancelled), 1);
+}
+
+TEST(Leader, ASiteWithoutTasksIsDone) {
+  PartsBench bench;
+  Leader leader{bench.ownship, bench.outbox};
+  Site site = test_site(1);
+  site.deliveries.clear();
+  leader.lead({site, {}}, bench.now);
+  EXPECT_EQ(leader.state(), State::idle);
+  EXPECT_EQ(bench.reported(EventKind::site_done), 1);
+}
+
+}  // namespace
+}  // namespace skein::mission

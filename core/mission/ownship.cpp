@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "ownship.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "skein/base/angles.hpp"
+#include "skein/planning/avoidance.hpp"
+#include "skein/planning/path_follower.hpp"
+
+namespace skein::mission {
+namespace {
+/// A task counts as flown when the vehicle is this close to where its plan has it.
+constexpr double kOnTrackM = 30.0;
+/// How close a vehicle must be to its route to take it up.
+constexpr double kAtRouteM = 50.0;
+
+/// Paths keep this far from hazards where there is room: in long turns with the wind, which leave
+/// no rate to spare, a vehicle gets up to 11 m off.
+constexpr double kHazardMarginM = 12.0;
+
+VehicleAgentConfig with_margin(VehicleAgentConfig config) {
+  double& margin_m = config.planning.avoidance.margin_m;
+  margin_m = std::max(margin_m, kHazardMarginM);
+  return config;
+}
+}  // namespace
+
+Ownship::Ownship(const VehicleAgentConfig& config)
+    : config_{with_margin(config)},
+      take_off_{config.vehicle},
+      flight_{config.vehicle, config_.planning.avoidance, config.search},
+      hazards_{config.hazards},
+      loads_{config.vehicle.loads} {}
+
+bool Ownship::on_state(const VehicleState& state, Instant now) {
+  state_ = state;
+  if (flight_.started() || !take_off_.done(state, now)) return true;
+  if (config_.route && is_at_route()) {
+    flight_.start_route(*config_.route);
+    return true;
+  }
+  flight_.start(state.pose(), hazards_, range_to_spend(now), now);
+  return !config_.route;
+}
+
+std::optional<Guidance> Ownship::poll_guidance() {
+  if (!flight_.started()) return take_off_.poll_track();
+  return flight_.poll_plan();
+}
+
+/// Where a route begins, or goes on for who starts anew in the middle.
+bool Ownship::is_at_route() const {
+  const Pose2 pose = config_.route->pose_at(state_.time);
+  return (Vec2{state_.x_m, state_.y_m} - pose.position()).norm() <= kAtRouteM &&
+         std::abs(wrap_pi(state_.heading_rad - pose.heading_rad)) <= kPi / 4.0;
+}
+
+bool Ownship::on_hazard(const Hazard& hazard) {
+  const auto same = [&](const Hazard& h) { return h.id == hazard.id; };
+  if (std::any_of(hazards_.begin(), hazards_.end(), same)) return false;
+  hazards_.push_back(hazard);
+  return true;
+}
+
+void Ownship::use_load() {
+  if (loads_ > 0) --loads_;
+}
+
+void Ownship::come_home(Instant now) {
+  if (!comes_home()) {
+    hold(now);
+  } else if (!flight_.homing()) {
+    fly_home(now);
+  }
+}
+
+bool Ownship::keeps_clear(Instant now) {
+  if (flight_.keeps_clear(hazards_, now)) return true;
+  if (flight_.homing()) {
+    fly_home(now);
+  } else if (flight_.searching()) {
+    search(now);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+bool Ownship::way_is_open(Instant now) const {
+  const auto& timed = flight_.plan().timed;
+  const double ahead = timed.distance_at(now);
+  const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
+  return rest && planning::is_clear(*rest, hazards_);
+}
+
+bool Ownship::on_track(const TimedPath& timed) const {
+  const auto error = planning::follow_error(timed, state_, state_.time);
+  return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;
+}
+
+double Ownship::range_left(Instant at) const {
+  const double until_then = std::max(0.0, to_seconds(at - state_.time)) * spec().cruise_speed_mps;
+  return spec().range_m - state_.distance_flown_m - until_then;
+}
+
+double Ownship::range_to_spend(Instant at) const {
+  return range_left(at) - kTwoPi * spec().planning_radius_m();
+}
+
+double Ownship::range_for(const Site& site, Instant at) const {
+  if (!comes_home()) return range_to_spend(at);
+  const Pose2 there{site.position.x(), site.position.y(), 0.0};
+  const double turn_m = kTwoPi * spec().planning_radius_m();
+  return range_to_spend(at) - flight_.way_home_m(there, hazards_) - spec().assess_radius_m - turn_m;
+}
+
+double Ownship::spare_s(Instant now) const {
+  const double spare_m = range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards_);
+  // A metre of flight brings it at most a metre further from home.
+  return spare_m / (2.0 * spec().cruise_speed_mps);
+}
+
+planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
+  const VehicleSpec& vehicle = spec();
+  return {vehicle.id,
+          pose,
+          vehicle.cruise_speed_mps,
+          vehicle.planning_radius_m(),
+          range_left(at),
+          vehicle.final_approach_m,
+          vehicle.assess_radius_m,
+          vehicle.capabilities,
+          loads_};
+}
+
+Telemetry Ownship::telemetry() const {
+  Telemetry t;
+  t.vehicle = spec().id;
+  t.instance = config_.instance;
+  t.state = state_;
+  t.range_left_m = spec().range_m - state_.distance_flown_m;
+  t.loads = loads_;
+  t.plan_number = flight_.plan().number;
+  return t;
+}
+
+}  // namespace skein::mission

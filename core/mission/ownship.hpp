@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "flight.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+#include "take_off.hpp"
+
+namespace skein::mission {
+
+/// The agent's own vehicle, as its parts share it: what it is, where it is, what it follows, which
+/// hazards it knows, and what is left of its range and loads.
+class Ownship {
+ public:
+  explicit Ownship(const VehicleAgentConfig& config);
+
+  /// The first state at its height starts the route, where the vehicle is there, else the search.
+  /// False where it has a route and is elsewhere.
+  bool on_state(const VehicleState& state, Instant now);
+  /// False where it is known already.
+  bool on_hazard(const Hazard& hazard);
+  void use_load();
+
+  [[nodiscard]] const VehicleAgentConfig& config() const { return config_; }
+  [[nodiscard]] const VehicleSpec& spec() const { return config_.vehicle; }
+  [[nodiscard]] const VehicleState& state() const { return state_; }
+  [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_; }
+  [[nodiscard]] std::uint8_t loads() const { return loads_; }
+  [[nodiscard]] Flight& flight() { return flight_; }
+  [[nodiscard]] const Flight& flight() const { return flight_; }
+
+  [[nodiscard]] std::optional<Guidance> poll_guidance();
+
+  // Flight, around the known hazards. Precondition: flight().started().
+  void search(Instant now) { flight_.search(hazards_, range_to_spend(now), now); }
+  void hold(Instant now) { flight_.hold(hazards_, now); }
+  void fly_home(Instant now) { flight_.fly_home(hazards_, now); }
+  /// Home where it is recovered there, an orbit where it is recovered anywhere.
+  void come_home(Instant now);
+  /// Does the plan keep clear of the hazards, if need be after a search or a way home was planned
+  /// anew?
+  [[nodiscard]] bool keeps_clear(Instant now);
+  /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near.
+  [[nodiscard]] bool way_is_open(Instant now) const;
+  /// Is it where that path has it? Then a task on it counts as flown.
+  [[nodiscard]] bool on_track(const TimedPath& timed) const;
+
+  [[nodiscard]] bool comes_home() const { return spec().recovery == Recovery::home; }
+  [[nodiscard]] double range_left(Instant at) const;
+  /// Without what is kept for an orbit at home, for whoever lands it.
+  [[nodiscard]] double range_to_spend(Instant at) const;
+  /// What a task at that site may use up, so that it can come home from any end of it.
+  [[nodiscard]] double range_for(const Site& site, Instant at) const;
+  /// For how long it can surely fly on before it must turn for home; 0 or less: it must now.
+  [[nodiscard]] double spare_s(Instant now) const;
+
+  /// For the planner: the vehicle as it will be at that pose and time.
+  [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
+  /// All but its activity.
+  [[nodiscard]] Telemetry telemetry() const;
+
+ private:
+  [[nodiscard]] bool is_at_route() const;
+
+  VehicleAgentConfig config_;
+  VehicleState state_;
+  TakeOff take_off_;
+  Flight flight_;
+  std::vector<Hazard> hazards_;
+  std::uint8_t loads_;
+};
+
+}  // namespace skein::mission

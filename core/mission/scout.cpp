@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scout.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/base/assert.hpp"
+
+namespace skein::mission {
+namespace {
+/// A new plan starts this far ahead, for control to take it over.
+constexpr Duration kLead = std::chrono::milliseconds{200};
+constexpr Duration kSurveyPeriod = std::chrono::seconds{5};  ///< between attempts to plan one
+constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for lost sites
+/// Who goes to lead a lost site goes around it at this times its planning radius at least.
+constexpr double kReliefRadiusFactor = 1.2;
+constexpr std::size_t kFoundMax = 16;
+
+TaskId survey_of(const Site& site) { return {site.id, TaskKind::survey, 0}; }
+}  // namespace
+
+using event::TaskFailure;
+
+/// Precondition: the table has it.
+void Scout::fire(Event event) {
+  const bool known = machine_.fire(event);
+  SKEIN_ASSERT(known);
+}
+
+void Scout::on_site_report(const SiteReport& message, Instant now) {
+  if (message.finder != ownship_.spec().id || !known_.insert(message.site.id).second) return;
+  const double range = (message.site.position - ownship_.state().position().horizontal()).norm();
+  outbox_.report(event::SiteDetected{range}, {}, survey_of(message.site), now);
+  if (found_.size() < kFoundMax) found_.push_back({message.site});
+}
+
+void Scout::on_message(const coalition::Message& message, Instant now) {
+  const auto is_led = [this](SiteId site) {
+    std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
+  };
+  if (const auto* announcement = std::get_if<coalition::Announcement>(&message)) {
+    known_.insert(announcement->site.id);
+    sites_.on_leader(announcement->site, announcement->announced_at);
+    is_led(announcement->site.id);
+  } else if (const auto* award = std::get_if<coalition::Award>(&message)) {
+    sites_.on_leader(award->site, award->awarded_at);
+    is_led(award->site.id);
+  } else if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(&message)) {
+    sites_.on_renewal(*renewal, now);
+    is_led(renewal->site);
+  } else if (const auto* status = std::get_if<coalition::MemberStatus>(&message)) {
+    sites_.on_status(*status);
+  }
+}
+
+std::optional<SurveyedSite> Scout::take_up(Instant now) {
+  SKEIN_ASSERT(!flying());
+  if (!surveyed_.empty()) {
+    const Site site = surveyed_.front();
+    surveyed_.erase(surveyed_.begin());
+    return SurveyedSite{site, sites_.over(site.id)};
+  }
+  take_up_survey(now);
+  if (!flying()) take_up_relief(now);
+  return std::nullopt;
+}
+
+void Scout::take_up_survey(Instant now) {
+  if (found_.empty() || now < survey_again_) return;
+  survey_again_ = now + kSurveyPeriod;
+  for (auto& found : found_) {
+    const auto outcome = fly_around(found.site, false, now);
+    if (const auto* plan = std::get_if<planning::TaskPlan>(&outcome)) {
+      site_ = found.site;
+      plan_ = *plan;
+      survey_again_ = now;
+      std::erase_if(found_, [this](const Found& f) { return f.site.id == site_.id; });
+      fire(Event::survey_planned);
+      return;
+    }
+    // It may become possible: from elsewhere, or with other hazards known.
+    if (!std::exchange(found.told, true)) {
+      outbox_.report(std::get<event::TaskFailed>(outcome), {}, survey_of(found.site), now);
+    }
+  }
+}
+
+void Scout::take_up_relief(Instant now) {
+  if (now < relief_again_) return;
+  relief_again_ = now + kReliefPeriod;
+  for (const auto* lost : sites_.lost(unheard_since(now))) {
+    const auto outcome = fly_around(lost->site, true, now);
+    const auto* plan = std::get_if<planning::TaskPlan>(&outcome);
+    if (plan == nullptr) continue;
+    outbox_.report(event::ReliefBegun{lost->heard_at}, {}, {lost->site.id, {}, 0}, now);
+    site_ = lost->site;
+    plan_ = *plan;
+    fire(Event::relief_planned);
+    return;
+  }
+}
+
+/// The flight to a site and around it, for its survey or (`relief`) to lead there, is the flight
+/// plan from now on. It goes on circling the site on the same arc.
+std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site& site, bool relief,
+                                                                      Instant now) {
+  const Instant start = now + kLead;
+  Flight& flight = ownship_.flight();
+  VehicleSpec vehicle = ownship_.spec();
+  if (relief) {  // at any radius that it can fly
+    vehicle.sensor_radius_m =
+        std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
+  }
+  const auto plan = planning::plan_survey(ownship_.config().planning, vehicle,
+                                          flight.pose_at(start), start, site, ownship_.hazards());
+  if (!plan) return event::TaskFailed{TaskFailure::no_plan, {}, plan.error().message};
+  const Path& path = plan->timed.path;
+  // Who is to lead there must also have the range to stay for some time.
+  const double stay_m = relief ? path.length_m() : 0.0;
+  if (path.length_m() + stay_m + flight.way_home_m(path.end(), ownship_.hazards()) >
+      ownship_.range_to_spend(start)) {
+    return event::TaskFailed{TaskFailure::out_of_range};
+  }
+  if (!flight.continue_with(start, path, plan->timed.tail_curvature_per_m, now)) {
+    return event::TaskFailed{TaskFailure::path_too_long};
+  }
+  return *plan;
+}
+
+std::optional<SurveyedSite> Scout::fly(Instant now) {
+  switch (machine_.state()) {
+    case State::to_survey:
+    case State::surveying:
+      return survey(now);
+    case State::to_relief:
+    case State::listening:
+      return relieve(now);
+    case State::idle:
+    case State::count:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<SurveyedSite> Scout::survey(Instant now) {
+  if (machine_.in(State::to_survey)) {
+    if (now < arrival()) return std::nullopt;
+    fire(Event::arrived);
+    outbox_.report(event::SurveyStarted{arrival()}, {}, survey_of(site_), arrival());
+  }
+  if (now < plan_.timed.end_time()) return std::nullopt;
+  fire(Event::ended);
+  if (!ownship_.on_track(plan_.timed)) {
+    outbox_.report(event::TaskFailed{TaskFailure::off_path}, {}, survey_of(site_), now);
+    found_.push_back({site_});
+    return std::nullopt;
+  }
+  outbox_.report(event::SurveyDone{arrival()}, {}, survey_of(site_), plan_.timed.end_time());
+  const Duration cut_max = ownship_.config().protocol.cut_max;
+  if (sites_.led(site_.id, now - cut_max)) return std::nullopt;
+  return SurveyedSite{site_, {}};
+}
+
+std::optional<SurveyedSite> Scout::relieve(Instant now) {
+  const auto* lost = sites_.lost(site_.id, unheard_since(now));
+  if (lost == nullptr) {  // its leader was heard, or nothing is left to do
+    fire(Event::called_off);
+    ownship_.search(now);
+    return std::nullopt;
+  }
+  if (machine_.in(State::to_relief) && now >= arrival()) fire(Event::arrived);
+  if (now < arrival() + ownship_.config().protocol.silence) return std::nullopt;
+  fire(Event::ended);
+  return SurveyedSite{lost->site, lost->over};
+}
+
+void Scout::call_off() {
+  if (!flying()) return;
+  const bool was_relief = machine_.in(State::to_relief) || machine_.in(State::listening);
+  if (!was_relief) found_.push_back({site_});
+  fire(Event::called_off);
+}
+
+/// The stagger lets one of several free vehicles go first; its announcement calls the others off.
+Instant Scout::unheard_since(Instant now) const {
+  constexpr Duration kStagger = std::chrono::seconds{2};
+  constexpr int kRanks = 8;
+  const auto& config = ownship_.config();
+  return now - config.protocol.cut_max - config.vehicle.id.value % kRanks * kStagger;
+}
+
+Instant Scout::arrival() const {
+  return plan_.timed.start_time + from_seconds(plan_.gate_m / plan_.timed.speed_mps);
+}
+
+Instant Scout::next_timeout() const {
+  if (!flying()) return Instant::max();
+  return machine_.in(State::surveying) ? plan_.timed.end_time() : arrival();
+}
+
+std::string_view to_string(Scout::State state) {
+  static constexpr std::array<std::string_view, 5> kNames{"idle", "to_survey", "surveying",
+                                                          "to_relief", "listening"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Scout::State::count));
+  return kNames.at(static_cast<std::size_t>(state));
+}
+
+std::string_view to_string(Scout::Event event) {
+  static constexpr std::array<std::string_view, 5> kNames{"survey_planned", "relief_planned",
+                                                          "arrived", "ended", "called_off"};
+  static_assert(kNames.size() == static_cast<std::size_t>(Scout::Event::count));
+  return kNames.at(static_cast<std::size_t>(event));
+}
+
+}  // namespace skein::mission

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "outbox.hpp"
+#include "ownship.hpp"
+#include "site_book.hpp"
+#include "skein/base/state_table.hpp"
+
+namespace skein::mission {
+
+/// The vehicle's search for sites that need a leader: it surveys what it finds, and flies to a site
+/// whose leader is lost (relief), to lead there if that is still silent there. It leads nothing
+/// itself: it says which site is to be led.
+class Scout {
+ public:
+  enum class State : std::uint8_t {
+    idle,
+    to_survey,  ///< on its way to a site that was found here
+    surveying,
+    to_relief,  ///< on its way to a site whose leader is lost
+    listening,  ///< there
+    count
+  };
+  enum class Event : std::uint8_t {
+    survey_planned,
+    relief_planned,
+    arrived,
+    ended,  ///< the survey is flown, or it has listened for long enough
+    called_off,
+    count
+  };
+  static constexpr std::array kTable{
+      Transition<State, Event>{State::idle, Event::survey_planned, State::to_survey},
+      Transition<State, Event>{State::idle, Event::relief_planned, State::to_relief},
+      Transition<State, Event>{State::to_survey, Event::arrived, State::surveying},
+      Transition<State, Event>{State::to_survey, Event::called_off, State::idle},
+      Transition<State, Event>{State::surveying, Event::ended, State::idle},
+      Transition<State, Event>{State::surveying, Event::called_off, State::idle},
+      Transition<State, Event>{State::to_relief, Event::arrived, State::listening},
+      Transition<State, Event>{State::to_relief, Event::called_off, State::idle},
+      Transition<State, Event>{State::listening, Event::ended, State::idle},
+      Transition<State, Event>{State::listening, Event::called_off, State::idle},
+  };
+
+  Scout(Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
+
+  /// Its own sensor has seen a site.
+  void on_site_report(const SiteReport& message, Instant now);
+  /// What others say of the sites that they lead, or this vehicle itself.
+  void on_message(const coalition::Message& message, Instant now);
+  /// Nobody shall lead it any more.
+  void close(SiteId site) { sites_.close(site); }
+  /// A surveyed site that was led here shall be led later.
+  void put_off(const Site& site) { surveyed_.push_back(site); }
+
+  /// For a vehicle that has nothing else to do: a site to lead now; or nothing, and where there is
+  /// one to survey or to relieve it is on its way there.
+  [[nodiscard]] std::optional<SurveyedSite> take_up(Instant now);
+  /// Goes on with what it took up. A site to lead now, when that has ended with one.
+  [[nodiscard]] std::optional<SurveyedSite> fly(Instant now);
+  /// The vehicle has to do something else: what it was to survey waits again.
+  void call_off();
+
+  [[nodiscard]] State state() const { return machine_.state(); }
+  [[nodiscard]] bool flying() const { return !machine_.in(State::idle); }
+  [[nodiscard]] Instant next_timeout() const;
+
+ private:
+  struct Found {
+    Site site;
+    bool told = false;  ///< that it cannot be surveyed now
+  };
+  void fire(Event event);
+  void take_up_survey(Instant now);
+  void take_up_relief(Instant now);
+  [[nodiscard]] std::variant<planning::TaskPlan, event::TaskFailed> fly_around(const Site& site,
+                                                                               bool relief,
+                                                                               Instant now);
+  [[nodiscard]] std::optional<SurveyedSite> survey(Instant now);
+  [[nodiscard]] std::optional<SurveyedSite> relieve(Instant now);
+  [[nodiscard]] Instant unheard_since(Instant now) const;
+  [[nodiscard]] Instant arrival() const;
+
+  Ownship& ownship_;
+  Outbox& outbox_;
+  StateMachine<State, Event> machine_{kTable, State::idle};
+  Site site_;                   ///< unless idle: that it flies to
+  planning::TaskPlan plan_;     ///< of that flight
+  std::set<SiteId> known_;      ///< found or announced by anybody
+  std::vector<Found> found_;    ///< found here, waiting to be surveyed
+  std::vector<Site> surveyed_;  ///< led here before, waiting to be led again
+  SiteBook sites_;              ///< as others lead them
+  Instant survey_again_{};      ///< when a survey is tried next
+  Instant relief_again_{};
+};
+[[nodiscard]] std::string_view to_string(Scout::State state);
+[[nodiscard]] std::string_view to_string(Scout::Event event);
+
+}  // namespace skein::mission

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scout.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agent_parts_test.hpp"
+
+namespace skein::mission {
+namespace {
+
+using State = Scout::State;
+
+struct Scouting : PartsBench {
+  explicit Scouting(const VehicleAgentConfig& config = plane_config()) : PartsBench{config} {}
+
+  void find(const Site& site) { scout.on_site_report({ownship.spec().id, site}, now); }
+  /// Until it says which site to lead, or is idle.
+  std::optional<SurveyedSite> fly_until(double seconds) {
+    for (double t = to_seconds(now); t < seconds; t += 0.5) {
+      be_at(t);
+      if (auto site = scout.fly(now)) return site;
+    }
+    return std::nullopt;
+  }
+  /// Another vehicle announces it, at this moment.
+  void is_announced(const Site& site) {
+    coalition::Announcement announcement;
+    announcement.round = {{{7}, {1}, 1}, 1};
+    announcement.site = site;
+    announcement.announced_at = now;
+    scout.on_message(coalition::Message{announcement}, now);
+  }
+
+  Scout scout{ownship, outbox};
+};
+
+TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
+  Scouting s;
+  s.find(test_site(1));
+  s.find(test_site(1));
+  EXPECT_EQ(s.reported(EventKind::site_detected), 1);
+  EXPECT_FALSE(s.scout.take_up(s.now)) << "it is to be surveyed first";
+  EXPECT_EQ(s.scout.state(), State::to_survey);
+  s.be_at(to_seconds(s.scout.next_timeout()));
+  EXPECT_FALSE(s.scout.fly(s.now));
+  EXPECT_EQ(s.scout.state(), State::surveying);
+  const auto site = s.fly_until(300.0);
+  ASSERT_TRUE(site);
+  EXPECT_EQ(site->site.id, SiteId{1});
+  EXPECT_EQ(s.scout.state(), State::idle);
+  EXPECT_EQ(s.reported(EventKind::survey_done), 1);
+}
+
+TEST(Scout, ASurveyThatWasCalledOffIsMadeUpFor) {
+  Scouting s;
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  s.fly_until(3.0);
+  s.scout.call_off();
+  EXPECT_EQ(s.scout.state(), State::idle);
+  s.be_at(20.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::to_survey);
+  EXPECT_TRUE(s.fly_until(300.0));
+}
+
+TEST(Scout, ASurveyOffItsPathIsNone) {
+  Scouting s;
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  s.ownship.hold(s.now);  // it flies elsewhere
+  EXPECT_FALSE(s.fly_until(300.0));
+  EXPECT_EQ(s.reported(EventKind::task_failed), 1);
+  EXPECT_EQ(s.reported(EventKind::survey_done), 0);
+}
+
+TEST(Scout, FliesToASiteWhoseLeaderIsLostAndListensThere) {
+  Scouting s;
+  s.is_announced(test_site(1));
+  s.be_at(60.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::idle) << "it may still be led";
+  s.be_at(90.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::to_relief);
+  const Instant arrival = s.scout.next_timeout();
+  s.be_at(to_seconds(arrival));
+  EXPECT_FALSE(s.scout.fly(s.now));
+  EXPECT_EQ(s.scout.state(), State::listening);
+  const auto site = s.fly_until(300.0);
+  ASSERT_TRUE(site);
+  EXPECT_EQ(site->site.id, SiteId{1});
+  EXPECT_GE(s.now, arrival + s.ownship.config().protocol.silence);
+}
+
+TEST(Scout, GoesBackToItsSearchWhenTheLostLeaderIsHeard) {
+  Scouting s;
+  s.is_announced(test_site(1));
+  s.be_at(90.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::to_relief);
+  s.is_announced(test_site(1));
+  EXPECT_FALSE(s.scout.fly(s.now));
+  EXPECT_EQ(s.scout.state(), State::idle);
+  EXPECT_TRUE(s.ownship.flight().searching());
+}
+
+TEST(Scout, ASiteThatWasPutOffIsLedLaterUnlessOthersDo) {
+  Scouting s;
+  s.scout.put_off(test_site(1));
+  s.scout.put_off(test_site(2));
+  s.is_announced(test_site(1));
+  const auto site = s.scout.take_up(s.now);
+  ASSERT_TRUE(site);
+  EXPECT_EQ(site->site.id, SiteId{2});
+  EXPECT_FALSE(s.scout.take_up(s.now));
+}
+
+}  // namespace
+}  // namespace skein::mission

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "task_flyer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/base/assert.hpp"
+#include "skein/base/overloaded.hpp"
+#include "skein/planning/dubins.hpp"
+#include "task_timing.hpp"
+
+namespace skein::mission {
+namespace {
+/// The flight plan leads past the gate only from this long before it on, when the authorisation and
+/// the lease have been looked at for the last time.
+constexpr Duration kCommitLead = std::chrono::seconds{1};
+/// Later than this before the gate control could no longer take the new plan over in time.
+constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
+/// A plan that starts now, for an award that came after the agreed moment, starts so late that
+/// control can take it over.
+constexpr Duration kLateStart = std::chrono::milliseconds{200};
+constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
+constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
+/// Nearer to its time a new path would gain little.
+constexpr Duration kTimeLatest = std::chrono::seconds{5};
+}  // namespace
+
+using coalition::Reason;
+using event::TaskFailure;
+
+TaskFlyer::TaskFlyer(Ownship& ownship, Outbox& outbox)
+    : ownship_{ownship},
+      outbox_{outbox},
+      participant_{ownship.config().protocol, ownship.spec().id, ownship.config().instance} {}
+
+void TaskFlyer::on_message(const coalition::Message& message, Instant now) {
+  std::visit(
+      Overloaded{[&](const coalition::Announcement& m) { participant_.on_announcement(m, now); },
+                 [&](const coalition::Award& m) { participant_.on_award(m, now); },
+                 [&](const coalition::Cancel& m) { participant_.on_cancel(m, now); },
+                 [&](const coalition::LeaseRenewal& m) { participant_.on_lease_renewal(m, now); },
+                 [&](const coalition::MemberStatus& m) { participant_.on_status(m); },
+                 [&](const coalition::LeadershipClaim& m) { participant_.on_claim(m, now); },
+                 [&](const coalition::Allegiance& m) { participant_.on_allegiance(m, now); },
+                 [](const coalition::Bid&) {}, [](const coalition::Confirmation&) {}},
+      message);
+}
+
+void TaskFlyer::on_timeout(bool may_lead, Instant now) {
+  participant_.set_may_lead(may_lead);
+  participant_.on_timeout(now);
+}
+
+std::optional<coalition::Message> TaskFlyer::poll_message() { return participant_.poll_message(); }
+std::optional<coalition::Participant::Output> TaskFlyer::poll_output() {
+  return participant_.poll_output();
+}
+
+void TaskFlyer::answer(const Participant::Output& output, Instant now) {
+  if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {
+    answer_award(*award, now);
+  } else if (const auto* granted = std::get_if<Participant::LeaseGranted>(&output)) {
+    outbox_.report(event::LeaseGranted{granted->until}, granted->round, granted->task, now);
+  } else if (const auto* ended = std::get_if<Participant::LeaseEnded>(&output)) {
+    outbox_.report(event::LeaseEnded{ended->why, ended->held}, ended->round, ended->task, now);
+    if (task_ && task_->assignment.task == ended->task && !ended->held) drop(now);
+  } else if (const auto* released = std::get_if<Participant::Released>(&output)) {
+    outbox_.report(event::Released{released->why}, released->round, {}, now);
+    if (task_ && task_->round == released->round) drop(now);  // held for a successor in vain
+  }
+}
+
+void TaskFlyer::answer_call(const coalition::Announcement& announcement, Reason otherwise_engaged,
+                            Instant now) {
+  const TaskId about{announcement.site.id, {}, 0};
+  std::variant<coalition::Bid, Reason> answer{otherwise_engaged};
+  if (otherwise_engaged == Reason::none) answer = make_bid(announcement, now);
+  if (const auto* bid = std::get_if<coalition::Bid>(&answer)) {
+    outbox_.report(event::BidSent{bid->eta}, announcement.round, about, now);
+    participant_.bid(announcement, *bid, now);
+  } else {
+    const auto reason = std::get<Reason>(answer);
+    outbox_.report(event::BidDeclined{{reason}}, announcement.round, about, now);
+    participant_.decline(announcement);
+  }
+}
+
+std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
+    const coalition::Announcement& announcement, Instant now) const {
+  if (task_ && task_->in(TaskFlight::State::begun)) return Reason::task_in_progress;
+
+  const VehicleSpec& vehicle = ownship_.spec();
+  const auto can = [&](const TaskId& t) {
+    return vehicle.capabilities.has(t.kind) &&
+           (t.kind != TaskKind::deliver || ownship_.loads() > 0);
+  };
+  if (std::none_of(announcement.tasks.begin(), announcement.tasks.end(), can)) {
+    return Reason::incapable;
+  }
+  const Flight& flight = ownship_.flight();
+  const Pose2 pose = flight.pose_at(announcement.formed_at);
+  const double reach_m = ownship_.config().protocol.radio_range_m;
+  for (const Vec2& position : {flight.pose_at(now).position(), pose.position()}) {
+    if ((position - announcement.leader_at_formation).norm() > reach_m) {
+      return Reason::out_of_reach;
+    }
+  }
+  const double way =
+      planning::shortest_to_point(pose, announcement.site.position, vehicle.planning_radius_m())
+          .length_m();
+  auto self = ownship_.candidate(pose, announcement.formed_at);
+  self.range_left_m = ownship_.range_for(announcement.site, announcement.formed_at);
+  if (way > self.range_left_m) return Reason::out_of_range;
+
+  coalition::Bid bid;
+  bid.instance = ownship_.config().instance;
+  bid.pose_at_formation = pose;
+  bid.speed_mps = self.speed_mps;
+  bid.planning_radius_m = self.planning_radius_m;
+  bid.range_left_m = self.range_left_m;
+  bid.final_approach_m = self.final_approach_m;
+  bid.assess_radius_m = self.assess_radius_m;
+  bid.capabilities = self.capabilities;
+  bid.loads = self.loads;
+  bid.eta = announcement.formed_at + from_seconds(way / vehicle.cruise_speed_mps);
+  return bid;
+}
+
+void TaskFlyer::answer_award(const Participant::AwardReceived& award, Instant now) {
+  const auto refuse = [&](const Why& why) {
+    outbox_.report(event::Refused{why}, award.award.round, award.mine.front().task, now);
+    participant_.refuse(why, now);
+  };
+  if (award.mine.size() != 1) return refuse({Reason::one_task_at_a_time});
+  const auto& mine = award.mine.front();
+  const bool goes_on = task_ && task_->assignment.task == mine.task &&
+                       task_->assignment.time == mine.time &&
+                       award.award.continues.leader.value > 0;
+  if (goes_on) {  // a successor's award: the path is flown already
+    task_->pass_on(award.award.round);
+    outbox_.report(event::Confirmed{mine.time}, task_->round, mine.task, now);
+    participant_.accept(now);
+    return;
+  }
+  // From the pose that was bid, or from where it is by now when the award came late.
+  const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
+  const auto outcome = set_out({award.award.round, award.award.site, mine},
+                               ownship_.spec().cruise_speed_mps, start, now);
+  if (const auto* why = std::get_if<Why>(&outcome)) return refuse(*why);
+  task_ = std::get<TaskFlight>(outcome);
+  outbox_.report(event::Confirmed{mine.time}, task_->round, mine.task, now);
+  participant_.accept(now);
+}
+
+/// The flight to that task from where the vehicle will be at `start`, which is then its flight
+/// plan.
+std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, double speed_mps,
+                                                            Instant start, Instant now) {
+  SKEIN_ASSERT(!task.in_run());
+  const auto& hazards = ownship_.hazards();
+  Flight& flight = ownship_.flight();
+  auto self = ownship_.candidate(flight.pose_at(start), start);
+  self.speed_mps = speed_mps;
+  auto plan = planning::plan_task(ownship_.config().planning, self, start, task.site,
+                                  task.assignment, hazards);
+  if (!plan) return Why{Reason::no_path, {}, plan.error().message};
+  Path path = plan->timed.path;
+  if (path.length_m() + flight.way_home_m(path.end(), hazards) > ownship_.range_to_spend(start)) {
+    return Why{Reason::out_of_range};
+  }
+  task.plan = *plan;
+  double tail = plan->timed.tail_curvature_per_m;
+  if (task.is_delivery()) {  // as far as the gate, and hold there
+    const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
+    if (!to_gate) return Why{Reason::path_too_long};
+    path = *to_gate;
+    tail = flight.hold_curvature(path.end(), hazards);
+  }
+  if (!flight.continue_with(start, path, tail, now, speed_mps)) return Why{Reason::path_too_long};
+  return task;
+}
+
+void TaskFlyer::on_authorisation(const Authorisation& message, Instant now) {
+  if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
+      task_->site.id == message.site && task_->grant()) {
+    outbox_.report(event::Authorised{message.decided_by}, message.round, task_->assignment.task,
+                   now);
+  }
+}
+
+bool TaskFlyer::detour(HazardId hazard, Instant now) {
+  if (!task_ || task_->in_run()) return false;
+  const auto outcome = set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now);
+  const auto* task = std::get_if<TaskFlight>(&outcome);
+  if (task == nullptr) return false;
+  task_ = *task;
+  outbox_.report(event::PlanDetoured{hazard}, task_->round, task_->assignment.task, now);
+  return true;
+}
+
+void TaskFlyer::fly_begun(Instant now) {
+  if (task_ && task_->in(TaskFlight::State::begun)) fly(now);
+}
+
+void TaskFlyer::fly(Instant now) {
+  if (!task_) return;
+  keep_time(now);
+  if (task_->is_delivery()) commit_delivery(now);
+  const bool due = !task_->in(TaskFlight::State::begun) && now >= task_->begin_time();
+  if (due) begin(now);
+  if (task_->in(TaskFlight::State::begun) && now >= task_->end_time()) end(now);
+}
+
+/// Where the wind takes more than the vehicle's speed has, another path keeps the time: at a speed
+/// over the ground that the wind lets it have.
+void TaskFlyer::keep_time(Instant now) {
+  // A copter is flown by position: on time wherever it can be at all.
+  if (ownship_.spec().is_copter()) return;
+  const Instant time = task_->assignment.time;
+  if (task_->in_run() || now < time_again_ || time - now < kTimeLatest) return;
+  time_again_ = now + kTimePeriod;
+  if (!is_untimely(ownship_, *task_, now)) return;
+  const Instant start = now + kLateStart;
+  if (const auto speed_mps = timely_speed(ownship_, *task_, start)) {
+    const auto outcome = set_out(*task_, *speed_mps, start, now);
+    if (const auto* task = std::get_if<TaskFlight>(&outcome)) {
+      task_ = *task;
+      outbox_.report(event::PlanRetimed{*speed_mps}, task_->round, task_->assignment.task, now);
+      return;
+    }
+  }
+  if (std::exchange(task_->untimely, true)) return;
+  outbox_.report(event::VehicleTrouble{event::Trouble::untimely}, task_->round,
+                 task_->assignment.task, now);
+}
+
+void TaskFlyer::commit_delivery(Instant now) {
+  const Instant gate = task_->begin_time();
+  const bool in_time = now >= gate - kCommitLead && now <= gate - kCommitLatest;
+  if (!in_time || !task_->accepts(TaskFlight::Event::committed)) return;
+  if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
+  SKEIN_ASSERT(task_->authorised());
+  Flight& flight = ownship_.flight();
+  const auto& timed = task_->plan.timed;
+  const Instant at = std::max(now, timed.start_time);
+  const auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
+  if (!rest) return;
+  const double tail = flight.hold_curvature(timed.path.end(), ownship_.hazards());
+  if (flight.continue_with(at, *rest, tail, now, timed.speed_mps)) {
+    task_->fire(TaskFlight::Event::committed);
+  }
+}
+
+void TaskFlyer::begin(Instant now) {
+  if (task_->in(TaskFlight::State::late)) return;
+  const TaskId id = task_->assignment.task;
+  const bool may_begin = task_->is_delivery()
+                             ? task_->in(TaskFlight::State::committed)
+                             : participant_.holds(id, now, now) && deliveries_over();
+  if (may_begin) {
+    task_->fire(TaskFlight::Event::began);
+    outbox_.report(event::TaskStarted{task_->begin_time()}, task_->round, id, task_->begin_time());
+    participant_.task_started(id, now);
+    return;
+  }
+  // News of the last delivery may come a moment after the arc has begun.
+  if (!task_->is_delivery() && now < task_->begin_time() + kNewsMayTake) return;
+  using event::Lateness;
+  const Lateness why = !task_->is_delivery() ? Lateness::not_certain
+                       : task_->authorised() ? Lateness::lease_too_short
+                                             : Lateness::not_authorised;
+  task_->fire(TaskFlight::Event::missed);
+  outbox_.report(event::AuthorisationLate{why}, task_->round, id, now);
+}
+
+void TaskFlyer::end(Instant now) {
+  const bool flown = ownship_.on_track(task_->plan.timed);
+  if (task_->is_delivery()) ownship_.use_load();
+  task_->fire(TaskFlight::Event::finished);
+  const TaskFlight task = *std::exchange(task_, std::nullopt);
+  const TaskId id = task.assignment.task;
+  const Instant planned = task.assignment.time;
+  if (flown) {
+    outbox_.report(event::TaskDone{planned}, task.round, id, task.end_time());
+    participant_.task_done(id, now);
+  } else {
+    outbox_.report(event::TaskFailed{TaskFailure::off_path, planned}, task.round, id,
+                   task.end_time());
+    participant_.task_failed(id, now);
+  }
+}
+
+/// An assessment waits until the leader or who flew them has said so of all deliveries. They may
+/// have been flown later than its round had them.
+bool TaskFlyer::deliveries_over() const {
+  const Site& site = task_->site;
+  for (std::size_t i = 0; i < site.deliveries.size(); ++i) {
+    const TaskId delivery{site.id, TaskKind::deliver, static_cast<std::uint8_t>(i)};
+    const auto since = participant_.over_since(delivery);
+    if (!since || *since > task_->begin_time() + kNewsMayTake - site.assess_wait) return false;
+  }
+  return true;
+}
+
+/// The lease has gone: the plan must lead past no gate.
+void TaskFlyer::drop(Instant now) {
+  const bool leads_on = task_->in_run() || !task_->is_delivery();
+  if (task_->in(TaskFlight::State::begun) && task_->is_delivery()) {
+    ownship_.use_load();  // it counts as used
+    outbox_.report(event::TaskFailed{TaskFailure::released_within, task_->assignment.time},
+                   task_->round, task_->assignment.task, now);
+  }
+  task_->fire(TaskFlight::Event::dropped);
+  task_.reset();
+  if (leads_on) ownship_.hold(now);
+}
+
+Instant TaskFlyer::next_timeout() const {
+  const Instant next = participant_.next_timeout();
+  if (!task_) return next;
+  const bool begun = task_->in(TaskFlight::State::begun);
+  return std::min(next, begun ? task_->end_time() : task_->begin_time());
+}
+
+}  // namespace skein::mission

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <variant>
+
+#include "outbox.hpp"
+#include "ownship.hpp"
+#include "skein/coalition/participant.hpp"
+#include "task_flight.hpp"
+
+namespace skein::mission {
+
+/// The vehicle as a member of coalitions: it answers what its Participant asks (shall I bid? can I
+/// fly this?) and flies what it was awarded, one task at a time. After each call: poll_message() is
+/// for everybody, this vehicle's own leader included; what poll_output() gives goes to answer() or
+/// answer_call(), but for a leadership won, which is the Leader's.
+class TaskFlyer {
+ public:
+  using Participant = coalition::Participant;
+
+  TaskFlyer(Ownship& ownship, Outbox& outbox);
+
+  void on_message(const coalition::Message& message, Instant now);
+  void on_authorisation(const Authorisation& message, Instant now);
+  /// `may_lead`: whether it may take over from a lost leader.
+  void on_timeout(bool may_lead, Instant now);
+
+  /// Goes on with its task.
+  void fly(Instant now);
+  /// The same for one that has begun: what is done by now was done under the lease that ends now,
+  /// so this comes before on_timeout().
+  void fly_begun(Instant now);
+
+  void answer(const Participant::Output& output, Instant now);
+  /// `otherwise_engaged`: why it cannot take part, whatever the call; none where it can.
+  void answer_call(const coalition::Announcement& announcement, coalition::Reason otherwise_engaged,
+                   Instant now);
+  /// Leaves its coalition. Its task is dropped when the outputs are answered.
+  void withdraw(coalition::Reason reason, Instant now) { participant_.withdraw(reason, now); }
+  /// Another way to its task at the same time, clear of a hazard that bars the one it is on; false
+  /// where there is none.
+  [[nodiscard]] bool detour(HazardId hazard, Instant now);
+
+  [[nodiscard]] std::optional<coalition::Message> poll_message();
+  [[nodiscard]] std::optional<Participant::Output> poll_output();
+
+  /// It has a task.
+  [[nodiscard]] bool flying() const { return task_.has_value(); }
+  /// It is within its task's own run: that is flown to its end.
+  [[nodiscard]] bool in_run() const { return task_ && task_->in_run(); }
+  /// It is in no coalition and has bid nowhere.
+  [[nodiscard]] bool free() const { return participant_.free(); }
+  [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] std::uint64_t protocol_errors() const { return participant_.protocol_errors(); }
+
+ private:
+  using Why = coalition::Why;
+  [[nodiscard]] std::variant<coalition::Bid, coalition::Reason> make_bid(
+      const coalition::Announcement& announcement, Instant now) const;
+  void answer_award(const Participant::AwardReceived& award, Instant now);
+  [[nodiscard]] std::variant<TaskFlight, Why> set_out(TaskFlight task, double speed_mps,
+                                                      Instant start, Instant now);
+  void keep_time(Instant now);
+  void commit_delivery(Instant now);
+  void begin(Instant now);
+  void end(Instant now);
+  void drop(Instant now);
+  [[nodiscard]] bool deliveries_over() const;
+
+  Ownship& ownship_;
+  Outbox& outbox_;
+  Participant participant_;
+  std::optional<TaskFlight> task_;
+  Instant time_again_{};  ///< when the task's time is looked at next
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "task_flyer.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agent_parts_test.hpp"
+
+namespace skein::mission {
+namespace {
+
+using coalition::Reason;
+const coalition::Round kRound{{{7}, {1}, 1}, 1};
+
+/// A member, and the words of a leader to it.
+struct Flying : PartsBench {
+  void hear(const coalition::Message& message, Reason otherwise_engaged = Reason::none) {
+    flyer.on_message(message, now);
+    while (const auto output = flyer.poll_output()) {
+      const auto* call = std::get_if<coalition::Participant::BidWanted>(&*output);
+      if (call != nullptr) {
+        flyer.answer_call(call->announcement, otherwise_engaged, now);
+      } else {
+        flyer.answer(*output, now);
+      }
+    }
+  }
+  void call(Reason otherwise_engaged = Reason::none) {
+    coalition::Announcement call;
+    call.round = kRound;
+    call.site = test_site(1);
+    call.tasks = tasks_after_survey(call.site);
+    call.bids_until = now + std::chrono::seconds{1};
+    call.formed_at = now + std::chrono::seconds{2};
+    hear(coalition::Message{call}, otherwise_engaged);
+  }
+  /// A delivery at that time, under a lease until then.
+  void award(double delivery_s, double lease_s) {
+    coalition::Award award;
+    award.round = kRound;
+    award.site = test_site(1);
+    award.formed_at = now + std::chrono::seconds{1};
+    award.assignments = {{{{1}, TaskKind::deliver, 0}, ownship.spec().id, at_seconds(delivery_s)}};
+    award.awarded_at = now;
+    award.lease_until = at_seconds(lease_s);
+    hear(coalition::Message{award});
+  }
+  void grant() { flyer.on_authorisation({kRound, {1}, true, "", {}}, now); }
+  void fly_until(double seconds) {
+    for (double t = to_seconds(now); t < seconds; t += 0.1) {
+      be_at(t);
+      flyer.fly_begun(now);
+      flyer.on_timeout(false, now);
+      while (const auto output = flyer.poll_output()) flyer.answer(*output, now);
+      flyer.fly(now);
+    }
+  }
+
+  TaskFlyer flyer{ownship, outbox};
+};
+
+TEST(TaskFlyer, BidsUnlessItIsOtherwiseEngaged) {
+  Flying f;
+  f.call(Reason::surveying);
+  EXPECT_EQ(f.reported(EventKind::bid_declined), 1);
+  EXPECT_TRUE(f.flyer.free());
+  f.call();
+  EXPECT_EQ(f.reported(EventKind::bid_sent), 1);
+  EXPECT_FALSE(f.flyer.free());
+  EXPECT_FALSE(f.flyer.flying());
+}
+
+TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  EXPECT_EQ(f.reported(EventKind::confirmed), 1);
+  EXPECT_TRUE(f.flyer.flying());
+  f.grant();
+  EXPECT_EQ(f.reported(EventKind::authorised), 1);
+  EXPECT_FALSE(f.flyer.in_run()) << "its plan does not lead past the gate yet";
+  f.fly_until(59.0);
+  EXPECT_TRUE(f.flyer.in_run());
+  EXPECT_EQ(f.reported(EventKind::task_started), 1);
+  f.fly_until(62.0);
+  EXPECT_EQ(f.reported(EventKind::task_done), 1);
+  EXPECT_FALSE(f.flyer.flying());
+  EXPECT_EQ(f.ownship.loads(), 0);
+}
+
+TEST(TaskFlyer, HoldsAtTheGateWithoutAGrantOrALease) {
+  for (const bool granted : {false, true}) {
+    Flying f;
+    f.call();
+    f.award(60.0, granted ? 59.0 : 120.0);
+    if (granted) f.grant();
+    const Vec2 site = test_site(1).position;
+    for (double t = 1.0; t < 80.0; t += 0.5) {
+      f.fly_until(t);
+      EXPECT_FALSE(f.flyer.in_run());
+      EXPECT_GT((f.ownship.state().position().horizontal() - site).norm(), 30.0) << t;
+    }
+    EXPECT_EQ(f.reported(EventKind::task_started), 0);
+    EXPECT_EQ(f.reported(EventKind::authorisation_late), 1);
+    EXPECT_EQ(f.ownship.loads(), 1);
+  }
+}
+
+TEST(TaskFlyer, RefusesWhatItCannotFly) {
+  Flying f;
+  f.call();
+  f.award(5.0, 120.0);  // too soon
+  EXPECT_EQ(f.reported(EventKind::refused), 1);
+  EXPECT_FALSE(f.flyer.flying());
+}
+
+TEST(TaskFlyer, GivesItsTaskBackWhenItWithdraws) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  f.flyer.withdraw(Reason::path_barred, f.now);
+  f.fly_until(1.0);
+  EXPECT_FALSE(f.flyer.flying());
+  EXPECT_TRUE(f.flyer.free());
+  EXPECT_EQ(f.reported(EventKind::lease_ended), 1);
+}
+
+}  // namespace
+}  // namespace skein::mission

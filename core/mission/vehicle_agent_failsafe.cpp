@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// News for the failsafe, and what the vehicle does because of it.
+#include "vehicle_agent_impl.hpp"
+
+namespace skein::mission {
+
+void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
+  const bool mine = message.vehicle == ownship_.spec().id || message.vehicle == kGroundStation;
+  if (!mine || message.number <= last_command_ || !ownship_.flight().started()) return;
+  last_command_ = message.number;
+  outbox.report(event::Commanded{message.kind}, {}, {}, now);
+  const auto* response = failsafe_.update(now, {.order = message.kind});
+  if (response != nullptr) respond(*response, now);
+}
+
+void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
+  const bool other =
+      message.vehicle == ownship_.spec().id && message.instance != ownship_.config().instance;
+  if (!other) return;
+  const auto* response = failsafe_.update(now, {.id_in_use = true});
+  if (response == nullptr) return;
+  outbox.report(event::VehicleTrouble{event::Trouble::id_in_use}, {}, {}, now);
+  respond(*response, now);
+}
+
+void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
+  if (!ownship_.on_hazard(hazard)) return;
+  failsafe_.on_hazard(now);
+  outbox.report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
+  if (!ownship_.flight().started() || ownship_.keeps_clear(now)) return;
+  // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
+  // to the leader, who times the coalition anew.
+  if (flyer_.detour(hazard.id, now)) return;
+  // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
+  const bool bound = flyer_.flying() || scout_.flying() || ownship_.flight().en_route(now);
+  if (bound && ownship_.way_is_open(now)) return;
+  respond(*failsafe_.update(now, {.path_barred = true}), now);
+}
+
+/// While it still can it turns for home (or holds, to be recovered), whatever it was about. Only a
+/// run that has begun is flown to its end: that was planned with the way home.
+void VehicleAgent::Impl::watch_range(Instant now) {
+  // Who is on the way home leads as long as others fly what it awarded.
+  if (failsafe_.facts().range_spent) leader_.hand_on(coalition::Reason::out_of_range, now);
+  say_last_words(now);
+  if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
+  const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});
+  if (response == nullptr) return;
+  outbox.report(event::RangeSpent{ownship_.range_left(now), ownship_.comes_home()}, {}, {}, now);
+  respond(*response, now);
+}
+
+void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now) {
+  if (response.withdraws != coalition::Reason::none) flyer_.withdraw(response.withdraws, now);
+  if (response.lead == Failsafe::Lead::put_off) {
+    if (const auto site = leader_.put_off(now)) scout_.put_off(*site);
+  }
+  if (response.ends_scouting) scout_.call_off();
+  pump(now);
+  if (response.lead == Failsafe::Lead::handed_on) {  // what it gave back itself is known by now
+    leader_.hand_on(response.withdraws, now);
+    say_last_words(now);
+  }
+  switch (response.manoeuvre) {
+    case Failsafe::Manoeuvre::hold:
+      return ownship_.hold(now);
+    case Failsafe::Manoeuvre::fly_home:
+      return ownship_.fly_home(now);
+    case Failsafe::Manoeuvre::come_home:
+      return ownship_.come_home(now);
+    case Failsafe::Manoeuvre::search:
+      if (flyer_.flying() || scout_.flying()) return;
+      return failsafe_.facts().range_spent ? ownship_.come_home(now) : ownship_.search(now);
+    case Failsafe::Manoeuvre::none:
+    case Failsafe::Manoeuvre::count:
+      return;
+  }
+}
+
+}  // namespace skein::mission
