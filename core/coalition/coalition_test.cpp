@@ -131,6 +131,7 @@ class Team {
   std::set<VehicleId> unwilling;  ///< do not bid
   std::set<VehicleId> unable;     ///< refuse awards
   std::set<VehicleId> late;       ///< hold before their tasks
+  bool answers_late = false;      ///< what is asked is answered after the next step in time
   bool all_or_none = true;        ///< is a plan for some of the tasks no plan?
   Duration task_takes = 4s;
   Duration begun_before{};             ///< how long before its time a task begins
@@ -184,6 +185,7 @@ class Team {
     for (const auto& p : due) {
       if (dead.contains(p.to) || (silent.contains(p.to) && p.from != p.to)) continue;
       receive(p.to, p.message);
+      if (answers_late) members_.at(p.to).participant.on_timeout(clock(p.to));
       drain();
     }
   }
@@ -460,6 +462,19 @@ TEST(Coalition, ALostLeaderIsReplacedAndItsPlanHeld) {
   EXPECT_EQ(team.flown.size(), 4U);
   for (const auto& [task, times] : team.flown) EXPECT_EQ(times, 1) << to_string(task);
   EXPECT_EQ(team.lease_conflicts, 0);
+}
+
+TEST(Coalition, ASuccessorsAwardIsAnsweredBeforeTheHeldLeasesEnd) {
+  Team team{5, site_with(4, 0)};
+  team.task_takes = 40s;
+  team.answers_late = true;
+  ASSERT_TRUE(
+      team.run_until([&] { return team.leader().state() == Initiator::State::executing; }, 3s));
+  team.run_for(5s);
+  team.dead = {VehicleId{1}};
+  ASSERT_TRUE(team.run_until([&] { return !team.leaders().empty(); }, 30s));
+  ASSERT_TRUE(team.run_until([&] { return team.flown.size() == 3; }, 30s));
+  EXPECT_LT(team.now, Instant{} + 45s) << "at the times of the first plan";
 }
 
 TEST(Coalition, WhoHeldUnderASuccessorAndBidsAgainHasNotFlown) {

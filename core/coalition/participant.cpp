@@ -168,7 +168,8 @@ void Participant::on_timeout(Instant now) {
       for (const auto& lease : leases_) give_up(lease, now);
       leave(Event::released, {Reason::no_successor});
     }
-  } else {
+  } else if (!machine_.in(State::deciding)) {
+    // An award that is being answered may be a successor's: what it goes on with has not ended.
     expire_leases(now);
   }
   elector_.on_timeout(now);
