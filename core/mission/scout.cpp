@@ -195,6 +195,7 @@ Instant Scout::arrival() const {
 
 Instant Scout::next_timeout() const {
   if (!flying()) return Instant::max();
+  if (machine_.in(State::listening)) return arrival() + ownship_.config().protocol.silence;
   return machine_.in(State::surveying) ? plan_.timed.end_time() : arrival();
 }
 

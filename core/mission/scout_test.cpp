@@ -87,6 +87,7 @@ TEST(Scout, FliesToASiteWhoseLeaderIsLostAndListensThere) {
   s.be_at(to_seconds(arrival));
   EXPECT_FALSE(s.scout.fly(s.now));
   EXPECT_EQ(s.scout.state(), State::listening);
+  EXPECT_GT(s.scout.next_timeout(), s.now);
   const auto site = s.fly_until(300.0);
   ASSERT_TRUE(site);
   EXPECT_EQ(site->site.id, SiteId{1});

@@ -317,7 +317,8 @@ void TaskFlyer::drop(Instant now) {
 
 Instant TaskFlyer::next_timeout() const {
   const Instant next = participant_.next_timeout();
-  if (!task_) return next;
+  if (!task_ || task_->in(TaskFlight::State::late))
+    return next;  // who is late waits for its leader
   const bool begun = task_->in(TaskFlight::State::begun);
   return std::min(next, begun ? task_->end_time() : task_->begin_time());
 }

@@ -101,6 +101,7 @@ TEST(TaskFlyer, HoldsAtTheGateWithoutAGrantOrALease) {
     }
     EXPECT_EQ(f.reported(EventKind::task_started), 0);
     EXPECT_EQ(f.reported(EventKind::authorisation_late), 1);
+    EXPECT_GT(f.flyer.next_timeout(), f.now);
     EXPECT_EQ(f.ownship.loads(), 1);
   }
 }
