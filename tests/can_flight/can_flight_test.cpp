@@ -15,6 +15,7 @@
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/hil/emulated_flight_controller.hpp"
+#include "skein/mission/guidance.hpp"
 #include "skein/planning/path_follower.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -393,6 +394,53 @@ TEST(CopterFlight, TakesOffHoldsAPlaceFollowsAMoveAndLandsAtItsPlace) {
     EXPECT_LT(worst_m, 1.2);
     EXPECT_LT(std::hypot(landed.x_m - place.x_m, landed.y_m - place.y_m), 1.0);
     EXPECT_EQ(flight.last_warning, "");
+  }
+}
+
+/// Straight on, half a circle to the left, straight on, and orbits to the right.
+mission::FlightPlan plan_from(const Pose2& start, Instant at) {
+  mission::FlightPlan plan;
+  plan.number = 1;
+  plan.timed.start_time = at;
+  plan.timed.speed_mps = 6.0;
+  plan.timed.tail_curvature_per_m = -1.0 / 30.0;
+  plan.timed.path.start = start;
+  EXPECT_TRUE(plan.timed.path.append(Segment{0.0, 70.0}));
+  EXPECT_TRUE(plan.timed.path.append(Segment{1.0 / 30.0, kPi * 30.0}));
+  EXPECT_TRUE(plan.timed.path.append(Segment{0.0, 70.0}));
+  return plan;
+}
+
+TEST(CopterFlight, FliesThePlanOfACoalitionByPosition) {
+  VehicleSpec spec;
+  spec.airframe = Airframe::copter;
+  spec.height_m = 20.0;
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    CopterFlight flight{seed};
+    flight.point = [](double) { return above_pad(20.0); };
+    flight.until(State::flying, 40.0);
+    ASSERT_EQ(flight.state(), State::flying) << flight.last_warning;
+    flight.run_until(to_seconds(flight.now) + 10.0);
+    const Instant begin = flight.now;
+    const mission::Guidance guidance = plan_from(kPad, begin);
+    flight.point = [&](double s) {
+      const Demand demand = mission::follow(guidance, {}, spec, {}, at_seconds(s));
+      return std::get<PositionSetpoint>(demand);
+    };
+    double worst_m = 0.0;
+    double late_m = 0.0;
+    while (flight.now < begin + std::chrono::seconds{60}) {
+      flight.tick();
+      if (flight.now < begin + std::chrono::seconds{8}) continue;  // it starts from rest
+      worst_m = std::max(worst_m, flight.off_m());
+      const auto off = mission::deviation(guidance, spec, flight.vehicle_state(), flight.now);
+      late_m = std::max(late_m, std::abs(off.along_error_m));
+    }
+    std::printf("seed %u: within %.2f m, along %.2f m\n", static_cast<unsigned>(seed), worst_m,
+                late_m);
+    EXPECT_LT(worst_m, 1.5);
+    EXPECT_LT(late_m, 1.5);
+    EXPECT_EQ(flight.state(), State::flying) << flight.last_warning;
   }
 }
 

@@ -112,6 +112,15 @@ TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
   EXPECT_NE(output().find("vehicle 6: "), std::string::npos) << output();
 }
 
+TEST_F(EndToEnd, CoptersSurveyAndAssessWhatPlanesDeliver) {
+  const std::string mission = SKEIN_SOURCE_DIR "/scenarios/mixed-6.yaml";
+  EXPECT_EQ(run({"run", mission, "--headless", "--rate", "3", "--out", (folder_ / "run").string()}),
+            "exit status 0")
+      << output();
+  EXPECT_NE(output().find("1 survey, 2 assess"), std::string::npos) << output();
+  EXPECT_EQ(run({"reexecute", (folder_ / "run").string()}), "exit status 0") << output();
+}
+
 TEST_F(EndToEnd, AVehicleThatDiesEndsTheRunAndNothingIsLeft) {
   auto bench = start({"run", kSmall, "--headless", "--out", (folder_ / "run").string()});
   ASSERT_TRUE(wait_for_output("all 6 vehicles heard")) << output();
