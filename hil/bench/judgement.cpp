@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "skein/checks/flown.hpp"
@@ -60,38 +59,6 @@ CheckResult bench_check(std::string name, std::string requirement, std::size_t j
                      std::move(judged_what), std::move(measured),    {}};
   if (!held) result.violations.push_back({kGroundStation, Instant{}, std::move(sentence)});
   return result;
-}
-
-/// As their tracks show.
-CheckResult check_copters(const configuration::Scenario& scenario, const checks::RunRecord& record,
-                          const checks::Limits& limits) {
-  std::set<VehicleId> copters;
-  for (const auto& v : scenario.vehicles) {
-    if (v.spec.is_copter()) copters.insert(v.spec.id);
-  }
-  std::map<TaskKind, std::size_t> flown;
-  for (const TaskKind kind : {TaskKind::survey, TaskKind::assess}) {
-    for (const auto& arc : checks::arcs_flown(record, kind, limits)) {
-      if (arc.start && copters.contains(arc.run.vehicle)) ++flown[kind];
-    }
-  }
-  for (const auto& delivery : checks::deliveries_flown(record, limits)) {
-    if (delivery.seen && copters.contains(delivery.run.vehicle)) ++flown[TaskKind::deliver];
-  }
-  std::size_t all = 0;
-  std::string measured;
-  std::string missing;
-  for (const TaskKind kind : {TaskKind::survey, TaskKind::deliver, TaskKind::assess}) {
-    all += flown[kind];
-    if (flown[kind] > 0) {
-      measured +=
-          fmt::format("{}{} {}", measured.empty() ? "" : ", ", flown[kind], to_string(kind));
-    }
-    if (!scenario.expect.copters_fly.has(kind) || flown[kind] > 0) continue;
-    missing += fmt::format("{}{}", missing.empty() ? "" : ", ", to_string(kind));
-  }
-  return bench_check("copters", "copters have flown what is expected of them", all, "tasks",
-                     measured, missing.empty(), "no copter has flown: " + missing);
 }
 
 }  // namespace
@@ -150,7 +117,7 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                   "coalitions", "", formed.size() == expected,
                   fmt::format("{} coalitions formed instead of {}", formed.size(), expected)));
   if (scenario.expect.copters_fly != Capabilities{}) {
-    results.push_back(check_copters(scenario, record, limits));
+    results.push_back(checks::check_copters(record, limits));
   }
   for (const SiteId site : scenario.expect.first_attempt_fails) {
     results.push_back(

@@ -306,4 +306,33 @@ CheckResult check_assessments(const RunRecord& record, const Limits& limits) {
   return check_arcs(record, limits, TaskKind::assess);
 }
 
+CheckResult check_copters(const RunRecord& record, const Limits& limits) {
+  const auto by_copter = [&](const TaskRun& run) {
+    const VehicleSpec* vehicle = spec_of(record, run.vehicle);
+    return vehicle != nullptr && vehicle->is_copter();
+  };
+  std::map<TaskKind, std::size_t> flown;
+  for (const TaskKind kind : {TaskKind::survey, TaskKind::assess}) {
+    for (const ArcFlown& arc : arcs_flown(record, kind, limits)) {
+      if (arc.start && by_copter(arc.run)) ++flown[kind];
+    }
+  }
+  for (const DeliveryFlown& delivery : deliveries_flown(record, limits)) {
+    if (delivery.seen && by_copter(delivery.run)) ++flown[TaskKind::deliver];
+  }
+  CheckResult result{"copters", "copters have flown what is expected of them", 0, "tasks", "", {}};
+  for (const TaskKind kind : {TaskKind::survey, TaskKind::deliver, TaskKind::assess}) {
+    const std::string name{to_string(kind)};
+    if (flown[kind] > 0) {
+      result.judged += flown[kind];
+      result.measured.append(result.measured.empty() ? "" : ", ");
+      result.measured.append(std::to_string(flown[kind])).append(" ").append(name);
+    } else if (limits.copters_fly.has(kind)) {
+      result.violations.push_back(
+          {kGroundStation, Instant{}, "no copter has flown a task to " + name});
+    }
+  }
+  return result;
+}
+
 }  // namespace skein::checks

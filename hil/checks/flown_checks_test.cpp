@@ -143,5 +143,20 @@ TEST(FlownChecks, ASurveyWithoutItsArcIsFound) {
   EXPECT_THAT(failed(record), Contains("surveys"));
 }
 
+TEST(FlownChecks, WhatCoptersAreToFlyTheyHaveFlown) {
+  RunRecord record = good_record();
+  Limits limits;
+  EXPECT_TRUE(check_copters(record, limits).held()) << "nothing is expected";
+  limits.copters_fly.add(TaskKind::survey);
+  EXPECT_THAT(only_sentence(check_copters(record, limits)), HasSubstr("no copter has flown"));
+  spec(record, kSurveyor).airframe = Airframe::copter;
+  const CheckResult result = check_copters(record, limits);
+  EXPECT_TRUE(result.held());
+  EXPECT_THAT(result.measured, HasSubstr("1 survey"));
+  // Told, and not flown.
+  of(record, kSurveyor).track.clear();
+  EXPECT_FALSE(check_copters(record, limits).held());
+}
+
 }  // namespace
 }  // namespace skein::checks

@@ -64,6 +64,19 @@ TEST(PlanChecks, ATightFlownTurnIsFoundFromThreePerCent) {
   }
 }
 
+TEST(PlanChecks, ACopterMayTurnOnTheSpotButItsPlansMayNot) {
+  RunRecord record = good_record();
+  spec(record, kFromSouth).airframe = Airframe::copter;
+  double heading = 0.0;
+  for (auto& point : of(record, kFromSouth).track) {
+    point.state.heading_rad = wrap_pi(heading);
+    heading += 0.2;
+  }
+  EXPECT_TRUE(check_turn_radius(record, {}).held());
+  of(record, kFromSouth).plans.back().plan.tail_curvature_per_m = 1.0 / 100.0;
+  EXPECT_FALSE(check_turn_radius(record, {}).held());
+}
+
 TEST(PlanChecks, AJumpBetweenPlansIsFound) {
   RunRecord record = good_record();
   auto& plan = of(record, kFromWest).plans.back();

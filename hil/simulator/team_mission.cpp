@@ -130,6 +130,7 @@ checks::Limits limits_of(const configuration::Expectations& expect) {
   limits.separation_vertical_m = expect.separation_vertical_m;
   limits.place_rms_m = expect.place_rms_m;
   limits.arrival_spread_s = expect.arrival_spread_s;
+  limits.copters_fly = expect.copters_fly;
   return limits;
 }
 

@@ -75,6 +75,9 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_surveys(const RunRecord& record, const Limits& limits);
 [[nodiscard]] CheckResult check_assessments(const RunRecord& record, const Limits& limits);
 
+/// As flown: copters have done a task of each kind of Limits::copters_fly.
+[[nodiscard]] CheckResult check_copters(const RunRecord& record, const Limits& limits);
+
 /// Every order to a formation ends with all in their places, unless vehicles were lost.
 [[nodiscard]] CheckResult check_orders(const RunRecord& record, const Limits& limits);
 /// In each change the vehicles reach their places within Limits::arrival_spread_s of each other.
@@ -94,7 +97,7 @@ struct CheckResult {
 [[nodiscard]] std::vector<CheckResult> judge_formation(const RunRecord& record,
                                                        const Limits& limits);
 
-/// Those of a coalition: all but the four above, in their order.
+/// Those of a coalition: all but the five above, in their order.
 [[nodiscard]] std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits);
 
 }  // namespace skein::checks

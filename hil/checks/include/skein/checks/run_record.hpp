@@ -80,6 +80,7 @@ struct Limits {
   double separation_vertical_m = 20.0;
   double place_rms_m = 0.3;       ///< from its place, of any vehicle while a formation holds
   double arrival_spread_s = 0.3;  ///< from the first vehicle in its place to the last
+  Capabilities copters_fly;       ///< kinds of tasks of which copters have flown one at least
   double track_gap_s = 1.0;       ///< a longer gap in a track cannot be judged
 };
 
