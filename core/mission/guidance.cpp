@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/guidance.hpp"
 
+#include <cmath>
 #include <type_traits>
 
 namespace skein::mission {
 namespace {
+
+/// A copter that is farther from its height does not fly its plan: a pilot has had it.
+constexpr double kLayer_m = 5.0;
 
 static_assert(std::is_trivially_copyable_v<Guidance> && std::is_trivially_copyable_v<Demand>);
 
@@ -43,6 +47,16 @@ PositionSetpoint setpoint_on(const TimedPath& path, const VehicleSpec& vehicle, 
   return setpoint;
 }
 
+/// Straight up or down to its height: there alone it is clear of vehicles in other layers.
+PositionSetpoint back_to_height(const VehicleSpec& vehicle, const VehicleState& state) {
+  PositionSetpoint setpoint;
+  setpoint.x_m = state.x_m;
+  setpoint.y_m = state.y_m;
+  setpoint.z_m = vehicle.height_m;
+  setpoint.yaw_rad = state.heading_rad;
+  return setpoint;
+}
+
 /// Followed without the way that a state has made since it was measured, as by a copter.
 Deviation off_track(const MotionTrack& track, const VehicleState& state) {
   const Vec3 off = state.position().metres() - track.at(state.time).position_m;
@@ -67,7 +81,10 @@ Demand follow(const Guidance& guidance, const planning::PathFollowerParams& para
               const VehicleSpec& vehicle, const VehicleState& state, Instant now) {
   if (const auto* track = std::get_if<MotionTrack>(&guidance)) return setpoint_on(*track, now);
   const auto& plan = std::get<FlightPlan>(guidance);
-  if (vehicle.is_copter()) return setpoint_on(plan.timed, vehicle, now);
+  if (vehicle.is_copter()) {
+    const bool in_layer = std::abs(state.z_m - vehicle.height_m) <= kLayer_m;
+    return in_layer ? setpoint_on(plan.timed, vehicle, now) : back_to_height(vehicle, state);
+  }
   return planning::follow_path(params, vehicle, plan.timed, state, now);
 }
 

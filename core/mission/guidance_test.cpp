@@ -37,9 +37,15 @@ FlightPlan plan() {
   return p;
 }
 
+VehicleState at_height() {
+  VehicleState state;
+  state.z_m = kHeight_m;
+  return state;
+}
+
 PositionSetpoint point_at(double seconds) {
   const Demand demand =
-      follow(plan(), {}, vehicle(Airframe::copter), VehicleState{}, at_seconds(seconds));
+      follow(plan(), {}, vehicle(Airframe::copter), at_height(), at_seconds(seconds));
   EXPECT_TRUE(std::holds_alternative<PositionSetpoint>(demand));
   return std::get<PositionSetpoint>(demand);
 }
@@ -74,6 +80,24 @@ TEST(Guidance, VelocityAndAccelerationAreThoseOfThePoint) {
     EXPECT_LT((velocity - now.velocity_mps()).norm(), 0.01) << t;
     const Vec3 acceleration = (point_at(t + kStep_s).velocity_mps() - now.velocity_mps()) / kStep_s;
     EXPECT_LT((acceleration - now.acceleration_mps2()).norm(), 0.01) << t;
+  }
+}
+
+TEST(Guidance, ACopterFarFromItsHeightComesToItFirst) {
+  const VehicleSpec copter = vehicle(Airframe::copter);
+  for (const double off_m : {-5.5, 5.5}) {
+    VehicleState state;
+    state.x_m = -30.0;
+    state.y_m = 7.0;
+    state.z_m = kHeight_m + off_m;
+    state.heading_rad = 1.0;
+    const auto up = std::get<PositionSetpoint>(follow(plan(), {}, copter, state, at_seconds(10.0)));
+    EXPECT_EQ(up.position_m(), (Vec3{-30.0, 7.0, kHeight_m}));
+    EXPECT_EQ(up.velocity_mps().norm(), 0.0);
+    EXPECT_EQ(up.yaw_rad, 1.0);
+    state.z_m = kHeight_m + 0.9 * off_m;
+    const auto on = std::get<PositionSetpoint>(follow(plan(), {}, copter, state, at_seconds(10.0)));
+    EXPECT_NEAR(on.x_m, 50.0, 1e-9);
   }
 }
 

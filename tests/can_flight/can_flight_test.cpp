@@ -424,7 +424,8 @@ TEST(CopterFlight, FliesThePlanOfACoalitionByPosition) {
     const Instant begin = flight.now;
     const mission::Guidance guidance = plan_from(kPad, begin);
     flight.point = [&](double s) {
-      const Demand demand = mission::follow(guidance, {}, spec, {}, at_seconds(s));
+      const Demand demand =
+          mission::follow(guidance, {}, spec, flight.vehicle_state(), at_seconds(s));
       return std::get<PositionSetpoint>(demand);
     };
     double worst_m = 0.0;
