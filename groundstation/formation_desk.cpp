@@ -51,6 +51,14 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
   return data.dump();
 }
 
+/// ", one, other"
+template <class T>
+std::string names_of(const std::map<std::string, T>& known) {
+  std::string names;
+  for (const auto& [name, what] : known) names.append(", ").append(name);
+  return names;
+}
+
 }  // namespace
 
 mission::FormationGroundConfig formation_ground(const configuration::FormationConfig& config,
@@ -76,6 +84,9 @@ Result<FormationDesk> FormationDesk::open(const configuration::FormationConfig& 
                                           const std::vector<VehicleId>& vehicles,
                                           mission::GroundNode& node) {
   FormationDesk desk{config, vehicles, node};
+  for (const configuration::NamedTrack& track : config.tracks) {
+    if (auto loaded = desk.load_track(track.name, track.file); !loaded) return loaded.error();
+  }
   for (const configuration::NamedShape& shape : config.shapes) {
     if (auto loaded = desk.load(shape.name, shape.file); !loaded) return loaded.error();
   }
@@ -85,10 +96,8 @@ Result<FormationDesk> FormationDesk::open(const configuration::FormationConfig& 
     if (!input) return Error{where + input.error().message};
     if (const auto* order = std::get_if<Formation>(&*input)) {
       if (order->preview) return Error{where + "a script gives orders; take 'preview' away"};
-      if (!order->shape.empty() && !desk.shapes_.contains(order->shape)) {
-        if (auto loaded = desk.load(order->shape, order->shape); !loaded) {
-          return Error{where + loaded.error().message};
-        }
+      if (auto loaded = desk.load_files(*order, true); !loaded) {
+        return Error{where + loaded.error().message};
       }
     } else if (!std::holds_alternative<Wait>(*input)) {
       return Error{where + "'" + config.script[i] +
@@ -110,24 +119,40 @@ Result<void> FormationDesk::load(const std::string& name, const std::string& fil
   return {};
 }
 
+Result<void> FormationDesk::load_files(const Formation& input, bool whatever_its_name) {
+  const auto is_file = [whatever_its_name](const std::string& name) {
+    return whatever_its_name || name.find('.') != std::string::npos;
+  };
+  if (!input.shape.empty() && !shapes_.contains(input.shape) && is_file(input.shape)) {
+    if (auto loaded = load(input.shape, input.shape); !loaded) return loaded;
+  }
+  if (!input.track.empty() && !tracks_.contains(input.track) && is_file(input.track)) {
+    return load_track(input.track, input.track);
+  }
+  return {};
+}
+
+Result<formation::ShapeSpec> FormationDesk::named_shape(const Formation& input) const {
+  formation::ShapeSpec shape = input.order.shape;
+  if (input.shape.empty()) return shape;
+  const auto known = shapes_.find(input.shape);
+  if (known == shapes_.end()) {
+    return Error{
+        fmt::format("'{}' is no shape: line-abreast, column, echelon, wedge, pentagon{}; "
+                    "or name a file of points",
+                    input.shape, names_of(shapes_))};
+  }
+  shape.points = known->second.points;
+  shape.closed = known->second.closed;
+  return shape;
+}
+
 Result<mission::FormationOrder> FormationDesk::completed(const Formation& input) const {
   mission::FormationOrder order = input.order;
   if (order.kind != mission::OrderKind::form) return order;
-  if (!input.shape.empty()) {
-    const auto known = shapes_.find(input.shape);
-    if (known == shapes_.end()) {
-      return Error{
-          fmt::format("'{}' is no shape: line-abreast, column, echelon, wedge, pentagon{}; "
-                      "or name a file of points",
-                      input.shape, [this] {
-                        std::string names;
-                        for (const auto& [name, shape] : shapes_) names += ", " + name;
-                        return names;
-                      }())};
-    }
-    order.shape.points = known->second.points;
-    order.shape.closed = known->second.closed;
-  }
+  auto shape = named_shape(input);
+  if (!shape) return shape.error();
+  order.shape = *std::move(shape);
   if (!input.has_spacing) order.shape.spacing_m = config_.rally.spacing_m;
   if (!input.has_heading) order.shape.heading_rad = config_.rally.heading_rad;
   if (!input.has_centre) order.shape.centre = config_.rally.centre;
@@ -135,9 +160,12 @@ Result<mission::FormationOrder> FormationDesk::completed(const Formation& input)
 }
 
 Result<FormationDesk::Outcome> FormationDesk::answer(const Formation& input, Instant now) {
-  if (!input.shape.empty() && !shapes_.contains(input.shape) &&
-      input.shape.find('.') != std::string::npos) {
-    if (auto loaded = load(input.shape, input.shape); !loaded) return loaded.error();
+  if (auto loaded = load_files(input, false); !loaded) return loaded.error();
+  if (config_.planes) return answer_planes(input, now);
+  if (input.order.kind == mission::OrderKind::fly_along) {
+    return Error{
+        "multirotors fly from place to place, by form; along a track fly planes (formation: "
+        "{airframe: plane})"};
   }
   const auto order = completed(input);
   if (!order) return order.error();
@@ -149,6 +177,7 @@ Result<FormationDesk::Outcome> FormationDesk::answer(const Formation& input, Ins
 }
 
 std::string FormationDesk::places_table(Instant now) const {
+  if (config_.planes) return tracks_table(now);
   if (ground().members().empty()) return "no vehicle of the formation is heard\n";
   std::string text = "vehicle  heard     east    north   height  from its place  change\n";
   for (const auto& [vehicle, member] : ground().members()) {
@@ -164,25 +193,42 @@ std::string FormationDesk::places_table(Instant now) const {
   return text;
 }
 
+std::size_t FormationDesk::heard() const {
+  return config_.planes ? node_->tracks().members().size() : ground().members().size();
+}
+
+bool FormationDesk::is_heard(VehicleId vehicle) const {
+  return config_.planes ? node_->tracks().members().contains(vehicle)
+                        : ground().members().contains(vehicle);
+}
+
+bool FormationDesk::in_place() const {
+  return config_.planes ? node_->tracks().in_place() : ground().in_place();
+}
+
 void FormationDesk::on_timeout(Instant now) {
+  if (ends_ && !node_->tracks().on_track(now)) {
+    ends_ = false;
+    report(mission::event::ScriptDone{static_cast<std::uint32_t>(script_.size())}, now);
+  }
   if (next_line_ < script_.size()) work_off_script(now);
 }
 
 void FormationDesk::work_off_script(Instant now) {
   if (now < Instant{} || now < try_again_) return;
   // The first order is for the whole team.
-  if (next_line_ == 0 && !given_ && ground().members().size() < vehicles_.size()) {
+  if (next_line_ == 0 && !given_ && heard() < vehicles_.size()) {
     if (!team_by_) team_by_ = now + kTeamWait;
     if (now < *team_by_ || std::exchange(told_awaited_, true)) return;
     mission::event::FormationWarning awaited{mission::event::FormationNews::awaited};
     for (const VehicleId vehicle : vehicles_) {
-      if (!ground().members().contains(vehicle)) awaited.vehicles.push_back(vehicle);
+      if (!is_heard(vehicle)) awaited.vehicles.push_back(vehicle);
     }
     report(std::move(awaited), now);
     return;
   }
   if (given_) {
-    if (!ground().in_place()) return;
+    if (!in_place()) return;
     given_ = false;
     ++next_line_;
   } else if (wait_until_) {
@@ -191,6 +237,8 @@ void FormationDesk::work_off_script(Instant now) {
     ++next_line_;
   }
   if (next_line_ == script_.size()) {
+    ends_ = config_.planes && node_->tracks().on_track(now);
+    if (ends_) return;
     report(mission::event::ScriptDone{static_cast<std::uint32_t>(script_.size())}, now);
     return;
   }

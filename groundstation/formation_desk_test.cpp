@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
 namespace skein::groundstation {
 namespace {
 
@@ -53,6 +56,41 @@ TEST(FormationDesk, RefusesOrdersBeforeTheMissionBegins) {
   EXPECT_THAT(early.error().message, HasSubstr("the mission has not begun"));
   node.on_message(status, {1}, at_seconds(1.0));
   EXPECT_TRUE(desk->answer(order, at_seconds(1.0)).ok());
+}
+
+/// Planes, a lap that they know, and the desk.
+class PlanesDesk : public ::testing::Test {
+ protected:
+  PlanesDesk() {
+    config_.planes = true;
+    config_.tracks = {{"lap", std::string{SKEIN_SOURCE_DIR} + "/scenarios/tracks/bent-lap.yaml"}};
+    VehicleSpec spec;
+    spec.id = {1};
+    node_.emplace(
+        mission::GroundNodeConfig{
+            .agent = {}, .formation = {}, .tracks = track_ground(config_, {spec}, {})},
+        Instant{});
+  }
+  std::string refused(const char* line) {
+    auto desk = FormationDesk::open(config_, {{1}}, *node_);
+    EXPECT_TRUE(desk.ok()) << desk.error().message;
+    const auto input = parse_input(line);
+    EXPECT_TRUE(input.ok()) << line;
+    const auto answer = desk->answer(std::get<Formation>(*input), at_seconds(1.0));
+    return answer ? "given" : answer.error().message;
+  }
+  configuration::FormationConfig config_;
+  std::optional<mission::GroundNode> node_;
+};
+
+TEST_F(PlanesDesk, SaysWhatPlanesCannotDo) {
+  EXPECT_THAT(refused("take-off"), HasSubstr("planes cannot rest: order fly-along"));
+  EXPECT_THAT(refused("form wedge at 0 0 20"), HasSubstr("from their track"));
+  EXPECT_THAT(refused("fly-along square in wedge"), HasSubstr("no track 'square'; known are: lap"));
+  EXPECT_THAT(refused("fly-along lap in heart"), HasSubstr("'heart' is no shape"));
+  EXPECT_THAT(refused("fly-along lap in wedge"), HasSubstr("no plane is heard"));
+  config_.planes = false;
+  EXPECT_THAT(refused("fly-along lap in wedge"), HasSubstr("along a track fly planes"));
 }
 
 }  // namespace

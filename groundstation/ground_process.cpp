@@ -52,7 +52,11 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config)
                                .reaction = decision.reaction,
                                .not_before = decision.not_before});
   }
-  node.formation = formation_ground(config.formation, config.vehicles);
+  if (config.formation.planes) {
+    node.tracks = track_ground(config.formation, config.planes, config.hazards);
+  } else {
+    node.formation = formation_ground(config.formation, config.vehicles);
+  }
   return node;
 }
 
@@ -77,7 +81,8 @@ bool only_looks(const Input& input) {
 }
 
 bool names_file(const Formation& formation) {
-  return formation.shape.find_first_of("./") != std::string::npos;
+  return formation.shape.find_first_of("./") != std::string::npos ||
+         formation.track.find_first_of("./") != std::string::npos;
 }
 
 /// The answer for programs: one JSON object.
@@ -174,7 +179,8 @@ class GroundLoop {
     if (line.empty() && input) line = line_of(*input);
     const auto* formation = input ? std::get_if<Formation>(&*input) : nullptr;
     if (formation != nullptr && asker.from == kConsole && names_file(*formation)) {
-      return {false, "the console takes shapes by their names; files are for the prompt\n"};
+      return {false,
+              "the console takes shapes and tracks by their names; files are for the prompt\n"};
     }
     if (input && only_looks(*input)) return look(*input, now);
     Answer given = !input             ? refusal(input.error())

@@ -107,7 +107,16 @@ Input formation_order(Reader& from) {
   Formation input;
   input.preview = from.flag("preview");
   input.order.kind = from.one_of<mission::OrderKind>("order");
-  if (input.order.kind != mission::OrderKind::form) return input;
+  const bool along = input.order.kind == mission::OrderKind::fly_along;
+  if (input.order.kind == mission::OrderKind::reshape) from.fail("a page orders form");
+  if (!along && input.order.kind != mission::OrderKind::form) return input;
+  if (along) {
+    input.track = from.text("track");
+    if (from.has("speed_mps")) input.speed_mps = from.number("speed_mps", kTrackSpeed_mps);
+    if (from.has("laps")) {
+      input.laps = static_cast<int>(from.integer("laps", kLaps.low, kLaps.high));
+    }
+  }
   formation::ShapeSpec& shape = input.order.shape;
   const std::string name = from.text("shape");
   const auto known = shape_of(name);

@@ -43,7 +43,9 @@ struct Line {
     const formation::ShapeSpec& shape = formation.order.shape;
     std::string line = formation.preview ? "preview " : "";
     line += hyphened(to_string(formation.order.kind));
-    if (formation.order.kind != mission::OrderKind::form) return line;
+    const bool along = formation.order.kind == mission::OrderKind::fly_along;
+    if (!along && formation.order.kind != mission::OrderKind::form) return line;
+    if (along) line += " " + formation.track + " in";
     line += " " + (formation.shape.empty() ? hyphened(formation::to_string(shape.kind))
                                            : formation.shape);
     if (formation.has_spacing) line += fmt::format(" spacing {}", shape.spacing_m);
@@ -53,6 +55,8 @@ struct Line {
     if (formation.has_centre) {
       line += fmt::format(" at {} {} {}", shape.centre.x(), shape.centre.y(), shape.centre.z());
     }
+    if (formation.speed_mps) line += fmt::format(" speed {}", *formation.speed_mps);
+    if (formation.laps != 1) line += fmt::format(" laps {}", formation.laps);
     if (formation.order.places) line += fmt::format(" places {}", *formation.order.places);
     return line;
   }

@@ -45,6 +45,9 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "pending",
                            "form wedge",
                            "form line-abreast spacing 5 heading 90 at 0 40.5 20 places 3",
+                           "fly-along lap in wedge",
+                           "preview fly-along lap in column spacing 45 speed 18.5 laps 2",
+                           "fly-along tracks/lap.yaml in heart spacing 60",
                            "form my-shape"}) {
     const auto input = parse_input(line);
     ASSERT_TRUE(input.ok()) << line;
@@ -62,6 +65,18 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"form","shape":"echelon",
                              "spacing_m":5,"heading_deg":90,"x":0,"y":40.5,"z":20,"places":3})"),
             "form echelon spacing 5 heading 90 at 0 40.5 20 places 3");
+  EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"fly_along","track":"lap",
+                             "shape":"wedge","spacing_m":45,"speed_mps":20,"laps":2})"),
+            "fly-along lap in wedge spacing 45 speed 20 laps 2");
+}
+
+TEST(Orders, AlongATrackNeedATrackAndAShape) {
+  for (const char* line : {"fly-along", "fly-along lap", "fly-along lap wedge", "fly-along lap in",
+                           "fly-along lap in wedge speed", "fly-along lap in wedge speed 0",
+                           "fly-along lap in wedge laps 0", "fly-along lap in wedge heading 90",
+                           "form wedge speed 20"}) {
+    EXPECT_FALSE(parse_input(line).ok()) << line;
+  }
 }
 
 TEST(Orders, ADecisionOfAPageIsOnThePlanThatItShows) {

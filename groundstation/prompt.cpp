@@ -111,8 +111,12 @@ Result<Formation> with_options(Formation input, const std::vector<std::string_vi
     return number_after(keyword, words[next++], limit);
   };
   formation::ShapeSpec& shape = input.order.shape;
+  const bool along = input.order.kind == mission::OrderKind::fly_along;
   while (next < words.size()) {
     const auto keyword = words[next++];
+    if (along && keyword != "spacing" && keyword != "speed" && keyword != "laps") {
+      return Error{fmt::format("'{}' is none of spacing M, speed M/S, laps N", keyword)};
+    }
     if (keyword == "spacing") {
       const auto metres = take(keyword, kSpacing_m);
       if (!metres) return metres.error();
@@ -123,6 +127,14 @@ Result<Formation> with_options(Formation input, const std::vector<std::string_vi
       if (!degrees) return degrees.error();
       shape.heading_rad = heading_from_compass_deg(*degrees);
       input.has_heading = true;
+    } else if (keyword == "speed" && along) {
+      const auto speed = take(keyword, kTrackSpeed_mps);
+      if (!speed) return speed.error();
+      input.speed_mps = *speed;
+    } else if (keyword == "laps" && along) {
+      const auto laps = take(keyword, kLaps);
+      if (!laps) return laps.error();
+      input.laps = static_cast<int>(*laps);
     } else if (keyword == "places") {
       const auto count = take(keyword, kPlaces);
       if (!count) return count.error();
@@ -142,10 +154,32 @@ Result<Formation> with_options(Formation input, const std::vector<std::string_vi
   return input;
 }
 
+/// A shape's name, or what is left to be looked up.
+void set_shape(Formation& input, std::string_view word) {
+  const auto kind = shape_kind(word);
+  input.order.shape.kind = kind.value_or(formation::ShapeKind::free);
+  if (!kind) input.shape = word;
+}
+
+Result<Input> fly_along(Formation input, const std::vector<std::string_view>& words) {
+  if (words.size() < 4 || words[2] != "in") {
+    return Error{
+        "'fly-along' needs a track and a shape, as in 'fly-along lap in wedge spacing 40 speed "
+        "18'"};
+  }
+  input.order.kind = mission::OrderKind::fly_along;
+  input.track = words[1];
+  set_shape(input, words[3]);
+  auto complete = with_options(input, {words.begin() + 4, words.end()});
+  if (!complete) return complete.error();
+  return Input{*std::move(complete)};
+}
+
 Result<Input> formation_order(const std::vector<std::string_view>& words, bool preview) {
   Formation input;
   input.preview = preview;
   const auto verb = words[0];
+  if (verb == "fly-along") return fly_along(std::move(input), words);
   if (verb != "form") {
     if (words.size() > 1) return Error{fmt::format("'{}' stands alone", verb)};
     input.order.kind = verb == "take-off" ? mission::OrderKind::take_off
@@ -159,16 +193,15 @@ Result<Input> formation_order(const std::vector<std::string_view>& words, bool p
         "or file of a free one, as in 'form wedge spacing 5'"};
   }
   input.order.kind = mission::OrderKind::form;
-  const auto kind = shape_kind(words[1]);
-  input.order.shape.kind = kind.value_or(formation::ShapeKind::free);
-  if (!kind) input.shape = words[1];
+  set_shape(input, words[1]);
   auto complete = with_options(input, {words.begin() + 2, words.end()});
   if (!complete) return complete.error();
   return Input{*std::move(complete)};
 }
 
 bool is_formation_verb(std::string_view word) {
-  return word == "take-off" || word == "rally" || word == "form" || word == "land";
+  return word == "take-off" || word == "rally" || word == "form" || word == "land" ||
+         word == "fly-along";
 }
 
 Result<Input> preview(std::vector<std::string_view> words) {
@@ -253,8 +286,14 @@ std::string help_text() {
          "the\n"
          "                  name or file of a free one; then, as wanted, spacing M, heading DEG,\n"
          "                  at EAST NORTH HEIGHT, places N\n"
+         "fly-along TRACK in SHAPE ...\n"
+         "                  planes join in the shape and fly along the track, by its name or "
+         "file;\n"
+         "                  then, as wanted, spacing M, speed M/S, laps N; form SHAPE spacing M: "
+         "they\n"
+         "                  slide into another shape on the way\n"
          "land              it comes straight down\n"
-         "preview ORDER     what one of these four would do, and whether it is safe\n"
+         "preview ORDER     what one of these five would do, and whether it is safe\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
          "record FOLDER     record all that is said into FOLDER from now on; record stop: no more\n"
          "quit              end the ground station; the vehicles go on\n";

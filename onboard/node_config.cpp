@@ -17,6 +17,16 @@ mission::FormationAgentConfig formation_agent(const configuration::VehicleConfig
   return agent;
 }
 
+mission::TrackAgentConfig track_agent(const configuration::VehicleConfig& config,
+                                      InstanceId instance) {
+  mission::TrackAgentConfig agent;
+  agent.vehicle = config.vehicle;
+  agent.instance = instance;
+  agent.hazards = config.hazards;
+  agent.place_tolerance_m = config.formation.place_tolerance_m;
+  return agent;
+}
+
 mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& config,
                                           const std::optional<TimedPath>& route,
                                           InstanceId instance) {
@@ -39,6 +49,8 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
   mission::VehicleNodeConfig node;
   if (configuration::flies_formation(config.vehicle)) {
     node.agent = formation_agent(config, instance);
+  } else if (config.formation.planes) {
+    node.agent = track_agent(config, instance);
   } else {
     node.agent = vehicle_agent(config, route, instance);
   }

@@ -55,7 +55,43 @@ bool Path::append(const Path& next) {
 }
 
 double TimedPath::distance_at(Instant t) const {
-  return std::max(0.0, to_seconds(t - start_time) * speed_mps);
+  // What would be flown at speed_mps.
+  const double even_m = std::max(0.0, to_seconds(t - start_time) * speed_mps);
+  if (paces.empty()) return even_m;
+  double left_m = even_m;
+  double flown_m = 0.0;
+  for (std::size_t i = 0; i < path.segments.size(); ++i) {
+    const double length_m = path.segments[i].length_m;
+    const double there_m = left_m * pace(i);
+    if (there_m < length_m) return flown_m + there_m;
+    left_m -= length_m / pace(i);
+    flown_m += length_m;
+  }
+  return flown_m + left_m * pace(path.segments.size());
+}
+
+Instant TimedPath::time_at(double distance_m) const {
+  if (paces.empty()) return start_time + from_seconds(distance_m / speed_mps);
+  double left_m = std::max(distance_m, 0.0);
+  double even_m = 0.0;
+  for (std::size_t i = 0; i < path.segments.size(); ++i) {
+    const double length_m = std::min(left_m, path.segments[i].length_m);
+    even_m += length_m / pace(i);
+    left_m -= length_m;
+    if (left_m <= 0.0) break;
+  }
+  even_m += left_m / pace(path.segments.size());
+  return start_time + from_seconds(even_m / speed_mps);
+}
+
+double TimedPath::speed_at_distance(double distance_m) const {
+  if (paces.empty()) return speed_mps;
+  double left_m = std::max(distance_m, 0.0);
+  std::size_t piece = 0;
+  for (; piece < path.segments.size() && left_m >= path.segments[piece].length_m; ++piece) {
+    left_m -= path.segments[piece].length_m;
+  }
+  return speed_mps * pace(piece);
 }
 
 Pose2 TimedPath::pose_at_distance(double distance_m) const {
@@ -68,9 +104,7 @@ double TimedPath::curvature_at_distance(double distance_m) const {
   return distance_m < path.length_m() ? path.curvature_at(distance_m) : tail_curvature_per_m;
 }
 
-Instant TimedPath::end_time() const {
-  return start_time + from_seconds(path.length_m() / speed_mps);
-}
+Instant TimedPath::end_time() const { return time_at(path.length_m()); }
 
 std::optional<Path> TimedPath::piece(double from_m, double to_m) const {
   Path cut;

@@ -287,6 +287,8 @@ std::string_view to_string(Way way) {
       return "roundabout";
     case Way::layers:
       return "layers";
+    case Way::track:
+      return "track";
     case Way::count:
       break;
   }

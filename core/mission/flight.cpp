@@ -106,6 +106,12 @@ void Flight::start_route(const TimedPath& route) {
   en_route_ = true;
 }
 
+void Flight::fly(const TimedPath& timed) {
+  searching_ = homing_ = en_route_ = false;
+  search_marks_.clear();
+  replace(timed);
+}
+
 void Flight::replace(const TimedPath& timed) {
   plan_.timed = timed;
   ++plan_.number;

@@ -22,6 +22,8 @@ class Flight {
   void start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m, Instant now);
   /// The first plan is that path, from its own start time on; where it begins is home.
   void start_route(const TimedPath& route);
+  /// A path that begins where this plan is then.
+  void fly(const TimedPath& timed);
   [[nodiscard]] bool en_route(Instant t) const { return en_route_ && t < plan_.timed.end_time(); }
   [[nodiscard]] bool started() const { return plan_.number > 0; }
 

@@ -15,12 +15,14 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   }
   agent_.on_message(message, now);
   formation_.on_message(message, now);
+  tracks_.on_message(message, now);
   return true;
 }
 
 void GroundNode::on_timeout(Instant now) {
   agent_.on_timeout(now);
   formation_.on_timeout(now);
+  tracks_.on_timeout(now);
 }
 
 void GroundNode::say(MissionEvent event) {
@@ -30,16 +32,25 @@ void GroundNode::say(MissionEvent event) {
 }
 
 void GroundNode::take_events() {
-  while (auto event = formation_.poll_event()) {
-    messages_.push(*event);
-    events_.push(std::move(*event));
-  }
+  const auto take = [this](auto& from) {
+    while (auto event = from.poll_event()) {
+      messages_.push(*event);
+      events_.push(std::move(*event));
+    }
+  };
+  take(formation_);
+  take(tracks_);
 }
 
 std::optional<Message> GroundNode::poll_message() {
   take_events();
-  if (auto message = agent_.poll_message()) return message;
+  if (auto message = agent_.poll_message()) {
+    // What the operator tells of is to be planned around, too.
+    if (const auto* hazard = std::get_if<HazardReport>(&*message)) tracks_.know(hazard->hazard);
+    return message;
+  }
   if (auto message = formation_.poll_message()) return message;
+  if (auto message = tracks_.poll_message()) return message;
   return messages_.pop();
 }
 
@@ -50,7 +61,7 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 }
 
 Instant GroundNode::next_timeout() const {
-  return std::min(agent_.next_timeout(), formation_.next_timeout());
+  return std::min({agent_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -26,7 +26,7 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [&](const Telemetry& m) { on_telemetry(m, now); },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
-                        [](const PlanReport&) {}, [](const Health&) {}},
+                        [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {}},
              message);
   step(now);
 }

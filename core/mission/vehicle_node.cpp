@@ -18,6 +18,9 @@ struct MakeAgent {
   std::unique_ptr<OnboardAgent> operator()(const FormationAgentConfig& config) const {
     return std::make_unique<FormationAgent>(config, now);
   }
+  std::unique_ptr<OnboardAgent> operator()(const TrackAgentConfig& config) const {
+    return std::make_unique<TrackAgent>(config, now);
+  }
 };
 
 Health unchanging(const VehicleNodeConfig& config, const Telemetry& telemetry) {

@@ -16,7 +16,8 @@ constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the searc
 
 /// Where the vehicle is on its path.
 struct Nearest {
-  double ahead_m = 0.0;  ///< of its time
+  double on_time_m = 0.0;  ///< where it is to be
+  double ahead_m = 0.0;    ///< of its time
   double left_m = 0.0;
   double heading_rad = 0.0;  ///< of the path there
   double curvature_per_m = 0.0;
@@ -70,7 +71,10 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double
     const Pose2 pose = poses.at(distance_m);
     const Vec2 forward = unit_vector(pose.heading_rad);
     const Vec2 offset = position - pose.position();
-    result = {distance_m - on_time_m, left_of(forward).dot(offset), pose.heading_rad,
+    result = {on_time_m,
+              distance_m - on_time_m,
+              left_of(forward).dot(offset),
+              pose.heading_rad,
               plan.curvature_at_distance(distance_m),
               plan.curvature_at_distance(distance_m + lead_m)};
     // Along an arc the same angle is a shorter way for who flies inside it.
@@ -82,6 +86,13 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double
     distance_m = next_m;
   }
   return result;
+}
+
+/// The plan's speed when what is commanded now is flown: begun so much earlier, a step of it costs
+/// no way in the end.
+double speed_soon(const TimedPath& plan, double on_time_m) {
+  const double lead_m = plan.speed_at_distance(on_time_m) * kAirspeedTime_s;
+  return plan.speed_at_distance(on_time_m + lead_m);
 }
 
 }  // namespace
@@ -104,7 +115,7 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
 
   // Velocity over the ground, and the velocity through the air that gives it.
   const double ground_mps =
-      std::max(0.0, plan.speed_mps - params.along_track_gain_per_s * at.ahead_m);
+      std::max(0.0, speed_soon(plan, at.on_time_m) - params.along_track_gain_per_s * at.ahead_m);
   const Vec2 wanted = ground_mps * unit_vector(course);
   const Vec2 wanted_rate = course_rate * left_of(wanted);
   const Vec2 through_air = wanted - wind;

@@ -168,6 +168,34 @@ TEST(PathFollower, KeepsLinesAndArcsInWind) {
   }
 }
 
+/// A place beside a track moves slower inside its turns and faster outside; where one begins, at
+/// once.
+TEST(PathFollower, KeepsPlacesBesideATrackInWind) {
+  VehicleSpec vehicle = vehicle_of(20.0, 1.5);
+  vehicle.turn_radius_m = 60.0;
+  vehicle.speed_min_mps = 9.0;
+  vehicle.speed_max_mps = 31.0;
+  for (const double left_m : {-70.0, -35.0, 0.0, 70.0}) {
+    for (const double wind : {0.0, 3.0, 5.0}) {
+      for (const double from : {0.0, 1.7, -2.5}) {
+        TimedPath plan = course_of(300.0, 20.0);
+        for (Segment& segment : plan.path.segments) {
+          const double pace = 1.0 - segment.curvature_per_m * left_m;
+          segment.length_m *= pace;
+          segment.curvature_per_m /= pace;
+          plan.paces.push_back(pace);
+        }
+        plan.paces.push_back(1.0);
+        const Flown flown = fly(vehicle, plan, wind * unit_vector(from), plan.path.start);
+        EXPECT_LT(flown.cross_m, 3.0) << left_m << " " << wind << " " << from;
+        EXPECT_LT(flown.along_m, 4.5) << left_m << " " << wind << " " << from;
+        EXPECT_LT(flown.along_end_m, 1.0) << left_m << " " << wind << " " << from;
+        EXPECT_LT(flown.rate_largest, 1.0 + 1e-9);
+      }
+    }
+  }
+}
+
 TEST(PathFollower, RecoversFromArcsThatTheWindMakesTooTight) {
   for (const double wind : {4.0, 8.0}) {
     const VehicleSpec vehicle = vehicle_of(50.0, 1.5);

@@ -91,7 +91,11 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                                      m);
                         },
                         [](const mission::MissionEvent&) {}, [](const mission::Command&) {},
-                        [](const mission::Health&) {}},
+                        [](const mission::Health&) {},
+                        [&](const mission::TrackFlight& m) {
+                          if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
+                          formation_.flights[m.vehicle] = {m.number, m.joined};
+                        }},
              message);
 }
 

@@ -257,6 +257,37 @@ TEST(Picture, AFormationIsInPlaceWhenAllAre) {
   EXPECT_FALSE(in_place(70.0));  // not heard any more
 }
 
+TEST(Picture, APlaceOnATrackMovesAndIsKeptAllTheSame) {
+  Desk desk;
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+    mission::TrackFlight flight;
+    flight.vehicle = {id};
+    flight.number = 4;
+    flight.joined = at_seconds(50.0);
+    desk.telemetry({id}, 1.0, 1.0, 1);
+    desk.hear(flight, kGroundStation, 1.0);
+  }
+  const auto status = [&](VehicleId vehicle, double off_m, double seconds) {
+    mission::FormationStatus s;
+    s.vehicle = vehicle;
+    s.progress.change = 4;
+    s.progress.off_m = off_m;
+    s.at_rest = false;
+    desk.hear(s, vehicle, seconds);
+  };
+  const auto section = [&](double seconds) { return desk.section(Section::formation, seconds); };
+  status({1}, 1.0, 40.0);
+  status({2}, 1.0, 40.0);
+  EXPECT_FALSE(section(40.0)["in_place"]);  // on their ways
+  EXPECT_TRUE(section(40.0)["moving"]);
+  status({1}, 1.0, 60.0);
+  status({2}, 30.0, 60.0);
+  EXPECT_FALSE(section(60.0)["in_place"]);
+  status({2}, 2.0, 61.0);
+  EXPECT_TRUE(section(61.0)["in_place"]);
+  EXPECT_FALSE(section(61.0)["moving"]);
+}
+
 TEST(Picture, AnAuthorisationWaitsUntilItIsDecidedOrLate) {
   Desk desk;
   mission::AuthorisationRequest request;

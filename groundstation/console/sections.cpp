@@ -29,6 +29,7 @@ constexpr Duration kOffsetWarning = std::chrono::milliseconds{500};
 constexpr double kArcStepRad = 0.16;  ///< of a path's polyline
 constexpr std::size_t kPlanPointsMax = 400;
 constexpr double kPlaceTolerance_m = 0.5;
+constexpr double kPlanePlaceTolerance_m = 10.0;
 constexpr double kHoldStepRad = 0.26;
 
 /// The shortest text of a number that was rounded.
@@ -184,7 +185,7 @@ Json plan_json(VehicleId id, const mission::FlightPlan& plan) {
   std::size_t count = 0;
   const auto add = [&](double distance) {
     const Pose2 pose = path.pose_at(distance);
-    const Instant at = timed.start_time + from_seconds(distance / timed.speed_mps);
+    const Instant at = timed.time_at(distance);
     points.push_back(Json::array({metres(pose.x_m), metres(pose.y_m), number(to_seconds(at), 1)}));
     ++count;
   };
@@ -377,7 +378,12 @@ Json hazards_json(const Picture& picture) {
 
 /// It has flown the newest change, and is where that leads to.
 bool is_in_place(const FormationPicture& formation, VehicleId id,
-                 const mission::FormationStatus& status) {
+                 const mission::FormationStatus& status, Instant now) {
+  // The place of a plane moves; what its status tells is how far it is from there.
+  if (const auto flight = formation.flights.find(id); flight != formation.flights.end()) {
+    return status.progress.change == flight->second.number && now >= flight->second.joined &&
+           status.progress.off_m < kPlanePlaceTolerance_m;
+  }
   if (!formation.change) return status.at_rest;
   const auto mover = formation::mover_of(*formation.change, id);
   if (!mover) return status.at_rest;
@@ -409,7 +415,7 @@ Json formation_json(const Picture& picture, Instant now) {
     const auto& status = member.status;
     const bool lost = now - member.heard_at > mission::kFormationSilence;
     at_rest = at_rest && (status.at_rest || lost);
-    in_place = in_place && !lost && is_in_place(formation, id, status);
+    in_place = in_place && !lost && is_in_place(formation, id, status, now);
     places.push_back({{"id", id.value},
                       {"x", metres(status.position_m.x())},
                       {"y", metres(status.position_m.y())},
@@ -420,7 +426,9 @@ Json formation_json(const Picture& picture, Instant now) {
                       {"at_rest", status.at_rest},
                       {"lost", lost}});
   }
-  const bool moving = !at_rest || (formation.change && now < formation.change_ends);
+  // Planes that are in their places always move.
+  const bool moving = (!at_rest && (formation.flights.empty() || !in_place)) ||
+                      (formation.change && now < formation.change_ends);
   return {{"in_place", in_place && !moving},
           {"moving", moving},
           {"change", std::move(change)},

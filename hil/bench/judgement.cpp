@@ -66,9 +66,10 @@ CheckResult bench_check(std::string name, std::string requirement, std::size_t j
 std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                    const checks::RunRecord& record, const BenchOutcome& outcome) {
   const checks::Limits limits = limits_of(scenario.expect);
-  auto results = scenario.flies_formation() ? checks::judge_formation(record, limits)
-                 : scenario.sites.empty()   ? checks::judge_routes(record, limits)
-                                            : checks::judge(record, limits);
+  auto results = scenario.formation.planes    ? checks::judge_tracks(record, limits)
+                 : scenario.flies_formation() ? checks::judge_formation(record, limits)
+                 : scenario.sites.empty()     ? checks::judge_routes(record, limits)
+                                              : checks::judge(record, limits);
   if (scenario.flies_routes() && !scenario.sites.empty()) {
     results.push_back(checks::check_routes(record, limits));
   }

@@ -83,4 +83,14 @@ std::vector<CheckResult> judge_formation(const RunRecord& record, const Limits& 
   return results;
 }
 
+std::vector<CheckResult> judge_tracks(const RunRecord& record, const Limits& limits) {
+  std::vector<CheckResult> results;
+  for (const auto check :
+       {check_recordings, check_turn_radius, check_continuity, check_range, check_hazards,
+        check_separation, check_orders, check_arrivals, check_moving_places}) {
+    results.push_back(check(record, limits));
+  }
+  return results;
+}
+
 }  // namespace skein::checks

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include "motion.hpp"
@@ -11,6 +12,18 @@
 namespace skein::checks {
 
 using mission::EventKind;
+
+namespace {
+
+/// What the vehicle was told to fly at that moment; null before its first plan.
+const recording::PlanRecord* plan_in_force(const recording::Recording& recorded, Instant time) {
+  const auto after = std::partition_point(
+      recorded.plans.begin(), recorded.plans.end(),
+      [time](const recording::PlanRecord& plan) { return plan.since <= time; });
+  return after == recorded.plans.begin() ? nullptr : &*std::prev(after);
+}
+
+}  // namespace
 
 CheckResult check_orders(const RunRecord& record, const Limits& /*limits*/) {
   CheckResult result{"orders", "every order ends with all in their places", 0, "orders", "", {}};
@@ -90,6 +103,47 @@ CheckResult check_places(const RunRecord& record, const Limits& limits) {
            vehicle_name(vehicle) + " was " + fixed(rms, 2) + " m rms from its place in change " +
                std::to_string(change.number) + ", which held from " + at(*change.held) +
                " (limit " + fixed(limits.place_rms_m, 2) + " m)"});
+    }
+  }
+  result.measured = "worst " + fixed(worst, 2) + " m rms";
+  return result;
+}
+
+CheckResult check_moving_places(const RunRecord& record, const Limits& limits) {
+  CheckResult result{"places",
+                     "while a formation holds every vehicle is within " +
+                         fixed(limits.place_rms_m, 2) + " m rms of its place, which moves",
+                     0,
+                     "vehicles in formations",
+                     "",
+                     {}};
+  double worst = 0.0;
+  for (const FormationChange& change : formation_changes(record)) {
+    if (!change.held) continue;
+    for (const auto& recorded : record.recordings) {
+      if (contains(record.lost, recorded.vehicle)) continue;
+      double squares = 0.0;
+      std::size_t count = 0;
+      for (std::size_t i = first_at(recorded.track, *change.held);
+           i < recorded.track.size() && recorded.track[i].state.time < change.until; ++i) {
+        const VehicleState& s = recorded.track[i].state;
+        const auto* plan = plan_in_force(recorded, s.time);
+        if (plan == nullptr) continue;
+        const Pose2 place = plan_pose(plan->plan, plan_distance_m(plan->plan, s.time));
+        squares += (Vec2{s.x_m, s.y_m} - place.position()).squaredNorm();
+        ++count;
+      }
+      if (count == 0) continue;
+      ++result.judged;
+      const double rms = std::sqrt(squares / static_cast<double>(count));
+      worst = std::max(worst, rms);
+      if (rms <= limits.place_rms_m) continue;
+      result.violations.push_back({recorded.vehicle, *change.held,
+                                   vehicle_name(recorded.vehicle) + " was " + fixed(rms, 2) +
+                                       " m rms from its place in change " +
+                                       std::to_string(change.number) + ", which held from " +
+                                       at(*change.held) + " (limit " +
+                                       fixed(limits.place_rms_m, 2) + " m)"});
     }
   }
   result.measured = "worst " + fixed(worst, 2) + " m rms";

@@ -2,6 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "skein/checks/checks.hpp"
 #include "skein/checks/formation_changes.hpp"
 
@@ -109,6 +112,50 @@ TEST(FormationChecks, ACorrectionOfDriftKeepsThePlaces) {
   std::get<ChangeBegun>(record.ground_events[2].body).correction = true;
   record.places.push_back({8, at_seconds(20.0), {1}, {10.5, 0.0, 20.0}});  // with its trim
   EXPECT_TRUE(check_places(record, {}).held());
+}
+
+/// Two planes side by side on a way with a turn, each `off_m` to the left of its place.
+RunRecord flown_on_track(double off_m) {
+  RunRecord record;
+  record.ground_events = {event(0, 1.0, ChangeBegun{7}), event(0, 5.0, FormationHeld{})};
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+    const double left_m = id == 1 ? 0.0 : 50.0;
+    recording::Recording recording;
+    recording.vehicle = {id};
+    TimedPath plan;
+    plan.start_time = at_seconds(1.0);
+    plan.speed_mps = 20.0;
+    plan.path.start = {0.0, left_m, 0.0};
+    plan.path.segments.push_back({0.0, 100.0});
+    plan.path.segments.push_back({1.0 / (300.0 - left_m), 300.0 - left_m});
+    plan.paces.push_back(1.0);
+    plan.paces.push_back(1.0 - left_m / 300.0);
+    plan.paces.push_back(1.0);
+    recording.plans.push_back({7, at_seconds(1.0), plan});
+    for (int i = 10; i <= 150; ++i) {
+      const double t = 0.1 * i;
+      // By hand: 5 s straight on, then a turn of 1/15 rad a second around (100, 300).
+      const double turned = std::max(0.0, t - 6.0) / 15.0;
+      const double radius = 300.0 - left_m - off_m;
+      recording::TrackPoint point;
+      point.state.time = at_seconds(t);
+      point.state.x_m = t < 6.0 ? 20.0 * (t - 1.0) : 100.0 + radius * std::sin(turned);
+      point.state.y_m = 300.0 - radius * std::cos(turned);
+      recording.track.push_back(point);
+    }
+    record.recordings.push_back(recording);
+  }
+  return record;
+}
+
+TEST(FormationChecks, KnowWherePlacesMove) {
+  const auto kept = check_moving_places(flown_on_track(0.0), {});
+  EXPECT_TRUE(kept.held()) << kept.violations[0].sentence;
+  EXPECT_EQ(kept.judged, 2U);
+  EXPECT_THAT(kept.measured, HasSubstr("worst 0.00 m"));
+  const auto off = check_moving_places(flown_on_track(0.5), {});
+  ASSERT_EQ(off.violations.size(), 2U);
+  EXPECT_THAT(off.violations[0].sentence, HasSubstr("vehicle 1 was 0.50 m rms"));
 }
 
 }  // namespace

@@ -31,7 +31,17 @@ auto find_by_id(const Items& items, Key key) -> decltype(items.data()) {
 }  // namespace
 
 double plan_distance_m(const TimedPath& plan, Instant time) {
-  return std::max(0.0, to_seconds(time - plan.start_time) * plan.speed_mps);
+  double seconds = std::max(0.0, to_seconds(time - plan.start_time));
+  double distance = 0.0;
+  for (std::size_t i = 0; i < plan.paces.size(); ++i) {
+    const double speed = plan.speed_mps * plan.paces[i];
+    if (i >= plan.path.segments.size()) return distance + seconds * speed;
+    const double takes = plan.path.segments[i].length_m / speed;
+    if (seconds < takes) return distance + seconds * speed;
+    seconds -= takes;
+    distance += plan.path.segments[i].length_m;
+  }
+  return distance + seconds * plan.speed_mps;
 }
 
 double plan_length_m(const TimedPath& plan) {

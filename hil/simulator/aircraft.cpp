@@ -70,6 +70,15 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   config.flight_controller = "simulated";
   config.telemetry_period = kTelemetryPeriod;
   const InstanceId self = instance(what_.spec.id, life_);
+  if (what_.flies_formation && is_plane()) {
+    mission::TrackAgentConfig agent;
+    agent.vehicle = what_.spec;
+    agent.instance = self;
+    agent.hazards = hazards;
+    agent.place_tolerance_m = mission_.formation->place_tolerance_m;
+    config.agent = agent;
+    return config;
+  }
   if (what_.flies_formation) {
     mission::FormationAgentConfig agent;
     agent.vehicle = what_.spec.id;
@@ -99,6 +108,9 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards) {
 
 bool Aircraft::in_place() const {
   if (!running()) return true;
+  if (const auto* plane = dynamic_cast<const mission::TrackAgent*>(&node_->agent())) {
+    return plane->in_place();
+  }
   const auto* agent = dynamic_cast<const mission::FormationAgent*>(&node_->agent());
   return agent == nullptr || agent->execution() == nullptr || agent->execution()->finished();
 }
@@ -193,6 +205,15 @@ const mission::FlightPlan* Aircraft::plan() const {
 
 Vec3 Aircraft::position() const {
   return flying() ? state_.position().metres() : Vec3{what_.start.x_m, what_.start.y_m, 0.0};
+}
+
+double Aircraft::off_m(Instant now) const {
+  if (is_plane()) {
+    if (!flying() || plan() == nullptr) return 0.0;
+    return (recorded_.timed.pose_at(now).position() - state_.position().horizontal()).norm();
+  }
+  const auto where = reference(now);
+  return where ? (position() - where->position_m).norm() : 0.0;
 }
 
 std::optional<MotionTrack::Moment> Aircraft::reference(Instant now) const {

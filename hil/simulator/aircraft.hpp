@@ -32,8 +32,10 @@ class Aircraft {
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
   void start_program(const std::vector<Hazard>& hazards);
-  /// A multirotor comes down where it is then.
-  void sink(Instant from) { sinks_from_ = from; }
+  /// A multirotor comes down where it is then; a plane orbits on.
+  void sink(Instant from) {
+    if (!is_plane()) sinks_from_ = from;
+  }
 
   /// Null while no program runs. Its times are of this vehicle's clock.
   [[nodiscard]] mission::VehicleNode* node() { return node_ ? &*node_ : nullptr; }
@@ -66,12 +68,15 @@ class Aircraft {
   [[nodiscard]] const mission::FlightPlan* plan() const;
   /// Where a multirotor should be, and how fast; nothing while it sinks.
   [[nodiscard]] std::optional<MotionTrack::Moment> reference(Instant now) const;
+  /// How far it is from where it should be.
+  [[nodiscard]] double off_m(Instant now) const;
   [[nodiscard]] std::uint8_t loads_left() const { return loads_left_; }
   void began_delivery() { loads_left_ = loads_left_ > 0 ? loads_left_ - 1 : 0; }
 
  private:
   [[nodiscard]] mission::VehicleNodeConfig config(const std::vector<Hazard>& hazards) const;
   [[nodiscard]] std::optional<double> hold_curvature(const std::vector<Hazard>& hazards) const;
+  [[nodiscard]] bool is_plane() const { return what_.body == Body::heading_dynamics; }
   [[nodiscard]] bool sinks(Instant now) const { return sinks_from_ && now >= *sinks_from_; }
   [[nodiscard]] bool holds_orbit() const {
     return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -20,6 +22,7 @@ class FormationWatch {
   FormationWatch(const TeamMission& mission, const TeamObserver& watcher)
       : watcher_{watcher},
         longest_{mission.duration_max},
+        place_rms_m_{mission.faults.empty() ? mission.place_rms_m : 0.0},
         judge_{{mission.formation->separation, mission.formation->ceiling_m,
                 mission.formation->tracking_m}} {
     run_.seed = mission.seed;
@@ -43,6 +46,7 @@ class FormationWatch {
     };
     observer.bodies = [this](Instant now, const std::vector<SeenBody>& bodies) {
       judge_.step(bodies, now);
+      if (holds_ && place_rms_m_ > 0.0) judge_places(bodies, now);
       if (watcher_.bodies) watcher_.bodies(now, bodies);
     };
     return observer;
@@ -50,6 +54,7 @@ class FormationWatch {
 
   FormationRun finish(const TeamResult& result) {
     run_.violations = judge_.take();
+    tell_of_places();
     run_.least_m = judge_.least_m();
     run_.farthest_m = judge_.farthest_m();
     run_.messages = result.messages;
@@ -59,9 +64,42 @@ class FormationWatch {
   }
 
  private:
+  struct Offs {
+    double squares_m2 = 0.0;
+    std::size_t count = 0;
+    [[nodiscard]] double rms_m() const {
+      return count == 0 ? 0.0 : std::sqrt(squares_m2 / static_cast<double>(count));
+    }
+  };
+
+  void judge_places(const std::vector<SeenBody>& bodies, Instant now) {
+    for (const SeenBody& body : bodies) {
+      Offs& offs = offs_[body.vehicle];
+      offs.squares_m2 += body.off_m * body.off_m;
+      ++offs.count;
+    }
+    judged_at_ = now;
+  }
+
+  void tell_of_places() {
+    for (const auto& [vehicle, offs] : offs_) {
+      run_.worst_rms_m = std::max(run_.worst_rms_m, offs.rms_m());
+      if (offs.rms_m() <= place_rms_m_) continue;
+      run_.violations.push_back(
+          {judged_at_, "place",
+           fmt::format("U{} was {:.2f} m rms from its place while the formation held; {:g} m are "
+                       "allowed",
+                       vehicle.value, offs.rms_m(), place_rms_m_)});
+    }
+  }
+
   void on_event(const mission::MissionEvent& event) {
     using mission::EventKind;
-    if (event.kind() == EventKind::change_begun) ++run_.changes;
+    if (event.kind() == EventKind::change_begun) {
+      ++run_.changes;
+      holds_ = false;
+    }
+    holds_ = holds_ || event.kind() == EventKind::formation_held;
     if (event.kind() == EventKind::change_taken_up) said_.erase(event.vehicle);
     if (mission::is_warning(event.kind())) said_.insert_or_assign(event.vehicle, event);
     run_.script_done = run_.script_done || event.kind() == EventKind::script_done;
@@ -99,6 +137,10 @@ class FormationWatch {
 
   const TeamObserver& watcher_;
   Duration longest_;
+  double place_rms_m_;
+  bool holds_ = false;
+  Instant judged_at_{};
+  std::map<VehicleId, Offs> offs_;
   AirspaceJudge judge_;
   std::map<VehicleId, mission::MissionEvent> said_;  ///< its last warning in its newest change
   FormationRun run_;

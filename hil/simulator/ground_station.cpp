@@ -23,7 +23,15 @@ mission::GroundNodeConfig node_config(const TeamMission& mission) {
   mission::GroundNodeConfig node;
   for (const auto& v : mission.vehicles) node.agent.expected.push_back(v.spec.id);
   node.agent.decisions = mission.decisions;
-  if (mission.formation) {
+  if (mission.formation && mission.formation->planes) {
+    std::vector<VehicleSpec> planes;
+    std::vector<Hazard> hazards;
+    for (const auto& v : mission.vehicles) planes.push_back(v.spec);
+    for (const auto& h : mission.hazards) {
+      if (h.known_from <= Instant{}) hazards.push_back(h.hazard);
+    }
+    node.tracks = groundstation::track_ground(*mission.formation, planes, hazards);
+  } else if (mission.formation) {
     node.formation = groundstation::formation_ground(*mission.formation, formation_of(mission));
   }
   return node;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
 #include "skein/base/random.hpp"
@@ -41,6 +42,26 @@ std::vector<std::string> random_script(const configuration::FormationConfig& for
   return script;
 }
 
+/// A lap in one shape, and another shape on it.
+std::vector<std::string> random_track_script(const configuration::FormationConfig& formation,
+                                             Random& random) {
+  static constexpr std::array<const char*, 4> kShapesOfPlanes{"line-abreast", "column", "echelon",
+                                                              "wedge"};
+  const auto shape = [&] {
+    const double least = formation.separation.horizontal_m + 2.0 * formation.tracking_m;
+    return fmt::format("{} spacing {:.1f}",
+                       kShapesOfPlanes.at(random.index(kShapesOfPlanes.size())),
+                       least * random.uniform(1.25, 1.5));
+  };
+  const auto& tracks = formation.tracks;
+  std::vector<std::string> script;
+  script.push_back(
+      fmt::format("fly-along {} in {}", tracks[random.index(tracks.size())].name, shape()));
+  script.push_back(fmt::format("wait {:.0f}", random.uniform(1.0, 60.0)));
+  script.push_back("form " + shape());
+  return script;
+}
+
 /// Shapes and gusts are drawn with the faults; so much of take-off, rally and landing is besides.
 Result<void> add_formation_faults(TeamMission& mission, const std::string& profiles) {
   std::vector<VehicleId> ids;
@@ -51,6 +72,16 @@ Result<void> add_formation_faults(TeamMission& mission, const std::string& profi
   std::size_t changes = 1;
   if (profiles != "none") {
     Random random{mission.seed ^ kScriptStream};
+    if (mission.formation->planes && mission.formation->tracks.empty()) {
+      return Error{"faults are drawn along a track; give formation.tracks one"};
+    }
+    if (mission.formation->planes) {
+      mission.formation->script = random_track_script(*mission.formation, random);
+      const auto drawn = formation_faults(profiles, ids, 2, mission.seed);
+      if (!drawn) return drawn.error();
+      mission.faults.insert(mission.faults.end(), drawn->begin(), drawn->end());
+      return {};
+    }
     mission.formation->script = random_script(*mission.formation, ids.size(), random);
     mission.gust_error_m = random.uniform(0.02, 0.1);
     changes = kShapes + 4;
@@ -89,9 +120,10 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   for (const auto& v : scenario.vehicles) {
     team.vehicles.push_back({v.spec, v.start, v.search,
                              v.spec.is_copter() ? Body::multirotor : Body::heading_dynamics,
-                             configuration::flies_formation(v.spec)});
+                             configuration::flies_formation(v.spec) || scenario.formation.planes});
   }
   if (scenario.flies_formation()) team.formation = scenario.formation;
+  if (scenario.formation.planes) team.place_rms_m = scenario.expect.place_rms_m;
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.protocol = scenario.protocol;

@@ -51,9 +51,11 @@ bool due(Instant now, Duration period) {
   return now.time_since_epoch() % period == Duration::zero();
 }
 
-/// What no program of the team reads: people do, and nobody watches here.
-bool is_for_watchers(const mission::Message& message) {
-  return std::holds_alternative<mission::PlanReport>(message) ||
+/// What no program of the team reads: people do, and nobody watches here. The ground station of
+/// planes in formation plans from what they fly.
+bool is_for_watchers(const mission::Message& message, const TeamMission& mission) {
+  const bool plans_are_read = mission.formation && mission.formation->planes;
+  return (std::holds_alternative<mission::PlanReport>(message) && !plans_are_read) ||
          std::holds_alternative<mission::Health>(message);
 }
 
@@ -331,7 +333,7 @@ class Team {
   void drain(std::size_t i, Instant now) {
     Aircraft& v = vehicles_[i];
     while (const auto message = v.node()->poll_message()) {
-      if (is_for_watchers(*message)) continue;
+      if (is_for_watchers(*message, mission_)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, *message, now);
     }
@@ -388,8 +390,12 @@ class Team {
       const Vec3 position = v.position();
       const auto reference = v.reference(now);
       if (reference && reference->velocity_mps.norm() > kStill_mps) moved_at_ = now;
-      bodies.push_back({v.spec().id, position, position.z() > MultirotorBody::kAirborne_m,
-                        reference ? (position - reference->position_m).norm() : 0.0});
+      // Planes always move; they are done when none is on its way or on the track.
+      if (mission_.formation->planes && v.running() && v.activity() == mission::Activity::forming) {
+        moved_at_ = now;
+      }
+      bodies.push_back(
+          {v.spec().id, position, position.z() > MultirotorBody::kAirborne_m, v.off_m(now)});
     }
     if (observer_.bodies) observer_.bodies(now, bodies);
   }

@@ -73,6 +73,9 @@ function listed(begin, words, end, indent = '') {
 
 const doc = (lines, indent = '') => lines.map(l => `${indent}///${l ? ' ' + l : ''}\n`).join('')
 
+// A field that is reached through another has its member there.
+const is_within_other = f => f.notes.member?.includes('.')
+
 // The comments after members stand in one column where there is room.
 function members(types, fields, within) {
   const texts = fields.map(f => `  ${member_type(types, f, within)} ${member_name(f)}${start_value(types, f, within)};`)
@@ -89,7 +92,7 @@ function members(types, fields, within) {
 
 function struct_text(types, t, within) {
   const name = last(t.name)
-  const fields = t.fields.filter(f => !f.flag)
+  const fields = t.fields.filter(f => !f.flag && !is_within_other(f))
   const compared = t.notes.compared
     ? `  friend auto operator<=>(const ${name}&, const ${name}&) = default;\n` : ''
   const union = fields.find(f => f.kind === 'union')

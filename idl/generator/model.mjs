@@ -90,7 +90,7 @@ export function load(paths) {
     if (d.isArray && d.arrayUpperBound === undefined) fail(`${where}: a sequence needs a bound`)
     if (kind === 'string' && d.upperBound === undefined) fail(`${where}: a string needs a bound`)
     const notes = values(d.annotations)
-    if (notes.appended && d.defaultValue === undefined) fail(`${where}: what is appended needs a default`)
+    if (notes.appended && d.defaultValue === undefined && !d.isArray) fail(`${where}: what is appended needs a default`)
     return {
       name: d.name, type, kind, many: d.isArray ? d.arrayUpperBound : undefined, bound: d.upperBound,
       notes, value: d.defaultValue, ...(comments.get(where) ?? { before: [], after: '' })

@@ -9,6 +9,7 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/shape_file.hpp"
+#include "skein/configuration/track_file.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "writer.hpp"
 
@@ -81,9 +82,11 @@ std::string to_yaml(const GroundConfig& config) { return written(config); }
 Result<Scenario> load_scenario(const std::filesystem::path& file) {
   auto scenario = load<Scenario>(file);
   if (!scenario) return scenario;
-  for (NamedShape& shape : scenario->formation.shapes) {
-    shape.file = std::filesystem::absolute(file.parent_path() / shape.file).lexically_normal();
-  }
+  const auto beside = [&file](const std::string& name) {
+    return std::filesystem::absolute(file.parent_path() / name).lexically_normal();
+  };
+  for (NamedShape& shape : scenario->formation.shapes) shape.file = beside(shape.file);
+  for (NamedTrack& track : scenario->formation.tracks) track.file = beside(track.file);
   return scenario;
 }
 Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name) {
@@ -112,5 +115,11 @@ Result<ShapeFile> parse_shape(std::string_view yaml, const std::string& name) {
   return parse<ShapeFile>(yaml, name);
 }
 std::string to_yaml(const ShapeFile& shape) { return written(shape); }
+
+Result<TrackFile> load_track(const std::filesystem::path& file) { return load<TrackFile>(file); }
+Result<TrackFile> parse_track(std::string_view yaml, const std::string& name) {
+  return parse<TrackFile>(yaml, name);
+}
+std::string to_yaml(const TrackFile& track) { return written(track); }
 
 }  // namespace skein::configuration

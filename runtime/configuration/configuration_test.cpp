@@ -555,6 +555,27 @@ TEST(ScenarioCheck, WantsNodesOfTheirOwnOnASharedBus) {
             "vehicle 2 and vehicle 1 have node 42 on bus vcan0; give each node its own id");
 }
 
+TEST(ScenarioCheck, PlanesInFormationDoNothingElse) {
+  auto s = load_scenario(kSource / "scenarios" / "formation-planes-5.yaml");
+  ASSERT_TRUE(s.ok()) << s.error().message;
+  EXPECT_TRUE(check(*s).ok()) << check(*s).error().message;
+  EXPECT_TRUE(s->flies_formation());
+  const GroundConfig ground = ground_config(*s, {});
+  ASSERT_EQ(ground.planes.size(), 5U);
+  EXPECT_EQ(ground.planes[2].height_m, 120.0);
+  Scenario with_sites = *s;
+  with_sites.sites.emplace_back();
+  EXPECT_NE(check(with_sites).error().message.find("planes in formation do no tasks"),
+            std::string::npos);
+  Scenario with_copter = *s;
+  with_copter.vehicles[0].spec.airframe = Airframe::copter;
+  EXPECT_NE(check(with_copter).error().message.find("vehicle 1 is a copter"), std::string::npos);
+  Scenario one_height = *s;
+  one_height.vehicles[1].spec.height_m = one_height.vehicles[0].spec.height_m;
+  EXPECT_NE(check(one_height).error().message.find("give each its own height_m"),
+            std::string::npos);
+}
+
 TEST(Deployment, WhatIsWrittenIsReadBackExactly) {
   for (const auto& file : shipped()) {
     const auto s = load_scenario(file);

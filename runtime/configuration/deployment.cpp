@@ -104,6 +104,9 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   }
   config.console.port = deployment.console_port;
   config.formation = scenario.formation;
+  if (scenario.formation.planes) {
+    for (const ScenarioVehicle& vehicle : scenario.vehicles) config.planes.push_back(vehicle.spec);
+  }
   config.recording_folder = folder_of(deployment, "ground");
   return config;
 }

@@ -16,6 +16,7 @@
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/shape_file.hpp"
+#include "skein/configuration/track_file.hpp"
 
 namespace skein::configuration {
 
@@ -83,6 +84,7 @@ void fields(FieldVisitor& v, Scenario& scenario);
 void fields(FieldVisitor& v, ScenarioVehicle& vehicle);
 void fields(FieldVisitor& v, Experiment& experiment);
 void fields(FieldVisitor& v, ShapeFile& shape);
+void fields(FieldVisitor& v, TrackFile& track);
 void fields(FieldVisitor& v, RoutePlan& plan);
 
 }  // namespace skein::configuration

@@ -229,6 +229,13 @@ void rally_fields(FieldVisitor& v, formation::ShapeSpec& rally) {
 }
 
 void formation_fields(FieldVisitor& v, FormationConfig& f) {
+  std::size_t planes = f.planes ? 0 : 1;
+  v.choice({"airframe",
+            "what flies it: multirotors, from place to place; or planes, along tracks: of them "
+            "the keys rally, speeds and accelerations, reserve_m, assignment and avoidance are not "
+            "read"},
+           kAirframes, planes);
+  f.planes = planes == 0;
   v.section({"rally", "where vehicles gather, and wait that have no place"},
             [&f](FieldVisitor& inner) { rally_fields(inner, f.rally); });
   v.number({"speed_mps", "of whoever has the longest way"}, {0.1, 30.0, "m/s"}, f.limits.speed_mps);
@@ -247,7 +254,10 @@ void formation_fields(FieldVisitor& v, FormationConfig& f) {
   v.number({"reserve_m", "planned beyond separation and tracking, for vehicles that are late"},
            {0.1, 50.0, "m"}, f.reserve_m);
   v.number({"ceiling_m", "nobody is led above it"}, {1.0, 1000.0, "m"}, f.ceiling_m);
-  v.number({"place_tolerance_m", "to be in place"}, {0.01, 10.0, "m"}, f.place_tolerance_m);
+  v.number({"place_tolerance_m", "to be in place"}, {0.01, 50.0, "m"}, f.place_tolerance_m);
+  v.number({"wind_mps",
+            "that the airspeeds of planes leave room for, with gusts, and what corrections take"},
+           {0.0, 60.0, "m/s"}, f.wind_mps);
   std::array<std::string_view, static_cast<std::size_t>(formation::PlaceMethod::count)> methods;
   for (std::size_t i = 0; i < methods.size(); ++i) {
     methods.at(i) = formation::to_string(static_cast<formation::PlaceMethod>(i));
@@ -270,6 +280,12 @@ void formation_fields(FieldVisitor& v, FormationConfig& f) {
            inner.text({"name", "as in `form NAME`", kRequired}, shape.name);
            inner.text({"file", "its points; in a scenario relative to the scenario", kRequired},
                       shape.file);
+         }));
+  v.list({"tracks", "that planes fly along, and orders can name"},
+         groups_of(f.tracks, kListMax, [](FieldVisitor& inner, NamedTrack& track) {
+           inner.text({"name", "as in `fly-along NAME in wedge`", kRequired}, track.name);
+           inner.text({"file", "its waypoints; in a scenario relative to the scenario", kRequired},
+                      track.file);
          }));
   v.list({"script",
           "orders as the operator would type them, one after the other; without any the "
@@ -302,8 +318,9 @@ void planning_fields(FieldVisitor& v, planning::AllocationParams& p) {
 }
 
 void formation_section(FieldVisitor& v, FormationConfig& formation) {
-  v.section({"formation", "how multirotors fly in formation; the same for the whole team"},
-            [&formation](FieldVisitor& inner) { formation_fields(inner, formation); });
+  v.section(
+      {"formation", "how multirotors, or planes, fly in formation; the same for the whole team"},
+      [&formation](FieldVisitor& inner) { formation_fields(inner, formation); });
 }
 
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions) {
@@ -431,6 +448,9 @@ void fields(FieldVisitor& v, GroundConfig& config) {
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
   formation_section(v, config.formation);
+  v.list({"planes", "of a formation of planes: what each can do, as in its own file"},
+         unique_groups_of(config.planes, kListMax, spec_fields, "vehicle",
+                          [](const VehicleSpec& spec) { return spec.id.value; }));
   v.section({"console", "the page for the operator's browser"},
             [&config](FieldVisitor& inner) { console_fields(inner, config.console); });
   v.text({"control_socket",

@@ -136,7 +136,8 @@ constexpr std::string_view kRules =
 }  // namespace
 
 std::string scenario_reference() {
-  return "<!-- Printed from runtime/configuration/*_fields.cpp by configuration_test; do not edit. -->\n"
+  return "<!-- Printed from runtime/configuration/*_fields.cpp by configuration_test; do not edit. "
+         "-->\n"
          "# Scenario files\n\n"
          "A scenario is one mission: the fleet, the sites, the world, and what must come out. "
          "`skein-hil run FILE` flies it. The shipped ones are in `scenarios/`.\n\n" +
@@ -153,14 +154,15 @@ std::string scenario_reference() {
 }
 
 std::string configuration_reference() {
-  return "<!-- Printed from runtime/configuration/*_fields.cpp by configuration_test; do not edit. -->\n"
+  return "<!-- Printed from runtime/configuration/*_fields.cpp by configuration_test; do not edit. "
+         "-->\n"
          "# Configuration of the processes\n\n" +
          std::string{kRules} + "\n# `skein-onboard --config FILE`\n" + page_of<VehicleConfig>() +
          "\n# `skein-ground --config FILE`\n" + page_of<GroundConfig>() +
          "\n# Shapes: `scenarios/shapes/*.yaml`\n\nWhat formations make of them stands in "
          "[formation.md](formation.md).\n" +
-         page_of<ShapeFile>() + "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" +
-         page_of<RoutePlan>();
+         page_of<ShapeFile>() + "\n# Tracks: `scenarios/tracks/*.yaml`\n" + page_of<TrackFile>() +
+         "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" + page_of<RoutePlan>();
 }
 
 }  // namespace skein::configuration

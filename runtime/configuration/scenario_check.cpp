@@ -63,8 +63,27 @@ class Check {
     }
   }
 
+  /// Of a formation of planes.
+  void check_planes() {
+    for (const ScenarioVehicle& v : s_.vehicles) {
+      if (!v.spec.is_copter()) continue;
+      problem("formation.airframe is plane, and " + name(v) +
+              " is a copter; fly them in two missions");
+    }
+    if (!s_.sites.empty()) {
+      problem("planes in formation do no tasks at sites; take the sites away");
+    }
+    if (s_.flies_routes()) {
+      problem("planes in formation fly by no planned routes; take the routes away");
+    }
+  }
+
   /// A mission is of coalitions or of a formation.
   void check_formation() {
+    if (s_.formation.planes) return check_planes();
+    if (!s_.formation.tracks.empty()) {
+      problem("multirotors fly along no tracks; give formation airframe: plane, or take them away");
+    }
     const auto in_formation = [](const ScenarioVehicle& v) { return flies_formation(v.spec); };
     const auto one = std::find_if(s_.vehicles.begin(), s_.vehicles.end(), in_formation);
     if (one == s_.vehicles.end()) {
@@ -333,9 +352,10 @@ class Check {
 }  // namespace
 
 bool Scenario::flies_formation() const {
-  return std::any_of(vehicles.begin(), vehicles.end(), [](const ScenarioVehicle& v) {
-    return configuration::flies_formation(v.spec);
-  });
+  return formation.planes ||
+         std::any_of(vehicles.begin(), vehicles.end(), [](const ScenarioVehicle& v) {
+           return configuration::flies_formation(v.spec);
+         });
 }
 
 Result<void> check(const Scenario& scenario) { return Check{scenario}.run(); }

@@ -110,9 +110,10 @@ std::string_view sentence_of(event::Trouble trouble) {
 }
 
 std::string_view sentence_of(event::ChangeRefusal why) {
-  static constexpr Sentences<event::ChangeRefusal> kSentences{"the one before is still flown",
-                                                              "it is faster than this vehicle",
-                                                              "it begins somewhere else"};
+  static constexpr Sentences<event::ChangeRefusal> kSentences{
+      "the one before is still flown", "it is faster than this vehicle", "it begins somewhere else",
+      "it is told to hold or to come home, "
+      "or its range is spent"};
   return sentence_in(kSentences, why);
 }
 
@@ -342,6 +343,8 @@ struct News {
         return "drift is corrected of " + who;
       case event::FormationNews::awaited:
         return "the script waits for vehicles not heard yet: " + names_of(e.vehicles);
+      case event::FormationNews::lost_on_track:
+        return who + " is silent: its place stays empty, and the others keep to other heights";
       case event::FormationNews::count:
         break;
     }
@@ -380,7 +383,8 @@ std::string text_of(const coalition::Why& why) {
 std::string text_of(const mission::event::ChangeBegun& change) {
   std::string text = change.correction ? "correction of " : "";
   text += to_string(change.order);
-  if (change.order == mission::OrderKind::form) {
+  if (change.order == mission::OrderKind::fly_along ||
+      change.order == mission::OrderKind::reshape || change.order == mission::OrderKind::form) {
     text.append(" ").append(formation::to_string(change.shape));
   }
   return text.append(", ").append(formation::to_string(change.way));

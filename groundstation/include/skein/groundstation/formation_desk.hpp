@@ -17,8 +17,13 @@ namespace skein::groundstation {
 [[nodiscard]] mission::FormationGroundConfig formation_ground(
     const configuration::FormationConfig& config, const std::vector<VehicleId>& vehicles);
 
+/// The same of a formation of planes.
+[[nodiscard]] mission::TrackGroundConfig track_ground(const configuration::FormationConfig& config,
+                                                      const std::vector<VehicleSpec>& planes,
+                                                      const std::vector<Hazard>& hazards);
+
 /// Where the operator commands a formation: completes what was typed with the configuration, reads
-/// the shapes, and works off the script. Without I/O but for the files of shapes.
+/// shapes and tracks, and works off the script. Without I/O but for their files.
 class FormationDesk {
  public:
   /// Fails where a shape's file or a line of the script cannot be read. The node must outlive it.
@@ -45,7 +50,17 @@ class FormationDesk {
   FormationDesk(const configuration::FormationConfig& config,
                 const std::vector<VehicleId>& vehicles, mission::GroundNode& node);
   Result<void> load(const std::string& name, const std::string& file);
+  Result<void> load_track(const std::string& name, const std::string& file);
+  /// What an order names by its file, and is not known yet.
+  Result<void> load_files(const Formation& input, bool whatever_its_name);
+  [[nodiscard]] Result<formation::ShapeSpec> named_shape(const Formation& input) const;
   [[nodiscard]] Result<mission::FormationOrder> completed(const Formation& input) const;
+  [[nodiscard]] Result<mission::TrackOrder> completed_track(const Formation& input) const;
+  Result<Outcome> answer_planes(const Formation& input, Instant now);
+  [[nodiscard]] std::string tracks_table(Instant now) const;
+  [[nodiscard]] std::size_t heard() const;
+  [[nodiscard]] bool in_place() const;
+  [[nodiscard]] bool is_heard(VehicleId vehicle) const;
   void work_off_script(Instant now);
   void report(mission::EventBody body, Instant now);
   [[nodiscard]] const mission::FormationGround& ground() const { return node_->formation(); }
@@ -53,6 +68,7 @@ class FormationDesk {
   configuration::FormationConfig config_;
   std::vector<VehicleId> vehicles_;
   std::map<std::string, formation::ShapeSpec> shapes_;
+  std::map<std::string, formation::Track> tracks_;
   mission::GroundNode* node_;
   std::vector<Input> script_;
   std::size_t next_line_ = 0;
@@ -61,6 +77,7 @@ class FormationDesk {
   std::optional<Instant> team_by_;
   Instant try_again_{};
   bool told_awaited_ = false;  ///< that vehicles are not heard yet
+  bool ends_ = false;          ///< its orders are done, and planes are still on their track
   bool told_waits_ = false;    ///< why the script's next order does
 };
 

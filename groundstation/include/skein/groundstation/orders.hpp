@@ -25,6 +25,8 @@ inline constexpr Limit kHazardRadius_m{1.0, 5e4};
 inline constexpr Limit kSpacing_m{0.5, 1000.0};
 inline constexpr Limit kHeading_deg{-360.0, 360.0};
 inline constexpr Limit kPlaces{1.0, 1000.0};
+inline constexpr Limit kTrackSpeed_mps{1.0, 200.0};
+inline constexpr Limit kLaps{1.0, 32.0};
 inline constexpr Limit kWait_s{0.0, 86400.0};
 
 enum class View { help, status, sites, pending, places, coalitions, hazards, audit };
@@ -52,6 +54,10 @@ struct Formation {
   bool has_centre = false;   ///< otherwise where the formation is
   bool has_spacing = false;  ///< otherwise the rally's
   bool has_heading = false;  ///< otherwise the rally's
+  // Of fly_along:
+  std::string track{};                ///< its name or file
+  std::optional<double> speed_mps{};  ///< none: the slowest plane's cruise speed
+  int laps = 1;
 };
 /// Of a script: the formation stays so long before the next order.
 struct Wait {

@@ -28,17 +28,22 @@ struct Path {
   [[nodiscard]] bool append(const Path& next);
 };
 
-/// A path flown at one constant ground speed from a start time. It never ends: after its last
-/// segment the vehicle orbits (`tail_curvature_per_m`), which is the hold pattern. So whoever
-/// follows it always knows what to do, also when nothing new ever arrives.
+/// A path flown from a start time at a ground speed that is constant, or constant on each of its
+/// segments. It never ends: after its last segment the vehicle orbits (`tail_curvature_per_m`),
+/// which is the hold pattern. So whoever follows it always knows what to do, also when nothing new
+/// ever arrives.
 struct TimedPath {
   Instant start_time{};
   double speed_mps = 0.0;             ///< > 0, over the ground
   double tail_curvature_per_m = 0.0;  ///< of the hold; 0 flies straight on
   Path path;
+  /// The speed on each segment, and last on the tail, as a share of speed_mps; > 0. Empty: 1.
+  StaticVector<double, kPacesMax> paces{};
 
   /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
   [[nodiscard]] double distance_at(Instant t) const;
+  [[nodiscard]] Instant time_at(double distance_m) const;
+  [[nodiscard]] double speed_at_distance(double distance_m) const;
   [[nodiscard]] Pose2 pose_at(Instant t) const { return pose_at_distance(distance_at(t)); }
   /// As Path::pose_at, but beyond the end along the tail.
   [[nodiscard]] Pose2 pose_at_distance(double distance_m) const;
@@ -46,6 +51,11 @@ struct TimedPath {
   [[nodiscard]] Instant end_time() const;
   /// What is flown between two distances, tail included; nothing when it has too many pieces.
   [[nodiscard]] std::optional<Path> piece(double from_m, double to_m) const;
+
+ private:
+  [[nodiscard]] double pace(std::size_t piece) const {
+    return piece < paces.size() ? paces[piece] : 1.0;
+  }
 };
 
 }  // namespace skein

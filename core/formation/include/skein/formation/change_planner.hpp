@@ -39,6 +39,7 @@ enum class Way : std::uint8_t {
   straight,    ///< straight lines under common timing
   roundabout,  ///< who would come too near goes around a disc, all the same way round
   layers,      ///< who would come too near crosses at a height of its own
+  track,       ///< planes: places that move along a track
   count
 };
 [[nodiscard]] std::string_view to_string(Way way);

@@ -8,12 +8,14 @@
 #include "skein/mission/fleet.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/ground_agent.hpp"
+#include "skein/mission/track_ground.hpp"
 
 namespace skein::mission {
 
 struct GroundNodeConfig {
   GroundAgentConfig agent;
   FormationGroundConfig formation;
+  TrackGroundConfig tracks{};  ///< of planes in formation; without planes it does nothing
 };
 
 /// Everything that the ground station decides and says: its agents and the one picture of the fleet
@@ -22,7 +24,7 @@ struct GroundNodeConfig {
 class GroundNode {
  public:
   GroundNode(const GroundNodeConfig& config, Instant now)
-      : agent_{config.agent, now}, formation_{config.formation, now} {}
+      : agent_{config.agent, now}, formation_{config.formation, now}, tracks_{config.tracks, now} {}
 
   /// False where it is refused.
   bool on_message(const Message& message, VehicleId sender, Instant now);
@@ -43,6 +45,9 @@ class GroundNode {
   [[nodiscard]] FormationGround& formation() { return formation_; }
   [[nodiscard]] const FormationGround& formation() const { return formation_; }
 
+  [[nodiscard]] TrackGround& tracks() { return tracks_; }
+  [[nodiscard]] const TrackGround& tracks() const { return tracks_; }
+
   [[nodiscard]] const Fleet& fleet() const { return agent_.fleet(); }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
 
@@ -51,6 +56,7 @@ class GroundNode {
 
   GroundAgent agent_;
   FormationGround formation_;
+  TrackGround tracks_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

@@ -10,12 +10,13 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/mission/formation_agent.hpp"
 #include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/track_agent.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 
 namespace skein::mission {
 
 struct VehicleNodeConfig {
-  std::variant<VehicleAgentConfig, FormationAgentConfig> agent;
+  std::variant<VehicleAgentConfig, FormationAgentConfig, TrackAgentConfig> agent;
   std::string program;            ///< name and version, for whoever watches
   std::string flight_controller;  ///< its kind
   Duration telemetry_period = std::chrono::milliseconds{100};

@@ -101,6 +101,12 @@ struct FormationPicture {
     Instant heard_at{};
   };
   std::map<VehicleId, Member> members;
+  /// The newest flight of each plane that flies along a track.
+  struct Flight {
+    std::uint32_t number = 0;
+    Instant joined{};
+  };
+  std::map<VehicleId, Flight> flights;
 };
 
 /// Everything that the ground station has heard and said, put together for people: what was said

@@ -85,6 +85,10 @@ struct CheckResult {
 /// While a formation holds, root mean square distance of each vehicle's track from its place.
 [[nodiscard]] CheckResult check_places(const RunRecord& record, const Limits& limits);
 
+/// While planes hold a formation, root mean square distance of each vehicle's track from where its
+/// plan has it at that moment.
+[[nodiscard]] CheckResult check_moving_places(const RunRecord& record, const Limits& limits);
+
 /// As flown: every route that was planned before the mission ends over the site on its bearing, and
 /// all do within Limits::arrival_s of each other, offsets allowed for.
 [[nodiscard]] CheckResult check_routes(const RunRecord& record, const Limits& limits);
@@ -97,7 +101,10 @@ struct CheckResult {
 [[nodiscard]] std::vector<CheckResult> judge_formation(const RunRecord& record,
                                                        const Limits& limits);
 
-/// Those of a coalition: all but the five above, in their order.
+/// Those of planes in formation along a track.
+[[nodiscard]] std::vector<CheckResult> judge_tracks(const RunRecord& record, const Limits& limits);
+
+/// Those of a coalition: all but the six above, in their order.
 [[nodiscard]] std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits);
 
 }  // namespace skein::checks

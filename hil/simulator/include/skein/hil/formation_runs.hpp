@@ -16,7 +16,7 @@ namespace skein::hil {
 
 struct FormationViolation {
   Instant time{};
-  std::string check;  ///< separation, ceiling, liveness
+  std::string check;  ///< separation, ceiling, place, liveness
   std::string sentence;
 };
 
@@ -27,6 +27,7 @@ struct FormationRun {
   std::string reason;          ///< where it is not: why the team holds
   double least_m = 0.0;        ///< of any two bodies in the air, heights stretched, continuous time
   double farthest_m = 0.0;     ///< of any body from its reference
+  double worst_rms_m = 0.0;    ///< of planes, from their places while the formation held
   std::size_t changes = 0;     ///< that were begun
   std::size_t lost = 0;        ///< vehicles, for good
   std::uint64_t messages = 0;  ///< of the vehicles, counted once for each sender

@@ -68,6 +68,9 @@ struct TeamMission {
   std::vector<Fault> faults;  ///< of the scenario, and drawn ones
   /// With the script that is flown; there is one where some vehicle flies in formation.
   std::optional<configuration::FormationConfig> formation;
+  /// Of any plane from where it is to be while the formation holds, root mean square; 0: not
+  /// judged.
+  double place_rms_m = 0.0;
   /// Of how far gusts push a multirotor from its reference, per axis; never beyond 0.3 m.
   double gust_error_m = 0.05;
 };

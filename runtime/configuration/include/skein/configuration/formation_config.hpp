@@ -17,8 +17,15 @@ struct NamedShape {
   std::string file;  ///< shape_file.hpp; in a scenario relative to it
 };
 
-/// How a team of multirotors flies in formation; the same for the whole team (docs/formation.md).
+/// A track that planes fly along, by the name that orders use.
+struct NamedTrack {
+  std::string name;
+  std::string file;  ///< track_file.hpp; in a scenario relative to it
+};
+
+/// How a team flies in formation; the same for the whole team (docs/formation.md).
 struct FormationConfig {
+  bool planes = false;  ///< along tracks; otherwise multirotors, from place to place
   formation::ShapeSpec rally = {formation::ShapeKind::line_abreast, 5.0, 0.0, {0.0, 0.0, 20.0}, {}};
   formation::MotionLimits limits{.speed_mps = 3.0};
   formation::Separation separation{.horizontal_m = 2.0, .vertical_m = 2.0};  ///< of the vehicles
@@ -28,7 +35,9 @@ struct FormationConfig {
   double place_tolerance_m = 0.3;  ///< to be in place
   formation::PlaceMethod assignment = formation::PlaceMethod::least_squares;
   formation::Avoidance avoidance = formation::Avoidance::passage;
+  double wind_mps = 0.0;  ///< that the airspeeds of planes leave room for
   std::vector<NamedShape> shapes;
+  std::vector<NamedTrack> tracks;
   /// Orders as the operator would type them, each given when the one before is done.
   std::vector<std::string> script;
 };

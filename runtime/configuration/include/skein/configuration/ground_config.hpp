@@ -12,6 +12,7 @@
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/domain/hazard.hpp"
+#include "skein/domain/vehicle.hpp"
 
 namespace skein::configuration {
 
@@ -40,6 +41,7 @@ struct GroundConfig {
   std::vector<OperatorDecision> operator_decisions;
   std::vector<Hazard> hazards;  ///< known before the mission
   FormationConfig formation;
+  std::vector<VehicleSpec> planes;  ///< of a formation of planes: what each can do
   ConsoleConfig console;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded

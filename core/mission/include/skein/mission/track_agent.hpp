@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/domain/hazard.hpp"
+#include "skein/mission/onboard_agent.hpp"
+#include "skein/planning/avoidance.hpp"
+
+namespace skein::mission {
+
+class Flight;
+
+/// Planes that fly along a track keep this far from hazards where there is room: in long turns with
+/// the wind a vehicle gets up to 11 m off.
+inline constexpr double kTrackHazardMargin_m = 12.0;
+
+struct TrackAgentConfig {
+  VehicleSpec vehicle;
+  InstanceId instance;
+  planning::AvoidanceParams avoidance{.margin_m = kTrackHazardMargin_m};
+  std::vector<Hazard> hazards;     ///< known before the mission
+  double place_tolerance_m = 8.0;  ///< to be in place
+  Duration status_period = std::chrono::milliseconds{200};
+};
+
+/// All decisions of one plane in a formation. Until it is given a flight it orbits where it
+/// started. A flight (TrackFlight) is its whole way, checked by the ground station; it takes it up
+/// only where it begins on what it flies then, and flies it to its end and around the orbit there,
+/// whatever falls silent. Told to hold, and when a hazard comes into its way, it leaves the
+/// formation for an orbit at its own height.
+class TrackAgent final : public OnboardAgent {
+ public:
+  TrackAgent(const TrackAgentConfig& config, Instant now);
+  ~TrackAgent() override;
+  TrackAgent(const TrackAgent&) = delete;
+  TrackAgent& operator=(const TrackAgent&) = delete;
+
+  void on_state(const VehicleState& state, Instant now) override;
+  void on_message(const Message& message, VehicleId sender, Instant now) override;
+  void on_timeout(Instant now) override;
+
+  [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
+  [[nodiscard]] std::optional<Guidance> poll_guidance() override;
+  [[nodiscard]] std::optional<MissionEvent> poll_event() override { return events_.pop(); }
+  [[nodiscard]] Instant next_timeout() const override { return next_; }
+  [[nodiscard]] Telemetry telemetry() const override;
+  [[nodiscard]] Counters counters() const override;
+
+  /// It is in its place, or has none.
+  [[nodiscard]] bool in_place() const { return !flown_ || arrived_; }
+
+ private:
+  void on_flight(const TrackFlight& flight, Instant now);
+  [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const TrackFlight& flight,
+                                                            Instant now) const;
+  void on_command(const Command& command, Instant now);
+  void on_hazard(const Hazard& hazard, Instant now);
+  void step(Instant now);
+  void begin(Instant now);
+  void leave();
+  void watch_range(Instant now);
+  void say_status(Instant now);
+  [[nodiscard]] double off_m(Instant now) const;
+  [[nodiscard]] double range_left_m() const;
+  /// On the track, and not in the orbit at its end.
+  [[nodiscard]] bool forming(Instant now) const;
+  void report(EventBody body, Instant now);
+
+  TrackAgentConfig config_;
+  std::unique_ptr<Flight> flight_;
+  std::vector<Hazard> hazards_;
+  std::optional<VehicleState> state_;
+  std::optional<TrackFlight> next_flight_;  ///< taken up, and not begun yet
+  std::optional<TrackFlight> flown_;        ///< none where it has left its formation
+  std::uint32_t number_ = 0;                ///< of the newest that was taken up
+  std::uint32_t refused_ = 0;
+  std::uint32_t command_number_ = 0;
+  bool ordered_ = false;  ///< to hold or to come home
+  bool arrived_ = false;
+  bool range_spent_ = false;
+  Instant now_{};
+  Instant next_;
+  Instant next_status_;
+  Instant next_range_;
+  std::uint64_t bad_flights_ = 0;
+  BoundedQueue<Message> messages_{64};
+  BoundedQueue<MissionEvent> events_{256};
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/track_agent.hpp"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace skein::mission {
+namespace {
+
+/// A plane that is always where its plan has it.
+class Cockpit {
+ public:
+  Cockpit() : agent_{config(), Instant{}} {
+    state_.airspeed_mps = state_.groundspeed_mps = 20.0;
+    step();
+  }
+  static TrackAgentConfig config() {
+    TrackAgentConfig config;
+    VehicleSpec& spec = config.vehicle;
+    spec.id = {3};
+    spec.cruise_speed_mps = 20.0;
+    spec.speed_min_mps = 10.0;
+    spec.speed_max_mps = 30.0;
+    spec.turn_radius_m = 60.0;
+    spec.range_m = 20'000.0;
+    spec.height_m = 120.0;
+    return config;
+  }
+  void step(Duration by = std::chrono::milliseconds{50}) {
+    now += by;
+    if (plan) {
+      const Pose2 pose = plan->timed.pose_at(now);
+      state_.x_m = pose.x_m;
+      state_.y_m = pose.y_m;
+      state_.heading_rad = state_.course_rad = pose.heading_rad;
+    }
+    state_.time = now;
+    agent_.on_state(state_, now);
+    drain();
+  }
+  void fly(double seconds) {
+    for (const Instant until = now + from_seconds(seconds); now < until;) step();
+  }
+  void tell(const Message& message) {
+    agent_.on_message(message, kGroundStation, now);
+    drain();
+  }
+  /// Straight on from where the plan is then, for a kilometre.
+  [[nodiscard]] TrackFlight flight(std::uint32_t number, double in_s) const {
+    TrackFlight flight;
+    flight.vehicle = {3};
+    flight.number = number;
+    TimedPath& timed = flight.plan.timed;
+    timed.start_time = now + from_seconds(in_s);
+    timed.speed_mps = 20.0;
+    timed.path.start = plan->timed.pose_at(timed.start_time);
+    EXPECT_TRUE(timed.path.append(Segment{0.0, 1000.0}));
+    timed.paces.push_back(1.2);
+    timed.paces.push_back(1.0);
+    timed.tail_curvature_per_m = 1.0 / 200.0;
+    flight.joined = timed.start_time + std::chrono::seconds{10};
+    return flight;
+  }
+  [[nodiscard]] bool on_straight() const {
+    return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
+  }
+  void distance_m(double metres) { state_.distance_flown_m = metres; }
+
+  Instant now = at_seconds(1.0);
+  std::optional<FlightPlan> plan;
+  std::vector<MissionEvent> events;
+  std::optional<FormationStatus> status;
+
+ private:
+  void drain() {
+    while (const auto guidance = agent_.poll_guidance()) plan = std::get<FlightPlan>(*guidance);
+    while (const auto event = agent_.poll_event()) events.push_back(*event);
+    while (const auto message = agent_.poll_message()) {
+      if (const auto* said = std::get_if<FormationStatus>(&*message)) status = *said;
+    }
+  }
+
+  VehicleState state_;
+  TrackAgent agent_;
+};
+
+TEST(TrackAgent, OrbitsUntilItIsGivenAFlight) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  ASSERT_TRUE(cockpit.plan);
+  EXPECT_NE(cockpit.plan->timed.tail_curvature_per_m, 0.0);
+  ASSERT_TRUE(cockpit.status);
+  EXPECT_TRUE(cockpit.status->at_rest);
+  EXPECT_EQ(cockpit.status->progress.change, 0U);
+}
+
+TEST(TrackAgent, FliesItsFlightFromTheMomentItBegins) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(7, 2.0));
+  EXPECT_EQ(cockpit.status->progress.change, 7U);
+  EXPECT_FALSE(cockpit.on_straight());
+  cockpit.fly(1.9);
+  EXPECT_FALSE(cockpit.on_straight());
+  cockpit.fly(0.3);
+  EXPECT_TRUE(cockpit.on_straight());
+  cockpit.fly(11.0);
+  EXPECT_EQ(cockpit.events.back().kind(), EventKind::place_reached);
+  EXPECT_FALSE(cockpit.status->at_rest);
+  // To the end, 1000 m at 24 m/s, and around the orbit there.
+  cockpit.fly(40.0);
+  EXPECT_TRUE(cockpit.status->at_rest);
+  EXPECT_LT(cockpit.status->progress.off_m, 1e-6);
+}
+
+TEST(TrackAgent, RefusesWhatItCannotFlyOrWhatBeginsElsewhere) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  TrackFlight elsewhere = cockpit.flight(1, 2.0);
+  elsewhere.plan.timed.path.start.x_m += 5.0;
+  TrackFlight fast = cockpit.flight(2, 2.0);
+  fast.plan.timed.paces[0] = 1.6;
+  TrackFlight late = cockpit.flight(3, -1.5);
+  const std::vector<TrackFlight> bad{elsewhere, fast, late};
+  const std::vector<event::ChangeRefusal> why{event::ChangeRefusal::begins_elsewhere,
+                                              event::ChangeRefusal::too_fast,
+                                              event::ChangeRefusal::begins_elsewhere};
+  for (std::size_t i = 0; i < bad.size(); ++i) {
+    cockpit.tell(bad[i]);
+    cockpit.tell(bad[i]);  // it is said once
+    ASSERT_EQ(cockpit.events.size(), i + 1);
+    EXPECT_EQ(std::get<event::ChangeRefused>(cockpit.events.back().body).why, why[i]);
+  }
+  // Tighter than it turns, or without an orbit at its end, it was planned by nobody.
+  TrackFlight tight = cockpit.flight(4, 2.0);
+  tight.plan.timed.tail_curvature_per_m = 1.0 / 50.0;
+  TrackFlight endless = cockpit.flight(5, 2.0);
+  endless.plan.timed.tail_curvature_per_m = 0.0;
+  TrackFlight unpaced = cockpit.flight(6, 2.0);
+  unpaced.plan.timed.paces.pop_back();
+  for (const TrackFlight& flight : {tight, endless, unpaced}) cockpit.tell(flight);
+  cockpit.fly(3.0);
+  EXPECT_EQ(cockpit.events.size(), bad.size());
+  EXPECT_FALSE(cockpit.on_straight());
+}
+
+TEST(TrackAgent, HoldsAtOnceAndTakesNothingUpUntilItMayGoOn) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(5.0);
+  ASSERT_TRUE(cockpit.on_straight());
+  cockpit.tell(Command{{3}, 9000, CommandKind::hold});
+  cockpit.fly(1.0);
+  EXPECT_FALSE(cockpit.on_straight());
+  EXPECT_TRUE(cockpit.status->at_rest);
+  cockpit.tell(cockpit.flight(2, 1.0));
+  EXPECT_EQ(std::get<event::ChangeRefused>(cockpit.events.back().body).why,
+            event::ChangeRefusal::obeys_others);
+  cockpit.tell(Command{{3}, 9001, CommandKind::resume});
+  cockpit.tell(cockpit.flight(2, 1.0));
+  cockpit.fly(2.0);
+  EXPECT_TRUE(cockpit.on_straight());
+}
+
+TEST(TrackAgent, LeavesTheFormationForAHazardInItsWay) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(2.0);
+  ASSERT_TRUE(cockpit.on_straight());
+  const Vec2 aside = cockpit.plan->timed.pose_at(cockpit.now).position() + Vec2{5000.0, 5000.0};
+  cockpit.tell(HazardReport{{{1}, aside, 100.0}});
+  EXPECT_TRUE(cockpit.on_straight());
+  const Vec2 ahead = cockpit.plan->timed.pose_at_distance(900.0).position();
+  cockpit.tell(HazardReport{{{2}, ahead, 50.0}});
+  EXPECT_FALSE(cockpit.on_straight());
+  cockpit.fly(1.0);
+  EXPECT_TRUE(cockpit.status->at_rest);
+}
+
+TEST(TrackAgent, ComesHomeWhenItsRangeIsSpent) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(20.0);
+  cockpit.distance_m(19'900.0);
+  cockpit.fly(2.0);
+  EXPECT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
+  EXPECT_FALSE(cockpit.on_straight());
+}
+
+}  // namespace
+}  // namespace skein::mission
