@@ -54,7 +54,7 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
   const bool in_flight = armed_ && airborne();
   const bool from_ground = params_.take_over == TakeOver::from_ground;
   const bool waits_landed =
-      !armed_ && !airborne() && (taken_by_others_ || (from_ground && launch_spent_));
+      !armed_ && !airborne() && (custody_.by_others() || (from_ground && !custody_.may_launch()));
   AutopilotNotice refusal{AutopilotNews::not_given_back};
   if (machine_.in(State::duplicated)) {
     if (duplicate_at_ && now - *duplicate_at_ < kDuplicateGone) {
@@ -64,7 +64,7 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
   } else if (!machine_.accepts(Event::given_back)) {
     refusal.refusal = GiveBackRefusal::wrong_state;
     refusal.detail = to_string(machine_.state());
-  } else if (taken_by_others_ && issued < taken_at_) {
+  } else if (custody_.by_others() && issued < taken_at_) {
     refusal.refusal = GiveBackRefusal::taken_since;
   } else if (!navigation_healthy()) {
     refusal.refusal = GiveBackRefusal::no_position;
@@ -79,12 +79,12 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
     fire(Event::given_back, now);
     return true;
   }
-  taken_by_others_ = false;
   if (in_flight) {
+    custody_.fire(Custody::Event::given_back);
     fire(Event::given_back, now);
     return true;
   }
-  launch_spent_ = false;
+  custody_.fire(Custody::Event::given_back_landed);
   say(false, {AutopilotNews::given_back_landed}, now);
   if (machine_.in(State::piloted)) fire(Event::given_back_landed, now);
   return true;
@@ -120,7 +120,7 @@ void Companion::Impl::step(Instant now) {
       fly(now);
       break;
     case State::landing:
-      if (!mode_confirmed_) ask_for_mode(land_mode(), now);
+      if (!entry_.mode_confirmed) ask_for_mode(land_mode(), now);
       break;
     default:
       break;
@@ -154,17 +154,16 @@ void Companion::Impl::watch_silence(Instant now) {
 }
 
 void Companion::Impl::prepare(Instant now) {
-  if (!asked_streams_ || (desk_.idle() && now - asked_streams_at_ >= kAskAgain)) {
-    asked_streams_ = true;
-    asked_streams_at_ = now;
+  if (!streams_asked_at_ || (desk_.idle() && now - *streams_asked_at_ >= kAskAgain)) {
+    streams_asked_at_ = now;
     ask_streams();
-    if (!firmware_settled_) {
+    if (firmware_ != Firmware::accepted) {
       ask(command_of(Command::request_message, mavlink::AutopilotVersion::kDefinition.id), {},
           false);
     }
   }
-  const bool clock_known = clock_.synchronised() || now - asked_streams_at_ >= kAskAgain / 2;
-  if (desk_.idle() && clock_known && has_health_ && motion_.sample()) fire(Event::ready, now);
+  const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
+  if (desk_.idle() && clock_known && sensors_ && motion_.sample()) fire(Event::ready, now);
 }
 
 void Companion::Impl::ask_streams() {
@@ -193,7 +192,7 @@ bool Companion::Impl::high() const {
 }
 
 void Companion::Impl::stand_by(Instant now) {
-  if (taken_by_others_ || !navigation_healthy()) return;
+  if (custody_.by_others() || !navigation_healthy()) return;
   const bool in_flight = armed_ && airborne();
   switch (params_.take_over) {
     case TakeOver::when_guided:
@@ -203,11 +202,11 @@ void Companion::Impl::stand_by(Instant now) {
       if (in_flight) fire(guided() ? Event::guided : Event::may_take, now);
       break;
     case TakeOver::from_ground: {
-      const bool may_arm = (sensors_health_ & mavlink::sensor_prearm_check) != 0 ||
-                           (sensors_enabled_ & mavlink::sensor_prearm_check) == 0;
-      if (own_flight_ && in_flight && high()) {
+      const bool may_arm = (sensors_->healthy & mavlink::sensor_prearm_check) != 0 ||
+                           (sensors_->enabled & mavlink::sensor_prearm_check) == 0;
+      if (custody_.own_flight() && in_flight && high()) {
         fire(guided() ? Event::guided : Event::may_take, now);
-      } else if (!launch_spent_ && !armed_ && !airborne() && may_arm) {
+      } else if (custody_.may_launch() && !armed_ && !airborne() && may_arm) {
         fire(Event::may_launch, now);
       }
       break;
@@ -218,22 +217,22 @@ void Companion::Impl::stand_by(Instant now) {
 }
 
 void Companion::Impl::arm(Instant now) {
-  if (now < retry_at_) return;
-  if (retries_++ >= kArmRetries) return fire(Event::not_obeyed, now);
-  retry_at_ = now + kRetryPeriod;
+  if (now < entry_.retry_at) return;
+  if (entry_.retries++ >= kArmRetries) return fire(Event::not_obeyed, now);
+  entry_.retry_at = now + kRetryPeriod;
   if (mode_ != takeoff_mode(params_.airframe)) {
     ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod},
         true);
   } else {
-    arm_asked_ = true;
+    entry_.arm_asked = true;
     ask(command_of(Command::component_arm_disarm, 1), {1, kRetryPeriod}, true);
   }
 }
 
 void Companion::Impl::ask_for_mode(std::uint32_t mode, Instant now) {
-  if (now < retry_at_) return;
-  if (retries_++ >= kRetries) return fire(Event::not_obeyed, now);
-  retry_at_ = now + kRetryPeriod;
+  if (now < entry_.retry_at) return;
+  if (entry_.retries++ >= kRetries) return fire(Event::not_obeyed, now);
+  entry_.retry_at = now + kRetryPeriod;
   ask(command_of(Command::do_set_mode, 1, mode), {1, kRetryPeriod}, true);
 }
 
@@ -349,11 +348,9 @@ AutopilotNotice Companion::Impl::why_piloted(State from, Event event) const {
 }
 
 Given Companion::Impl::given() const {
-  if (taken_by_others_) return Given::taken_by_others;
-  if (params_.take_over != TakeOver::from_ground || !launch_spent_ || own_flight_) {
-    return Given::yes;
-  }
-  return Given::launch_spent;
+  if (custody_.by_others()) return Given::taken_by_others;
+  const bool spent = custody_.state() == Custody::State::spent;
+  return params_.take_over == TakeOver::from_ground && spent ? Given::launch_spent : Given::yes;
 }
 
 void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
@@ -370,7 +367,7 @@ void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
 }
 
 void Companion::Impl::begin_climb(Instant now) {
-  own_flight_ = true;
+  custody_.fire(Custody::Event::launched);
   climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
   say(false, {AutopilotNews::taking_off}, now);
   if (params_.airframe != Airframe::copter) return;
@@ -381,9 +378,8 @@ void Companion::Impl::begin_climb(Instant now) {
 
 void Companion::Impl::enter_piloted(State from, Event event, Instant now) {
   if (from != State::checking) desk_.clear();
-  taken_by_others_ = true;
+  custody_.fire(Custody::Event::taken_by_others);
   taken_at_ = now;
-  launch_spent_ = true;
   say(true, why_piloted(from, event), now);
 }
 
@@ -399,14 +395,9 @@ void Companion::Impl::enter_loss(State from, std::uint32_t mode_before, Instant 
 }
 
 void Companion::Impl::entered(State from, Event event, Instant now) {
-  const std::uint32_t mode_before = mode_at_entry_;
-  retry_at_ = now;
-  retries_ = 0;
-  mode_at_entry_ = mode_;
-  mode_confirmed_ = false;
-  arm_asked_ = false;
-  clock_heard_ = false;
-  if (from == State::arming) launch_spent_ = true;
+  const std::uint32_t mode_before = entry_.mode;
+  entry_ = {.mode = mode_, .retry_at = now};
+  if (from == State::arming) custody_.fire(Custody::Event::in_use);
   switch (machine_.state()) {
     case State::searching:
       reset_link();

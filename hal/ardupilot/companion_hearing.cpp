@@ -51,12 +51,13 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto hud = mavlink::decode<mavlink::VfrHud>(packet)) {
     motion_.on_hud(*hud, now);
   } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
-    has_health_ = true;
-    sensors_enabled_ = status->onboard_control_sensors_enabled;
-    sensors_health_ = status->onboard_control_sensors_health;
+    sensors_ = {.enabled = status->onboard_control_sensors_enabled,
+                .healthy = status->onboard_control_sensors_health};
   } else if (const auto extended = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
     landed_ = static_cast<mavlink::LandedState>(extended->landed_state);
-    if (landed_ != mavlink::LandedState::undefined && airborne()) launch_spent_ = true;
+    if (landed_ != mavlink::LandedState::undefined && airborne()) {
+      custody_.fire(Custody::Event::in_use);
+    }
   } else if (const auto timesync = mavlink::decode<mavlink::Timesync>(packet)) {
     on_timesync(*timesync, now);
   } else if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
@@ -83,12 +84,9 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
                                    const mavlink::Packet& packet, Instant now) {
   mode_ = heartbeat.custom_mode;
   armed_ = (heartbeat.base_mode & mavlink::mode_safety_armed) != 0;
-  if (armed_) {
-    launch_spent_ = true;
-  } else {
-    own_flight_ = false;
-  }
-  if (machine_.in(State::searching) || (machine_.in(State::refused) && !firmware_refused_)) {
+  custody_.fire(armed_ ? Custody::Event::in_use : Custody::Event::disarmed);
+  const bool looks_again = machine_.in(State::refused) && firmware_ != Firmware::refused;
+  if (machine_.in(State::searching) || looks_again) {
     std::optional<AutopilotNotice> wrong;
     if (heartbeat.autopilot != static_cast<std::uint8_t>(mavlink::Autopilot::ardupilotmega)) {
       wrong = {.news = AutopilotNews::wrong_make, .number = heartbeat.autopilot};
@@ -113,12 +111,12 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
 void Companion::Impl::on_mode(Instant now) {
   switch (machine_.state()) {
     case State::arming:
-      if (armed_ && arm_asked_ && mode_ == takeoff_mode(params_.airframe)) {
+      if (armed_ && entry_.arm_asked && mode_ == takeoff_mode(params_.airframe)) {
         fire(Event::armed, now);
-      } else if (armed_ || airborne() || mode_changed(mode_at_entry_)) {
+      } else if (armed_ || airborne() || mode_changed(entry_.mode)) {
         fire(Event::other_mode, now);
       } else if (mode_ == takeoff_mode(params_.airframe)) {
-        mode_confirmed_ = true;
+        entry_.mode_confirmed = true;
       }
       break;
     case State::climbing:
@@ -133,7 +131,7 @@ void Companion::Impl::on_mode(Instant now) {
         fire(Event::disarmed, now);
       } else if (guided()) {
         fire(Event::guided, now);
-      } else if (mode_ != mode_at_entry_) {
+      } else if (mode_ != entry_.mode) {
         fire(Event::other_mode, now);
       }
       break;
@@ -148,8 +146,8 @@ void Companion::Impl::on_mode(Instant now) {
       if (!armed_) {
         fire(Event::disarmed, now);
       } else if (mode_ == land_mode()) {
-        mode_confirmed_ = true;
-      } else if (mode_confirmed_ || !guided()) {
+        entry_.mode_confirmed = true;
+      } else if (entry_.mode_confirmed || !guided()) {
         fire(Event::other_mode, now);
       }
       break;
@@ -158,7 +156,9 @@ void Companion::Impl::on_mode(Instant now) {
       break;
     case State::duplicated:
       // Whoever changes it now is not the companion, which says nothing.
-      if (is_own(before_loss_) && mode_ != mode_at_entry_) taken_by_others_ = true;
+      if (is_own(before_loss_) && mode_ != entry_.mode) {
+        custody_.fire(Custody::Event::taken_by_others);
+      }
       break;
     default:
       break;
@@ -166,13 +166,13 @@ void Companion::Impl::on_mode(Instant now) {
 }
 
 bool Companion::Impl::mode_changed(std::uint32_t before) const {
-  return mode_ != takeoff_mode(params_.airframe) && (mode_confirmed_ || mode_ != before);
+  return mode_ != takeoff_mode(params_.airframe) && (entry_.mode_confirmed || mode_ != before);
 }
 
 void Companion::Impl::on_check(Instant now) {
   // A HEARTBEAT has no time in it: that of a rebooted autopilot, in its first mode, would pass for
   // the pilot's word. Which boot it is of, the clock says, or the node's uptime.
-  if (!clock_heard_) return;
+  if (!entry_.clock_heard) return;
   switch (before_loss_) {
     case State::flying:
     case State::taking_over: {
@@ -238,16 +238,16 @@ void Companion::Impl::on_timesync(const mavlink::Timesync& timesync, Instant now
 }
 
 void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Instant now) {
-  firmware_ = version.flight_sw_version;
-  if (firmware_settled_) return;
-  firmware_settled_ = true;
-  if ((firmware_ >> 16U) < kFirmwareMin) {
-    say(true, {.news = AutopilotNews::old_firmware, .detail = version_text(firmware_)}, now);
-    firmware_refused_ = true;
+  const std::uint32_t firmware = version.flight_sw_version;
+  if (firmware_ == Firmware::accepted) return;
+  if ((firmware >> 16U) < kFirmwareMin) {
+    firmware_ = Firmware::refused;
+    say(true, {.news = AutopilotNews::old_firmware, .detail = version_text(firmware)}, now);
     if (machine_.in(State::preparing)) fire(Event::wrong_autopilot, now);
     return;
   }
-  say(false, {.news = AutopilotNews::firmware, .detail = version_text(firmware_)}, now);
+  firmware_ = Firmware::accepted;
+  say(false, {.news = AutopilotNews::firmware, .detail = version_text(firmware)}, now);
 }
 
 void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
@@ -273,7 +273,7 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
     if (attitude) streams_granted_ = outcome.answer == Answer::accepted;
   }
   if (command == Command::request_message && outcome.answer != Answer::accepted) {
-    firmware_settled_ = true;
+    firmware_ = Firmware::accepted;
   }
   if (command == Command::do_change_altitude && outcome.answer != Answer::accepted) {
     height_sent_.reset();
@@ -310,14 +310,14 @@ std::optional<Instant> Companion::Impl::measured_at(std::uint32_t time_boot_ms, 
   const Duration boot = milliseconds{time_boot_ms};
   if (boot_ && boot + kBootStep < *boot_) on_reboot(now);
   boot_ = std::max(boot_.value_or(boot), boot);
-  clock_heard_ = true;
+  entry_.clock_heard = true;
   clock_.on_arrival(now, boot);
   return clock_.mission_time(boot, now);
 }
 
 void Companion::Impl::on_reboot(Instant now) {
   reset_link();
-  firmware_refused_ = false;
+  firmware_ = Firmware::unknown;
   if (machine_.accepts(Event::rebooted)) fire(Event::rebooted, now);
 }
 
@@ -335,10 +335,10 @@ void Companion::Impl::reset_link() {
   system_ = 0;
   clock_questions_ = 0;
   clock_asked_.clear();
-  asked_streams_ = false;
+  streams_asked_at_.reset();
   streams_granted_ = false;
-  has_health_ = false;
-  firmware_settled_ = false;
+  sensors_.reset();
+  if (firmware_ == Firmware::accepted) firmware_ = Firmware::unknown;
   refusal_.reset();
   landed_ = mavlink::LandedState::undefined;
 }

@@ -8,6 +8,7 @@
 
 #include "boot_clock.hpp"
 #include "command_desk.hpp"
+#include "custody.hpp"
 #include "flight_modes.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
@@ -116,7 +117,7 @@ class Companion::Impl {
   [[nodiscard]] bool high() const;
   [[nodiscard]] bool navigation_healthy() const {
     // An ArduPilot without a GNSS does not count it among what is enabled.
-    return (sensors_enabled_ & sensors_health_ & kNavigation) == kNavigation;
+    return sensors_ && (sensors_->enabled & sensors_->healthy & kNavigation) == kNavigation;
   }
   [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
   void ask(const mavlink::CommandLong& command, const Patience& patience, bool latest);
@@ -144,41 +145,42 @@ class Companion::Impl {
   Instant packet_heard_;
   std::bitset<256> refused_systems_;
   std::uint32_t mode_ = 0;
-  std::uint32_t firmware_ = 0;
-  std::uint8_t system_ = 0;  ///< once it has been found
+  enum class Firmware : std::uint8_t { unknown, accepted, refused };
+  Firmware firmware_ = Firmware::unknown;  ///< accepted too where the autopilot does not tell
+  std::uint8_t system_ = 0;                ///< once it has been found
   bool armed_ = false;
-  bool firmware_settled_ = false;
-  bool firmware_refused_ = false;
-  bool has_health_ = false;
   bool streams_granted_ = false;
-  std::uint32_t sensors_enabled_ = 0;
-  std::uint32_t sensors_health_ = 0;
+  struct Sensors {
+    std::uint32_t enabled = 0;
+    std::uint32_t healthy = 0;
+  };
+  std::optional<Sensors> sensors_;
   mavlink::LandedState landed_ = mavlink::LandedState::undefined;
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
-  bool clock_heard_ = false;      ///< and not younger than that, since this state was entered
   std::string last_text_;
   std::optional<Instant> last_text_at_;
   std::uint16_t text_id_ = 0;
 
   // What was asked and done.
-  bool asked_streams_ = false;
-  bool mode_confirmed_ = false;
-  bool arm_asked_ = false;        ///< in this state
-  bool taken_by_others_ = false;  ///< until the operator gives it back: no reboot changes that
-  bool launch_spent_ = false;     ///< seen armed or in the air, or broken off: never twice unasked
-  bool own_flight_ = false;       ///< the companion has launched it, and it was not disarmed since
+  Custody custody_;
+  struct SinceEntry {             ///< of the state
+    std::uint32_t mode = 0;       ///< when it was entered
+    bool mode_confirmed = false;  ///< the one that was asked for has been heard
+    bool arm_asked = false;
+    bool clock_heard = false;  ///< and not younger than the newest before it
+    int retries = 0;
+    Instant retry_at;
+  };
+  SinceEntry entry_;
   std::uint8_t duplicate_node_ = 0;
   State before_loss_ = State::standing_by;
   std::uint32_t mode_before_loss_ = 0;  ///< when that state was entered
   int clock_questions_ = 0;
-  int retries_ = 0;
-  std::uint32_t mode_at_entry_ = 0;
   Instant lost_at_{};
   Instant heartbeat_at_;
   Instant clock_at_;
   std::vector<Instant> clock_asked_;  ///< and not yet answered
-  Instant asked_streams_at_;
-  Instant retry_at_;
+  std::optional<Instant> streams_asked_at_;
   Instant taken_at_;
   Instant climb_by_;
   std::optional<Instant> duplicate_at_;

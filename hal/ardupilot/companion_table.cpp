@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 
+#include "custody.hpp"
 #include "skein/ardupilot/companion.hpp"
 
 namespace skein::ardupilot {
@@ -101,6 +102,18 @@ std::string_view to_string(Companion::State state) {
 }
 std::string_view to_string(Companion::Event event) {
   return kEventNames.at(static_cast<std::size_t>(event));
+}
+
+std::string_view to_string(Custody::State state) {
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(Custody::State::count)>
+      kNames{"fresh", "ours", "spent", "taken_ours", "taken"};
+  return kNames.at(static_cast<std::size_t>(state));
+}
+std::string_view to_string(Custody::Event event) {
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(Custody::Event::count)>
+      kNames{"in_use",          "launched",   "disarmed",
+             "taken_by_others", "given_back", "given_back_landed"};
+  return kNames.at(static_cast<std::size_t>(event));
 }
 
 }  // namespace skein::ardupilot

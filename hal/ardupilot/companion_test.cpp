@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "companion_line.hpp"
+#include "custody.hpp"
 #include "skein/base/random.hpp"
 
 namespace skein::ardupilot {
@@ -705,14 +706,48 @@ TEST(CompanionTable, ReachesEveryStateUnambiguously) {
   }
 }
 
-/// After a change of the table, paste what this prints into docs/ardupilot.md.
+/// After a change of a table, paste what this prints into docs/ardupilot.md.
 TEST(CompanionTable, IsDrawnInTheDocument) {
   std::ifstream file{SKEIN_SOURCE_DIR "/docs/ardupilot.md"};
   std::stringstream document;
   document << file.rdbuf();
-  const auto diagram = mermaid<State, Event>(Companion::table(), State::searching);
-  EXPECT_NE(document.str().find(diagram), std::string::npos) << "docs/ardupilot.md lacks:\n"
-                                                             << diagram;
+  for (const std::string& diagram :
+       {mermaid<State, Event>(Companion::table(), State::searching),
+        mermaid<Custody::State, Custody::Event>(Custody::kTable, Custody::State::fresh)}) {
+    EXPECT_NE(document.str().find(diagram), std::string::npos) << "docs/ardupilot.md lacks:\n"
+                                                               << diagram;
+  }
+}
+
+TEST(Custody, LaunchesOnceUnasked) {
+  using C = Custody;
+  C custody;
+  EXPECT_TRUE(custody.may_launch());
+  custody.fire(C::Event::in_use);  // its launch
+  custody.fire(C::Event::launched);
+  EXPECT_TRUE(custody.own_flight());
+  custody.fire(C::Event::disarmed);
+  EXPECT_FALSE(custody.may_launch());
+  custody.fire(C::Event::given_back_landed);
+  EXPECT_TRUE(custody.may_launch());
+}
+
+TEST(Custody, WhatOthersTookStaysTheirsUntilItIsGivenBack) {
+  using C = Custody;
+  C custody;
+  custody.fire(C::Event::launched);
+  custody.fire(C::Event::taken_by_others);
+  for (const auto event : {C::Event::in_use, C::Event::launched, C::Event::taken_by_others}) {
+    custody.fire(event);
+    EXPECT_EQ(custody.state(), C::State::taken_ours);
+  }
+  custody.fire(C::Event::given_back);
+  EXPECT_TRUE(custody.own_flight());
+  custody.fire(C::Event::taken_by_others);
+  custody.fire(C::Event::disarmed);
+  EXPECT_TRUE(custody.by_others());
+  custody.fire(C::Event::given_back);
+  EXPECT_FALSE(custody.own_flight() || custody.may_launch() || custody.by_others());
 }
 
 }  // namespace
