@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "skein/base/angles.hpp"
 
@@ -24,28 +25,44 @@ struct Nearest {
   double curvature_soon_per_m = 0.0;  ///< where it is when a turn begun now is flown
 };
 
+/// A pose of the plan, and the direction of its heading.
+struct PlanPose {
+  Pose2 pose;
+  Vec2 forward;
+};
+
 /// The plan's poses, as TimedPath::pose_at_distance() and with the same roundings, but pieces that
-/// lie before all that is asked for are integrated once.
+/// lie before all that is asked for are integrated once, and straight ones have one direction.
 class PlanPoses {
  public:
   explicit PlanPoses(const TimedPath& plan)
       : plan_{plan}, length_m_{plan.path.length_m()}, start_{plan.path.start} {}
-  [[nodiscard]] Pose2 at(double distance_m) {
+  [[nodiscard]] PlanPose at(double distance_m) {
     const auto& segments = plan_.path.segments;
     double left = std::max(distance_m, 0.0);
     std::size_t piece = 0;
     while (piece < segments.size() && left > segments[piece].length_m)
       left -= segments[piece++].length_m;
     go_to(piece);
-    const Pose2 pose =
-        piece < segments.size() ? advance(start_, segments[piece].curvature_per_m, left) : start_;
-    return distance_m <= length_m_
-               ? pose
-               : advance(pose, plan_.tail_curvature_per_m, distance_m - length_m_);
+    if (piece < segments.size()) return along(segments[piece].curvature_per_m, left);
+    if (distance_m <= length_m_) return along(0.0, 0.0);
+    return along(plan_.tail_curvature_per_m, distance_m - length_m_);
   }
 
  private:
+  [[nodiscard]] PlanPose along(double curvature_per_m, double distance_m) {
+    if (curvature_per_m == 0.0 && wrap_pi(start_.heading_rad) == start_.heading_rad) {
+      if (!forward_) forward_ = unit_vector(start_.heading_rad);
+      return {{start_.x_m + distance_m * forward_->x(), start_.y_m + distance_m * forward_->y(),
+               start_.heading_rad},
+              *forward_};
+    }
+    const Pose2 pose = advance(start_, curvature_per_m, distance_m);
+    return {pose, unit_vector(pose.heading_rad)};
+  }
   void go_to(std::size_t piece) {
+    if (piece == piece_) return;
+    forward_.reset();
     if (piece < piece_) {
       piece_ = 0;
       start_ = plan_.path.start;
@@ -59,7 +76,8 @@ class PlanPoses {
   const TimedPath& plan_;
   double length_m_;
   std::size_t piece_ = 0;
-  Pose2 start_;  ///< of that piece
+  Pose2 start_;                  ///< of that piece
+  std::optional<Vec2> forward_;  ///< there, once it was asked for
 };
 
 Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double lead_m = 0.0) {
@@ -68,8 +86,7 @@ Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double
   double distance_m = on_time_m;
   Nearest result;
   for (int step = 0; step <= kNearestSteps; ++step) {
-    const Pose2 pose = poses.at(distance_m);
-    const Vec2 forward = unit_vector(pose.heading_rad);
+    const auto [pose, forward] = poses.at(distance_m);
     const Vec2 offset = position - pose.position();
     result = {on_time_m,
               distance_m - on_time_m,

@@ -78,18 +78,12 @@ autopilot::PositionTarget motion_of(const Target& t) {
 }  // namespace
 
 CopterVehicle::CopterVehicle(const EmulatorConfig& config, const Earth& earth, Instant now)
-    : earth_{earth},
-      hold_until_{config.airborne ? config.hold_until : Instant::min()},
-      ekf_origin_m_{ned_from_enu({config.start.x_m, config.start.y_m, 0.0})},
-      air_{config},
-      senses_{config},
+    : AutopilotVehicle{config, earth, params_of(config), now},
+      ekf_origin_m_{report_.home_m},
       aircraft_{at_start(config)},
-      flown_to_{now},
       params_{params_of(config)},
-      autopilot_{params_},
       rotors_{aircraft_.speeds_radps()} {
-  report_.home_m = ekf_origin_m_;
-  sense();
+  sense(aircraft_);
   const auto mode = autopilot::copter_mode(mode_named(config.airframe, config.mode).value_or(0));
   start_autopilot(now, config.airborne, mode.value_or(CopterMode::stabilize));
 }
@@ -124,20 +118,15 @@ void CopterVehicle::restart(Instant now) {
 }
 
 void CopterVehicle::coast(Instant now) {
-  if (held(now)) {
-    flown_to_ = now;
-    return;
-  }
-  flown_to_ = std::max(flown_to_, hold_until_);
-  for (; flown_to_ + period() <= now; flown_to_ += period()) {
-    air_.step(aircraft_.state(), to_seconds(period()));
-    aircraft_.step(rotors_, air_.wind_ned_mps(), to_seconds(period()));
-  }
+  fly_until(now, period(), [this](double seconds) {
+    air_.step(aircraft_.state(), seconds);
+    aircraft_.step(rotors_, air_.wind_ned_mps(), seconds);
+  });
 }
 
 void CopterVehicle::control(Instant now) {
   coast(now);
-  sense();
+  sense(aircraft_);
   if (!held(now)) {
     autopilot_.set_sticks({.throttle = report_.flying ? kStickMiddle : 0.0});
     const autopilot::RotorCommand command = autopilot_.step(report_.estimate, now);
@@ -146,12 +135,6 @@ void CopterVehicle::control(Instant now) {
     }
   }
   tell();
-}
-
-void CopterVehicle::sense() {
-  report_.estimate =
-      senses_.estimate(aircraft_.state(), aircraft_.specific_force(air_.wind_ned_mps()),
-                       air_.airspeed_mps(aircraft_.state()), to_seconds(period()));
 }
 
 void CopterVehicle::tell() {
@@ -176,27 +159,6 @@ autopilot::CommandResult CopterVehicle::select_mode(std::uint32_t number) {
   tell();
   return result;
 }
-
-autopilot::CommandResult CopterVehicle::arm() {
-  const bool was_armed = autopilot_.armed();
-  const auto result = autopilot_.arm();
-  if (!was_armed && autopilot_.armed()) report_.home_m = report_.estimate.position_m;
-  tell();
-  return result;
-}
-
-autopilot::CommandResult CopterVehicle::disarm(bool force) {
-  const auto result = autopilot_.disarm(force);
-  tell();
-  return result;
-}
-
-void CopterVehicle::set_health(const autopilot::Health& health) {
-  health_ = health;
-  autopilot_.set_health(health);
-}
-
-std::optional<autopilot::Notice> CopterVehicle::poll_notice() { return autopilot_.poll_notice(); }
 
 CommandResult CopterVehicle::command(const mavlink::CommandInt& c) {
   using mavlink::Command;

@@ -73,16 +73,10 @@ Result<std::unique_ptr<Vehicle>> PlaneVehicle::make(const EmulatorConfig& config
 
 PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
                            const models::Trim& trim, Instant now)
-    : earth_{earth},
-      hold_until_{config.airborne ? config.hold_until : Instant::min()},
-      air_{config},
-      senses_{config},
+    : AutopilotVehicle{config, earth, params_of(config), now},
       aircraft_{at_start(config, trim)},
-      flown_to_{now},
-      params_{params_of(config)},
-      autopilot_{params_} {
-  report_.home_m = ned_from_enu({config.start.x_m, config.start.y_m, 0.0});
-  sense(to_seconds(period()));
+      params_{params_of(config)} {
+  sense(aircraft_);
   const auto mode = autopilot::plane_mode(mode_named(config.airframe, config.mode).value_or(0));
   start_autopilot(now, mode.value_or(PlaneMode::manual));
 }
@@ -103,34 +97,23 @@ void PlaneVehicle::start_autopilot(Instant now, PlaneMode mode) {
 void PlaneVehicle::restart(Instant now) { start_autopilot(now, PlaneMode::loiter); }
 
 void PlaneVehicle::coast(Instant now) {
-  if (held(now)) {
-    flown_to_ = now;
-    return;
-  }
-  flown_to_ = std::max(flown_to_, hold_until_);
   const models::FixedWingInput input{surfaces_.elevator_rad, surfaces_.aileron_rad,
                                      surfaces_.rudder_rad, surfaces_.throttle};
-  for (; flown_to_ + kModelStep <= now; flown_to_ += kModelStep) {
-    air_.step(aircraft_.state(), to_seconds(kModelStep));
-    aircraft_.step(input, air_.wind_ned_mps(), to_seconds(kModelStep));
-  }
+  fly_until(now, kModelStep, [&](double seconds) {
+    air_.step(aircraft_.state(), seconds);
+    aircraft_.step(input, air_.wind_ned_mps(), seconds);
+  });
 }
 
 void PlaneVehicle::control(Instant now) {
   coast(now);
-  sense(to_seconds(period()));
+  sense(aircraft_);
   if (!held(now)) {
     // The hands of a pilot who does not steer.
     autopilot_.set_sticks({.throttle = report_.flying ? params_.tuning.throttle_level : 0.0});
     surfaces_ = autopilot_.step(report_.estimate, now);
   }
   tell();
-}
-
-void PlaneVehicle::sense(double seconds) {
-  report_.estimate =
-      senses_.estimate(aircraft_.state(), aircraft_.specific_force(air_.wind_ned_mps()),
-                       air_.airspeed_mps(aircraft_.state()), seconds);
 }
 
 void PlaneVehicle::tell() {
@@ -156,29 +139,10 @@ autopilot::CommandResult PlaneVehicle::select_mode(std::uint32_t number) {
   return result;
 }
 
-autopilot::CommandResult PlaneVehicle::arm() {
-  const bool was_armed = autopilot_.armed();
-  const auto result = autopilot_.arm();
-  if (!was_armed && autopilot_.armed()) {
-    report_.home_m = report_.estimate.position_m;
-    if (autopilot_.status().flying) report_.home_m.z() = 0.0;
-  }
-  tell();
-  return result;
+Vec3 PlaneVehicle::home_of(const Vec3& position_m) const {
+  if (!autopilot_.status().flying) return position_m;
+  return {position_m.x(), position_m.y(), 0.0};
 }
-
-autopilot::CommandResult PlaneVehicle::disarm(bool force) {
-  const auto result = autopilot_.disarm(force);
-  tell();
-  return result;
-}
-
-void PlaneVehicle::set_health(const autopilot::Health& health) {
-  health_ = health;
-  autopilot_.set_health(health);
-}
-
-std::optional<autopilot::Notice> PlaneVehicle::poll_notice() { return autopilot_.poll_notice(); }
 
 CommandResult PlaneVehicle::command(const mavlink::CommandInt& c) {
   using mavlink::Command;

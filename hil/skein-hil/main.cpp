@@ -16,6 +16,17 @@ namespace {
 
 // Each adds one command with its options; what the command returns becomes the status.
 
+template <class Count>
+void add_jobs(CLI::App& command, Count& jobs, const std::string& what) {
+  command.add_option("--jobs", jobs, what + " at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+}
+
+template <class Seed>
+void add_first_seed(CLI::App& command, const std::string& name, Seed& seed) {
+  command.add_option(name, seed, "Of the first run; then + 1")->capture_default_str();
+}
+
 void add_run(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<RunArguments>();
   arguments->programs = std::filesystem::canonical("/proc/self/exe").parent_path();
@@ -77,8 +88,7 @@ void add_simulate(CLI::App& app, const std::string& program, int& status) {
                    "Fly it so often, with the seeds SEED, SEED + 1, ..., and print a summary")
       ->check(CLI::Range(1, 10'000'000))
       ->excludes(trace);
-  command->add_option("--jobs", arguments->jobs, "Missions at a time (default: one for each core)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(*command, arguments->jobs, "Missions");
   command->footer(
       "The same file and seed print the same bytes. Every mission is judged; ends with status 0\n"
       "only if every check held; 1 if one failed, 2 for bad input.\n"
@@ -112,10 +122,8 @@ void add_changes(CLI::App& app, const std::string& program, int& status) {
   command->add_option("--runs", arguments->runs, "How many changes, of 5 to 100 vehicles")
       ->check(CLI::Range(1, 10'000'000))
       ->capture_default_str();
-  command->add_option("--first-seed", arguments->first_seed, "Of the first; then + 1")
-      ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "Changes at a time (default: one for each core)")
-      ->check(CLI::Range(1, 1024));
+  add_first_seed(*command, "--first-seed", arguments->first_seed);
+  add_jobs(*command, arguments->jobs, "Changes");
   command->footer(
       "Ends with status 0 if nobody comes nearer than separation and reserve, 1 if somebody does.\n"
       "Example: skein-hil changes --runs 10000");
@@ -130,8 +138,7 @@ void add_sweep(CLI::App& app, int& status) {
   command->add_option("--out", arguments->folder, "Folder of the results (default: runs/NAME)");
   command->add_option("--runs", arguments->runs, "Draws of each cell, in place of the file's")
       ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--jobs", arguments->jobs, "Missions at a time (default: one for each core)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(*command, arguments->jobs, "Missions");
   command->footer(
       "Writes runs.csv (a row after every run), cells.csv (means with 95 % intervals) and a plot\n"
       "of each measure. What is in the folder is not flown again: after an interruption, or to "
@@ -160,8 +167,7 @@ void add_swap(CLI::App& app, int& status) {
   command->add_option("--seeds", arguments->seeds, "Runs of each method and number")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_option("--first-seed", arguments->first_seed, "Of the first run; then + 1")
-      ->capture_default_str();
+  add_first_seed(*command, "--first-seed", arguments->first_seed);
   command
       ->add_option("--radius", arguments->radius_m,
                    "Of the circle, m (default: 10 for 5 agents, 40 for 32, 100 for 100, 200 for "
@@ -183,8 +189,7 @@ void add_swap(CLI::App& app, int& status) {
   command->add_option("--csv", arguments->csv, "File to write, a row for each run");
   command->add_option("--plots", arguments->plots,
                       "Folder for the tracks of the first seed, as SVG");
-  command->add_option("--jobs", arguments->jobs, "Runs at a time (default: one for each core)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(*command, arguments->jobs, "Runs");
   command->footer(
       "t/T is the time until all are there over that of a straight way without others. Distances\n"
       "are judged in continuous time. The same seed gives the same run. Ends with status 0 if no\n"
@@ -211,12 +216,10 @@ void add_routes(CLI::App& app, int& status) {
   command->add_option("--runs", arguments->runs, "Runs of everything, in place of a quick look's")
       ->check(CLI::Range(1, 100'000))
       ->excludes(paper);
-  command->add_option("--seed", arguments->seed, "Of the first run; then + 1")
-      ->capture_default_str();
+  add_first_seed(*command, "--seed", arguments->seed);
   command->add_option("--out", arguments->folder, "Folder of the tables and figures")
       ->capture_default_str();
-  command->add_option("--jobs", arguments->jobs, "Runs at a time (default: one for each core)")
-      ->check(CLI::Range(1, 1024));
+  add_jobs(*command, arguments->jobs, "Runs");
   command->footer(
       "Prints tables beside the paper's values; writes a CSV and SVG files of each experiment. "
       "The\n"

@@ -14,13 +14,13 @@
 
 namespace skein::route_figures {
 
-[[nodiscard]] Figures draw_maps(const Options& options);
-[[nodiscard]] Figures draw_convergence(const Options& options);
-[[nodiscard]] Figures draw_quality(const Options& options);
-[[nodiscard]] Figures draw_weights(const Options& options);
-[[nodiscard]] Figures draw_worlds(const Options& options);
+[[nodiscard]] Result<Figures> draw_maps(const Options& options);
+[[nodiscard]] Result<Figures> draw_convergence(const Options& options);
+[[nodiscard]] Result<Figures> draw_quality(const Options& options);
+[[nodiscard]] Result<Figures> draw_weights(const Options& options);
+[[nodiscard]] Result<Figures> draw_worlds(const Options& options);
 [[nodiscard]] Result<Figures> draw_cooperative(const Options& options);
-[[nodiscard]] Figures draw_scale(const Options& options);
+[[nodiscard]] Result<Figures> draw_scale(const Options& options);
 
 [[nodiscard]] std::size_t contenders_count();
 inline constexpr std::size_t kStarts = 3;

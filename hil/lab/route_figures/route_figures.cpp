@@ -84,22 +84,11 @@ std::size_t steps_of(Experiment experiment, const Runs& runs) {
 }
 
 Result<Figures> draw(Experiment experiment, const Options& options) {
-  switch (experiment) {
-    case Experiment::maps:
-      return draw_maps(options);
-    case Experiment::convergence:
-      return draw_convergence(options);
-    case Experiment::weights:
-      return draw_weights(options);
-    case Experiment::worlds:
-      return draw_worlds(options);
-    case Experiment::quality:
-      return draw_quality(options);
-    case Experiment::scale:
-      return draw_scale(options);
-    default:
-      return draw_cooperative(options);
-  }
+  static constexpr std::array kDraw{&draw_maps,   &draw_convergence, &draw_weights,
+                                    &draw_worlds, &draw_cooperative, &draw_quality,
+                                    &draw_scale};
+  static_assert(kDraw.size() == static_cast<std::size_t>(Experiment::count));
+  return kDraw.at(static_cast<std::size_t>(experiment))(options);
 }
 
 }  // namespace skein::route_figures

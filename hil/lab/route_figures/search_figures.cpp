@@ -123,7 +123,7 @@ std::vector<Vec2> mean_progress(const std::vector<const ConvergenceRun*>& runs, 
 
 std::size_t contenders_count() { return routes::contenders().size(); }
 
-Figures draw_maps(const Options& options) {
+Result<Figures> draw_maps(const Options& options) {
   const std::size_t runs = options.runs.maps;
   constexpr std::size_t kCells = kUses * kMaps;
   const auto flown = fly_all<double>(kCells * runs, options, [&](std::size_t i) {
@@ -170,7 +170,7 @@ Figures draw_maps(const Options& options) {
   return {text, {{"maps.csv", csv}, {"maps.svg", experiments::svg(plot, false)}}};
 }
 
-Figures draw_convergence(const Options& options) {
+Result<Figures> draw_convergence(const Options& options) {
   const std::size_t runs = options.runs.convergence;
   const std::vector<Contender> contenders = routes::contenders();
   const std::size_t cells = kCountings * contenders.size();
@@ -239,7 +239,7 @@ Figures draw_convergence(const Options& options) {
   return figures;
 }
 
-Figures draw_quality(const Options& options) {
+Result<Figures> draw_quality(const Options& options) {
   constexpr std::uint64_t kEvaluations = 7'500;
   constexpr std::uint64_t kLarge = 100 * kEvaluations;
   const std::size_t runs = options.runs.quality;

@@ -199,7 +199,7 @@ Result<Figures> draw_cooperative(const Options& options) {
        {"cooperative-distances.svg", distances_svg(problem, tracks)}}};
 }
 
-Figures draw_scale(const Options& options) {
+Result<Figures> draw_scale(const Options& options) {
   std::vector<std::pair<std::size_t, std::uint64_t>> teams;
   for (std::size_t size = kSizes.size(); size-- > 0;) {  // the largest first: they take longest
     for (std::size_t k = 0; k < options.runs.teams.at(size); ++k) {

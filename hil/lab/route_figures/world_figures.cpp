@@ -94,7 +94,7 @@ std::string histogram(Counting counting, std::span<const WorldRun> worlds) {
 
 }  // namespace
 
-Figures draw_weights(const Options& options) {
+Result<Figures> draw_weights(const Options& options) {
   const std::size_t runs = options.runs.weights;
   const auto weightings = routes::paper_weights();
   const std::size_t cells = kMethods.size() * weightings.size();
@@ -143,7 +143,7 @@ Figures draw_weights(const Options& options) {
   return figures;
 }
 
-Figures draw_worlds(const Options& options) {
+Result<Figures> draw_worlds(const Options& options) {
   const std::size_t count = options.runs.worlds;
   const std::size_t known = std::min(count, options.runs.known_worlds);
   // Those with a best known take longest, and so come first.
