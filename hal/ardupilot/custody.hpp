@@ -31,20 +31,17 @@ class Custody {
     count
   };
   using Entry = Transition<State, Event>;
-  static constexpr std::array kTable{
-      Entry{State::fresh, Event::in_use, State::spent},
-      Entry{State::fresh, Event::launched, State::ours},
-      Entry{State::fresh, Event::taken_by_others, State::taken},
-      Entry{State::spent, Event::launched, State::ours},
-      Entry{State::spent, Event::taken_by_others, State::taken},
-      Entry{State::spent, Event::given_back_landed, State::fresh},
-      Entry{State::ours, Event::disarmed, State::spent},
-      Entry{State::ours, Event::taken_by_others, State::taken_ours},
-      Entry{State::taken_ours, Event::disarmed, State::taken},
-      Entry{State::taken_ours, Event::given_back, State::ours},
-      Entry{State::taken, Event::given_back, State::spent},
-      Entry{State::taken, Event::given_back_landed, State::fresh},
-  };
+  static constexpr auto kTable = state_table(
+      from(State::fresh, on(Event::in_use, State::spent), on(Event::launched, State::ours),
+           on(Event::taken_by_others, State::taken)),
+      from(State::spent, on(Event::launched, State::ours), on(Event::taken_by_others, State::taken),
+           on(Event::given_back_landed, State::fresh)),
+      from(State::ours, on(Event::disarmed, State::spent),
+           on(Event::taken_by_others, State::taken_ours)),
+      from(State::taken_ours, on(Event::disarmed, State::taken),
+           on(Event::given_back, State::ours)),
+      from(State::taken, on(Event::given_back, State::spent),
+           on(Event::given_back_landed, State::fresh)));
 
   /// What is not in the table changes nothing: most are heard again and again.
   void fire(Event event) {

@@ -19,6 +19,34 @@ struct Transition {
   State to;
 };
 
+/// A way out of a state, as from() takes it.
+template <class State, class Event>
+struct WayOut {
+  Event event;
+  State to;
+};
+template <class Event, class State>
+[[nodiscard]] constexpr WayOut<State, Event> on(Event event, State to) {
+  return {event, to};
+}
+/// The lines of one state: from(State::a, on(Event::x, State::b), on(Event::y, State::c)).
+template <class State, class Event, class... More>
+[[nodiscard]] constexpr auto from(State state, WayOut<State, Event> first, More... more) {
+  using Line = Transition<State, Event>;
+  return std::array{Line{state, first.event, first.to}, Line{state, more.event, more.to}...};
+}
+/// The lines of all states.
+template <class Line, std::size_t... Counts>
+[[nodiscard]] constexpr auto state_table(const std::array<Line, Counts>&... states) {
+  std::array<Line, (Counts + ...)> table{};
+  std::size_t at = 0;
+  const auto add = [&](const auto& lines) {
+    for (const Line& line : lines) table[at++] = line;
+  };
+  (add(states), ...);
+  return table;
+}
+
 /// A state and the only way to change it: by an event that the table has an entry for. An event
 /// without an entry leaves the state and is counted.
 template <class State, class Event>

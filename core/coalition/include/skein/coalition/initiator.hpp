@@ -43,22 +43,17 @@ class Initiator {
     closed,
     count
   };
-  static constexpr std::array kTable{
-      Transition<State, Event>{State::announcing, Event::bids_closed, State::allocating},
-      Transition<State, Event>{State::announcing, Event::closed, State::closed},
-      Transition<State, Event>{State::allocating, Event::allocated, State::awarding},
-      Transition<State, Event>{State::allocating, Event::allocation_failed, State::monitoring},
-      Transition<State, Event>{State::allocating, Event::closed, State::closed},
-      Transition<State, Event>{State::awarding, Event::confirmed, State::executing},
-      Transition<State, Event>{State::awarding, Event::not_confirmed, State::monitoring},
-      Transition<State, Event>{State::awarding, Event::closed, State::closed},
-      Transition<State, Event>{State::executing, Event::all_done, State::closed},
-      Transition<State, Event>{State::executing, Event::try_again, State::announcing},
-      Transition<State, Event>{State::executing, Event::closed, State::closed},
-      Transition<State, Event>{State::monitoring, Event::try_again, State::announcing},
-      Transition<State, Event>{State::monitoring, Event::all_done, State::closed},
-      Transition<State, Event>{State::monitoring, Event::closed, State::closed},
-  };
+  static constexpr auto kTable = state_table(
+      from(State::announcing, on(Event::bids_closed, State::allocating),
+           on(Event::closed, State::closed)),
+      from(State::allocating, on(Event::allocated, State::awarding),
+           on(Event::allocation_failed, State::monitoring), on(Event::closed, State::closed)),
+      from(State::awarding, on(Event::confirmed, State::executing),
+           on(Event::not_confirmed, State::monitoring), on(Event::closed, State::closed)),
+      from(State::executing, on(Event::all_done, State::closed),
+           on(Event::try_again, State::announcing), on(Event::closed, State::closed)),
+      from(State::monitoring, on(Event::try_again, State::announcing),
+           on(Event::all_done, State::closed), on(Event::closed, State::closed)));
 
   /// Bids are in. Answer with allocated() or allocation_failed() by `answer_by`.
   struct AllocationWanted {

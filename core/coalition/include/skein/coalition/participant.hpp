@@ -36,28 +36,20 @@ class Participant {
     leader_heard,
     count
   };
-  static constexpr std::array kTable{
-      Transition<State, Event>{State::free, Event::bid, State::bidding},
-      Transition<State, Event>{State::bidding, Event::award_received, State::deciding},
-      Transition<State, Event>{State::bidding, Event::not_awarded, State::free},
-      Transition<State, Event>{State::bidding, Event::no_award, State::free},
-      Transition<State, Event>{State::bidding, Event::released, State::free},
-      Transition<State, Event>{State::bidding, Event::new_round, State::free},
-      Transition<State, Event>{State::deciding, Event::accepted, State::member},
-      Transition<State, Event>{State::deciding, Event::refused, State::free},
-      Transition<State, Event>{State::member, Event::bid, State::rebidding},
-      Transition<State, Event>{State::member, Event::released, State::free},
-      Transition<State, Event>{State::member, Event::leader_lost, State::orphaned},
-      Transition<State, Event>{State::orphaned, Event::leader_heard, State::member},
-      Transition<State, Event>{State::orphaned, Event::award_received, State::deciding},
-      Transition<State, Event>{State::orphaned, Event::bid, State::rebidding},
-      Transition<State, Event>{State::orphaned, Event::released, State::free},
-      Transition<State, Event>{State::rebidding, Event::award_received, State::deciding},
-      Transition<State, Event>{State::rebidding, Event::not_awarded, State::free},
-      Transition<State, Event>{State::rebidding, Event::no_award, State::free},
-      Transition<State, Event>{State::rebidding, Event::released, State::free},
-      Transition<State, Event>{State::rebidding, Event::new_round, State::free},
-  };
+  static constexpr auto kTable = state_table(
+      from(State::free, on(Event::bid, State::bidding)),
+      from(State::bidding, on(Event::award_received, State::deciding),
+           on(Event::not_awarded, State::free), on(Event::no_award, State::free),
+           on(Event::released, State::free), on(Event::new_round, State::free)),
+      from(State::deciding, on(Event::accepted, State::member), on(Event::refused, State::free)),
+      from(State::member, on(Event::bid, State::rebidding), on(Event::released, State::free),
+           on(Event::leader_lost, State::orphaned)),
+      from(State::orphaned, on(Event::leader_heard, State::member),
+           on(Event::award_received, State::deciding), on(Event::bid, State::rebidding),
+           on(Event::released, State::free)),
+      from(State::rebidding, on(Event::award_received, State::deciding),
+           on(Event::not_awarded, State::free), on(Event::no_award, State::free),
+           on(Event::released, State::free), on(Event::new_round, State::free)));
 
   /// Shall this vehicle bid? Answer with bid() or decline(), in the same step.
   struct BidWanted {
