@@ -39,18 +39,15 @@ class Leader {
     ended,
     count
   };
-  static constexpr std::array kTable{
-      Transition<State, Event>{State::idle, Event::taken_up, State::leading},
-      Transition<State, Event>{State::leading, Event::asked, State::awaiting_decision},
-      Transition<State, Event>{State::leading, Event::round_ended, State::leading},
-      Transition<State, Event>{State::leading, Event::over, State::parting},
-      Transition<State, Event>{State::leading, Event::ended, State::idle},
-      Transition<State, Event>{State::awaiting_decision, Event::granted, State::leading},
-      Transition<State, Event>{State::awaiting_decision, Event::round_ended, State::leading},
-      Transition<State, Event>{State::awaiting_decision, Event::over, State::parting},
-      Transition<State, Event>{State::awaiting_decision, Event::ended, State::idle},
-      Transition<State, Event>{State::parting, Event::ended, State::idle},
-  };
+  static constexpr auto kTable =
+      state_table(from(State::idle, on(Event::taken_up, State::leading)),
+                  from(State::leading, on(Event::asked, State::awaiting_decision),
+                       on(Event::round_ended, State::leading), on(Event::over, State::parting),
+                       on(Event::ended, State::idle)),
+                  from(State::awaiting_decision, on(Event::granted, State::leading),
+                       on(Event::round_ended, State::leading), on(Event::over, State::parting),
+                       on(Event::ended, State::idle)),
+                  from(State::parting, on(Event::ended, State::idle)));
 
   Leader(const Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
 

@@ -37,18 +37,15 @@ class Scout {
     called_off,
     count
   };
-  static constexpr std::array kTable{
-      Transition<State, Event>{State::idle, Event::survey_planned, State::to_survey},
-      Transition<State, Event>{State::idle, Event::relief_planned, State::to_relief},
-      Transition<State, Event>{State::to_survey, Event::arrived, State::surveying},
-      Transition<State, Event>{State::to_survey, Event::called_off, State::idle},
-      Transition<State, Event>{State::surveying, Event::ended, State::idle},
-      Transition<State, Event>{State::surveying, Event::called_off, State::idle},
-      Transition<State, Event>{State::to_relief, Event::arrived, State::listening},
-      Transition<State, Event>{State::to_relief, Event::called_off, State::idle},
-      Transition<State, Event>{State::listening, Event::ended, State::idle},
-      Transition<State, Event>{State::listening, Event::called_off, State::idle},
-  };
+  static constexpr auto kTable = state_table(
+      from(State::idle, on(Event::survey_planned, State::to_survey),
+           on(Event::relief_planned, State::to_relief)),
+      from(State::to_survey, on(Event::arrived, State::surveying),
+           on(Event::called_off, State::idle)),
+      from(State::surveying, on(Event::ended, State::idle), on(Event::called_off, State::idle)),
+      from(State::to_relief, on(Event::arrived, State::listening),
+           on(Event::called_off, State::idle)),
+      from(State::listening, on(Event::ended, State::idle), on(Event::called_off, State::idle)));
 
   Scout(Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
 

@@ -31,28 +31,20 @@ class TaskFlight {
     dropped,  ///< its lease has ended
     count
   };
-  static constexpr std::array kTable{
-      Transition<State, Event>{State::planned, Event::granted, State::authorised},
-      Transition<State, Event>{State::planned, Event::passed_on, State::planned},
-      Transition<State, Event>{State::planned, Event::began, State::begun},
-      Transition<State, Event>{State::planned, Event::missed, State::late},
-      Transition<State, Event>{State::planned, Event::dropped, State::over},
-      Transition<State, Event>{State::authorised, Event::passed_on, State::planned},
-      Transition<State, Event>{State::authorised, Event::committed, State::committed},
-      Transition<State, Event>{State::authorised, Event::missed, State::late},
-      Transition<State, Event>{State::authorised, Event::dropped, State::over},
-      Transition<State, Event>{State::committed, Event::granted, State::committed},
-      Transition<State, Event>{State::committed, Event::passed_on, State::committed},
-      Transition<State, Event>{State::committed, Event::began, State::begun},
-      Transition<State, Event>{State::committed, Event::dropped, State::over},
-      Transition<State, Event>{State::begun, Event::granted, State::begun},
-      Transition<State, Event>{State::begun, Event::passed_on, State::begun},
-      Transition<State, Event>{State::begun, Event::finished, State::over},
-      Transition<State, Event>{State::begun, Event::dropped, State::over},
-      Transition<State, Event>{State::late, Event::granted, State::late},
-      Transition<State, Event>{State::late, Event::passed_on, State::late},
-      Transition<State, Event>{State::late, Event::dropped, State::over},
-  };
+  static constexpr auto kTable = state_table(
+      from(State::planned, on(Event::granted, State::authorised),
+           on(Event::passed_on, State::planned), on(Event::began, State::begun),
+           on(Event::missed, State::late), on(Event::dropped, State::over)),
+      from(State::authorised, on(Event::passed_on, State::planned),
+           on(Event::committed, State::committed), on(Event::missed, State::late),
+           on(Event::dropped, State::over)),
+      from(State::committed, on(Event::granted, State::committed),
+           on(Event::passed_on, State::committed), on(Event::began, State::begun),
+           on(Event::dropped, State::over)),
+      from(State::begun, on(Event::granted, State::begun), on(Event::passed_on, State::begun),
+           on(Event::finished, State::over), on(Event::dropped, State::over)),
+      from(State::late, on(Event::granted, State::late), on(Event::passed_on, State::late),
+           on(Event::dropped, State::over)));
 
   TaskFlight() = default;
   TaskFlight(const coalition::Round& awarded, Site where, const TaskAssignment& what)
