@@ -6,17 +6,12 @@
 #include <utility>
 #include <variant>
 
+#include "skein/base/overloaded.hpp"
+
 namespace skein::console {
 namespace {
 
 constexpr Duration kDelayWindow = std::chrono::seconds{10};
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;  // clang 14 does not deduce it
 
 /// Newer knowledge of a task never makes it less done.
 int rank(const std::optional<coalition::TaskState>& state) {
