@@ -167,7 +167,7 @@ Result<Figures> draw_maps(const Options& options) {
     }
   }
   for (std::size_t use = 0; use < kUses; ++use) text += map_finding(use, values.at(use));
-  return {text, {{"maps.csv", csv}, {"maps.svg", experiments::svg(plot, false)}}};
+  return Figures{text, {{"maps.csv", csv}, {"maps.svg", experiments::svg(plot, false)}}};
 }
 
 Result<Figures> draw_convergence(const Options& options) {
@@ -297,7 +297,7 @@ Result<Figures> draw_quality(const Options& options) {
     }
     plot.lines.push_back(std::move(line));
   }
-  return {text, {{"quality.csv", csv}, {"quality.svg", experiments::svg(plot)}}};
+  return Figures{text, {{"quality.csv", csv}, {"quality.svg", experiments::svg(plot)}}};
 }
 
 }  // namespace skein::route_figures

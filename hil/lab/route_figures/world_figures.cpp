@@ -198,11 +198,11 @@ Result<Figures> draw_worlds(const Options& options) {
         "ours is {:.2f} % above the best known on average ({} worlds; 240,000 evaluations)\n",
         100.0 * routes::summarise(at_evaluations.first(known)).ours_mean_gap, known);
   }
-  return {text,
-          {{"worlds.csv", csv},
-           {"worlds-wins.svg", experiments::svg(wins, true)},
-           {"worlds-iterations.svg", histogram(Counting::iterations, at_iterations)},
-           {"worlds-evaluations.svg", histogram(Counting::evaluations, at_evaluations)}}};
+  return Figures{text,
+                 {{"worlds.csv", csv},
+                  {"worlds-wins.svg", experiments::svg(wins, true)},
+                  {"worlds-iterations.svg", histogram(Counting::iterations, at_iterations)},
+                  {"worlds-evaluations.svg", histogram(Counting::evaluations, at_evaluations)}}};
 }
 
 }  // namespace skein::route_figures

@@ -10,8 +10,8 @@
 
 namespace skein {
 
-/// Where a multirotor's reference is to be from now on, if nothing newer is decided: points at equal
-/// times that end at rest. Mission frame. Trivially copyable.
+/// Where a multirotor's reference is to be from now on, if nothing newer is decided: points at
+/// equal times that end at rest. Mission frame. Trivially copyable.
 struct MotionTrack {
   static constexpr std::size_t kPointsMax = 128;
   static constexpr Duration kStep = std::chrono::milliseconds{50};
