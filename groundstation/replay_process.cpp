@@ -109,7 +109,8 @@ class ReplayLoop {
       if (const auto* view = std::get_if<View>(&*input)) return look(*view);
       if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
     }
-    return {false, fmt::format("{}; status, sites, coalitions and the other views look\n", kOrders)};
+    return {false,
+            fmt::format("{}; status, sites, coalitions and the other views look\n", kOrders)};
   }
 
   [[nodiscard]] Answer look(View view) const {

@@ -73,8 +73,8 @@ std::string documented_shapes() {
   add("wedge, 15", named(ShapeKind::wedge), 15);
   add("pentagon, 30", named(ShapeKind::pentagon), 30);
   add("pentagon, 8", named(ShapeKind::pentagon), 8);
-  const auto heart =
-      configuration::load_shape(std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "shapes" / "heart.yaml");
+  const auto heart = configuration::load_shape(std::filesystem::path{SKEIN_SOURCE_DIR} /
+                                               "scenarios" / "shapes" / "heart.yaml");
   EXPECT_TRUE(heart.ok());
   if (!heart) return "";
   formation::ShapeSpec free = named(ShapeKind::free);

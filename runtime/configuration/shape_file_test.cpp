@@ -60,7 +60,8 @@ TEST(ShapeFile, SaysWhereItIsWrongAndWhatToDo) {
 
 TEST(ShapeFile, ThoseThatAreShippedHavePlacesForAnyNumberOfVehicles) {
   std::size_t files = 0;
-  const std::filesystem::path folder = std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "shapes";
+  const std::filesystem::path folder =
+      std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "shapes";
   for (const auto& entry : std::filesystem::directory_iterator{folder}) {
     const auto file = load_shape(entry.path());
     ASSERT_TRUE(file.ok()) << file.error().message;

@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "skein/paper_routes/paper_world.hpp"
 #include "skein/routes/cooperative.hpp"
 #include "skein/routes/corridors.hpp"
 #include "skein/routes/fly_by.hpp"
-#include "skein/paper_routes/paper_world.hpp"
 #include "skein/routes/single_route.hpp"
 
 namespace {

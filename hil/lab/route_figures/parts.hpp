@@ -9,8 +9,8 @@
 
 #include "skein/base/assert.hpp"
 #include "skein/hil/run_parallel.hpp"
-#include "skein/route_figures/route_figures.hpp"
 #include "skein/paper_routes/route_experiments.hpp"
+#include "skein/route_figures/route_figures.hpp"
 
 namespace skein::route_figures {
 

@@ -62,9 +62,8 @@ class RandomMaker {
   }
   template <Union T>
   void operator()(const char*, T& value, Choice) {
-    with_alternative<T>(
-        random_.index(std::variant_size_v<VariantOf<T>>),
-        [&]<class Branch>() { fields(value.template emplace<Branch>(), *this); });
+    with_alternative<T>(random_.index(std::variant_size_v<VariantOf<T>>),
+                        [&]<class Branch>() { fields(value.template emplace<Branch>(), *this); });
   }
   template <class T, class Element>
   void operator()(const char* name, std::optional<T>& value, Maybe<Element> maybe) {
@@ -103,8 +102,9 @@ void add_kinds(std::vector<Kind>& kinds, const T*) {
 template <Union T>
 void add_kinds(std::vector<Kind>& kinds, const T*) {
   for (std::size_t i = 0; i < std::variant_size_v<VariantOf<T>>; ++i) {
-    with_alternative<T>(
-        i, [&]<class Branch>() { kinds.push_back({Type<Branch>::kName, &made<Branch, T>}); });
+    with_alternative<T>(i, [&]<class Branch>() {
+      kinds.push_back({Type<Branch>::kName, &made<Branch, T>});
+    });
   }
 }
 

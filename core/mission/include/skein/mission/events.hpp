@@ -5,7 +5,8 @@
 
 namespace skein::mission {
 
-static_assert(std::variant_size_v<EventBody::variant> == static_cast<std::size_t>(EventKind::count));
+static_assert(std::variant_size_v<EventBody::variant> ==
+              static_cast<std::size_t>(EventKind::count));
 
 /// To be looked at by a person.
 [[nodiscard]] constexpr bool is_warning(EventKind kind) { return kind >= EventKind::task_lost; }

@@ -20,10 +20,10 @@ using Guidance = std::variant<FlightPlan, MotionTrack>;
 /// Without a state for so long the flight controller is silent: nothing is asked of it.
 inline constexpr Duration kFlightControllerSilence = std::chrono::milliseconds{500};
 
-/// What is asked of the flight controller at `now`, to follow it: of a plane's, to fly a heading and
-/// a speed that lead it back to its path and time; of a copter's, to be where the path is now, its
-/// nose along it, once it is within 5 m of its height, and before that to come there where it is.
-/// Allocates nothing and takes bounded time.
+/// What is asked of the flight controller at `now`, to follow it: of a plane's, to fly a heading
+/// and a speed that lead it back to its path and time; of a copter's, to be where the path is now,
+/// its nose along it, once it is within 5 m of its height, and before that to come there where it
+/// is. Allocates nothing and takes bounded time.
 [[nodiscard]] Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,
                             const VehicleSpec& vehicle, const VehicleState& state, Instant now);
 

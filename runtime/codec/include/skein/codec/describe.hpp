@@ -115,7 +115,9 @@ std::variant<Branches...> variant_of(const std::variant<Branches...>& value);
 template <class T>
 using VariantOf = decltype(variant_of(std::declval<const T&>()));
 template <class T>
-concept Union = requires(const T& value) { variant_of(value); };
+concept Union = requires(const T& value) {
+  variant_of(value);
+};
 
 /// Calls f.template operator()<Alternative>() for the i-th type of a variant. Precondition: i is
 /// less than their number.
@@ -123,7 +125,8 @@ template <Union Variant, class F>
 void with_alternative(std::size_t i, F&& f) {
   [&]<std::size_t... I>(std::index_sequence<I...>) {
     const bool found =
-        ((i == I && (f.template operator()<std::variant_alternative_t<I, VariantOf<Variant>>>(), true)) ||
+        ((i == I &&
+          (f.template operator()<std::variant_alternative_t<I, VariantOf<Variant>>>(), true)) ||
          ...);
     static_cast<void>(found);
   }

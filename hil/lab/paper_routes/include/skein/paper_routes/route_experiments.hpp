@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "skein/routes/optimiser.hpp"
 #include "skein/paper_routes/paper_world.hpp"
+#include "skein/routes/optimiser.hpp"
 #include "skein/routes/route_problem.hpp"
 #include "skein/routes/single_route.hpp"
 
