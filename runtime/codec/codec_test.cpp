@@ -130,6 +130,39 @@ TEST(Codec, EncodingIsTheGoldenOne) {
   }
 }
 
+/// Messages end with a whole line, or with the end of one that is shorter.
+std::vector<Bytes> messages_of(const std::string& golden) {
+  std::vector<Bytes> all;
+  std::istringstream lines{golden};
+  bool begins = true;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) {
+      begins = true;
+      continue;
+    }
+    if (begins) all.emplace_back();
+    begins = false;
+    for (std::size_t i = 0; i + 1 < line.size(); i += 2) {
+      all.back().push_back(static_cast<std::uint8_t>(std::stoul(line.substr(i, 2), nullptr, 16)));
+    }
+  }
+  return all;
+}
+
+/// What a plan was before its paces were appended.
+TEST(Codec, ReadsWhatTheReleaseBeforeHasWritten) {
+  const auto older = messages_of(read(SKEIN_SOURCE_DIR "/idl/golden/older/plan_report.hex"));
+  ASSERT_EQ(older.size(), 3U);
+  for (const Bytes& bytes : older) {
+    const auto decoded = decode(Topic::plan_report, bytes);
+    const auto* message = std::get_if<mission::Message>(&decoded);
+    ASSERT_NE(message, nullptr);
+    const auto& plan = std::get<mission::PlanReport>(*message).plan;
+    EXPECT_FALSE(plan.timed.path.segments.empty());
+    EXPECT_TRUE(plan.timed.paces.empty());
+  }
+}
+
 TEST(Topics, DocumentIsUpToDate) {
   expect_golden(SKEIN_SOURCE_DIR "/docs/topics.md", read(SKEIN_IDL_GENERATED "/topics.md"));
 }

@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "skein/base/random.hpp"
+#include "skein/codec/describe.hpp"
 #include "skein/mission/messages.hpp"
 
 namespace skein::codec {
@@ -19,6 +20,8 @@ template <class... Members>
 struct KindsOf<std::variant<Members...>> {
   static constexpr std::size_t kCount = (KindsOf<Members>::kCount + ...);
 };
+template <Union T>
+struct KindsOf<T> : KindsOf<VariantOf<T>> {};
 inline constexpr std::size_t kMessageKinds = KindsOf<mission::Message>::kCount;
 
 /// "lease_renewal"
