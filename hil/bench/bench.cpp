@@ -227,10 +227,8 @@ class Bench {
     const auto file = options_.run_folder / (name + ".yaml");
     std::ofstream{file} << yaml;
     const bool terminal = options_.prompt && id == kGroundStation;
-    const bool other = options_.other_vehicles.contains(id);
-    const auto& folder = other ? options_.other_programs : options_.programs;
     auto child = ChildProcess::start(
-        {(folder / program).string(), "--config", file.string()},
+        {(options_.programs / program).string(), "--config", file.string()},
         terminal ? std::filesystem::path{} : options_.run_folder / (name + ".log"),
         {{"SKEIN_RADIO_TABLE", table_->name()},
          {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});

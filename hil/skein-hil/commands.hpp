@@ -20,8 +20,6 @@ inline constexpr int kExitBadInput = 2;  ///< nothing was flown
 struct RunArguments {
   std::filesystem::path scenario;
   std::filesystem::path programs;
-  std::filesystem::path other_programs;  ///< of another release, for these
-  std::vector<std::uint16_t> other_vehicles;
   std::filesystem::path folder;
   double rate = 1.0;
   std::optional<std::uint64_t> seed;

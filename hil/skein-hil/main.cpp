@@ -50,16 +50,6 @@ void add_run(CLI::App& app, int& status) {
                    "Seconds from the start of the programs to that of the mission; a slow machine "
                    "wants more (default: by the number of vehicles)")
       ->check(CLI::Range(1.0, 600.0));
-  auto* others = command
-                     ->add_option("--other-programs", arguments->other_programs,
-                                  "Folder of another release's programs: its skein-onboard "
-                                  "flies --other-vehicles")
-                     ->check(CLI::ExistingDirectory);
-  command
-      ->add_option("--other-vehicles", arguments->other_vehicles,
-                   "Ids of the vehicles that another release flies; with commas")
-      ->delimiter(',')
-      ->needs(others);
   command->add_option("--can", arguments->can,
                       "CAN bus of all flight controllers, such as vcan0 (default: multicast "
                       "buses of their own on loopback)");

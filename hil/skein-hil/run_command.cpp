@@ -59,13 +59,6 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
   if (const auto flyable = configuration::check(*scenario); !flyable) return flyable.error();
   if (arguments.seed) scenario->seed = *arguments.seed;
   if (const auto given = give_routes(*scenario, arguments.routes); !given) return given.error();
-  for (const std::uint16_t id : arguments.other_vehicles) {
-    const auto has_id = [id](const auto& v) { return v.spec.id.value == id; };
-    if (std::none_of(scenario->vehicles.begin(), scenario->vehicles.end(), has_id)) {
-      return Error{
-          fmt::format("--other-vehicles: {} has no vehicle {}", arguments.scenario.string(), id)};
-    }
-  }
   if (arguments.prompt) {
     scenario->operator_decisions.clear();
     scenario->formation.script.clear();
@@ -76,10 +69,6 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
 BenchOptions options_of(const RunArguments& arguments) {
   BenchOptions options;
   options.programs = arguments.programs;
-  options.other_programs = arguments.other_programs;
-  for (const std::uint16_t id : arguments.other_vehicles) {
-    options.other_vehicles.insert(VehicleId{id});
-  }
   options.radio_plugin = arguments.programs.parent_path() / "lib" / "libskein_radio.so";
   options.rate = arguments.rate;
   options.port_base = arguments.port_base;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -17,9 +16,7 @@
 namespace skein::hil {
 
 struct BenchOptions {
-  std::filesystem::path programs;        ///< folder of skein-onboard, skein-fc and skein-ground
-  std::filesystem::path other_programs;  ///< of another release, whose skein-onboard these fly:
-  std::set<VehicleId> other_vehicles;
+  std::filesystem::path programs;      ///< folder of skein-onboard, skein-fc and skein-ground
   std::filesystem::path radio_plugin;  ///< libskein_radio.so
   std::filesystem::path run_folder;    ///< made; configurations, logs and recordings go there
   double rate = 1.0;                   ///< mission seconds in a real second
