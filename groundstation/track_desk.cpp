@@ -66,7 +66,7 @@ mission::TrackGroundConfig track_ground(const configuration::FormationConfig& co
   ground.rules.tracking_m = config.tracking_m;
   ground.rules.wind_mps = config.wind_mps;
   ground.rules.ceiling_m = config.ceiling_m;
-  ground.rules.avoidance.margin_m = mission::kTrackHazardMargin_m;
+  ground.rules.avoidance.margin_m = mission::kHazardMargin_m;
   ground.rules.hazards = hazards;
   ground.place_tolerance_m = config.place_tolerance_m;
   return ground;

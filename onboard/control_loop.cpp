@@ -47,7 +47,7 @@ void ControlLoop::step(Instant now) {
     }
     ports_->track.push(point);
     // Aligned to the period, so that a late step does not shift those that follow.
-    next_track_ = Instant{(now.time_since_epoch() / kTrackPeriod + 1) * kTrackPeriod};
+    next_track_ = next_multiple(now, kTrackPeriod);
   }
 }
 

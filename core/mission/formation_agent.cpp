@@ -14,10 +14,6 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 /// Who waits for longer says so.
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
-Instant slot_after(Instant t, Duration period) {
-  return Instant{(t.time_since_epoch() / period + 1) * period};
-}
-
 }  // namespace
 
 FormationAgent::FormationAgent(const FormationAgentConfig& config, Instant now)
@@ -104,9 +100,7 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
 }
 
 void FormationAgent::on_command(const Command& command) {
-  const bool ours = command.vehicle == config_.vehicle || command.vehicle == kGroundStation;
-  if (!ours || command.number <= command_number_) return;
-  command_number_ = command.number;
+  if (!commands_.take(command, config_.vehicle)) return;
   if (command.kind == CommandKind::hold) held_ = true;
   if (command.kind == CommandKind::resume) held_ = false;
   if (execution_) execution_->hold(held_ || !not_begun_.empty());
@@ -124,7 +118,7 @@ double FormationAgent::off_m(Instant now) const {
 }
 
 void FormationAgent::step(Instant now) {
-  next_slot_ = slot_after(now, formation::kSlot);
+  next_slot_ = next_multiple(now, formation::kSlot);
   const double off = off_m(now);
   if (change_) {
     execution_->set_off(off);
@@ -137,7 +131,7 @@ void FormationAgent::step(Instant now) {
     tell_of_wait(now);
   }
   if (!state_ || now < next_status_) return;
-  next_status_ = slot_after(now, config_.status_period);
+  next_status_ = next_multiple(now, config_.status_period);
   FormationStatus status;
   status.vehicle = config_.vehicle;
   status.position_m = here(*state_);

@@ -15,13 +15,9 @@ constexpr double kOnTrackM = 30.0;
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
 
-/// Paths keep this far from hazards where there is room: in long turns with the wind, which leave
-/// no rate to spare, a vehicle gets up to 11 m off.
-constexpr double kHazardMarginM = 12.0;
-
 VehicleAgentConfig with_margin(VehicleAgentConfig config) {
   double& margin_m = config.planning.avoidance.margin_m;
-  margin_m = std::max(margin_m, kHazardMarginM);
+  margin_m = std::max(margin_m, kHazardMargin_m);
   return config;
 }
 }  // namespace
@@ -56,12 +52,7 @@ bool Ownship::is_at_route() const {
          std::abs(wrap_pi(state_.heading_rad - pose.heading_rad)) <= kPi / 4.0;
 }
 
-bool Ownship::on_hazard(const Hazard& hazard) {
-  const auto same = [&](const Hazard& h) { return h.id == hazard.id; };
-  if (std::any_of(hazards_.begin(), hazards_.end(), same)) return false;
-  hazards_.push_back(hazard);
-  return true;
-}
+bool Ownship::on_hazard(const Hazard& hazard) { return add_if_new(hazards_, hazard); }
 
 void Ownship::use_load() {
   if (loads_ > 0) --loads_;

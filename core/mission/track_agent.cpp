@@ -19,10 +19,6 @@ constexpr Duration kLate = std::chrono::seconds{1};
 constexpr double kSamePlace_m = 1.0;
 constexpr double kSameHeading_rad = 0.05;
 
-Instant next_of(Instant now, Duration period) {
-  return Instant{(now.time_since_epoch() / period + 1) * period};
-}
-
 /// Can it be flown at all, whatever it leads to? What is asked is checked where it is planned; this
 /// keeps out what was never planned.
 bool flyable(const TimedPath& timed, const VehicleSpec& vehicle) {
@@ -109,9 +105,7 @@ void TrackAgent::leave() {
 }
 
 void TrackAgent::on_command(const Command& command, Instant now) {
-  const bool ours = command.vehicle == config_.vehicle.id || command.vehicle == kGroundStation;
-  if (!ours || command.number <= command_number_ || !flight_->started()) return;
-  command_number_ = command.number;
+  if (!flight_->started() || !commands_.take(command, config_.vehicle.id)) return;
   if (command.kind == CommandKind::give_back) return;
   ordered_ = command.kind != CommandKind::resume;
   if (command.kind == CommandKind::hold) flight_->hold(hazards_, now);
@@ -121,10 +115,7 @@ void TrackAgent::on_command(const Command& command, Instant now) {
 }
 
 void TrackAgent::on_hazard(const Hazard& hazard, Instant now) {
-  const auto known = std::find_if(hazards_.begin(), hazards_.end(),
-                                  [&](const Hazard& h) { return h.id == hazard.id; });
-  if (known != hazards_.end()) return;
-  hazards_.push_back(hazard);
+  if (!add_if_new(hazards_, hazard)) return;
   report(event::HazardKnown{hazard.id, hazard.radius_m}, now);
   if (!flight_->started() || flight_->keeps_clear(hazards_, now)) return;
   leave();
@@ -141,7 +132,7 @@ void TrackAgent::on_timeout(Instant now) {
 }
 
 void TrackAgent::step(Instant now) {
-  next_ = next_of(now, kPeriod);
+  next_ = next_multiple(now, kPeriod);
   if (!flight_->started()) return;
   begin(now);
   if (flown_ && !arrived_ && now >= flown_->joined && off_m(now) <= config_.place_tolerance_m) {
@@ -155,7 +146,7 @@ void TrackAgent::step(Instant now) {
 /// What is left is for the way home, or for nothing.
 void TrackAgent::watch_range(Instant now) {
   if (range_spent_ || now < next_range_) return;
-  next_range_ = next_of(now, kRangePeriod);
+  next_range_ = next_multiple(now, kRangePeriod);
   const double left_m = range_left_m() - flight_->way_home_m(flight_->pose_at(now), hazards_);
   if (left_m > config_.vehicle.cruise_speed_mps * 2.0 * to_seconds(kRangePeriod)) return;
   range_spent_ = true;
@@ -180,7 +171,7 @@ bool TrackAgent::forming(Instant now) const {
 }
 
 void TrackAgent::say_status(Instant now) {
-  next_status_ = next_of(now, config_.status_period);
+  next_status_ = next_multiple(now, config_.status_period);
   FormationStatus status;
   status.vehicle = config_.vehicle.id;
   status.position_m = {state_->x_m, state_->y_m, state_->z_m};

@@ -162,12 +162,7 @@ void TrackGround::on_message(const Message& message, Instant now) {
   }
 }
 
-void TrackGround::know(const Hazard& hazard) {
-  auto& known = config_.rules.hazards;
-  const bool is_known =
-      std::any_of(known.begin(), known.end(), [&](const Hazard& h) { return h.id == hazard.id; });
-  if (!is_known) known.push_back(hazard);
-}
+void TrackGround::know(const Hazard& hazard) { add_if_new(config_.rules.hazards, hazard); }
 
 void TrackGround::on_status(const FormationStatus& status, Instant now) {
   Member& member = members_[status.vehicle];

@@ -5,9 +5,7 @@
 namespace skein::mission {
 
 void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
-  const bool mine = message.vehicle == ownship_.spec().id || message.vehicle == kGroundStation;
-  if (!mine || message.number <= last_command_ || !ownship_.flight().started()) return;
-  last_command_ = message.number;
+  if (!ownship_.flight().started() || !commands_.take(message, ownship_.spec().id)) return;
   outbox.report(event::Commanded{message.kind}, {}, {}, now);
   const auto* response = failsafe_.update(now, {.order = message.kind});
   if (response != nullptr) respond(*response, now);

@@ -53,7 +53,7 @@ class VehicleAgent::Impl {
   Scout scout_{ownship_, outbox};
   Leader leader_{ownship_, outbox};
   TaskFlyer flyer_{ownship_, outbox};
-  std::uint32_t last_command_ = 0;
+  CommandFilter commands_;
 };
 
 }  // namespace skein::mission

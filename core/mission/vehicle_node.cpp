@@ -53,9 +53,7 @@ class VehicleNode::Impl {
   }
 
   void on_command(const Command& command) {
-    const bool ours = command.vehicle == self || command.vehicle == kGroundStation;
-    if (!ours || command.number <= command_number) return;
-    command_number = command.number;
+    if (!commands.take(command, self)) return;
     if (command.kind == CommandKind::give_back && command.vehicle == self) {
       give_back = issued_at(command);
     }
@@ -63,7 +61,7 @@ class VehicleNode::Impl {
 
   void report_itself(Instant now) {
     if (now >= next_telemetry && state) {
-      next_telemetry = Instant{(now.time_since_epoch() / telemetry_period + 1) * telemetry_period};
+      next_telemetry = next_multiple(now, telemetry_period);
       Telemetry telemetry = agent->telemetry();
       telemetry.state = *state;
       telemetry.control_overruns = static_cast<std::uint32_t>(condition.overruns);
@@ -98,7 +96,7 @@ class VehicleNode::Impl {
   Condition condition;
   std::optional<Guidance> guidance;
   std::optional<Instant> give_back;
-  std::uint32_t command_number = 0;
+  CommandFilter commands;
   std::uint64_t refused = 0;
   Instant next_telemetry;
   BoundedQueue<Message> messages{64};  ///< the node's own

@@ -4,16 +4,13 @@
 #include <nlohmann/json.hpp>
 
 #include "clients.hpp"
+#include "json_text.hpp"
 
 namespace skein::console {
 namespace {
 
 namespace http = boost::beast::http;
 using Json = nlohmann::json;
-
-std::string dump(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
 
 /// Does the request offer this subprotocol?
 bool offers(const HttpRequest& request, std::string_view protocol) {
@@ -82,7 +79,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
 
   void log_in(const HttpRequest& request) {
     const auto refuse = [this, request](http::status status, const char* why) {
-      send(answer(request, status, "application/json", dump({{"error", why}})));
+      send(answer(request, status, "application/json", text_of({{"error", why}})));
     };
     const auto host = view(request[http::field::host]);
     if (!server_.gate().is_own_origin(view(request[http::field::origin]), host)) {
@@ -102,7 +99,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
           if (!identity) return refuse(http::status::unauthorized, "wrong user or password");
           HttpResponse response =
               answer(request, http::status::ok, "application/json",
-                     dump({{"user", identity->user}, {"role", to_string(identity->role)}}));
+                     text_of({{"user", identity->user}, {"role", to_string(identity->role)}}));
           response.set(http::field::set_cookie,
                        self->server_.gate().admit(*identity, std::chrono::steady_clock::now()));
           self->send(std::move(response));

@@ -3,9 +3,9 @@
 
 #include <chrono>
 #include <deque>
-#include <nlohmann/json.hpp>
 
 #include "clients.hpp"
+#include "json_text.hpp"
 #include "page_text.hpp"
 
 namespace skein::console {
@@ -14,10 +14,6 @@ namespace {
 constexpr std::size_t kTextMax = 4096;
 constexpr std::size_t kAnswersMax = 256;  ///< that wait for a slow client
 constexpr int kTextsPerSecond = 20;
-
-std::string text_of(const nlohmann::json& json) {
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
 
 /// A client of the page's socket.
 class PageClient final : public Client, public std::enable_shared_from_this<PageClient> {

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "json_text.hpp"
+
 namespace skein::console {
 namespace {
 
@@ -37,7 +39,7 @@ std::optional<PageText> parse_page_text(const std::string& text) {
   }
   const Json* order = member(json, "order");
   if (*type == "order" && order != nullptr && order->is_object()) {
-    return LineText{number, {}, order->dump(-1, ' ', false, Json::error_handler_t::replace)};
+    return LineText{number, {}, text_of(*order)};
   }
   return std::nullopt;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clients.hpp"
+#include "json_text.hpp"
 
 namespace skein::console {
 namespace {
@@ -113,7 +114,7 @@ std::string Server::Impl::hello(const Identity& identity) const {
   for (const Overlay& overlay : config_.overlays) {
     hello["overlays"].push_back({{"name", overlay.name}, {"url", "/overlays/" + overlay.name}});
   }
-  return hello.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return text_of(hello);
 }
 
 std::string Server::Impl::url() const {

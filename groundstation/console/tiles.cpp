@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "json_text.hpp"
+
 namespace skein::console {
 namespace {
 
@@ -128,7 +130,7 @@ std::string Tiles::description() const {
                             {"min_zoom", min_zoom_},
                             {"max_zoom", max_zoom_},
                             {"attribution", attribution_}};
-  return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  return text_of(json);
 }
 
 }  // namespace skein::console

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "motion.hpp"
@@ -71,83 +73,89 @@ CheckResult check_arrivals(const RunRecord& record, const Limits& limits) {
   return result;
 }
 
+namespace {
+
+/// How far vehicles are from their places while formations hold.
+class PlaceJudge {
+ public:
+  PlaceJudge(const Limits& limits, const std::string& place)
+      : limit_m_{limits.place_rms_m},
+        result_{"places",
+                "while a formation holds every vehicle is within " + fixed(limit_m_, 2) +
+                    " m rms of " + place,
+                0,
+                "vehicles in formations",
+                "",
+                {}} {}
+
+  /// `offset_at` tells how far it is from its place in a state, if it has one then.
+  template <class OffsetAt>
+  void judge(const FormationChange& change, const recording::Recording& recorded,
+             OffsetAt offset_at) {
+    double squares = 0.0;
+    std::size_t count = 0;
+    for (std::size_t i = first_at(recorded.track, *change.held);
+         i < recorded.track.size() && recorded.track[i].state.time < change.until; ++i) {
+      const std::optional<Vec3> offset = offset_at(recorded.track[i].state);
+      if (!offset) continue;
+      squares += offset->squaredNorm();
+      ++count;
+    }
+    if (count == 0) return;
+    ++result_.judged;
+    const double rms = std::sqrt(squares / static_cast<double>(count));
+    worst_ = std::max(worst_, rms);
+    if (rms <= limit_m_) return;
+    result_.violations.push_back({recorded.vehicle, *change.held,
+                                  vehicle_name(recorded.vehicle) + " was " + fixed(rms, 2) +
+                                      " m rms from its place in change " +
+                                      std::to_string(change.number) + ", which held from " +
+                                      at(*change.held) + " (limit " + fixed(limit_m_, 2) + " m)"});
+  }
+
+  CheckResult finish() {
+    result_.measured = "worst " + fixed(worst_, 2) + " m rms";
+    return result_;
+  }
+
+ private:
+  double limit_m_;
+  double worst_ = 0.0;
+  CheckResult result_;
+};
+
+}  // namespace
+
 CheckResult check_places(const RunRecord& record, const Limits& limits) {
-  CheckResult result{"places",
-                     "while a formation holds every vehicle is within " +
-                         fixed(limits.place_rms_m, 2) + " m rms of its place",
-                     0,
-                     "vehicles in formations",
-                     "",
-                     {}};
-  double worst = 0.0;
+  PlaceJudge judge{limits, "its place"};
   for (const FormationChange& change : formation_changes(record)) {
     if (!change.held) continue;
     for (const auto& [vehicle, place] : change.places) {
       const auto* recorded = recording_of(record, vehicle);
       if (recorded == nullptr || contains(record.lost, vehicle)) continue;
-      double squares = 0.0;
-      std::size_t count = 0;
-      for (std::size_t i = first_at(recorded->track, *change.held);
-           i < recorded->track.size() && recorded->track[i].state.time < change.until; ++i) {
-        const VehicleState& s = recorded->track[i].state;
-        squares += (Vec3{s.x_m, s.y_m, s.z_m} - place).squaredNorm();
-        ++count;
-      }
-      if (count == 0) continue;
-      ++result.judged;
-      const double rms = std::sqrt(squares / static_cast<double>(count));
-      worst = std::max(worst, rms);
-      if (rms <= limits.place_rms_m) continue;
-      result.violations.push_back(
-          {vehicle, *change.held,
-           vehicle_name(vehicle) + " was " + fixed(rms, 2) + " m rms from its place in change " +
-               std::to_string(change.number) + ", which held from " + at(*change.held) +
-               " (limit " + fixed(limits.place_rms_m, 2) + " m)"});
+      judge.judge(change, *recorded, [&place = place](const VehicleState& s) {
+        return std::optional<Vec3>{Vec3{s.x_m, s.y_m, s.z_m} - place};
+      });
     }
   }
-  result.measured = "worst " + fixed(worst, 2) + " m rms";
-  return result;
+  return judge.finish();
 }
 
 CheckResult check_moving_places(const RunRecord& record, const Limits& limits) {
-  CheckResult result{"places",
-                     "while a formation holds every vehicle is within " +
-                         fixed(limits.place_rms_m, 2) + " m rms of its place, which moves",
-                     0,
-                     "vehicles in formations",
-                     "",
-                     {}};
-  double worst = 0.0;
+  PlaceJudge judge{limits, "its place, which moves"};
   for (const FormationChange& change : formation_changes(record)) {
     if (!change.held) continue;
     for (const auto& recorded : record.recordings) {
       if (contains(record.lost, recorded.vehicle)) continue;
-      double squares = 0.0;
-      std::size_t count = 0;
-      for (std::size_t i = first_at(recorded.track, *change.held);
-           i < recorded.track.size() && recorded.track[i].state.time < change.until; ++i) {
-        const VehicleState& s = recorded.track[i].state;
+      judge.judge(change, recorded, [&recorded](const VehicleState& s) -> std::optional<Vec3> {
         const auto* plan = plan_in_force(recorded, s.time);
-        if (plan == nullptr) continue;
+        if (plan == nullptr) return std::nullopt;
         const Pose2 place = plan_pose(plan->plan, plan_distance_m(plan->plan, s.time));
-        squares += (Vec2{s.x_m, s.y_m} - place.position()).squaredNorm();
-        ++count;
-      }
-      if (count == 0) continue;
-      ++result.judged;
-      const double rms = std::sqrt(squares / static_cast<double>(count));
-      worst = std::max(worst, rms);
-      if (rms <= limits.place_rms_m) continue;
-      result.violations.push_back({recorded.vehicle, *change.held,
-                                   vehicle_name(recorded.vehicle) + " was " + fixed(rms, 2) +
-                                       " m rms from its place in change " +
-                                       std::to_string(change.number) + ", which held from " +
-                                       at(*change.held) + " (limit " +
-                                       fixed(limits.place_rms_m, 2) + " m)"});
+        return Vec3{s.x_m - place.x_m, s.y_m - place.y_m, 0.0};
+      });
     }
   }
-  result.measured = "worst " + fixed(worst, 2) + " m rms";
-  return result;
+  return judge.finish();
 }
 
 }  // namespace skein::checks

@@ -32,4 +32,9 @@ using Instant = MissionTime::time_point;
 [[nodiscard]] inline Instant at_seconds(double s) { return Instant{from_seconds(s)}; }
 [[nodiscard]] constexpr double to_seconds(Instant t) { return to_seconds(t.time_since_epoch()); }
 
+/// The first multiple of the period after `t`: who is due then is not shifted by a late step.
+[[nodiscard]] constexpr Instant next_multiple(Instant t, Duration period) {
+  return Instant{(t.time_since_epoch() / period + 1) * period};
+}
+
 }  // namespace skein

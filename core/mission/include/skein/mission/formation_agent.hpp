@@ -70,7 +70,7 @@ class FormationAgent final : public OnboardAgent {
   std::set<VehicleId> not_begun_;  ///< movers not heard of in the change
   std::optional<Instant> waits_since_;
   std::uint32_t refused_ = 0;  ///< number of the newest change that it could not take
-  std::uint32_t command_number_ = 0;
+  CommandFilter commands_;
   bool held_ = false;
   bool arrived_ = false;
   std::uint64_t bad_changes_ = 0;

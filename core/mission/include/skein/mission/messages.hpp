@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/path.hpp"
@@ -17,5 +18,20 @@ namespace skein::mission {
 [[nodiscard]] inline Instant issued_at(const Command& command) {
   return Instant{std::chrono::milliseconds{command.number} - std::chrono::milliseconds{1}};
 }
+
+/// Of the commands that a vehicle hears those that are for it, each once: they are sent again and
+/// again, and one that comes late counts for nothing.
+class CommandFilter {
+ public:
+  [[nodiscard]] bool take(const Command& command, VehicleId self) {
+    const bool ours = command.vehicle == self || command.vehicle == kGroundStation;
+    if (!ours || command.number <= newest_) return false;
+    newest_ = command.number;
+    return true;
+  }
+
+ private:
+  std::uint32_t newest_ = 0;
+};
 
 }  // namespace skein::mission

@@ -13,6 +13,10 @@
 
 namespace skein::mission {
 
+/// Paths keep this far from hazards where there is room: in long turns with the wind, which leave
+/// no rate to spare, a vehicle gets up to 11 m off.
+inline constexpr double kHazardMargin_m = 12.0;
+
 /// Long work for the planner thread: call planning::allocate(params, problem), with a budget that
 /// ends before `answer_by` where time is real, and hand the outcome back.
 struct PlanningRequest {

@@ -15,14 +15,10 @@ namespace skein::mission {
 
 class Flight;
 
-/// Planes that fly along a track keep this far from hazards where there is room: in long turns with
-/// the wind a vehicle gets up to 11 m off.
-inline constexpr double kTrackHazardMargin_m = 12.0;
-
 struct TrackAgentConfig {
   VehicleSpec vehicle;
   InstanceId instance;
-  planning::AvoidanceParams avoidance{.margin_m = kTrackHazardMargin_m};
+  planning::AvoidanceParams avoidance{.margin_m = kHazardMargin_m};
   std::vector<Hazard> hazards;     ///< known before the mission
   double place_tolerance_m = 8.0;  ///< to be in place
   Duration status_period = std::chrono::milliseconds{200};
@@ -79,7 +75,7 @@ class TrackAgent final : public OnboardAgent {
   std::optional<TrackFlight> flown_;        ///< none where it has left its formation
   std::uint32_t number_ = 0;                ///< of the newest that was taken up
   std::uint32_t refused_ = 0;
-  std::uint32_t command_number_ = 0;
+  CommandFilter commands_;
   bool ordered_ = false;  ///< to hold or to come home
   bool arrived_ = false;
   bool range_spent_ = false;
