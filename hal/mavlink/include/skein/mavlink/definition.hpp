@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -81,6 +80,9 @@ struct FieldInfo {
   }
 };
 
+void fields_are_not_in_the_order_of_the_wire();  // never defined: named only to fail a consteval
+
+/// Base and Extensions call what they are given with each of their fields: SKEIN_MAVLINK_FIELDS.
 template <class Base, class Extensions>
 struct Definition {
   std::uint32_t id;  ///< 24 bits
@@ -88,47 +90,51 @@ struct Definition {
   Base base;
   Extensions extensions;
 
-  static constexpr std::size_t kBaseFields = std::tuple_size_v<Base>;
-  static constexpr std::size_t kFields = kBaseFields + std::tuple_size_v<Extensions>;
-
   /// Calls `visit(field)` for each, in the order of the wire.
   template <class Visit>
   constexpr void for_each(Visit&& visit) const {
-    std::apply([&](const auto&... f) { (visit(f), ...); }, base);
-    std::apply([&](const auto&... f) { (visit(f), ...); }, extensions);
+    base(visit);
+    extensions(visit);
   }
 };
 
-void fields_are_not_in_the_order_of_the_wire();  // never defined: named only to fail a consteval
+struct NoFields {
+  template <class Visit>
+  constexpr void operator()(Visit& /*visit*/) const {}
+};
 
-template <class Base, class Extensions = std::tuple<>>
+template <class Base, class Extensions = NoFields>
 consteval Definition<Base, Extensions> define(std::uint32_t id, const char* name, Base base,
                                               Extensions extensions = {}) {
-  std::size_t previous = 8;
-  std::apply(
-      [&]<class... M, class... V>(const Field<M, V>&...) {
-        for (const std::size_t size : {sizeof(typename FieldShape<V>::Element)...}) {
-          if (size > previous) fields_are_not_in_the_order_of_the_wire();
-          previous = size;
-        }
-      },
-      base);
   return {id, name, base, extensions};
+}
+
+template <class Fields>
+consteval std::size_t count_of(const Fields& fields) {
+  std::size_t count = 0;
+  const auto add = [&count](const auto& /*field*/) { ++count; };
+  fields(add);
+  return count;
 }
 
 template <class Message>
 consteval auto field_infos() {
-  std::array<FieldInfo, decltype(Message::kDefinition)::kFields> infos{};
+  constexpr auto kDefinition = Message::kDefinition;
+  constexpr std::size_t kBase = count_of(kDefinition.base);
+  std::array<FieldInfo, kBase + count_of(kDefinition.extensions)> infos{};
   std::size_t i = 0;
   std::size_t offset = 0;
-  Message::kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
+  kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
     using Shape = FieldShape<V>;
     infos.at(i) = {f.name,
                    element_type<typename Shape::Element>(),
                    static_cast<std::uint8_t>(sizeof(typename Shape::Element)),
                    static_cast<std::uint8_t>(Shape::kCount),
                    static_cast<std::uint8_t>(offset),
-                   i >= decltype(Message::kDefinition)::kBaseFields};
+                   i >= kBase};
+    if (i > 0 && i < kBase && infos.at(i).element_size > infos.at(i - 1).element_size) {
+      fields_are_not_in_the_order_of_the_wire();
+    }
     offset += infos.at(i).size();
     ++i;
   });
@@ -185,9 +191,10 @@ inline constexpr MessageInfo kMessageInfo = message_info<Message>();
 
 }  // namespace skein::mavlink
 
-/// SKEIN_MAVLINK_FIELDS(Type, a, b, ...): the named members of Type (60 at most) as a tuple of
-/// Field. A macro, because the names are on the wire's checksum and would otherwise be written
-/// twice.
+/// SKEIN_MAVLINK_FIELDS(Type, a, b, ...): what calls a visitor with a Field for each of the named
+/// members of Type (60 at most). A function and not a tuple, since the 60 tuples took seconds of
+/// every compilation. A macro, because the names are on the wire's checksum and would otherwise be
+/// written twice.
 #define SKEIN_MAVLINK_PARENS ()
 #define SKEIN_MAVLINK_EXPAND(...) SKEIN_MAVLINK_EXPAND2(SKEIN_MAVLINK_EXPAND2(__VA_ARGS__))
 #define SKEIN_MAVLINK_EXPAND2(...) SKEIN_MAVLINK_EXPAND1(SKEIN_MAVLINK_EXPAND1(__VA_ARGS__))
@@ -195,9 +202,9 @@ inline constexpr MessageInfo kMessageInfo = message_info<Message>();
   SKEIN_MAVLINK_EXPAND0(           \
       SKEIN_MAVLINK_EXPAND0(SKEIN_MAVLINK_EXPAND0(SKEIN_MAVLINK_EXPAND0(__VA_ARGS__))))
 #define SKEIN_MAVLINK_EXPAND0(...) __VA_ARGS__
-#define SKEIN_MAVLINK_EACH(Type, name, ...)   \
-  ::skein::mavlink::field(#name, &Type::name) \
-      __VA_OPT__(, SKEIN_MAVLINK_AGAIN SKEIN_MAVLINK_PARENS(Type, __VA_ARGS__))
+#define SKEIN_MAVLINK_EACH(Type, name, ...)           \
+  visit(::skein::mavlink::field(#name, &Type::name)); \
+  __VA_OPT__(SKEIN_MAVLINK_AGAIN SKEIN_MAVLINK_PARENS(Type, __VA_ARGS__))
 #define SKEIN_MAVLINK_AGAIN() SKEIN_MAVLINK_EACH
 #define SKEIN_MAVLINK_FIELDS(Type, ...) \
-  ::std::tuple { SKEIN_MAVLINK_EXPAND(SKEIN_MAVLINK_EACH(Type, __VA_ARGS__)) }
+  [](auto& visit) { SKEIN_MAVLINK_EXPAND(SKEIN_MAVLINK_EACH(Type, __VA_ARGS__)) }

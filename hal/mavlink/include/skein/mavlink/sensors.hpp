@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <tuple>
 
 #include "skein/mavlink/definition.hpp"
 
@@ -128,10 +127,11 @@ struct PowerStatus {
   std::uint16_t vservo = 0;  ///< mV
   std::uint16_t flags = 0;
 
-  static constexpr auto kDefinition =
-      define(125, "POWER_STATUS",
-             std::tuple{field("Vcc", &PowerStatus::vcc), field("Vservo", &PowerStatus::vservo),
-                        field("flags", &PowerStatus::flags)});
+  static constexpr auto kDefinition = define(125, "POWER_STATUS", [](auto& visit) {
+    visit(field("Vcc", &PowerStatus::vcc));
+    visit(field("Vservo", &PowerStatus::vservo));
+    visit(field("flags", &PowerStatus::flags));
+  });
 };
 
 /// Memory of the board.
@@ -150,12 +150,15 @@ struct Ahrs {
   float omega_ix = 0, omega_iy = 0, omega_iz = 0;  ///< rad/s
   float accel_weight = 0, renorm_val = 0, error_rp = 0, error_yaw = 0;
 
-  static constexpr auto kDefinition = define(
-      163, "AHRS",
-      std::tuple{field("omegaIx", &Ahrs::omega_ix), field("omegaIy", &Ahrs::omega_iy),
-                 field("omegaIz", &Ahrs::omega_iz), field("accel_weight", &Ahrs::accel_weight),
-                 field("renorm_val", &Ahrs::renorm_val), field("error_rp", &Ahrs::error_rp),
-                 field("error_yaw", &Ahrs::error_yaw)});
+  static constexpr auto kDefinition = define(163, "AHRS", [](auto& visit) {
+    visit(field("omegaIx", &Ahrs::omega_ix));
+    visit(field("omegaIy", &Ahrs::omega_iy));
+    visit(field("omegaIz", &Ahrs::omega_iz));
+    visit(field("accel_weight", &Ahrs::accel_weight));
+    visit(field("renorm_val", &Ahrs::renorm_val));
+    visit(field("error_rp", &Ahrs::error_rp));
+    visit(field("error_yaw", &Ahrs::error_yaw));
+  });
 };
 
 /// The second estimate.
@@ -226,10 +229,11 @@ struct AoaSsa {
   float alpha = 0;              ///< deg
   float side_slip = 0;          ///< deg
 
-  static constexpr auto kDefinition =
-      define(11020, "AOA_SSA",
-             std::tuple{field("time_usec", &AoaSsa::time_usec), field("AOA", &AoaSsa::alpha),
-                        field("SSA", &AoaSsa::side_slip)});
+  static constexpr auto kDefinition = define(11020, "AOA_SSA", [](auto& visit) {
+    visit(field("time_usec", &AoaSsa::time_usec));
+    visit(field("AOA", &AoaSsa::alpha));
+    visit(field("SSA", &AoaSsa::side_slip));
+  });
 };
 
 /// Motors 1 to 4.

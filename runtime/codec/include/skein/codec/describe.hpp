@@ -46,6 +46,8 @@ struct Maybe {
   Element element;
 };
 template <class Element>
+Maybe(Element) -> Maybe<Element>;
+template <class Element>
 struct Many {
   std::size_t count_max;
   Element element;
