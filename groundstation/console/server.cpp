@@ -99,8 +99,7 @@ void Server::Impl::accept() {
 void Server::Impl::serve(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::no_delay{true}, ignored);
-  serve_http(*this, tls_ ? open_tls_stream(std::move(socket), *tls_)
-                         : open_plain_stream(std::move(socket)));
+  serve_http(*this, open_stream(std::move(socket), tls_ ? &*tls_ : nullptr));
 }
 
 std::string Server::Impl::hello(const Identity& identity) const {

@@ -59,8 +59,8 @@ class HttpStream {
   virtual void close() = 0;
 };
 
-[[nodiscard]] std::unique_ptr<HttpStream> open_plain_stream(boost::asio::ip::tcp::socket socket);
-[[nodiscard]] std::unique_ptr<HttpStream> open_tls_stream(boost::asio::ip::tcp::socket socket,
-                                                          boost::asio::ssl::context& tls);
+/// Over TLS where that is given.
+[[nodiscard]] std::unique_ptr<HttpStream> open_stream(boost::asio::ip::tcp::socket socket,
+                                                      boost::asio::ssl::context* tls);
 
 }  // namespace skein::console

@@ -1,25 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-#pragma once
-
-#include <boost/asio.hpp>
-#include <boost/asio/ssl/stream_base.hpp>
-#include <boost/beast.hpp>
-#include <chrono>
-#include <cstdint>
-#include <type_traits>
-#include <utility>
-
 #include "stream.hpp"
 
-/// The two of stream.hpp over TCP, or over TLS on it. Beast's templates weigh seconds for every
-/// stream: each has a source of its own, and handlers have one type.
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/stream_traits.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <cstdint>
+#include <utility>
+
+#include "byte_stream.hpp"
 
 namespace skein::console {
+namespace {
 
-template <class Stream>
-class WebSocketOver final : public WebSocket {
+class BeastWebSocket final : public WebSocket {
  public:
-  explicit WebSocketOver(Stream stream) : socket_{std::move(stream)} {}
+  explicit BeastWebSocket(AnyStream stream) : socket_{std::move(stream)} {}
 
   void accept(const HttpRequest& request, std::string_view subprotocol, std::size_t read_max,
               std::function<void(bool)> done) override {
@@ -57,34 +55,27 @@ class WebSocketOver final : public WebSocket {
                         [done = std::move(done)](boost::beast::error_code /*error*/) { done(); });
   }
 
-  void drop() override { boost::beast::get_lowest_layer(socket_).close(); }
+  void drop() override { socket_.next_layer()->close(); }
 
  private:
-  boost::beast::websocket::stream<Stream, false> socket_;  // nothing is compressed
+  boost::beast::websocket::stream<AnyStream, false> socket_;  // nothing is compressed
   boost::beast::flat_buffer buffer_;
 };
 
-template <class Stream>
-class HttpStreamOver final : public HttpStream {
+class BeastHttpStream final : public HttpStream {
  public:
-  explicit HttpStreamOver(Stream stream) : stream_{std::move(stream)} {}
+  explicit BeastHttpStream(AnyStream stream) : stream_{std::move(stream)} {}
 
   void handshake(std::function<void(bool)> done) override {
-    if constexpr (std::is_same_v<Stream, boost::beast::tcp_stream>) {
-      done(true);
-    } else {
-      boost::beast::get_lowest_layer(stream_).expires_after(kPatience);
-      stream_.async_handshake(
-          boost::asio::ssl::stream_base::server,
-          [done = std::move(done)](boost::beast::error_code error) { done(!error); });
-    }
+    stream_->expire_after(kPatience);
+    stream_->handshake([done = std::move(done)](boost::beast::error_code error) { done(!error); });
   }
 
   void read(std::function<void(std::optional<HttpRequest>)> done) override {
     parser_.emplace();
     parser_->body_limit(kBodyMax);
     parser_->header_limit(kHeaderMax);
-    boost::beast::get_lowest_layer(stream_).expires_after(kPatience);
+    stream_->expire_after(kPatience);
     boost::beast::http::async_read(
         stream_, buffer_, *parser_,
         [this, done = std::move(done)](boost::beast::error_code error, std::size_t /*size*/) {
@@ -95,7 +86,7 @@ class HttpStreamOver final : public HttpStream {
 
   void write(HttpResponse response, std::function<void(bool)> done) override {
     response_ = std::move(response);
-    boost::beast::get_lowest_layer(stream_).expires_after(kPatience);
+    stream_->expire_after(kPatience);
     boost::beast::http::async_write(
         stream_, response_,
         [this, done = std::move(done)](boost::beast::error_code error, std::size_t /*size*/) {
@@ -104,25 +95,29 @@ class HttpStreamOver final : public HttpStream {
   }
 
   [[nodiscard]] std::unique_ptr<WebSocket> upgrade() override {
-    boost::beast::get_lowest_layer(stream_).expires_never();
-    return std::make_unique<WebSocketOver<Stream>>(std::move(stream_));
+    stream_->never_expire();
+    return std::make_unique<BeastWebSocket>(std::move(stream_));
   }
 
-  void close() override {
-    boost::beast::error_code ignored;
-    boost::beast::get_lowest_layer(stream_).socket().shutdown(
-        boost::asio::ip::tcp::socket::shutdown_send, ignored);
-  }
+  void close() override { stream_->end_sending(); }
 
  private:
   static constexpr std::chrono::seconds kPatience{30};
   static constexpr std::uint64_t kBodyMax = 4096;
   static constexpr std::uint32_t kHeaderMax = 8192;
 
-  Stream stream_;
+  AnyStream stream_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
   HttpResponse response_;
 };
+
+}  // namespace
+
+std::unique_ptr<HttpStream> open_stream(boost::asio::ip::tcp::socket socket,
+                                        boost::asio::ssl::context* tls) {
+  return std::make_unique<BeastHttpStream>(AnyStream{
+      tls != nullptr ? open_tls(std::move(socket), *tls) : open_plain(std::move(socket))});
+}
 
 }  // namespace skein::console
