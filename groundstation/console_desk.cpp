@@ -7,19 +7,17 @@
 #include <utility>
 #include <variant>
 
+#include "skein/groundstation/orders.hpp"
 #include "skein/recording/published.hpp"
 
 namespace skein::groundstation {
-namespace {
-
 console::PictureParams picture_params(const configuration::GroundConfig& config) {
   console::PictureParams params;
   params.expected = config.vehicles;
   params.hazards = config.hazards;
+  params.place_tolerance_m = config.formation.place_tolerance_m;
   return params;
 }
-
-}  // namespace
 
 std::string version() { return SKEIN_VERSION; }
 
@@ -92,7 +90,7 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
     if (!users) return users.error();
     server.users = std::move(*users);
   }
-  std::vector<std::string> shapes{"line-abreast", "column", "echelon", "wedge", "pentagon"};
+  std::vector<std::string> shapes = shape_names();
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);
   server.hello = hello_text(origin_, config.vehicles, shapes, {});
   auto opened = console::Server::open(std::move(server), std::move(wake));

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -23,7 +24,6 @@ namespace asio = boost::asio;
 using asio::local::stream_protocol;
 using boost::system::error_code;
 
-constexpr std::size_t kLineMax = 1000;
 constexpr std::size_t kConnectionsMax = 16;
 constexpr auto kConnectionLasts = std::chrono::seconds{30};
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};

@@ -2,11 +2,13 @@
 #include "skein/groundstation/formation_desk.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "formation_desk_texts.hpp"
 #include "skein/configuration/shape_file.hpp"
 
 namespace skein::groundstation {
@@ -36,6 +38,22 @@ std::string text_of(const mission::FormationPreview& preview) {
 
 std::string data_of(const mission::FormationPreview& preview, bool only_preview) {
   const auto& planned = preview.planned;
+  auto data = outcome_json(only_preview, formation::to_string(planned.way), planned.duration,
+                           planned.least_separation_m, preview.lost);
+  for (const auto& mover : planned.change.movers) {
+    const Vec3& from = mover.points.front();
+    const Vec3& to = mover.points.back();
+    text += fmt::format("  vehicle {:<3} ({:7.1f} {:7.1f} {:6.1f}) to ({:7.1f} {:7.1f} {:6.1f})\n",
+                        mover.vehicle.value, from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
+  }
+  for (const VehicleId vehicle : preview.lost) {
+    text += fmt::format("  vehicle {} is silent; its way is kept clear\n", vehicle.value);
+  }
+  return text;
+}
+
+std::string data_of(const mission::FormationPreview& preview, bool only_preview) {
+  const auto& planned = preview.planned;
   nlohmann::ordered_json data{{"kind", only_preview ? "preview" : "begun"},
                               {"way", formation::to_string(planned.way)},
                               {"duration_s", to_seconds(planned.duration)},
@@ -47,16 +65,7 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
     for (const Vec3& p : mover.points) points.push_back({p.x(), p.y(), p.z()});
     data["movers"].push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
   }
-  for (const VehicleId vehicle : preview.lost) data["lost"].push_back(vehicle.value);
   return data.dump();
-}
-
-/// ", one, other"
-template <class T>
-std::string names_of(const std::map<std::string, T>& known) {
-  std::string names;
-  for (const auto& [name, what] : known) names.append(", ").append(name);
-  return names;
 }
 
 }  // namespace
@@ -137,10 +146,8 @@ Result<formation::ShapeSpec> FormationDesk::named_shape(const Formation& input) 
   if (input.shape.empty()) return shape;
   const auto known = shapes_.find(input.shape);
   if (known == shapes_.end()) {
-    return Error{
-        fmt::format("'{}' is no shape: line-abreast, column, echelon, wedge, pentagon{}; "
-                    "or name a file of points",
-                    input.shape, names_of(shapes_))};
+    return Error{fmt::format("'{}' is no shape: {}{}; or name a file of points", input.shape,
+                             fmt::join(shape_names(), ", "), names_of(shapes_))};
   }
   shape.points = known->second.points;
   shape.closed = known->second.closed;
@@ -179,15 +186,10 @@ Result<FormationDesk::Outcome> FormationDesk::answer(const Formation& input, Ins
 std::string FormationDesk::places_table(Instant now) const {
   if (config_.planes) return tracks_table(now);
   if (ground().members().empty()) return "no vehicle of the formation is heard\n";
-  std::string text = "vehicle  heard     east    north   height  from its place  change\n";
+  std::string text = places_header("change");
   for (const auto& [vehicle, member] : ground().members()) {
-    const Vec3& at = member.status.position_m;
-    text += fmt::format("{:>7}  {:>5.1f}  {:7.1f}  {:7.1f}  {:7.1f}  {:>12.2f} m  {}{}\n",
-                        vehicle.value, to_seconds(now - member.heard_at), at.x(), at.y(), at.z(),
-                        member.place_error_m, member.status.progress.change,
-                        member.lost             ? ", silent"
-                        : member.status.at_rest ? ""
-                                                : ", moving");
+    text += place_line(vehicle, member, member.place_error_m,
+                       member.status.at_rest ? "" : ", moving", now);
   }
   text += ground().in_place() ? "in formation\n" : "not in formation\n";
   return text;

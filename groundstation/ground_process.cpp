@@ -39,6 +39,7 @@ constexpr Duration kStepPeriod = std::chrono::milliseconds{50};
 constexpr Duration kStepSpacing = std::chrono::milliseconds{20};  // telemetry comes all the time
 constexpr Duration kFlushPeriod = std::chrono::seconds{1};
 constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop from its deadlines
+constexpr int kMessagesPerStep = 1000;   // nor one of messages
 constexpr std::string_view kJsonPrefix = "json ";
 
 mission::GroundNodeConfig node_config(const configuration::GroundConfig& config) {
@@ -121,11 +122,7 @@ class GroundLoop {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
     while (!stopping_) {
       const Instant now = clock_.now();
-      while (const auto received = network_.poll()) {
-        if (writer_) writer_->write(received->message, received->sender, now);
-        if (!node_.on_message(received->message, received->sender, now)) continue;
-        console_.on_message(received->message, received->sender, now);
-      }
+      const bool heard_all = take_messages(now);
       process::log_misfits(network_);
       take_lines(prompt, now);
       node_.on_timeout(now);
@@ -133,6 +130,7 @@ class GroundLoop {
       hand_out(now);
       const Instant soonest = now + kStepSpacing;
       clock_.sleep_until(soonest);
+      if (!heard_all) continue;
       wake_.wait_until(
           clock_.steady_time_of(std::clamp(node_.next_timeout(), soonest, now + kStepPeriod)));
     }
@@ -145,6 +143,18 @@ class GroundLoop {
   }
 
  private:
+  /// False where more wait: lines, repeats and decisions come first.
+  bool take_messages(Instant now) {
+    for (int i = 0; i < kMessagesPerStep; ++i) {
+      const auto received = network_.poll();
+      if (!received) return true;
+      if (writer_) writer_->write(received->message, received->sender, now);
+      if (!node_.on_message(received->message, received->sender, now)) continue;
+      console_.on_message(received->message, received->sender, now);
+    }
+    return false;
+  }
+
   void take_lines(LineReader& prompt, Instant now) {
     while (const auto line = prompt.next()) {
       const Answer given = answer(*line, {operator_name_, "prompt"}, now);
@@ -220,7 +230,9 @@ class GroundLoop {
     if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
     if (const auto* record = std::get_if<Record>(&input)) return record_into(*record, asker);
     if (std::holds_alternative<Wait>(input)) return {false, "'wait' is for scripts\n"};
-    shutdown_.request();  // Quit
+    // Quit: whoever watches from elsewhere cannot start it again.
+    if (asker.from == kConsole) return {false, "quit is for the prompt and the command line\n"};
+    shutdown_.request();
     return {true, ""};
   }
 
@@ -259,7 +271,7 @@ class GroundLoop {
       case View::status:
         return fleet_table(node_.fleet().vehicles(), now);
       case View::sites:
-        return sites_.text();
+        return sites_text(console_.picture());
       case View::pending:
         return pending_text(node_.agent().authorisations(), origin_, now);
       case View::places:
@@ -297,7 +309,6 @@ class GroundLoop {
       if (const auto* change = std::get_if<formation::Change>(&*message)) record(*change);
     }
     while (const auto event = node_.poll_event()) {
-      sites_.on_event(*event);
       tell_of(*event);
     }
     console_.on_timeout(node_.fleet(), audit_.json(), now);
@@ -358,7 +369,6 @@ class GroundLoop {
   ConsoleDesk console_;
   Audit audit_;
   std::uint32_t recorded_change_ = 0;
-  SiteBoard sites_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};
   std::atomic<bool> stopping_{false};

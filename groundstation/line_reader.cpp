@@ -11,11 +11,10 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
-namespace {
-constexpr std::size_t kLineMax = 1000;
-}
+namespace {}
 
 LineReader::LineReader(int file_descriptor, std::function<void()> on_line)
     : input_{file_descriptor}, stop_{eventfd(0, EFD_CLOEXEC)}, on_line_{std::move(on_line)} {
@@ -54,7 +53,7 @@ void LineReader::take(const char* data, std::size_t size) {
   bool complete = false;
   for (std::size_t i = 0; i < size; ++i) {
     if (data[i] != '\n') {
-      if (partial_.size() < kLineMax) partial_ += data[i];
+      if (partial_.size() <= kLineMax) partial_ += data[i];  // one more: it is refused
       continue;
     }
     const std::lock_guard lock{mutex_};

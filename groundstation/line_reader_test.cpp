@@ -6,7 +6,10 @@
 
 #include <array>
 #include <semaphore>
+#include <string>
 #include <string_view>
+
+#include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -50,6 +53,18 @@ TEST(LineReader, OutlivesTheEndOfItsInputAndStops) {
   told.acquire();
   pipe.close_input();
   EXPECT_EQ(reader.next(), "quit");
+}
+
+TEST(LineReader, WhatIsTooLongStaysTooLong) {
+  Pipe pipe;
+  std::counting_semaphore<> told{0};
+  LineReader reader{pipe.ends[0], [&] { told.release(); }};
+  pipe.type("hold 7 " + std::string(2 * kLineMax, ' ') + "\n");
+  told.acquire();
+  const auto line = reader.next();
+  ASSERT_TRUE(line);
+  EXPECT_EQ(line->size(), kLineMax + 1);
+  EXPECT_FALSE(parse_input(*line));
 }
 
 TEST(LineReader, StopsWhileNobodyTypes) {

@@ -94,15 +94,6 @@ Input hazard(Reader& from) {
   return hazard;
 }
 
-/// A name that is none of the known shapes is a free one's.
-std::optional<formation::ShapeKind> shape_of(const std::string& name) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
-    const auto kind = static_cast<formation::ShapeKind>(i);
-    if (hyphened(formation::to_string(kind)) == name) return kind;
-  }
-  return std::nullopt;
-}
-
 Input formation_order(Reader& from) {
   Formation input;
   input.preview = from.flag("preview");
@@ -119,7 +110,7 @@ Input formation_order(Reader& from) {
   }
   formation::ShapeSpec& shape = input.order.shape;
   const std::string name = from.text("shape");
-  const auto known = shape_of(name);
+  const auto known = shape_named(name);
   shape.kind = known.value_or(formation::ShapeKind::free);
   if (!known) input.shape = name;
   input.has_spacing = from.has("spacing_m");

@@ -77,6 +77,21 @@ std::string hyphened(std::string_view name) {
   return word;
 }
 
+std::vector<std::string> shape_names() {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
+    names.push_back(hyphened(formation::to_string(static_cast<formation::ShapeKind>(i))));
+  }
+  return names;
+}
+
+std::optional<formation::ShapeKind> shape_named(std::string_view name) {
+  const auto names = shape_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return std::nullopt;
+  return static_cast<formation::ShapeKind>(found - names.begin());
+}
+
 std::string line_of(const Input& input) { return std::visit(Line{}, input); }
 
 }  // namespace skein::groundstation

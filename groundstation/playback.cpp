@@ -9,6 +9,7 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/console/sections.hpp"
+#include "skein/groundstation/console_desk.hpp"
 #include "skein/mission/may_say.hpp"
 
 namespace skein::groundstation {
@@ -27,16 +28,14 @@ Result<Setting> setting_of(const std::vector<recording::Session>& sessions) {
     if (session.node == kGroundStation) {
       const auto config = configuration::parse_ground_config(session.configuration, "recording");
       if (!config) continue;
-      Setting ground{config->origin, {}, session.version};
-      ground.picture.expected = config->vehicles;
-      ground.picture.hazards = config->hazards;
-      return ground;
+      return Setting{config->origin, picture_params(*config), session.version};
     }
     const auto config = configuration::parse_vehicle_config(session.configuration, "recording");
     if (!config) continue;
     if (!setting) setting = Setting{config->origin, {}, session.version};
     setting->picture.expected.push_back(session.node);
     setting->picture.hazards = config->hazards;
+    setting->picture.place_tolerance_m = config->formation.place_tolerance_m;
   }
   if (setting) return *std::move(setting);
   return Error{

@@ -2,6 +2,7 @@
 #include "skein/groundstation/prompt.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -95,14 +96,6 @@ Result<Input> give_back(const std::vector<std::string_view>& words) {
   return Input{Order{{*vehicle}, mission::CommandKind::give_back}};
 }
 
-std::optional<formation::ShapeKind> shape_kind(std::string_view word) {
-  for (std::size_t i = 0; i < static_cast<std::size_t>(formation::ShapeKind::free); ++i) {
-    const auto kind = static_cast<formation::ShapeKind>(i);
-    if (word == hyphened(formation::to_string(kind))) return kind;
-  }
-  return std::nullopt;
-}
-
 /// What follows the shape, in any order.
 Result<Formation> with_options(Formation input, const std::vector<std::string_view>& words) {
   std::size_t next = 0;
@@ -156,7 +149,7 @@ Result<Formation> with_options(Formation input, const std::vector<std::string_vi
 
 /// A shape's name, or what is left to be looked up.
 void set_shape(Formation& input, std::string_view word) {
-  const auto kind = shape_kind(word);
+  const auto kind = shape_named(word);
   input.order.shape.kind = kind.value_or(formation::ShapeKind::free);
   if (!kind) input.shape = word;
 }
@@ -189,8 +182,9 @@ Result<Input> formation_order(const std::vector<std::string_view>& words, bool p
   }
   if (words.size() < 2) {
     return Error{
-        "'form' needs a shape: line-abreast, column, echelon, wedge, pentagon, or the name "
-        "or file of a free one, as in 'form wedge spacing 5'"};
+        fmt::format("'form' needs a shape: {}, or the name or file of a free one, as in "
+                    "'form wedge spacing 5'",
+                    fmt::join(shape_names(), ", "))};
   }
   input.order.kind = mission::OrderKind::form;
   set_shape(input, words[1]);
@@ -227,6 +221,9 @@ Result<Input> record(const std::vector<std::string_view>& words) {
 }  // namespace
 
 Result<Input> parse_input(std::string_view line) {
+  if (line.size() > kLineMax) {
+    return Error{fmt::format("a line has at most {} characters; nothing is done", kLineMax)};
+  }
   const auto words = words_of(line);
   if (words.empty()) return Input{};
   const auto verb = words[0];
@@ -282,9 +279,9 @@ std::string help_text() {
          "                  flown, on the ground to be launched where it takes off by itself\n"
          "take-off          the formation rises to the rally's height\n"
          "rally             it gathers at the rally\n"
-         "form SHAPE ...    it takes a shape: line-abreast, column, echelon, wedge, pentagon, or "
-         "the\n"
-         "                  name or file of a free one; then, as wanted, spacing M, heading DEG,\n"
+         "form SHAPE ...    it takes a shape, by its name ('form' alone lists them) or the file "
+         "of\n"
+         "                  a free one; then, as wanted, spacing M, heading DEG,\n"
          "                  at EAST NORTH HEIGHT, places N\n"
          "fly-along TRACK in SHAPE ...\n"
          "                  planes join in the shape and fly along the track, by its name or "

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "formation_desk_texts.hpp"
 #include "skein/configuration/track_file.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/mission/track_agent.hpp"
@@ -36,12 +37,8 @@ std::string text_of(const mission::TrackPreview& preview, Instant now) {
 
 std::string data_of(const mission::TrackPreview& preview, bool only_preview, Instant now) {
   const formation::PlannedTrack& planned = preview.planned;
-  nlohmann::ordered_json data{{"kind", only_preview ? "preview" : "begun"},
-                              {"way", formation::to_string(formation::Way::track)},
-                              {"duration_s", to_seconds(planned.joined - now)},
-                              {"least_separation_m", planned.least_separation_m},
-                              {"movers", nlohmann::ordered_json::array()},
-                              {"lost", nlohmann::ordered_json::array()}};
+  auto data = outcome_json(only_preview, formation::to_string(formation::Way::track),
+                           planned.joined - now, planned.least_separation_m, preview.lost);
   for (const auto& flight : planned.flights) {
     auto points = nlohmann::ordered_json::array();
     const double length_m = flight.timed.path.length_m();
@@ -51,7 +48,6 @@ std::string data_of(const mission::TrackPreview& preview, bool only_preview, Ins
     }
     data["movers"].push_back({{"id", flight.plane.spec.id.value}, {"points", std::move(points)}});
   }
-  for (const VehicleId vehicle : preview.lost) data["lost"].push_back(vehicle.value);
   return data.dump();
 }
 
@@ -104,8 +100,7 @@ Result<mission::TrackOrder> FormationDesk::completed_track(const Formation& inpu
   if (order.kind == OrderKind::reshape) return order;
   const auto known = tracks_.find(input.track);
   if (known == tracks_.end()) {
-    std::string names;
-    for (const auto& [name, track] : tracks_) names.append(", ").append(name);
+    const std::string names = names_of(tracks_);
     return Error{fmt::format("there is no track '{}'; known are: {}; or name a file of waypoints",
                              input.track, names.empty() ? "none" : names.substr(2))};
   }
@@ -126,15 +121,10 @@ Result<FormationDesk::Outcome> FormationDesk::answer_planes(const Formation& inp
 std::string FormationDesk::tracks_table(Instant now) const {
   const mission::TrackGround& tracks = node_->tracks();
   if (tracks.members().empty()) return "no vehicle of the formation is heard\n";
-  std::string text = "vehicle  heard     east    north   height  from its place  order\n";
+  std::string text = places_header("order");
   for (const auto& [vehicle, member] : tracks.members()) {
-    const Vec3& at = member.status.position_m;
-    text += fmt::format("{:>7}  {:>5.1f}  {:7.1f}  {:7.1f}  {:7.1f}  {:>12.2f} m  {}{}\n",
-                        vehicle.value, to_seconds(now - member.heard_at), at.x(), at.y(), at.z(),
-                        member.status.progress.off_m, member.status.progress.change,
-                        member.lost             ? ", silent"
-                        : member.status.at_rest ? ", in an orbit"
-                                                : "");
+    text += place_line(vehicle, member, member.status.progress.off_m,
+                       member.status.at_rest ? ", in an orbit" : "", now);
   }
   text += tracks.in_place() ? "in formation\n" : "not in formation\n";
   return text;

@@ -132,36 +132,24 @@ std::string hazards_text(const console::Picture& picture) {
   return text.empty() ? "no hazard is known\n" : text;
 }
 
-void SiteBoard::on_event(const mission::MissionEvent& event) {
-  if (event.task.site == SiteId{}) return;
-  Entry& entry = sites_[event.task.site];
-  entry.latest = event;
-  switch (event.kind()) {
-    case mission::EventKind::announced:
-    case mission::EventKind::monitoring:
-    case mission::EventKind::coalition_formed:
-      entry.leader = event.vehicle;
-      break;
-    case mission::EventKind::survey_done:
-      entry.surveyed = true;
-      break;
-    case mission::EventKind::task_done:
-      entry.delivered += event.task.kind == TaskKind::deliver ? 1U : 0U;
-      entry.assessed += event.task.kind == TaskKind::assess ? 1U : 0U;
-      break;
-    default:
-      break;
-  }
-}
-
-std::string SiteBoard::text() const {
+std::string sites_text(const console::Picture& picture) {
   std::string text;
-  for (const auto& [site, entry] : sites_) {
-    fmt::format_to(std::back_inserter(text),
-                   "site {}: {}, {}, {} delivered, {} assessed; {:.1f} s {}\n", site.value,
-                   entry.leader ? "led by " + wording::text_of(*entry.leader) : "no leader yet",
-                   entry.surveyed ? "surveyed" : "not surveyed", entry.delivered, entry.assessed,
-                   to_seconds(entry.latest.time), wording::text_of(entry.latest));
+  for (const auto& [id, site] : picture.sites()) {
+    std::array<std::size_t, 3> done{};
+    for (const auto& [task, of] : site.tasks) {
+      done.at(static_cast<std::size_t>(task.kind)) +=
+          of.state == coalition::TaskState::done ? 1 : 0;
+    }
+    fmt::format_to(std::back_inserter(text), "site {}: {}, {}, {} delivered, {} assessed", id.value,
+                   site.leader ? "led by " + wording::text_of(*site.leader) : "no leader yet",
+                   site.surveyed ? "surveyed" : "not surveyed",
+                   done[static_cast<std::size_t>(TaskKind::deliver)],
+                   done[static_cast<std::size_t>(TaskKind::assess)]);
+    if (site.news) {
+      fmt::format_to(std::back_inserter(text), "; {:.1f} s {}", to_seconds(site.news->time),
+                     wording::text_of(*site.news));
+    }
+    text += '\n';
   }
   return text.empty() ? "no site is known yet\n" : text;
 }

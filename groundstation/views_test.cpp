@@ -88,19 +88,23 @@ TEST(PendingText, LeavesOutWhatIsDecidedOrTooLate) {
   EXPECT_THAT(pending_text({decided}, origin(), at_seconds(88.0)), HasSubstr("nothing waits"));
 }
 
-TEST(SiteBoard, GathersWhatTheVehiclesTell) {
-  SiteBoard board;
-  EXPECT_THAT(board.text(), HasSubstr("no site is known"));
+TEST(SitesText, GathersWhatTheVehiclesTell) {
+  console::Picture picture{{}};
+  EXPECT_THAT(sites_text(picture), HasSubstr("no site is known"));
+  coalition::Announcement announcement;
+  announcement.round.coalition.leader = {1};
+  announcement.site.id = {1};
+  picture.on_message(announcement, {1}, at_seconds(4.0));
   const auto tell = [&](std::uint16_t vehicle, mission::EventKind kind, const TaskId& task) {
-    board.on_event({{vehicle}, at_seconds(5.0), {}, task, mission::body_of(kind)});
+    picture.on_event({{vehicle}, at_seconds(5.0), {}, task, mission::body_of(kind)});
   };
   using enum mission::EventKind;
   tell(1, survey_done, {{1}, TaskKind::survey, 0});
-  tell(1, coalition_formed, {{1}, TaskKind::survey, 0});
   for (std::uint8_t i = 0; i < 8; ++i) tell(2, task_done, {{1}, TaskKind::deliver, i});
+  tell(2, task_done, {{1}, TaskKind::deliver, 7});  // said again
   tell(7, task_done, {{1}, TaskKind::assess, 0});
   tell(4, fleet_warning, {});  // concerns no site
-  EXPECT_THAT(board.text(),
+  EXPECT_THAT(sites_text(picture),
               HasSubstr("site 1: led by vehicle 1, surveyed, 8 delivered, 1 assessed; 5.0 s"));
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/events.hpp"
 
-#include <utility>
+#include <array>
+#include <variant>
 
 #include "skein/base/assert.hpp"
 
@@ -14,7 +15,18 @@ EventBody body_at(std::size_t kind) {
   }
   return EventBody{std::in_place_index<Index>};
 }
+
+template <class Event>
+concept Warns = requires {
+  requires Event::kWarning;
+};
+
+constexpr auto kWarnings = []<class... Event>(const std::variant<Event...>* /*list*/) {
+  return std::array{Warns<Event>...};
+}(static_cast<const EventBody::variant*>(nullptr));
 }  // namespace
+
+bool is_warning(EventKind kind) { return kWarnings.at(static_cast<std::size_t>(kind)); }
 
 EventBody body_of(EventKind kind) {
   SKEIN_ASSERT(kind < EventKind::count);

@@ -168,15 +168,21 @@ RoundPicture& Picture::round_of(const coalition::Round& round) {
   return rounds[index - 1];
 }
 
+SitePicture* Picture::site_of(SiteId id) {
+  const bool full = sites_.size() >= params_.sites_max && !sites_.contains(id);
+  return full ? nullptr : &sites_[id];
+}
+
 void Picture::know(const Site& site) {
-  if (sites_.contains(site.id) || sites_.size() < params_.sites_max) sites_[site.id].site = site;
+  if (SitePicture* known = site_of(site.id)) known->site = site;
 }
 
 void Picture::on(const coalition::Announcement& m) {
   know(m.site);
-  SitePicture& site = sites_[m.site.id];
-  site.leader = m.round.coalition.leader;
-  site.surveyed = true;  // who announces has been there
+  if (SitePicture* site = site_of(m.site.id)) {
+    site->leader = m.round.coalition.leader;
+    site->surveyed = true;  // who announces has been there
+  }
   CoalitionPicture& coalition = coalition_of(m.round.coalition);
   coalition.site = m.site.id;
   RoundPicture& round = round_of(m.round);
@@ -198,7 +204,8 @@ void Picture::on(const coalition::Bid& m) {
 
 void Picture::on(const coalition::Award& m) {
   know(m.site);
-  sites_[m.site.id].leader = m.round.coalition.leader;
+  SitePicture* site = site_of(m.site.id);
+  if (site != nullptr) site->leader = m.round.coalition.leader;
   CoalitionPicture& coalition = coalition_of(m.round.coalition);
   coalition.site = m.site.id;
   coalition.lease_until = m.lease_until;
@@ -212,7 +219,8 @@ void Picture::on(const coalition::Award& m) {
   coalition.members.clear();
   for (const TaskAssignment& assignment : m.assignments) {
     coalition.members.push_back(assignment.vehicle);
-    TaskPicture& task = sites_[m.site.id].tasks[assignment.task];
+    if (site == nullptr) continue;
+    TaskPicture& task = site->tasks[assignment.task];
     if (task.state == coalition::TaskState::done) continue;
     if (first || task.vehicle != assignment.vehicle) task.state.reset();
     task.vehicle = assignment.vehicle;
@@ -238,14 +246,16 @@ void Picture::on(const coalition::LeaseRenewal& m) {
   CoalitionPicture& coalition = coalition_of(m.round.coalition);
   coalition.site = m.site;
   coalition.lease_until = m.lease_until;
-  SitePicture& site = sites_[m.site];
-  for (const TaskId& task : m.done) advance(site.tasks[task], coalition::TaskState::done);
-  for (const TaskId& task : m.unknown) advance(site.tasks[task], coalition::TaskState::unknown);
+  SitePicture* site = site_of(m.site);
+  if (site != nullptr) {
+    for (const TaskId& task : m.done) advance(site->tasks[task], coalition::TaskState::done);
+    for (const TaskId& task : m.unknown) advance(site->tasks[task], coalition::TaskState::unknown);
+  }
   if (m.closed) {
     coalition.state = CoalitionState::closed;
     return;
   }
-  site.leader = m.round.coalition.leader;
+  if (site != nullptr) site->leader = m.round.coalition.leader;
   if (stands(m) && !m.members.empty()) {
     coalition.state = CoalitionState::formed;
     coalition.why = {};
@@ -255,7 +265,9 @@ void Picture::on(const coalition::LeaseRenewal& m) {
 
 void Picture::on(const coalition::MemberStatus& m) {
   for (const auto& entry : m.tasks) {
-    TaskPicture& task = sites_[entry.task.site].tasks[entry.task];
+    SitePicture* site = site_of(entry.task.site);
+    if (site == nullptr) continue;
+    TaskPicture& task = site->tasks[entry.task];
     if (!task.vehicle) task.vehicle = m.member;
     advance(task, entry.state);
   }
@@ -264,7 +276,9 @@ void Picture::on(const coalition::MemberStatus& m) {
 void Picture::on_event(const mission::MissionEvent& event) {
   using enum mission::EventKind;
   if (event.task.site == SiteId{}) return;
-  SitePicture& site = sites_[event.task.site];
+  SitePicture* known = site_of(event.task.site);
+  if (known == nullptr) return;
+  SitePicture& site = *known;
   site.news = event;
   switch (event.kind()) {
     case survey_done:

@@ -28,8 +28,6 @@ constexpr double kRangeWarningM = 2000.0;
 constexpr Duration kOffsetWarning = std::chrono::milliseconds{500};
 constexpr double kArcStepRad = 0.16;  ///< of a path's polyline
 constexpr std::size_t kPlanPointsMax = 400;
-constexpr double kPlaceTolerance_m = 0.5;
-constexpr double kPlanePlaceTolerance_m = 10.0;
 constexpr double kHoldStepRad = 0.26;
 
 /// The shortest text of a number that was rounded.
@@ -378,18 +376,18 @@ Json hazards_json(const Picture& picture) {
 
 /// It has flown the newest change, and is where that leads to.
 bool is_in_place(const FormationPicture& formation, VehicleId id,
-                 const mission::FormationStatus& status, Instant now) {
+                 const mission::FormationStatus& status, double tolerance_m, Instant now) {
   // The place of a plane moves; what its status tells is how far it is from there.
   if (const auto flight = formation.flights.find(id); flight != formation.flights.end()) {
     return status.progress.change == flight->second.number && now >= flight->second.joined &&
-           status.progress.off_m < kPlanePlaceTolerance_m;
+           status.progress.off_m <= tolerance_m;
   }
   if (!formation.change) return status.at_rest;
   const auto mover = formation::mover_of(*formation.change, id);
   if (!mover) return status.at_rest;
   const Vec3& place = formation.change->movers[*mover].points.back();
   return status.progress.change == formation.change->number &&
-         (status.position_m - place).norm() < kPlaceTolerance_m;
+         (status.position_m - place).norm() <= tolerance_m;
 }
 
 Json formation_json(const Picture& picture, Instant now) {
@@ -415,7 +413,8 @@ Json formation_json(const Picture& picture, Instant now) {
     const auto& status = member.status;
     const bool lost = now - member.heard_at > mission::kFormationSilence;
     at_rest = at_rest && (status.at_rest || lost);
-    in_place = in_place && !lost && is_in_place(formation, id, status, now);
+    in_place = in_place && !lost &&
+               is_in_place(formation, id, status, picture.params().place_tolerance_m, now);
     places.push_back({{"id", id.value},
                       {"x", metres(status.position_m.x())},
                       {"y", metres(status.position_m.y())},

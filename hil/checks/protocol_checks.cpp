@@ -23,7 +23,7 @@ std::string run_name(const TaskRun& run) {
   return to_string(run.task) + " by " + vehicle_name(run.vehicle);
 }
 
-/// What came first, and how late the second may not be early.
+/// One must be over before the other begins.
 struct Order {
   const TaskRun& before;
   const TaskRun& after;

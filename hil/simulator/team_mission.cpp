@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "skein/base/random.hpp"
+#include "skein/groundstation/orders.hpp"
 #include "skein/hil/fault_profiles.hpp"
 
 namespace skein::hil {
@@ -21,7 +22,7 @@ constexpr std::size_t kShapes = 3;
 /// Take-off, rally, shapes somewhere above the rally, rally, land.
 std::vector<std::string> random_script(const configuration::FormationConfig& formation,
                                        std::size_t vehicles, Random& random) {
-  std::vector<std::string> shapes{"line-abreast", "column", "echelon", "wedge", "pentagon"};
+  std::vector<std::string> shapes = groundstation::shape_names();
   for (const auto& shape : formation.shapes) shapes.push_back(shape.name);
   std::vector<std::string> script{"take-off", "rally"};
   const double room = 8.0 * static_cast<double>(vehicles);

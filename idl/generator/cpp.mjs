@@ -98,7 +98,8 @@ function struct_text(types, t, within) {
   const union = fields.find(f => f.kind === 'union')
   const kind = union ? seen_from(within, types.get(types.get(union.type).on).name) : ''
   const which = union ? `\n  /// Which of them \`${union.name}\` is.\n  [[nodiscard]] ${kind} kind() const { return static_cast<${kind}>(${union.name}.index()); }\n` : ''
-  return `${doc(t.before)}struct ${name} {\n${members(types, fields, within)}${compared}${which}};\n`
+  const warning = t.notes.warning ? '  static constexpr bool kWarning = true;\n' : ''
+  return `${doc(t.before)}struct ${name} {\n${members(types, fields, within)}${compared}${warning}${which}};\n`
 }
 
 function enum_text(t) {

@@ -52,6 +52,9 @@ class ConsoleDesk {
   Instant next_state_{Instant::min()};
 };
 
+/// What the configuration says of it.
+[[nodiscard]] console::PictureParams picture_params(const configuration::GroundConfig& config);
+
 /// The version of this program.
 [[nodiscard]] std::string version();
 

@@ -74,6 +74,9 @@ using Input =
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);
+/// The shapes that have a name of their own, as they are typed; all others are free ones.
+[[nodiscard]] std::vector<std::string> shape_names();
+[[nodiscard]] std::optional<formation::ShapeKind> shape_named(std::string_view name);
 /// The order in the prompt's words, for the log and the audit: "form wedge spacing 5".
 [[nodiscard]] std::string line_of(const Input& input);
 

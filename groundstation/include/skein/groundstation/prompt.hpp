@@ -12,6 +12,7 @@ namespace skein::groundstation {
 
 /// Fails with what is wrong and what would be right.
 [[nodiscard]] Result<Input> parse_input(std::string_view line);
+inline constexpr std::size_t kLineMax = 1000;  ///< of a line; a longer one is refused
 
 /// Whether the line is an order to the formation, its preview, or a question about its places.
 [[nodiscard]] bool is_of_formation(std::string_view line);

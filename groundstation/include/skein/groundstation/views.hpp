@@ -32,22 +32,7 @@ namespace skein::groundstation {
 [[nodiscard]] std::string coalitions_text(const console::Picture& picture);
 [[nodiscard]] std::string hazards_text(const console::Picture& picture);
 
-/// What is known of the sites, gathered from the events of the vehicles.
-class SiteBoard {
- public:
-  void on_event(const mission::MissionEvent& event);
-  /// One line a site: who leads there, what was done, the latest news.
-  [[nodiscard]] std::string text() const;
-
- private:
-  struct Entry {
-    std::optional<VehicleId> leader;
-    bool surveyed = false;
-    std::size_t delivered = 0;
-    std::size_t assessed = 0;
-    mission::MissionEvent latest;
-  };
-  std::map<SiteId, Entry> sites_;
-};
+/// One line a site: who leads there, what was done, the latest news.
+[[nodiscard]] std::string sites_text(const console::Picture& picture);
 
 }  // namespace skein::groundstation

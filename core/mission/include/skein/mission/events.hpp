@@ -8,8 +8,8 @@ namespace skein::mission {
 static_assert(std::variant_size_v<EventBody::variant> ==
               static_cast<std::size_t>(EventKind::count));
 
-/// To be looked at by a person.
-[[nodiscard]] constexpr bool is_warning(EventKind kind) { return kind >= EventKind::task_lost; }
+/// To be looked at by a person: @warning in the IDL.
+[[nodiscard]] bool is_warning(EventKind kind);
 
 /// That alternative, with its defaults.
 [[nodiscard]] EventBody body_of(EventKind kind);

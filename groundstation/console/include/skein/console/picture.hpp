@@ -16,6 +16,7 @@ namespace skein::console {
 struct PictureParams {
   std::vector<VehicleId> expected = {};  ///< the fleet
   std::vector<Hazard> hazards = {};      ///< known before the mission
+  double place_tolerance_m = 0.3;        ///< to be in place, in a formation
   Duration series_period = std::chrono::seconds{1};
   std::size_t series_max = 600;  ///< samples of a vehicle: ten minutes
   std::size_t spans_max = 1000;  ///< of a vehicle's activities
@@ -23,7 +24,7 @@ struct PictureParams {
   std::size_t rounds_max = 20;  ///< of a coalition
   std::size_t authorisations_max = 200;
   std::size_t vehicles_max = 1000;  ///< strangers included
-  std::size_t sites_max = 1000;     ///< whose place is known
+  std::size_t sites_max = 1000;
   std::size_t hazards_max = 1000;
 };
 
@@ -112,7 +113,8 @@ struct FormationPicture {
 /// Everything that the ground station has heard and said, put together for people: what was said
 /// over time, beside the fleet as it is now (mission::Fleet). It decides nothing. Pure and
 /// copyable: of a recording, copies taken on the way make every moment quick to reach. `now` never
-/// decreases. Every container has a limit; the oldest gives way.
+/// decreases. Every container has a limit: of what
+/// passes the oldest gives way, of sites, hazards and vehicles what is new is left out.
 class Picture {
  public:
   explicit Picture(PictureParams params);
@@ -154,6 +156,7 @@ class Picture {
   void on(const coalition::MemberStatus& m);
   CoalitionPicture& coalition_of(const coalition::CoalitionId& id);
   RoundPicture& round_of(const coalition::Round& round);
+  SitePicture* site_of(SiteId id);  ///< null: one too many
   void know(const Site& site);
 
   PictureParams params_;

@@ -31,7 +31,7 @@ struct CheckResult {
   [[nodiscard]] bool held() const { return violations.empty(); }
 };
 
-/// Every vehicle left a track without gaps, its events and at least one plan.
+/// Every vehicle left a track without gaps and at least one plan.
 [[nodiscard]] CheckResult check_recordings(const RunRecord& record, const Limits& limits);
 
 /// Plans exactly: no segment and no hold turns tighter than the turn radius. Tracks of planes:
@@ -97,7 +97,7 @@ struct CheckResult {
 /// one above.
 [[nodiscard]] std::vector<CheckResult> judge_routes(const RunRecord& record, const Limits& limits);
 
-/// Those of a formation: recordings, separation, and the three above.
+/// Those of a formation of multirotors.
 [[nodiscard]] std::vector<CheckResult> judge_formation(const RunRecord& record,
                                                        const Limits& limits);
 
