@@ -12,6 +12,7 @@
 #include "skein/idl/coalition_fields.hpp"
 #include "skein/idl/domain_fields.hpp"
 #include "skein/idl/events_fields.hpp"
+#include "skein/onboard/node_config.hpp"
 
 namespace skein::hil {
 namespace {
@@ -65,40 +66,18 @@ void Aircraft::take_off(Instant now) {
 }
 
 mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) const {
-  mission::VehicleNodeConfig config;
-  config.program = "skein-hil simulate";
-  config.flight_controller = "simulated";
-  config.telemetry_period = kTelemetryPeriod;
-  const InstanceId self = instance(what_.spec.id, life_);
-  if (what_.flies_formation && is_plane()) {
-    mission::TrackAgentConfig agent;
-    agent.vehicle = what_.spec;
-    agent.instance = self;
-    agent.hazards = hazards;
-    agent.place_tolerance_m = mission_.formation->place_tolerance_m;
-    config.agent = agent;
-    return config;
-  }
-  if (what_.flies_formation) {
-    mission::FormationAgentConfig agent;
-    agent.vehicle = what_.spec.id;
-    agent.instance = self;
-    agent.limits = mission_.formation->limits;
-    agent.avoidance = mission_.formation->avoidance;
-    agent.passage.tolerance_m = mission_.formation->tracking_m;
-    config.agent = agent;
-    return config;
-  }
-  mission::VehicleAgentConfig agent;
-  agent.vehicle = what_.spec;
-  agent.vehicle.loads = loads_left_;
-  agent.instance = self;
-  agent.protocol = mission_.protocol;
-  agent.planning = mission_.planning;
-  agent.search = what_.search;
-  agent.hazards = hazards;
-  config.agent = agent;
-  return config;
+  configuration::VehicleConfig config;
+  config.vehicle = what_.spec;
+  config.vehicle.loads = loads_left_;
+  config.search = what_.search;
+  config.protocol = mission_.protocol;
+  config.planning = mission_.planning;
+  config.hazards = hazards;
+  if (what_.flies_formation) config.formation = *mission_.formation;
+  auto node = onboard::node_config(config, std::nullopt, instance(what_.spec.id, life_),
+                                   "skein-hil simulate");
+  node.telemetry_period = kTelemetryPeriod;
+  return node;
 }
 
 void Aircraft::start_program(const std::vector<Hazard>& hazards) {
