@@ -41,26 +41,6 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
   auto data = outcome_json(only_preview, formation::to_string(planned.way), planned.duration,
                            planned.least_separation_m, preview.lost);
   for (const auto& mover : planned.change.movers) {
-    const Vec3& from = mover.points.front();
-    const Vec3& to = mover.points.back();
-    text += fmt::format("  vehicle {:<3} ({:7.1f} {:7.1f} {:6.1f}) to ({:7.1f} {:7.1f} {:6.1f})\n",
-                        mover.vehicle.value, from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
-  }
-  for (const VehicleId vehicle : preview.lost) {
-    text += fmt::format("  vehicle {} is silent; its way is kept clear\n", vehicle.value);
-  }
-  return text;
-}
-
-std::string data_of(const mission::FormationPreview& preview, bool only_preview) {
-  const auto& planned = preview.planned;
-  nlohmann::ordered_json data{{"kind", only_preview ? "preview" : "begun"},
-                              {"way", formation::to_string(planned.way)},
-                              {"duration_s", to_seconds(planned.duration)},
-                              {"least_separation_m", planned.least_separation_m},
-                              {"movers", nlohmann::ordered_json::array()},
-                              {"lost", nlohmann::ordered_json::array()}};
-  for (const auto& mover : planned.change.movers) {
     auto points = nlohmann::ordered_json::array();
     for (const Vec3& p : mover.points) points.push_back({p.x(), p.y(), p.z()});
     data["movers"].push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
