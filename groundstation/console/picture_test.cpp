@@ -259,6 +259,7 @@ TEST(Picture, AFormationIsInPlaceWhenAllAre) {
 
 TEST(Picture, APlaceOnATrackMovesAndIsKeptAllTheSame) {
   Desk desk;
+  desk.picture = Picture{{.expected = {{1}, {2}}, .place_tolerance_m = 8.0}};
   for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
     mission::TrackFlight flight;
     flight.vehicle = {id};
