@@ -27,6 +27,8 @@ constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
 constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
 constexpr int kClosedTimes = 5;
 constexpr Duration kLeaderLost = std::chrono::seconds{75};
+/// A vehicle's from that of the ground station; more than ProtocolParams::clock_guard.
+constexpr Duration kClocksDiffer = std::chrono::seconds{1};
 
 Instant last_delivery(const AuthorisationRequest& request) {
   Instant last = request.decide_by;
@@ -81,9 +83,9 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
   if (tell_what_is_over(request, now) || granted_to_another(request) != nullptr) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
   const Authorisation* before = granted_before(request);
-  const std::string by = before == nullptr ? "" : before->decided_by;
+  const auto by = before == nullptr ? std::nullopt : std::optional{before->decided_by};
   pending_.push_back({request, now, std::nullopt});
-  if (!by.empty() && now < request.decide_by) (void)decide(pending_.back(), true, by, now);
+  if (by && now < request.decide_by) (void)decide(pending_.back(), true, *by, now);
 }
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {
@@ -174,6 +176,14 @@ const Authorisation* GroundAgent::granted_before(const AuthorisationRequest& req
   return nullptr;
 }
 
+/// Is that said by who was granted the delivery, of that plan? It may go on under a successor,
+/// whose request was not heard here: what the vehicle says of the delivery after the grant is of
+/// the same plan, or of one that has replaced it; what is older may be of a plan before it.
+bool GroundAgent::is_of_grant(const MissionEvent& event, const Granted& granted) {
+  return granted.assignment.vehicle == event.vehicle &&
+         (granted.round == event.round || event.time > granted.granted_at + kClocksDiffer);
+}
+
 void GroundAgent::on_event(const MissionEvent& event) {
   const auto* ended = std::get_if<event::LeaseEnded>(&event.body);
   const bool lost =
@@ -182,8 +192,7 @@ void GroundAgent::on_event(const MissionEvent& event) {
   const bool gives_up =
       lost || kind == EventKind::task_failed || kind == EventKind::authorisation_late;
   const auto granted = granted_.find(event.task);
-  if (granted != granted_.end() && granted->second.round == event.round &&
-      granted->second.assignment.vehicle == event.vehicle) {
+  if (granted != granted_.end() && is_of_grant(event, granted->second)) {
     // What was begun may be flown to its end, whatever is said afterwards.
     granted->second.begun = granted->second.begun || kind == EventKind::task_started;
     granted->second.given_up = granted->second.given_up || (gives_up && !granted->second.begun);
@@ -265,7 +274,7 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
   for (const auto& delivery : request.deliveries) {
     if (!granted) break;
     granted_.insert_or_assign(delivery.assignment.task, Granted{request.round, delivery.assignment,
-                                                                delivery.bearing_rad, false});
+                                                                delivery.bearing_rad, now});
   }
   pending.decision = Authorisation{request.round, request.site, granted, by, now};
   report(granted ? EventBody{event::Authorised{by}} : EventBody{event::AuthorisationRefused{by}},

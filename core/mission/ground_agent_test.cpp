@@ -241,6 +241,68 @@ TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0)).ok());
 }
 
+/// The plan of that request goes on under another leader.
+AuthorisationRequest passed_on(AuthorisationRequest request) {
+  request.round = {{{1}, {5}, 1}, 1};
+  return request;
+}
+
+TEST(GroundAgent, ASuccessorsPlanIsGrantedWithoutAskingAgain) {
+  Bench bench;
+  const auto first = request(1, 40.0, 50.0);
+  bench.ask(first, 10.0);
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)).ok());
+  (void)bench.sent<Authorisation>();
+
+  bench.ask(passed_on(first), 30.0);
+  auto sent = bench.sent<Authorisation>();
+  ASSERT_FALSE(sent.empty());
+  EXPECT_EQ(sent[0].round, passed_on(first).round);
+  EXPECT_TRUE(sent[0].granted);
+  EXPECT_EQ(sent[0].decided_by, "Ada");
+
+  Bench other;  // what is another plan needs a decision
+  other.ask(first, 10.0);
+  ASSERT_TRUE(other.agent.authorise(kSite, "", at_seconds(12.0)).ok());
+  auto changed = passed_on(first);
+  changed.deliveries[0].assignment.time += std::chrono::seconds{1};
+  other.ask(changed, 30.0);
+  (void)other.sent<Authorisation>();
+  ASSERT_EQ(other.agent.authorisations().size(), 2U);
+  EXPECT_FALSE(other.agent.authorisations().back().decision);
+  // A decision counts, whoever made it.
+  auto same = passed_on(first);
+  same.round.coalition.leader = {3};
+  other.ask(same, 31.0);
+  EXPECT_TRUE(other.agent.authorisations().back().decision);
+}
+
+TEST(GroundAgent, WhoIsLateUnderASuccessorHasGivenUpWhatWasGrantedBefore) {
+  Bench bench;
+  const auto first = request(1, 40.0, 50.0);
+  bench.ask(first, 10.0);
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)).ok());
+  const TaskId& task = first.deliveries[0].assignment.task;
+  auto anew = passed_on(first);
+  anew.round.number = 2;
+  anew.decide_by = at_seconds(70.0);
+  anew.deliveries[0].assignment = {task, {1}, at_seconds(80.0)};
+
+  // An event of the time before the grant is of a plan before it.
+  const auto late = [&](double seconds) {
+    return MissionEvent{kLeader, at_seconds(seconds), passed_on(first).round, task,
+                        event::AuthorisationLate{event::Lateness::not_authorised}};
+  };
+  bench.agent.on_message(Message{late(12.5)}, at_seconds(46.0));
+  bench.ask(anew, 46.5);
+  EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(47.0)).ok());
+  // The successor's request was never heard here; the vehicle was late under its round.
+  bench.agent.on_message(Message{late(46.0)}, at_seconds(48.0));
+  bench.ask(anew, 49.0);
+  EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(50.5)).ok());
+  EXPECT_TRUE(bench.sent<coalition::Message>().empty()) << "nothing may have been flown";
+}
+
 TEST(GroundAgent, DoesNotAuthoriseADuplicate) {
   GroundAgentConfig config = fleet_of_three();
   config.decisions = {{.site = kSite, .reaction = from_seconds(1.0)}};

@@ -59,6 +59,7 @@ void Leader::lead(const SurveyedSite& what, Instant now) {
 void Leader::take_over(const coalition::Participant::LeadershipWon& won, Instant now) {
   if (leading()) return;
   fire(Event::taken_up);
+  bids_.clear();  // of a site that was led here before
   initiator_.emplace(ownship_.config().protocol, next_coalition(), won,
                      contains(granted_, won.plan.round), position_at_formation(now), now);
   const VehicleId lost = won.plan.round.coalition.leader;
@@ -270,10 +271,7 @@ void Leader::ask_operator(const Initiator::Formed& formed, Instant now) {
   for (const auto& a : formed.assignments) {
     if (a.task.kind != TaskKind::deliver) continue;
     request.deliveries.push_back({a, site.deliveries.at(a.task.index).bearing_rad});
-    const auto bid = bids_.find(a.vehicle);
-    if (bid == bids_.end()) continue;
-    request.decide_by =
-        std::min(request.decide_by, a.time - final_approach_time(bid->second) - kDecisionMargin);
+    request.decide_by = std::min(request.decide_by, decide_by(a));
   }
   if (request.deliveries.empty()) return;
   outbox_.report(event::AuthorisationRequested{request.decide_by}, formed.round,
@@ -281,6 +279,18 @@ void Leader::ask_operator(const Initiator::Formed& formed, Instant now) {
   request_ = std::move(request);
   request_again_ = now;
   fire(Event::asked);
+}
+
+/// When the operator's decision on that delivery must be there. Who leads on a lost leader's plan
+/// has not heard the bids for it: its own final approach stands for the others'. Where that is too
+/// short they are late at the gate, and there is another round.
+Instant Leader::decide_by(const TaskAssignment& delivery) const {
+  const VehicleSpec& self = ownship_.spec();
+  const auto bid = bids_.find(delivery.vehicle);
+  const Duration approach = bid != bids_.end()
+                                ? final_approach_time(bid->second)
+                                : from_seconds(self.final_approach_m / self.cruise_speed_mps);
+  return delivery.time - approach - kDecisionMargin;
 }
 
 void Leader::on_authorisation(const Authorisation& message, Instant now) {

@@ -106,6 +106,7 @@ class Leader {
   void answer(const Initiator::Superseded& superseded, Instant now);
   void answer(const Initiator::AllDone& done, Instant now);
   void ask_operator(const Initiator::Formed& formed, Instant now);
+  [[nodiscard]] Instant decide_by(const TaskAssignment& delivery) const;
   void say_farewell(Instant now);
   void watch_decision(Instant now);
   void meet_rival(SiteId site, const coalition::Round& rival, bool stands, Instant now);

@@ -126,6 +126,40 @@ TEST(Leader, SaysFarewellWhenEverythingIsDone) {
   EXPECT_TRUE(l.sent<coalition::Message>()) << "once more, for who has not heard it";
 }
 
+/// What a leader that is lost has left: the member's delivery, due then.
+coalition::Participant::LeadershipWon plan_of_a_lost_leader(Instant now, Instant due) {
+  coalition::Participant::LeadershipWon won;
+  won.plan.round = {{{7}, {1}, 1}, 2};
+  won.plan.site = test_site(1);
+  won.plan.assignments = {{{{1}, TaskKind::deliver, 0}, kMember, due}};
+  won.supporters = {{{4}, {9}}, {kMember, {1}}};
+  won.majority = 2;
+  won.promised_from = now;
+  return won;
+}
+
+TEST(Leader, ASuccessorAsksForADecisionThatIsInTime) {
+  PartsBench bench;
+  Leader leader{bench.ownship, bench.outbox};
+  const Instant due = at_seconds(60.0);
+  leader.take_over(plan_of_a_lost_leader(bench.now, due), bench.now);
+  const auto round = coalition::Round{{bench.ownship.spec().id, {9}, 1}, 1};
+  EXPECT_FALSE(leader.on_message(
+      coalition::Message{coalition::Confirmation{round, kMember, true, {}}}, bench.now));
+  while (leader.answer_next(bench.now)) {
+  }
+  ASSERT_EQ(leader.state(), State::awaiting_decision);
+  leader.repeat(bench.now);
+  const auto request = bench.sent<AuthorisationRequest>();
+  ASSERT_TRUE(request);
+  EXPECT_EQ(request->round, round);
+  // It has no bid of the member's: its own final approach of 4 s stands for the member's.
+  EXPECT_EQ(request->decide_by, due - std::chrono::seconds{6});
+  bench.be_at(55.0);
+  leader.repeat(bench.now);
+  EXPECT_EQ(bench.reported(EventKind::authorisation_late), 1);
+}
+
 TEST(Leader, YieldsToALargerRewardAndLeadsItsSiteLater) {
   Leading l;
   coalition::Announcement other;

@@ -240,6 +240,7 @@ class Team {
   // --- the radio ---
 
   void broadcast(std::size_t from, const mission::Message& message, Instant now) {
+    if (observer_.message) observer_.message(message);
     const auto what = std::make_shared<const Content>(message);
     // The ground station is the last node, and the first to hear.
     if (from != ground_index()) post(from, ground_index(), what, now);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/codec/codec.hpp"
 
 namespace skein::hil {
 namespace {
@@ -106,6 +107,39 @@ TEST(TeamSimulator, TheSmallMissionIsFlownToItsEnd) {
     EXPECT_NEAR(to_seconds(planned), to_seconds(deliveries[0].time) + 5.0, 0.05)
         << "start, after the wait";
   }
+}
+
+TEST(TeamSimulator, ASuccessorGoesOnWithWhatWasGrantedAndAllThatIsSaidFitsTheWire) {
+  auto team = small_mission();
+  // From so far away that there is time for a successor.
+  for (std::size_t i = 1; i <= 3; ++i) {
+    auto& start = team.vehicles[i].start;
+    start.x_m *= 3.0;
+    start.y_m *= 2.0;
+    team.vehicles[i].search = {start.position()};
+  }
+  team.sites[0].assessments.clear();
+  team.faults = {{{.role = Role::leader, .after = from_seconds(7)}, {}, ProgramsEnd{}}};
+  std::vector<MissionEvent> events;
+  std::vector<Instant> granted_times;
+  std::size_t unsendable = 0;
+  TeamObserver observer;
+  observer.event = [&](const MissionEvent& e) { events.push_back(e); };
+  observer.message = [&](const mission::Message& m) {
+    unsendable += codec::encode(m).has_value() ? 0 : 1;
+  };
+  (void)simulate_team(team, observer);
+  EXPECT_EQ(unsendable, 0U);
+  const auto count = [&](EventKind kind) {
+    return std::ranges::count(events, kind, [](const MissionEvent& e) { return e.kind(); });
+  };
+  EXPECT_EQ(count(EventKind::leader_replaced), 1);
+  EXPECT_EQ(count(EventKind::authorisation_late), 0) << "nobody waits at a gate";
+  EXPECT_EQ(count(EventKind::awarded), 1) << "the plan is not made anew";
+  const auto delivered = std::ranges::count_if(events, [](const MissionEvent& e) {
+    return e.kind() == EventKind::task_done && e.task.kind == TaskKind::deliver;
+  });
+  EXPECT_EQ(delivered, 3);
 }
 
 TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {

@@ -93,6 +93,7 @@ class GroundAgent {
     coalition::Round round;
     TaskAssignment assignment;
     double bearing_rad = 0.0;
+    Instant granted_at{};
     bool begun = false;
     bool given_up = false;  ///< its owner has said that it does not fly it
   };
@@ -116,6 +117,7 @@ class GroundAgent {
   void on_announcement(const coalition::Announcement& announcement, Instant now);
   bool tell_what_is_over(const AuthorisationRequest& request, Instant now);
   [[nodiscard]] const Granted* granted_to_another(const AuthorisationRequest& request) const;
+  [[nodiscard]] static bool is_of_grant(const MissionEvent& event, const Granted& granted);
   [[nodiscard]] const Authorisation* granted_before(const AuthorisationRequest& request) const;
   void decide_by_script(Instant now);
   void send_again(Instant now);

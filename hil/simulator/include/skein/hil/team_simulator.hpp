@@ -110,6 +110,8 @@ struct TeamObserver {
   /// The plan has number 0 while a copter takes off.
   std::function<void(VehicleId, const VehicleState&, const mission::FlightPlan&)> track;
   std::function<void(const FaultEvent&)> fault;
+  /// Whatever is sent, as it would go through the codec.
+  std::function<void(const mission::Message&)> message;
   /// All that fly in formation, in the mission's order, at every control step.
   std::function<void(Instant, const std::vector<SeenBody>&)> bodies;
 };
