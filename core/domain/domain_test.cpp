@@ -62,7 +62,6 @@ TEST(Site, ListsItsTasksInOrder) {
   ASSERT_EQ(tasks.size(), 3U);
   EXPECT_EQ(to_string(tasks[1]), "site 3 deliver 2");
   EXPECT_EQ(to_string(tasks[2]), "site 3 assess 1");
-  EXPECT_DOUBLE_EQ(total_reward(site), 4.0);
 }
 
 TEST(Capabilities, BitsSurviveARoundTripAndNothingElseDoes) {

@@ -17,10 +17,6 @@ std::size_t task_count(const Site& site, TaskKind kind) {
   return 0;
 }
 
-double total_reward(const Site& site) {
-  return site.reward * static_cast<double>(1 + site.deliveries.size() + site.assessments.size());
-}
-
 std::vector<TaskId> tasks_after_survey(const Site& site) {
   std::vector<TaskId> tasks;
   tasks.reserve(site.deliveries.size() + site.assessments.size());

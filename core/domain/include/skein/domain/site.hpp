@@ -10,8 +10,6 @@
 namespace skein {
 
 [[nodiscard]] std::size_t task_count(const Site& site, TaskKind kind);
-/// The reward of all its tasks together, as announced (eq. 19).
-[[nodiscard]] double total_reward(const Site& site);
 /// Every task but the survey, in order: deliveries, then assessments.
 [[nodiscard]] std::vector<TaskId> tasks_after_survey(const Site& site);
 
