@@ -122,6 +122,9 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can, AgentRing* r
     if (!notice) return std::nullopt;
     return mission::FlightNotice{notice->time, notice->warning, std::move(notice->what)};
   };
+  link.dropped = [dropped = std::move(link.dropped), on_can] {
+    return dropped() + on_can->notices_dropped();
+  };
   link.give_back = [on_can](Instant issued) { on_can->give_back(issued); };
   return link;
 }
@@ -177,7 +180,7 @@ class Threads {
         "{}, dropped {}, refused of their senders {}; protocol errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
-        counters.protocol_errors + counters.bad_changes,
+        counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;

@@ -263,6 +263,9 @@ class Team {
       } else {
         Bid bid;
         bid.instance = m.instance;
+        bid.speed_mps = 20.0;
+        bid.planning_radius_m = 60.0;
+        bid.final_approach_m = 300.0;
         m.participant.bid(wanted->announcement, bid, clock(id));
       }
     } else if (const auto* award = std::get_if<Participant::AwardReceived>(&output)) {

@@ -34,6 +34,7 @@ void Elector::leave() {
   elector_ = false;
   electors_.clear();
   supporters_.clear();
+  won_.reset();
   follows_ = kNobody;
   renewed_at_ = Instant::min();
   strayed_ = false;
@@ -111,9 +112,13 @@ void Elector::on_timeout(Instant now) {
 }
 
 void Elector::on_allegiance(const Allegiance& message, Instant now) {
-  if (!elector_ || message.coalition != plan_->round.coalition) return;
+  if (!elector_ || !may_lead_ || message.coalition != plan_->round.coalition) return;
   if (message.follows != self_ || follows_ != self_ || !contains(electors_, message.elector))
     return;
+  if (message.acknowledges > now) {  // no claim that was made here
+    ++bad_messages_;
+    return;
+  }
   auto& [acknowledged, instance] = supporters_[message.elector];
   acknowledged = std::max(acknowledged, message.acknowledges);
   instance = message.instance;

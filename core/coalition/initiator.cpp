@@ -103,6 +103,10 @@ void Initiator::collect_open_tasks(Instant now) {
 }
 
 void Initiator::on_bid(const Bid& message, Instant now) {
+  if (!makes_sense(message)) {
+    ++bad_messages_;
+    return;
+  }
   heard_[message.bidder] = now;
   for (auto& entry : ledger_) {
     const bool newer = message.round.coalition == entry.round.coalition &&
@@ -184,9 +188,7 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
     const auto bid = bids_.find(a.vehicle);
     if (bid != bids_.end()) {
       entry->instance = bid->second.instance;
-      if (bid->second.speed_mps > 0.0) {
-        entry->begins = a.time - from_seconds(bid->second.final_approach_m / bid->second.speed_mps);
-      }
+      entry->begins = a.time - from_seconds(bid->second.final_approach_m / bid->second.speed_mps);
     } else if (const auto elector = electors_.find(a.vehicle); elector != electors_.end()) {
       entry->instance = elector->second.instance;  // its plan goes on under this leader
     }
@@ -217,6 +219,10 @@ void Initiator::on_allegiance(const Allegiance& message, Instant now) {
   if (message.coalition != announcement_.round.coalition) return;
   const auto elector = electors_.find(message.elector);
   if (elector == electors_.end() || message.elector == message.coalition.leader) return;
+  if (message.acknowledges > now) {  // nothing that this leader has said
+    ++bad_messages_;
+    return;
+  }
   // One that has started anew does not know what it had promised to whom.
   auto& [acknowledged, instance] = elector->second;
   if (instance != InstanceId{} && instance != message.instance) return;

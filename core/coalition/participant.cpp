@@ -20,6 +20,10 @@ Participant::Participant(const ProtocolParams& params, VehicleId self, InstanceI
     : params_{params}, self_{self}, elector_{params, self, instance} {}
 
 void Participant::on_announcement(const Announcement& message, Instant now) {
+  if (!makes_sense(message, now)) {
+    ++bad_messages_;
+    return;
+  }
   // A leader that announces what is done here has not heard of it: it is told again, and gets no
   // bid until it knows. A bid would say that the task was given back (Initiator::take_back).
   bool done_here = false;
@@ -46,7 +50,8 @@ void Participant::on_announcement(const Announcement& message, Instant now) {
   } else if (machine_.in(State::member)) {
     if (newer_of_mine && !task_in_progress()) outputs_.push(BidWanted{message});
   } else if (machine_.in(State::orphaned)) {  // whoever leads the site now plans it anew
-    if (message.site.id == award_->site.id && !task_in_progress()) {
+    const bool copy = message.round.coalition == round_.coalition && !newer_of_mine;
+    if (!copy && message.site.id == award_->site.id && !task_in_progress()) {
       outputs_.push(BidWanted{message});
     }
   } else if (newer_of_mine) {  // bidding: the round that was bid in has come to nothing

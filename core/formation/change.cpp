@@ -235,6 +235,29 @@ double ChangeMotion::least_between(const Leg& first, const Leg& second, double f
   return std::max(0.0, least - kExact_m);
 }
 
+namespace {
+
+/// Nothing takes so long, and what does cannot be counted in grains.
+constexpr double kLongestLeg_s = 1e5;
+constexpr double kJerkMin_mps3 = 1e-2;
+
+bool flown_in_time(const Change& change, const Mover& mover) {
+  double speed_mps = change.limits.speed_mps;
+  double detour_m = 0.0;
+  if (change.roundabout) {  // whoever goes around it slows the others too
+    const double radius_m = change.roundabout->radius_m;
+    speed_mps = std::min(speed_mps, std::sqrt(change.limits.acceleration_mps2 * radius_m));
+    detour_m = 4.0 * kPi * radius_m;
+  }
+  for (std::size_t i = 0; i + 1 < mover.points.size(); ++i) {
+    const double way_m = (mover.points[i + 1] - mover.points[i]).norm() + detour_m;
+    if (way_m > kLongestLeg_s * speed_mps) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 bool valid(const Change& change) {
   const auto good = [](double number) { return std::isfinite(number) && number > 0.0; };
   if (change.stages == 0 || change.stages > kStagesMax || change.movers.empty()) return false;
@@ -244,6 +267,7 @@ bool valid(const Change& change) {
     return false;
   }
   if (change.limits.speed_mps > kStopWithin_s * change.limits.acceleration_mps2) return false;
+  if (change.limits.jerk_mps3 < kJerkMin_mps3) return false;
   if (change.roundabout &&
       (!good(change.roundabout->radius_m) || !change.roundabout->centre.allFinite())) {
     return false;
@@ -259,6 +283,7 @@ bool valid(const Change& change) {
         return false;
       }
     }
+    if (!flown_in_time(change, mover)) return false;
   }
   return true;
 }

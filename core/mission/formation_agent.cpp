@@ -30,7 +30,7 @@ void FormationAgent::on_message(const Message& message, VehicleId sender, Instan
   } else if (const auto* status = std::get_if<FormationStatus>(&message)) {
     if (status->vehicle == sender) on_status(*status, now);
   } else if (const auto* command = std::get_if<Command>(&message)) {
-    if (sender == kGroundStation) on_command(*command);
+    if (sender == kGroundStation) on_command(*command, now);
   }
 }
 
@@ -72,7 +72,8 @@ std::optional<event::ChangeRefusal> FormationAgent::why_not(const Change& change
   if (change_ && !execution_->at_rest()) return another_is_flown;
   const auto& limits = change.limits;
   if (limits.speed_mps > config_.limits.speed_mps ||
-      limits.acceleration_mps2 > config_.limits.acceleration_mps2) {
+      limits.acceleration_mps2 > config_.limits.acceleration_mps2 ||
+      limits.jerk_mps3 > config_.limits.jerk_mps3) {
     return too_fast;
   }
   const Vec3 from = change_ ? execution_->reference(next_slot_).position_m : here(*state_);
@@ -99,11 +100,14 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   }
 }
 
-void FormationAgent::on_command(const Command& command) {
+void FormationAgent::on_command(const Command& command, Instant now) {
   if (!commands_.take(command, config_.vehicle)) return;
-  if (command.kind == CommandKind::hold) held_ = true;
-  if (command.kind == CommandKind::resume) held_ = false;
+  // What else there is, is not for it: it knows no way home (GroundAgent::command()).
+  const bool holds = command.kind == CommandKind::hold;
+  if (!holds && command.kind != CommandKind::resume) return;
+  held_ = holds;
   if (execution_) execution_->hold(held_ || !not_begun_.empty());
+  report(event::Commanded{command.kind}, now);
 }
 
 void FormationAgent::on_timeout(Instant now) {
@@ -183,7 +187,7 @@ Telemetry FormationAgent::telemetry() const {
 
 Counters FormationAgent::counters() const {
   Counters all;
-  all.bad_changes = bad_changes_;
+  all.bad_messages = bad_changes_;
   all.messages_dropped = messages_.dropped();
   all.events_dropped = events_.dropped();
   return all;

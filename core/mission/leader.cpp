@@ -129,6 +129,7 @@ bool Leader::yields_to(const coalition::Announcement& other, Instant now) const 
     return false;
   }
   if (now >= other.bids_until + ownship_.config().protocol.clock_guard) return false;
+  if (!makes_sense(other, now)) return false;  // its own member does not bid for that either
   const auto& own = initiator_->announcement();
   if (other.site.id == own.site.id) return false;  // a rival: Initiator::on_rival
   return own.reward < other.reward ||
@@ -156,7 +157,7 @@ void Leader::give_up(const coalition::Why& why, Instant now) {
 void Leader::end() {
   // Its last words: cancels and releases.
   while (auto message = initiator_->poll_message()) last_words_.push(std::move(*message));
-  protocol_errors_ += initiator_->protocol_errors();
+  tally_ += initiator_->tally();
   initiator_.reset();
   fire(Event::ended);
 }
@@ -366,8 +367,11 @@ Instant Leader::next_timeout() const {
   return next;
 }
 
-std::uint64_t Leader::protocol_errors() const {
-  return protocol_errors_ + (initiator_ ? initiator_->protocol_errors() : 0);
+coalition::Tally Leader::tally() const {
+  coalition::Tally all = tally_;
+  if (initiator_) all += initiator_->tally();
+  all.dropped += last_words_.dropped();
+  return all;
 }
 
 std::string_view to_string(Leader::State state) {

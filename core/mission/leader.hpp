@@ -88,7 +88,7 @@ class Leader {
   /// Its last round came to nothing: it waits before the next.
   [[nodiscard]] bool monitoring() const;
   [[nodiscard]] Instant next_timeout() const;
-  [[nodiscard]] std::uint64_t protocol_errors() const;
+  [[nodiscard]] coalition::Tally tally() const;
 
  private:
   using Initiator = coalition::Initiator;
@@ -128,7 +128,7 @@ class Leader {
   std::vector<Farewell> farewells_;        ///< of the coalitions that were led here to the end
   BoundedQueue<coalition::Message> last_words_{64};  ///< of one that has been given up
   std::uint32_t coalitions_led_ = 0;
-  std::uint64_t protocol_errors_ = 0;  ///< of coalitions that were led here before
+  coalition::Tally tally_;  ///< of coalitions that were led here before
 };
 [[nodiscard]] std::string_view to_string(Leader::State state);
 [[nodiscard]] std::string_view to_string(Leader::Event event);

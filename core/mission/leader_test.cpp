@@ -46,6 +46,7 @@ struct Leading : PartsBench {
     bid.round = call->round;
     bid.bidder = kMember;
     bid.speed_mps = kTestSpeed_mps;
+    bid.planning_radius_m = 60.0;
     bid.final_approach_m = 100.0;
     hear(coalition::Message{bid});
     wait_until(to_seconds(call->bids_until));
@@ -78,6 +79,30 @@ TEST(Leader, AwaitsTheDecisionOnWhatHasFormed) {
   EXPECT_EQ(l.leader.state(), State::leading);
   l.wait_until(4.0);
   EXPECT_FALSE(l.sent<AuthorisationRequest>());
+}
+
+TEST(Leader, PlansWithoutTheBidsThatNothingCanBePlannedFor) {
+  Leading l;
+  const auto call = l.said<coalition::Announcement>();
+  ASSERT_TRUE(call);
+  coalition::Bid bid;
+  bid.round = call->round;
+  bid.capabilities.add(TaskKind::deliver);
+  bid.loads = 1;
+  bid.range_left_m = 50'000.0;
+  for (const auto& [speed_mps, radius_m] : {std::pair{25.0, 0.0}, {0.0, 60.0}, {25.0, 60.0}}) {
+    ++bid.bidder.value;
+    bid.speed_mps = speed_mps;
+    bid.planning_radius_m = radius_m;
+    l.hear(coalition::Message{bid});
+  }
+  EXPECT_EQ(l.leader.tally().bad_messages, 2U);
+  l.wait_until(to_seconds(call->bids_until));
+  const auto request = l.outbox.planning_requests.pop();
+  ASSERT_TRUE(request);
+  const auto plan = planning::allocate(request->params, request->problem);
+  ASSERT_TRUE(plan.ok());
+  EXPECT_EQ(plan->assignments.front().vehicle, bid.bidder);
 }
 
 TEST(Leader, ARefusalEndsItsCoalition) {
@@ -166,6 +191,7 @@ TEST(Leader, YieldsToALargerRewardAndLeadsItsSiteLater) {
   other.round = {{{7}, {1}, 1}, 1};
   other.site = test_site(2);
   other.bids_until = l.now + std::chrono::seconds{1};
+  other.formed_at = l.now + std::chrono::seconds{2};
   other.reward = 0.5;
   EXPECT_FALSE(l.leader.on_message(coalition::Message{other}, l.now));
   EXPECT_EQ(l.leader.state(), State::leading);

@@ -28,22 +28,29 @@ void Scout::fire(Event event) {
 }
 
 void Scout::on_site_report(const SiteReport& message, Instant now) {
-  if (message.finder != ownship_.spec().id || !known_.insert(message.site.id).second) return;
+  if (message.finder != ownship_.spec().id || known_.contains(message.site.id)) return;
+  if (found_.size() >= kFoundMax) {  // so that it is taken up when it is seen again
+    ++dropped_;
+    return;
+  }
+  known_.insert(message.site.id);
   const double range = (message.site.position - ownship_.state().position().horizontal()).norm();
   outbox_.report(event::SiteDetected{range}, {}, survey_of(message.site), now);
-  if (found_.size() < kFoundMax) found_.push_back({message.site});
+  found_.push_back({message.site});
 }
 
 void Scout::on_message(const coalition::Message& message, Instant now) {
   const auto is_led = [this](SiteId site) {
     std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
   };
+  // Who says that it was heard later than now would never be lost.
+  const Instant latest = now + ownship_.config().protocol.clock_guard;
   if (const auto* announcement = std::get_if<coalition::Announcement>(&message)) {
     known_.insert(announcement->site.id);
-    sites_.on_leader(announcement->site, announcement->announced_at);
+    sites_.on_leader(announcement->site, std::min(announcement->announced_at, latest));
     is_led(announcement->site.id);
   } else if (const auto* award = std::get_if<coalition::Award>(&message)) {
-    sites_.on_leader(award->site, award->awarded_at);
+    sites_.on_leader(award->site, std::min(award->awarded_at, latest));
     is_led(award->site.id);
   } else if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(&message)) {
     sites_.on_renewal(*renewal, now);

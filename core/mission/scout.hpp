@@ -69,6 +69,8 @@ class Scout {
   [[nodiscard]] State state() const { return machine_.state(); }
   [[nodiscard]] bool flying() const { return !machine_.in(State::idle); }
   [[nodiscard]] Instant next_timeout() const;
+  /// Reports of sites that there was no room for.
+  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
 
  private:
   struct Found {
@@ -97,6 +99,7 @@ class Scout {
   SiteBook sites_;              ///< as others lead them
   Instant survey_again_{};      ///< when a survey is tried next
   Instant relief_again_{};
+  std::uint64_t dropped_ = 0;
 };
 [[nodiscard]] std::string_view to_string(Scout::State state);
 [[nodiscard]] std::string_view to_string(Scout::Event event);

@@ -51,6 +51,48 @@ TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
   EXPECT_EQ(s.reported(EventKind::survey_done), 1);
 }
 
+TEST(Scout, ASiteThatThereIsNoRoomForIsTakenUpWhenItIsSeenAgain) {
+  Scouting s;
+  for (std::uint16_t id = 1; id <= 17; ++id) s.find(test_site(id));
+  EXPECT_EQ(s.reported(EventKind::site_detected), 16);
+  EXPECT_EQ(s.scout.dropped(), 1U);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  ASSERT_EQ(s.scout.state(), State::to_survey);
+  s.find(test_site(17));
+  EXPECT_EQ(s.reported(EventKind::site_detected), 1);
+  EXPECT_EQ(s.scout.dropped(), 1U);
+}
+
+TEST(Scout, ALeaderOfTheFutureIsLostLikeAnyOther) {
+  Scouting s;
+  coalition::Announcement announcement;
+  announcement.round = {{{7}, {1}, 1}, 1};
+  announcement.site = test_site(1);
+  announcement.announced_at = s.now + std::chrono::hours{24};
+  s.scout.on_message(coalition::Message{announcement}, s.now);
+  s.be_at(90.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::to_relief);
+}
+
+TEST(SiteBook, WhatIsClosedMakesRoomAndStaysClosed) {
+  SiteBook book;
+  coalition::LeaseRenewal last;
+  last.closed = true;
+  for (std::uint16_t id = 1; id <= 64; ++id) {
+    book.on_leader(test_site(id), at_seconds(1.0));
+    if (id == 7) last.site = {id};
+  }
+  book.on_leader(test_site(65), at_seconds(1.0));
+  EXPECT_EQ(book.lost(at_seconds(60.0)).size(), 64U) << "nothing makes room";
+  book.on_renewal(last, at_seconds(2.0));
+  book.on_leader(test_site(65), at_seconds(3.0));
+  EXPECT_NE(book.lost({65}, at_seconds(60.0)), nullptr);
+  book.on_leader(test_site(7), at_seconds(4.0));
+  EXPECT_EQ(book.lost({7}, at_seconds(60.0)), nullptr);
+  EXPECT_TRUE(book.led({7}, at_seconds(60.0)));
+}
+
 TEST(Scout, ASurveyThatWasCalledOffIsMadeUpFor) {
   Scouting s;
   s.find(test_site(1));

@@ -11,7 +11,13 @@ constexpr std::size_t kSitesMax = 64;  ///< what a flood from the network can ma
 }
 
 void SiteBook::on_leader(const Site& site, Instant said_at) {
-  if (!entries_.contains(site.id) && entries_.size() >= kSitesMax) return;
+  if (closed_.contains(site.id)) return;
+  if (!entries_.contains(site.id) && entries_.size() >= kSitesMax) {
+    const auto over = std::ranges::find_if(entries_, [](const auto& e) { return e.second.closed; });
+    if (over == entries_.end()) return;
+    closed_.insert(over->first);
+    entries_.erase(over);
+  }
   Entry& entry = entries_[site.id];
   entry.site = site;
   entry.heard_at = std::max(entry.heard_at, said_at);
@@ -69,7 +75,8 @@ std::vector<TaskId> SiteBook::over(SiteId site) const {
 
 bool SiteBook::led(SiteId site, Instant since) const {
   const auto known = entries_.find(site);
-  return known != entries_.end() && (known->second.closed || known->second.heard_at >= since);
+  if (known == entries_.end()) return closed_.contains(site);
+  return known->second.closed || known->second.heard_at >= since;
 }
 
 }  // namespace skein::mission

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "skein/coalition/messages.hpp"
@@ -43,6 +44,7 @@ class SiteBook {
  private:
   static void note_over(Entry& entry, const TaskId& task);
   std::map<SiteId, Entry> entries_;
+  std::set<SiteId> closed_;  ///< that made room for others
 };
 
 }  // namespace skein::mission

@@ -52,7 +52,7 @@ class TaskFlyer {
   /// It is in no coalition and has bid nowhere.
   [[nodiscard]] bool free() const { return participant_.free(); }
   [[nodiscard]] Instant next_timeout() const;
-  [[nodiscard]] std::uint64_t protocol_errors() const { return participant_.protocol_errors(); }
+  [[nodiscard]] coalition::Tally tally() const { return participant_.tally(); }
 
  private:
   using Why = coalition::Why;

@@ -19,14 +19,18 @@ constexpr Duration kLate = std::chrono::seconds{1};
 constexpr double kSamePlace_m = 1.0;
 constexpr double kSameHeading_rad = 0.05;
 
+/// Less, or more, gives no time that can be counted.
+constexpr double kSpeedMin_mps = 0.1;
+constexpr double kLengthMax_m = 1e7;
+
 /// Can it be flown at all, whatever it leads to? What is asked is checked where it is planned; this
 /// keeps out what was never planned.
 bool flyable(const TimedPath& timed, const VehicleSpec& vehicle) {
   const double tightest = 1.0 / vehicle.turn_radius_m + 1e-9;
   const double tail = std::abs(timed.tail_curvature_per_m);
-  return timed.speed_mps > 0.0 && tail > 0.0 && tail <= tightest &&
-         timed.path.curvature_max_per_m() <= tightest && !timed.path.segments.empty() &&
-         timed.paces.size() == timed.path.segments.size() + 1;
+  return timed.speed_mps >= kSpeedMin_mps && timed.path.length_m() <= kLengthMax_m && tail > 0.0 &&
+         tail <= tightest && timed.path.curvature_max_per_m() <= tightest &&
+         !timed.path.segments.empty() && timed.paces.size() == timed.path.segments.size() + 1;
 }
 
 }  // namespace
@@ -152,6 +156,7 @@ void TrackAgent::watch_range(Instant now) {
   range_spent_ = true;
   leave();
   const bool comes_home = config_.vehicle.recovery == Recovery::home;
+  if (!comes_home && !ordered_) flight_->hold(hazards_, now);
   if (comes_home && !flight_->homing()) flight_->fly_home(hazards_, now);
   report(event::RangeSpent{range_left_m(), comes_home}, now);
 }
@@ -204,7 +209,7 @@ Telemetry TrackAgent::telemetry() const {
 
 Counters TrackAgent::counters() const {
   Counters all;
-  all.bad_changes = bad_flights_;
+  all.bad_messages = bad_flights_;
   all.messages_dropped = messages_.dropped();
   all.events_dropped = events_.dropped();
   return all;

@@ -13,11 +13,11 @@ namespace {
 /// A plane that is always where its plan has it.
 class Cockpit {
  public:
-  Cockpit() : agent_{config(), Instant{}} {
+  explicit Cockpit(const TrackAgentConfig& config = plane()) : agent_{config, Instant{}} {
     state_.airspeed_mps = state_.groundspeed_mps = 20.0;
     step();
   }
-  static TrackAgentConfig config() {
+  static TrackAgentConfig plane() {
     TrackAgentConfig config;
     VehicleSpec& spec = config.vehicle;
     spec.id = {3};
@@ -67,6 +67,7 @@ class Cockpit {
   [[nodiscard]] bool on_straight() const {
     return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
   }
+  [[nodiscard]] std::uint64_t bad_messages() const { return agent_.counters().bad_messages; }
   void distance_m(double metres) { state_.distance_flown_m = metres; }
 
   Instant now = at_seconds(1.0);
@@ -141,7 +142,10 @@ TEST(TrackAgent, RefusesWhatItCannotFlyOrWhatBeginsElsewhere) {
   endless.plan.timed.tail_curvature_per_m = 0.0;
   TrackFlight unpaced = cockpit.flight(6, 2.0);
   unpaced.plan.timed.paces.pop_back();
-  for (const TrackFlight& flight : {tight, endless, unpaced}) cockpit.tell(flight);
+  TrackFlight still = cockpit.flight(7, 2.0);
+  still.plan.timed.speed_mps = 1e-300;
+  for (const TrackFlight& flight : {tight, endless, unpaced, still}) cockpit.tell(flight);
+  EXPECT_EQ(cockpit.bad_messages(), 4U);
   cockpit.fly(3.0);
   EXPECT_EQ(cockpit.events.size(), bad.size());
   EXPECT_FALSE(cockpit.on_straight());
@@ -191,6 +195,21 @@ TEST(TrackAgent, ComesHomeWhenItsRangeIsSpent) {
   cockpit.fly(2.0);
   EXPECT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
   EXPECT_FALSE(cockpit.on_straight());
+}
+
+TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
+  TrackAgentConfig config = Cockpit::plane();
+  config.vehicle.recovery = Recovery::anywhere;
+  Cockpit cockpit{config};
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(20.0);
+  ASSERT_TRUE(cockpit.on_straight());
+  cockpit.distance_m(19'990.0);
+  cockpit.fly(2.0);
+  EXPECT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
+  EXPECT_FALSE(cockpit.on_straight());
+  EXPECT_TRUE(cockpit.status->at_rest);
 }
 
 }  // namespace

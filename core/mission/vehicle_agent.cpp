@@ -157,8 +157,12 @@ Telemetry VehicleAgent::Impl::telemetry() const {
 
 Counters VehicleAgent::Impl::counters() const {
   Counters all;
-  all.protocol_errors = flyer_.protocol_errors() + leader_.protocol_errors();
-  all.messages_dropped = outbox.messages.dropped();
+  coalition::Tally parts = flyer_.tally();
+  parts += leader_.tally();
+  all.protocol_errors = parts.protocol_errors;
+  all.bad_messages = parts.bad_messages;
+  all.messages_dropped = parts.dropped + scout_.dropped() + outbox.messages.dropped() +
+                         outbox.planning_requests.dropped();
   all.events_dropped = outbox.events.dropped();
   return all;
 }

@@ -37,6 +37,7 @@ class CanFlightController final : public hal::FlightController {
   /// The operator gives the aircraft (back) to the companion, by a word that was issued then.
   void give_back(Instant issued);
   [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
+  [[nodiscard]] std::uint64_t notices_dropped() const { return notices_.dropped(); }
   /// The autopilot's mode, and what the companion is about where it does not fly: "LOITER,
   /// piloted".
   [[nodiscard]] std::string mode();

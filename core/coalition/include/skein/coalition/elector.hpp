@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
@@ -41,7 +42,10 @@ class Elector {
   /// The member has nothing to do in its coalition any more.
   void leave();
   /// May this vehicle lead now? Otherwise it follows only.
-  void set_may_lead(bool may_lead) { may_lead_ = may_lead; }
+  void set_may_lead(bool may_lead) {
+    may_lead_ = may_lead;
+    if (!may_lead) won_.reset();
+  }
 
   void on_lease_renewal(const LeaseRenewal& message, Instant now);
   void on_claim(const LeadershipClaim& message, Instant now);
@@ -60,6 +64,8 @@ class Elector {
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<Won> poll_won();
   [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] std::uint64_t bad_messages() const { return bad_messages_; }
+  [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped(); }
 
  private:
   struct Support {
@@ -87,6 +93,7 @@ class Elector {
   Instant next_claim_{};
   std::optional<Won> won_;
   std::vector<CoalitionId> left_;  ///< newest last
+  std::uint64_t bad_messages_ = 0;
   BoundedQueue<Message> messages_{16};
 };
 

@@ -14,6 +14,7 @@
 #include "skein/coalition/elector.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/coalition/tally.hpp"
 
 namespace skein::coalition {
 
@@ -140,7 +141,9 @@ class Initiator {
   [[nodiscard]] LeaseRenewal farewell() const;
   /// The tasks that others still own in this round, with their times.
   [[nodiscard]] std::vector<TaskAssignment> owned() const;
-  [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
+  [[nodiscard]] Tally tally() const {
+    return {machine_.protocol_errors(), bad_messages_, messages_.dropped() + outputs_.dropped()};
+  }
 
  private:
   enum class Ownership : std::uint8_t { open, leased, done, unknown };
@@ -203,6 +206,7 @@ class Initiator {
   Instant deadline_{};  ///< of the present state
   Instant next_repeat_{};
   Instant next_heartbeat_{};
+  std::uint64_t bad_messages_ = 0;
   BoundedQueue<Message> messages_{64};
   BoundedQueue<Output> outputs_{64};
 };

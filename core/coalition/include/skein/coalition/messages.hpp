@@ -12,4 +12,19 @@ namespace skein::coalition {
   return !renewal.electors.empty() && renewal.lease_until > renewal.sent_at;
 }
 
+/// Paths can be planned for who bids that. Lower than any vehicle's, so that lengths over speeds,
+/// and turns on radii, stay numbers.
+[[nodiscard]] inline bool makes_sense(const Bid& bid) {
+  constexpr double kSpeedMin_mps = 0.1;
+  constexpr double kRadiusMin_m = 0.1;
+  return bid.speed_mps >= kSpeedMin_mps && bid.planning_radius_m >= kRadiusMin_m;
+}
+
+/// Its times are in order, and it keeps nobody waiting for longer than a coalition takes to form.
+[[nodiscard]] inline bool makes_sense(const Announcement& announcement, Instant now) {
+  constexpr Duration kFormsWithin = std::chrono::minutes{10};
+  return announcement.bids_until <= announcement.formed_at &&
+         announcement.formed_at <= now + kFormsWithin;
+}
+
 }  // namespace skein::coalition

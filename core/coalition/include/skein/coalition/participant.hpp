@@ -13,6 +13,7 @@
 #include "skein/coalition/elector.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/coalition/tally.hpp"
 
 namespace skein::coalition {
 
@@ -125,7 +126,10 @@ class Participant {
   /// Since when the task is over, if anybody has said that: its end as who flew it told it, else
   /// when the leader's word came; Instant::min() for one that may have been flown at any time.
   [[nodiscard]] std::optional<Instant> over_since(const TaskId& task) const;
-  [[nodiscard]] std::uint64_t protocol_errors() const { return machine_.protocol_errors(); }
+  [[nodiscard]] Tally tally() const {
+    return {machine_.protocol_errors(), bad_messages_ + elector_.bad_messages(),
+            messages_.dropped() + outputs_.dropped() + elector_.dropped()};
+  }
 
  private:
   struct Lease {
@@ -166,6 +170,7 @@ class Participant {
   std::vector<Finished> finished_;  ///< reported until the leader knows; what is done is kept
   std::vector<Over> over_;          ///< done or unknown, as heard; newest last
   Instant next_status_{};
+  std::uint64_t bad_messages_ = 0;
   BoundedQueue<Message> messages_{64};
   BoundedQueue<Output> outputs_{256};
 };

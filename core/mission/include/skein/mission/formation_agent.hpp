@@ -54,7 +54,7 @@ class FormationAgent final : public OnboardAgent {
   [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const formation::Change& change,
                                                             std::size_t self) const;
   void on_status(const FormationStatus& status, Instant now);
-  void on_command(const Command& command);
+  void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
   [[nodiscard]] double off_m(Instant now) const;

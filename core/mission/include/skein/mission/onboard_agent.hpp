@@ -49,9 +49,9 @@ struct Condition {
 /// What was of no use, or had no room, since the start.
 struct Counters {
   std::uint64_t protocol_errors = 0;   ///< inputs that no state machine had an entry for
-  std::uint64_t bad_changes = 0;       ///< changes of formation that are none
+  std::uint64_t bad_messages = 0;      ///< whose values make no sense: changes that are none
   std::uint64_t refused = 0;           ///< messages that were not their sender's to say
-  std::uint64_t messages_dropped = 0;  ///< queues were full
+  std::uint64_t messages_dropped = 0;  ///< queues were full, those between parts too
   std::uint64_t events_dropped = 0;
 };
 
