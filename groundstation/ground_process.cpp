@@ -484,7 +484,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   thread.join();
   const auto traffic = process::traffic_of(**node);
   spdlog::info("ended: messages sent {}, received {}, dropped {}, refused of their senders {}",
-               traffic.sent, traffic.received, traffic.dropped, ground.refused());
+               traffic.sent, traffic.received, traffic.dropped + ground.dropped(),
+               ground.refused());
   close_limit.start(process::kCloseWithin);
   return 0;
 }

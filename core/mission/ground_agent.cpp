@@ -90,15 +90,43 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {
   for (const auto& entry : status.tasks) {
-    if (entry.state != coalition::TaskState::done || done_.size() >= kTasksRememberedMax) continue;
-    done_.emplace(entry.task, entry);
+    if (entry.state == coalition::TaskState::done) note_done(entry);
   }
 }
 
+/// Where it remembers much already, the tasks of sites that are over go first.
+void GroundAgent::note_done(const coalition::TaskStatus& status) {
+  if (done_.contains(status.task)) return;
+  if (done_.size() >= kTasksRememberedMax) {
+    const auto over = std::ranges::find_if(done_, [this](const auto& done) {
+      const auto led = led_.find(done.first.site);
+      return led == led_.end() || led->second.last.closed;
+    });
+    if (over == done_.end()) return;
+    done_.erase(over);
+  }
+  done_.emplace(status.task, status);
+}
+
+/// What is known of that site; nothing where there is no room. Of those that are over the one that
+/// was not heard of for longest makes room.
+GroundAgent::LedSite* GroundAgent::led_site(SiteId site) {
+  if (!led_.contains(site) && led_.size() >= kSitesRememberedMax) {
+    auto oldest = led_.end();
+    for (auto it = led_.begin(); it != led_.end(); ++it) {
+      if (!it->second.last.closed) continue;
+      if (oldest == led_.end() || it->second.heard_at < oldest->second.heard_at) oldest = it;
+    }
+    if (oldest == led_.end()) return nullptr;
+    led_.erase(oldest);
+  }
+  return &led_[site];
+}
+
 void GroundAgent::on_renewal(const coalition::LeaseRenewal& renewal, Instant now) {
-  if (!led_.contains(renewal.site) && led_.size() >= kSitesRememberedMax) return;
-  LedSite& led = led_[renewal.site];
-  if (led.last.closed) return;
+  LedSite* const known = led_site(renewal.site);
+  if (known == nullptr || known->last.closed) return;
+  LedSite& led = *known;
   led.last = renewal;
   led.heard_at = now;
   if (!renewal.closed && now < led.passed_on_at + kLeaderPassedOn) return;
@@ -108,16 +136,16 @@ void GroundAgent::on_renewal(const coalition::LeaseRenewal& renewal, Instant now
 
 /// Somebody announces what was done: it has not heard that the site is closed.
 void GroundAgent::on_announcement(const coalition::Announcement& announcement, Instant now) {
-  if (!led_.contains(announcement.site.id) && led_.size() >= kSitesRememberedMax) return;
-  const auto led = led_.try_emplace(announcement.site.id).first;
-  if (!led->second.last.closed) {
-    led->second.announcement = announcement;
-    led->second.heard_at = now;
+  LedSite* const led = led_site(announcement.site.id);
+  if (led == nullptr) return;
+  if (!led->last.closed) {
+    led->announcement = announcement;
+    led->heard_at = now;
     return;
   }
-  if (now < led->second.passed_on_at + kClosedPassedOn) return;
-  led->second.passed_on_at = now;
-  messages_.push(Message{coalition::Message{led->second.last}});
+  if (now < led->passed_on_at + kClosedPassedOn) return;
+  led->passed_on_at = now;
+  messages_.push(Message{coalition::Message{led->last}});
 }
 
 /// True when the request has deliveries that nobody may fly again: its leader is told, and asks
@@ -197,9 +225,8 @@ void GroundAgent::on_event(const MissionEvent& event) {
     granted->second.begun = granted->second.begun || kind == EventKind::task_started;
     granted->second.given_up = granted->second.given_up || (gives_up && !granted->second.begun);
   }
-  if (kind == EventKind::task_done && done_.size() < kTasksRememberedMax) {
-    done_.emplace(event.task,
-                  coalition::TaskStatus{event.task, coalition::TaskState::done, event.time});
+  if (kind == EventKind::task_done) {
+    note_done({event.task, coalition::TaskState::done, event.time});
   }
   if (!seen_events_.emplace(event.time, event.vehicle, event.task, event.body).second) {
     return;
@@ -315,6 +342,14 @@ void GroundAgent::decide_by_script(Instant now) {
   }
 }
 
+/// Of all: nobody does anything else.
+bool GroundAgent::stays_in_formation(VehicleId vehicle) const {
+  if (vehicle != kGroundStation) return contains(config_.in_formation, vehicle);
+  return !config_.expected.empty() && std::ranges::all_of(config_.expected, [this](VehicleId id) {
+    return contains(config_.in_formation, id);
+  });
+}
+
 Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant now) {
   const bool all = vehicle == kGroundStation;
   if (kind == CommandKind::give_back && (all || now < Instant{})) {
@@ -323,6 +358,11 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
                      : "an aircraft cannot be given back before mission time 0"};
   }
   if (!all && !fleet_.expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
+  if (kind == CommandKind::return_home && stays_in_formation(vehicle)) {
+    return Error{(all ? "the fleet" : name_of(vehicle)) +
+                 std::string{" flies in a formation of copters, which know no way home of their "
+                             "own; order the formation to rally, or to land"}};
+  }
   for (const auto& [id, entry] : fleet_.vehicles()) {
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
     if (!concerned || !entry.duplicate) continue;

@@ -303,6 +303,66 @@ TEST(GroundAgent, WhoIsLateUnderASuccessorHasGivenUpWhatWasGrantedBefore) {
   EXPECT_TRUE(bench.sent<coalition::Message>().empty()) << "nothing may have been flown";
 }
 
+TEST(GroundAgent, SitesThatAreOverMakeRoomForOthers) {
+  Bench bench;
+  const auto renews = [&](std::uint16_t site, bool closed) {
+    coalition::LeaseRenewal renewal;
+    renewal.round = {{kLeader, {77}, site}, 1};
+    renewal.site = {site};
+    renewal.closed = closed;
+    bench.agent.on_message(Message{coalition::Message{renewal}}, at_seconds(site));
+  };
+  for (std::uint16_t site = 1; site <= 64; ++site) {
+    renews(site, true);
+    coalition::MemberStatus status;
+    for (std::uint8_t i = 0; i < 16; ++i) {
+      status.tasks.push_back(
+          {{{site}, TaskKind::deliver, i}, coalition::TaskState::done, at_seconds(1.0)});
+    }
+    bench.agent.on_message(Message{coalition::Message{status}}, at_seconds(site));
+  }
+  (void)bench.sent<coalition::Message>();
+  renews(100, false);
+  const auto said = bench.sent<coalition::Message>();
+  EXPECT_TRUE(std::ranges::any_of(said, [](const coalition::Message& message) {
+    const auto* renewal = std::get_if<coalition::LeaseRenewal>(&message);
+    return renewal != nullptr && renewal->site == SiteId{100};
+  })) << "it is passed on that it is led";
+  coalition::MemberStatus status;
+  const TaskId task{{100}, TaskKind::deliver, 0};
+  status.tasks = {{task, coalition::TaskState::done, at_seconds(101.0)}};
+  bench.agent.on_message(Message{coalition::Message{status}}, at_seconds(101.0));
+  bench.ask(request(1, 120.0, 130.0, {100}), 102.0);
+  EXPECT_TRUE(bench.agent.authorisations().empty()) << "it is known to be done";
+}
+
+TEST(GroundAgent, SendsNoCopterHomeThatIsInAFormation) {
+  GroundAgentConfig config = fleet_of_three();
+  config.in_formation = {{1}, {2}};
+  Bench bench{config};
+  const auto told = bench.agent.command({1}, CommandKind::return_home, at_seconds(1.0));
+  ASSERT_FALSE(told.ok());
+  EXPECT_THAT(told.error().message, HasSubstr("vehicle 1 flies in a formation of copters"));
+  EXPECT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(1.0)).ok());
+  EXPECT_TRUE(bench.agent.command({3}, CommandKind::return_home, at_seconds(1.0)).ok());
+  EXPECT_TRUE(bench.agent.command(kGroundStation, CommandKind::return_home, at_seconds(1.0)).ok())
+      << "the others do";
+  config.in_formation = config.expected;
+  Bench copters{config};
+  EXPECT_FALSE(
+      copters.agent.command(kGroundStation, CommandKind::return_home, at_seconds(1.0)).ok());
+}
+
+TEST(GroundAgent, CountsWhatItHasNoRoomFor) {
+  Bench bench;
+  EXPECT_EQ(bench.agent.dropped(), 0U);
+  for (int i = 0; i < 5000; ++i) {
+    const MissionEvent event{{2}, at_seconds(0.001 * i), {}, {}, event::TaskDone{}};
+    bench.agent.on_message(Message{event}, at_seconds(0.001 * i));
+  }
+  EXPECT_GT(bench.agent.dropped(), 0U);
+}
+
 TEST(GroundAgent, DoesNotAuthoriseADuplicate) {
   GroundAgentConfig config = fleet_of_three();
   config.decisions = {{.site = kSite, .reaction = from_seconds(1.0)}};

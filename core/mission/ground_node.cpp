@@ -7,6 +7,20 @@
 #include "skein/mission/may_say.hpp"
 
 namespace skein::mission {
+namespace {
+
+GroundAgentConfig agent_config(const GroundNodeConfig& config) {
+  GroundAgentConfig agent = config.agent;
+  agent.in_formation = config.formation.vehicles;
+  return agent;
+}
+
+}  // namespace
+
+GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
+    : agent_{agent_config(config), now},
+      formation_{config.formation, now},
+      tracks_{config.tracks, now} {}
 
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
   if (!may_say(message, sender)) {

@@ -69,6 +69,7 @@ class FormationGround {
   void on_timeout(Instant now);
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }
+  [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped() + events_.dropped(); }
   [[nodiscard]] Instant next_timeout() const { return next_; }
 
   struct Member {

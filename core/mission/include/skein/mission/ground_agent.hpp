@@ -27,9 +27,10 @@ struct ScriptedDecision {
 };
 
 struct GroundAgentConfig {
-  std::vector<VehicleId> expected;          ///< the fleet
-  std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
-  std::vector<HazardId> hazards = {};       ///< numbers that are taken
+  std::vector<VehicleId> expected;           ///< the fleet
+  std::vector<ScriptedDecision> decisions;   ///< empty: a person decides
+  std::vector<HazardId> hazards = {};        ///< numbers that are taken
+  std::vector<VehicleId> in_formation = {};  ///< copters, which know no way home
   Duration silence = std::chrono::seconds{5};
 };
 
@@ -66,7 +67,8 @@ class GroundAgent {
   Result<void> decide_on(const coalition::Round& round, SiteId site, bool granted,
                          const std::string& operator_name, Instant now);
   /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,
-  /// and while two instances answer to the id (for all: while any do, but for `hold`).
+  /// while two instances answer to the id (for all: while any do, but for `hold`), and where those
+  /// that are to return home are copters in formation only.
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   /// Tells everybody of a hazard, every 5 s from now on, so that who was out of reach hears of it
@@ -82,6 +84,10 @@ class GroundAgent {
   [[nodiscard]] std::optional<MissionEvent>
   poll_event();  ///< its own and those of vehicles, once each
   [[nodiscard]] Instant next_timeout() const;
+  /// What its queues had no room for.
+  [[nodiscard]] std::uint64_t dropped() const {
+    return messages_.dropped() + events_.dropped() + fleet_.dropped();
+  }
 
   [[nodiscard]] const Fleet& fleet() const { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
@@ -113,6 +119,7 @@ class GroundAgent {
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
   void on_status(const coalition::MemberStatus& status);
+  void note_done(const coalition::TaskStatus& status);
   void on_renewal(const coalition::LeaseRenewal& renewal, Instant now);
   void on_announcement(const coalition::Announcement& announcement, Instant now);
   bool tell_what_is_over(const AuthorisationRequest& request, Instant now);
@@ -126,6 +133,8 @@ class GroundAgent {
   Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
   Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                       Instant now);
+  [[nodiscard]] LedSite* led_site(SiteId site);
+  [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
   void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
 
   GroundAgentConfig config_;

@@ -23,8 +23,7 @@ struct GroundNodeConfig {
 /// and counted, whatever it is. Calling rules as of VehicleNode.
 class GroundNode {
  public:
-  GroundNode(const GroundNodeConfig& config, Instant now)
-      : agent_{config.agent, now}, formation_{config.formation, now}, tracks_{config.tracks, now} {}
+  GroundNode(const GroundNodeConfig& config, Instant now);
 
   /// False where it is refused.
   bool on_message(const Message& message, VehicleId sender, Instant now);
@@ -50,6 +49,11 @@ class GroundNode {
 
   [[nodiscard]] const Fleet& fleet() const { return agent_.fleet(); }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
+  /// What queues had no room for.
+  [[nodiscard]] std::uint64_t dropped() const {
+    return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
+           tracks_.dropped();
+  }
 
  private:
   void take_events();
