@@ -10,6 +10,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/codec/codec.hpp"
+#include "skein/hil/fault_profiles.hpp"
 
 namespace skein::hil {
 namespace {
@@ -140,6 +141,21 @@ TEST(TeamSimulator, ASuccessorGoesOnWithWhatWasGrantedAndAllThatIsSaidFitsTheWir
     return e.kind() == EventKind::task_done && e.task.kind == TaskKind::deliver;
   });
   EXPECT_EQ(delivered, 3);
+}
+
+TEST(TeamSimulator, WhateverGoesWrongAllThatIsSaidFitsTheWire) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    auto team = small_mission();
+    team.seed = seed;
+    add_faults(team, fault_params("mixed", seed).value());
+    std::size_t unsendable = 0;
+    TeamObserver observer;
+    observer.message = [&](const mission::Message& m) {
+      unsendable += codec::encode(m).has_value() ? 0 : 1;
+    };
+    (void)simulate_team(team, observer);
+    EXPECT_EQ(unsendable, 0U) << "seed " << seed;
+  }
 }
 
 TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {
