@@ -22,7 +22,7 @@ struct Copter {
     state.z_m = 10.0;
     agent->on_state(state, now);
   }
-  void tell(const Message& message) { agent->on_message(message, kGroundStation, now); }
+  void tell(const Message& message) const { agent->on_message(message, kGroundStation, now); }
   [[nodiscard]] std::vector<MissionEvent> events() const {
     std::vector<MissionEvent> all;
     while (auto event = agent->poll_event()) all.push_back(*event);
