@@ -15,8 +15,8 @@ std::size_t group_of(VehicleId node, const std::vector<std::vector<VehicleId>>& 
 }
 
 bool in_range(const RadioParams& params, const Node& from, const Node& to) {
-  static const Vec2 origin{0.0, 0.0};
-  const auto place = [](const Node& node) -> const Vec2* {
+  const Vec2 origin{0.0, 0.0};
+  const auto place = [&origin](const Node& node) -> const Vec2* {
     if (node.id == kGroundStation) return &origin;
     return node.position ? &*node.position : nullptr;
   };
@@ -62,17 +62,27 @@ Cut silence(const std::vector<VehicleId>& nodes, Cut::Kind kind) {
   return cut;
 }
 
-Link link_between(const RadioParams& params, const Interference& interference, const Node& from,
-                  const Node& to) {
+bool is_up(const RadioParams& params, const Interference& interference, const Node& from,
+           const Node& to) {
+  return (interference.healed || in_range(params, from, to)) &&
+         std::all_of(interference.cuts.begin(), interference.cuts.end(),
+                     [&](const Cut& cut) { return cut.lets_through(from.id, to.id); });
+}
+
+Link link_when_up(const RadioParams& params, const Interference& interference) {
   const Disturbance& worse = interference.disturbance;
   Link link;
-  link.up = (interference.healed || in_range(params, from, to)) &&
-            std::all_of(interference.cuts.begin(), interference.cuts.end(),
-                        [&](const Cut& cut) { return cut.lets_through(from.id, to.id); });
   link.loss = std::max(interference.healed ? 0.0 : params.loss, worse.loss);
   link.delay = params.delay + worse.delay;
   link.jitter = params.jitter + worse.jitter;
   link.disorder = worse.disorder;
+  return link;
+}
+
+Link link_between(const RadioParams& params, const Interference& interference, const Node& from,
+                  const Node& to) {
+  Link link = link_when_up(params, interference);
+  link.up = is_up(params, interference, from, to);
   return link;
 }
 

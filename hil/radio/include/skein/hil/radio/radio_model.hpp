@@ -83,8 +83,13 @@ struct Link {
   std::optional<Disorder> disorder = std::nullopt;
 };
 
-/// A vehicle whose position is not known is out of range of other vehicles, and in that of the
-/// ground station.
+/// Whether one node hears another at all. A vehicle whose position is not known is out of range of
+/// other vehicles, and in that of the ground station.
+[[nodiscard]] bool is_up(const RadioParams& params, const Interference& interference,
+                         const Node& from, const Node& to);
+/// How every link is that is up.
+[[nodiscard]] Link link_when_up(const RadioParams& params, const Interference& interference);
+/// Both of these.
 [[nodiscard]] Link link_between(const RadioParams& params, const Interference& interference,
                                 const Node& from, const Node& to);
 
@@ -99,17 +104,23 @@ using Arrivals = StaticVector<Duration, 2>;
 /// The radio as a simulator has it; the bench has a LinkTable and, in every process, the plugin.
 class SimulatedRadio {
  public:
-  SimulatedRadio(const RadioParams& params, std::uint64_t seed) : params_{params}, random_{seed} {}
+  SimulatedRadio(const RadioParams& params, std::uint64_t seed)
+      : params_{params}, link_{link_when_up(params, {})}, random_{seed} {}
 
   /// From now on.
-  void interfere(const Interference& interference) { interference_ = interference; }
+  void interfere(const Interference& interference) {
+    interference_ = interference;
+    link_ = link_when_up(params_, interference_);
+  }
   [[nodiscard]] Arrivals carry(const Node& from, const Node& to) {
-    return radio::carry(link_between(params_, interference_, from, to), random_);
+    if (!is_up(params_, interference_, from, to)) return {};
+    return radio::carry(link_, random_);
   }
 
  private:
   RadioParams params_;
   Interference interference_;
+  Link link_;  ///< of all that are up; which are, changes with every movement
   Random random_;
 };
 
