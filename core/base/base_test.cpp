@@ -155,5 +155,21 @@ TEST(BoundedQueue, RefusesAndCountsWhenFull) {
   EXPECT_FALSE(queue.pop().has_value());
 }
 
+TEST(BoundedQueue, KeepsItsOrderAndLimitWhenItIsNeverEmptied) {
+  BoundedQueue<int> queue{3};
+  EXPECT_TRUE(queue.push(0));
+  for (int i = 1; i < 1000; ++i) {
+    EXPECT_TRUE(queue.push(2 * i - 1));
+    EXPECT_TRUE(queue.push(2 * i));
+    EXPECT_FALSE(queue.push(-1));
+    EXPECT_EQ(queue.size(), 3U);
+    EXPECT_EQ(queue.pop(), 2 * i - 2);
+    EXPECT_EQ(queue.pop(), 2 * i - 1);
+    EXPECT_FALSE(queue.empty());
+  }
+  EXPECT_EQ(queue.pop(), 1998);
+  EXPECT_TRUE(queue.empty());
+}
+
 }  // namespace
 }  // namespace skein

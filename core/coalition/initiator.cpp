@@ -207,6 +207,7 @@ Instant Initiator::authority_until() const {
   const std::size_t needed = (electors_.size() + 1) / 2;
   if (needed <= 1) return promised_until_;
   std::vector<Instant> stamps;
+  stamps.reserve(electors_.size());
   for (const auto& [vehicle, elector] : electors_) {
     if (vehicle != announcement_.round.coalition.leader) stamps.push_back(elector.acknowledged);
   }

@@ -78,6 +78,10 @@ class Leader {
   [[nodiscard]] std::optional<coalition::Message> poll_last_words() { return last_words_.pop(); }
   /// Works off one thing that the Initiator asked for; false when there is none.
   bool answer_next(Instant now);
+  /// There is something to be said or worked off.
+  [[nodiscard]] bool has_output() const {
+    return !last_words_.empty() || (initiator_ && initiator_->has_output());
+  }
   /// Ends what is over.
   void part();
 

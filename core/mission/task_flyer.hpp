@@ -44,6 +44,8 @@ class TaskFlyer {
 
   [[nodiscard]] std::optional<coalition::Message> poll_message();
   [[nodiscard]] std::optional<Participant::Output> poll_output();
+  /// Either of these has something.
+  [[nodiscard]] bool has_output() const { return participant_.has_output(); }
 
   /// It has a task.
   [[nodiscard]] bool flying() const { return task_.has_value(); }

@@ -54,21 +54,23 @@ void VehicleAgent::Impl::step(Instant now) {
 }
 
 /// Each pass hands on what the last one brought forth; what a vehicle leads it also takes part in.
+/// Nearly always there is nothing, several times with every message that comes: that must be cheap.
 void VehicleAgent::Impl::pump(Instant now) {
-  for (;;) {
-    if (const auto words = leader_.poll_message()) {
-      send(*words, now);
-    } else if (leader_.answer_next(now)) {
-      continue;
-    } else if (const auto message = flyer_.poll_message()) {
-      send(*message, now);
-    } else if (const auto output = flyer_.poll_output()) {
-      answer(*output, now);
-    } else {
-      break;
-    }
-  }
+  while (leader_.has_output() || flyer_.has_output()) pass_on(now);
   leader_.part();
+}
+
+/// The next thing that a part brought forth.
+void VehicleAgent::Impl::pass_on(Instant now) {
+  if (const auto words = leader_.poll_message()) {
+    send(*words, now);
+  } else if (leader_.answer_next(now)) {
+    return;
+  } else if (const auto message = flyer_.poll_message()) {
+    send(*message, now);
+  } else if (const auto output = flyer_.poll_output()) {
+    answer(*output, now);
+  }
 }
 
 /// What holds between the parts when everything is worked off.

@@ -33,6 +33,7 @@ class VehicleAgent::Impl {
   // Everything that came in is worked off before a call returns.
   void step(Instant now);
   void pump(Instant now);
+  void pass_on(Instant now);
   void check() const;
   void send(const coalition::Message& message, Instant now);
   void receive(const coalition::Message& message, Instant now);

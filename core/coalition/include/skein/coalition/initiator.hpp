@@ -127,6 +127,8 @@ class Initiator {
 
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<Output> poll_output();
+  /// Either of these has something.
+  [[nodiscard]] bool has_output() const { return !messages_.empty() || !outputs_.empty(); }
   [[nodiscard]] Instant next_timeout() const;
 
   [[nodiscard]] State state() const { return machine_.state(); }
