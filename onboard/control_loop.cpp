@@ -21,7 +21,7 @@ ControlLoop::ControlLoop(const VehicleSpec& vehicle, hal::FlightController& flig
 void ControlLoop::step(Instant now) {
   ports_->periods.fetch_add(1, std::memory_order_relaxed);
   if (const auto* newer = ports_->guidance.read()) {
-    guidance_ = *newer;
+    guidance_.emplace(*newer);
     if (const auto* plan = std::get_if<mission::FlightPlan>(newer)) {
       ports_->plans.push({plan->number, now, plan->timed});
     }

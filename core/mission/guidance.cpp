@@ -10,7 +10,8 @@ namespace {
 /// A copter that is farther from its height does not fly its plan: a pilot has had it.
 constexpr double kLayer_m = 5.0;
 
-static_assert(std::is_trivially_copyable_v<Guidance> && std::is_trivially_copyable_v<Demand>);
+static_assert(std::is_trivially_copyable_v<Guidance> && std::is_trivially_copyable_v<Demand> &&
+              std::is_trivially_copyable_v<HeldGuidance>);
 
 PositionSetpoint setpoint_on(const MotionTrack& track, Instant now) {
   const MotionTrack::Moment moment = track.at(now);
@@ -70,29 +71,30 @@ Deviation off_point(const FlightPlan& plan, const VehicleState& state) {
   return {plan.number, forward.dot(off), left_of(forward).dot(off)};
 }
 
-Deviation off_path(const FlightPlan& plan, const VehicleState& state, Instant now) {
-  const auto error = planning::follow_error(plan.timed, state, now);
-  return {plan.number, error.along_m, error.cross_m};
-}
-
 }  // namespace
 
-Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,
+HeldGuidance::HeldGuidance(const Guidance& held) : guidance{held} {
+  if (const auto* plan = std::get_if<FlightPlan>(&guidance)) starts.emplace(plan->timed.path);
+}
+
+Demand follow(const HeldGuidance& held, const planning::PathFollowerParams& params,
               const VehicleSpec& vehicle, const VehicleState& state, Instant now) {
-  if (const auto* track = std::get_if<MotionTrack>(&guidance)) return setpoint_on(*track, now);
-  const auto& plan = std::get<FlightPlan>(guidance);
+  if (const auto* track = std::get_if<MotionTrack>(&held.guidance)) return setpoint_on(*track, now);
+  const auto& plan = std::get<FlightPlan>(held.guidance);
   if (vehicle.is_copter()) {
     const bool in_layer = std::abs(state.z_m - vehicle.height_m) <= kLayer_m;
     return in_layer ? setpoint_on(plan.timed, vehicle, now) : back_to_height(vehicle, state);
   }
-  return planning::follow_path(params, vehicle, plan.timed, state, now);
+  return planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
 }
 
-Deviation deviation(const Guidance& guidance, const VehicleSpec& vehicle, const VehicleState& state,
+Deviation deviation(const HeldGuidance& held, const VehicleSpec& vehicle, const VehicleState& state,
                     Instant now) {
-  if (const auto* track = std::get_if<MotionTrack>(&guidance)) return off_track(*track, state);
-  const auto& plan = std::get<FlightPlan>(guidance);
-  return vehicle.is_copter() ? off_point(plan, state) : off_path(plan, state, now);
+  if (const auto* track = std::get_if<MotionTrack>(&held.guidance)) return off_track(*track, state);
+  const auto& plan = std::get<FlightPlan>(held.guidance);
+  if (vehicle.is_copter()) return off_point(plan, state);
+  const auto error = planning::follow_error(plan.timed, *held.starts, state, now);
+  return {plan.number, error.along_m, error.cross_m};
 }
 
 }  // namespace skein::mission

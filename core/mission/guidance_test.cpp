@@ -45,7 +45,7 @@ VehicleState at_height() {
 
 PositionSetpoint point_at(double seconds) {
   const Demand demand =
-      follow(plan(), {}, vehicle(Airframe::copter), at_height(), at_seconds(seconds));
+      follow(HeldGuidance{plan()}, {}, vehicle(Airframe::copter), at_height(), at_seconds(seconds));
   EXPECT_TRUE(std::holds_alternative<PositionSetpoint>(demand));
   return std::get<PositionSetpoint>(demand);
 }
@@ -91,12 +91,14 @@ TEST(Guidance, ACopterFarFromItsHeightComesToItFirst) {
     state.y_m = 7.0;
     state.z_m = kHeight_m + off_m;
     state.heading_rad = 1.0;
-    const auto up = std::get<PositionSetpoint>(follow(plan(), {}, copter, state, at_seconds(10.0)));
+    const auto up = std::get<PositionSetpoint>(
+        follow(HeldGuidance{plan()}, {}, copter, state, at_seconds(10.0)));
     EXPECT_EQ(up.position_m(), (Vec3{-30.0, 7.0, kHeight_m}));
     EXPECT_EQ(up.velocity_mps().norm(), 0.0);
     EXPECT_EQ(up.yaw_rad, 1.0);
     state.z_m = kHeight_m + 0.9 * off_m;
-    const auto on = std::get<PositionSetpoint>(follow(plan(), {}, copter, state, at_seconds(10.0)));
+    const auto on = std::get<PositionSetpoint>(
+        follow(HeldGuidance{plan()}, {}, copter, state, at_seconds(10.0)));
     EXPECT_NEAR(on.x_m, 50.0, 1e-9);
   }
 }
@@ -104,7 +106,8 @@ TEST(Guidance, ACopterFarFromItsHeightComesToItFirst) {
 TEST(Guidance, APlaneFliesTheSamePlanByHeadingAndAirspeed) {
   VehicleState state;
   state.airspeed_mps = state.groundspeed_mps = kSpeed_mps;
-  const Demand demand = follow(plan(), {}, vehicle(Airframe::plane), state, at_seconds(10.0));
+  const Demand demand =
+      follow(HeldGuidance{plan()}, {}, vehicle(Airframe::plane), state, at_seconds(10.0));
   ASSERT_TRUE(std::holds_alternative<Setpoint>(demand));
   EXPECT_EQ(std::get<Setpoint>(demand).height_m, kHeight_m);
 }
@@ -114,7 +117,8 @@ TEST(Guidance, ACopterIsAsFarOffAsWhenItsStateWasMeasured) {
   state.time = at_seconds(10.0);
   state.x_m = 47.0;  // the plan is at (50, 20)
   state.y_m = 22.0;
-  const Deviation off = deviation(plan(), vehicle(Airframe::copter), state, at_seconds(10.3));
+  const Deviation off =
+      deviation(HeldGuidance{plan()}, vehicle(Airframe::copter), state, at_seconds(10.3));
   EXPECT_EQ(off.number, 3U);
   EXPECT_NEAR(off.along_error_m, -3.0, 1e-9);
   EXPECT_NEAR(off.cross_error_m, 2.0, 1e-9);

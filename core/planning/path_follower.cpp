@@ -21,6 +21,7 @@ struct Nearest {
   double ahead_m = 0.0;    ///< of its time
   double left_m = 0.0;
   double heading_rad = 0.0;  ///< of the path there
+  Vec2 forward{1.0, 0.0};    ///< the direction of that
   double curvature_per_m = 0.0;
   double curvature_soon_per_m = 0.0;  ///< where it is when a turn begun now is flown
 };
@@ -31,77 +32,69 @@ struct PlanPose {
   Vec2 forward;
 };
 
-/// The plan's poses, as TimedPath::pose_at_distance() and with the same roundings, but pieces that
-/// lie before all that is asked for are integrated once, and straight ones have one direction.
+/// The plan's poses and curvatures, as TimedPath::pose_at_distance() and curvature_at_distance()
+/// and with the same roundings, but from where the pieces begin, and straight ones have one
+/// direction.
 class PlanPoses {
  public:
-  explicit PlanPoses(const TimedPath& plan)
-      : plan_{plan}, length_m_{plan.path.length_m()}, start_{plan.path.start} {}
+  PlanPoses(const TimedPath& plan, const PieceStarts& starts) : plan_{plan}, starts_{starts} {}
   [[nodiscard]] PlanPose at(double distance_m) {
     const auto& segments = plan_.path.segments;
     double left = std::max(distance_m, 0.0);
     std::size_t piece = 0;
     while (piece < segments.size() && left > segments[piece].length_m)
       left -= segments[piece++].length_m;
-    go_to(piece);
+    if (piece != piece_) forward_.reset();
+    piece_ = piece;
     if (piece < segments.size()) return along(segments[piece].curvature_per_m, left);
-    if (distance_m <= length_m_) return along(0.0, 0.0);
-    return along(plan_.tail_curvature_per_m, distance_m - length_m_);
+    if (distance_m <= starts_.length_m()) return along(0.0, 0.0);
+    return along(plan_.tail_curvature_per_m, distance_m - starts_.length_m());
+  }
+  [[nodiscard]] double curvature_at(double distance_m) const {
+    return distance_m < starts_.length_m() ? plan_.path.curvature_at(distance_m)
+                                           : plan_.tail_curvature_per_m;
   }
 
  private:
   [[nodiscard]] PlanPose along(double curvature_per_m, double distance_m) {
-    if (curvature_per_m == 0.0 && wrap_pi(start_.heading_rad) == start_.heading_rad) {
-      if (!forward_) forward_ = unit_vector(start_.heading_rad);
-      return {{start_.x_m + distance_m * forward_->x(), start_.y_m + distance_m * forward_->y(),
-               start_.heading_rad},
+    const Pose2& start = starts_[piece_];
+    if (curvature_per_m == 0.0 && wrap_pi(start.heading_rad) == start.heading_rad) {
+      if (!forward_) forward_ = unit_vector(start.heading_rad);
+      return {{start.x_m + distance_m * forward_->x(), start.y_m + distance_m * forward_->y(),
+               start.heading_rad},
               *forward_};
     }
-    const Pose2 pose = advance(start_, curvature_per_m, distance_m);
+    const Pose2 pose = advance(start, curvature_per_m, distance_m);
     return {pose, unit_vector(pose.heading_rad)};
-  }
-  void go_to(std::size_t piece) {
-    if (piece == piece_) return;
-    forward_.reset();
-    if (piece < piece_) {
-      piece_ = 0;
-      start_ = plan_.path.start;
-    }
-    for (; piece_ < piece; ++piece_) {
-      const Segment& passed = plan_.path.segments[piece_];
-      start_ = advance(start_, passed.curvature_per_m, passed.length_m);
-    }
   }
 
   const TimedPath& plan_;
-  double length_m_;
+  const PieceStarts& starts_;
   std::size_t piece_ = 0;
-  Pose2 start_;                  ///< of that piece
-  std::optional<Vec2> forward_;  ///< there, once it was asked for
+  std::optional<Vec2> forward_;  ///< where that begins, once it was asked for
 };
 
-Nearest nearest(const TimedPath& plan, const Vec2& position, Instant now, double lead_m = 0.0) {
-  PlanPoses poses{plan};
+Nearest nearest(const TimedPath& plan, const PieceStarts& starts, const Vec2& position, Instant now,
+                double lead_m = 0.0) {
+  PlanPoses poses{plan, starts};
   const double on_time_m = plan.distance_at(now);
   double distance_m = on_time_m;
   Nearest result;
-  for (int step = 0; step <= kNearestSteps; ++step) {
+  for (int step = 0;; ++step) {
     const auto [pose, forward] = poses.at(distance_m);
     const Vec2 offset = position - pose.position();
-    result = {on_time_m,
-              distance_m - on_time_m,
-              left_of(forward).dot(offset),
-              pose.heading_rad,
-              plan.curvature_at_distance(distance_m),
-              plan.curvature_at_distance(distance_m + lead_m)};
+    result = {
+        on_time_m, distance_m - on_time_m,        left_of(forward).dot(offset), pose.heading_rad,
+        forward,   poses.curvature_at(distance_m)};
     // Along an arc the same angle is a shorter way for who flies inside it.
     const double scale = std::max(0.5, 1.0 - result.curvature_per_m * result.left_m);
     const double moved_m = distance_m + forward.dot(offset) / scale;
     const double low_m = std::max(0.0, on_time_m - kNearestMax_m);
     const double next_m = std::clamp(moved_m, low_m, on_time_m + kNearestMax_m);
-    if (std::abs(next_m - distance_m) < kSettled_m) break;
+    if (step == kNearestSteps || std::abs(next_m - distance_m) < kSettled_m) break;
     distance_m = next_m;
   }
+  result.curvature_soon_per_m = poses.curvature_at(distance_m + lead_m);
   return result;
 }
 
@@ -114,19 +107,27 @@ double speed_soon(const TimedPath& plan, double on_time_m) {
 
 }  // namespace
 
+PieceStarts::PieceStarts(const Path& path) : length_m_{path.length_m()} {
+  poses_.push_back(path.start);
+  for (const Segment& s : path.segments) {
+    poses_.push_back(advance(poses_.back(), s.curvature_per_m, s.length_m));
+  }
+}
+
 Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicle,
-                     const TimedPath& plan, const VehicleState& state, Instant now) {
-  const Nearest at =
-      nearest(plan, {state.x_m, state.y_m}, now, params.turn_lead_s * state.groundspeed_mps);
+                     const TimedPath& plan, const PieceStarts& starts, const VehicleState& state,
+                     Instant now) {
+  const Nearest at = nearest(plan, starts, {state.x_m, state.y_m}, now,
+                             params.turn_lead_s * state.groundspeed_mps);
   const Vec2 over_ground = state.groundspeed_mps * unit_vector(state.course_rad);
   const Vec2 wind = over_ground - state.airspeed_mps * unit_vector(state.heading_rad);
 
   // Course: towards the path, the steeper the farther.
   const double lean = params.cross_track_gain_per_m * at.left_m;
   const double course = at.heading_rad - std::atan(lean);
-  const double closing_mps = over_ground.dot(left_of(unit_vector(at.heading_rad)));
-  const double along_mps = over_ground.dot(unit_vector(at.heading_rad)) /
-                           std::max(0.5, 1.0 - at.curvature_per_m * at.left_m);
+  const double closing_mps = over_ground.dot(left_of(at.forward));
+  const double along_mps =
+      over_ground.dot(at.forward) / std::max(0.5, 1.0 - at.curvature_per_m * at.left_m);
   const double course_rate = at.curvature_soon_per_m * along_mps -
                              params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean);
 
@@ -154,8 +155,9 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
   return setpoint;
 }
 
-FollowError follow_error(const TimedPath& plan, const VehicleState& state, Instant now) {
-  const Nearest at = nearest(plan, {state.x_m, state.y_m}, now);
+FollowError follow_error(const TimedPath& plan, const PieceStarts& starts,
+                         const VehicleState& state, Instant now) {
+  const Nearest at = nearest(plan, starts, {state.x_m, state.y_m}, now);
   return {at.ahead_m, at.left_m};
 }
 

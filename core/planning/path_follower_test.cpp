@@ -234,6 +234,19 @@ TEST(PathFollower, ErrorsHaveTheirSigns) {
   EXPECT_NEAR(error.cross_m, 7.0, 1e-9);
 }
 
+TEST(PathFollower, KnowsWhereThePiecesBegin) {
+  const Path path = course_of(165.0, 50.0).path;
+  const PieceStarts starts{path};
+  double begin_m = 0.0;
+  for (std::size_t i = 0; i <= path.segments.size(); ++i) {
+    const Pose2 pose = path.pose_at(begin_m);
+    EXPECT_LT((starts[i].position() - pose.position()).norm(), 1e-6);
+    EXPECT_NEAR(wrap_pi(starts[i].heading_rad - pose.heading_rad), 0.0, 1e-9);
+    if (i < path.segments.size()) begin_m += path.segments[i].length_m;
+  }
+  EXPECT_EQ(starts.length_m(), path.length_m());
+}
+
 TEST(PathFollower, CommandsAreFiniteAndWithinLimitsWherever) {
   Random random{41};
   const VehicleSpec vehicle = vehicle_of(50.0, 1.0);

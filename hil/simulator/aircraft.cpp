@@ -51,8 +51,8 @@ std::unique_ptr<hal::FlightController> body_of(const TeamMission& mission,
 Aircraft::Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Random gusts)
     : mission_{mission},
       what_{what},
-      gusts_{gusts},
       clock_{clock_offset(mission.faults, what.spec.id)},
+      gusts_{gusts},
       loads_left_{what.spec.loads} {}
 
 void Aircraft::take_off(Instant now) {
@@ -126,7 +126,7 @@ void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
   orbit.timed.path.start = state_.pose();
   orbit.timed.tail_curvature_per_m =
       hold_curvature(hazards).value_or(1.0 / what_.spec.planning_radius_m());
-  guidance_ = orbit;
+  guidance_.emplace(orbit);
   recorded_ = orbit;
   recorded_.timed.start_time = now;
 }
@@ -150,12 +150,13 @@ VehicleState Aircraft::local_state() const {
 }
 
 void Aircraft::follow(const mission::Guidance& guidance) {
-  guidance_ = guidance;
-  auto* const plan = std::get_if<mission::FlightPlan>(&*guidance_);
-  if (plan == nullptr) return;
-  plan->number += numbers_before_;
-  recorded_ = *plan;
-  recorded_.timed.start_time -= clock_;
+  mission::Guidance numbered = guidance;
+  if (auto* const plan = std::get_if<mission::FlightPlan>(&numbered)) {
+    plan->number += numbers_before_;
+    recorded_ = *plan;
+    recorded_.timed.start_time -= clock_;
+  }
+  guidance_.emplace(numbered);
 }
 
 void Aircraft::sink_at(Instant now) {
@@ -198,7 +199,7 @@ double Aircraft::off_m(Instant now) const {
 std::optional<MotionTrack::Moment> Aircraft::reference(Instant now) const {
   if (sinks(now)) return std::nullopt;
   if (!guidance_) return MotionTrack::Moment{.position_m = {what_.start.x_m, what_.start.y_m, 0.0}};
-  const auto* track = std::get_if<MotionTrack>(&*guidance_);
+  const auto* track = std::get_if<MotionTrack>(&guidance_->guidance);
   if (track == nullptr) return std::nullopt;
   return track->at(local(now));
 }

@@ -84,15 +84,16 @@ class Aircraft {
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
   void sink_at(Instant now);
 
+  // Side by side what is looked at with every message: plans and tracks are kilobytes.
   const TeamMission& mission_;
   const SimulatedVehicle& what_;
-  Random gusts_;
   Duration clock_{};
-  std::unique_ptr<hal::FlightController> body_;
-  VehicleState state_;
   std::optional<mission::VehicleNode> node_;
   std::uint32_t life_ = 0;
-  std::optional<mission::Guidance> guidance_;  ///< in this vehicle's time; the recorded number
+  std::unique_ptr<hal::FlightController> body_;
+  VehicleState state_;
+  Random gusts_;
+  std::optional<mission::HeldGuidance> guidance_;  ///< in this vehicle's time; the recorded number
   mission::FlightPlan recorded_;
   std::uint32_t numbers_before_ = 0;  ///< plans of earlier nodes and of the flight controller
   std::optional<Instant> sinks_from_;

@@ -422,7 +422,7 @@ TEST(CopterFlight, FliesThePlanOfACoalitionByPosition) {
     ASSERT_EQ(flight.state(), State::flying) << flight.last_warning;
     flight.run_until(to_seconds(flight.now) + 10.0);
     const Instant begin = flight.now;
-    const mission::Guidance guidance = plan_from(kPad, begin);
+    const mission::HeldGuidance guidance{plan_from(kPad, begin)};
     flight.point = [&](double s) {
       const Demand demand =
           mission::follow(guidance, {}, spec, flight.vehicle_state(), at_seconds(s));

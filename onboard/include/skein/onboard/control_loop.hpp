@@ -63,7 +63,7 @@ class ControlLoop {
   planning::PathFollowerParams follower_;
   hal::FlightController* flight_controller_;
   ControlPorts* ports_;
-  std::optional<mission::Guidance> guidance_;
+  std::optional<mission::HeldGuidance> guidance_;
   Instant next_track_{};
   Instant recorded_ = Instant::min();
 };

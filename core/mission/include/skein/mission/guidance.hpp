@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include "skein/base/time.hpp"
@@ -20,11 +21,20 @@ using Guidance = std::variant<FlightPlan, MotionTrack>;
 /// Without a state for so long the flight controller is silent: nothing is asked of it.
 inline constexpr Duration kFlightControllerSilence = std::chrono::milliseconds{500};
 
+/// Guidance that is followed for many control periods: what stays the same of it is worked out
+/// once. Trivially copyable.
+struct HeldGuidance {
+  explicit HeldGuidance(const Guidance& held);
+
+  Guidance guidance;
+  std::optional<planning::PieceStarts> starts;  ///< of a flight plan
+};
+
 /// What is asked of the flight controller at `now`, to follow it: of a plane's, to fly a heading
 /// and a speed that lead it back to its path and time; of a copter's, to be where the path is now,
 /// its nose along it, once it is within 5 m of its height, and before that to come there where it
 /// is. Allocates nothing and takes bounded time.
-[[nodiscard]] Demand follow(const Guidance& guidance, const planning::PathFollowerParams& params,
+[[nodiscard]] Demand follow(const HeldGuidance& held, const planning::PathFollowerParams& params,
                             const VehicleSpec& vehicle, const VehicleState& state, Instant now);
 
 /// How far from it a vehicle is at `now`.
@@ -33,7 +43,7 @@ struct Deviation {
   double along_error_m = 0.0;  ///< of a path: positive when ahead of time
   double cross_error_m = 0.0;  ///< positive when left of the path; of a track: the distance
 };
-[[nodiscard]] Deviation deviation(const Guidance& guidance, const VehicleSpec& vehicle,
+[[nodiscard]] Deviation deviation(const HeldGuidance& held, const VehicleSpec& vehicle,
                                   const VehicleState& state, Instant now);
 
 }  // namespace skein::mission
