@@ -25,11 +25,7 @@ AgentLoop::AgentLoop(const mission::VehicleNodeConfig& config, AgentLink link,
 void AgentLoop::step(Instant now) {
   stepped_at_ = now;
   // First: what the node tells of itself follows its state.
-  if (auto newest = condition(); newest != condition_) {
-    condition_ = std::move(newest);
-    note(recording::ConditionGiven{condition_, now});
-    node_.on_condition(condition_);
-  }
+  if (node_.wants_condition(now)) give_condition();
   if (const auto* state = control_->state.read()) {
     note(recording::StateGiven{*state, now});
     node_.on_state(*state, now);
@@ -94,10 +90,14 @@ void AgentLoop::report(mission::MissionEvent event) {
   events_->push(std::move(event));
 }
 
-mission::Condition AgentLoop::condition() const {
-  return {.mode = link_.mode ? link_.mode() : std::string{},
-          .overruns = control_->overruns.load(std::memory_order_relaxed),
-          .dropped = link_.dropped() + events_->dropped() + planner_->dropped()};
+void AgentLoop::give_condition() {
+  mission::Condition newest{.mode = link_.mode ? link_.mode() : std::string{},
+                            .overruns = control_->overruns.load(std::memory_order_relaxed),
+                            .dropped = link_.dropped() + events_->dropped() + planner_->dropped()};
+  if (newest == condition_) return;
+  condition_ = std::move(newest);
+  note(recording::ConditionGiven{condition_, stepped_at_});
+  node_.on_condition(condition_);
 }
 
 Instant AgentLoop::next_step() const {

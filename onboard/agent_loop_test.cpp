@@ -89,6 +89,25 @@ TEST(AgentLoop, TelemetryCarriesStateAndWhatWasLost) {
   EXPECT_EQ(telemetry[0].messages_dropped, 3U);
 }
 
+/// It costs locks and copies, and steps come up to 50 times a second.
+TEST(AgentLoop, AsksForTheConditionOnlyWhenItIsTold) {
+  Cabin cabin;
+  AgentLink link = cabin.link();
+  int asked = 0;
+  link.mode = [&asked] { return "GUIDED " + std::to_string(++asked); };
+  AgentLoop loop{config(), link, cabin.control, cabin.planner, cabin.events, at_seconds(0.0)};
+  for (int i = 0; i < 100; ++i) {
+    const Instant now = at_seconds(0.02 * i);
+    cabin.control.state.write(VehicleState{.time = now});
+    loop.step(now);
+  }
+  const auto told = cabin.sent_of<mission::Health>();
+  ASSERT_EQ(told.size(), 2U);
+  EXPECT_EQ(told[0].mode, "GUIDED 1");
+  EXPECT_EQ(told[1].mode, "GUIDED 11");  // telemetry: 10 times a second
+  EXPECT_EQ(asked, 20);
+}
+
 TEST(AgentLoop, NextStepIsSoonButNeverAtOnce) {
   Cabin cabin;
   for (int i = 0; i < 100; ++i) {

@@ -142,6 +142,9 @@ void VehicleNode::on_notice(const FlightNotice& notice) {
 }
 
 void VehicleNode::on_condition(const Condition& condition) { impl_->condition = condition; }
+bool VehicleNode::wants_condition(Instant now) const {
+  return now >= impl_->next_telemetry || impl_->self_report.health_due(now);
+}
 
 void VehicleNode::on_timeout(Instant now) {
   if (now >= Instant{}) {

@@ -62,7 +62,7 @@ class AgentLoop {
   void hand_out();
   void note(recording::AgentRecord record) const;
   void report(mission::MissionEvent event);
-  [[nodiscard]] mission::Condition condition() const;
+  void give_condition();
 
   mission::VehicleNode node_;
   AgentLink link_;

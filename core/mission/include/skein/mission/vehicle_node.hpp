@@ -42,6 +42,8 @@ class VehicleNode {
   void on_notice(const FlightNotice& notice);
   /// Counts until the next one.
   void on_condition(const Condition& condition);
+  /// A state or a timeout makes it tell of itself now: what its condition is should be given first.
+  [[nodiscard]] bool wants_condition(Instant now) const;
   void on_timeout(Instant now);
 
   /// To be sent: all that the vehicle says.
