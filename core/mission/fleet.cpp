@@ -41,6 +41,7 @@ void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
     warn(FleetNews::restarted, vehicle);
   }
 
+  if (!entry.telemetry || entry.silent || changed) due_ = Instant::min();
   const bool older =
       entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;
   if (!older) entry.telemetry = telemetry;
@@ -52,6 +53,7 @@ void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
 }
 
 void Fleet::on_timeout(Instant now) {
+  if (now < due_) return;
   for (auto& [vehicle, entry] : vehicles_) {
     if (entry.telemetry && !entry.silent && now >= entry.heard_at + params_.silence) {
       entry.silent = true;
@@ -65,6 +67,7 @@ void Fleet::on_timeout(Instant now) {
     entry.duplicate = false;
     warn(FleetNews::unique, vehicle);
   }
+  due_ = next_timeout();
 }
 
 Instant Fleet::next_timeout() const {

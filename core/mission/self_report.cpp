@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdio>
+#include <tuple>
 
 namespace skein::mission {
 
@@ -25,12 +27,26 @@ Health SelfReport::health(const Facts& facts, Instant now) {
   health.mode = facts.condition.mode;
   health.problems = problems(facts, now);
   told_ = facts;
-  std::erase_if(heard_, [now](const auto& entry) { return now - entry.second > kHeardFor; });
-  for (const auto& [vehicle, at] : heard_) health.heard.push_back({vehicle, now - at});
-  std::stable_sort(health.heard.begin(), health.heard.end(),
-                   [](const auto& a, const auto& b) { return a.age < b.age; });
+  forget_silent(now);
+  for (std::size_t i = 0; i < senders_.size(); ++i) {
+    health.heard.push_back({senders_[i], now - heard_at_[i]});
+  }
+  std::sort(health.heard.begin(), health.heard.end(), [](const Heard& a, const Heard& b) {
+    return std::tie(a.age, a.vehicle) < std::tie(b.age, b.vehicle);
+  });
   if (health.heard.size() > kHeardMax) health.heard.resize(kHeardMax);
   return health;
+}
+
+void SelfReport::forget_silent(Instant now) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < senders_.size(); ++i) {
+    if (now - heard_at_[i] > kHeardFor) continue;
+    senders_[kept] = senders_[i];
+    heard_at_[kept++] = heard_at_[i];
+  }
+  senders_.resize(kept);
+  heard_at_.resize(kept);
 }
 
 std::vector<std::string> SelfReport::problems(const Facts& facts, Instant now) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -26,12 +27,12 @@ class SelfReport {
   SelfReport(Health base, Instant now) : base_{std::move(base)}, next_health_{now} {}
 
   void on_heard(VehicleId sender, Instant now) {
-    const auto before = [](const auto& entry, VehicleId id) { return entry.first < id; };
-    const auto at = std::lower_bound(heard_.begin(), heard_.end(), sender, before);
-    if (at != heard_.end() && at->first == sender) {
-      at->second = now;
+    const auto at = std::find(senders_.begin(), senders_.end(), sender);
+    if (at != senders_.end()) {
+      heard_at_[static_cast<std::size_t>(at - senders_.begin())] = now;
     } else {
-      heard_.emplace(at, sender, now);
+      senders_.push_back(sender);
+      heard_at_.push_back(now);
     }
   }
   void on_plan(const FlightPlan& plan);
@@ -49,10 +50,13 @@ class SelfReport {
   [[nodiscard]] Instant next_due() const { return std::min(next_plan_, next_health_); }
 
  private:
+  void forget_silent(Instant now);
   [[nodiscard]] std::vector<std::string> problems(const Facts& facts, Instant now) const;
 
   Health base_;
-  std::vector<std::pair<VehicleId, Instant>> heard_;  ///< by id; a map is slow at every message
+  // Looked into at every message: side by side, the senders of a large team are one cache line.
+  std::vector<VehicleId> senders_;
+  std::vector<Instant> heard_at_;  ///< when, of each
   std::optional<FlightPlan> plan_;
   Instant next_plan_ = Instant::max();
   Instant next_health_;

@@ -41,6 +41,20 @@ TEST(SelfReport, SaysWhomItHearsNewestFirstAndForgetsThem) {
   EXPECT_EQ(report.health({}, at_seconds(71.0)).heard.size(), 1U);
 }
 
+TEST(SelfReport, ForgetsOnlyWhoIsSilent) {
+  SelfReport report = made();
+  report.on_heard({9}, at_seconds(50.0));
+  report.on_heard({4}, at_seconds(10.0));
+  report.on_heard({2}, at_seconds(50.0));
+  report.on_heard({5}, at_seconds(60.0));
+  const auto health = report.health({}, at_seconds(75.0));
+  std::vector<VehicleId> heard;
+  for (const auto& entry : health.heard) heard.push_back(entry.vehicle);
+  EXPECT_EQ(heard, (std::vector<VehicleId>{{5}, {2}, {9}}));  // at one moment: by number
+  report.on_heard({9}, at_seconds(76.0));
+  EXPECT_EQ(report.health({}, at_seconds(77.0)).heard.front().vehicle, VehicleId{9});
+}
+
 TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
   SelfReport report = made();
   SelfReport::Facts facts;

@@ -72,7 +72,8 @@ void HeadingDynamics::advance_to(Instant t) {
 void HeadingDynamics::decay_over(double seconds) {
   if (decays_.seconds == seconds) return;
   const auto at = [&](double s) {
-    return Decay{s, std::exp(-s / kAirspeedTime_s), std::exp(-vehicle_.heading_gain_per_s * s)};
+    return Decay{s, from_seconds(s), std::exp(-s / kAirspeedTime_s),
+                 std::exp(-vehicle_.heading_gain_per_s * s)};
   };
   decays_ = {seconds,
              at(0.0),
@@ -100,8 +101,7 @@ Vec2 HeadingDynamics::step(double seconds) {
   };
   const double end_heading = heading_after(decays_.end);
   const auto velocity_after = [&](const Decay& d, double heading) -> Vec2 {
-    return airspeed_after(d) * unit_vector(heading) +
-           wind_.velocity_at(state_.time + from_seconds(d.seconds));
+    return airspeed_after(d) * unit_vector(heading) + wind_.velocity_at(state_.time + d.time);
   };
   const Vec2 first = velocity_after(decays_.begin, heading_after(decays_.begin));
   const Vec2 middle = velocity_after(decays_.middle, heading_after(decays_.middle));

@@ -33,6 +33,7 @@ class HeadingDynamics {
   /// What is left of a first-order lag after a part of a step; 1 at its begin.
   struct Decay {
     double seconds = 0.0;
+    Duration time{};  ///< the same
     double airspeed = 1.0;
     double heading = 1.0;
   };
