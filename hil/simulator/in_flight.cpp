@@ -2,6 +2,7 @@
 #include "in_flight.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace skein::hil {
@@ -11,20 +12,30 @@ void InFlight::post(Parcel parcel) {
   const Slot slot = slot_of(parcel.at);
   if (slot <= opened_) {
     urgent_.push(std::move(parcel));
-  } else {
-    slots_[slot].push_back(std::move(parcel));
+    return;
   }
+  const auto ahead = static_cast<std::size_t>(slot - opened_ - 1);
+  if (ahead >= slots_.size()) slots_.resize(ahead + 1);
+  auto& parcels = slots_[ahead];
+  if (parcels.capacity() == 0 && !spare_.empty()) {
+    parcels = std::move(spare_.back());
+    spare_.pop_back();
+  }
+  parcels.push_back(std::move(parcel));
 }
 
 void InFlight::open_slots(Slot until) {
-  opened_ = until;
   due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(next_));
   next_ = 0;
-  while (!slots_.empty() && slots_.begin()->first <= until) {
-    auto& parcels = slots_.begin()->second;
+  for (; opened_ < until && !slots_.empty(); ++opened_) {
+    auto& parcels = slots_.front();
+    if (due_.empty()) due_.swap(parcels);
     std::move(parcels.begin(), parcels.end(), std::back_inserter(due_));
-    slots_.erase(slots_.begin());
+    parcels.clear();
+    if (parcels.capacity() > 0) spare_.push_back(std::move(parcels));
+    slots_.pop_front();
   }
+  opened_ = until;
   std::sort(due_.begin(), due_.end());
 }
 

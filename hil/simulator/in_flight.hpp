@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <queue>
@@ -56,9 +56,10 @@ class InFlight {
   Duration step_;
   std::uint64_t order_ = 0;
   Slot opened_ = -1;
-  std::map<Slot, std::vector<Parcel>> slots_;
-  std::vector<Parcel> due_;                                         ///< of the opened slots, sorted
-  std::size_t next_ = 0;                                            ///< in due_
+  std::deque<std::vector<Parcel>> slots_;   ///< those after opened_
+  std::vector<std::vector<Parcel>> spare_;  ///< the memory of slots that have been opened
+  std::vector<Parcel> due_;                 ///< of the opened slots, sorted
+  std::size_t next_ = 0;                    ///< in due_
   std::priority_queue<Parcel, std::vector<Parcel>, Later> urgent_;  ///< posted into opened slots
 };
 

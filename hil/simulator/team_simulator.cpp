@@ -239,9 +239,9 @@ class Team {
 
   // --- the radio ---
 
-  void broadcast(std::size_t from, const mission::Message& message, Instant now) {
+  void broadcast(std::size_t from, mission::Message message, Instant now) {
     if (observer_.message) observer_.message(message);
-    const auto what = std::make_shared<const Content>(message);
+    const auto what = std::make_shared<const Content>(std::move(message));
     // The ground station is the last node, and the first to hear.
     if (from != ground_index()) post(from, ground_index(), what, now);
     for (std::size_t to = 0; to < ground_index(); ++to) {
@@ -333,10 +333,10 @@ class Team {
 
   void drain(std::size_t i, Instant now) {
     Aircraft& v = vehicles_[i];
-    while (const auto message = v.node()->poll_message()) {
+    while (auto message = v.node()->poll_message()) {
       if (is_for_watchers(*message, mission_)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
-      broadcast(i, *message, now);
+      broadcast(i, std::move(*message), now);
     }
     while (const auto event = v.node()->poll_event()) on_event(v, *event);
     while (const auto guidance = v.node()->poll_guidance()) {
@@ -364,7 +364,9 @@ class Team {
   }
 
   void drain_ground(Instant now) {
-    while (const auto message = ground_.poll_message()) broadcast(ground_index(), *message, now);
+    while (auto message = ground_.poll_message()) {
+      broadcast(ground_index(), std::move(*message), now);
+    }
     while (const auto event = ground_.poll_event()) {
       if (observer_.event) observer_.event(*event);
       if (mission_.formation) on_formation_event(*event, now);
