@@ -123,7 +123,7 @@ std::optional<Vec3> FieldFlight::landing_velocity() const {
   if (now_mps.norm() <= change_mps && (way_m - 0.5 * kSlot_s * now_mps).norm() <= kLanded_m) {
     return Vec3::Zero();
   }
-  const Vec3 next_mps = way_m / kSlot_s - 0.5 * now_mps;
+  Vec3 next_mps = way_m / kSlot_s - 0.5 * now_mps;
   if (next_mps.norm() > change_mps || (next_mps - now_mps).norm() > change_mps) return std::nullopt;
   return next_mps;
 }

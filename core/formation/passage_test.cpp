@@ -139,7 +139,7 @@ TEST(Passage, AloneKeepsTheChangesOwnTime) {
 }
 
 TEST(Passage, AntipodalSwapKeepsSeparationAndEnds) {
-  for (const std::size_t n : {2, 5, 12, 32}) {
+  for (const std::size_t n : {2U, 5U, 12U, 32U}) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const auto planned = swap_plan(n, 40.0, seed);
       Team team{planned.change, {}, seed};

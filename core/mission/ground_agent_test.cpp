@@ -367,7 +367,7 @@ TEST(GroundAgent, DoesNotAuthoriseADuplicate) {
   GroundAgentConfig config = fleet_of_three();
   config.decisions = {{.site = kSite, .reaction = from_seconds(1.0)}};
   Bench bench{config};
-  for (const std::uint64_t instance : {5, 6, 5})
+  for (const std::uint64_t instance : {5U, 6U, 5U})
     bench.hear(telemetry_of(kLeader, instance, 9.0), 9.0);
   bench.ask(request(1, 20.0, 30.0), 10.0);
   EXPECT_LT(bench.run_until(13.0), 20);

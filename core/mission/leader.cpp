@@ -138,7 +138,7 @@ bool Leader::yields_to(const coalition::Announcement& other, Instant now) const 
 
 std::optional<Site> Leader::put_off(Instant now) {
   if (!leading()) return std::nullopt;
-  const Site site = initiator_->site();
+  Site site = initiator_->site();
   give_up({Reason::held_by_operator}, now);
   return site;
 }

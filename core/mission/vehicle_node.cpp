@@ -49,7 +49,7 @@ class VehicleNode::Impl {
     auto newest = agent->poll_guidance();
     if (!newest) return;
     if (const auto* plan = std::get_if<FlightPlan>(&*newest)) self_report.on_plan(*plan);
-    guidance = std::move(newest);
+    guidance = *newest;
   }
 
   void on_command(const Command& command) {

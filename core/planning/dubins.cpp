@@ -161,7 +161,7 @@ WordLengths word_lengths(const Pose2& from, const Pose2& to, double radius_m) {
   if (Pair::any(Pair::is_here(goal, radius_m))) return result;
   const Pair::Real side{1.0, -1.0};
   goal = {goal.x, goal.y * side, goal.sin * side, goal.cos, goal.versine, goal.turn * side};
-  Pair::Centres centres;
+  Pair::Centres centres{};
   result.same = Pair::lsl(goal, radius_m, centres);
   result.other = Pair::lsr(goal, radius_m);
   result.shortest_m = least_of(Pair::least(result.same, result.other));

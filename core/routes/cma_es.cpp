@@ -51,7 +51,7 @@ class Distribution {
 
   [[nodiscard]] VectorXd draw(Random& random) const {
     VectorXd z(mean_.size());
-    for (Eigen::Index j = 0; j < z.size(); ++j) z[j] = random.normal(0.0, 1.0);
+    for (double& component : z) component = random.normal(0.0, 1.0);
     return mean_ + sigma_ * (axes_ * scales_.cwiseProduct(z));
   }
 

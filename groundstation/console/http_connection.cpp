@@ -36,11 +36,11 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   void read() {
     stream_->read([self = shared_from_this()](std::optional<HttpRequest> request) {
       if (!request) return self->stream_->close();
-      self->handle(std::move(*request));
+      self->handle(*request);
     });
   }
 
-  void handle(HttpRequest request) {
+  void handle(const HttpRequest& request) {
     if (boost::beast::websocket::is_upgrade(request)) return upgrade(request);
     if (request.target() == "/session" && request.method() == http::verb::post) {
       return log_in(request);

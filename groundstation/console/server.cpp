@@ -75,6 +75,7 @@ void Server::Impl::run() {
     try {
       context_.run();
       return;
+      // NOLINTNEXTLINE(bugprone-empty-catch)
     } catch (const std::exception&) {
       // A file that cannot be read, say: it ends one connection, not the ground station.
     }

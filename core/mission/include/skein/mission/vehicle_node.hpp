@@ -33,6 +33,8 @@ class VehicleNode {
  public:
   VehicleNode(const VehicleNodeConfig& config, Instant now);
   ~VehicleNode();
+  VehicleNode(const VehicleNode&) = delete;
+  VehicleNode& operator=(const VehicleNode&) = delete;
   VehicleNode(VehicleNode&&) noexcept;
   VehicleNode& operator=(VehicleNode&&) noexcept;
 
