@@ -134,7 +134,8 @@ autopilot::MotionDemand SimulatedMultirotor::demand(const PositionSetpoint& poin
 }
 
 void SimulatedMultirotor::step() {
-  if (gnss_ && (until_fix_ -= kStep) <= Duration{}) {
+  if (gnss_) until_fix_ -= kStep;
+  if (gnss_ && until_fix_ <= Duration{}) {
     until_fix_ += kFixPeriod;
     sense();
   }

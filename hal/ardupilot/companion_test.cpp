@@ -21,7 +21,6 @@ namespace {
 using State = Companion::State;
 using Event = Companion::Event;
 using std::chrono::milliseconds;
-using testing::AnyOf;
 using testing::Contains;
 using testing::HasSubstr;
 

@@ -44,7 +44,7 @@ std::optional<Datagram> receive_datagram(const Descriptor& socket, std::span<std
       std::uint32_t dropped = 0;
       std::memcpy(&dropped, CMSG_DATA(item), sizeof(dropped));
       // The kernel counts in 32 bits, since the socket was made.
-      lost += static_cast<std::uint32_t>(dropped - static_cast<std::uint32_t>(lost));
+      lost += dropped - static_cast<std::uint32_t>(lost);
     }
   }
   return datagram;

@@ -110,7 +110,7 @@ TEST_F(SocketCanFaults, AnInterfaceThatGoesDownIsNoticedAndTakenUpAgain) {
 
 TEST_F(SocketCanFaults, AnInterfaceThatIsUnpluggedComesBackAsAnother) {
   const auto ip = [this](const std::string& words) {
-    // A test of its own machine. NOLINTNEXTLINE(cert-env33-c,concurrency-mt-unsafe)
+    // A test of its own machine. NOLINTNEXTLINE(bugprone-command-processor,concurrency-mt-unsafe)
     ASSERT_EQ(std::system(("ip link " + words + " " + name_).c_str()), 0);
   };
   const Filter only{.id = 0x100, .mask = 0x1FFFFFFF, .extended = true};

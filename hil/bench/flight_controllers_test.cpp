@@ -12,7 +12,6 @@
 namespace skein::hil {
 namespace {
 
-using testing::Contains;
 
 TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   configuration::VehicleConfig vehicle;

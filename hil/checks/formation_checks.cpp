@@ -13,7 +13,6 @@
 
 namespace skein::checks {
 
-using mission::EventKind;
 
 namespace {
 

@@ -124,6 +124,7 @@ consteval auto field_infos() {
   std::array<FieldInfo, kBase + count_of(kDefinition.extensions)> infos{};
   std::size_t i = 0;
   std::size_t offset = 0;
+  std::size_t largest = 8;
   kDefinition.for_each([&]<class V>(const Field<Message, V>& f) {
     using Shape = FieldShape<V>;
     infos.at(i) = {f.name,
@@ -132,9 +133,8 @@ consteval auto field_infos() {
                    static_cast<std::uint8_t>(Shape::kCount),
                    static_cast<std::uint8_t>(offset),
                    i >= kBase};
-    if (i > 0 && i < kBase && infos.at(i).element_size > infos.at(i - 1).element_size) {
-      fields_are_not_in_the_order_of_the_wire();
-    }
+    if (i < kBase && infos.at(i).element_size > largest) fields_are_not_in_the_order_of_the_wire();
+    largest = infos.at(i).element_size;
     offset += infos.at(i).size();
     ++i;
   });
