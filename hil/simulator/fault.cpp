@@ -120,7 +120,7 @@ std::string names_of(const std::vector<VehicleId>& nodes) {
 }
 
 std::string describe(const Fault& fault) {
-  const std::string what = std::visit(Sentence{}, fault.what);
+  std::string what = std::visit(Sentence{}, fault.what);
   if (std::holds_alternative<ClockOff>(fault.what)) return what;
   return text_of(fault.when) + what +
          (fault.lasts ? fmt::format(" for {:.2f} s", to_seconds(*fault.lasts)) : "");
