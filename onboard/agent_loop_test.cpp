@@ -150,7 +150,7 @@ TEST(AgentLoop, CarriesNoticesModeAndTheGivingBackOfTheAircraft) {
   EXPECT_EQ(events.back().body, rebooted);
   ASSERT_EQ(cabin.sent_of<mission::Health>().size(), 1U);
   EXPECT_EQ(cabin.sent_of<mission::Health>()[0].mode, "LOITER, piloted");
-  const auto recorded = [&records]<class Record>(Record) {
+  const auto recorded = [&records]<class Record>(const Record& /*like*/) {
     return std::count_if(records.begin(), records.end(),
                          [](const auto& r) { return std::holds_alternative<Record>(r); });
   };

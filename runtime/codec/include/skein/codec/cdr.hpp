@@ -46,7 +46,7 @@ struct Refusal {
 
 class CdrWriter {
  public:
-  CdrWriter() : bytes_(256) { at_ = kHeaderBytes; }
+  CdrWriter() : bytes_(256), at_{kHeaderBytes} {}
 
   /// None where a value is out of its range.
   [[nodiscard]] std::optional<Bytes> finish() {
