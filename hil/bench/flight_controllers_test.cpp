@@ -12,7 +12,6 @@
 namespace skein::hil {
 namespace {
 
-
 TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   configuration::VehicleConfig vehicle;
   vehicle.start = {2200.0, 2000.5, heading_from_compass_deg(50.0)};

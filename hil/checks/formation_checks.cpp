@@ -13,7 +13,6 @@
 
 namespace skein::checks {
 
-
 namespace {
 
 /// What the vehicle was told to fly at that moment; null before its first plan.
