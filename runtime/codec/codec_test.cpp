@@ -15,10 +15,10 @@
 
 /// Of operator new, since a test set it to 0.
 // NOLINTNEXTLINE(cppcoreguidelines-avoid-non-const-global-variables)
-static std::size_t largest_allocation = 0;
+static std::size_t g_largest_allocation = 0;
 
 [[gnu::noinline]] void* operator new(std::size_t size) {
-  largest_allocation = std::max(largest_allocation, size);
+  g_largest_allocation = std::max(g_largest_allocation, size);
   if (void* memory = std::malloc(size)) return memory;  // NOLINT(cppcoreguidelines-no-malloc)
   throw std::bad_alloc{};
 }
@@ -240,13 +240,13 @@ TEST(Codec, ACountIsCheckedBeforeMemoryIsTaken) {
   ASSERT_LE(bytes.size(), 60U);
   const std::size_t count = bytes.size() - 4;  // of `heard`, the last field
   put<std::uint32_t>(bytes, count, 5'000'000);
-  largest_allocation = 0;
+  g_largest_allocation = 0;
   EXPECT_EQ(fault_of(Topic::health, bytes), Fault::bad_value);
-  EXPECT_LE(largest_allocation, 1000U);
+  EXPECT_LE(g_largest_allocation, 1000U);
   put<std::uint32_t>(bytes, count, static_cast<std::uint32_t>(mission::kHeardMax));
-  largest_allocation = 0;
+  g_largest_allocation = 0;
   EXPECT_EQ(fault_of(Topic::health, bytes), Fault::malformed);
-  EXPECT_LE(largest_allocation, 1000U);
+  EXPECT_LE(g_largest_allocation, 1000U);
 }
 
 TEST(Codec, WhatIsIncompatibleIsToldWithBothVersions) {

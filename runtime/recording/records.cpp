@@ -124,8 +124,8 @@ class Kinds {
 };
 
 const Kinds& kinds() {
-  static const Kinds kKinds;
-  return kKinds;
+  static const Kinds known;
+  return known;
 }
 
 template <class T>

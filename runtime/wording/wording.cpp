@@ -288,7 +288,7 @@ struct News {
     return std::string{sentence_of(e.trouble)};
   }
   std::string operator()(const event::FleetWarning& e) const {
-    const std::string who = text_of(e.vehicle);
+    std::string who = text_of(e.vehicle);
     switch (e.news) {
       case event::FleetNews::stranger:
         return who + " speaks, but is not in the fleet; check its id";
@@ -326,8 +326,7 @@ struct News {
     return waits + "it is told to hold";
   }
   std::string operator()(const event::FormationWarning& e) const {
-    const std::string who =
-        (e.vehicles.size() == 1 ? "vehicle " : "vehicles ") + names_of(e.vehicles);
+    std::string who = (e.vehicles.size() == 1 ? "vehicle " : "vehicles ") + names_of(e.vehicles);
     switch (e.news) {
       case event::FormationNews::lost:
         return who + " is silent: its way is kept clear";

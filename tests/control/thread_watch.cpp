@@ -113,8 +113,8 @@ void print(std::FILE* file, const Watched& self) {
       1e-9 * static_cast<double>(nanoseconds(self.ended) - nanoseconds(self.began));
   const double busy = seconds(self.at_last.ru_utime) + seconds(self.at_last.ru_stime) -
                       seconds(self.at_first.ru_utime) - seconds(self.at_first.ru_stime);
-  std::fprintf(file, "thread=%s seconds=%.1f sleeps=%llu", self.name.data(), elapsed,
-               static_cast<unsigned long long>(self.sleeps));
+  std::fprintf(file, "thread=%.*s seconds=%.1f sleeps=%llu", static_cast<int>(self.name.size()),
+               self.name.data(), elapsed, static_cast<unsigned long long>(self.sleeps));
   for (std::size_t kind = 0; kind < kinds; ++kind) {
     std::fprintf(file, " %s=%llu", kKindNames[kind],
                  static_cast<unsigned long long>(self.calls[kind]));

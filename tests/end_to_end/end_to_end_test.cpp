@@ -191,9 +191,9 @@ TEST_F(EndToEnd, RoutesArePlannedThenFlownAndOnlyAsTheMissionIs) {
   const std::string mission = SKEIN_SOURCE_DIR "/scenarios/routes-3.yaml";
   const fs::path plan = folder_ / "plan" / "plan.yaml";
   {
-    auto child = ChildProcess::start(
-        {SKEIN_PROGRAMS "/skein-ground", "plan", mission, "--out", plan.parent_path().string()},
-        folder_ / "planned", {});
+    auto child = ChildProcess::start({std::string{SKEIN_PROGRAMS "/skein-ground"}, "plan", mission,
+                                      "--out", plan.parent_path().string()},
+                                     folder_ / "planned", {});
     ASSERT_TRUE(child);
     ASSERT_TRUE(child->wait(60s));
     ASSERT_EQ(child->ended(), "exit status 0") << text_of(folder_ / "planned");

@@ -109,7 +109,7 @@ void add_kinds(std::vector<Kind>& kinds, const T*) {
 }
 
 const std::vector<Kind>& kinds() {
-  static const std::vector<Kind> kAll = [] {
+  static const std::vector<Kind> every = [] {
     std::vector<Kind> all;
     for (std::size_t i = 0; i < std::variant_size_v<mission::Message::variant>; ++i) {
       with_alternative<mission::Message>(
@@ -117,7 +117,7 @@ const std::vector<Kind>& kinds() {
     }
     return all;
   }();
-  return kAll;
+  return every;
 }
 
 }  // namespace

@@ -152,7 +152,7 @@ class CdrWriter {
   template <Union T>
   void content(const T& value) {
     put(static_cast<std::uint32_t>(value.index()));
-    std::visit([this](const auto& branch) { part(branch); }, value);
+    std::visit([this](const auto& branch) { this->part(branch); }, value);
   }
 
   Bytes bytes_;
