@@ -51,7 +51,7 @@ if(SKEIN_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(precompiled_core <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional>
     <limits> <map> <memory> <optional> <set> <span> <sstream> <string> <string_view> <utility>
     <variant> <vector> <Eigen/Core> <Eigen/Geometry>)
-  set(precompiled_module ${precompiled_core} <fmt/format.h> <nlohmann/json.hpp>)
+  set(precompiled_module ${precompiled_core} <fmt/format.h>)
   set(precompiled_test ${precompiled_module} <gmock/gmock.h> <gtest/gtest.h>)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "")
   foreach(kind core module test)
