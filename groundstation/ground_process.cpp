@@ -81,9 +81,20 @@ bool only_looks(const Input& input) {
          (formation != nullptr && formation->preview);
 }
 
-bool names_file(const Formation& formation) {
-  return formation.shape.find_first_of("./") != std::string::npos ||
-         formation.track.find_first_of("./") != std::string::npos;
+/// The console is on other machines: it opens no files here, and ends nothing that it cannot start.
+const char* why_not_on_console(const Input& input) {
+  const auto names_file = [](const std::string& text) {
+    return text.find_first_of("./") != std::string::npos;
+  };
+  const auto* formation = std::get_if<Formation>(&input);
+  if (formation != nullptr && (names_file(formation->shape) || names_file(formation->track))) {
+    return "the console takes shapes and tracks by their names; files are for the prompt\n";
+  }
+  if (std::holds_alternative<Record>(input)) {
+    return "record is for the prompt and the command line\n";
+  }
+  if (std::holds_alternative<Quit>(input)) return "quit is for the prompt and the command line\n";
+  return nullptr;
 }
 
 /// The answer for programs: one JSON object.
@@ -187,15 +198,12 @@ class GroundLoop {
   /// What came of what somebody asked, in a `line` or without one. Orders and decisions are noted.
   Answer answer(const Result<Input>& input, std::string line, const Asker& asker, Instant now) {
     if (line.empty() && input) line = line_of(*input);
-    const auto* formation = input ? std::get_if<Formation>(&*input) : nullptr;
-    if (formation != nullptr && asker.from == kConsole && names_file(*formation)) {
-      return {false,
-              "the console takes shapes and tracks by their names; files are for the prompt\n"};
-    }
-    if (input && only_looks(*input)) return look(*input, now);
-    Answer given = !input             ? refusal(input.error())
-                   : !asker.may_order ? Answer{false, "an observer gives no orders\n"}
-                                      : order(*input, asker, now);
+    const char* not_here = input && asker.from == kConsole ? why_not_on_console(*input) : nullptr;
+    if (input && not_here == nullptr && only_looks(*input)) return look(*input, now);
+    Answer given = !input                ? refusal(input.error())
+                   : not_here != nullptr ? Answer{false, not_here}
+                   : !asker.may_order    ? Answer{false, "an observer gives no orders\n"}
+                                         : order(*input, asker, now);
     // What an observer tries would only push the orders out of sight.
     if (asker.may_order)
       note({now, asker.who, asker.from, std::move(line), given.done, given.text});
@@ -228,17 +236,13 @@ class GroundLoop {
       return {true, fmt::format("hazard {} is told to all\n", added->value)};
     }
     if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
-    if (const auto* record = std::get_if<Record>(&input)) return record_into(*record, asker);
+    if (const auto* record = std::get_if<Record>(&input)) return record_into(*record);
     if (std::holds_alternative<Wait>(input)) return {false, "'wait' is for scripts\n"};
-    // Quit: whoever watches from elsewhere cannot start it again.
-    if (asker.from == kConsole) return {false, "quit is for the prompt and the command line\n"};
     shutdown_.request();
     return {true, ""};
   }
 
-  Answer record_into(const Record& order, const Asker& asker) {
-    // Which files it writes is for who can write them anyway.
-    if (asker.from == kConsole) return {false, "record is for the prompt and the command line\n"};
+  Answer record_into(const Record& order) {
     flush();
     writer_.reset();
     if (order.folder.empty()) return {true, "nothing is recorded now\n"};

@@ -14,7 +14,6 @@
 #include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
-namespace {}
 
 LineReader::LineReader(int file_descriptor, std::function<void()> on_line)
     : input_{file_descriptor}, stop_{eventfd(0, EFD_CLOEXEC)}, on_line_{std::move(on_line)} {

@@ -38,7 +38,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   const std::uint32_t known = change_ ? change_->number : 0;
   if (change.number <= known || !state_) return;
   if (!valid(change)) {
-    ++bad_changes_;
+    ++bad_messages_;
     return;
   }
   const auto self = formation::mover_of(change, config_.vehicle);
@@ -187,7 +187,7 @@ Telemetry FormationAgent::telemetry() const {
 
 Counters FormationAgent::counters() const {
   Counters all;
-  all.bad_messages = bad_changes_;
+  all.bad_messages = bad_messages_;
   all.messages_dropped = messages_.dropped();
   all.events_dropped = events_.dropped();
   return all;

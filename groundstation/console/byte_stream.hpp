@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -54,7 +55,6 @@ class AnyStream {
   explicit AnyStream(std::unique_ptr<ByteStream> bytes) : bytes_{std::move(bytes)} {}
 
   [[nodiscard]] executor_type get_executor() { return bytes_->executor(); }
-  ByteStream& operator*() { return *bytes_; }
   ByteStream* operator->() { return bytes_.get(); }
 
   template <class Buffers, class Handler>

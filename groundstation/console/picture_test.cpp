@@ -348,6 +348,7 @@ TEST(Picture, AnyMessagesMakeAPicture) {
   params.coalitions_max = 20;
   params.rounds_max = 5;
   params.authorisations_max = 20;
+  params.sites_max = 20;
   Picture picture{params};
   mission::Fleet fleet{{.expected = {{1}}}};
   Instant now{};
@@ -378,6 +379,7 @@ TEST(Picture, AnyMessagesMakeAPicture) {
   }
   EXPECT_LE(picture.coalitions().size(), 20U);
   EXPECT_LE(picture.authorisations().size(), 20U);
+  EXPECT_EQ(picture.sites().size(), 20U);
   for (const auto& [id, coalition] : picture.coalitions()) EXPECT_LE(coalition.rounds.size(), 5U);
 }
 

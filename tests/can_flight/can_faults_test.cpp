@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -139,10 +140,13 @@ class CanFaults : public ::testing::Test {
     ASSERT_TRUE(opened.ok()) << opened.error().message;
     operator_ = std::move(opened).value();
   }
-  void give_back() {
+  /// Answers what was said at that mission time, by a clock that may be a little behind the
+  /// vehicle's.
+  void give_back(double answers_s) {
     mission::Command command;
     command.vehicle = kVehicle;
-    command.number = static_cast<std::uint32_t>(1e3 * now_s()) + 1;  // tells when it was issued
+    const double issued_s = std::max(now_s(), answers_s + 1e-3);
+    command.number = static_cast<std::uint32_t>(1e3 * issued_s) + 1;  // tells when it was issued
     command.kind = mission::CommandKind::give_back;
     operator_->publish(mission::Message{command});
   }
@@ -223,8 +227,9 @@ TEST_F(CanFaults, AreNoticedAndFlownOnFrom) {
   begin = now_s();
   pilot("mode RTL");
   const double piloted = noticed_within(kPiloted, begin);
+  if (HasFailure()) return;  // nothing to answer
+  give_back(begin + piloted);
   begin = now_s();
-  give_back();
   print("the pilot switches to RTL", piloted, noticed_within(kFlying, begin), "it is given back");
 
   // Nodes tell their uptime in whole seconds: younger than that a reboot does not show.

@@ -73,7 +73,7 @@ class FormationAgent final : public OnboardAgent {
   CommandFilter commands_;
   bool held_ = false;
   bool arrived_ = false;
-  std::uint64_t bad_changes_ = 0;
+  std::uint64_t bad_messages_ = 0;
   BoundedQueue<Message> messages_{64};
   BoundedQueue<MissionEvent> events_{256};
 };

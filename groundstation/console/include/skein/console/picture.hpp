@@ -113,8 +113,8 @@ struct FormationPicture {
 /// Everything that the ground station has heard and said, put together for people: what was said
 /// over time, beside the fleet as it is now (mission::Fleet). It decides nothing. Pure and
 /// copyable: of a recording, copies taken on the way make every moment quick to reach. `now` never
-/// decreases. Every container has a limit: of what
-/// passes the oldest gives way, of sites, hazards and vehicles what is new is left out.
+/// decreases. Every container has a limit: of what passes the oldest gives way, of sites, hazards
+/// and vehicles what is new is left out.
 class Picture {
  public:
   explicit Picture(PictureParams params);
