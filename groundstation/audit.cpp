@@ -5,15 +5,16 @@
 
 #include <cmath>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <utility>
+
+#include "skein/codec/json_text.hpp"
 
 namespace skein::groundstation {
 namespace {
 
 constexpr std::size_t kLineMax = 200;
 
-nlohmann::ordered_json json_of(const Audit::Entry& entry, std::uint64_t seq) {
+codec::Json json_of(const Audit::Entry& entry, std::uint64_t seq) {
   return {{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
           {"who", entry.who},   {"from", entry.from},
           {"line", entry.line}, {"done", entry.done},
@@ -27,10 +28,6 @@ std::string printable(std::string line) {
     if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) c = '?';
   }
   return line;
-}
-
-std::string dump(const nlohmann::ordered_json& json) {
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -50,12 +47,12 @@ Result<void> Audit::add(Entry entry) {
   const auto line = json_of(entry, next_seq_++);
   entries_.push_back(std::move(entry));
   if (entries_.size() > kShown) entries_.pop_front();
-  auto all = nlohmann::ordered_json::array();
+  auto all = codec::Json::array();
   std::uint64_t seq = next_seq_ - entries_.size();
   for (const Entry& one : entries_) all.push_back(json_of(one, seq++));
-  json_ = dump(all);
+  json_ = codec::json_text(all);
   if (path_.empty()) return {};
-  file_ << dump(line) << '\n' << std::flush;
+  file_ << codec::json_text(line) << '\n' << std::flush;
   if (file_) return {};
   file_.clear();
   return Error{"cannot write " + path_};

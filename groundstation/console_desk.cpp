@@ -3,10 +3,10 @@
 
 #include <chrono>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 #include <variant>
 
+#include "skein/codec/json_text.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/recording/published.hpp"
 
@@ -38,15 +38,15 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                        const std::vector<std::string>& shapes,
                        const std::optional<ShownRecording>& recording) {
   const Wgs84& place = origin.origin();
-  nlohmann::ordered_json hello{{"program", "skein-ground " + version()},
-                               {"origin",
-                                {{"latitude_deg", place.latitude_deg},
-                                 {"longitude_deg", place.longitude_deg},
-                                 {"height_m", place.height_m}}},
-                               {"expected", nlohmann::ordered_json::array()},
-                               {"shapes", shapes},
-                               {"limits", nlohmann::ordered_json::parse(limits_json())},
-                               {"replay", nullptr}};
+  codec::Json hello{{"program", "skein-ground " + version()},
+                    {"origin",
+                     {{"latitude_deg", place.latitude_deg},
+                      {"longitude_deg", place.longitude_deg},
+                      {"height_m", place.height_m}}},
+                    {"expected", codec::Json::array()},
+                    {"shapes", shapes},
+                    {"limits", codec::parse_own_json(limits_json())},
+                    {"replay", nullptr}};
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
   if (recording) {
     // In steps of the page's scrubber.
@@ -54,7 +54,7 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                        {"from_s", std::floor(10.0 * to_seconds(recording->begin)) / 10.0},
                        {"to_s", std::ceil(10.0 * to_seconds(recording->end)) / 10.0}};
   }
-  return hello.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return codec::json_text(hello);
 }
 
 std::optional<console::Section> section_of(View view) {

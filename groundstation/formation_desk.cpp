@@ -5,10 +5,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "formation_desk_texts.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/configuration/shape_file.hpp"
 
 namespace skein::groundstation {
@@ -41,11 +41,11 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
   auto data = outcome_json(only_preview, formation::to_string(planned.way), planned.duration,
                            planned.least_separation_m, preview.lost);
   for (const auto& mover : planned.change.movers) {
-    auto points = nlohmann::ordered_json::array();
+    auto points = codec::Json::array();
     for (const Vec3& p : mover.points) points.push_back({p.x(), p.y(), p.z()});
     data["movers"].push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
   }
-  return data.dump();
+  return codec::json_text(data);
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "skein/base/time.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/domain/vehicle.hpp"
 
 /// What the formation desk says alike of multirotors and of planes.
@@ -24,13 +24,15 @@ template <class T>
 }
 
 /// What an order does, for the page; without its movers, who are {id, points}.
-[[nodiscard]] inline nlohmann::ordered_json outcome_json(bool only_preview, std::string_view way,
-                                                         Duration duration, double separation_m,
-                                                         const std::vector<VehicleId>& lost) {
-  nlohmann::ordered_json data{
-      {"kind", only_preview ? "preview" : "begun"}, {"way", way},
-      {"duration_s", to_seconds(duration)},         {"least_separation_m", separation_m},
-      {"movers", nlohmann::ordered_json::array()},  {"lost", nlohmann::ordered_json::array()}};
+[[nodiscard]] inline codec::Json outcome_json(bool only_preview, std::string_view way,
+                                              Duration duration, double separation_m,
+                                              const std::vector<VehicleId>& lost) {
+  codec::Json data{{"kind", only_preview ? "preview" : "begun"},
+                   {"way", way},
+                   {"duration_s", to_seconds(duration)},
+                   {"least_separation_m", separation_m},
+                   {"movers", codec::Json::array()},
+                   {"lost", codec::Json::array()}};
   for (const VehicleId vehicle : lost) data["lost"].push_back(vehicle.value);
   return data;
 }

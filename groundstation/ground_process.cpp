@@ -8,12 +8,12 @@
 #include <atomic>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 #include <thread>
 #include <utility>
 
+#include "skein/codec/json_text.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -99,10 +99,10 @@ const char* why_not_on_console(const Input& input) {
 
 /// The answer for programs: one JSON object.
 std::string json_of(const Answer& answer) {
-  nlohmann::ordered_json json{{"done", answer.done}, {"text", answer.text}};
-  json["data"] = nlohmann::ordered_json::parse(answer.data, nullptr, false);
+  codec::Json json{{"done", answer.done}, {"text", answer.text}};
+  json["data"] = codec::parse_own_json(answer.data);
   if (json["data"].is_discarded()) json["data"] = nullptr;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return codec::json_text(json, 2) + "\n";
 }
 
 /// Carries messages and lines to the node, and its messages, events and requests away.

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "skein/base/angles.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/groundstation/orders.hpp"
 
 namespace skein::groundstation {
 namespace {
 
-using Json = nlohmann::json;
+using codec::Json;
+using codec::ParsedJson;
 
 /// Reads members, and keeps the first that is wrong.
 class Reader {
  public:
-  explicit Reader(const Json& json) : json_{json} {}
+  explicit Reader(const ParsedJson& json) : json_{json} {}
 
   [[nodiscard]] bool has(const char* name) const { return json_.contains(name); }
   double number(const char* name, const Limit& limit) {
@@ -63,7 +64,7 @@ class Reader {
   [[nodiscard]] const std::optional<Error>& wrong() const { return wrong_; }
 
  private:
-  const Json& json_;
+  const ParsedJson& json_;
   std::optional<Error> wrong_;
 };
 
@@ -131,34 +132,30 @@ Input formation_order(Reader& from) {
 }  // namespace
 
 Result<Input> read_order(std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const ParsedJson json = codec::parse_json(text);
   if (!json.is_object()) return Error{"an order is a JSON object"};
   Reader from{json};
   const std::string kind = from.text("kind");
-  Input input;
-  if (kind == "command") {
-    input = command(from);
-  } else if (kind == "decision") {
-    input = decision(from);
-  } else if (kind == "hazard") {
-    input = hazard(from);
-  } else if (kind == "formation") {
-    input = formation_order(from);
-  } else {
+  const auto of_kind = [&]() -> Input {
+    if (kind == "command") return command(from);
+    if (kind == "decision") return decision(from);
+    if (kind == "hazard") return hazard(from);
+    if (kind == "formation") return formation_order(from);
     from.fail("there is no order '" + kind + "'");
-  }
+    return {};
+  };
+  Result<Input> input = of_kind();
   if (from.wrong()) return *from.wrong();
   return input;
 }
 
 std::string limits_json() {
   const auto range = [](const Limit& limit) { return Json::array({limit.low, limit.high}); };
-  return Json{{"coordinate_m", range(kCoordinate_m)},
-              {"hazard_radius_m", range(kHazardRadius_m)},
-              {"spacing_m", range(kSpacing_m)},
-              {"heading_deg", range(kHeading_deg)},
-              {"places", range(kPlaces)}}
-      .dump();
+  return codec::json_text({{"coordinate_m", range(kCoordinate_m)},
+                           {"hazard_radius_m", range(kHazardRadius_m)},
+                           {"spacing_m", range(kSpacing_m)},
+                           {"heading_deg", range(kHeading_deg)},
+                           {"places", range(kPlaces)}});
 }
 
 }  // namespace skein::groundstation

@@ -11,11 +11,11 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 #include <variant>
 
+#include "skein/codec/json_text.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -170,10 +170,8 @@ class ReplayLoop {
     auto sections = console::sections_of(playback_.picture(), playback_.fleet(), playback_.origin(),
                                          playback_.version(), playback_.now());
     sections[static_cast<std::size_t>(console::Section::audit)] = "[]";
-    sections[static_cast<std::size_t>(console::Section::replay)] = nlohmann::ordered_json{
-        {"time_s", to_seconds(playback_.now())},
-        {"playing", playing_},
-        {"speed", speed_}}.dump();
+    sections[static_cast<std::size_t>(console::Section::replay)] = codec::json_text(
+        {{"time_s", to_seconds(playback_.now())}, {"playing", playing_}, {"speed", speed_}});
     server_->publish(to_seconds(playback_.now()), std::move(sections));
   }
 

@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "skein/base/angles.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/routes/fly_by.hpp"
 
 namespace skein::groundstation {
 namespace {
 
+using codec::Json;
 using configuration::Scenario;
 using configuration::VehicleRoute;
-using Json = nlohmann::ordered_json;
 
 constexpr double kStep_m = 10.0;  ///< between points of what is flown
 
@@ -124,7 +124,8 @@ std::string routes_geojson(const PlannedRoutes& planned, const Scenario& scenari
   }
   features.push_back(
       feature({{"site", true}}, "Point", geojson_place(on_earth(origin, planned.problem.site))));
-  return Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump() + "\n";
+  return codec::json_text({{"type", "FeatureCollection"}, {"features", std::move(features)}}) +
+         "\n";
 }
 
 std::string routes_kml(const PlannedRoutes& planned, const Scenario& scenario,
@@ -204,7 +205,7 @@ std::string routes_qgc(const VehicleRoute& route, const Scenario& scenario,
          {decimals(home.latitude_deg, 7), decimals(home.longitude_deg, 7),
           decimals(home.height_m - heights.geoid_m, 1)}},
         {"items", std::move(items)}}}};
-  return plan.dump() + "\n";
+  return codec::json_text(plan) + "\n";
 }
 
 std::string routes_svg(const PlannedRoutes& planned) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "formation_desk_texts.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/configuration/track_file.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/mission/track_agent.hpp"
@@ -40,7 +40,7 @@ std::string data_of(const mission::TrackPreview& preview, bool only_preview, Ins
   auto data = outcome_json(only_preview, formation::to_string(formation::Way::track),
                            planned.joined - now, planned.least_separation_m, preview.lost);
   for (const auto& flight : planned.flights) {
-    auto points = nlohmann::ordered_json::array();
+    auto points = codec::Json::array();
     const double length_m = flight.timed.path.length_m();
     for (int i = 0; i <= kDrawn; ++i) {
       const Pose2 at = flight.timed.pose_at_distance(length_m * i / kDrawn);
@@ -48,7 +48,7 @@ std::string data_of(const mission::TrackPreview& preview, bool only_preview, Ins
     }
     data["movers"].push_back({{"id", flight.plane.spec.id.value}, {"points", std::move(points)}});
   }
-  return data.dump();
+  return codec::json_text(data);
 }
 
 }  // namespace

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <string_view>
 
-#include "server_impl.hpp"
+#include "hub.hpp"
 #include "stream.hpp"
 
 /// The three that speak with a connection; each lives as long as it does.
@@ -14,13 +15,12 @@ namespace skein::console {
 inline constexpr std::string_view kPageProtocol = "skein.console.1";
 
 /// HTTP, until it asks for a socket.
-void serve_http(Server::Impl& server, std::unique_ptr<HttpStream> stream);
-/// The page's socket.
-void serve_page(Server::Impl& server, std::unique_ptr<WebSocket> socket, const Identity& identity,
-                std::shared_ptr<Server::Impl::Place> place, const HttpRequest& request);
+void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream);
+/// The page's socket, of who sent these cookies.
+void serve_page(Hub& hub, std::unique_ptr<WebSocket> socket, const Identity& identity,
+                std::string cookies, std::shared_ptr<Hub::Place> place);
 /// Foxglove's, with one of kFoxgloveProtocols.
-void serve_foxglove(Server::Impl& server, std::unique_ptr<WebSocket> socket,
-                    std::string_view protocol, std::shared_ptr<Server::Impl::Place> place,
-                    const HttpRequest& request);
+void serve_foxglove(Hub& hub, std::unique_ptr<WebSocket> socket, std::string_view protocol,
+                    std::shared_ptr<Hub::Place> place);
 
 }  // namespace skein::console

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "foxglove.hpp"
 
-#include <nlohmann/json.hpp>
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using codec::Json;
+using codec::ParsedJson;
 
 constexpr char kMessageData = 0x01;
 
@@ -14,12 +15,12 @@ void append_little_endian(std::string& bytes, std::uint64_t value, int size) {
   for (int i = 0; i < size; ++i) bytes.push_back(static_cast<char>((value >> (8 * i)) & 0xFFU));
 }
 
-std::optional<std::uint32_t> number(const Json& json) {
+std::optional<std::uint32_t> number(const ParsedJson& json) {
   if (!json.is_number_unsigned() || json.get<std::uint64_t>() > UINT32_MAX) return std::nullopt;
   return json.get<std::uint32_t>();
 }
 
-std::optional<std::uint32_t> number(const Json& json, const char* key) {
+std::optional<std::uint32_t> number(const ParsedJson& json, const char* key) {
   const auto found = json.find(key);
   return found == json.end() ? std::nullopt : number(*found);
 }
@@ -27,13 +28,12 @@ std::optional<std::uint32_t> number(const Json& json, const char* key) {
 }  // namespace
 
 std::string FoxgloveSession::server_info(const std::string& name, const std::string& run) {
-  return Json{{"op", "serverInfo"},
-              {"name", name},
-              {"capabilities", Json::array()},
-              {"supportedEncodings", {"cdr"}},
-              {"metadata", Json::object()},
-              {"sessionId", run}}
-      .dump();
+  return codec::json_text({{"op", "serverInfo"},
+                           {"name", name},
+                           {"capabilities", Json::array()},
+                           {"supportedEncodings", {"cdr"}},
+                           {"metadata", Json::object()},
+                           {"sessionId", run}});
 }
 
 std::string FoxgloveSession::advertise(std::span<const LiveChannel> channels) {
@@ -46,16 +46,16 @@ std::string FoxgloveSession::advertise(std::span<const LiveChannel> channels) {
                                 {"schema", channel.schema},
                                 {"schemaEncoding", "ros2msg"}});
   }
-  return json.dump();
+  return codec::json_text(json);
 }
 
 bool FoxgloveSession::on_text(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const ParsedJson json = codec::parse_json(text);
   if (!json.is_object() || !json.contains("op") || !json["op"].is_string()) return false;
   if (json["op"] == "subscribe") {
     const auto asked = json.find("subscriptions");
     if (asked == json.end() || !asked->is_array()) return false;
-    for (const Json& one : *asked) {
+    for (const ParsedJson& one : *asked) {
       if (!one.is_object()) return false;
       const auto id = number(one, "id");
       const auto channel = number(one, "channelId");
@@ -65,7 +65,7 @@ bool FoxgloveSession::on_text(const std::string& text) {
   } else if (json["op"] == "unsubscribe") {
     const auto ids = json.find("subscriptionIds");
     if (ids == json.end() || !ids->is_array()) return false;
-    for (const Json& one : *ids) {
+    for (const ParsedJson& one : *ids) {
       const auto id = number(one);
       if (!id) return false;
       std::erase_if(subscriptions_, [&](const auto& entry) { return entry.second == *id; });

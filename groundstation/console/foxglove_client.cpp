@@ -14,19 +14,18 @@ constexpr std::size_t kBacklogMax = 4U << 20U;  ///< bytes that wait; then recor
 class FoxgloveClient final : public LiveClient,
                              public std::enable_shared_from_this<FoxgloveClient> {
  public:
-  FoxgloveClient(Server::Impl& server, std::unique_ptr<WebSocket> socket,
-                 std::shared_ptr<Server::Impl::Place> place)
-      : server_{server}, socket_{std::move(socket)}, place_{std::move(place)} {}
-  ~FoxgloveClient() override { server_.leave(*this); }
+  FoxgloveClient(Hub& hub, std::unique_ptr<WebSocket> socket, std::shared_ptr<Hub::Place> place)
+      : hub_{hub}, socket_{std::move(socket)}, place_{std::move(place)} {}
+  ~FoxgloveClient() override { hub_.leave(*this); }
   FoxgloveClient(const FoxgloveClient&) = delete;
   FoxgloveClient& operator=(const FoxgloveClient&) = delete;
 
-  void run(const HttpRequest& request, std::string_view protocol) {
-    socket_->accept(request, protocol, kTextMax, [self = shared_from_this()](bool ok) {
+  void run(std::string_view protocol) {
+    socket_->accept(protocol, kTextMax, [self = shared_from_this()](bool ok) {
       if (!ok) return;
-      self->server_.join(*self);
-      self->say(FoxgloveSession::server_info("skein-ground", self->server_.run_id()));
-      self->say(FoxgloveSession::advertise(self->server_.channels()));
+      self->hub_.join(*self);
+      self->say(FoxgloveSession::server_info("skein-ground", self->hub_.run_id()));
+      self->say(FoxgloveSession::advertise(self->hub_.channels()));
       self->read();
     });
   }
@@ -72,13 +71,13 @@ class FoxgloveClient final : public LiveClient,
   }
   void stop() {
     stopped_ = true;
-    server_.leave(*this);
+    hub_.leave(*this);
     socket_->drop();
   }
 
-  Server::Impl& server_;
+  Hub& hub_;
   std::unique_ptr<WebSocket> socket_;
-  std::shared_ptr<Server::Impl::Place> place_;
+  std::shared_ptr<Hub::Place> place_;
   FoxgloveSession session_;
   std::deque<WebSocket::Text> texts_;
   std::size_t waiting_bytes_ = 0;
@@ -88,11 +87,9 @@ class FoxgloveClient final : public LiveClient,
 
 }  // namespace
 
-void serve_foxglove(Server::Impl& server, std::unique_ptr<WebSocket> socket,
-                    std::string_view protocol, std::shared_ptr<Server::Impl::Place> place,
-                    const HttpRequest& request) {
-  std::make_shared<FoxgloveClient>(server, std::move(socket), std::move(place))
-      ->run(request, protocol);
+void serve_foxglove(Hub& hub, std::unique_ptr<WebSocket> socket, std::string_view protocol,
+                    std::shared_ptr<Hub::Place> place) {
+  std::make_shared<FoxgloveClient>(hub, std::move(socket), std::move(place))->run(protocol);
 }
 
 }  // namespace skein::console

@@ -1,30 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <boost/beast/websocket/rfc6455.hpp>
+#include <algorithm>
 #include <chrono>
-#include <nlohmann/json.hpp>
 
 #include "clients.hpp"
-#include "json_text.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
 
-namespace http = boost::beast::http;
-using Json = nlohmann::json;
-
-/// Does the request offer this subprotocol?
 bool offers(const HttpRequest& request, std::string_view protocol) {
-  http::token_list offered{request[http::field::sec_websocket_protocol]};
-  return offered.exists({protocol.data(), protocol.size()});
+  const auto& offered = request.subprotocols;
+  return std::find(offered.begin(), offered.end(), protocol) != offered.end();
+}
+
+HttpResponse refusal(HttpStatus status, const char* why) {
+  return {status, media::kJson, codec::json_text({{"error", why}})};
 }
 
 /// A connection that speaks HTTP, until it asks for the socket.
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(Server::Impl& server, std::unique_ptr<HttpStream> stream)
-      : server_{server},
-        stream_{std::move(stream)},
-        place_{std::make_shared<Server::Impl::Place>(server)} {}
+  HttpConnection(Hub& hub, std::unique_ptr<HttpStream> stream)
+      : hub_{hub}, stream_{std::move(stream)}, place_{std::make_shared<Hub::Place>(hub)} {}
 
   void run() {
     stream_->handshake([self = shared_from_this()](bool ok) {
@@ -41,70 +38,65 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   }
 
   void handle(const HttpRequest& request) {
-    if (boost::beast::websocket::is_upgrade(request)) return upgrade(request);
-    if (request.target() == "/session" && request.method() == http::verb::post) {
-      return log_in(request);
+    if (request.wants_socket) return upgrade(request);
+    if (request.target == "/session" && request.method == HttpMethod::post) return log_in(request);
+    if (request.target == "/session" && request.method == HttpMethod::remove) {
+      return send({HttpStatus::ok,
+                   media::kJson,
+                   "{}",
+                   {{"Set-Cookie", hub_.gate().dismiss(request.cookie)}}});
     }
-    if (request.target() == "/session" && request.method() == http::verb::delete_) {
-      HttpResponse response = answer(request, http::status::ok, "application/json", "{}");
-      response.set(http::field::set_cookie,
-                   server_.gate().dismiss(view(request[http::field::cookie])));
-      return send(std::move(response));
-    }
-    send(server_.pages().respond(request));
+    send(hub_.pages().respond(request));
   }
 
   void upgrade(const HttpRequest& request) {
-    const Gate& gate = server_.gate();
-    const auto host = view(request[http::field::host]);
-    const auto refuse = [&](http::status status, const char* why) {
-      send(answer(request, status, "text/plain; charset=utf-8", std::string{why} + "\n"));
+    const Gate& gate = hub_.gate();
+    const auto refuse = [this](HttpStatus status, const char* why) {
+      send({status, media::kText, std::string{why} + "\n"});
     };
-    if (!gate.is_own_host(host) || !gate.is_own_origin(view(request[http::field::origin]), host)) {
-      return refuse(http::status::forbidden, "the socket is for this server's own page");
+    if (!gate.is_own_host(request.host) || !gate.is_own_origin(request.origin, request.host)) {
+      return refuse(HttpStatus::forbidden, "the socket is for this server's own page");
     }
-    const auto identity =
-        gate.identify(view(request[http::field::cookie]), std::chrono::steady_clock::now());
-    if (!identity) return refuse(http::status::unauthorized, "log in first");
+    const auto identity = gate.identify(request.cookie, std::chrono::steady_clock::now());
+    if (!identity) return refuse(HttpStatus::unauthorized, "log in first");
     for (const std::string_view protocol : kFoxgloveProtocols) {
       if (!offers(request, protocol)) continue;
-      return serve_foxglove(server_, stream_->upgrade(), protocol, place_, request);
+      return serve_foxglove(hub_, stream_->upgrade(), protocol, place_);
     }
-    if (request.target() != "/socket" || !offers(request, kPageProtocol)) {
-      return refuse(http::status::bad_request,
-                    "the socket is at /socket and speaks skein.console.1");
+    if (request.target != "/socket" || !offers(request, kPageProtocol)) {
+      return refuse(HttpStatus::bad_request, "the socket is at /socket and speaks skein.console.1");
     }
-    serve_page(server_, stream_->upgrade(), *identity, place_, request);
+    serve_page(hub_, stream_->upgrade(), *identity, request.cookie, place_);
   }
 
   void log_in(const HttpRequest& request) {
-    const auto refuse = [this, request](http::status status, const char* why) {
-      send(answer(request, status, "application/json", text_of({{"error", why}})));
-    };
-    const auto host = view(request[http::field::host]);
-    if (!server_.gate().is_own_origin(view(request[http::field::origin]), host)) {
-      return refuse(http::status::forbidden, "the login is for this server's own page");
+    if (!hub_.gate().is_own_origin(request.origin, request.host)) {
+      return send(refusal(HttpStatus::forbidden, "the login is for this server's own page"));
     }
-    if (!server_.gate().asks_for_password()) {
-      return refuse(http::status::bad_request, "nobody needs to log in here");
+    if (!hub_.gate().asks_for_password()) {
+      return send(refusal(HttpStatus::bad_request, "nobody needs to log in here"));
     }
-    const Json json = Json::parse(request.body(), nullptr, false);
+    const auto json = codec::parse_json(request.body);
     if (!json.is_object() || !json.contains("user") || !json.contains("password") ||
         !json["user"].is_string() || !json["password"].is_string()) {
-      return refuse(http::status::bad_request, "a login has a user and a password");
+      return send(refusal(HttpStatus::bad_request, "a login has a user and a password"));
     }
-    const bool taken = server_.log_in(
+    const bool taken = hub_.log_in(
         json["user"], json["password"],
-        [self = shared_from_this(), request, refuse](std::optional<Identity> identity) {
-          if (!identity) return refuse(http::status::unauthorized, "wrong user or password");
-          HttpResponse response =
-              answer(request, http::status::ok, "application/json",
-                     text_of({{"user", identity->user}, {"role", to_string(identity->role)}}));
-          response.set(http::field::set_cookie,
-                       self->server_.gate().admit(*identity, std::chrono::steady_clock::now()));
-          self->send(std::move(response));
+        [self = shared_from_this()](const std::optional<Identity>& identity) {
+          if (!identity) {
+            return self->send(refusal(HttpStatus::unauthorized, "wrong user or password"));
+          }
+          const auto now = std::chrono::steady_clock::now();
+          self->send(
+              {HttpStatus::ok,
+               media::kJson,
+               codec::json_text({{"user", identity->user}, {"role", to_string(identity->role)}}),
+               {{"Set-Cookie", self->hub_.gate().admit(*identity, now)}}});
         });
-    if (!taken) refuse(http::status::too_many_requests, "too many log in at once; try again");
+    if (!taken) {
+      send(refusal(HttpStatus::too_many_requests, "too many log in at once; try again"));
+    }
   }
 
   void send(HttpResponse response) {
@@ -114,15 +106,15 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     });
   }
 
-  Server::Impl& server_;
+  Hub& hub_;
   std::unique_ptr<HttpStream> stream_;
-  std::shared_ptr<Server::Impl::Place> place_;
+  std::shared_ptr<Hub::Place> place_;
 };
 
 }  // namespace
 
-void serve_http(Server::Impl& server, std::unique_ptr<HttpStream> stream) {
-  std::make_shared<HttpConnection>(server, std::move(stream))->run();
+void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream) {
+  std::make_shared<HttpConnection>(hub, std::move(stream))->run();
 }
 
 }  // namespace skein::console

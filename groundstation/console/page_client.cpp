@@ -5,8 +5,8 @@
 #include <deque>
 
 #include "clients.hpp"
-#include "json_text.hpp"
 #include "page_text.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
@@ -18,22 +18,22 @@ constexpr int kTextsPerSecond = 20;
 /// A client of the page's socket.
 class PageClient final : public Client, public std::enable_shared_from_this<PageClient> {
  public:
-  PageClient(Server::Impl& server, std::unique_ptr<WebSocket> socket, Identity identity,
-             std::shared_ptr<Server::Impl::Place> place)
-      : server_{server},
+  PageClient(Hub& hub, std::unique_ptr<WebSocket> socket, Identity identity, std::string cookies,
+             std::shared_ptr<Hub::Place> place)
+      : hub_{hub},
         socket_{std::move(socket)},
         identity_{std::move(identity)},
+        cookies_{std::move(cookies)},
         place_{std::move(place)} {}
-  ~PageClient() override { server_.leave(*this); }
+  ~PageClient() override { hub_.leave(*this); }
   PageClient(const PageClient&) = delete;
   PageClient& operator=(const PageClient&) = delete;
 
-  void run(const HttpRequest& request) {
-    cookies_ = view(request[boost::beast::http::field::cookie]);
-    socket_->accept(request, kPageProtocol, kTextMax, [self = shared_from_this()](bool ok) {
+  void run() {
+    socket_->accept(kPageProtocol, kTextMax, [self = shared_from_this()](bool ok) {
       if (!ok) return;
-      self->server_.join(*self);
-      self->say(self->server_.hello(self->identity_));
+      self->hub_.join(*self);
+      self->say(self->hub_.hello(self->identity_));
       self->read();
     });
   }
@@ -72,7 +72,7 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   }
 
   bool on(const PingText& ping) {
-    say(text_of({{"type", "pong"}, {"id", ping.id}, {"time_s", server_.board().time_s()}}));
+    say(codec::json_text({{"type", "pong"}, {"id", ping.id}, {"time_s", hub_.board().time_s()}}));
     return true;
   }
 
@@ -81,42 +81,41 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     asked_ = true;
     seen_.next_seq = resume.next_seq;
     // From a later time than ours: of another run.
-    if (seen_.next_seq > server_.board().next_seq()) seen_.next_seq = 0;
-    return server_.submit(
-        Server::Join{[server = &server_, self = weak()](const std::string& series) {
-          server->post([self, series] {
-            if (const auto client = self.lock()) client->begin(series);
-          });
-        }});
+    if (seen_.next_seq > hub_.board().next_seq()) seen_.next_seq = 0;
+    return hub_.submit(Server::Join{[hub = &hub_, self = weak()](const std::string& series) {
+      hub->post([self, series] {
+        if (const auto client = self.lock()) client->begin(series);
+      });
+    }});
   }
 
   void begin(const std::string& series) {
     // A replay may have been wound back meanwhile.
-    seen_.next_seq = std::min(seen_.next_seq, server_.board().next_seq());
-    say(server_.board().history(series));
+    seen_.next_seq = std::min(seen_.next_seq, hub_.board().next_seq());
+    say(hub_.board().history(series));
     resumed_ = true;
     write();
   }
 
   bool on(LineText& text) {
     // Who has logged out gives no more orders by what is still open.
-    if (!server_.gate().identify(cookies_, std::chrono::steady_clock::now())) return false;
+    if (!hub_.gate().identify(cookies_, std::chrono::steady_clock::now())) return false;
     Server::Line given;
     given.line = std::move(text.line);
     given.user = identity_.user;
     given.may_order = identity_.role == Role::op;
     given.order = std::move(text.order);
     // Called on other threads: only the server's may be the last to hold a client.
-    given.reply = [server = &server_, self = weak(), id = text.id](
-                      bool done, const std::string& said, const std::string& data) {
-      server->post([self, answer = fmt::format(
-                              R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id,
-                              done, text_of(said), data.empty() ? "null" : data)] {
+    given.reply = [hub = &hub_, self = weak(), id = text.id](bool done, const std::string& said,
+                                                             const std::string& data) {
+      hub->post([self, answer = fmt::format(
+                           R"({{"type":"answer","id":{},"done":{},"text":{},"data":{}}})", id, done,
+                           codec::json_text(said), data.empty() ? "null" : data)] {
         if (const auto client = self.lock()) client->say(answer);
       });
     };
     const auto reply = given.reply;
-    if (!server_.submit(std::move(given))) reply(false, "the ground station is too busy\n", "");
+    if (!hub_.submit(std::move(given))) reply(false, "the ground station is too busy\n", "");
     return true;
   }
 
@@ -134,10 +133,10 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     if (!answers_.empty()) {
       text_ = std::move(answers_.front());
       answers_.pop_front();
-    } else if (resumed_ && server_.board().has_events(seen_)) {
-      text_ = server_.board().events(seen_);
-    } else if (resumed_ && server_.board().has_state(seen_)) {
-      text_ = server_.board().state(seen_);
+    } else if (resumed_ && hub_.board().has_events(seen_)) {
+      text_ = hub_.board().events(seen_);
+    } else if (resumed_ && hub_.board().has_state(seen_)) {
+      text_ = hub_.board().state(seen_);
     } else {
       return;
     }
@@ -153,21 +152,21 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   void close() {
     if (stopped_) return;
     stopped_ = true;
-    server_.leave(*this);
+    hub_.leave(*this);
     if (writing_) return socket_->drop();  // a close may not overtake a text
     socket_->close_for_policy([self = shared_from_this()] {});
   }
   void stop() {
     stopped_ = true;
-    server_.leave(*this);
+    hub_.leave(*this);
     socket_->drop();
   }
 
-  Server::Impl& server_;
+  Hub& hub_;
   std::unique_ptr<WebSocket> socket_;
   Identity identity_;
   std::string cookies_;
-  std::shared_ptr<Server::Impl::Place> place_;
+  std::shared_ptr<Hub::Place> place_;
   std::deque<std::string> answers_;
   std::string text_;  ///< that is being written
   Board::Seen seen_;
@@ -181,9 +180,11 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
 
 }  // namespace
 
-void serve_page(Server::Impl& server, std::unique_ptr<WebSocket> socket, const Identity& identity,
-                std::shared_ptr<Server::Impl::Place> place, const HttpRequest& request) {
-  std::make_shared<PageClient>(server, std::move(socket), identity, std::move(place))->run(request);
+void serve_page(Hub& hub, std::unique_ptr<WebSocket> socket, const Identity& identity,
+                std::string cookies, std::shared_ptr<Hub::Place> place) {
+  std::make_shared<PageClient>(hub, std::move(socket), identity, std::move(cookies),
+                               std::move(place))
+      ->run();
 }
 
 }  // namespace skein::console

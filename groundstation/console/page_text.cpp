@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "page_text.hpp"
 
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "json_text.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
 
-using Json = nlohmann::json;
+using Json = codec::ParsedJson;
 
 /// Null where there is none of that name.
 const Json* member(const Json& object, const char* name) {
@@ -20,7 +19,7 @@ const Json* member(const Json& object, const char* name) {
 }  // namespace
 
 std::optional<PageText> parse_page_text(const std::string& text) {
-  const Json json = Json::parse(text, nullptr, false);
+  const Json json = codec::parse_json(text);
   if (!json.is_object()) return std::nullopt;
   const Json* type = member(json, "type");
   if (type == nullptr || !type->is_string()) return std::nullopt;
@@ -39,7 +38,7 @@ std::optional<PageText> parse_page_text(const std::string& text) {
   }
   const Json* order = member(json, "order");
   if (*type == "order" && order != nullptr && order->is_object()) {
-    return LineText{number, {}, text_of(*order)};
+    return LineText{number, {}, codec::json_text(codec::Json(*order))};
   }
   return std::nullopt;
 }

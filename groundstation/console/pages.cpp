@@ -6,22 +6,13 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "assets.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
-
-namespace http = boost::beast::http;
-
-constexpr std::string_view kPolicy =
-    "default-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
-constexpr std::string_view kJson = "application/json";
-constexpr std::string_view kText = "text/plain; charset=utf-8";
-
-boost::beast::string_view beast_view(std::string_view text) { return {text.data(), text.size()}; }
 
 std::optional<unsigned> number(std::string_view text) {
   unsigned value = 0;
@@ -39,23 +30,6 @@ const Asset* asset_of(std::string_view path) {
 
 }  // namespace
 
-HttpResponse answer(const HttpRequest& request, http::status status, std::string_view type,
-                    std::string body) {
-  HttpResponse response{status, request.version()};
-  response.set(http::field::server, "skein");
-  response.set(http::field::content_type, beast_view(type));
-  response.set("Content-Security-Policy", beast_view(kPolicy));
-  response.set("X-Content-Type-Options", "nosniff");
-  response.set("Referrer-Policy", "no-referrer");
-  response.set("Cross-Origin-Opener-Policy", "same-origin");
-  response.set("Cross-Origin-Resource-Policy", "same-origin");
-  response.set(http::field::cache_control, "no-store");
-  response.keep_alive(request.keep_alive());
-  response.body() = std::move(body);
-  response.prepare_payload();
-  return response;
-}
-
 Result<Pages> Pages::open(const ServerConfig& config, const Gate& gate) {
   Pages pages{gate};
   if (!config.tiles.empty()) {
@@ -67,53 +41,49 @@ Result<Pages> Pages::open(const ServerConfig& config, const Gate& gate) {
     std::ifstream stream{overlay.file};
     std::string text{std::istreambuf_iterator<char>{stream}, {}};
     if (!stream && text.empty()) return Error{"cannot read the overlay " + overlay.file};
-    if (!nlohmann::json::accept(text)) return Error{overlay.file + ": is not GeoJSON"};
+    if (codec::parse_json(text).is_discarded()) return Error{overlay.file + ": is not GeoJSON"};
     pages.overlays_.push_back({"/overlays/" + overlay.name, std::move(text)});
   }
   return pages;
 }
 
 HttpResponse Pages::respond(const HttpRequest& request) const {
-  const std::string_view target = view(request.target());
+  const std::string_view target = request.target;
   const std::string_view path = target.substr(0, target.find('?'));
-  if (!gate_->is_own_host(view(request[http::field::host]))) {
-    return answer(request, http::status::misdirected_request, kText,
-                  "the console answers to 127.0.0.1 and localhost only\n");
+  if (!gate_->is_own_host(request.host)) {
+    return {HttpStatus::misdirected_request, media::kText,
+            "the console answers to 127.0.0.1 and localhost only\n"};
   }
-  if (request.method() != http::verb::get && request.method() != http::verb::head) {
-    return answer(request, http::status::method_not_allowed, kText, "only GET\n");
+  if (request.method != HttpMethod::get && request.method != HttpMethod::head) {
+    return {HttpStatus::method_not_allowed, media::kText, "only GET\n"};
   }
   if (const Asset* asset = asset_of(path)) {
-    HttpResponse response =
-        answer(request, http::status::ok, asset->type, std::string{asset->gzip});
-    response.set(http::field::content_encoding, "gzip");
+    HttpResponse response{HttpStatus::ok, std::string{asset->type}, std::string{asset->gzip}};
+    response.fields = {{"Content-Encoding", "gzip"}};
     // A file under /assets has a name made of its contents.
     if (path != "/") {
-      response.set(http::field::cache_control, "public, max-age=31536000, immutable");
+      response.fields.emplace_back("Cache-Control", "public, max-age=31536000, immutable");
     }
     return response;
   }
-  const auto identity =
-      gate_->identify(view(request[http::field::cookie]), Gate::Time::clock::now());
+  const auto identity = gate_->identify(request.cookie, Gate::Time::clock::now());
   if (!identity) {
-    return answer(request, http::status::unauthorized, kJson, R"({"error":"log in first"})");
+    return {HttpStatus::unauthorized, media::kJson, R"({"error":"log in first"})"};
   }
   if (path == "/session") {
-    const nlohmann::json who{{"user", identity->user},
-                             {"role", to_string(identity->role)},
-                             {"login", gate_->asks_for_password()}};
-    return answer(request, http::status::ok, kJson, who.dump());
+    return {HttpStatus::ok, media::kJson,
+            codec::json_text({{"user", identity->user},
+                              {"role", to_string(identity->role)},
+                              {"login", gate_->asks_for_password()}})};
   }
   for (const Loaded& overlay : overlays_) {
-    if (overlay.path == path) {
-      return answer(request, http::status::ok, "application/geo+json", overlay.text);
-    }
+    if (overlay.path == path) return {HttpStatus::ok, "application/geo+json", overlay.text};
   }
-  if (auto found = tile(request, path)) return *std::move(found);
-  return answer(request, http::status::not_found, kText, "there is no such page\n");
+  if (auto found = tile(path)) return *std::move(found);
+  return {HttpStatus::not_found, media::kText, "there is no such page\n"};
 }
 
-std::optional<HttpResponse> Pages::tile(const HttpRequest& request, std::string_view path) const {
+std::optional<HttpResponse> Pages::tile(std::string_view path) const {
   constexpr std::string_view kPrefix = "/tiles/";
   if (!tiles_ || path.substr(0, kPrefix.size()) != kPrefix) return std::nullopt;
   path.remove_prefix(kPrefix.size());
@@ -127,9 +97,10 @@ std::optional<HttpResponse> Pages::tile(const HttpRequest& request, std::string_
   }
   auto found = tiles_->tile(numbers[0], numbers[1], numbers[2]);
   if (!found) return std::nullopt;
-  HttpResponse response = answer(request, http::status::ok, found->type, std::move(found->bytes));
-  response.set(http::field::cache_control, "private, max-age=3600");
-  return response;
+  return HttpResponse{HttpStatus::ok,
+                      std::move(found->type),
+                      std::move(found->bytes),
+                      {{"Cache-Control", "private, max-age=3600"}}};
 }
 
 }  // namespace skein::console

@@ -1,29 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <boost/beast/http.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "gate.hpp"
+#include "http.hpp"
 #include "skein/console/server.hpp"
 #include "tiles.hpp"
 
 namespace skein::console {
-
-using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
-using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
-
-[[nodiscard]] inline std::string_view view(boost::beast::string_view text) {
-  return {text.data(), text.size()};
-}
-
-/// An answer with the header fields that every answer of ours has: no page, script or style from
-/// elsewhere, no framing, no guessing of types.
-[[nodiscard]] HttpResponse answer(const HttpRequest& request, boost::beast::http::status status,
-                                  std::string_view type, std::string body);
 
 /// What is got over HTTP: the page, map tiles, overlays, and who one is. Everything but the socket
 /// and the login.
@@ -37,8 +25,7 @@ class Pages {
 
  private:
   explicit Pages(const Gate& gate) : gate_{&gate} {}
-  [[nodiscard]] std::optional<HttpResponse> tile(const HttpRequest& request,
-                                                 std::string_view path) const;
+  [[nodiscard]] std::optional<HttpResponse> tile(std::string_view path) const;
 
   const Gate* gate_;
   std::optional<Tiles> tiles_;

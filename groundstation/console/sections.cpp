@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
 #include "skein/idl/domain_fields.hpp"
@@ -22,7 +22,7 @@
 namespace skein::console {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using codec::Json;
 
 constexpr double kRangeWarningM = 2000.0;
 constexpr Duration kOffsetWarning = std::chrono::milliseconds{500};
@@ -451,10 +451,6 @@ Json timeline_json(const Picture& picture) {
   return all;
 }
 
-std::string text_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 }  // namespace
 
 std::string_view to_string(Section section) {
@@ -489,21 +485,21 @@ std::string section_of(Section section, const Picture& picture, const mission::F
                        const MissionOrigin& origin, const std::string& version, Instant now) {
   switch (section) {
     case Section::vehicles:
-      return text_of(vehicles_json(picture, fleet, version, now));
+      return codec::json_text(vehicles_json(picture, fleet, version, now));
     case Section::plans:
-      return text_of(plans_json(picture));
+      return codec::json_text(plans_json(picture));
     case Section::sites:
-      return text_of(sites_json(picture));
+      return codec::json_text(sites_json(picture));
     case Section::coalitions:
-      return text_of(coalitions_json(picture));
+      return codec::json_text(coalitions_json(picture));
     case Section::authorisations:
-      return text_of(authorisations_json(picture, origin, now));
+      return codec::json_text(authorisations_json(picture, origin, now));
     case Section::hazards:
-      return text_of(hazards_json(picture));
+      return codec::json_text(hazards_json(picture));
     case Section::formation:
-      return text_of(formation_json(picture, now));
+      return codec::json_text(formation_json(picture, now));
     case Section::timeline:
-      return text_of(timeline_json(picture));
+      return codec::json_text(timeline_json(picture));
     case Section::audit:
     case Section::replay:
     case Section::count:
@@ -544,13 +540,13 @@ std::string series_of(const Picture& picture) {
                    {"range", std::move(range)},
                    {"delay", std::move(delay)}});
   }
-  return text_of(all);
+  return codec::json_text(all);
 }
 
 std::string event_json(const mission::MissionEvent& event, std::uint64_t seq) {
   const bool warning = mission::is_warning(event.kind());
   Json fields = std::visit([](const auto& body) { return fields_of(body); }, event.body);
-  return text_of(
+  return codec::json_text(
       {{"seq", seq},
        {"time_s", seconds(event.time)},
        {"vehicle", event.vehicle.value},

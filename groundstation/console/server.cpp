@@ -3,11 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <boost/asio.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <chrono>
+#include <optional>
+#include <thread>
 #include <utility>
 
+#include "byte_stream.hpp"
 #include "clients.hpp"
-#include "json_text.hpp"
 
 namespace skein::console {
 namespace {
@@ -16,7 +20,6 @@ namespace asio = boost::asio;
 namespace ssl = asio::ssl;
 using asio::ip::tcp;
 using boost::system::error_code;
-using Json = nlohmann::json;
 
 constexpr std::size_t kConnectionsMax = 64;
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
@@ -29,18 +32,52 @@ bool is_loopback(const std::string& address) {
 
 }  // namespace
 
+/// The threads and sockets below the hub.
+class Server::Impl {
+ public:
+  Impl(ServerConfig config, std::function<void()> on_request)
+      : config_{std::move(config)},
+        hub_{config_, std::move(on_request),
+             [this](auto work) { asio::post(context_, std::move(work)); },
+             [this](auto work) { asio::post(logins_, std::move(work)); }} {}
+  ~Impl() {
+    logins_.stop();
+    context_.stop();
+    if (thread_.joinable()) thread_.join();
+    logins_.join();
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  Result<void> open();
+  [[nodiscard]] Hub& hub() { return hub_; }
+  [[nodiscard]] std::string url() const;
+
+ private:
+  void run();
+  void accept();
+  void serve(tcp::socket socket);
+
+  ServerConfig config_;
+  Hub hub_;
+  std::optional<ssl::context> tls_;
+  std::uint16_t port_ = 0;
+  asio::io_context context_{1};  // last but few: its connections use what stands above
+  tcp::acceptor acceptor_{context_};
+  asio::steady_timer accept_again_{context_};
+  asio::thread_pool logins_{1};
+  std::thread thread_;
+};
+
 Result<void> Server::Impl::open() {
   if (!is_loopback(config_.address)) {
-    if (!gate_.asks_for_password() || config_.certificate.empty() || config_.key.empty()) {
+    if (!config_.users || config_.certificate.empty() || config_.key.empty()) {
       return Error{"a console on " + config_.address +
                    " needs passwords, a certificate and its key; without them it is served on "
                    "127.0.0.1 only"};
     }
   }
-  hello_ = Json::parse(config_.hello, nullptr, false);
-  auto pages = Pages::open(config_, gate_);
-  if (!pages) return pages.error();
-  pages_.emplace(std::move(*pages));
+  if (auto opened = hub_.open(config_); !opened) return opened.error();
   error_code error;
   if (!config_.certificate.empty()) {
     tls_.emplace(ssl::context::tls_server);
@@ -92,7 +129,7 @@ void Server::Impl::accept() {
       });
       return;
     }
-    if (connections_ < kConnectionsMax) serve(std::move(socket));
+    if (hub_.connections() < kConnectionsMax) serve(std::move(socket));
     accept();
   });
 }
@@ -100,21 +137,8 @@ void Server::Impl::accept() {
 void Server::Impl::serve(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::no_delay{true}, ignored);
-  serve_http(*this, open_stream(std::move(socket), tls_ ? &*tls_ : nullptr));
-}
-
-std::string Server::Impl::hello(const Identity& identity) const {
-  Json hello = hello_;
-  hello["type"] = "hello";
-  hello["run"] = run_;
-  hello["role"] = to_string(identity.role);
-  hello["user"] = identity.user;
-  hello["tiles"] = pages_->tiles() ? Json::parse(pages_->tiles()->description()) : Json(nullptr);
-  hello["overlays"] = Json::array();
-  for (const Overlay& overlay : config_.overlays) {
-    hello["overlays"].push_back({{"name", overlay.name}, {"url", "/overlays/" + overlay.name}});
-  }
-  return text_of(hello);
+  serve_http(hub_,
+             open_http(tls_ ? open_tls(std::move(socket), *tls_) : open_plain(std::move(socket))));
 }
 
 std::string Server::Impl::url() const {
@@ -133,23 +157,24 @@ Result<std::unique_ptr<Server>> Server::open(ServerConfig config,
   return std::unique_ptr<Server>{new Server{std::move(impl)}};
 }
 
-std::optional<Server::Request> Server::next() { return impl_->next(); }
+std::optional<Server::Request> Server::next() { return impl_->hub().next(); }
 void Server::publish(double time_s, Sections sections) {
-  impl_->publish_soon(time_s, std::move(sections));
+  impl_->hub().publish_soon(time_s, std::move(sections));
 }
 void Server::append(std::vector<std::string> events) {
-  impl_->post([impl = impl_.get(), events = std::move(events)]() mutable {
-    impl->append(std::move(events));
-  });
+  Hub& hub = impl_->hub();
+  hub.post([&hub, events = std::move(events)]() mutable { hub.append(std::move(events)); });
 }
 void Server::restart(std::uint64_t next_seq, const std::string& series) {
-  impl_->post([impl = impl_.get(), next_seq, series] { impl->restart(next_seq, series); });
+  Hub& hub = impl_->hub();
+  hub.post([&hub, next_seq, series] { hub.restart(next_seq, series); });
 }
 void Server::live(LiveRecord record) {
-  impl_->post([impl = impl_.get(), record = std::move(record)] { impl->live(record); });
+  Hub& hub = impl_->hub();
+  hub.post([&hub, record = std::move(record)] { hub.live(record); });
 }
-bool Server::live_watched() const { return impl_->live_watched(); }
-bool Server::watched() const { return impl_->watched(); }
+bool Server::live_watched() const { return impl_->hub().live_watched(); }
+bool Server::watched() const { return impl_->hub().watched(); }
 std::string Server::url() const { return impl_->url(); }
 
 }  // namespace skein::console

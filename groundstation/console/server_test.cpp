@@ -171,6 +171,27 @@ TEST(Server, GivesThePageAndItsFields) {
   EXPECT_EQ(ask(station, put).result(), http::status::method_not_allowed);
 }
 
+TEST(Server, OfAHeadTheLengthOnly) {
+  const Station station;
+  asio::io_context context;
+  beast::tcp_stream stream{context};
+  stream.connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), station.port()});
+  beast::flat_buffer buffer;
+  const auto answer_to = [&](http::verb verb) {
+    http::request<http::string_body> request{verb, "/", 11};
+    request.set(http::field::host, station.host());
+    http::write(stream, request);
+    http::response_parser<http::string_body> parser;
+    parser.skip(verb == http::verb::head);
+    http::read(stream, buffer, parser);
+    return parser.release();
+  };
+  const auto head = answer_to(http::verb::head);
+  const auto page = answer_to(http::verb::get);  // on the same connection
+  EXPECT_EQ(page.result(), http::status::ok);
+  EXPECT_EQ(head[http::field::content_length], std::to_string(page.body().size()));
+}
+
 TEST(Server, SaysHelloThenHistoryThenEventsAndStates) {
   Station station;
   std::vector<std::string> events;

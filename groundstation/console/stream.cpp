@@ -15,22 +15,61 @@
 namespace skein::console {
 namespace {
 
+namespace http = boost::beast::http;
+
+using BeastRequest = http::request<http::string_body>;
+
+std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+boost::beast::string_view beast_view(std::string_view text) { return {text.data(), text.size()}; }
+
+HttpMethod method_of(const BeastRequest& request) {
+  switch (request.method()) {
+    case http::verb::get:
+      return HttpMethod::get;
+    case http::verb::head:
+      return HttpMethod::head;
+    case http::verb::post:
+      return HttpMethod::post;
+    case http::verb::delete_:
+      return HttpMethod::remove;
+    default:
+      return HttpMethod::other;
+  }
+}
+
+HttpRequest plain(const BeastRequest& request) {
+  const auto field = [&](http::field name) { return std::string{view(request[name])}; };
+  HttpRequest plain;
+  plain.method = method_of(request);
+  plain.target = view(request.target());
+  plain.host = field(http::field::host);
+  plain.origin = field(http::field::origin);
+  plain.cookie = field(http::field::cookie);
+  plain.body = request.body();
+  plain.wants_socket = boost::beast::websocket::is_upgrade(request);
+  for (const auto& one : http::token_list{request[http::field::sec_websocket_protocol]}) {
+    plain.subprotocols.emplace_back(view(one));
+  }
+  return plain;
+}
+
 class BeastWebSocket final : public WebSocket {
  public:
-  explicit BeastWebSocket(AnyStream stream) : socket_{std::move(stream)} {}
+  BeastWebSocket(AnyStream stream, BeastRequest request)
+      : socket_{std::move(stream)}, request_{std::move(request)} {}
 
-  void accept(const HttpRequest& request, std::string_view subprotocol, std::size_t read_max,
+  void accept(std::string_view subprotocol, std::size_t read_max,
               std::function<void(bool)> done) override {
     namespace websocket = boost::beast::websocket;
     socket_.set_option(websocket::stream_base::timeout::suggested(boost::beast::role_type::server));
     socket_.set_option(websocket::stream_base::decorator(
         [protocol = std::string{subprotocol}](websocket::response_type& response) {
-          response.set(boost::beast::http::field::server, "skein");
-          response.set(boost::beast::http::field::sec_websocket_protocol, protocol);
+          response.set(http::field::server, "skein");
+          response.set(http::field::sec_websocket_protocol, protocol);
         }));
     socket_.read_message_max(read_max);
     socket_.async_accept(
-        request, [done = std::move(done)](boost::beast::error_code error) { done(!error); });
+        request_, [done = std::move(done)](boost::beast::error_code error) { done(!error); });
   }
 
   void read(std::function<void(std::optional<Text>)> done) override {
@@ -59,6 +98,7 @@ class BeastWebSocket final : public WebSocket {
 
  private:
   boost::beast::websocket::stream<AnyStream, false> socket_;  // nothing is compressed
+  BeastRequest request_;
   boost::beast::flat_buffer buffer_;
 };
 
@@ -76,18 +116,33 @@ class BeastHttpStream final : public HttpStream {
     parser_->body_limit(kBodyMax);
     parser_->header_limit(kHeaderMax);
     stream_->expire_after(kPatience);
-    boost::beast::http::async_read(
+    http::async_read(
         stream_, buffer_, *parser_,
         [this, done = std::move(done)](boost::beast::error_code error, std::size_t /*size*/) {
           if (error) return done(std::nullopt);
-          done(parser_->release());
+          request_ = parser_->release();
+          done(plain(request_));
         });
   }
 
   void write(HttpResponse response, std::function<void(bool)> done) override {
-    response_ = std::move(response);
+    response_ = http::response<http::string_body>{
+        static_cast<http::status>(static_cast<unsigned>(response.status)), request_.version()};
+    response_.set(http::field::server, "skein");
+    response_.set(http::field::content_type, beast_view(response.type));
+    response_.set("Content-Security-Policy", kPolicy);
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("Cross-Origin-Opener-Policy", "same-origin");
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set(http::field::cache_control, "no-store");
+    for (const auto& [name, value] : response.fields) response_.set(beast_view(name), value);
+    response_.keep_alive(request_.keep_alive());
+    response_.content_length(response.body.size());
+    // Of an answer to HEAD only the length is said.
+    if (request_.method() != http::verb::head) response_.body() = std::move(response.body);
     stream_->expire_after(kPatience);
-    boost::beast::http::async_write(
+    http::async_write(
         stream_, response_,
         [this, done = std::move(done)](boost::beast::error_code error, std::size_t /*size*/) {
           done(!error && !response_.need_eof());
@@ -96,28 +151,29 @@ class BeastHttpStream final : public HttpStream {
 
   [[nodiscard]] std::unique_ptr<WebSocket> upgrade() override {
     stream_->never_expire();
-    return std::make_unique<BeastWebSocket>(std::move(stream_));
+    return std::make_unique<BeastWebSocket>(std::move(stream_), std::move(request_));
   }
 
   void close() override { stream_->end_sending(); }
 
  private:
+  static constexpr const char* kPolicy =
+      "default-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'";
   static constexpr std::chrono::seconds kPatience{30};
   static constexpr std::uint64_t kBodyMax = 4096;
   static constexpr std::uint32_t kHeaderMax = 8192;
 
   AnyStream stream_;
   boost::beast::flat_buffer buffer_;
-  std::optional<boost::beast::http::request_parser<boost::beast::http::string_body>> parser_;
-  HttpResponse response_;
+  std::optional<http::request_parser<http::string_body>> parser_;
+  BeastRequest request_;
+  http::response<http::string_body> response_;
 };
 
 }  // namespace
 
-std::unique_ptr<HttpStream> open_stream(boost::asio::ip::tcp::socket socket,
-                                        boost::asio::ssl::context* tls) {
-  return std::make_unique<BeastHttpStream>(AnyStream{
-      tls != nullptr ? open_tls(std::move(socket), *tls) : open_plain(std::move(socket))});
+std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes) {
+  return std::make_unique<BeastHttpStream>(AnyStream{std::move(bytes)});
 }
 
 }  // namespace skein::console

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -10,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "pages.hpp"
+#include "http.hpp"
 
 namespace skein::console {
 
@@ -29,8 +27,8 @@ class WebSocket {
   WebSocket& operator=(const WebSocket&) = delete;
 
   /// Answers the request for it, with that subprotocol; what is longer than `read_max` ends it.
-  virtual void accept(const HttpRequest& request, std::string_view subprotocol,
-                      std::size_t read_max, std::function<void(bool ok)> done) = 0;
+  virtual void accept(std::string_view subprotocol, std::size_t read_max,
+                      std::function<void(bool ok)> done) = 0;
   /// Nothing where it has ended.
   virtual void read(std::function<void(std::optional<Text>)> done) = 0;
   /// `bytes` must stay until it is done.
@@ -52,15 +50,14 @@ class HttpStream {
   virtual void handshake(std::function<void(bool ok)> done) = 0;
   /// Nothing where no request came, or none within the limits.
   virtual void read(std::function<void(std::optional<HttpRequest>)> done) = 0;
-  /// False where nothing more may follow.
+  /// Answers what was read last; false where nothing more may follow.
   virtual void write(HttpResponse response, std::function<void(bool more)> done) = 0;
-  /// Its stream, from now on for a WebSocket.
+  /// Its stream, from now on for the WebSocket that was asked for last.
   [[nodiscard]] virtual std::unique_ptr<WebSocket> upgrade() = 0;
   virtual void close() = 0;
 };
 
-/// Over TLS where that is given.
-[[nodiscard]] std::unique_ptr<HttpStream> open_stream(boost::asio::ip::tcp::socket socket,
-                                                      boost::asio::ssl::context* tls);
+class ByteStream;
+[[nodiscard]] std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes);
 
 }  // namespace skein::console

@@ -9,10 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 #include <utility>
 
-#include "json_text.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
@@ -126,11 +125,10 @@ std::optional<Tiles::Tile> Tiles::tile(unsigned zoom, unsigned x, unsigned y) co
 }
 
 std::string Tiles::description() const {
-  const nlohmann::json json{{"url", "/tiles/{z}/{x}/{y}"},
-                            {"min_zoom", min_zoom_},
-                            {"max_zoom", max_zoom_},
-                            {"attribution", attribution_}};
-  return text_of(json);
+  return codec::json_text({{"url", "/tiles/{z}/{x}/{y}"},
+                           {"min_zoom", min_zoom_},
+                           {"max_zoom", max_zoom_},
+                           {"attribution", attribution_}});
 }
 
 }  // namespace skein::console

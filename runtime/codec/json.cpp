@@ -12,7 +12,7 @@
 namespace skein::codec {
 
 std::string json_of(const mission::Message& message) {
-  return std::visit([](const auto& m) { return JsonWriter::of(m).dump(); }, message);
+  return std::visit([](const auto& m) { return json_text(JsonWriter::of(m)); }, message);
 }
 
 }  // namespace skein::codec

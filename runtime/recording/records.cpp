@@ -165,7 +165,7 @@ std::string text_of(const Content& content) {
         if constexpr (std::is_same_v<T, mission::Message>) {
           return codec::json_of(value);
         } else {
-          return codec::JsonWriter::of(value).dump();
+          return codec::json_text(codec::JsonWriter::of(value));
         }
       },
       content);

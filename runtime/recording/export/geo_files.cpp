@@ -3,16 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "flights.hpp"
+#include "skein/codec/json_text.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::recording_export {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using codec::Json;
 
 const Error kNoOrigin{
     "the recording does not say where the mission's origin is; CSV needs none: --csv"};
@@ -83,8 +83,7 @@ Result<std::string> geojson(const Flights& flights) {
                                   {"text", wording::news_of(event)}}));
     }
   }
-  return Json{{"type", "FeatureCollection"}, {"features", std::move(features)}}.dump(
-             -1, ' ', false, Json::error_handler_t::replace) +  // what others sent may be no UTF-8
+  return codec::json_text({{"type", "FeatureCollection"}, {"features", std::move(features)}}) +
          "\n";
 }
 

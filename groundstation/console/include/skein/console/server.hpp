@@ -91,9 +91,8 @@ class Server {
   /// "http://127.0.0.1:7460/".
   [[nodiscard]] std::string url() const;
 
-  class Impl;  ///< named by its connections too
-
  private:
+  class Impl;
   explicit Server(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

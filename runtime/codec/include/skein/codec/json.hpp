@@ -2,13 +2,13 @@
 #pragma once
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 #include <variant>
 
 #include "skein/codec/describe.hpp"
+#include "skein/codec/json_text.hpp"
 
 /// Described types as JSON. Integers of 64 bits are strings, since a double cannot hold them; what
 /// is not there is null; a union is its kind and its body.
@@ -16,8 +16,6 @@ namespace skein::codec {
 
 class JsonWriter {
  public:
-  using Json = nlohmann::ordered_json;
-
   template <class T>
   [[nodiscard]] static Json of(const T& value) {
     JsonWriter writer;

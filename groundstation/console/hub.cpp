@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hub.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "skein/codec/json_text.hpp"
+
+namespace skein::console {
+namespace {
+
+using codec::Json;
+
+constexpr std::size_t kRequestsMax = 256;
+constexpr int kPublicationsMax = 4;
+constexpr std::size_t kLoginsMax = 4;  ///< that wait; each takes some 0.1 s
+
+}  // namespace
+
+Hub::Hub(const ServerConfig& config, std::function<void()> on_request, Post post, Post post_login)
+    : on_request_{std::move(on_request)},
+      post_{std::move(post)},
+      post_login_{std::move(post_login)},
+      gate_{config.users, !config.certificate.empty()},
+      run_{random_hex(8)},
+      hello_{config.hello},
+      overlays_{config.overlays},
+      requests_{kRequestsMax} {}
+
+Result<void> Hub::open(const ServerConfig& config) {
+  auto pages = Pages::open(config, gate_);
+  if (!pages) return pages.error();
+  pages_.emplace(std::move(*pages));
+  return {};
+}
+
+bool Hub::submit(Server::Request request) {
+  {
+    const std::lock_guard lock{requests_mutex_};
+    if (!requests_.push(std::move(request))) return false;
+  }
+  on_request_();
+  return true;
+}
+
+std::optional<Server::Request> Hub::next() {
+  const std::lock_guard lock{requests_mutex_};
+  return requests_.pop();
+}
+
+void Hub::publish_soon(double time_s, Sections sections) {
+  if (publications_ >= kPublicationsMax) return;
+  ++publications_;
+  post([this, time_s, sections = std::move(sections)]() mutable {
+    --publications_;
+    board_.publish(time_s, std::move(sections));
+    tell_all();
+  });
+}
+
+void Hub::append(std::vector<std::string> events) {
+  board_.append(std::move(events));
+  tell_all();
+}
+
+void Hub::restart(std::uint64_t next_seq, const std::string& series) {
+  board_.truncate(next_seq);
+  const std::string history = board_.history(series);
+  for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) {
+    client->on_restart(history, next_seq);
+  }
+}
+
+void Hub::live(const Server::LiveRecord& record) {
+  auto channel = std::find_if(channels_.begin(), channels_.end(),
+                              [&](const auto& known) { return known.topic == record.topic; });
+  const std::vector<LiveClient*> all{live_clients_.begin(), live_clients_.end()};
+  if (channel == channels_.end()) {
+    channels_.push_back({static_cast<std::uint32_t>(channels_.size() + 1), record.topic,
+                         std::string{record.schema_name}, std::string{record.schema}});
+    channel = std::prev(channels_.end());
+    for (LiveClient* client : all) client->on_channel(*channel);
+  }
+  for (LiveClient* client : all) client->on_record(channel->id, record);
+}
+
+void Hub::join(Client& client) {
+  clients_.insert(&client);
+  watched_ = true;
+}
+
+void Hub::leave(Client& client) {
+  clients_.erase(&client);
+  watched_ = !clients_.empty();
+}
+
+void Hub::join(LiveClient& client) {
+  live_clients_.insert(&client);
+  live_watched_ = true;
+}
+
+void Hub::leave(LiveClient& client) {
+  live_clients_.erase(&client);
+  live_watched_ = !live_clients_.empty();
+}
+
+bool Hub::log_in(std::string user, std::string password,
+                 std::function<void(std::optional<Identity>)> done) {
+  if (logins_waiting_ >= kLoginsMax) return false;
+  ++logins_waiting_;
+  post_login_([this, user = std::move(user), password = std::move(password),
+               done = std::move(done)]() mutable {
+    post([this, identity = gate_.check(user, password), done = std::move(done)] {
+      --logins_waiting_;
+      done(identity);
+    });
+  });
+  return true;
+}
+
+std::string Hub::hello(const Identity& identity) const {
+  Json hello = codec::parse_own_json(hello_);
+  hello["type"] = "hello";
+  hello["run"] = run_;
+  hello["role"] = to_string(identity.role);
+  hello["user"] = identity.user;
+  hello["tiles"] =
+      pages_->tiles() ? codec::parse_own_json(pages_->tiles()->description()) : Json(nullptr);
+  hello["overlays"] = Json::array();
+  for (const Overlay& overlay : overlays_) {
+    hello["overlays"].push_back({{"name", overlay.name}, {"url", "/overlays/" + overlay.name}});
+  }
+  return codec::json_text(hello);
+}
+
+void Hub::tell_all() {
+  for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) client->on_news();
+}
+
+}  // namespace skein::console

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "board.hpp"
+#include "foxglove.hpp"
+#include "gate.hpp"
+#include "pages.hpp"
+#include "skein/base/bounded_queue.hpp"
+#include "skein/console/server.hpp"
+
+namespace skein::console {
+
+/// One that shows the page.
+class Client {
+ public:
+  Client() = default;
+  virtual ~Client() = default;
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+  virtual void on_news() = 0;
+  virtual void on_restart(const std::string& history, std::uint64_t next_seq) = 0;
+};
+
+/// One that speaks as Foxglove does.
+class LiveClient {
+ public:
+  LiveClient() = default;
+  virtual ~LiveClient() = default;
+  LiveClient(const LiveClient&) = delete;
+  LiveClient& operator=(const LiveClient&) = delete;
+  virtual void on_channel(const LiveChannel& channel) = 0;
+  virtual void on_record(std::uint32_t channel, const Server::LiveRecord& record) = 0;
+};
+
+/// What all connections share. Everything but the requests belongs to the server's thread.
+class Hub {
+ public:
+  /// Has that done later, by some thread.
+  using Post = std::function<void(std::function<void()>)>;
+
+  /// `post` is to the server's thread, `post_login` to another. `on_request` as for Server.
+  Hub(const ServerConfig& config, std::function<void()> on_request, Post post, Post post_login);
+  /// Reads the files of the pages.
+  [[nodiscard]] Result<void> open(const ServerConfig& config);
+
+  // --- from any thread ---------------------------------------------------------------------------
+  /// False when too many wait.
+  bool submit(Server::Request request);
+  [[nodiscard]] std::optional<Server::Request> next();
+  void post(std::function<void()> work) const { post_(std::move(work)); }
+  /// Where the server's thread is behind, a state is left out: a newer one comes.
+  void publish_soon(double time_s, Sections sections);
+  [[nodiscard]] bool watched() const { return watched_; }
+  [[nodiscard]] bool live_watched() const { return live_watched_; }
+
+  // --- from the server's thread ------------------------------------------------------------------
+  void append(std::vector<std::string> events);
+  void restart(std::uint64_t next_seq, const std::string& series);
+  void live(const Server::LiveRecord& record);
+
+  void join(Client& client);
+  void leave(Client& client);
+  void join(LiveClient& client);
+  void leave(LiveClient& client);
+
+  /// Checks a password on the thread for that. False when too many wait.
+  bool log_in(std::string user, std::string password,
+              std::function<void(std::optional<Identity>)> done);
+
+  [[nodiscard]] std::string hello(const Identity& identity) const;
+  [[nodiscard]] Gate& gate() { return gate_; }
+  [[nodiscard]] const Pages& pages() const { return *pages_; }
+  [[nodiscard]] const Board& board() const { return board_; }
+  [[nodiscard]] const std::vector<LiveChannel>& channels() const { return channels_; }
+  [[nodiscard]] const std::string& run_id() const { return run_; }
+
+  /// Counts a connection as long as it lives.
+  class Place {
+   public:
+    explicit Place(Hub& hub) : hub_{&hub} { ++hub.connections_; }
+    ~Place() { --hub_->connections_; }
+    Place(const Place&) = delete;
+    Place& operator=(const Place&) = delete;
+
+   private:
+    Hub* hub_;
+  };
+  [[nodiscard]] std::size_t connections() const { return connections_; }
+
+ private:
+  void tell_all();
+
+  std::function<void()> on_request_;
+  Post post_;
+  Post post_login_;
+  Gate gate_;
+  std::string run_;
+  std::string hello_;
+  std::vector<Overlay> overlays_;
+  std::optional<Pages> pages_;
+  Board board_;
+  std::size_t logins_waiting_ = 0;
+  std::size_t connections_ = 0;
+  std::set<Client*> clients_;
+  std::atomic<bool> watched_{false};
+  std::atomic<int> publications_{0};  ///< that wait for the server's thread
+  std::vector<LiveChannel> channels_;
+  std::set<LiveClient*> live_clients_;
+  std::atomic<bool> live_watched_{false};
+  std::mutex requests_mutex_;
+  BoundedQueue<Server::Request> requests_;
+};
+
+}  // namespace skein::console
