@@ -193,6 +193,9 @@ void FormationDesk::on_timeout(Instant now) {
     ends_ = false;
     report(mission::event::ScriptDone{static_cast<std::uint32_t>(script_.size())}, now);
   }
+  // Where vehicles have moved to, the next order may wait for something else.
+  const bool moving = !config_.planes && ground().moving();
+  if (std::exchange(moved_, moving) && !moving) told_waits_ = false;
   if (next_line_ < script_.size()) work_off_script(now);
 }
 
@@ -236,7 +239,7 @@ void FormationDesk::work_off_script(Instant now) {
     return;
   }
   try_again_ = now + kTryAgain;
-  // Once: where gusts move vehicles that rest, the reason changes all the time.
+  // Once, until vehicles are led elsewhere: gusts alone change the reason all the time.
   if (std::exchange(told_waits_, true)) return;
   report(mission::event::OrderWaits{static_cast<std::uint32_t>(next_line_ + 1),
                                     config_.script[next_line_], given.error().message},

@@ -61,7 +61,6 @@ class Planner {
   [[nodiscard]] Nearness nearness(const Change& change, bool complete) const;
   [[nodiscard]] double keep_out_distance(const ChangeMotion& motion, std::size_t mover,
                                          const KeepOut& keep_out, double enough_m) const;
-  [[nodiscard]] double to_keep_out(const Vec3& position, const KeepOut& keep_out) const;
   /// Of two vehicles that start so far apart.
   [[nodiscard]] double wanted_m(double at_start_m) const {
     const double least = request_.separation.horizontal_m + kCreep_s * request_.limits.speed_mps;
@@ -90,22 +89,13 @@ Change Planner::straight() const {
   return change;
 }
 
-double Planner::to_keep_out(const Vec3& position, const KeepOut& keep_out) const {
-  const Vec3 at = stretched(position);
-  const Vec3 from = stretched(keep_out.from);
-  const Vec3 way = stretched(keep_out.to) - from;
-  const double squared = way.squaredNorm();
-  const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (from + share * way - at).norm();
-}
-
 double Planner::keep_out_distance(const ChangeMotion& motion, std::size_t mover,
                                   const KeepOut& keep_out, double enough_m) const {
   const double pace = motion.speed_max_mps(mover) * std::max(1.0, height_factor_);
   const double end_s = to_seconds(motion.duration());
   double least = std::numeric_limits<double>::infinity();
   for (double t = 0.0;;) {
-    const double d = to_keep_out(motion.position(mover, from_seconds(t)), keep_out);
+    const double d = distance_m(motion.position(mover, from_seconds(t)), keep_out, height_factor_);
     least = std::min(least, d);
     if (t >= end_s || least < enough_m) return least;
     t = std::min(end_s, t + std::max(0.01, (d - enough_m) / std::max(pace, 1e-3)));
@@ -132,8 +122,8 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
     for (std::size_t k = 0; k < request_.keep_outs.size(); ++k) {
       const KeepOut& keep_out = request_.keep_outs[k];
       // Nobody there is late, so no reserve is needed; and who is nearer already may leave.
-      const double wanted =
-          std::min(request_.separation.horizontal_m, to_keep_out(from, keep_out) - kRounding_m);
+      const double wanted = std::min(request_.separation.horizontal_m,
+                                     distance_m(from, keep_out, height_factor_) - kRounding_m);
       const double d = keep_out_distance(motion, a, keep_out, wanted);
       if (d < wanted) see(d, wanted, {a, count_ + k});
       if (!complete && !result.conflicts.empty()) return result;
@@ -236,11 +226,12 @@ PlannedChange Planner::planned(Change change, Way way, double least_m) const {
 
 Error Planner::too_near(const Nearness& nearness) const {
   const auto [a, b] = nearness.nearest;
+  const double needed = b < count_ ? apart_m_ : request_.separation.horizontal_m;
   const std::string other =
       b < count_ ? name(request_.transfers[b].vehicle)
                  : name(request_.keep_outs[b - count_].vehicle) + ", which is silent,";
   return Error{name(request_.transfers[a].vehicle) + " and " + other + " would come within " +
-               metres(nearness.least_m) + " of each other, and " + metres(apart_m_) +
+               metres(nearness.least_m) + " of each other, and " + metres(needed) +
                " are needed; choose a larger spacing or another place"};
 }
 
@@ -293,6 +284,19 @@ std::string_view to_string(Way way) {
       break;
   }
   return "?";
+}
+
+double distance_m(const Vec3& position, const KeepOut& keep_out, double height_factor) {
+  const auto stretched = [height_factor](Vec3 v) {
+    v.z() *= height_factor;
+    return v;
+  };
+  const Vec3 at = stretched(position);
+  const Vec3 from = stretched(keep_out.from);
+  const Vec3 way = stretched(keep_out.to) - from;
+  const double squared = way.squaredNorm();
+  const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
+  return (from + share * way - at).norm();
 }
 
 Result<PlannedChange> plan_change(const ChangeRequest& request) { return Planner{request}.plan(); }

@@ -14,6 +14,10 @@ namespace {
 constexpr double kExact_m = 1e-3;
 /// Slots by which a message may be ahead: its own slot and differing clocks.
 constexpr std::int64_t kAheadMax = 4;
+/// Not heard for so many slots: its program may have ended.
+constexpr std::int64_t kSilentAfter = 10;
+/// Out of a column that cannot be avoided, at full rate: after as many slots at most.
+constexpr std::int64_t kOutWithin = 80;
 
 std::int64_t slot_of(Instant t) {
   const auto ns = t.time_since_epoch().count();
@@ -61,6 +65,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
   look_at_[self_] = std::numeric_limits<std::int32_t>::max();
   block_look_at_.assign((look_at_.size() + kBlock - 1) / kBlock, 0);
   due_.reserve(others_.size());
+  silent_.reserve(others_.size());
 }
 
 void Passage::on_progress(std::size_t mover, const Progress& progress) {
@@ -71,6 +76,7 @@ void Passage::on_progress(std::size_t mover, const Progress& progress) {
                         slot <= slot_ + kAheadMax;
   // Nobody goes back: what says so is older than what is known.
   if (!possible || slot < other.slot || progress.done < other.done) return;
+  if (slot_ - other.slot > kSilentAfter) std::erase(silent_, static_cast<std::uint32_t>(mover));
   other.slot = slot;
   other.done = progress.done;
   other.rate = progress.rate;
@@ -146,6 +152,67 @@ bool Passage::clear_of(std::size_t mover, const Future& future) const {
   return true;
 }
 
+/// One block in every slot.
+void Passage::look_for_silence() {
+  listened_to_ = (listened_to_ + 1) % block_look_at_.size();
+  const std::size_t end = std::min(others_.size(), (listened_to_ + 1) * kBlock);
+  for (std::size_t i = listened_to_ * kBlock; i < end; ++i) {
+    if (i == self_ || slot_ - others_[i].slot <= kSilentAfter) continue;
+    const auto mover = static_cast<std::uint32_t>(i);
+    if (std::find(silent_.begin(), silent_.end(), mover) == silent_.end()) silent_.push_back(mover);
+  }
+}
+
+bool Passage::clear_of_columns(const Future& future) const {
+  for (std::int64_t slot = 0; slot < future.stops_after(); ++slot) {
+    if (!clear_of_columns(std::min(end_, future.at(slot)), std::min(end_, future.at(slot + 1)))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool Passage::clear_of_columns(Grains own_from, Grains own_to) const {
+  return std::all_of(silent_.begin(), silent_.end(), [&](std::uint32_t mover) {
+    const Other& other = others_[mover];
+    // It flew on for as long as it is not called silent, at full rate, and then braked.
+    const Grains to = other.done + 2 * full_ * kSilentAfter + Grains{full_} * full_;
+    return clear_of_column(mover, own_from, own_to, other.done, std::min(end_, to),
+                           separation_m_ + other.off_m + off_m_);
+  });
+}
+
+/// Of whatever is below the other, or so near above it, wherever both are in their stretches.
+bool Passage::clear_of_column(std::size_t mover, Grains own_from, Grains own_to, Grains from,
+                              Grains to, double apart_m) const {
+  const double own_reach = others_[self_].speed_mps * seconds(own_to - own_from) / 2.0;
+  const double reach = others_[mover].speed_mps * seconds(to - from) / 2.0;
+  const Grains own_middle = (own_from + own_to) / 2;
+  const Grains middle = (from + to) / 2;
+  const Vec3 apart = place(self_, own_middle) - place(mover, middle);
+  const double beside_m = apart.head<2>().norm();
+  const double away_m = std::max(beside_m, apart.z());
+  if (away_m >= apart_m + own_reach + reach + kExact_m) return true;
+  const bool split_own = own_to - own_from > 1;
+  const bool split = to - from > 1;
+  if (away_m < apart_m || (!split_own && !split)) return false;
+  if (split_own && (own_reach >= reach || !split)) {
+    return clear_of_column(mover, own_from, own_middle, from, to, apart_m) &&
+           clear_of_column(mover, own_middle, own_to, from, to, apart_m);
+  }
+  return clear_of_column(mover, own_from, own_to, from, middle, apart_m) &&
+         clear_of_column(mover, own_from, own_to, middle, to, apart_m);
+}
+
+bool Passage::leads_out_of_columns() const {
+  for (std::int64_t slots = 1; slots <= kOutWithin; ++slots) {
+    const Grains at = std::min(end_, done_ + 2 * full_ * slots);
+    if (clear_of_columns(at, at)) return true;
+    if (at == end_) break;
+  }
+  return false;
+}
+
 /// Far away, it cannot matter for as long as both would need to meet.
 void Passage::look_again(std::size_t mover, Grains at_least_now) {
   const Other& other = others_[mover];
@@ -196,8 +263,16 @@ void Passage::decide() {
   for (std::size_t block = 0; block < block_look_at_.size(); ++block) {
     if (block_look_at_[block] <= current) look_at_block(block, current);
   }
-  const auto fits = [this](Grains rate) {
-    if (!clear_of_all({done_, rate_, rate})) return false;
+  look_for_silence();
+  bool columns = !silent_.empty();
+  if (columns && !clear_of_columns({done_, rate_, next_rate_})) columns = !leads_out_of_columns();
+  const auto fits = [this, columns](Grains rate) {
+    const Future future{done_, rate_, rate};
+    if (!clear_of_all(future)) return false;
+    if (columns && !clear_of_columns(future)) {
+      waits_for_ = silent_.front();
+      return false;
+    }
     next_rate_ = rate;
     return true;
   };

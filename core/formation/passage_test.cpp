@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <optional>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
@@ -65,7 +66,7 @@ struct Team {
       vehicles[i].step(local);
       if (now.time_since_epoch() % network.period == Duration{}) {
         for (std::size_t to = 0; to < vehicles.size(); ++to) {
-          if (to == i || random.chance(network.loss)) continue;
+          if (to == i || i == silent || random.chance(network.loss)) continue;
           air.push_back({now + network.delay, to, i, vehicles[i].progress()});
         }
       }
@@ -108,6 +109,7 @@ struct Team {
   Change change;
   Network network;
   Random random;
+  std::optional<std::size_t> silent;
   Instant now{};
   std::vector<Passage> vehicles;
   std::vector<Duration> clock;
@@ -128,6 +130,37 @@ PlannedChange swap_plan(std::size_t n, double radius_m, std::uint64_t seed,
                                     .reserve_m = reserve_m});
   EXPECT_TRUE(planned.ok()) << planned.error().message;
   return *planned;
+}
+
+/// The first crosses above the second, whose way is as long, and falls silent just there.
+Team crossing(double before_m) {
+  Change change;
+  change.limits = kLimits;
+  change.separation = kSeparation;
+  const double after_m = 80.0 - before_m;
+  change.movers = {{{1}, {{-20.0, 0.0, 30.0}, {60.0, 0.0, 30.0}}, false},
+                   {{2}, {{0.0, -before_m, 20.0}, {0.0, after_m, 20.0}}, false}};
+  Team team{change, {milliseconds{50}, 0.0}, 3};
+  while (team.places.empty() || team.places[0].x() < -1.0) team.tick();
+  team.silent = 0;
+  return team;
+}
+
+TEST(Passage, StopsBeforeItIsBelowASilentVehicle) {
+  Team team = crossing(50.0);
+  for (int i = 0; i < 2000; ++i) team.tick();
+  EXPECT_TRUE(team.vehicles[1].at_rest());
+  EXPECT_EQ(team.vehicles[1].waits_for(), 0U);
+  EXPECT_LE(team.places[1].y(), -kSeparation.horizontal_m);
+  EXPECT_GE(team.places[1].y(), -kSeparation.horizontal_m - 2.0);  // no sooner than it must
+  team.silent.reset();
+  EXPECT_TRUE(team.run(60.0));
+}
+
+TEST(Passage, LeavesTheAirBelowASilentVehicle) {
+  Team team = crossing(20.0);
+  for (int i = 0; i < 300; ++i) team.tick();
+  EXPECT_GE(team.places[1].y(), kSeparation.horizontal_m);
 }
 
 TEST(Passage, AloneKeepsTheChangesOwnTime) {

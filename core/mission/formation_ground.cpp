@@ -31,6 +31,8 @@ constexpr double kLook_m = 0.5;
 constexpr double kDriftTime_s = 5.0;
 constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
 constexpr double kTrimMax_m = 1.0;
+/// A shape is made so much larger at most where places of it cannot be taken.
+constexpr std::size_t kSparePlaces = 8;
 
 std::string metres_of(double m) {
   std::array<char, 32> text{};
@@ -66,7 +68,7 @@ Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& o
   const auto assign = [&](const formation::ShapeSpec& shape, std::size_t first,
                           std::size_t count) -> Result<void> {
     if (count == 0) return {};
-    const auto places = formation::places(shape, count);
+    const auto places = free_places(shape, count);
     if (!places) return places.error();
     std::vector<Vec3> from;
     for (std::size_t i = first; i < first + count; ++i) from.push_back(transfers[i].from);
@@ -83,6 +85,27 @@ Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& o
     return done.error();
   if (auto low_enough = within_heights(transfers); !low_enough) return low_enough.error();
   return transfers;
+}
+
+Result<std::vector<Vec3>> FormationGround::free_places(const formation::ShapeSpec& shape,
+                                                       std::size_t count) const {
+  const auto all = keep_outs();
+  const formation::Separation apart = separation();
+  const auto taken = [&](const Vec3& place) {
+    return std::any_of(all.begin(), all.end(), [&](const formation::KeepOut& keep_out) {
+      return distance_m(place, keep_out, height_factor(apart)) < apart.horizontal_m;
+    });
+  };
+  auto places = formation::places(shape, count);
+  for (std::size_t wanted = count; places && wanted <= count + kSparePlaces;) {
+    std::erase_if(*places, taken);
+    if (places->size() >= count) {
+      places->resize(count);
+      return places;
+    }
+    places = formation::places(shape, ++wanted);
+  }
+  return formation::places(shape, count);  // the planner says whose way is in the way
 }
 
 /// Nobody is sent above the ceiling, or below the ground, who is not there already.
@@ -106,10 +129,7 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   formation::ChangeRequest request;
   request.transfers = std::move(transfers);
   request.limits = config_.limits;
-  // References are so much further apart as both vehicles may be beside them.
-  request.separation = config_.separation;
-  request.separation.horizontal_m += 2.0 * config_.tracking_m;
-  request.separation.vertical_m += 2.0 * config_.tracking_m;
+  request.separation = separation();
   request.reserve_m = config_.reserve_m;
   request.ceiling_m = config_.ceiling_m;
   if (order.kind != OrderKind::land) {
@@ -119,16 +139,32 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   }
   std::vector<VehicleId> lost;
   for (const auto& [vehicle, member] : members_) {
-    if (!member.lost) continue;
-    lost.push_back(vehicle);
-    for (const Vec3& place : may_be(vehicle, member)) {
-      // Whoever flies it no more comes down sooner or later.
-      request.keep_outs.push_back({vehicle, place, {place.x(), place.y(), 0.0}});
-    }
+    if (member.lost) lost.push_back(vehicle);
   }
+  request.keep_outs = keep_outs();
   auto planned = formation::plan_change(request);
   if (!planned) return planned.error();
   return FormationPreview{order, std::move(*planned), std::move(lost)};
+}
+
+/// References are so much further apart as both vehicles may be beside them.
+formation::Separation FormationGround::separation() const {
+  formation::Separation apart = config_.separation;
+  apart.horizontal_m += 2.0 * config_.tracking_m;
+  apart.vertical_m += 2.0 * config_.tracking_m;
+  return apart;
+}
+
+std::vector<formation::KeepOut> FormationGround::keep_outs() const {
+  std::vector<formation::KeepOut> all;
+  for (const auto& [vehicle, member] : members_) {
+    if (!member.lost) continue;
+    for (const Vec3& place : may_be(vehicle, member)) {
+      // Whoever flies it no more comes down sooner or later.
+      all.push_back({vehicle, place, {place.x(), place.y(), 0.0}});
+    }
+  }
+  return all;
 }
 
 std::optional<std::size_t> FormationGround::may_fly(const Change& change, VehicleId vehicle,

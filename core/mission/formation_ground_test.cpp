@@ -28,10 +28,12 @@ class Team {
       vehicles_.push_back({id, starts[i], Vec3::Zero(), {config, Instant{}}});
     }
   }
+  void lose(std::size_t index) { vehicles_.at(index).lost = true; }
   void push_aside(std::size_t index, const Vec3& aside) { vehicles_.at(index).aside = aside; }
   void step() {
     now += formation::kSlot;
     for (Vehicle& v : vehicles_) {
+      if (v.lost) continue;
       if (v.agent.execution() != nullptr) {
         v.position = v.agent.execution()->reference(now).position_m + v.aside;
       }
@@ -55,10 +57,13 @@ class Team {
     for (int i = 0; i < 1200 && !done(); ++i) step();
     return done();
   }
+  Result<FormationPreview> command(const FormationOrder& order) {
+    return ground_.command(order, now);
+  }
   bool take_off() {
     FormationOrder order;
     order.kind = OrderKind::take_off;
-    return ground_.command(order, now).ok();
+    return command(order).ok();
   }
   [[nodiscard]] const FormationGround& ground() const { return ground_; }
   [[nodiscard]] const Vec3& position(std::size_t index) const {
@@ -82,6 +87,7 @@ class Team {
     Vec3 position;
     Vec3 aside;
     FormationAgent agent;
+    bool lost = false;
   };
   static FormationGroundConfig config_of(std::size_t vehicles) {
     FormationGroundConfig config;
@@ -121,6 +127,26 @@ TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
   const auto low = team.ground().preview(order);
   ASSERT_FALSE(low.ok());
   EXPECT_THAT(low.error().message, HasSubstr("1.0 m below the ground"));
+}
+
+TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  team.lose(1);
+  ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
+  FormationOrder order;
+  order.kind = OrderKind::form;
+  order.shape.kind = formation::ShapeKind::line_abreast;
+  order.shape.spacing_m = 4.0;
+  order.shape.centre = team.position(1);  // two places would be 2 m beside it
+  const auto given = team.command(order);
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  for (const std::size_t index : {0U, 2U}) {
+    EXPECT_NEAR((team.position(index) - team.position(1)).norm(), 4.0, 1e-6);
+  }
 }
 
 TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {

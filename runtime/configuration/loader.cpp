@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "loader.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
+#include <sstream>
 
 #include "number_text.hpp"
 
@@ -55,6 +58,37 @@ std::string joined(const Names& names) {
   return text;
 }
 
+/// Counts documents and passes over what is in them.
+class DocumentCounter final : public YAML::EventHandler {
+ public:
+  [[nodiscard]] int count() const { return count_; }
+  void OnDocumentStart(const YAML::Mark& /*at*/) override { ++count_; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*at*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*at*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*at*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*at*/, const std::string& /*tag*/,
+                       YAML::anchor_t /*anchor*/, YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*at*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+
+ private:
+  int count_ = 0;
+};
+
+/// Looks no further than a second document begins: of ", a: 1" yaml-cpp 0.7 finds documents without
+/// end, and YAML::LoadAll() keeps them all.
+bool is_one_document(const std::string& yaml) {
+  std::istringstream stream{yaml};
+  YAML::Parser parser{stream};
+  DocumentCounter counter;
+  while (counter.count() < 2 && parser.HandleNextDocument(counter)) continue;
+  return counter.count() == 1;
+}
+
 std::string did_you_mean(const std::string& word) {
   return word.empty() ? "" : "; did you mean " + word + "?";
 }
@@ -97,14 +131,15 @@ std::string Loader::path_of(std::string_view key) const {
 
 void Loader::read(const std::string& yaml, const Fields& fields) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() != 1 || !documents.front().IsMap()) {
+    const bool one = is_one_document(yaml);
+    const YAML::Node document = one ? YAML::Load(yaml) : YAML::Node{};
+    if (!document.IsMap()) {
       fail(0, "",
            "holds no single group of keys; write \"key: value\" lines, the first \"version: 1\"");
       return;
     }
     Place root;
-    root.node = documents.front();
+    root.node = document;
     read_group(std::move(root), fields);
   } catch (const YAML::Exception& e) {
     fail(e.mark.is_null() ? 0 : e.mark.line + 1, "", "is not YAML: " + e.msg + "; mend the text");

@@ -79,6 +79,7 @@ class FormationDesk {
   bool told_awaited_ = false;  ///< that vehicles are not heard yet
   bool ends_ = false;          ///< its orders are done, and planes are still on their track
   bool told_waits_ = false;    ///< why the script's next order does
+  bool moved_ = false;         ///< vehicles, when last looked at
 };
 
 }  // namespace skein::groundstation

@@ -25,6 +25,10 @@ struct KeepOut {
   Vec3 to{0.0, 0.0, 0.0};
 };
 
+/// Metres, heights stretched.
+[[nodiscard]] double distance_m(const Vec3& position, const KeepOut& keep_out,
+                                double height_factor);
+
 struct ChangeRequest {
   std::vector<Transfer> transfers;
   std::vector<KeepOut> keep_outs;

@@ -30,6 +30,10 @@ struct PassageParams {
 /// that the plan has in plan time, so there is no deadlock once messages come through;
 /// ChangeRequest::reserve_m is what the others may be late by without anybody slowing down.
 ///
+/// Who is not heard for half a second may have lost its program and come down: nobody enters the
+/// column below where it may be; who cannot stop before it, or is in it, goes on where its way soon
+/// leads out, and stops where not.
+///
 /// step() and reference() allocate nothing.
 class Passage final : public Execution {
  public:
@@ -87,6 +91,12 @@ class Passage final : public Execution {
   [[nodiscard]] bool clear_of(std::size_t mover, const Future& future) const;
   [[nodiscard]] bool keeps_clear(std::size_t mover, Grains own_from, Grains own_to, Grains from,
                                  Grains to, double apart_m) const;
+  void look_for_silence();
+  [[nodiscard]] bool clear_of_columns(const Future& future) const;
+  [[nodiscard]] bool clear_of_columns(Grains own_from, Grains own_to) const;
+  [[nodiscard]] bool clear_of_column(std::size_t mover, Grains own_from, Grains own_to, Grains from,
+                                     Grains to, double apart_m) const;
+  [[nodiscard]] bool leads_out_of_columns() const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
   void decide();
@@ -110,6 +120,8 @@ class Passage final : public Execution {
   std::vector<std::int32_t> look_at_;  ///< slots since start_, before which each cannot matter
   std::vector<std::int32_t> block_look_at_;  ///< the least of each kBlock of them
   std::vector<std::uint32_t> due_;           ///< who can, now
+  std::vector<std::uint32_t> silent_;        ///< movers
+  std::size_t listened_to_ = 0;              ///< the block of others that was last looked at
   double off_m_ = 0.0;                       ///< beyond what is allowed for
 
   std::int64_t slot_ = 0;  ///< since mission time 0

@@ -54,7 +54,8 @@ struct FormationPreview {
 /// checked in continuous time, sends them until they are flown, watches places, corrects drift, and
 /// gives an order again to those that are left when a vehicle is lost in it, and to all when one of
 /// them cannot take its change up. Keeps the others clear of wherever a silent vehicle may be, and
-/// of the air below. Same calling rules as OnboardAgent.
+/// of the air below: places there stay empty, and the shape has as many more. Same calling rules as
+/// OnboardAgent.
 class FormationGround {
  public:
   FormationGround(const FormationGroundConfig& config, Instant now);
@@ -89,6 +90,10 @@ class FormationGround {
  private:
   [[nodiscard]] Result<std::vector<formation::Transfer>> transfers(
       const FormationOrder& order) const;
+  [[nodiscard]] Result<std::vector<Vec3>> free_places(const formation::ShapeSpec& shape,
+                                                      std::size_t count) const;
+  [[nodiscard]] std::vector<formation::KeepOut> keep_outs() const;
+  [[nodiscard]] formation::Separation separation() const;
   [[nodiscard]] Result<void> within_heights(
       const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
