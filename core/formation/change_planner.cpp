@@ -229,7 +229,7 @@ Error Planner::too_near(const Nearness& nearness) const {
   const double needed = b < count_ ? apart_m_ : request_.separation.horizontal_m;
   const std::string other =
       b < count_ ? name(request_.transfers[b].vehicle)
-                 : name(request_.keep_outs[b - count_].vehicle) + ", which is silent,";
+                 : name(request_.keep_outs[b - count_].vehicle) + ", which is lost,";
   return Error{name(request_.transfers[a].vehicle) + " and " + other + " would come within " +
                metres(nearness.least_m) + " of each other, and " + metres(needed) +
                " are needed; choose a larger spacing or another place"};

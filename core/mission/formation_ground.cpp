@@ -25,6 +25,9 @@ constexpr Duration kStuck = std::chrono::seconds{2};
 /// A change that is not sent any more is not taken up after so long: no copy is on its way.
 constexpr Duration kMessageLife = std::chrono::seconds{3};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
+/// So far from its reference, a vehicle does not fly what it is told; back within half of it, it
+/// does.
+constexpr double kAstray_m = 5.0;
 /// Where a silent vehicle may be is looked at in such steps.
 constexpr double kLook_m = 0.5;
 /// Drift is what is left of gusts over so long.
@@ -178,6 +181,7 @@ std::optional<std::size_t> FormationGround::may_fly(const Change& change, Vehicl
 std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& member) const {
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
+  if (member.status.progress.off_m > kAstray_m / 2.0) places.push_back(member.status.position_m);
   for (const Change& change : sent_) {
     const auto mover = may_fly(change, vehicle, member);
     if (!mover) continue;
@@ -290,13 +294,17 @@ std::optional<Vec3> FormationGround::goal_of(VehicleId vehicle) const {
 void FormationGround::on_status(const FormationStatus& status, Instant now) {
   const auto [found, is_new] = members_.try_emplace(status.vehicle);
   Member& member = found->second;
+  member.status = status;
+  if (status.progress.off_m > (member.lost ? 0.5 : 1.0) * kAstray_m) {
+    if (!member.lost) lose(status.vehicle, member, FormationNews::astray, now);
+    return;
+  }
   if (!is_new && member.lost) {
     warn(FormationNews::back, {status.vehicle}, now);
   }
   // A ground station before this one has commanded it.
   succeeds_ = succeeds_ || status.progress.change > number_;
   member.lost = false;
-  member.status = status;
   member.heard_at = now;
   const auto goal = goal_of(status.vehicle);
   if (!goal || status.progress.change != number_) return;
@@ -345,11 +353,20 @@ void FormationGround::on_timeout(Instant now) {
 void FormationGround::find_lost(Instant now) {
   for (auto& [vehicle, member] : members_) {
     if (member.lost || now - member.heard_at < config_.silence) continue;
-    member.lost = true;
-    const bool on_way = change_ && !held_since_ && goal_of(vehicle);
-    give_again_ = give_again_ || on_way;
-    warn(on_way ? FormationNews::lost_on_its_way : FormationNews::lost, {vehicle}, now);
+    lose(vehicle, member, is_led(vehicle) ? FormationNews::lost_on_its_way : FormationNews::lost,
+         now);
   }
+}
+
+void FormationGround::lose(VehicleId vehicle, Member& member, FormationNews why, Instant now) {
+  member.lost = true;
+  give_again_ = give_again_ || is_led(vehicle);
+  warn(why, {vehicle}, now);
+}
+
+/// To a place that it was not seen to hold yet.
+bool FormationGround::is_led(VehicleId vehicle) const {
+  return change_ && !held_since_ && goal_of(vehicle);
 }
 
 /// Nobody moves, and somebody has not taken the change up: it started anew on its way, or is

@@ -344,6 +344,8 @@ struct News {
         return "the script waits for vehicles not heard yet: " + names_of(e.vehicles);
       case event::FormationNews::lost_on_track:
         return who + " is silent: its place stays empty, and the others keep to other heights";
+      case event::FormationNews::astray:
+        return who + " is far from where it is led: the others keep clear of it until it is back";
       case event::FormationNews::count:
         break;
     }

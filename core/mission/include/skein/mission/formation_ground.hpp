@@ -76,7 +76,7 @@ class FormationGround {
   struct Member {
     FormationStatus status;
     Instant heard_at{};
-    bool lost = false;
+    bool lost = false;                  ///< silent, or far from its reference
     std::optional<Instant> arrived_at;  ///< in the newest change
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
     Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds
@@ -105,6 +105,8 @@ class FormationGround {
   void begin(FormationPreview preview, Instant now);
   void on_status(const FormationStatus& status, Instant now);
   void find_lost(Instant now);
+  void lose(VehicleId vehicle, Member& member, event::FormationNews why, Instant now);
+  [[nodiscard]] bool is_led(VehicleId vehicle) const;
   void find_stuck(Instant now);
   void give_again(Instant now);
   void judge_places(Instant now);
