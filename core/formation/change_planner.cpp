@@ -227,9 +227,9 @@ PlannedChange Planner::planned(Change change, Way way, double least_m) const {
 Error Planner::too_near(const Nearness& nearness) const {
   const auto [a, b] = nearness.nearest;
   const double needed = b < count_ ? apart_m_ : request_.separation.horizontal_m;
-  const std::string other =
-      b < count_ ? name(request_.transfers[b].vehicle)
-                 : name(request_.keep_outs[b - count_].vehicle) + ", which is lost,";
+  const std::string other = b < count_
+                                ? name(request_.transfers[b].vehicle)
+                                : name(request_.keep_outs[b - count_].vehicle) + ", which is lost,";
   return Error{name(request_.transfers[a].vehicle) + " and " + other + " would come within " +
                metres(nearness.least_m) + " of each other, and " + metres(needed) +
                " are needed; choose a larger spacing or another place"};
