@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -40,6 +41,31 @@ std::string metres(double value) {
 }
 
 std::string name(VehicleId vehicle) { return "vehicle " + std::to_string(vehicle.value); }
+
+/// Of a request whose change would not be valid(), in the order of what is likely.
+Error why_not_valid(const ChangeRequest& request) {
+  const MotionLimits& limits = request.limits;
+  const auto good = [](double number) { return std::isfinite(number) && number > 0.0; };
+  if (!good(limits.speed_mps) || !good(limits.acceleration_mps2) || !good(limits.jerk_mps3) ||
+      !good(request.separation.horizontal_m) || !good(request.separation.vertical_m)) {
+    return Error{"speed, acceleration, jerk and separation are to be numbers above 0"};
+  }
+  if (limits.speed_mps > kStopWithin_s * limits.acceleration_mps2) {
+    return Error{metres(limits.speed_mps) + "/s cannot be braked in time by " +
+                 metres(limits.acceleration_mps2) + "/s2; fly at " +
+                 metres(kStopWithin_s * limits.acceleration_mps2) + "/s at most"};
+  }
+  std::set<VehicleId> seen;
+  for (const Transfer& transfer : request.transfers) {
+    if (!transfer.from.allFinite() || !transfer.to.allFinite()) {
+      return Error{name(transfer.vehicle) + " starts or ends at what is no position"};
+    }
+    if (!seen.insert(transfer.vehicle).second) {
+      return Error{name(transfer.vehicle) + " is named twice"};
+    }
+  }
+  return Error{"a way is too long, or the jerk too small, for a change to end within a day"};
+}
 
 /// The transfers, and after them the keep-outs as vehicles that wait.
 class Planner {
@@ -238,9 +264,7 @@ Error Planner::too_near(const Nearness& nearness) const {
 Result<PlannedChange> Planner::plan() {
   if (count_ == 0) return Error{"there is no vehicle to move"};
   Change change = straight();
-  if (!valid(change)) {
-    return Error{"a vehicle is named twice, or a position or a limit is no number above 0"};
-  }
+  if (!valid(change)) return why_not_valid(request_);
   const Nearness direct = nearness(change, true);
   if (direct.conflicts.empty()) return planned(std::move(change), Way::straight, direct.least_m);
   if (auto found = around(direct)) return *std::move(found);

@@ -135,6 +135,19 @@ TEST(PlanChange, RefusesWithTheTwoThatAreTooNear) {
       << planned.error().message;
 }
 
+TEST(PlanChange, SaysWhatIsWrongWithARequest) {
+  ChangeRequest request;
+  request.limits = {.speed_mps = 8.0, .acceleration_mps2 = 1.0, .jerk_mps3 = 2.0};
+  request.transfers = {{{3}, {0, 0, 10}, {0, 10, 10}}, {{3}, {9, 0, 10}, {9, 10, 10}}};
+  EXPECT_EQ(plan_change(request).error().message,
+            "8.00 m/s cannot be braked in time by 1.00 m/s2; fly at 6.00 m/s at most");
+  request.limits = kLimits;
+  EXPECT_EQ(plan_change(request).error().message, "vehicle 3 is named twice");
+  request.limits.jerk_mps3 = 0.0;
+  EXPECT_EQ(plan_change(request).error().message,
+            "speed, acceleration, jerk and separation are to be numbers above 0");
+}
+
 TEST(PlanChange, RefusesWhatWouldTakeTooMuchHeight) {
   // Nobody can turn: the starts lie in each other's way within any disc.
   ChangeRequest request;
