@@ -228,7 +228,7 @@ class GroundLoop {
                                        : node_.agent().refuse(decision->site, asker.who, now));
     }
     if (const auto* order = std::get_if<Order>(&input)) {
-      return answer_to(node_.agent().command(order->vehicle, order->kind, now));
+      return answer_to(node_.command(order->vehicle, order->kind, now));
     }
     if (const auto* hazard = std::get_if<NewHazard>(&input)) {
       const auto added = node_.agent().add_hazard(hazard->centre_m, hazard->radius_m, now);
@@ -244,10 +244,12 @@ class GroundLoop {
 
   Answer record_into(const Record& order) {
     flush();
-    writer_.reset();
-    if (order.folder.empty()) return {true, "nothing is recorded now\n"};
+    if (order.folder.empty()) {
+      writer_.reset();
+      return {true, "nothing is recorded now\n"};
+    }
     auto opened = recording::Writer::open(order.folder, recorder_);
-    if (!opened) return refusal(opened.error());
+    if (!opened) return refusal(opened.error());  // what is recorded goes on
     writer_ = std::move(opened).value();
     recorded_change_ = 0;
     return {true, "recording into " + order.folder + "\n"};

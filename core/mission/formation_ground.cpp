@@ -24,6 +24,8 @@ constexpr Duration kPeriod = std::chrono::milliseconds{100};
 constexpr Duration kStuck = std::chrono::seconds{2};
 /// A change that is not sent any more is not taken up after so long: no copy is on its way.
 constexpr Duration kMessageLife = std::chrono::seconds{3};
+/// After the start of a change whoever moves in it does.
+constexpr Duration kSetOff = std::chrono::seconds{1};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
 /// So far from its reference, a vehicle does not fly what it is told; back within half of it, it
 /// does.
@@ -319,6 +321,8 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
 }
 
 bool FormationGround::moving() const {
+  // All still rest when they have just taken a change up.
+  if (change_ && !withdrawn_ && now_ < change_->start + kSetOff) return true;
   return std::any_of(members_.begin(), members_.end(), [this](const auto& entry) {
     const Member& member = entry.second;
     const bool begun =
@@ -330,6 +334,7 @@ bool FormationGround::moving() const {
 // --- what is due ---------------------------------------------------------------------------------
 
 void FormationGround::on_timeout(Instant now) {
+  now_ = std::max(now_, now);
   if (now < next_) return;
   next_ = now + kPeriod;
   find_lost(now);

@@ -342,14 +342,6 @@ void GroundAgent::decide_by_script(Instant now) {
   }
 }
 
-/// Of all: nobody does anything else.
-bool GroundAgent::stays_in_formation(VehicleId vehicle) const {
-  if (vehicle != kGroundStation) return contains(config_.in_formation, vehicle);
-  return !config_.expected.empty() && std::ranges::all_of(config_.expected, [this](VehicleId id) {
-    return contains(config_.in_formation, id);
-  });
-}
-
 Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant now) {
   const bool all = vehicle == kGroundStation;
   if (kind == CommandKind::give_back && (all || now < Instant{})) {
@@ -358,11 +350,6 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
                      : "an aircraft cannot be given back before mission time 0"};
   }
   if (!all && !fleet_.expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
-  if (kind == CommandKind::return_home && stays_in_formation(vehicle)) {
-    return Error{(all ? "the fleet" : name_of(vehicle)) +
-                 std::string{" flies in a formation of copters, which know no way home of their "
-                             "own; order the formation to rally, or to land"}};
-  }
   for (const auto& [id, entry] : fleet_.vehicles()) {
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
     if (!concerned || !entry.duplicate) continue;

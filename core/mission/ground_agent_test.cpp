@@ -336,23 +336,6 @@ TEST(GroundAgent, SitesThatAreOverMakeRoomForOthers) {
   EXPECT_TRUE(bench.agent.authorisations().empty()) << "it is known to be done";
 }
 
-TEST(GroundAgent, SendsNoCopterHomeThatIsInAFormation) {
-  GroundAgentConfig config = fleet_of_three();
-  config.in_formation = {{1}, {2}};
-  Bench bench{config};
-  const auto told = bench.agent.command({1}, CommandKind::return_home, at_seconds(1.0));
-  ASSERT_FALSE(told.ok());
-  EXPECT_THAT(told.error().message, HasSubstr("vehicle 1 flies in a formation of copters"));
-  EXPECT_TRUE(bench.agent.command({1}, CommandKind::hold, at_seconds(1.0)).ok());
-  EXPECT_TRUE(bench.agent.command({3}, CommandKind::return_home, at_seconds(1.0)).ok());
-  EXPECT_TRUE(bench.agent.command(kGroundStation, CommandKind::return_home, at_seconds(1.0)).ok())
-      << "the others do";
-  config.in_formation = config.expected;
-  Bench copters{config};
-  EXPECT_FALSE(
-      copters.agent.command(kGroundStation, CommandKind::return_home, at_seconds(1.0)).ok());
-}
-
 TEST(GroundAgent, CountsWhatItHasNoRoomFor) {
   Bench bench;
   EXPECT_EQ(bench.agent.dropped(), 0U);

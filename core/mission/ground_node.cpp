@@ -2,25 +2,16 @@
 #include "skein/mission/ground_node.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
+#include "names.hpp"
 #include "skein/mission/may_say.hpp"
 
 namespace skein::mission {
-namespace {
-
-GroundAgentConfig agent_config(const GroundNodeConfig& config) {
-  GroundAgentConfig agent = config.agent;
-  agent.in_formation = config.formation.vehicles;
-  return agent;
-}
-
-}  // namespace
 
 GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
-    : agent_{agent_config(config), now},
-      formation_{config.formation, now},
-      tracks_{config.tracks, now} {}
+    : agent_{config.agent, now}, formation_{config.formation, now}, tracks_{config.tracks, now} {}
 
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
   if (!may_say(message, sender)) {
@@ -37,6 +28,24 @@ void GroundNode::on_timeout(Instant now) {
   agent_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
+}
+
+/// Of all: nobody does anything else.
+bool GroundNode::stays_in_formation(VehicleId vehicle) const {
+  const auto& members = formation_.members();
+  if (vehicle != kGroundStation) return members.contains(vehicle);
+  return !members.empty() && std::ranges::all_of(fleet().vehicles(), [&members](const auto& known) {
+    return members.contains(known.first);
+  });
+}
+
+Result<void> GroundNode::command(VehicleId vehicle, CommandKind kind, Instant now) {
+  if (kind == CommandKind::return_home && stays_in_formation(vehicle)) {
+    return Error{(vehicle == kGroundStation ? "the fleet" : name_of(vehicle)) +
+                 std::string{" flies in a formation of copters, which know no way home of their "
+                             "own; order the formation to rally, or to land"}};
+  }
+  return agent_.command(vehicle, kind, now);
 }
 
 void GroundNode::say(MissionEvent event) {

@@ -47,6 +47,27 @@ TEST(GroundNode, OnlyTheLeaderOfARoundAsksForItsAuthorisation) {
   EXPECT_EQ(ground.agent().authorisations().size(), 1U);
 }
 
+TEST(GroundNode, SendsNoCopterHomeThatIsInAFormation) {
+  GroundNode ground = node();
+  const auto home = [&](VehicleId vehicle) {
+    return ground.command(vehicle, CommandKind::return_home, at_seconds(1.0));
+  };
+  EXPECT_TRUE(home({1}).ok()) << "it was not heard in one";
+  FormationStatus status;
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}}) {
+    status.vehicle = {id};
+    ground.on_message(status, {id}, at_seconds(1.0));
+  }
+  ASSERT_FALSE(home({1}).ok());
+  EXPECT_EQ(home({1}).error().message.find("vehicle 1 flies in a formation of copters"), 0U);
+  EXPECT_TRUE(ground.command({1}, CommandKind::hold, at_seconds(1.0)).ok());
+  EXPECT_TRUE(home({3}).ok());
+  EXPECT_TRUE(home(kGroundStation).ok()) << "the third does";
+  status.vehicle = {3};
+  ground.on_message(status, {3}, at_seconds(1.0));
+  EXPECT_FALSE(home(kGroundStation).ok());
+}
+
 TEST(GroundNode, HearsOfAFormationAndTellsOfIt) {
   GroundNode ground = node();
   FormationStatus status;

@@ -132,6 +132,7 @@ class FormationGround {
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;
   Instant next_;
+  Instant now_{};  ///< when it was called last
   BoundedQueue<Message> messages_{64};
   BoundedQueue<MissionEvent> events_{256};
 };

@@ -27,10 +27,9 @@ struct ScriptedDecision {
 };
 
 struct GroundAgentConfig {
-  std::vector<VehicleId> expected;           ///< the fleet
-  std::vector<ScriptedDecision> decisions;   ///< empty: a person decides
-  std::vector<HazardId> hazards = {};        ///< numbers that are taken
-  std::vector<VehicleId> in_formation = {};  ///< copters, which know no way home
+  std::vector<VehicleId> expected;          ///< the fleet
+  std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
+  std::vector<HazardId> hazards = {};       ///< numbers that are taken
   Duration silence = std::chrono::seconds{5};
 };
 
@@ -67,8 +66,7 @@ class GroundAgent {
   Result<void> decide_on(const coalition::Round& round, SiteId site, bool granted,
                          const std::string& operator_name, Instant now);
   /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,
-  /// while two instances answer to the id (for all: while any do, but for `hold`), and where those
-  /// that are to return home are copters in formation only.
+  /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   /// Tells everybody of a hazard, every 5 s from now on, so that who was out of reach hears of it
@@ -134,7 +132,6 @@ class GroundAgent {
   Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                       Instant now);
   [[nodiscard]] LedSite* led_site(SiteId site);
-  [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
   void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
 
   GroundAgentConfig config_;

@@ -29,6 +29,10 @@ class GroundNode {
   bool on_message(const Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
 
+  /// As GroundAgent::command(). Fails also where those that are to return home are copters that fly
+  /// in a formation.
+  Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
+
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
 
@@ -57,6 +61,7 @@ class GroundNode {
 
  private:
   void take_events();
+  [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
 
   GroundAgent agent_;
   FormationGround formation_;
