@@ -176,7 +176,7 @@ bool Passage::clear_of_columns(Grains own_from, Grains own_to) const {
   return std::all_of(silent_.begin(), silent_.end(), [&](std::uint32_t mover) {
     const Other& other = others_[mover];
     // It flew on for as long as it is not called silent, at full rate, and then braked.
-    const Grains to = other.done + 2 * full_ * kSilentAfter + Grains{full_} * full_;
+    const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
     return clear_of_column(mover, own_from, own_to, other.done, std::min(end_, to),
                            separation_m_ + other.off_m + off_m_);
   });
@@ -206,7 +206,7 @@ bool Passage::clear_of_column(std::size_t mover, Grains own_from, Grains own_to,
 
 bool Passage::leads_out_of_columns() const {
   for (std::int64_t slots = 1; slots <= kOutWithin; ++slots) {
-    const Grains at = std::min(end_, done_ + 2 * full_ * slots);
+    const Grains at = std::min(end_, done_ + Grains{2} * full_ * slots);
     if (clear_of_columns(at, at)) return true;
     if (at == end_) break;
   }
