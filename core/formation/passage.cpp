@@ -108,25 +108,28 @@ Vec3 Passage::place(std::size_t mover, Grains at) const {
   return p;
 }
 
-/// Wherever both are in their stretches, while the other is behind.
-bool Passage::keeps_clear(std::size_t mover, Grains own_from, Grains own_to, Grains from, Grains to,
-                          double apart_m) const {
-  if (from >= own_to) return true;
+/// Wherever both are in their stretches: of the other while it is behind, or of the column of
+/// whatever is below it, or so near above it.
+bool Passage::keeps_clear(Clearance what, std::size_t mover, Grains own_from, Grains own_to,
+                          Grains from, Grains to, double apart_m) const {
+  if (what == Clearance::vehicle && from >= own_to) return true;
   const double own_reach = others_[self_].speed_mps * seconds(own_to - own_from) / 2.0;
   const double reach = others_[mover].speed_mps * seconds(to - from) / 2.0;
   const Grains own_middle = (own_from + own_to) / 2;
   const Grains middle = (from + to) / 2;
-  const double d = (place(self_, own_middle) - place(mover, middle)).norm();
+  const Vec3 apart = place(self_, own_middle) - place(mover, middle);
+  const double d =
+      what == Clearance::vehicle ? apart.norm() : std::max(apart.head<2>().norm(), apart.z());
   if (d >= apart_m + own_reach + reach + kExact_m) return true;
   const bool split_own = own_to - own_from > 1;
   const bool split = to - from > 1;
   if (d < apart_m || (!split_own && !split)) return false;
   if (split_own && (own_reach >= reach || !split)) {
-    return keeps_clear(mover, own_from, own_middle, from, to, apart_m) &&
-           keeps_clear(mover, own_middle, own_to, from, to, apart_m);
+    return keeps_clear(what, mover, own_from, own_middle, from, to, apart_m) &&
+           keeps_clear(what, mover, own_middle, own_to, from, to, apart_m);
   }
-  return keeps_clear(mover, own_from, own_to, from, middle, apart_m) &&
-         keeps_clear(mover, own_from, own_to, middle, to, apart_m);
+  return keeps_clear(what, mover, own_from, own_to, from, middle, apart_m) &&
+         keeps_clear(what, mover, own_from, own_to, middle, to, apart_m);
 }
 
 bool Passage::clear_of(std::size_t mover, const Future& future) const {
@@ -145,7 +148,8 @@ bool Passage::clear_of(std::size_t mover, const Future& future) const {
   if (other.least_m - other.speed_mps * seconds(late) >= apart_m) return true;
   for (std::int64_t slot = 0; slot < own_stop; ++slot) {
     const Grains to = own(slot + 1);
-    if (!keeps_clear(mover, own(slot), to, at_least(other, slot_ + slot), to, apart_m)) {
+    if (!keeps_clear(Clearance::vehicle, mover, own(slot), to, at_least(other, slot_ + slot), to,
+                     apart_m)) {
       return false;
     }
   }
@@ -177,31 +181,9 @@ bool Passage::clear_of_columns(Grains own_from, Grains own_to) const {
     const Other& other = others_[mover];
     // It flew on for as long as it is not called silent, at full rate, and then braked.
     const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
-    return clear_of_column(mover, own_from, own_to, other.done, std::min(end_, to),
-                           separation_m_ + other.off_m + off_m_);
+    return keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
+                       separation_m_ + other.off_m + off_m_);
   });
-}
-
-/// Of whatever is below the other, or so near above it, wherever both are in their stretches.
-bool Passage::clear_of_column(std::size_t mover, Grains own_from, Grains own_to, Grains from,
-                              Grains to, double apart_m) const {
-  const double own_reach = others_[self_].speed_mps * seconds(own_to - own_from) / 2.0;
-  const double reach = others_[mover].speed_mps * seconds(to - from) / 2.0;
-  const Grains own_middle = (own_from + own_to) / 2;
-  const Grains middle = (from + to) / 2;
-  const Vec3 apart = place(self_, own_middle) - place(mover, middle);
-  const double beside_m = apart.head<2>().norm();
-  const double away_m = std::max(beside_m, apart.z());
-  if (away_m >= apart_m + own_reach + reach + kExact_m) return true;
-  const bool split_own = own_to - own_from > 1;
-  const bool split = to - from > 1;
-  if (away_m < apart_m || (!split_own && !split)) return false;
-  if (split_own && (own_reach >= reach || !split)) {
-    return clear_of_column(mover, own_from, own_middle, from, to, apart_m) &&
-           clear_of_column(mover, own_middle, own_to, from, to, apart_m);
-  }
-  return clear_of_column(mover, own_from, own_to, from, middle, apart_m) &&
-         clear_of_column(mover, own_from, own_to, middle, to, apart_m);
 }
 
 bool Passage::leads_out_of_columns() const {

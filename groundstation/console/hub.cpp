@@ -19,17 +19,16 @@ constexpr std::size_t kLoginsMax = 4;  ///< that wait; each takes some 0.1 s
 }  // namespace
 
 Hub::Hub(const ServerConfig& config, std::function<void()> on_request, Post post, Post post_login)
-    : on_request_{std::move(on_request)},
+    : config_{config},
+      on_request_{std::move(on_request)},
       post_{std::move(post)},
       post_login_{std::move(post_login)},
       gate_{config.users, !config.certificate.empty()},
       run_{random_hex(8)},
-      hello_{config.hello},
-      overlays_{config.overlays},
       requests_{kRequestsMax} {}
 
-Result<void> Hub::open(const ServerConfig& config) {
-  auto pages = Pages::open(config, gate_);
+Result<void> Hub::open() {
+  auto pages = Pages::open(config_, gate_);
   if (!pages) return pages.error();
   pages_.emplace(std::move(*pages));
   return {};
@@ -120,7 +119,7 @@ bool Hub::log_in(std::string user, std::string password,
 }
 
 std::string Hub::hello(const Identity& identity) const {
-  Json hello = codec::parse_own_json(hello_);
+  Json hello = codec::parse_own_json(config_.hello);
   hello["type"] = "hello";
   hello["run"] = run_;
   hello["role"] = to_string(identity.role);
@@ -128,7 +127,7 @@ std::string Hub::hello(const Identity& identity) const {
   hello["tiles"] =
       pages_->tiles() ? codec::parse_own_json(pages_->tiles()->description()) : Json(nullptr);
   hello["overlays"] = Json::array();
-  for (const Overlay& overlay : overlays_) {
+  for (const Overlay& overlay : config_.overlays) {
     hello["overlays"].push_back({{"name", overlay.name}, {"url", "/overlays/" + overlay.name}});
   }
   return codec::json_text(hello);

@@ -48,9 +48,10 @@ class Hub {
   using Post = std::function<void(std::function<void()>)>;
 
   /// `post` is to the server's thread, `post_login` to another. `on_request` as for Server.
+  /// `config` must outlive this.
   Hub(const ServerConfig& config, std::function<void()> on_request, Post post, Post post_login);
   /// Reads the files of the pages.
-  [[nodiscard]] Result<void> open(const ServerConfig& config);
+  [[nodiscard]] Result<void> open();
 
   // --- from any thread ---------------------------------------------------------------------------
   /// False when too many wait.
@@ -99,13 +100,12 @@ class Hub {
  private:
   void tell_all();
 
+  const ServerConfig& config_;
   std::function<void()> on_request_;
   Post post_;
   Post post_login_;
   Gate gate_;
   std::string run_;
-  std::string hello_;
-  std::vector<Overlay> overlays_;
   std::optional<Pages> pages_;
   Board board_;
   std::size_t logins_waiting_ = 0;

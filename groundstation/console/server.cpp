@@ -77,7 +77,7 @@ Result<void> Server::Impl::open() {
                    "127.0.0.1 only"};
     }
   }
-  if (auto opened = hub_.open(config_); !opened) return opened.error();
+  if (auto opened = hub_.open(); !opened) return opened.error();
   error_code error;
   if (!config_.certificate.empty()) {
     tls_.emplace(ssl::context::tls_server);

@@ -89,13 +89,12 @@ class Passage final : public Execution {
   [[nodiscard]] Grains at_least(const Other& other, std::int64_t slot) const;
   [[nodiscard]] bool clear_of_all(const Future& future);
   [[nodiscard]] bool clear_of(std::size_t mover, const Future& future) const;
-  [[nodiscard]] bool keeps_clear(std::size_t mover, Grains own_from, Grains own_to, Grains from,
-                                 Grains to, double apart_m) const;
+  enum class Clearance : std::uint8_t { vehicle, column };
+  [[nodiscard]] bool keeps_clear(Clearance what, std::size_t mover, Grains own_from, Grains own_to,
+                                 Grains from, Grains to, double apart_m) const;
   void look_for_silence();
   [[nodiscard]] bool clear_of_columns(const Future& future) const;
   [[nodiscard]] bool clear_of_columns(Grains own_from, Grains own_to) const;
-  [[nodiscard]] bool clear_of_column(std::size_t mover, Grains own_from, Grains own_to, Grains from,
-                                     Grains to, double apart_m) const;
   [[nodiscard]] bool leads_out_of_columns() const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
