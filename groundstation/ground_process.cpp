@@ -20,6 +20,7 @@
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/recorder.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
@@ -111,8 +112,7 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& network, process::Wake& wake,
-             recording::Writer::Options recorder, std::optional<recording::Writer> writer,
-             mission::GroundNode& node, FormationDesk formation,
+             Recorder recorder, mission::GroundNode& node, FormationDesk formation,
              std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
       : origin_{origin},
         operator_name_{std::move(operator_name)},
@@ -121,7 +121,6 @@ class GroundLoop {
         network_{network},
         wake_{wake},
         recorder_{std::move(recorder)},
-        writer_{std::move(writer)},
         decisions_{config.operator_decisions},
         node_{node},
         formation_{std::move(formation)},
@@ -145,7 +144,7 @@ class GroundLoop {
       wake_.wait_until(
           clock_.steady_time_of(std::clamp(node_.next_timeout(), soonest, now + kStepPeriod)));
     }
-    flush();
+    recorder_.flush();
   }
   /// From another thread.
   void stop() {
@@ -159,7 +158,7 @@ class GroundLoop {
     for (int i = 0; i < kMessagesPerStep; ++i) {
       const auto received = network_.poll();
       if (!received) return true;
-      if (writer_) writer_->write(received->message, received->sender, now);
+      recorder_.write(received->message, received->sender, now);
       if (!node_.on_message(received->message, received->sender, now)) continue;
       console_.on_message(received->message, received->sender, now);
     }
@@ -243,16 +242,11 @@ class GroundLoop {
   }
 
   Answer record_into(const Record& order) {
-    flush();
-    if (order.folder.empty()) {
-      writer_.reset();
-      return {true, "nothing is recorded now\n"};
+    const bool ends = order.folder.empty();
+    if (const auto done = ends ? recorder_.end() : recorder_.begin(order.folder); !done) {
+      return refusal(done.error());
     }
-    auto opened = recording::Writer::open(order.folder, recorder_);
-    if (!opened) return refusal(opened.error());  // what is recorded goes on
-    writer_ = std::move(opened).value();
-    recorded_change_ = 0;
-    return {true, "recording into " + order.folder + "\n"};
+    return {true, ends ? "ended\n" : "recording into " + order.folder + "\n"};
   }
 
   Answer formed(const Formation& order, Instant now) {
@@ -305,14 +299,16 @@ class GroundLoop {
 
   void send(const mission::Message& message, Instant now) {
     network_.publish(message);
-    if (writer_) writer_->write(message, kGroundStation, now);
+    recorder_.write(message, kGroundStation, now);
     console_.on_message(message, kGroundStation, now);
   }
 
   void hand_out(Instant now) {
     while (const auto message = node_.poll_message()) {
       send(*message, now);
-      if (const auto* change = std::get_if<formation::Change>(&*message)) record(*change);
+      if (const auto* change = std::get_if<formation::Change>(&*message)) {
+        recorder_.write_places(*change);
+      }
     }
     while (const auto event = node_.poll_event()) {
       tell_of(*event);
@@ -325,33 +321,15 @@ class GroundLoop {
     }
     if (now >= next_flush_) {
       next_flush_ = now + kFlushPeriod;
-      flush();
-    }
-  }
-
-  /// Each change once, however often it is sent.
-  void record(const formation::Change& change) {
-    if (!writer_ || change.number == recorded_change_) return;
-    recorded_change_ = change.number;
-    for (const formation::Mover& mover : change.movers) {
-      writer_->write(
-          recording::PlaceRecord{change.number, change.start, mover.vehicle, mover.points.back()});
+      recorder_.flush();
     }
   }
 
   void tell_of(const mission::MissionEvent& event) {
     const bool warning = mission::is_warning(event.kind());
     spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
-    if (writer_) writer_->write(event);
+    recorder_.write(event);
     console_.on_event(event);
-  }
-
-  void flush() {
-    if (!writer_) return;
-    const auto flushed = writer_->flush();
-    if (flushed) return;
-    spdlog::error("recording stops: {}", flushed.error().message);
-    writer_.reset();
   }
 
   [[nodiscard]] bool is_scripted(SiteId site) const {
@@ -365,8 +343,7 @@ class GroundLoop {
   const process::Shutdown& shutdown_;
   network::Node& network_;
   process::Wake& wake_;
-  recording::Writer::Options recorder_;
-  std::optional<recording::Writer> writer_;
+  Recorder recorder_;
   std::vector<configuration::OperatorDecision>
       decisions_;  ///< of the scenario, in the operator's place
   mission::GroundNode& node_;
@@ -374,7 +351,6 @@ class GroundLoop {
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   Audit audit_;
-  std::uint32_t recorded_change_ = 0;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};
   std::atomic<bool> stopping_{false};
@@ -414,15 +390,6 @@ std::unique_ptr<ControlSocket> open_control(const configuration::GroundConfig& c
   return nullptr;
 }
 
-/// None where nothing is recorded.
-Result<std::optional<recording::Writer>> open_recording(const configuration::GroundConfig& config,
-                                                        const recording::Writer::Options& options) {
-  if (config.recording_folder.empty()) return std::optional<recording::Writer>{};
-  auto opened = recording::Writer::open(config.recording_folder, options);
-  if (!opened) return opened.error();
-  return std::optional<recording::Writer>{std::move(*opened)};
-}
-
 }  // namespace
 
 int run(const configuration::GroundConfig& config, const std::string& operator_name) {
@@ -447,9 +414,9 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
-  auto writer = open_recording(config, options);
-  if (!writer) {
-    spdlog::critical("cannot record: {}", writer.error().message);
+  auto recorder = Recorder::open(config.recording_folder, std::move(options));
+  if (!recorder) {
+    spdlog::critical("cannot record: {}", recorder.error().message);
     return process::kExitCannotStart;
   }
   process::Wake wake;
@@ -477,8 +444,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   shutdown,
                   **node,
                   wake,
-                  options,
-                  std::move(*writer),
+                  std::move(*recorder),
                   ground,
                   std::move(*formation),
                   open_control(config, wake),

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -82,8 +84,21 @@ int run(const Arguments& arguments) {
   return groundstation::run(*config, arguments.operator_name);
 }
 
+/// CLI11 takes -1 for the greatest number.
+std::string why_no_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  return error == std::errc{} && end == text.data() + text.size()
+             ? ""
+             : "'" + text + "' is no seed, which is a whole number from 0 to 18446744073709551615";
+}
+
 /// Gives a running ground station a line of its prompt.
 int tell(const Arguments& arguments, const std::string& line) {
+  if (line.find_first_not_of(" \t") == std::string::npos) {
+    return fail("what shall it be told? A line of its prompt, such as status; help lists them",
+                skein::process::kExitBadInput);
+  }
   if (auto input = groundstation::parse_input(line); !input) {
     return fail(input.error().message, skein::process::kExitBadInput);
   }
@@ -102,11 +117,8 @@ int tell(const Arguments& arguments, const std::string& line) {
 }
 
 int plan(const PlanArguments& arguments) {
-  auto scenario = skein::configuration::load_scenario(arguments.scenario);
+  auto scenario = skein::configuration::load_flyable_scenario(arguments.scenario);
   if (!scenario) return fail(scenario.error().message, skein::process::kExitBadInput);
-  if (const auto good = skein::configuration::check(*scenario); !good) {
-    return fail(good.error().message, skein::process::kExitBadInput);
-  }
   if (arguments.seed) scenario->seed = *arguments.seed;
   skein::routes::RoutePlannerParams params;
   const bool shows = ::isatty(STDERR_FILENO) == 1;
@@ -183,15 +195,27 @@ int info(const std::string& recording) {
 
 int export_recording(const ExportArguments& arguments) {
   using skein::recording_export::Format;
+  if (arguments.csv.empty() && arguments.geojson.empty() && arguments.kml.empty()) {
+    return fail("export into what? Give --csv, --geojson or --kml a folder",
+                skein::process::kExitBadInput);
+  }
   for (const auto& [format, folder] : {std::pair{Format::csv, arguments.csv},
                                        {Format::geojson, arguments.geojson},
                                        {Format::kml, arguments.kml}}) {
     if (folder.empty()) continue;
-    const auto files = skein::recording_export::write(arguments.recording, format, folder);
-    if (!files) return fail(files.error().message, skein::process::kExitBadInput);
+    const auto written = skein::recording_export::write(arguments.recording, format, folder);
+    if (!written) return fail(written.error().message, skein::process::kExitBadInput);
     std::printf("into %s:", folder.c_str());
-    for (const std::string& file : *files) std::printf(" %s", file.c_str());
+    for (const std::string& file : written->files) std::printf(" %s", file.c_str());
     std::printf("\n");
+    if (written->damaged > 0) {
+      std::fprintf(stderr, "skein-ground: warning: %zu damaged parts are left out\n",
+                   written->damaged);
+    }
+    if (!written->complete) {
+      std::fprintf(stderr,
+                   "skein-ground: warning: not closed by its process, the end may be missing\n");
+    }
   }
   return 0;
 }
@@ -221,6 +245,7 @@ class CommandLine {
     app_.add_flag("--check-config", arguments_.check_only,
                   "Read the configuration, say whether it is good, end");
     app_.set_version_flag("--version", "skein-ground " SKEIN_VERSION);
+    app_.require_subcommand(0, 1);  // 'tell record stop': what follows a command is its own
     add_orders();
     add_plan();
     add_password();
@@ -301,7 +326,7 @@ class CommandLine {
                             [this] { return plan(planning_); });
     command.add_option("scenario", planning_.scenario, "A mission with `routes`, YAML")->required();
     command.add_option("--out", planning_.folder, "Folder for the plan (default: runs/NAME)");
-    command.add_option("--seed", planning_.seed, "In place of the mission's");
+    command.add_option("--seed", planning_.seed, "In place of the mission's")->check(why_no_seed);
     command.footer(
         "Example:\n"
         "  skein-ground plan scenarios/routes-3.yaml\n\n"
@@ -322,9 +347,13 @@ class CommandLine {
   }
 
   void add_recordings() {
-    add("info", "Tells what is in a recording", [this] { return info(looked_at_); })
-        .add_option("recording", looked_at_, "An MCAP file, or a folder of a node or a run")
+    CLI::App& look =
+        add("info", "Tells what is in a recording", [this] { return info(looked_at_); });
+    look.add_option("recording", looked_at_, "An MCAP file, or a folder of a node or a run")
         ->required();
+    look.footer(
+        "Example:\n"
+        "  skein-ground info runs/mine/mission.mcap");
     CLI::App& command = add("export", "Writes a recording's tracks and events for other tools",
                             [this] { return export_recording(exporting_); });
     command
@@ -334,7 +363,6 @@ class CommandLine {
     command.add_option("--csv", exporting_.csv, "Folder for tables: all numbers, exact");
     command.add_option("--geojson", exporting_.geojson, "Folder for flight.geojson");
     command.add_option("--kml", exporting_.kml, "Folder for flight.kml");
-    command.require_option(2, 4);
     command.footer(
         "Example:\n"
         "  skein-ground export runs/mine --csv tables --kml .");

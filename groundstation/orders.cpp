@@ -87,7 +87,7 @@ std::vector<std::string> shape_names() {
 
 std::optional<formation::ShapeKind> shape_named(std::string_view name) {
   const auto names = shape_names();
-  const auto found = std::find(names.begin(), names.end(), name);
+  const auto found = std::find(names.begin(), names.end(), hyphened(name));
   if (found == names.end()) return std::nullopt;
   return static_cast<formation::ShapeKind>(found - names.begin());
 }

@@ -292,7 +292,8 @@ std::string help_text() {
          "land              it comes straight down\n"
          "preview ORDER     what one of these five would do, and whether it is safe\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
-         "record FOLDER     record all that is said into FOLDER from now on; record stop: no more\n"
+         "record FOLDER     record all that is said into FOLDER, too, from now on; record stop: no "
+         "more\n"
          "quit              end the ground station; the vehicles go on\n";
 }
 

@@ -22,6 +22,7 @@
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/playback.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/views.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
@@ -47,7 +48,8 @@ double number(std::string_view word) {
 /// Moves a recording by the clock and by orders, and shows it.
 class ReplayLoop {
  public:
-  ReplayLoop(Playback playback, double speed) : playback_{std::move(playback)}, speed_{speed} {}
+  ReplayLoop(Playback playback, double speed, const process::Shutdown& shutdown)
+      : playback_{std::move(playback)}, speed_{speed}, shutdown_{shutdown} {}
 
   Result<void> serve(console::ServerConfig config, const std::string& name) {
     config.hello = hello_text(playback_.origin(), playback_.picture().params().expected, {},
@@ -70,6 +72,10 @@ class ReplayLoop {
       }
       last = now;
       while (const auto line = prompt.next()) {
+        if (const auto input = parse_input(*line); input && std::holds_alternative<Quit>(*input)) {
+          shutdown_.request();
+          continue;
+        }
         const Answer given = answer(*line);
         std::fputs(given.text.c_str(), given.done ? stdout : stderr);
         std::fflush(stdout);
@@ -110,16 +116,34 @@ class ReplayLoop {
       if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
     }
     return {false,
-            fmt::format("{}; status, sites, coalitions and the other views look\n", kOrders)};
+            fmt::format("{}; status, sites, coalitions and the other views look; quit ends\n",
+                        kOrders)};
   }
 
   [[nodiscard]] Answer look(View view) const {
     const auto section = section_of(view);
     if (!section) return {true, fmt::format("{}\n", kOrders)};
-    const std::string data =
+    std::string data =
         console::section_of(*section, playback_.picture(), playback_.fleet(), playback_.origin(),
                             playback_.version(), playback_.now());
-    return {true, data + "\n", data};
+    std::string text = text_of(view);
+    return {true, text.empty() ? data + "\n" : std::move(text), std::move(data)};
+  }
+
+  /// None where a recording has only data.
+  [[nodiscard]] std::string text_of(View view) const {
+    switch (view) {
+      case View::status:
+        return fleet_table(playback_.fleet().vehicles(), playback_.now());
+      case View::sites:
+        return sites_text(playback_.picture());
+      case View::coalitions:
+        return coalitions_text(playback_.picture());
+      case View::hazards:
+        return hazards_text(playback_.picture());
+      default:
+        return "";
+    }
   }
 
   void obey(const ReplayOrder& order) {
@@ -177,6 +201,7 @@ class ReplayLoop {
 
   Playback playback_;
   double speed_;
+  const process::Shutdown& shutdown_;
   bool playing_ = true;
   bool shown_again_ = true;   ///< something has changed since it was shown
   std::size_t appended_ = 0;  ///< events that the server has
@@ -224,7 +249,7 @@ int replay(const std::filesystem::path& path, const configuration::ConsoleConfig
               playback->damaged() == 0
                   ? ""
                   : fmt::format("; {} damaged parts left out", playback->damaged()).c_str());
-  ReplayLoop loop{std::move(*playback), speed};
+  ReplayLoop loop{std::move(*playback), speed, shutdown};
   if (const auto served = loop.serve(server_config(console), path.filename().string()); !served) {
     std::fprintf(stderr, "skein-ground: %s\n", served.error().message.c_str());
     return process::kExitCannotStart;

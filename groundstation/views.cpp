@@ -35,11 +35,15 @@ std::string health_of(const mission::FleetEntry& entry) {
 /// "1234 m from the origin towards 045 deg, 31.530000 N 105.050000 E"
 std::string place_text(const Vec2& position, const MissionOrigin& origin) {
   const Wgs84 geodetic = origin.to_wgs84(Position<MissionEnu>{position.x(), position.y(), 0.0});
-  return fmt::format("{:.0f} m from the origin towards {:03.0f} deg, {:.6f} {} {:.6f} {}",
-                     position.norm(),
-                     compass_deg_from_heading(std::atan2(position.y(), position.x())),
-                     std::abs(geodetic.latitude_deg), geodetic.latitude_deg < 0.0 ? "S" : "N",
-                     std::abs(geodetic.longitude_deg), geodetic.longitude_deg < 0.0 ? "W" : "E");
+  const double distance_m = position.norm();
+  const std::string from_origin =
+      distance_m < 0.5
+          ? "at the origin"
+          : fmt::format("{:.0f} m from the origin towards {:03.0f} deg", distance_m,
+                        compass_deg_from_heading(std::atan2(position.y(), position.x())));
+  return fmt::format("{}, {:.6f} {} {:.6f} {}", from_origin, std::abs(geodetic.latitude_deg),
+                     geodetic.latitude_deg < 0.0 ? "S" : "N", std::abs(geodetic.longitude_deg),
+                     geodetic.longitude_deg < 0.0 ? "W" : "E");
 }
 
 bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {

@@ -11,6 +11,7 @@ mission::FormationAgentConfig formation_agent(const configuration::VehicleConfig
   mission::FormationAgentConfig agent;
   agent.vehicle = config.vehicle.id;
   agent.instance = instance;
+  agent.range_m = config.vehicle.range_m;
   agent.limits = config.formation.limits;
   agent.avoidance = config.formation.avoidance;
   agent.passage.tolerance_m = config.formation.tracking_m;

@@ -179,6 +179,7 @@ Telemetry FormationAgent::telemetry() const {
   telemetry.vehicle = config_.vehicle;
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;
+  telemetry.range_left_m = config_.range_m - telemetry.state.distance_flown_m;
   const bool moving = change_ && !execution_->finished();
   telemetry.activity = moving ? Activity::forming : Activity::holding;
   telemetry.plan_number = change_ ? change_->number : 0;

@@ -72,8 +72,11 @@ class InterruptWatch {
   struct sigaction old_term_ {};
 };
 
-bool port_free(std::uint16_t port) {
-  const int s = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+/// `type` is SOCK_DGRAM or SOCK_STREAM.
+bool port_free(int type, std::uint16_t port) {
+  const int s = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
+  const int reuse = type == SOCK_STREAM ? 1 : 0;  // connections that end are in nobody's way
+  ::setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
@@ -88,7 +91,7 @@ Result<std::uint16_t> port_block(std::uint16_t wanted, std::size_t count) {
   const auto taken = [count](std::uint16_t base) -> std::optional<std::uint16_t> {
     for (std::size_t i = 0; i < count; ++i) {
       const auto port = static_cast<std::uint16_t>(base + i);
-      if (!port_free(port)) return port;
+      if (!port_free(SOCK_DGRAM, port)) return port;
     }
     return std::nullopt;
   };
@@ -126,6 +129,17 @@ class Bench {
 
   Result<void> start() {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
+    if (options_.console_port != 0 && !port_free(SOCK_STREAM, options_.console_port)) {
+      return Error{"port " + std::to_string(options_.console_port) +
+                   " of loopback is in use; name another for --console, or stop who uses it "
+                   "(ss -tlpn shows who)"};
+    }
+    for (const auto& vehicle : scenario_.vehicles) {
+      if (vehicle.spec.id.value < radio::LinkTable::kNodes) continue;
+      return Error{"vehicle " + std::to_string(vehicle.spec.id.value) +
+                   " is beyond the bench's radio, which has ids 1 to " +
+                   std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
+    }
     const auto base = port_block(options_.port_base, 2 * nodes);
     if (!base) return base.error();
     const auto buses = can_buses(*base);
@@ -287,7 +301,7 @@ class Bench {
           progress_.sites_done = sites_done_.size();
         }
         on_formation_event(*event);
-        news(*event);
+        if (!options_.prompt) news(*event);  // the ground station tells of it there
       }
     }
   }
@@ -310,6 +324,11 @@ class Bench {
       const auto how = process.ended();
       if (!how) continue;
       reported_.insert(id);
+      if (options_.prompt && id == kGroundStation && process.clean()) {
+        outcome_.quit = true;
+        say("the operator has ended the run");
+        continue;
+      }
       outcome_.deaths.push_back(name_of(id) + " ended by itself: " + *how + "; its log is " +
                                 (options_.run_folder / (log_name(id) + ".log")).string());
       say(outcome_.deaths.back());
@@ -407,7 +426,7 @@ class Bench {
   }
 
   [[nodiscard]] bool finished() {
-    if (g_interrupted != 0 || !outcome_.deaths.empty()) return true;
+    if (g_interrupted != 0 || outcome_.quit || !outcome_.deaths.empty()) return true;
     if (progress_.now >= Instant{} + scenario_.duration_max) return true;
     if (!mission_done()) return false;
     if (!stop_at_) stop_at_ = progress_.now + kAfterwards;
@@ -520,6 +539,12 @@ class Bench {
 Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOptions& options,
                          const std::function<void(const BenchProgress&)>& on_progress) {
   std::error_code failed;
+  if (std::filesystem::exists(options.run_folder, failed) &&
+      !std::filesystem::is_empty(options.run_folder, failed) && !failed) {
+    return Error{options.run_folder.string() +
+                 ": there is something in it already, perhaps an earlier run; name another --out, "
+                 "or remove it"};
+  }
   std::filesystem::create_directories(options.run_folder, failed);
   if (failed) return Error{options.run_folder.string() + ": cannot be made: " + failed.message()};
   Bench bench{scenario, options, on_progress};

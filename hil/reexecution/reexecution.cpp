@@ -213,7 +213,10 @@ Result<Reexecution> reexecute(const std::filesystem::path& node_folder) {
   }
   log->for_each_written([&](const Entry& entry) { return rerun.take(entry); });
   rerun.end(log->is_complete() && log->damaged() == 0);
-  return rerun.result();
+  Reexecution result = rerun.result();
+  result.damaged = log->damaged();
+  result.complete = log->is_complete();
+  return result;
 }
 
 }  // namespace skein::hil

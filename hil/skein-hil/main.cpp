@@ -3,10 +3,12 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "commands.hpp"
 #include "skein/hil/fault_profiles.hpp"
@@ -16,6 +18,15 @@ namespace {
 
 // Each adds one command with its options; what the command returns becomes the status.
 
+/// CLI11 takes -1 for the greatest number.
+std::string why_no_seed(const std::string& text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  return error == std::errc{} && end == text.data() + text.size()
+             ? ""
+             : "'" + text + "' is no seed, which is a whole number from 0 to 18446744073709551615";
+}
+
 template <class Count>
 void add_jobs(CLI::App& command, Count& jobs, const std::string& what) {
   command.add_option("--jobs", jobs, what + " at a time (default: one for each core)")
@@ -24,7 +35,9 @@ void add_jobs(CLI::App& command, Count& jobs, const std::string& what) {
 
 template <class Seed>
 void add_first_seed(CLI::App& command, const std::string& name, Seed& seed) {
-  command.add_option(name, seed, "Of the first run; then + 1")->capture_default_str();
+  command.add_option(name, seed, "Of the first run; then + 1")
+      ->check(why_no_seed)
+      ->capture_default_str();
 }
 
 void add_run(CLI::App& app, int& status) {
@@ -39,7 +52,7 @@ void add_run(CLI::App& app, int& status) {
   command->add_option("--routes", arguments->routes,
                       "A plan of `skein-ground plan`, for a mission of routes (without it one "
                       "is made)");
-  command->add_option("--seed", arguments->seed, "In place of the scenario's");
+  command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
   command->add_option("--out", arguments->folder, "Folder of the run (default: runs/NAME-TIME)");
   command
       ->add_option("--port-base", arguments->port_base,
@@ -74,7 +87,7 @@ void add_simulate(CLI::App& app, const std::string& program, int& status) {
   auto* command =
       app.add_subcommand("simulate", "Fly a scenario in virtual time with the same agents");
   command->add_option("scenario", arguments->scenario, "Scenario file (YAML)")->required();
-  command->add_option("--seed", arguments->seed, "In place of the scenario's");
+  command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
   auto* trace = command->add_flag("--trace", arguments->trace, "Print every event");
   command
       ->add_option("--faults", arguments->faults,
@@ -236,7 +249,7 @@ void add_shapes(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("shapes", "Print or draw the places of a formation's shapes");
   command
       ->add_option("shapes", arguments->shapes,
-                   "line_abreast, column, echelon, wedge, pentagon, or a file (YAML)")
+                   "line-abreast, column, echelon, wedge, pentagon, or a file (YAML)")
       ->required();
   command->add_option("--vehicles", arguments->vehicles, "How many; several numbers with commas")
       ->delimiter(',')
@@ -285,6 +298,9 @@ void add_can_replay(CLI::App& can, int& status) {
 void add_can(CLI::App& app, int& status) {
   auto* command = app.add_subcommand("can", "Look at a CAN bus, record it, replay a record");
   command->require_subcommand(1);
+  command->footer(
+      "Examples: skein-hil can dump mcast:0 --log flight.log\n"
+      "          skein-hil can replay flight.log mcast:1 --rate 10");
   add_can_dump(*command, status);
   add_can_replay(*command, status);
 }
@@ -308,6 +324,7 @@ int main(int argc, char** argv) {
       "  skein-hil can dump vcan0                          what is said on a CAN bus\n"
       "Scenario files are explained in docs/scenarios.md.");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "skein-hil " SKEIN_VERSION);
 
   int status = 0;
   const std::string program = argv[0];
@@ -320,6 +337,10 @@ int main(int argc, char** argv) {
   skein::hil::add_routes(app, status);
   skein::hil::add_shapes(app, status);
   skein::hil::add_can(app, status);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : skein::hil::kExitBadInput;
+  }
   return status;
 }

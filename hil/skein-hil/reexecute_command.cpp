@@ -62,6 +62,12 @@ int reexecute(const ReexecuteArguments& arguments) {
       fmt::print("  after {:.1f} s the recording has a gap: not compared\n",
                  to_seconds(*result->gap));
     }
+    if (result->damaged > 0) {
+      fmt::print("  {} parts of the recording are damaged and left out\n", result->damaged);
+    }
+    if (!result->complete) {
+      fmt::print("  the recording was not closed by its process: its end may be missing\n");
+    }
     std::fflush(stdout);
   }
   return same ? kExitHeld : kExitViolated;

@@ -54,9 +54,8 @@ class ProgressLine {
 };
 
 Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) {
-  auto scenario = configuration::load_scenario(arguments.scenario);
+  auto scenario = configuration::load_flyable_scenario(arguments.scenario);
   if (!scenario) return scenario;
-  if (const auto flyable = configuration::check(*scenario); !flyable) return flyable.error();
   if (arguments.seed) scenario->seed = *arguments.seed;
   if (const auto given = give_routes(*scenario, arguments.routes); !given) return given.error();
   if (arguments.prompt) {
@@ -64,6 +63,12 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
     scenario->formation.script.clear();
   }
   return scenario;
+}
+
+bool nobody_decides(const configuration::Scenario& scenario, const RunArguments& arguments) {
+  return !arguments.prompt && arguments.console_port == 0 && scenario.operator_decisions.empty() &&
+         std::any_of(scenario.sites.begin(), scenario.sites.end(),
+                     [](const Site& site) { return task_count(site, TaskKind::deliver) > 0; });
 }
 
 BenchOptions options_of(const RunArguments& arguments) {
@@ -124,6 +129,11 @@ int run(const RunArguments& arguments) {
   fmt::print("{}: {} vehicles, {} sites, seed {}; into {}\n", scenario->title,
              scenario->vehicles.size(), scenario->sites.size(), scenario->seed,
              options.run_folder.string());
+  if (nobody_decides(*scenario, arguments)) {
+    fmt::print(
+        "nobody is there to authorise deliveries, so none is flown: the scenario has no "
+        "operator_decisions; --prompt or --console lets you decide\n");
+  }
   ProgressLine line{!arguments.headless && !arguments.prompt, scenario->vehicles.size(),
                     scenario->sites.size()};
   const auto outcome = fly(*scenario, options, [&](const BenchProgress& p) { line.update(p); });

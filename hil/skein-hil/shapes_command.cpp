@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "commands.hpp"
 #include "skein/configuration/shape_file.hpp"
 #include "skein/formation/shapes.hpp"
+#include "skein/groundstation/orders.hpp"
 #include "skein/report/shapes.hpp"
 
 namespace skein::hil {
@@ -25,20 +27,18 @@ int complain(const std::string& sentence) {
 
 /// A shape by its name, or of a file.
 Result<formation::ShapeSpec> shape_of(const std::string& name) {
-  using formation::ShapeKind;
   formation::ShapeSpec shape;
-  std::string names;
-  for (std::size_t k = 0; k < static_cast<std::size_t>(ShapeKind::free); ++k) {
-    shape.kind = static_cast<ShapeKind>(k);
-    if (to_string(shape.kind) == name) return shape;
-    names.append(names.empty() ? "" : ", ").append(to_string(shape.kind));
+  if (const auto kind = groundstation::shape_named(name)) {
+    shape.kind = *kind;
+    return shape;
   }
   if (!name.ends_with(".yaml")) {
-    return Error{"there is no shape \"" + name + "\"; name a file (.yaml), or one of: " + names};
+    return Error{fmt::format("there is no shape \"{}\"; name a file (.yaml), or one of: {}", name,
+                             fmt::join(groundstation::shape_names(), ", "))};
   }
   const auto file = configuration::load_shape(name);
   if (!file) return file.error();
-  shape.kind = ShapeKind::free;
+  shape.kind = formation::ShapeKind::free;
   shape.points = file->points;
   shape.closed = file->closed;
   return shape;

@@ -125,13 +125,9 @@ int fly_many(const configuration::Scenario& scenario, const SimulateArguments& a
 }  // namespace
 
 int simulate(const SimulateArguments& arguments) {
-  auto scenario = configuration::load_scenario(arguments.scenario);
+  auto scenario = configuration::load_flyable_scenario(arguments.scenario);
   if (!scenario) {
     fmt::print(stderr, "{}\n", scenario.error().message);
-    return kExitBadInput;
-  }
-  if (const auto flyable = configuration::check(*scenario); !flyable) {
-    fmt::print(stderr, "{}\n", flyable.error().message);
     return kExitBadInput;
   }
   if (scenario->flies_routes()) {

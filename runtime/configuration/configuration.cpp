@@ -89,6 +89,19 @@ Result<Scenario> load_scenario(const std::filesystem::path& file) {
   for (NamedTrack& track : scenario->formation.tracks) track.file = beside(track.file);
   return scenario;
 }
+Result<Scenario> load_flyable_scenario(const std::filesystem::path& file) {
+  auto scenario = load_scenario(file);
+  if (!scenario) return scenario;
+  const auto flyable = check(*scenario);
+  if (flyable) return scenario;
+  const std::string name = file.string() + ": ";
+  std::string message = name;
+  for (const char c : flyable.error().message) {
+    message += c;
+    if (c == '\n') message += name;
+  }
+  return Error{message};
+}
 Result<Scenario> parse_scenario(std::string_view yaml, const std::string& name) {
   return parse<Scenario>(yaml, name);
 }

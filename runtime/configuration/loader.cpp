@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "number_text.hpp"
+#include "skein/base/text.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -38,6 +39,11 @@ bool parse(const std::string& text, T& value) {
   const std::string_view digits = std::string_view{text}.substr(text.starts_with('+') ? 1 : 0);
   const auto end = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   return end.ec == std::errc{} && end.ptr == digits.data() + digits.size();
+}
+
+bool is_lines_of_text(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return is_text(text);
 }
 
 /// What a value of the wrong kind is called in a message.
@@ -269,6 +275,8 @@ void Loader::text(const Field& field, std::string& value) {
     fail(*node, field.key, "is " + found(*node) + ", not text; write it in \"quotes\"");
   } else if (node->Scalar().size() > kTextMax) {
     fail(*node, field.key, "is longer than " + std::to_string(kTextMax) + " bytes; shorten it");
+  } else if (!is_lines_of_text(node->Scalar())) {
+    fail(*node, field.key, "has control characters or is no UTF-8; save the file as UTF-8");
   } else {
     value = node->Scalar();
   }

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "process_fields.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 
 #include "skein/formation/change.hpp"
+#include "skein/mission/may_say.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -120,6 +123,7 @@ void pose_fields(FieldVisitor& v, Pose2& pose) {
 
 void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
   id(v, {"id", "number of the vehicle, its own in the fleet", kRequired}, spec.id);
+  v.require(spec.id != mission::kSensors, "id", "is of the sensors; give the vehicle another");
   v.number({"cruise_speed_mps", "speed that paths are planned at", kRequired}, {1.0, 200.0, "m/s"},
            spec.cruise_speed_mps);
   v.number({"speed_min_mps", "least airspeed", kRequired}, {0.5, 200.0, "m/s"}, spec.speed_min_mps);
@@ -340,9 +344,22 @@ void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& dec
 
 namespace {
 
+void ipv4(FieldVisitor& v, const Field& field, std::string& address) {
+  v.text(field, address);
+  in_addr parsed{};
+  v.require(inet_pton(AF_INET, address.c_str(), &parsed) == 1, field.key,
+            "is no IPv4 address; write one such as 192.168.1.7");
+}
+
+bool is_address(const std::string& text) {
+  in6_addr parsed{};
+  return inet_pton(AF_INET, text.c_str(), &parsed) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
+}
+
 void network_fields(FieldVisitor& v, NetworkConfig& network) {
   whole(v, {"domain_id", "DDS domain"}, {0.0, 230.0}, network.domain_id);
-  v.text({"address", "IPv4 address of this node"}, network.address);
+  ipv4(v, {"address", "IPv4 address of this node"}, network.address);
   whole(v, {"port", "UDP port of this node; the next one is used too", kRequired}, kPort,
         network.port);
   v.list({"peers", "the nodes that this one may hear"},
@@ -350,7 +367,7 @@ void network_fields(FieldVisitor& v, NetworkConfig& network) {
              network.peers, kListMax,
              [](FieldVisitor& inner, NetworkPeer& peer) {
                id(inner, {"id", "of the vehicle; 0 is the ground station", kRequired}, peer.id, 0);
-               inner.text({"address", "IPv4 address"}, peer.address);
+               ipv4(inner, {"address", "IPv4 address"}, peer.address);
                whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
              },
              "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
@@ -384,6 +401,8 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
   whole(v, {"port", "where it is served; 0: not at all"}, {0.0, 65535.0}, config.port);
   v.text({"address", "any but 127.0.0.1 or ::1 needs passwords, certificate and key"},
          config.address);
+  v.require(is_address(config.address), "address",
+            "is no address; write one such as 127.0.0.1, 192.168.1.7 or ::1");
   v.text({"passwords",
           "file of who may use it, with lines as 'skein-ground password NAME' makes "
           "them; empty: whoever is on this machine is the operator"},

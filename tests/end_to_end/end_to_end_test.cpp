@@ -160,11 +160,11 @@ TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
   const std::string unscripted =
       scenario_with("script: [take-off, form wedge spacing 5 at 0 40 12, rally, land]",
                     "script: []", SKEIN_SOURCE_DIR "/tests/end_to_end/formation-loss.yaml");
-  auto bench = start({"run", unscripted, "--headless", "--out", run_folder.string()});
+  auto bench = start({"run", unscripted, "--headless", "--prompt", "--out", run_folder.string()});
   ASSERT_TRUE(wait_for_output("the mission begins")) << output();
   const fs::path told = folder_ / "told";
   const auto tell = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), {SKEIN_PROGRAMS "/skein-ground", "formation", "--config",
+    words.insert(words.begin(), {SKEIN_PROGRAMS "/skein-ground", "tell", "--config",
                                  (run_folder / "ground.yaml").string()});
     fs::remove(told);
     auto child = ChildProcess::start(words, told, {});
@@ -183,8 +183,10 @@ TEST_F(EndToEnd, AFormationObeysOrdersFromAnotherShell) {
   EXPECT_EQ(tell({"form", "wedge", "spacing", "0.6"}), "exit status 1") << text_of(told);
   EXPECT_EQ(tell({"take-off"}), "exit status 0") << text_of(told);
   EXPECT_TRUE(wait_for_output("formation held")) << output();
-  bench.signal(SIGINT);
+  EXPECT_EQ(tell({"record", (folder_ / "evening").string()}), "exit status 0") << text_of(told);
+  EXPECT_EQ(tell({"quit"}), "exit status 0") << text_of(told);
   EXPECT_TRUE(bench.wait(60s));
+  EXPECT_EQ(bench.ended(), "exit status 0") << output();
 }
 
 TEST_F(EndToEnd, RoutesArePlannedThenFlownAndOnlyAsTheMissionIs) {

@@ -49,6 +49,8 @@ Result<Flights> read_flights(const std::filesystem::path& path) {
       flight().places.push_back(*place);
     }
   }
+  flights.damaged = log->damaged();
+  flights.complete = log->is_complete();
   return flights;
 }
 

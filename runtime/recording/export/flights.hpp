@@ -15,6 +15,8 @@ namespace skein::recording_export {
 struct Flights {
   std::map<VehicleId, recording::Recording> by_node;
   std::optional<MissionOrigin> origin;  ///< none where no process's configuration has one
+  std::size_t damaged = 0;              ///< parts that could not be read
+  bool complete = true;                 ///< closed by its processes
 };
 [[nodiscard]] Result<Flights> read_flights(const std::filesystem::path& recording);
 

@@ -37,11 +37,20 @@ class Folder {
 
 }  // namespace
 
-Result<std::vector<std::string>> write(const std::filesystem::path& path, Format format,
-                                       const std::filesystem::path& folder) {
+Result<Written> write(const std::filesystem::path& path, Format format,
+                      const std::filesystem::path& folder) {
   const auto flights = read_flights(path);
   if (!flights) return flights.error();
+  if (flights->by_node.empty()) {
+    return Error{path.string() + ": no track, event, plan or place can be read from it; " +
+                 "skein-ground info tells what is there"};
+  }
   Folder files{folder};
+  const auto written = [&]() -> Result<Written> {
+    auto names = files.names();
+    if (!names) return names.error();
+    return Written{*std::move(names), flights->damaged, flights->complete};
+  };
   if (format == Format::csv) {
     for (const auto& [node, flight] : flights->by_node) {
       const std::string name = recording::folder_name(node) + "/";
@@ -50,12 +59,12 @@ Result<std::vector<std::string>> write(const std::filesystem::path& path, Format
       if (!flight.plans.empty()) files.write(name + "plans.csv", plans_csv(flight));
       if (!flight.places.empty()) files.write(name + "places.csv", places_csv(flight));
     }
-    return files.names();
+    return written();
   }
   const auto text = format == Format::geojson ? geojson(*flights) : kml(*flights);
   if (!text) return text.error();
   files.write(format == Format::geojson ? "flight.geojson" : "flight.kml", *text);
-  return files.names();
+  return written();
 }
 
 }  // namespace skein::recording_export

@@ -73,9 +73,11 @@ class RecordingExport : public ::testing::Test {
 };
 
 TEST_F(RecordingExport, CsvHasEverythingExactly) {
-  const auto files = write(folder_, Format::csv, folder_ / "out");
-  ASSERT_TRUE(files.ok()) << files.error().message;
-  EXPECT_THAT(*files,
+  const auto written = write(folder_, Format::csv, folder_ / "out");
+  ASSERT_TRUE(written.ok()) << written.error().message;
+  EXPECT_EQ(written->damaged, 0U);
+  EXPECT_TRUE(written->complete);
+  EXPECT_THAT(written->files,
               ElementsAre("vehicle-07/events.csv", "vehicle-07/track.csv", "vehicle-07/plans.csv"));
   const auto track = text_of("vehicle-07/track.csv");
   EXPECT_THAT(track, StartsWith("time_s,x_m,y_m,z_m,heading_rad,"));
@@ -106,6 +108,17 @@ TEST_F(RecordingExport, SummaryTellsWhatIsThere) {
                                 "time 0 is 2001-09-09 01:46:40 UTC\n"));
   EXPECT_THAT(*text, HasSubstr("5 records from 0.000 to 0.100 s; complete\n"));
   EXPECT_THAT(*text, HasSubstr("3    30.00 Hz  /vehicle_07/track\n"));
+}
+
+TEST_F(RecordingExport, ATornRecordingIsSaidToBeTorn) {
+  const auto file = folder_ / "vehicle-07" / recording::kFileName;
+  std::filesystem::resize_file(file, std::filesystem::file_size(file) * 3 / 4);
+  const auto torn = write(folder_, Format::csv, folder_ / "out");
+  ASSERT_TRUE(torn.ok()) << torn.error().message;
+  EXPECT_FALSE(torn->complete);
+  std::filesystem::resize_file(file, 100);
+  const auto nothing = write(folder_, Format::csv, folder_ / "out");
+  EXPECT_FALSE(nothing.ok());
 }
 
 TEST_F(RecordingExport, WhatCannotBeDoneIsTold) {

@@ -76,6 +76,7 @@ using Input =
 [[nodiscard]] std::string hyphened(std::string_view name);
 /// The shapes that have a name of their own, as they are typed; all others are free ones.
 [[nodiscard]] std::vector<std::string> shape_names();
+/// By a name of these, or as files write it: line-abreast, line_abreast.
 [[nodiscard]] std::optional<formation::ShapeKind> shape_named(std::string_view name);
 /// The order in the prompt's words, for the log and the audit: "form wedge spacing 5".
 [[nodiscard]] std::string line_of(const Input& input);

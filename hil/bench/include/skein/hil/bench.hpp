@@ -49,6 +49,7 @@ struct BenchOutcome {
   std::vector<std::string> deaths;     ///< processes that ended by themselves, and how
   bool stopped_cleanly = false;        ///< all ended with status 0 when asked to
   bool interrupted = false;            ///< by Ctrl-C
+  bool quit = false;                   ///< by the operator at the ground station's prompt
   std::uint64_t control_overruns = 0;  ///< missed control periods, all vehicles together
   std::uint64_t messages_dropped = 0;  ///< by full queues or as damaged, all vehicles together
 };
@@ -56,8 +57,9 @@ struct BenchOutcome {
 /// Starts one skein-onboard for each vehicle, one skein-fc for each whose flight controller is an
 /// ardupilot, one skein-ground and the radio between them, plays the sensors and the faults, and
 /// stops everything when all sites are done, at the scenario's duration_max, when a process dies
-/// unasked, or on SIGINT or SIGTERM. Nothing is left running or in /dev/shm, whatever happens.
-/// Fails, with what to do, when it cannot start.
+/// unasked, when the operator at the prompt quits, or on SIGINT or SIGTERM. Nothing is left running
+/// or in /dev/shm, whatever happens. Fails, with what to do, when it cannot start, and where the
+/// run folder has something in it.
 [[nodiscard]] Result<BenchOutcome> fly(
     const configuration::Scenario& scenario, const BenchOptions& options,
     const std::function<void(const BenchProgress&)>& on_progress);

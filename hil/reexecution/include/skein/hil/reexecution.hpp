@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -22,6 +23,8 @@ struct Reexecution {
   Instant until{};  ///< what came before was compared
   /// The recording lost records there; what comes after is not compared.
   std::optional<Instant> gap;
+  std::size_t damaged = 0;  ///< parts of the recording that cannot be read
+  bool complete = true;     ///< the recording was closed by its process
   /// The first thing that is not as it was, in full; empty: none.
   std::string difference;
   Instant differs_at{};

@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "skein/base/text.hpp"
 #include "skein/codec/describe.hpp"
 
 /// Described types as XCDR1 in little endian with its header of 4 bytes, and back. The low two bits
@@ -38,11 +39,6 @@ struct Refusal {
   Fault fault = Fault::malformed;
   std::uint16_t version = 0;  ///< of the sender's type, where the fault is bad_version
 };
-
-/// Valid UTF-8 without control characters.
-[[nodiscard]] bool is_text(std::string_view text);
-/// Cut at a character to at most so many bytes; a space for each control character.
-[[nodiscard]] std::string as_text(std::string_view text, std::size_t bytes_max);
 
 class CdrWriter {
  public:

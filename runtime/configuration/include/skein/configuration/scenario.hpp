@@ -128,5 +128,7 @@ struct Scenario {
 /// starts, sites and final approaches, vehicles of one height, a radio slower than the protocol
 /// allows, names of vehicles and sites that do not exist. Fails with one sentence a line.
 [[nodiscard]] Result<void> check(const Scenario& scenario);
+/// Both: what check() finds is said of `file`, too.
+[[nodiscard]] Result<Scenario> load_flyable_scenario(const std::filesystem::path& file);
 
 }  // namespace skein::configuration

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "skein/codec/cdr.hpp"
+#include "skein/base/text.hpp"
 
-namespace skein::codec {
+#include <algorithm>
+#include <optional>
+
+namespace skein {
 namespace {
 
 constexpr bool is_control(char c) { return static_cast<unsigned char>(c) < 0x20U || c == 0x7F; }
@@ -39,4 +42,4 @@ std::string as_text(std::string_view text, std::size_t bytes_max) {
   return made;
 }
 
-}  // namespace skein::codec
+}  // namespace skein
