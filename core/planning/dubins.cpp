@@ -13,9 +13,7 @@
 namespace skein::planning {
 namespace {
 
-/// Ends may differ from what was asked by this much, so that rounding of the input never turns a
-/// path of no length into a full circle.
-constexpr double kSlack_m = 2e-10;
+constexpr auto slack_of = DubinsLanes<2>::slack_m;
 /// Two ways to compute one length differ by less, but where one of them goes full circle.
 constexpr double kAgree_m = 1e-6;
 
@@ -68,9 +66,9 @@ Relative relative(const Pose2& from, const Pose2& to) {
 
 /// The turn in [0, 2 pi), where a full circle less what moves the end by no more than the slack
 /// is none at all.
-double turn_of(double rad, double reach_m) {
+double turn_of(double rad, double reach_m, double slack_m) {
   const double turn = wrap_two_pi(rad);
-  return (kTwoPi - turn) * reach_m < kSlack_m ? 0.0 : turn;
+  return (kTwoPi - turn) * reach_m < slack_m ? 0.0 : turn;
 }
 
 struct Turns {
@@ -92,15 +90,16 @@ std::optional<Turns> csc(const Relative& g, const Senses& s, double r1, double r
   const double half = std::sin(g.turn_rad / 2.0);
   const double line_sq = g.x_m * g.x_m + g.y_m * g.y_m + 2.0 * (g.x_m * wx + g.y_m * wy) +
                          4.0 * s.first * s.last * r1 * r2 * half * half;
-  if (line_sq < -2.0 * kSlack_m * std::abs(offset)) return std::nullopt;
+  const double slack_m = slack_of(std::max(r1, r2));
+  if (line_sq < -2.0 * slack_m * std::abs(offset)) return std::nullopt;
   double heading = 0.0;
   double line = 0.0;
-  if (offset != 0.0 || std::hypot(dx, dy) > kSlack_m) {
-    line = std::sqrt(std::max(line_sq, 0.0));
+  if (offset != 0.0 || std::hypot(dx, dy) > slack_m) {
+    line = offset != 0.0 ? std::sqrt(std::max(line_sq, 0.0)) : std::hypot(dx, dy);
     heading = std::atan2(dy * line - dx * offset, dx * line + dy * offset);
   }
-  const double first = turn_of(s.first * heading, r1 + line);
-  const double last = turn_of(s.last * (g.turn_rad - heading), r2);
+  const double first = turn_of(s.first * heading, r1 + line, slack_m);
+  const double last = turn_of(s.last * (g.turn_rad - heading), r2, slack_m);
   return Turns{first, line, last};
 }
 
@@ -109,14 +108,15 @@ std::optional<Turns> ccc(const Relative& g, const Senses& s, double r, bool majo
   const double dx = g.x_m - s.last * r * g.sin_turn;
   const double dy = g.y_m + s.last * r * g.cos_turn - s.first * r;
   const double distance = std::hypot(dx, dy);
-  if (distance > 4.0 * r + kSlack_m) return std::nullopt;
+  const double slack_m = slack_of(r);
+  if (distance > 4.0 * r + slack_m) return std::nullopt;
   const double minor = 2.0 * std::asin(std::min(1.0, distance / (4.0 * r)));
   const double middle = major ? kTwoPi - minor : minor;
-  const double halfway = distance > kSlack_m ? std::atan2(dy, dx) : 0.0;
+  const double halfway = distance > slack_m ? std::atan2(dy, dx) : 0.0;
   const double leave = halfway + s.first * middle / 2.0;
   const double enter = halfway - s.first * middle / 2.0;
-  return Turns{turn_of(s.first * leave, 4.0 * r), middle,
-               turn_of(s.first * (g.turn_rad - enter), r)};
+  return Turns{turn_of(s.first * leave, 4.0 * r, slack_m), middle,
+               turn_of(s.first * (g.turn_rad - enter), r, slack_m)};
 }
 
 std::optional<Turns> word_turns(DubinsWord word, const Relative& g, double r1, double r2) {
@@ -136,7 +136,8 @@ DubinsPath make_path(DubinsWord word, const Pose2& from, const Turns& t, double 
 }
 
 bool same_pose(const Relative& g, double radius_m) {
-  return std::hypot(g.x_m, g.y_m) < kSlack_m && std::abs(g.turn_rad) * radius_m < kSlack_m;
+  const double slack_m = slack_of(radius_m);
+  return std::hypot(g.x_m, g.y_m) < slack_m && std::abs(g.turn_rad) * radius_m < slack_m;
 }
 
 /// Lengths of all words: the left-first ones in one lane, the right-first ones in the other.
@@ -191,11 +192,12 @@ void consider_arc_and_line(ToPoint& best, const Vec2& goal, double sense, double
   const Vec2 d = goal - Vec2{0.0, sense * r};
   // |d|^2 - r^2, arranged so that a goal near the start does not cancel.
   const double line_sq = goal.squaredNorm() - 2.0 * sense * r * goal.y();
-  if (line_sq < -kSlack_m * r) return;
+  const double slack_m = slack_of(r);
+  if (line_sq < -slack_m * r) return;
   const double line = std::sqrt(std::max(line_sq, 0.0));
   const double heading =
       std::atan2(d.y() * line + sense * r * d.x(), d.x() * line - sense * r * d.y());
-  consider(best, sense, turn_of(sense * heading, r + line), {0.0, line}, r);
+  consider(best, sense, turn_of(sense * heading, r + line, slack_m), {0.0, line}, r);
 }
 
 /// The second circle touches the first and runs through the goal.
@@ -204,6 +206,7 @@ void consider_two_arcs(ToPoint& best, const Vec2& goal, double sense, double r) 
   const Vec2 d = goal - centre;
   const double distance = d.norm();
   if (distance < r || distance > 3.0 * r) return;
+  const double slack_m = slack_of(r);
   const double between =
       std::acos(std::clamp((3.0 * r * r + distance * distance) / (4.0 * r * distance), -1.0, 1.0));
   for (const double side : {1.0, -1.0}) {
@@ -213,8 +216,8 @@ void consider_two_arcs(ToPoint& best, const Vec2& goal, double sense, double r) 
     const double heading = direction + sense * kPi / 2.0;
     const Vec2 out = goal - second;
     const double spoke_turn = -sense * (std::atan2(out.y(), out.x()) - (direction + kPi));
-    const double turn = turn_of(spoke_turn, r);
-    consider(best, sense, turn_of(sense * heading, 3.0 * r), {-sense / r, turn * r}, r);
+    const double turn = turn_of(spoke_turn, r, slack_m);
+    consider(best, sense, turn_of(sense * heading, 3.0 * r, slack_m), {-sense / r, turn * r}, r);
   }
 }
 
@@ -296,7 +299,7 @@ Path shortest_to_point(const Pose2& from, const Vec2& to, double radius_m) {
   Path path{.start = from, .segments = {}};
   const Relative g = relative(from, {to.x(), to.y(), from.heading_rad});
   const Vec2 goal{g.x_m, g.y_m};
-  if (goal.norm() < kSlack_m) return path;
+  if (goal.norm() < slack_of(radius_m)) return path;
   ToPoint best;
   for (const double sense : {1.0, -1.0}) {
     consider_arc_and_line(best, goal, sense, radius_m);

@@ -40,8 +40,13 @@ struct DubinsLanes {
 
   static constexpr double kPi = 0x1.921fb54442d18p+1;
   static constexpr double kTwoPi = 2.0 * kPi;
-  /// As in dubins.cpp: what the end may miss the goal by.
-  static constexpr double kSlack_m = 2e-10;
+  /// What the end may miss the goal by: so rounding of the input, by which a path of no length
+  /// would have to be a full circle, costs none.
+  static constexpr double slack_m(double radius_m) {
+    constexpr double kOfRadius = 1e-9;
+    constexpr double kLeast_m = 2e-10;
+    return kOfRadius * radius_m > kLeast_m ? kOfRadius * radius_m : kLeast_m;
+  }
   /// Below this the reduction of a heading is exact to the last bits.
   static constexpr double kHeadingMax_rad = 1e5;
 
@@ -163,9 +168,9 @@ struct DubinsLanes {
 
   /// From [-2 pi, 2 pi] to [0, 2 pi); a full circle less what moves the end by no more than the
   /// slack is none at all.
-  static Real turn_of(Real rad, Real reach_m) {
+  static Real turn_of(Real rad, Real reach_m, double slack) {
     const Real turn = select(rad < 0.0, rad + kTwoPi, rad);
-    return select((kTwoPi - turn) * reach_m < kSlack_m, Real{}, turn);
+    return select((kTwoPi - turn) * reach_m < slack, Real{}, turn);
   }
 
   static Real wrap(Real rad) {
@@ -185,7 +190,8 @@ struct DubinsLanes {
   static Goal mirrored(const Goal& g) { return {g.x, -g.y, -g.sin, g.cos, g.versine, -g.turn}; }
 
   static Bits is_here(const Goal& g, double r) {
-    return ((g.x * g.x + g.y * g.y) < kSlack_m * kSlack_m) & (magnitude(g.turn) * r < kSlack_m);
+    const double slack = slack_m(r);
+    return ((g.x * g.x + g.y * g.y) < slack * slack) & (magnitude(g.turn) * r < slack);
   }
 
   /// The turns of LSL sum to the goal's turn, and a full circle more where the line's direction is
@@ -197,15 +203,15 @@ struct DubinsLanes {
     const Real from_last = dx * g.sin - dy * g.cos;
     const Real along_last = dx * g.cos + dy * g.sin;
     const Real reach = r + line;
-    const Real none = kSlack_m * line;
+    const double slack = slack_m(r);
+    const Real none = slack * line;
     const Bits no_first = (magnitude(dy) * reach <= none) & (dx > 0.0);
     const Bits no_last = (magnitude(from_last) * reach <= none) & (along_last > 0.0);
     const Bits ahead = (dx + along_last) > -line;  // not on the other side of both
     const Bits left = g.turn >= 0.0;
     const Bits between = (dy >= 0.0) & (from_last >= 0.0) & ahead;
     const Bits beyond = (dy < 0.0) & (from_last < 0.0) & ahead;
-    const Bits passed =
-        (left & between) | ~(left | beyond) | no_first | no_last | (line <= kSlack_m);
+    const Bits passed = (left & between) | ~(left | beyond) | no_first | no_last | (line <= slack);
     Real turns = select(left, g.turn, g.turn + kTwoPi);
     turns = select(passed, turns, turns + kTwoPi);
     turns = select(no_first & no_last, Real{}, turns);
@@ -222,10 +228,11 @@ struct DubinsLanes {
                          2.0 * r * ((g.x * g.sin - g.y * (2.0 - g.versine)) - r * g.versine);
     const Real line = root(select(line_sq > 0.0, line_sq, Real{}));
     const Real heading = angle(dy * line + 2.0 * r * dx, dx * line - 2.0 * r * dy);
-    const Real first = turn_of(heading, r + line);
-    const Real last = turn_of(heading - g.turn, splat(r));
+    const double slack = slack_m(r);
+    const Real first = turn_of(heading, r + line, slack);
+    const Real last = turn_of(heading - g.turn, splat(r), slack);
     const Real length = line + r * (first + last);
-    return select(line_sq >= -4.0 * r * kSlack_m, length, infinity());
+    return select(line_sq >= -4.0 * r * slack, length, infinity());
   }
 
   /// Where a CCC word with the middle arc above a half turn could be shorter than `best`. Its
@@ -241,21 +248,22 @@ struct DubinsLanes {
     constexpr double kNearFull_rad = 1e-3;
     Real ends = select(turn + high < (kTwoPi - kNearFull_rad) * r, least_sum, beyond);
     ends = select(ends > 0.0, ends, Real{});
-    return (distance <= 4.0 * r + kSlack_m) & (low + ends < best);
+    return (distance <= 4.0 * r + slack_m(r)) & (low + ends < best);
   }
 
   /// LRL. Halfway round the middle arc the heading is that of c2 - c1.
   static Real ccc(Real goal_turn, const Centres& c, double r) {
-    const Bits apart = c.distance > kSlack_m;
+    const double slack = slack_m(r);
+    const Bits apart = c.distance > slack;
     const Real dx = select(apart, c.dx, splat(1.0));
     const Real dy = select(apart, c.dy, Real{});
     const Real rest_sq = 16.0 * r * r - c.distance * c.distance;
     const Real rest = root(select(rest_sq > 0.0, rest_sq, Real{}));
     const Real middle = kTwoPi - 2.0 * angle(c.distance, rest);
     const Real leave = angle(dx * c.distance - dy * rest, -(dx * rest) - dy * c.distance);
-    const Real first = turn_of(leave, splat(4.0 * r));
+    const Real first = turn_of(leave, splat(4.0 * r), slack);
     const Real turned = (goal_turn - leave) + middle;  // from -pi to 4 pi
-    const Real last = turn_of(select(turned >= kTwoPi, turned - kTwoPi, turned), splat(r));
+    const Real last = turn_of(select(turned >= kTwoPi, turned - kTwoPi, turned), splat(r), slack);
     return r * (first + middle + last);
   }
 

@@ -192,6 +192,34 @@ TEST(Dubins, DegenerateInputs) {
   }
 }
 
+/// A path of an arc, a line and an arc, whose end is off by what rounding may do.
+TEST(Dubins, RoundingFliesNoLoops) {
+  Random random{8};
+  for (int i = 0; i < 100'000; ++i) {
+    const double r = std::pow(10.0, random.uniform(-0.5, 3.5));
+    const Pose2 from = random_pose(random, 20.0 * r);
+    const auto length = [&](double most) {
+      return random.chance(0.3) ? 0.0 : r * most * std::pow(10.0, random.uniform(-12.0, 0.0));
+    };
+    const double first = random.chance(0.5) ? 1.0 : -1.0;
+    const double last = random.chance(0.5) ? 1.0 : -1.0;
+    const double lengths[] = {length(3.0), length(30.0), length(3.0)};
+    Pose2 to = advance(advance(advance(from, first / r, lengths[0]), 0.0, lengths[1]), last / r,
+                       lengths[2]);
+    const double flown = lengths[0] + lengths[1] + lengths[2];
+    const double off = 1e-10;
+    to.x_m += r * random.uniform(-off, off);
+    to.y_m += r * random.uniform(-off, off);
+    to.heading_rad += random.uniform(-off, off);
+    // Beside a path by e, a path bends over sqrt(e).
+    EXPECT_LT(shortest_dubins_length(from, to, r), flown + 1e-4 * r) << i;
+    const Path path = shortest_dubins(from, to, r).to_path();
+    EXPECT_LT(path.length_m(), flown + 1e-4 * r) << i;
+    EXPECT_LT((path.end().position() - to.position()).norm(), 5e-9 * r) << i;
+    EXPECT_LT(std::abs(wrap_pi(path.end().heading_rad - to.heading_rad)), 5e-9) << i;
+  }
+}
+
 TEST(Dubins, ToAPoint) {
   Random random{7};
   int inside = 0;

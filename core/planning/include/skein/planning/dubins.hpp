@@ -39,7 +39,8 @@ struct DubinsPath {
 [[nodiscard]] std::optional<DubinsPath> dubins_ccc(DubinsWord word, const Pose2& from,
                                                    const Pose2& to, double radius_m, bool major);
 
-/// The shortest path between two poses. Always exists for equal radii.
+/// The shortest path between two poses. Always exists for equal radii. Its end may miss the pose by
+/// 1e-9 of the radius: a pose that rounding has put so far off a path costs no full circle.
 [[nodiscard]] DubinsPath shortest_dubins(const Pose2& from, const Pose2& to, double radius_m);
 [[nodiscard]] double shortest_dubins_length(const Pose2& from, const Pose2& to, double radius_m);
 
