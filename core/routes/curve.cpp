@@ -50,14 +50,14 @@ constexpr double kTurnDifferenceMax_rad = 1.2;
 constexpr double kLegMin = 0.1;
 constexpr double kLegMax = 2.0;
 
-int kind_number(HazardKind kind) {
+int kind_number(HazardKind kind, CostReading reading) {
   switch (kind) {
     case HazardKind::detection:
       return 0;
     case HazardKind::ramp:
       return 1;
     default:
-      return 2;
+      return reading == CostReading::as_printed ? 2 : 3;
   }
 }
 
@@ -67,8 +67,9 @@ struct CurveEvaluator::Tables {
   CurveForm form = CurveForm::free_points;
   Width width = Width::baseline;
   CostWeights weights;
+  CostReading reading = CostReading::of_flights;
   double straight_m = 0.0;
-  double exposure_scale = 0.0;
+  double exposure_scale = 0.0;  ///< of the sum over samples; of flights, over metres
   // The frame: origin and direction of its x axis.
   Vec2 origin{0.0, 0.0};
   Vec2 along{1.0, 0.0};
@@ -78,7 +79,8 @@ struct CurveEvaluator::Tables {
   std::size_t waypoints = 0;
   std::vector<double> station_m;  ///< of the waypoints, along the line
   std::vector<double> basis, base_x, base_y, mask, x, y;
-  std::vector<Vec2> polygon;  ///< start, waypoints and site in this frame, of the last point
+  std::vector<double> leg, weight;  ///< empty as printed
+  std::vector<Vec2> polygon;        ///< start, waypoints and site in this frame, of the last point
   std::vector<double> waypoint_x, waypoint_y;
   std::vector<double> hazard_x, hazard_y, radius, inner, peak, slope;
   std::vector<int> kind;
@@ -91,8 +93,18 @@ struct CurveEvaluator::Tables {
     return origin + px * along + py * left_of(along);
   }
   [[nodiscard]] CurveTable table() {
-    return {samples,       stride,      waypoints, basis.data(), base_x.data(),
-            base_y.data(), mask.data(), x.data(),  y.data()};
+    const bool by_length = reading == CostReading::of_flights;
+    return {samples,
+            stride,
+            waypoints,
+            basis.data(),
+            base_x.data(),
+            base_y.data(),
+            mask.data(),
+            x.data(),
+            y.data(),
+            by_length ? leg.data() : nullptr,
+            by_length ? weight.data() : nullptr};
   }
   [[nodiscard]] CurveHazards hazards() const {
     return {hazard_x.size(), hazard_x.data(), hazard_y.data(), radius.data(),
@@ -132,7 +144,7 @@ struct CurveEvaluator::Tables {
     inner.push_back(hazard.inner_radius_m);
     peak.push_back(hazard.peak);
     slope.push_back(hazard.peak / (hazard.radius_m - hazard.inner_radius_m));
-    kind.push_back(kind_number(hazard.kind));
+    kind.push_back(kind_number(hazard.kind, reading));
   }
   void add_samples(const Vec2& from, const Vec2& to);
 };
@@ -184,6 +196,8 @@ void CurveEvaluator::Tables::add_samples(const Vec2& from, const Vec2& to) {
     v->assign(column, 0.0);
   }
   std::fill_n(mask.begin(), samples, 1.0);
+  leg.assign(column + kCurveBlock, 0.0);
+  weight.assign(column, 0.0);
   const auto spread = [&](const std::vector<double>& knots, std::vector<double>& to_column) {
     const std::vector<double> values = natural_spline(knots, samples);
     std::copy(values.begin(), values.end(), to_column.begin());
@@ -230,14 +244,15 @@ CurveEvaluator::CurveEvaluator(const CurveProblem& problem, CurveForm form, Widt
   t.form = form;
   t.width = width;
   t.weights = problem.weights;
+  t.reading = problem.reading;
   t.samples = problem.samples;
   t.stride = (problem.samples + kCurveBlock - 1) / kCurveBlock * kCurveBlock;
   t.waypoints = problem.waypoints;
   const Vec2 straight = problem.site - problem.start;
   t.straight_m = straight.norm();
   SKEIN_ASSERT(t.straight_m > 0.0);
-  const auto n = static_cast<double>(problem.samples);
-  t.exposure_scale = 1.0 / n;
+  t.exposure_scale =
+      t.reading == CostReading::of_flights ? 1.0 : 1.0 / static_cast<double>(problem.samples);
   if (problem.exposure_per_hazard && !problem.hazards.empty()) {
     t.exposure_scale /= static_cast<double>(problem.hazards.size());
   }
@@ -283,12 +298,14 @@ const Box& CurveEvaluator::box() const { return tables_->box; }
 RouteCosts CurveEvaluator::costs(std::span<const double> point) {
   Tables& t = *tables_;
   const CurveSums sums = t.evaluate(point);
-  RouteCosts costs{.exposure = sums.exposure * t.exposure_scale,
+  const bool by_length = t.reading == CostReading::of_flights;
+  RouteCosts costs{.exposure = sums.exposure * t.exposure_scale / (by_length ? sums.length : 1.0),
                    .length_ratio = sums.length / t.straight_m,
                    .turning = t.turning(),
                    .total = 0.0};
   costs.total = t.weights.exposure * costs.exposure + t.weights.length * costs.length_ratio +
                 t.weights.turning * costs.turning;
+  if (sums.entered > 0.0) costs.total += kBarredCost * (1.0 + sums.entered / t.straight_m);
   return costs;
 }
 

@@ -23,7 +23,7 @@ struct CurveHazards {
   const double* inner;
   const double* peak;
   const double* slope;  ///< of a ramp: peak / (radius - inner)
-  const int* kind;      ///< 0 detection, 1 ramp, 2 keep-out
+  const int* kind;      ///< 0 detection, 1 ramp, 2 keep-out that costs, 3 keep-out that bars
 };
 
 /// A curve and the memory to evaluate it. Columns have `stride` + kCurveBlock entries.
@@ -37,11 +37,15 @@ struct CurveTable {
   const double* mask;  ///< 1, and 0 in the padding
   double* x;
   double* y;
+  /// From each sample to the next, with kCurveBlock zeros before them; null: of no concern.
+  double* leg;
+  double* weight;  ///< of each sample, by the legs beside it; null: the mask is
 };
 
 struct CurveSums {
-  double exposure;  ///< over samples and hazards
+  double exposure;  ///< over samples and hazards, weighted
   double length;
+  double entered;  ///< metres, over the legs and the keep-outs that bar: how deep they are in them
 };
 
 /// Length and exposure of a sampled curve. Additions, multiplications, divisions and
@@ -111,12 +115,62 @@ struct CurveLanes {
         const Real dy = load(t.y + k + 1) - load(t.y + k);
         const Real length = root(dx * dx + dy * dy);
         sum.part[p] = sum.part[p] + length;
+        if (t.leg != nullptr) store(t.leg + kCurveBlock + k, length);
         most = select(most < length, length, most);
       }
     }
     longest = 0.0;
     for (int i = 0; i < Lanes; ++i) longest = most[i] > longest ? most[i] : longest;
     return sum.total();
+  }
+
+  /// Half of the legs on both sides of each sample.
+  static void weigh(const CurveTable& t) {
+    for (std::size_t k = 0; k < t.stride; k += Lanes) {
+      const double* const leg = t.leg + kCurveBlock + k;
+      store(t.weight + k, 0.5 * (load(leg - 1) + load(leg)));
+    }
+  }
+
+  static double least(double a, double b) { return b < a ? b : a; }
+  static double most(double a, double b) { return a < b ? b : a; }
+
+  /// How deep the leg after a sample comes into the hazard, with twice what the curve may bulge
+  /// beyond it: an eighth of its second difference.
+  static double depth(const CurveTable& t, const CurveHazards& h, std::size_t i, std::size_t k) {
+    const double dx = t.x[k + 1] - t.x[k];
+    const double dy = t.y[k + 1] - t.y[k];
+    const double cx = h.x[i] - t.x[k];
+    const double cy = h.y[i] - t.y[k];
+    const double length_sq = dx * dx + dy * dy;
+    const double along = length_sq > 0.0 ? (cx * dx + cy * dy) / length_sq : 0.0;
+    const double share = least(most(along, 0.0), 1.0);
+    const double ox = cx - share * dx;
+    const double oy = cy - share * dy;
+    const bool first = k == 0;
+    const bool last = k + 2 >= t.samples;
+    const double bx = (last ? dx : t.x[k + 2] - t.x[k + 1]) - (first ? dx : t.x[k] - t.x[k - 1]);
+    const double by = (last ? dy : t.y[k + 2] - t.y[k + 1]) - (first ? dy : t.y[k] - t.y[k - 1]);
+    const double bulge = 0.125 * __builtin_sqrt(bx * bx + by * by);
+    return most(h.radius[i] + bulge - __builtin_sqrt(ox * ox + oy * oy), 0.0);
+  }
+
+  static double entered(const CurveTable& t, const CurveHazards& h, double longest) {
+    constexpr std::size_t kMiddle = kCurveBlock / 2;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < h.count; ++i) {
+      if (h.kind[i] != 3) continue;
+      const double near = h.radius[i] + longest * static_cast<double>(kMiddle + 2);
+      for (std::size_t block = 0; block + 1 < t.samples; block += kCurveBlock) {
+        const double mx = t.x[block + kMiddle] - h.x[i];
+        const double my = t.y[block + kMiddle] - h.y[i];
+        if (mx * mx + my * my > near * near) continue;
+        const std::size_t end =
+            block + kCurveBlock < t.samples ? block + kCurveBlock : t.samples - 1;
+        for (std::size_t k = block; k < end; ++k) sum += depth(t, h, i, k);
+      }
+    }
+    return sum;
   }
 
   static Real value(const CurveHazards& h, std::size_t i, Real distance) {
@@ -139,7 +193,9 @@ struct CurveLanes {
     constexpr std::size_t kMiddle = kCurveBlock / 2;
     const double reach = longest * static_cast<double>(kMiddle);
     Sum sum;
+    const double* const weight = t.weight != nullptr ? t.weight : t.mask;
     for (std::size_t i = 0; i < h.count; ++i) {
+      if (h.kind[i] == 3) continue;
       const double x = h.x[i];
       const double y = h.y[i];
       const double near = h.radius[i] + reach;
@@ -152,7 +208,7 @@ struct CurveLanes {
           const std::size_t k = block + p * Lanes;
           const Real dx = load(t.x + k) - x;
           const Real dy = load(t.y + k) - y;
-          sum.part[p] = sum.part[p] + load(t.mask + k) * value(h, i, root(dx * dx + dy * dy));
+          sum.part[p] = sum.part[p] + load(weight + k) * value(h, i, root(dx * dx + dy * dy));
         }
       }
     }
@@ -166,7 +222,9 @@ struct CurveLanes {
     place(t, t.base_y, y, t.y);
     double longest = 0.0;
     sums.length = legs(t, longest);
+    if (t.weight != nullptr) weigh(t);
     sums.exposure = exposure(t, h, longest);
+    sums.entered = entered(t, h, longest);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -94,6 +95,27 @@ Result<void> validate(const CurveProblem& problem, const SingleRouteParams& para
   return {};
 }
 
+/// A keep-out that the curve enters; none, or nullptr. Looks at sixteen times as many samples, by
+/// geometry of its own.
+const RouteHazard* entered_keep_out(const CurveProblem& problem, std::span<const double> point) {
+  constexpr std::size_t kFiner = 16;
+  CurveProblem finer = problem;
+  finer.samples = kFiner * (problem.samples - 1) + 1;
+  const std::vector<Vec2> curve = CurveEvaluator{finer, CurveForm::turns_and_legs}.curve(point);
+  const auto nearest_m = [](const Vec2& a, const Vec2& b, const Vec2& centre) {
+    const Vec2 leg = b - a;
+    const double share = leg.squaredNorm() > 0.0 ? (centre - a).dot(leg) / leg.squaredNorm() : 0.0;
+    return (a + std::clamp(share, 0.0, 1.0) * leg - centre).norm();
+  };
+  for (const RouteHazard& hazard : problem.hazards) {
+    if (hazard.kind != HazardKind::keep_out) continue;
+    for (std::size_t k = 1; k < curve.size(); ++k) {
+      if (nearest_m(curve[k - 1], curve[k], hazard.centre) < hazard.radius_m) return &hazard;
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 Result<SingleRoute> plan_route(const CurveProblem& problem, const SingleRouteParams& params,
@@ -146,11 +168,13 @@ Result<SingleRoute> plan_route(const CurveProblem& problem, const SingleRoutePar
   route.costs = evaluator.costs(best);
   route.waypoints = evaluator.waypoints(best);
   route.curve = evaluator.curve(best);
-  route.clear = std::none_of(route.curve.begin(), route.curve.end(), [&](const Vec2& point) {
-    return std::any_of(problem.hazards.begin(), problem.hazards.end(), [&](const RouteHazard& h) {
-      return h.kind == HazardKind::keep_out && h.value_at(point) > 0.0;
-    });
-  });
+  const RouteHazard* const entered = entered_keep_out(problem, best);
+  route.clear = entered == nullptr;
+  if (entered != nullptr && problem.reading == CostReading::of_flights) {
+    return Error{"no route was found that is clear of keep-out hazard " +
+                 std::to_string(entered->id.value) + " (" + std::to_string(route.evaluations) +
+                 " tried); more waypoints or evaluations may find one"};
+  }
   return route;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <string>
 
 #include "skein/paper_routes/paper_world.hpp"
 
@@ -56,6 +57,37 @@ TEST(SingleRoute, GoesRoundAWallOfKeepOuts) {
   EXPECT_LT(route->costs.length_ratio, 1.6);
 }
 
+/// Worlds where the way leads past keep-outs: it is clear of them between samples, too, or refused.
+TEST(SingleRoute, EntersNoKeepOut) {
+  Random random{5};
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    CurveProblem problem = random_curve(Random{seed});
+    problem.reading = CostReading::of_flights;
+    problem.samples = 20 + random.index(200);
+    for (RouteHazard& hazard : problem.hazards) hazard.kind = HazardKind::keep_out;
+    SingleRouteParams params;
+    params.evaluations = 2'000;
+    const auto route = plan_route(problem, params, Random{seed});
+    if (!route) {
+      EXPECT_NE(route.error().message.find("keep-out hazard"), std::string::npos);
+      continue;
+    }
+    ++found;
+    EXPECT_TRUE(route->clear);
+    EXPECT_LT(route->costs.total, kBarredCost);
+    for (std::size_t k = 1; k < route->curve.size(); ++k) {
+      for (int i = 0; i <= 20; ++i) {
+        const Vec2 at = route->curve[k - 1] + i / 20.0 * (route->curve[k] - route->curve[k - 1]);
+        for (const RouteHazard& hazard : problem.hazards) {
+          ASSERT_EQ(hazard.value_at(at), 0.0) << seed << " " << k;
+        }
+      }
+    }
+  }
+  EXPECT_GE(found, 38);
+}
+
 TEST(SingleRoute, RefusesWhatCannotBePlanned) {
   CurveProblem problem{.start = {0, 0}, .site = {0, 0}};
   EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());
@@ -67,6 +99,17 @@ TEST(SingleRoute, RefusesWhatCannotBePlanned) {
   EXPECT_NE(inside.error().message.find("hazard 3"), std::string::npos);
   problem.hazards = {{.centre = {50, 0}, .radius_m = 0}};
   EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());
+  problem.hazards.clear();
+  // Walled in.
+  problem = {.start = {0, 0}, .site = {1000, 0}};
+  for (int i = 0; i < 12; ++i) {
+    problem.hazards.push_back({.id = HazardId{static_cast<std::uint16_t>(i + 1)},
+                               .centre = 200.0 * unit_vector(i * kTwoPi / 12.0),
+                               .radius_m = 80});
+  }
+  const auto walled = plan_route(problem, {}, Random{1});
+  ASSERT_FALSE(walled.ok());
+  EXPECT_NE(walled.error().message.find("clear of keep-out hazard"), std::string::npos);
   problem.hazards.clear();
   problem.waypoints = 0;
   EXPECT_FALSE(plan_route(problem, {}, Random{1}).ok());

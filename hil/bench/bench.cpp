@@ -129,17 +129,7 @@ class Bench {
 
   Result<void> start() {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
-    if (options_.console_port != 0 && !port_free(SOCK_STREAM, options_.console_port)) {
-      return Error{"port " + std::to_string(options_.console_port) +
-                   " of loopback is in use; name another for --console, or stop who uses it "
-                   "(ss -tlpn shows who)"};
-    }
-    for (const auto& vehicle : scenario_.vehicles) {
-      if (vehicle.spec.id.value < radio::LinkTable::kNodes) continue;
-      return Error{"vehicle " + std::to_string(vehicle.spec.id.value) +
-                   " is beyond the bench's radio, which has ids 1 to " +
-                   std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
-    }
+    if (const auto possible = check_options(); !possible) return possible;
     const auto base = port_block(options_.port_base, 2 * nodes);
     if (!base) return base.error();
     const auto buses = can_buses(*base);
@@ -229,6 +219,22 @@ class Bench {
     std::vector<VehicleSpec> all;
     for (const auto& v : scenario.vehicles) all.push_back(v.spec);
     return all;
+  }
+
+  /// What can be told before anything is started.
+  [[nodiscard]] Result<void> check_options() const {
+    if (options_.console_port != 0 && !port_free(SOCK_STREAM, options_.console_port)) {
+      return Error{"port " + std::to_string(options_.console_port) +
+                   " of loopback is in use; name another for --console, or stop who uses it "
+                   "(ss -tlpn shows who)"};
+    }
+    for (const auto& vehicle : scenario_.vehicles) {
+      if (vehicle.spec.id.value < radio::LinkTable::kNodes) continue;
+      return Error{"vehicle " + std::to_string(vehicle.spec.id.value) +
+                   " is beyond the bench's radio, which has ids 1 to " +
+                   std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
+    }
+    return {};
   }
 
   [[nodiscard]] Instant mission_now() const {

@@ -65,11 +65,17 @@ std::vector<Vec2> paper_starts() { return {{0, 0}, {10, 350}, {360, 30}}; }
 Vec2 paper_site() { return {990, 990}; }
 
 CurveProblem paper_curve(const Vec2& start) {
-  return {.start = start, .site = paper_site(), .hazards = paper_hazards()};
+  return {.start = start,
+          .site = paper_site(),
+          .hazards = paper_hazards(),
+          .reading = CostReading::as_printed};
 }
 
 CurveProblem random_curve(Random random) {
-  CurveProblem problem{.start = paper_starts().front(), .site = paper_site()};
+  CurveProblem problem{.start = paper_starts().front(),
+                       .site = paper_site(),
+                       .hazards = {},
+                       .reading = CostReading::as_printed};
   while (problem.hazards.size() < kRandomHazards) {
     const RouteHazard hazard = random_hazard(random);
     if (hazard.value_at(problem.start) == 0.0 && hazard.value_at(problem.site) == 0.0) {

@@ -21,12 +21,24 @@ struct CostWeights {
   double turning = 1.0;
 };
 
+/// What a curve costs by its samples.
+enum class CostReading : std::uint8_t {
+  /// Exposure is averaged over the curve's length, so that nothing is gained by where its samples
+  /// are dense. Keep-outs are not entered, between samples neither: whatever enters one costs
+  /// kBarredCost and more, by how far it does.
+  of_flights,
+  /// As Wu 2022 has it: exposure is averaged over samples at equal steps of the parameter (eq. 23),
+  /// and a keep-out costs its `peak` (eq. 4).
+  as_printed,
+};
+inline constexpr double kBarredCost = 1e3;
+
 /// Costs of one route (eq. 23-26), without units.
 struct RouteCosts {
-  double exposure = 0.0;      ///< f_t: hazard values, averaged over the samples
+  double exposure = 0.0;      ///< f_t: hazard values, averaged
   double length_ratio = 0.0;  ///< f_line: length over the straight distance, >= 1
   double turning = 0.0;       ///< f_s: mean absolute difference of successive waypoints' turns, rad
-  double total = 0.0;         ///< weighted
+  double total = 0.0;         ///< weighted; from kBarredCost up where it enters a keep-out
 };
 
 /// One vehicle's route as a smooth curve: a natural cubic spline through the start, some free
@@ -38,6 +50,7 @@ struct CurveProblem {
   std::size_t waypoints = 5;  ///< D free ones, >= 1
   std::size_t samples = 200;  ///< n, ends included, >= 4
   CostWeights weights{};
+  CostReading reading = CostReading::of_flights;
   /// Divide f_t by the number of hazards too, as eq. 23 is printed. Then every hazard weighs less
   /// the more there are far away.
   bool exposure_per_hazard = false;

@@ -27,13 +27,14 @@ struct SingleRoute {
   std::vector<Vec2> waypoints{};  ///< the free ones
   std::vector<Vec2> curve{};      ///< sampled, start and site included
   RouteCosts costs{};
-  bool clear = false;  ///< no sample lies in a keep-out
+  bool clear = false;  ///< of the keep-outs, between samples too; as printed it may be false
   std::uint64_t evaluations = 0;
   bool cancelled = false;
 };
 
 /// Fails for a start at the site, fewer than 1 waypoint or 4 samples, hazards without a radius, a
-/// start or site within a keep-out, and a budget of 0.
+/// start or site within a keep-out, a budget of 0, and, of flights, where no route was found that
+/// is clear of the keep-outs.
 [[nodiscard]] Result<SingleRoute> plan_route(const CurveProblem& problem,
                                              const SingleRouteParams& params, Random random);
 
