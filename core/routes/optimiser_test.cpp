@@ -51,6 +51,26 @@ TEST(Optimiser, AllFindTheBottomOfASphere) {
   }
 }
 
+TEST(Optimiser, ASuccessHistoryFindsBottomsValleysAndPitsWithinItsBudget) {
+  const auto run = [](const Objective& objective, std::size_t n, double reach,
+                      std::uint64_t budget) {
+    const SearchSpace space = box_of(n, reach);
+    const auto found = success_history_evolution(objective, space, {}, {budget, {}}, Random{4});
+    EXPECT_EQ(found.evaluations, budget);
+    EXPECT_EQ(found.value, objective(found.best));
+    for (std::size_t j = 0; j < n; ++j) {
+      EXPECT_GE(found.best[j], space.box.low[j]);
+      EXPECT_LE(found.best[j], space.box.high[j]);
+    }
+    return found.value;
+  };
+  EXPECT_LT(run(sphere, 5, 10.0, 10'000), 1e-9);
+  EXPECT_LT(run(rosenbrock, 4, 2.0, 30'000), 1e-6);
+  EXPECT_LT(run(rastrigin, 3, 5.0, 30'000), 1e-6);
+  run(sphere, 5, 10.0, 3);
+  run(sphere, 5, 10.0, 95);
+}
+
 TEST(Optimiser, GoodOnesFindTheEndOfRosenbrocksValleyAndTheBestOfManyPits) {
   for (const SearchMethod method : {SearchMethod::differential_evolution, SearchMethod::cma_es}) {
     EXPECT_LT(search(method, rosenbrock, box_of(4, 2.0), 0, {30'000, {}}, Random{2}).value, 1e-6)

@@ -55,11 +55,32 @@ std::vector<Vec2> spread_along(const std::vector<Vec2>& way, std::size_t count, 
 }
 
 /// Measured: fewer generations do not converge, smaller populations miss the best way round.
-std::size_t population_for(const SingleRouteParams& params) {
-  constexpr std::uint64_t kGenerations = 115;
+std::size_t population_for(const CurveProblem& problem, const SingleRouteParams& params) {
   if (params.population != 0) return params.population;
+  const bool printed = problem.reading == CostReading::as_printed;
+  const std::uint64_t generations = printed ? 115 : 80;
   return static_cast<std::size_t>(
-      std::clamp<std::uint64_t>(params.evaluations / kGenerations, 16, 300));
+      std::clamp<std::uint64_t>(params.evaluations / generations, 16, printed ? 300 : 120));
+}
+
+/// Curves of even turning, which costs nothing: from far to one side to far to the other, with legs
+/// that are even, or grow or shrink along the way. Points of turns_and_legs.
+std::vector<std::vector<double>> arcs(std::size_t waypoints) {
+  constexpr int kEachSide = 20;
+  constexpr double kTurn_rad = 0.03;
+  std::vector<std::vector<double>> all;
+  for (int k = -kEachSide; k <= kEachSide; ++k) {
+    for (const double growth : {0.0, 1.0, -1.0}) {
+      std::vector<double> point(2 * waypoints + 1, 0.0);
+      point[0] = k * kTurn_rad;
+      for (std::size_t leg = 0; leg <= waypoints; ++leg) {
+        const double share = static_cast<double>(leg) / static_cast<double>(waypoints);
+        point[waypoints + leg] = 1.0 + growth * (share - 0.5);
+      }
+      all.push_back(std::move(point));
+    }
+  }
+  return all;
 }
 
 /// All hazards closed; only their cores; only keep-outs.
@@ -121,17 +142,20 @@ const RouteHazard* entered_keep_out(const CurveProblem& problem, std::span<const
 Result<SingleRoute> plan_route(const CurveProblem& problem, const SingleRouteParams& params,
                                Random random) {
   if (const auto valid = validate(problem, params); !valid) return valid.error();
+  const bool printed = problem.reading == CostReading::as_printed;
   CurveEvaluator evaluator{problem, CurveForm::turns_and_legs};
   const Objective objective = [&](std::span<const double> point) { return evaluator(point); };
   SingleRoute route;
 
   std::vector<std::pair<double, std::vector<double>>> seeds;
+  const auto add_point = [&](std::vector<double> point) {
+    if (seeds.size() >= params.evaluations) return;
+    const double value = objective(point);
+    seeds.emplace_back(value, std::move(point));
+  };
   const auto add_seed = [&](const std::vector<Vec2>& way) {
     for (const Spread law : kSpreads) {
-      if (seeds.size() >= params.evaluations) return;
-      std::vector<double> point = evaluator.point_of(spread_along(way, problem.waypoints, law));
-      const double value = objective(point);
-      seeds.emplace_back(value, std::move(point));
+      add_point(evaluator.point_of(spread_along(way, problem.waypoints, law)));
     }
   };
   add_seed({problem.start, problem.site});
@@ -144,6 +168,9 @@ Result<SingleRoute> plan_route(const CurveProblem& problem, const SingleRoutePar
       add_seed(way);
     }
   }
+  if (!printed) {
+    for (std::vector<double>& point : arcs(problem.waypoints)) add_point(std::move(point));
+  }
   route.evaluations = seeds.size();
   std::stable_sort(seeds.begin(), seeds.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -151,16 +178,17 @@ Result<SingleRoute> plan_route(const CurveProblem& problem, const SingleRoutePar
   const double value = seeds.front().first;
 
   // The other half of the population is anywhere.
-  const std::size_t population = population_for(params);
+  const std::size_t population = population_for(problem, params);
   SearchSpace space{evaluator.box(), {}};
   for (std::size_t i = 0; i < std::min(seeds.size(), population / 2); ++i) {
     space.seeds.push_back(seeds[i].second);
   }
   if (route.evaluations < params.evaluations) {
-    DifferentialEvolutionParams evolution;
-    evolution.population = population;
     const SearchBudget left{params.evaluations - route.evaluations, params.go_on};
-    SearchResult found = differential_evolution(objective, space, evolution, left, random);
+    SearchResult found =
+        printed
+            ? differential_evolution(objective, space, {.population = population}, left, random)
+            : success_history_evolution(objective, space, {.population = population}, left, random);
     route.evaluations += found.evaluations;
     route.cancelled = found.cancelled;
     if (found.value < value) best = std::move(found.best);

@@ -110,6 +110,18 @@ struct DifferentialEvolutionParams {
                                                   const DifferentialEvolutionParams& params,
                                                   const SearchBudget& budget, Random random);
 
+struct SuccessHistoryParams {
+  std::size_t population = 90;  ///< at first; falls evenly to 4 over the budget
+  std::size_t memory = 6;       ///< generations of successes that scales are drawn by
+  double best_share = 0.11;     ///< of the population that trial vectors are drawn towards
+};
+/// Differential evolution that learns its scales and crossovers from what succeeded, and ends with
+/// a small population (L-SHADE, Tanabe and Fukunaga 2014).
+[[nodiscard]] SearchResult success_history_evolution(const Objective& objective,
+                                                     const SearchSpace& space,
+                                                     const SuccessHistoryParams& params,
+                                                     const SearchBudget& budget, Random random);
+
 struct CmaEsParams {
   std::size_t population = 0;  ///< 0: 4 + 3 ln n
   double sigma = 0.3;          ///< first step size over the span of the box

@@ -12,12 +12,14 @@
 
 namespace skein::routes {
 
-/// How one vehicle's curve is planned: every way round the hazards is a seed, and differential
-/// evolution goes on from them over the shape of the polygon (CurveForm::turns_and_legs). A polish
-/// by CMA-ES gained nothing (docs/routes.md).
+/// How one vehicle's curve is planned: every way round the hazards, and curves of even turning, are
+/// seeds, and differential evolution goes on from them over the shape of the polygon
+/// (CurveForm::turns_and_legs): with a history of its successes, or, for the costs as printed,
+/// where that was measured to be worse, without (docs/routes.md).
 struct SingleRouteParams {
   std::uint64_t evaluations = 7'500;  ///< in all, those of the seeds included
-  /// 0: by the evaluations, of which a generation takes one in 115, but 16 to 300.
+  /// 0: by the evaluations, of which the first generation takes one in 80, but 16 to 120 (as
+  /// printed one in 115, but 16 to 300).
   std::size_t population = 0;
   std::size_t corridors = 12;  ///< by each reading of the hazards: all closed, cores, keep-outs
   std::function<bool(const SearchProgress&)> go_on;  ///< as in SearchBudget
