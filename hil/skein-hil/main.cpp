@@ -219,9 +219,10 @@ void add_routes(CLI::App& app, int& status) {
       "routes",
       "Repeat the experiments of Wu et al. 2022 on cooperative routes, and draw their figures");
   command
-      ->add_option("--what", arguments->what,
-                   "maps, convergence, weights, worlds, cooperative, quality, scale, or all;\n"
-                   "several with commas")
+      ->add_option(
+          "--what", arguments->what,
+          "maps, convergence, weights, worlds, cooperative, quality, flights,\nscale, or all;\n"
+          "several with commas")
       ->delimiter(',')
       ->capture_default_str();
   auto* paper = command->add_flag("--paper", arguments->paper,

@@ -2,6 +2,7 @@
 #include "skein/paper_routes/route_experiments.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -193,6 +194,27 @@ double run_quality(std::size_t start, std::uint64_t evaluations, std::uint64_t s
   SKEIN_ASSERT(start < paper_starts().size() && evaluations > 0);
   return solve({.ours = true}, paper_curve(paper_starts()[start]), 0, {evaluations, {}}, seed)
       .value;
+}
+
+FlightRun run_flight(std::uint64_t world) {
+  constexpr std::uint64_t kLong = 300'000;
+  CurveProblem problem = random_curve(Random{world});
+  problem.reading = CostReading::of_flights;
+  FlightRun run;
+  run.best_known = std::numeric_limits<double>::infinity();
+  const auto plan = [&](std::uint64_t evaluations, std::uint64_t seed) {
+    SingleRouteParams params;
+    params.evaluations = evaluations;
+    const auto route = plan_route(problem, params, Random{seed});
+    if (!route) return std::optional<double>{};
+    run.best_known = std::min(run.best_known, route->costs.total);
+    return std::optional{route->costs.total};
+  };
+  for (std::size_t k = 0; k < run.values.size(); ++k) {
+    run.values[k] = plan(SingleRouteParams{}.evaluations, k);
+  }
+  plan(kLong, run.values.size());
+  return run;
 }
 
 ScaleRun run_scale(std::size_t vehicles, std::size_t hazards, bool slow, std::uint64_t seed) {

@@ -17,6 +17,7 @@ namespace skein::route_figures {
 [[nodiscard]] Result<Figures> draw_maps(const Options& options);
 [[nodiscard]] Result<Figures> draw_convergence(const Options& options);
 [[nodiscard]] Result<Figures> draw_quality(const Options& options);
+[[nodiscard]] Result<Figures> draw_flights(const Options& options);
 [[nodiscard]] Result<Figures> draw_weights(const Options& options);
 [[nodiscard]] Result<Figures> draw_worlds(const Options& options);
 [[nodiscard]] Result<Figures> draw_cooperative(const Options& options);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr auto kExperiments = static_cast<std::size_t>(Experiment::count);
 constexpr std::array<std::string_view, kExperiments> kNames{
-    "maps", "convergence", "weights", "worlds", "cooperative", "quality", "scale"};
+    "maps", "convergence", "weights", "worlds", "cooperative", "quality", "flights", "scale"};
 
 }  // namespace
 
@@ -50,6 +50,7 @@ Runs paper_runs() {
           .known_worlds = 100,
           .quality = 200,
           .best_known = 4,
+          .flights = 100,
           .teams = {100, 60, 30}};
 }
 
@@ -61,6 +62,7 @@ Runs runs_of(std::size_t number) {
           .known_worlds = number,
           .quality = number,
           .best_known = 1,
+          .flights = number,
           .teams = {number, number, number}};
 }
 
@@ -76,6 +78,8 @@ std::size_t steps_of(Experiment experiment, const Runs& runs) {
       return 2 * runs.worlds;
     case Experiment::quality:
       return kStarts * (runs.quality + runs.best_known);
+    case Experiment::flights:
+      return runs.flights;
     case Experiment::scale:
       return std::accumulate(runs.teams.begin(), runs.teams.end(), std::size_t{0});
     default:
@@ -84,9 +88,9 @@ std::size_t steps_of(Experiment experiment, const Runs& runs) {
 }
 
 Result<Figures> draw(Experiment experiment, const Options& options) {
-  static constexpr std::array kDraw{&draw_maps,   &draw_convergence, &draw_weights,
-                                    &draw_worlds, &draw_cooperative, &draw_quality,
-                                    &draw_scale};
+  static constexpr std::array kDraw{&draw_maps,    &draw_convergence, &draw_weights,
+                                    &draw_worlds,  &draw_cooperative, &draw_quality,
+                                    &draw_flights, &draw_scale};
   static_assert(kDraw.size() == static_cast<std::size_t>(Experiment::count));
   return kDraw.at(static_cast<std::size_t>(experiment))(options);
 }

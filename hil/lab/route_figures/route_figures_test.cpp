@@ -24,6 +24,7 @@ Options small() {
                   .known_worlds = 0,
                   .quality = 2,
                   .best_known = 0,
+                  .flights = 2,
                   .teams = {1, 1, 0}};
   return options;
 }
@@ -73,7 +74,7 @@ TEST_P(QuickOnes, GivesTheSameFilesWithAnyNumberOfThreadsAndCountsItsRuns) {
 
 INSTANTIATE_TEST_SUITE_P(All, QuickOnes,
                          ::testing::Values(Experiment::weights, Experiment::worlds,
-                                           Experiment::quality),
+                                           Experiment::quality, Experiment::flights),
                          [](const auto& one) { return std::string{to_string(one.param)}; });
 
 TEST(RouteFigures, MapsHaveARowForEachRunAndThePapersMeansBesideThem) {

@@ -300,4 +300,37 @@ Result<Figures> draw_quality(const Options& options) {
   return Figures{text, {{"quality.csv", csv}, {"quality.svg", experiments::svg(plot)}}};
 }
 
+Result<Figures> draw_flights(const Options& options) {
+  const auto worlds = fly_all<routes::FlightRun>(options.runs.flights, options, [&](std::size_t i) {
+    return routes::run_flight(options.seed + i);
+  });
+  std::string csv = "world,run,value,best_known,gap\n";
+  std::vector<double> gaps;
+  std::size_t refused = 0;
+  for (std::size_t w = 0; w < worlds.size(); ++w) {
+    for (std::size_t run = 0; run < worlds[w].values.size(); ++run) {
+      const auto& value = worlds[w].values[run];
+      if (!value) {
+        ++refused;
+        continue;
+      }
+      gaps.push_back(*value / worlds[w].best_known - 1.0);
+      csv += fmt::format("{},{},{:.6f},{:.6f},{:.6f}\n", options.seed + w, run, *value,
+                         worlds[w].best_known, gaps.back());
+    }
+  }
+  const Spread spread = routes::spread_of(gaps);
+  const auto within = std::count_if(gaps.begin(), gaps.end(), [](double g) { return g <= 0.01; });
+  return Figures{
+      fmt::format("Flights: ours, 7,500 evaluations, exposure by length, keep-outs closed; {} "
+                  "random worlds, {} runs, {} refused\nwithin 1 % of the best known: {:.1f} %; "
+                  "median gap {:.3f} %, largest {:.2f} %\n",
+                  worlds.size(), gaps.size() + refused, refused,
+                  gaps.empty()
+                      ? 0.0
+                      : 100.0 * static_cast<double>(within) / static_cast<double>(gaps.size()),
+                  100.0 * spread.median, 100.0 * spread.most),
+      {{"flights.csv", csv}}};
+}
+
 }  // namespace skein::route_figures

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -103,6 +104,14 @@ struct WorldSummary {
 /// Quality: ours from a start of the paper's with so many evaluations. For a best known, ask with
 /// 100 times 7,500 and more, and take the least of several seeds.
 [[nodiscard]] double run_quality(std::size_t start, std::uint64_t evaluations, std::uint64_t seed);
+
+/// Four of ours with 7,500 evaluations in a random world, by the costs of flights, and the least
+/// that they and a search with forty times as many have found. None: refused.
+struct FlightRun {
+  std::array<std::optional<double>, 4> values{};
+  double best_known = 0.0;
+};
+[[nodiscard]] FlightRun run_flight(std::uint64_t world);
 
 /// Scale: a random team planned and checked.
 struct ScaleRun {
