@@ -125,6 +125,7 @@ void Initiator::close_bids(Instant now) {
   AllocationWanted wanted;
   wanted.round = announcement_.round;
   wanted.formed_at = announcement_.formed_at;
+  planning_since_ = now;
   wanted.answer_by = now + params_.allocation_time;
   deadline_ = wanted.answer_by;
   for (auto& entry : ledger_) {
@@ -155,8 +156,9 @@ void Initiator::take_back(Entry& entry, const Bid& bid, Instant now) {
 
 void Initiator::allocated(const Round& round, std::vector<TaskAssignment> assignments,
                           Instant now) {
-  if (round != announcement_.round || !machine_.in(State::allocating))
-    return;  // too late: asked anew
+  if (round != announcement_.round) return;  // too late: asked anew
+  note_planning_time(now);
+  if (!machine_.in(State::allocating)) return;
   const Instant lease_until = std::max(announcement_.formed_at, now) + params_.first_lease();
   if (authority_until() < lease_until) {
     not_formed(Event::allocation_failed, {Reason::electors_silent}, now);
@@ -267,8 +269,18 @@ void Initiator::start_anew(Instant now) {
 }
 
 void Initiator::allocation_failed(const Round& round, const std::string& detail, Instant now) {
-  if (round != announcement_.round || !machine_.in(State::allocating)) return;
+  if (round != announcement_.round) return;
+  note_planning_time(now);
+  if (!machine_.in(State::allocating)) return;
   not_formed(Event::allocation_failed, {Reason::no_allocation, {}, detail}, now);
+}
+
+/// A planner that is slower than it was thought to be would never have a plan in time. What it is
+/// given is bounded by the leases, which must reach beyond the award.
+void Initiator::note_planning_time(Instant now) {
+  const Duration took = now - planning_since_;
+  if (took < params_.allocation_time) return;
+  params_.allocation_time = std::max(params_.allocation_time, std::min(2 * took, params_.lease / 2));
 }
 
 void Initiator::not_formed(Event event, const Why& why, Instant now) {
@@ -484,6 +496,7 @@ void Initiator::on_timeout(Instant now) {
       break;
     case State::allocating:
       if (now >= deadline_) {
+        note_planning_time(now);
         not_formed(Event::allocation_failed, {Reason::allocation_too_late}, now);
       }
       break;

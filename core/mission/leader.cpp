@@ -50,7 +50,7 @@ void Leader::lead(const SurveyedSite& what, Instant now) {
     return;
   }
   fire(Event::taken_up);
-  initiator_.emplace(ownship_.config().protocol, next_coalition(), what.site, what.over,
+  initiator_.emplace(protocol_, next_coalition(), what.site, what.over,
                      position_at_formation(now), now);
   outbox_.report(event::Announced{count_of(initiator_->announcement().tasks), {}},
                  initiator_->round(), about_site(), now);
@@ -60,7 +60,7 @@ void Leader::take_over(const coalition::Participant::LeadershipWon& won, Instant
   if (leading()) return;
   fire(Event::taken_up);
   bids_.clear();  // of a site that was led here before
-  initiator_.emplace(ownship_.config().protocol, next_coalition(), won,
+  initiator_.emplace(protocol_, next_coalition(), won,
                      contains(granted_, won.plan.round), position_at_formation(now), now);
   const VehicleId lost = won.plan.round.coalition.leader;
   outbox_.report(event::LeaderReplaced{lost, count_of(won.supporters)}, initiator_->round(),
@@ -72,7 +72,7 @@ coalition::CoalitionId Leader::next_coalition() {
 }
 
 Vec2 Leader::position_at_formation(Instant now) const {
-  const Instant formed_at = now + ownship_.config().protocol.formation_time();
+  const Instant formed_at = now + protocol_.formation_time();
   return ownship_.flight().pose_at(formed_at).position();
 }
 
@@ -158,6 +158,7 @@ void Leader::end() {
   // Its last words: cancels and releases.
   while (auto message = initiator_->poll_message()) last_words_.push(std::move(*message));
   tally_ += initiator_->tally();
+  protocol_.allocation_time = initiator_->allocation_time();
   initiator_.reset();
   fire(Event::ended);
 }

@@ -49,7 +49,8 @@ class Leader {
                        on(Event::ended, State::idle)),
                   from(State::parting, on(Event::ended, State::idle)));
 
-  Leader(const Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
+  Leader(const Ownship& ownship, Outbox& outbox)
+      : ownship_{ownship}, outbox_{outbox}, protocol_{ownship.config().protocol} {}
 
   /// From now on it leads that site, unless nothing is to be done there. Precondition: idle.
   void lead(const SurveyedSite& what, Instant now);
@@ -123,6 +124,7 @@ class Leader {
 
   const Ownship& ownship_;
   Outbox& outbox_;
+  coalition::ProtocolParams protocol_;  ///< as configured, but for what a slow planner needs
   StateMachine<State, Event> machine_{kTable, State::idle};
   std::optional<Initiator> initiator_;  ///< unless idle
   AuthorisationRequest request_;        ///< that awaits its decision

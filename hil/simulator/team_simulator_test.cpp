@@ -168,6 +168,22 @@ TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {
   EXPECT_NE(once.trace, fly(team).trace);
 }
 
+/// Slower than the protocol's 0.5 s: the first plan comes too late, and later rounds wait for it.
+TEST(TeamSimulator, APlannerThatIsSlowerThanItsTimeIsWaitedFor) {
+  for (const double takes_s : {0.56, 1.5, 3.0}) {
+    TeamMission team = small_mission();
+    team.allocation_takes = from_seconds(takes_s);
+    const Flown flown = fly(team);
+    EXPECT_EQ(flown.result.sites_done, 1U) << takes_s;
+    EXPECT_EQ(flown.done(TaskKind::deliver).size(), 3U) << takes_s;
+    const auto allocated = flown.of(EventKind::allocation_done);
+    ASSERT_GE(allocated.size(), 2U) << takes_s;
+    EXPECT_EQ(std::get<mission::event::AllocationDone>(allocated[0].body).took,
+              team.allocation_takes);
+    EXPECT_EQ(flown.of(EventKind::coalition_formed).size(), 1U) << takes_s;
+  }
+}
+
 TEST(TeamSimulator, NothingIsDeliveredWithoutAnAuthorisation) {
   auto team = small_mission();
   team.decisions.clear();

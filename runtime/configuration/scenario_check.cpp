@@ -38,11 +38,15 @@ class Check {
     check_names();
     check_faults();
     if (problems_.empty()) return {};
+    if (count_ > kProblemsMax) {
+      problems_ += "\nand " + std::to_string(count_ - kProblemsMax) + " more of the kind";
+    }
     return Error{problems_};
   }
 
  private:
   void problem(const std::string& sentence) {
+    if (++count_ > kProblemsMax) return;
     if (!problems_.empty()) problems_ += '\n';
     problems_ += sentence;
   }
@@ -345,8 +349,11 @@ class Check {
     }
   }
 
+  static constexpr std::size_t kProblemsMax = 20;
+
   const Scenario& s_;
   std::string problems_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace
