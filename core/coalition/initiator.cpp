@@ -280,7 +280,8 @@ void Initiator::allocation_failed(const Round& round, const std::string& detail,
 void Initiator::note_planning_time(Instant now) {
   const Duration took = now - planning_since_;
   if (took < params_.allocation_time) return;
-  params_.allocation_time = std::max(params_.allocation_time, std::min(2 * took, params_.lease / 2));
+  params_.allocation_time =
+      std::max(params_.allocation_time, std::min(2 * took, params_.lease / 2));
 }
 
 void Initiator::not_formed(Event event, const Why& why, Instant now) {

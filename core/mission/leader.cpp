@@ -50,8 +50,8 @@ void Leader::lead(const SurveyedSite& what, Instant now) {
     return;
   }
   fire(Event::taken_up);
-  initiator_.emplace(protocol_, next_coalition(), what.site, what.over,
-                     position_at_formation(now), now);
+  initiator_.emplace(protocol_, next_coalition(), what.site, what.over, position_at_formation(now),
+                     now);
   outbox_.report(event::Announced{count_of(initiator_->announcement().tasks), {}},
                  initiator_->round(), about_site(), now);
 }
@@ -60,8 +60,8 @@ void Leader::take_over(const coalition::Participant::LeadershipWon& won, Instant
   if (leading()) return;
   fire(Event::taken_up);
   bids_.clear();  // of a site that was led here before
-  initiator_.emplace(protocol_, next_coalition(), won,
-                     contains(granted_, won.plan.round), position_at_formation(now), now);
+  initiator_.emplace(protocol_, next_coalition(), won, contains(granted_, won.plan.round),
+                     position_at_formation(now), now);
   const VehicleId lost = won.plan.round.coalition.leader;
   outbox_.report(event::LeaderReplaced{lost, count_of(won.supporters)}, initiator_->round(),
                  about_site(), now);

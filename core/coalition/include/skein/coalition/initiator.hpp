@@ -117,7 +117,8 @@ class Initiator {
   /// What the planner is given: as configured, or longer where it was late.
   [[nodiscard]] Duration allocation_time() const { return params_.allocation_time; }
 
-  /// Also where they come too late: then the next rounds leave the planner twice as long as it took.
+  /// Also where they come too late: then the next rounds leave the planner twice as long as it
+  /// took.
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
   void allocation_failed(const Round& round, const std::string& detail, Instant now);
   /// The operator's grant came for that round: from then on a silent owner's delivery that is due
@@ -196,7 +197,7 @@ class Initiator {
   StateMachine<State, Event> machine_{kTable, State::announcing};
   Announcement announcement_;
   Vec2 leader_at_formation_;
-  Instant planning_since_{};  ///< of the newest round that got so far
+  Instant planning_since_{};   ///< of the newest round that got so far
   std::vector<Entry> ledger_;  ///< one entry a task, in the order of the site
   std::map<VehicleId, Bid> bids_;
   std::optional<Award> award_;
