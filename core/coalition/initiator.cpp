@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "skein/base/contains.hpp"
+#include "skein/base/random.hpp"
 
 namespace skein::coalition {
 namespace {
@@ -281,7 +282,7 @@ void Initiator::note_planning_time(Instant now) {
   const Duration took = now - planning_since_;
   if (took < params_.allocation_time) return;
   params_.allocation_time =
-      std::max(params_.allocation_time, std::min(2 * took, params_.lease / 2));
+      std::max(params_.allocation_time, std::min(3 * took / 2, params_.lease / 2));
 }
 
 void Initiator::not_formed(Event event, const Why& why, Instant now) {
@@ -289,7 +290,17 @@ void Initiator::not_formed(Event event, const Why& why, Instant now) {
   // Frees the bidders, and with them whoever has confirmed an award that not all can fly.
   messages_.push(Cancel{announcement_.round, why});
   outputs_.push(NotFormed{announcement_.round, why});
-  deadline_ = now + params_.monitoring_interval;
+  deadline_ = now + params_.monitoring_interval + stagger();
+}
+
+/// Where rounds are nearly as long as the time between them, leaders that wait for each other's
+/// bidders would for ever ask at the same times: each waits for another while, every time.
+Duration Initiator::stagger() const {
+  const Duration longer = params_.allocation_time - params_.monitoring_interval / 10;
+  if (longer <= Duration{}) return {};
+  const auto& round = announcement_.round;
+  Random random{(std::uint64_t{round.coalition.leader.value} << 32U) ^ round.number};
+  return from_seconds(random.uniform(0.0, 4.0) * to_seconds(longer));
 }
 
 bool Initiator::all_confirmed() const {

@@ -75,6 +75,12 @@ FaultParams joining() {
   return p;
 }
 
+FaultParams slow_planner() {
+  FaultParams p = phase_only();
+  p.planning = seconds{3};
+  return p;
+}
+
 // --- in the changes of a formation ---
 
 /// Keeps the draw apart from what else starts from the same seed.
@@ -188,7 +194,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 14> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 15> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -201,7 +207,8 @@ constexpr std::array<Profile, 14> kProfiles{{{"none", nullptr, no_fault},
                                              {"clocks", clocks, small_clocks},
                                              {"hazards", hazards},
                                              {"operator", slow_operator},
-                                             {"joining", joining}}};
+                                             {"joining", joining},
+                                             {"planner", slow_planner}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
@@ -374,6 +381,7 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   restarts = std::max(restarts, other.restarts);
   joiners = std::max(joiners, other.joiners);
   clock_offset = std::max(clock_offset, other.clock_offset);
+  planning = std::max(planning, other.planning);
   hazards = std::max(hazards, other.hazards);
   slow_operator = slow_operator || other.slow_operator;
   sites_together = sites_together || other.sites_together;
@@ -464,6 +472,9 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   faults.push_back({{.not_before = Instant{} + params.phase}, {}, Healing{}});
   if (params.hazards > 0) draw_hazards(random, mission, params);
   if (params.slow_operator) draw_decisions(random, mission, params);
+  if (params.planning > Duration{}) {
+    mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
+  }
 }
 
 }  // namespace skein::hil

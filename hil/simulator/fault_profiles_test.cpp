@@ -92,7 +92,7 @@ TEST(Faults, MixedDrawsOtherProfilesForOtherSeeds) {
     ASSERT_TRUE(p);
     mixes.insert({p->loss > 0 ? 'l' : '-', p->partitions > 0 ? 'p' : '-',
                   p->crashes > 0 ? 'c' : '-', p->slow_operator ? 'o' : '-',
-                  p->joiners > 0 ? 'j' : '-'});
+                  p->joiners > 0 ? 'j' : '-', p->planning > Duration{} ? 's' : '-'});
   }
   EXPECT_GT(mixes.size(), 10U);
 }

@@ -117,7 +117,7 @@ class Initiator {
   /// What the planner is given: as configured, or longer where it was late.
   [[nodiscard]] Duration allocation_time() const { return params_.allocation_time; }
 
-  /// Also where they come too late: then the next rounds leave the planner twice as long as it
+  /// Also where they come too late: then the next rounds leave the planner half as long again as
   /// took.
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
   void allocation_failed(const Round& round, const std::string& detail, Instant now);
@@ -186,6 +186,7 @@ class Initiator {
   void make_unknown(Entry& entry);
   void heartbeat(Instant now);
   void note_planning_time(Instant now);
+  [[nodiscard]] Duration stagger() const;
   void not_formed(Event event, const Why& why, Instant now);
   void finish_if_done();
   [[nodiscard]] bool all_confirmed() const;
