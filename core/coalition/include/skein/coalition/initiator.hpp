@@ -117,8 +117,7 @@ class Initiator {
   /// What the planner is given: as configured, or longer where it was late.
   [[nodiscard]] Duration allocation_time() const { return params_.allocation_time; }
 
-  /// Also where they come too late: then the next rounds leave the planner half as long again as
-  /// took.
+  /// Also where they come too late: later rounds leave the planner half as long again as it took.
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
   void allocation_failed(const Round& round, const std::string& detail, Instant now);
   /// The operator's grant came for that round: from then on a silent owner's delivery that is due
