@@ -432,9 +432,12 @@ Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transi
                  metres(out_m + search.shortest_m())};
   }
   const auto next = least_length_from(params, transit, length_m + kGapStep_m);
-  return Error{"No path of " + metres(length_m) + " was found; " +
-               (next ? "the next longer one is " + metres(*next)
-                     : "nor a longer one within " + metres(transit.length_max_m))};
+  const std::string none = "No path of " + metres(length_m) + " was found";
+  if (!next) return Error{none + ", nor a longer one within " + metres(transit.length_max_m)};
+  constexpr double kShown_m = 0.1;  // two lengths nearer than that read as the same
+  return Error{*next - length_m < kShown_m
+                   ? none + "; there is one that is less than " + metres(kShown_m) + " longer"
+                   : none + "; the next longer one is " + metres(*next)};
 }
 
 std::optional<LengthGap> length_gap(const Pose2& from, const Pose2& to, double radius_m) {

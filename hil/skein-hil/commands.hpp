@@ -35,6 +35,9 @@ struct RunArguments {
 /// the mission asks for routes.
 [[nodiscard]] Result<void> give_routes(configuration::Scenario& scenario,
                                        const std::filesystem::path& plan);
+/// Nothing is delivered in such a mission unless an operator takes part: it has deliveries, and no
+/// operator_decisions.
+[[nodiscard]] bool wants_an_operator(const configuration::Scenario& scenario);
 int run(const RunArguments& arguments);
 
 struct SimulateArguments {

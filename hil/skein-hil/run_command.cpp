@@ -65,12 +65,6 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
   return scenario;
 }
 
-bool nobody_decides(const configuration::Scenario& scenario, const RunArguments& arguments) {
-  return !arguments.prompt && arguments.console_port == 0 && scenario.operator_decisions.empty() &&
-         std::any_of(scenario.sites.begin(), scenario.sites.end(),
-                     [](const Site& site) { return task_count(site, TaskKind::deliver) > 0; });
-}
-
 BenchOptions options_of(const RunArguments& arguments) {
   BenchOptions options;
   options.programs = arguments.programs;
@@ -118,6 +112,12 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
 
 }  // namespace
 
+bool wants_an_operator(const configuration::Scenario& scenario) {
+  return scenario.operator_decisions.empty() &&
+         std::any_of(scenario.sites.begin(), scenario.sites.end(),
+                     [](const Site& site) { return task_count(site, TaskKind::deliver) > 0; });
+}
+
 int run(const RunArguments& arguments) {
   const auto scenario = flyable_scenario(arguments);
   if (!scenario) return complain(scenario.error().message);
@@ -129,7 +129,7 @@ int run(const RunArguments& arguments) {
   fmt::print("{}: {} vehicles, {} sites, seed {}; into {}\n", scenario->title,
              scenario->vehicles.size(), scenario->sites.size(), scenario->seed,
              options.run_folder.string());
-  if (nobody_decides(*scenario, arguments)) {
+  if (wants_an_operator(*scenario) && !arguments.prompt && arguments.console_port == 0) {
     fmt::print(
         "nobody is there to authorise deliveries, so none is flown: the scenario has no "
         "operator_decisions; --prompt or --console lets you decide\n");

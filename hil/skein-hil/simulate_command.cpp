@@ -135,6 +135,11 @@ int simulate(const SimulateArguments& arguments) {
     return kExitBadInput;
   }
   if (arguments.seed) scenario->seed = *arguments.seed;
+  if (wants_an_operator(*scenario)) {
+    fmt::print(stderr,
+               "nobody is there to authorise deliveries, so none is flown: the scenario has no "
+               "operator_decisions\n");
+  }
   if (scenario->flies_formation()) return simulate_formation(*scenario, arguments);
   if (const auto faults = fault_params(arguments.faults, scenario->seed); !faults) {
     fmt::print(stderr, "{}\n", faults.error().message);

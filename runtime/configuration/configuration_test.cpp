@@ -153,12 +153,16 @@ constexpr auto kMistakes = std::to_array<Mistake>({
      "element"},
     {"[survey, deliver]", "[survey, deliver, assess, survey]",
      "v.yaml:9: vehicle.capabilities: has 4 elements, the most is 3; remove some"},
+    {"turn_radius_m: 150", "turn_radius_m: 20",
+     "v.yaml:7: vehicle.turn_radius_m: is less than cruise_speed_mps^2 / 59 m/s2, a turn of 6 g; "
+     "raise it or lower cruise_speed_mps"},
     {"id: 7", "id: 255", "v.yaml:3: vehicle.id: is of the sensors; give the vehicle another"},
     {"start: {east_m: 10, north_m: 20, heading_deg: 15}", "start: 4",
      "v.yaml:12: start: is not a group of keys; write \"key: value\" lines below it"},
     {"id: 8, port", "id: 0, port",
      "v.yaml:17: network.peers[2]: is peer 0 again; the first is on line 16, give each its own "
      "id"},
+    {"  id: 7", "\tid: 7", "v.yaml:3: is indented with a tab; YAML takes spaces only"},
     {"version: 1", "version: 2",
      "v.yaml:1: version: this program reads version 1 only; write 1 and compare the keys with "
      "the "
@@ -191,7 +195,7 @@ constexpr auto kMistakes = std::to_array<Mistake>({
     {"start:", "flight_controller: {kind: ardupilot, can: can0, node_id: 128}\nstart:",
      "v.yaml:12: flight_controller.node_id: is 128, outside 1 to 127; choose a number inside"},
     {"start:", "flight_controller: {airframe: copter}\nstart:",
-     "v.yaml:1: vehicle.turn_radius_m: is less than cruise_speed_mps^2 / acceleration_max_mps2, "
+     "v.yaml:7: vehicle.turn_radius_m: is less than cruise_speed_mps^2 / acceleration_max_mps2, "
      "which a copter's turn takes; raise it or lower cruise_speed_mps"},
     {"capabilities: [survey, deliver]", "capabilities: [survey, deliver",
      "v.yaml:10: is not YAML: end of sequence flow not found; mend the text"},

@@ -95,6 +95,16 @@ bool is_one_document(const std::string& yaml) {
   return counter.count() == 1;
 }
 
+/// The first, from 1; 0: none is.
+int line_indented_by_tab(const std::string& yaml) {
+  std::istringstream stream{yaml};
+  std::string text;
+  for (int line = 1; std::getline(stream, text); ++line) {
+    if (text.substr(0, text.find_first_not_of(" \t")).find('\t') != std::string::npos) return line;
+  }
+  return 0;
+}
+
 std::string did_you_mean(const std::string& word) {
   return word.empty() ? "" : "; did you mean " + word + "?";
 }
@@ -148,6 +158,8 @@ void Loader::read(const std::string& yaml, const Fields& fields) {
     root.node = document;
     read_group(std::move(root), fields);
   } catch (const YAML::Exception& e) {
+    const int tab = line_indented_by_tab(yaml);
+    if (tab > 0) return fail(tab, "", "is indented with a tab; YAML takes spaces only");
     fail(e.mark.is_null() ? 0 : e.mark.line + 1, "", "is not YAML: " + e.msg + "; mend the text");
   } catch (const std::exception& e) {
     fail(0, "", std::string{"cannot be read as YAML: "} + e.what() + "; mend the text");
@@ -425,10 +437,22 @@ void Loader::fleet(std::vector<ScenarioVehicle>& vehicles) {
 
 void Loader::require(bool holds, std::string_view key, std::string_view what) {
   if (holds || place_->partial) return;
-  for (const Entry& entry : place_->entries) {
-    if (entry.key == key) return fail(entry.line, path_of(key), std::string{what});
+  // "start.heading_deg" is a key of a group of this group.
+  int line = line_of(place_->node);
+  YAML::Node group = place_->node;
+  for (std::size_t begin = 0; begin <= key.size() && group.IsMap();) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    const std::string_view part = key.substr(begin, end - begin);
+    begin = end + 1;
+    YAML::Node inner;
+    for (const auto& pair : group) {
+      if (!pair.first.IsScalar() || pair.first.Scalar() != part) continue;
+      line = line_of(pair.first);
+      inner.reset(pair.second);
+    }
+    group.reset(inner);
   }
-  fail(place_->node, key, std::string{what});
+  fail(line, path_of(key), std::string{what});
 }
 
 }  // namespace skein::configuration

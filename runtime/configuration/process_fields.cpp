@@ -24,6 +24,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(Airframe::count)
 constexpr std::array<std::string_view, static_cast<std::size_t>(TakeOverKind::count)> kTakeOvers{
     "when_guided", "in_flight", "from_ground"};
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
+constexpr double kPlaneTurnMax_mps2 = 59.0;
 constexpr Range kPort{1.0, 65535.0};
 constexpr double kCopterHeightMin_m = 5.0;
 
@@ -163,13 +164,17 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
            spec.height_m);
 }
 
-void copter_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix) {
+void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix) {
   const bool flies_plans = spec.is_copter() && !flies_formation(spec);
   const double turn_mps2 = spec.cruise_speed_mps * spec.cruise_speed_mps / spec.turn_radius_m;
   v.require(!flies_plans || turn_mps2 <= spec.acceleration_max_mps2 * (1.0 + 1e-9),
             prefix + "turn_radius_m",
             "is less than cruise_speed_mps^2 / acceleration_max_mps2, which a copter's turn takes; "
             "raise it or lower cruise_speed_mps");
+  const bool unread = spec.turn_radius_m <= 0.0;  // which is told already
+  v.require(spec.is_copter() || unread || turn_mps2 <= kPlaneTurnMax_mps2, prefix + "turn_radius_m",
+            "is less than cruise_speed_mps^2 / 59 m/s2, a turn of 6 g; raise it or lower "
+            "cruise_speed_mps");
   v.require(!flies_plans || spec.height_m >= kCopterHeightMin_m, prefix + "height_m",
             "is below 5 m, and a copter takes off to it; raise it");
 }
@@ -444,7 +449,7 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
     flight_controller_fields(inner, config.flight_controller, config.vehicle.airframe, true);
     wind_fields(inner, config.flight_controller.wind, "wind_");
   });
-  copter_rules(v, config.vehicle, "vehicle.");
+  turn_rules(v, config.vehicle, "vehicle.");
   v.section({"protocol", "the contract net; the same for the whole fleet"},
             [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });
   v.section({"planning", "how tasks are given to vehicles; the same for the whole fleet"},

@@ -196,7 +196,7 @@ void fields(FieldVisitor& v, ScenarioVehicle& vehicle) {
   v.section({"flight_controller", "what flies it"}, [&vehicle](FieldVisitor& inner) {
     flight_controller_fields(inner, vehicle.flight_controller, vehicle.spec.airframe, false);
   });
-  copter_rules(v, vehicle.spec, "");
+  turn_rules(v, vehicle.spec, "");
 }
 
 void fields(FieldVisitor& v, Scenario& s) {
