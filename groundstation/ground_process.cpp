@@ -20,6 +20,7 @@
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/mission/ground_node.hpp"
@@ -298,8 +299,10 @@ class GroundLoop {
   }
 
   void send(const mission::Message& message, Instant now) {
-    network_.publish(message);
     recorder_.write(message, kGroundStation, now);
+    // What a process that starts anew must know of is in the file before anybody acts on it.
+    if (std::holds_alternative<mission::Authorisation>(message)) recorder_.flush();
+    network_.publish(message);
     console_.on_message(message, kGroundStation, now);
   }
 
@@ -414,6 +417,9 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
+  if (const std::size_t recalled = recall(config.recording_folder, clock.epoch_unix_ns(), ground)) {
+    spdlog::info("goes on with this mission: {} messages of its recording are recalled", recalled);
+  }
   auto recorder = Recorder::open(config.recording_folder, std::move(options));
   if (!recorder) {
     spdlog::critical("cannot record: {}", recorder.error().message);

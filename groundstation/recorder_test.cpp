@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 
+#include "skein/groundstation/recall.hpp"
 #include "skein/recording/reader.hpp"
 
 namespace skein::groundstation {
@@ -58,6 +59,36 @@ TEST_F(RecorderTest, AnOperatorsRecordingIsBesideThatOfTheConfiguration) {
   EXPECT_EQ(events_in("always"), 4U);
   EXPECT_EQ(events_in("evening"), 1U);
   EXPECT_EQ(events_in("night"), 1U);
+}
+
+/// A ground station that starts anew knows what it granted, of the same mission only.
+TEST_F(RecorderTest, WhatWasRecordedIsRecalled) {
+  const coalition::Round round{{VehicleId{2}, InstanceId{7}, 1}, 1};
+  mission::AuthorisationRequest request;
+  request.round = round;
+  request.site = SiteId{3};
+  request.deliveries.push_back(
+      {{{SiteId{3}, TaskKind::deliver, 0}, VehicleId{2}, at_seconds(40)}, 0.5});
+  request.decide_by = at_seconds(30);
+  {
+    auto recorder = Recorder::open(path("ground"), options_);
+    ASSERT_TRUE(recorder);
+    recorder->write(mission::Message{request}, VehicleId{2}, at_seconds(10));
+    recorder->write(
+        mission::Message{mission::Authorisation{round, SiteId{3}, true, "ada", at_seconds(12)}},
+        kGroundStation, at_seconds(12));
+    recorder->flush();
+  }
+  const auto recalled = [&](std::int64_t epoch) {
+    mission::GroundNode node{{}, at_seconds(20)};
+    recall(path("ground"), epoch, node);
+    const auto& known = node.agent().authorisations();
+    return known.size() == 1 && known[0].decision && known[0].decision->decided_by == "ada";
+  };
+  EXPECT_TRUE(recalled(options_.session.epoch_unix_ns));
+  EXPECT_FALSE(recalled(options_.session.epoch_unix_ns + 1));
+  mission::GroundNode node{{}, at_seconds(20)};
+  EXPECT_EQ(recall(path("none"), options_.session.epoch_unix_ns, node), 0U);
 }
 
 TEST_F(RecorderTest, AFolderThatIsRecordedIntoIsNotTakenTwice) {

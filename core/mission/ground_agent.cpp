@@ -43,7 +43,46 @@ GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/)
   taken_hazards_.insert(config_.hazards.begin(), config_.hazards.end());
 }
 
+void GroundAgent::recall(const Message& message, VehicleId sender, Instant at) {
+  if (std::holds_alternative<Telemetry>(message) || std::holds_alternative<Health>(message)) return;
+  if (sender == kGroundStation) {
+    recall_own(message, at);
+  } else {
+    hear(message, at);
+  }
+  while (messages_.pop()) continue;  // said then
+  while (events_.pop()) continue;
+}
+
+void GroundAgent::recall_own(const Message& message, Instant at) {
+  if (const auto* decision = std::get_if<Authorisation>(&message)) {
+    for (PendingAuthorisation& pending : pending_) {
+      const bool of_it =
+          pending.request.site == decision->site && pending.request.round == decision->round;
+      if (!of_it || pending.decision) continue;
+      if (script_for(decision->site) != nullptr) ++scripted_[decision->site];
+      take(pending, *decision);
+      next_repeat_ = std::min(next_repeat_, at + kAuthorisationRepeat);
+    }
+  } else if (const auto* report = std::get_if<HazardReport>(&message)) {
+    const Hazard& hazard = report->hazard;
+    const bool known = std::ranges::any_of(
+        hazards_, [&hazard](const Hazard& other) { return other.id == hazard.id; });
+    if (known || hazards_.size() >= kHazardsMax) return;
+    taken_hazards_.insert(hazard.id);
+    hazards_.push_back(hazard);
+    next_hazards_ = std::min(next_hazards_, at + kHazardRepeat);
+  } else if (const auto* command = std::get_if<Command>(&message)) {
+    last_command_ = std::max(last_command_, command->number);
+  }
+}
+
 void GroundAgent::on_message(const Message& message, Instant now) {
+  hear(message, now);
+  on_timeout(now);
+}
+
+void GroundAgent::hear(const Message& message, Instant now) {
   fleet_.on_message(message, now);
   if (const auto* request = std::get_if<AuthorisationRequest>(&message)) {
     on_request(*request, now);
@@ -56,7 +95,6 @@ void GroundAgent::on_message(const Message& message, Instant now) {
     if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
     if (const auto* a = std::get_if<coalition::Announcement>(said)) on_announcement(*a, now);
   }
-  on_timeout(now);
 }
 
 void GroundAgent::on_timeout(Instant now) {
@@ -294,21 +332,27 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
                    ", which is part of this plan; stop or renumber one of them first"};
     }
   }
-  if (!granted) {
-    led_[request.site].announcement.reset();
-    std::erase_if(granted_, [&](const auto& g) { return g.first.site == request.site; });
-  }
-  for (const auto& delivery : request.deliveries) {
-    if (!granted) break;
-    granted_.insert_or_assign(delivery.assignment.task, Granted{request.round, delivery.assignment,
-                                                                delivery.bearing_rad, now});
-  }
-  pending.decision = Authorisation{request.round, request.site, granted, by, now};
+  take(pending, Authorisation{request.round, request.site, granted, by, now});
   report(granted ? EventBody{event::Authorised{by}} : EventBody{event::AuthorisationRefused{by}},
          request.round, {request.site, TaskKind::deliver, 0}, now);
   messages_.push(Message{*pending.decision});
   next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
   return {};
+}
+
+void GroundAgent::take(PendingAuthorisation& pending, const Authorisation& decision) {
+  const auto& request = pending.request;
+  if (!decision.granted) {
+    led_[request.site].announcement.reset();
+    std::erase_if(granted_, [&](const auto& g) { return g.first.site == request.site; });
+  }
+  for (const auto& delivery : request.deliveries) {
+    if (!decision.granted) break;
+    granted_.insert_or_assign(
+        delivery.assignment.task,
+        Granted{request.round, delivery.assignment, delivery.bearing_rad, decision.decided_at});
+  }
+  pending.decision = decision;
 }
 
 const ScriptedDecision* GroundAgent::script_for(SiteId site) const {

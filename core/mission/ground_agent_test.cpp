@@ -209,6 +209,32 @@ TEST(GroundAgent, ADecisionIsForTheNewestPlanAndNoOther) {
   EXPECT_FALSE(bench.agent.authorise(kSite, "Ada", at_seconds(12.5)).ok());
 }
 
+TEST(GroundAgent, WhatAnEarlierProcessGrantedIsNotGrantedAgain) {
+  Bench before;
+  const AuthorisationRequest first = request(1, 30.0, 40.0);
+  before.ask(first, 10.0);
+  ASSERT_TRUE(before.agent.authorise(kSite, "ada", at_seconds(12)));
+  const auto decision = before.sent<Authorisation>().at(0);
+
+  Bench anew;
+  anew.agent.recall(Message{first}, kLeader, at_seconds(10));
+  anew.agent.recall(Message{decision}, kGroundStation, at_seconds(12));
+  EXPECT_TRUE(anew.sent<Authorisation>().empty());
+  EXPECT_TRUE(anew.events().empty());
+  // It goes on telling what it decided, and nobody else gets what may have been flown.
+  anew.run_until(20.0);
+  EXPECT_FALSE(anew.sent<Authorisation>().empty());
+  AuthorisationRequest other = request(1, 90.0, 100.0);
+  other.round.coalition = {VehicleId{3}, {78}, 1};
+  other.deliveries[0].assignment.vehicle = VehicleId{3};
+  anew.ask(other, 60.0);
+  EXPECT_FALSE(anew.agent.authorise(kSite, "ada", at_seconds(61)));
+  const auto told = anew.sent<coalition::Message>();
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(std::get<coalition::MemberStatus>(told[0]).tasks.at(0).state,
+            coalition::TaskState::unknown);
+}
+
 TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   Bench bench;
   bench.ask(request(1, 20.0, 30.0), 10.0);

@@ -13,6 +13,10 @@ namespace skein::mission {
 GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
     : agent_{config.agent, now}, formation_{config.formation, now}, tracks_{config.tracks, now} {}
 
+void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
+  if (may_say(message, sender)) agent_.recall(message, sender, at);
+}
+
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
   if (!may_say(message, sender)) {
     ++refused_;

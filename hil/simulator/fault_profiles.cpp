@@ -75,6 +75,11 @@ FaultParams joining() {
   return p;
 }
 
+FaultParams ground_anew() {
+  FaultParams p = phase_only();
+  p.ground = 2;
+  return p;
+}
 FaultParams slow_planner() {
   FaultParams p = phase_only();
   p.planning = seconds{3};
@@ -198,7 +203,7 @@ constexpr std::array<Profile, 15> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
-                                             {"ground", nullptr, lost_ground},
+                                             {"ground", ground_anew, lost_ground},
                                              {"loss", nullptr, heavy_loss},
                                              {"silence", nullptr, short_silence},
                                              {"partition", partition, apart},
@@ -381,6 +386,7 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   restarts = std::max(restarts, other.restarts);
   joiners = std::max(joiners, other.joiners);
   clock_offset = std::max(clock_offset, other.clock_offset);
+  ground = std::max(ground, other.ground);
   planning = std::max(planning, other.planning);
   hazards = std::max(hazards, other.hazards);
   slow_operator = slow_operator || other.slow_operator;
@@ -472,6 +478,11 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   faults.push_back({{.not_before = Instant{} + params.phase}, {}, Healing{}});
   if (params.hazards > 0) draw_hazards(random, mission, params);
   if (params.slow_operator) draw_decisions(random, mission, params);
+  for (std::size_t n = count(random, params.ground); n > 0; --n) {
+    const Instant at = Instant{} + between(random, seconds{1}, params.phase);
+    const Duration down = between(random, seconds{1}, seconds{30});
+    faults.push_back({{.not_before = at}, down, ProgramsEnd{{kGroundStation}}});
+  }
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }

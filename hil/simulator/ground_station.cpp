@@ -45,6 +45,11 @@ Result<groundstation::FormationDesk> open_desk(const TeamMission& mission, std::
   return groundstation::FormationDesk::open(config, formation_of(mission), node);
 }
 
+bool ends_ground_for_a_time(const Fault& fault) {
+  const auto* ends = std::get_if<ProgramsEnd>(&fault.what);
+  return ends != nullptr && fault.lasts && contains(ends->who, kGroundStation);
+}
+
 }  // namespace
 
 Result<void> check_script(const TeamMission& mission) {
@@ -58,10 +63,12 @@ Result<void> check_script(const TeamMission& mission) {
 GroundStation::GroundStation(const TeamMission& mission)
     : mission_{mission},
       formation_{formation_of(mission)},
-      clock_{clock_offset(mission.faults, kGroundStation)} {}
+      clock_{clock_offset(mission.faults, kGroundStation)},
+      starts_anew_{std::ranges::any_of(mission.faults, &ends_ground_for_a_time)} {}
 
 void GroundStation::start(Instant now) {
   node_.emplace(node_config(mission_), now + clock_);
+  for (const Recorded& record : recorded_) node_->recall(record.message, record.sender, record.at);
   if (!mission_.formation) return;
   auto desk = open_desk(mission_, script_done_, *node_);
   SKEIN_ASSERT(desk.ok());
@@ -75,7 +82,15 @@ void GroundStation::end() {
 }
 
 void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {
-  if (node_) node_->on_message(message, sender, now + clock_);
+  if (!node_) return;
+  record(message, sender, now + clock_);
+  node_->on_message(message, sender, now + clock_);
+}
+
+void GroundStation::record(const mission::Message& message, VehicleId sender, Instant at) {
+  const bool recalled = !std::holds_alternative<mission::Telemetry>(message) &&
+                        !std::holds_alternative<mission::Health>(message);
+  if (starts_anew_ && recalled) recorded_.push_back({message, sender, at});
 }
 
 void GroundStation::on_timeout(Instant now) {
@@ -83,12 +98,13 @@ void GroundStation::on_timeout(Instant now) {
   if (desk_) desk_->on_timeout(now + clock_);
 }
 
-std::optional<mission::Message> GroundStation::poll_message() {
+std::optional<mission::Message> GroundStation::poll_message(Instant now) {
   std::optional<mission::Message> message;
   do {
     message = node_ ? node_->poll_message() : std::nullopt;
   } while (message &&
            std::holds_alternative<mission::MissionEvent>(*message));  // read on the ground
+  if (message) record(*message, kGroundStation, now + clock_);
   return message;
 }
 

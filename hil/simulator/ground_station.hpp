@@ -18,8 +18,9 @@ class GroundStation {
  public:
   explicit GroundStation(const TeamMission& mission);
 
-  /// It knows nothing of what was before, but for the lines of the script that are done: the
-  /// operator goes on with the next. Precondition: the script can be read (check_script()).
+  /// Of what was before it knows what the real one recalls from its recording, and the lines of the
+  /// script that are done: the operator goes on with the next. Precondition: the script can be read
+  /// (check_script()).
   void start(Instant now);
   void end();
   [[nodiscard]] bool running() const { return node_.has_value(); }
@@ -27,10 +28,11 @@ class GroundStation {
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
-  [[nodiscard]] std::optional<mission::Message> poll_message();
+  [[nodiscard]] std::optional<mission::Message> poll_message(Instant now);
   [[nodiscard]] std::optional<mission::MissionEvent> poll_event();
 
  private:
+  void record(const mission::Message& message, VehicleId sender, Instant at);
   [[nodiscard]] bool is_told_elsewhere(const mission::MissionEvent& event) const;
 
   const TeamMission& mission_;
@@ -39,6 +41,13 @@ class GroundStation {
   std::optional<mission::GroundNode> node_;
   std::optional<groundstation::FormationDesk> desk_;
   std::size_t script_done_ = 0;  ///< lines, of desks before this one
+  struct Recorded {
+    mission::Message message;
+    VehicleId sender;
+    Instant at{};
+  };
+  bool starts_anew_;  ///< some time, by a fault: otherwise nothing is recorded
+  std::vector<Recorded> recorded_;
 };
 
 }  // namespace skein::hil

@@ -364,7 +364,7 @@ class Team {
   }
 
   void drain_ground(Instant now) {
-    while (auto message = ground_.poll_message()) {
+    while (auto message = ground_.poll_message(now)) {
       broadcast(ground_index(), std::move(*message), now);
     }
     while (const auto event = ground_.poll_event()) {

@@ -54,6 +54,11 @@ class GroundAgent {
  public:
   GroundAgent(const GroundAgentConfig& config, Instant now);
 
+  /// What an earlier process of this ground station heard then, or said itself, in that order; of
+  /// who may say it, and before anything else. Nothing but memory comes of it: of what was granted,
+  /// flown and told. Telemetry is passed over.
+  void recall(const Message& message, VehicleId sender, Instant at);
+
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
@@ -114,6 +119,9 @@ class GroundAgent {
     Instant repeat_until{};
   };
 
+  void hear(const Message& message, Instant now);
+  void recall_own(const Message& message, Instant at);
+  void take(PendingAuthorisation& pending, const Authorisation& decision);
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
   void on_status(const coalition::MemberStatus& status);

@@ -25,6 +25,9 @@ class GroundNode {
  public:
   GroundNode(const GroundNodeConfig& config, Instant now);
 
+  /// As GroundAgent::recall(); what was not its sender's to say is passed over.
+  void recall(const Message& message, VehicleId sender, Instant at);
+
   /// False where it is refused.
   bool on_message(const Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);

@@ -42,6 +42,7 @@ struct FaultParams {
   std::size_t restarts = 0;  ///< silent for some seconds, then with an agent without memory
   std::size_t joiners = 0;   ///< take off only during the phase
   Duration clock_offset{};   ///< of each vehicle's clock, to either side
+  std::size_t ground = 0;    ///< times that the ground station's program ends and starts anew
   Duration planning{};       ///< a plan takes up to so long, in every vehicle
   // World:
   std::size_t hazards = 0;      ///< appear in flight

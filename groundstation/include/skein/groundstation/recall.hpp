@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+
+#include "skein/mission/ground_node.hpp"
+
+namespace skein::groundstation {
+
+/// Has the node recall what earlier processes of this ground station recorded in the folder of the
+/// mission with that epoch; `node` is as it was made. How many messages those are: 0 where there is
+/// no such recording, or it cannot be read.
+std::size_t recall(const std::filesystem::path& folder, std::int64_t epoch_unix_ns,
+                   mission::GroundNode& node);
+
+}  // namespace skein::groundstation
