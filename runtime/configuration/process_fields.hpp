@@ -25,8 +25,8 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, A
                               bool bus_required);
 void pose_fields(FieldVisitor& v, Pose2& pose);
 void spec_fields(FieldVisitor& v, VehicleSpec& spec);
-/// What turns may take of a plane, and turns and height of a copter that takes tasks; after spec and
-/// flight controller.
+/// What turns may take of a plane, and turns and height of a copter that takes tasks; after spec
+/// and flight controller.
 void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
