@@ -393,6 +393,14 @@ std::unique_ptr<ControlSocket> open_control(const configuration::GroundConfig& c
   return nullptr;
 }
 
+void recall_mission(const configuration::GroundConfig& config, std::int64_t epoch_unix_ns,
+                    mission::GroundNode& ground) {
+  if (config.recording_folder.empty()) return;
+  const std::size_t messages = recall(config.recording_folder, epoch_unix_ns, ground);
+  if (messages == 0) return;
+  spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
+}
+
 }  // namespace
 
 int run(const configuration::GroundConfig& config, const std::string& operator_name) {
@@ -417,9 +425,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
-  if (const std::size_t recalled = recall(config.recording_folder, clock.epoch_unix_ns(), ground)) {
-    spdlog::info("goes on with this mission: {} messages of its recording are recalled", recalled);
-  }
+  recall_mission(config, clock.epoch_unix_ns(), ground);
   auto recorder = Recorder::open(config.recording_folder, std::move(options));
   if (!recorder) {
     spdlog::critical("cannot record: {}", recorder.error().message);

@@ -13,7 +13,8 @@
 namespace skein::planning {
 namespace {
 
-constexpr auto slack_of = DubinsLanes<2>::slack_m;
+double slack_of(double radius_m) { return DubinsLanes<2>::slack_m(radius_m); }
+
 /// Two ways to compute one length differ by less, but where one of them goes full circle.
 constexpr double kAgree_m = 1e-6;
 
