@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/configuration/deployment.hpp"
 
+#include <algorithm>
+
 #include "skein/base/assert.hpp"
 #include "skein/base/random.hpp"
 
@@ -13,7 +15,10 @@ std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& de
   std::vector<NetworkPeer> nodes;
   const auto add = [&](VehicleId id) {
     const auto port = static_cast<std::uint16_t>(deployment.port_base + 2 * nodes.size());
-    nodes.push_back({id, deployment.address, port});
+    const auto other = std::find_if(deployment.elsewhere.begin(), deployment.elsewhere.end(),
+                                    [id](const NetworkPeer& node) { return node.id == id; });
+    nodes.push_back(
+        other != deployment.elsewhere.end() ? *other : NetworkPeer{id, deployment.address, port});
   };
   add(kGroundStation);
   for (const ScenarioVehicle& vehicle : scenario.vehicles) add(vehicle.spec.id);

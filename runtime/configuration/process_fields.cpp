@@ -347,14 +347,14 @@ void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& dec
          }));
 }
 
-namespace {
-
 void ipv4(FieldVisitor& v, const Field& field, std::string& address) {
   v.text(field, address);
   in_addr parsed{};
   v.require(inet_pton(AF_INET, address.c_str(), &parsed) == 1, field.key,
             "is no IPv4 address; write one such as 192.168.1.7");
 }
+
+namespace {
 
 bool is_address(const std::string& text) {
   in6_addr parsed{};
@@ -432,6 +432,11 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
 
 }  // namespace
 
+void console_section(FieldVisitor& v, ConsoleConfig& config) {
+  v.section({"console", "the page for the operator's browser"},
+            [&config](FieldVisitor& inner) { console_fields(inner, config); });
+}
+
 bool flies_formation(const VehicleSpec& vehicle) {
   return vehicle.is_copter() && vehicle.capabilities == Capabilities{};
 }
@@ -475,8 +480,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   v.list({"planes", "of a formation of planes: what each can do, as in its own file"},
          unique_groups_of(config.planes, kListMax, spec_fields, "vehicle",
                           [](const VehicleSpec& spec) { return spec.id.value; }));
-  v.section({"console", "the page for the operator's browser"},
-            [&config](FieldVisitor& inner) { console_fields(inner, config.console); });
+  console_section(v, config.console);
   v.text({"control_socket",
           "name of the Unix socket where `skein-ground tell` reaches it; empty: "
           "skein-ground-PORT"},

@@ -8,6 +8,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
+#include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/routes_config.hpp"
 #include "skein/planning/allocation.hpp"
 
@@ -36,6 +37,8 @@ void flight_route_fields(FieldVisitor& v, FlightRoute& route);
 void flight_route_section(FieldVisitor& v, FlightRoute& route);
 void routes_section(FieldVisitor& v, RoutesConfig& config);
 void formation_section(FieldVisitor& v, FormationConfig& formation);
+void ipv4(FieldVisitor& v, const Field& field, std::string& address);
+void console_section(FieldVisitor& v, ConsoleConfig& config);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 
 }  // namespace skein::configuration

@@ -3,11 +3,14 @@
 #include <array>
 
 #include "process_fields.hpp"
+#include "skein/configuration/utc.hpp"
 
 namespace skein::configuration {
 namespace {
 
 constexpr std::array<std::string_view, 2> kDeliveryModes{"simultaneous", "sequential"};
+constexpr std::array<std::string_view, static_cast<std::size_t>(HostFlightController::count)>
+    kHostFlightControllers{"own", "emulated"};
 
 void radio_fields(FieldVisitor& v, RadioConfig& radio) {
   v.number({"range_m", "vehicle to vehicle; beyond it nothing arrives"}, {10.0, 1e6, "m"},
@@ -172,6 +175,54 @@ void expect_fields(FieldVisitor& v, Expectations& e) {
              e.copters_fly);
 }
 
+void epoch_field(FieldVisitor& v, std::optional<std::int64_t>& epoch_unix_ns) {
+  std::string text = epoch_unix_ns ? utc_text(*epoch_unix_ns) : "";
+  v.text({"epoch",
+          "of a fleet: mission time zero, UTC, such as 2026-11-23T08:00:00Z; empty: given when it "
+          "is rendered"},
+         text);
+  epoch_unix_ns = parse_utc(text);
+  v.require(text.empty() || epoch_unix_ns, "epoch",
+            "is no time in UTC; write one such as 2026-11-23T08:00:00Z");
+}
+
+/// A folder on a host, where no relative path has a meaning.
+void host_path(FieldVisitor& v, const Field& field, std::string& path) {
+  v.text(field, path);
+  v.require(path.empty() || path.front() == '/', field.key, "is no absolute path; begin it with /");
+}
+
+void host_fields(FieldVisitor& v, Host& host) {
+  id(v, {"vehicle", "whose program runs there; 0: the ground station's", kRequired}, host.node, 0);
+  ipv4(v, {"address", "IPv4 address in the mission network", kRequired}, host.address);
+  whole(v, {"port", "UDP port; the next one is used too"}, {1024.0, 65534.0}, host.port);
+  v.text({"ssh", "how the host is reached: user@name; empty: it is this machine"}, host.ssh);
+  v.text({"run", "words before every command there: `sudo -n`, `ip netns exec v1`"}, host.run);
+  host_path(v,
+            {"programs",
+             "folder of the programs there, which are started directly; empty: they are "
+             "`skein-onboard@ID` and `skein-ground` of systemd"},
+            host.programs);
+  host_path(v, {"configurations", "folder of the configuration there"}, host.configurations);
+  host_path(v, {"recordings", "folder of what is recorded there"}, host.recordings);
+  v.text({"can", "bus of the flight controller there; empty: as the vehicle says"}, host.can);
+  host_path(v,
+            {"radio_plugin",
+             "`libskein_radio.so` there, with which a mixed mission's radio holds for what the "
+             "host hears; empty: it hears everybody"},
+            host.radio_plugin);
+  auto fc = static_cast<std::size_t>(host.flight_controller);
+  v.choice(
+      {"flight_controller", "in a mixed mission: the host's own, or `skein-fc` emulates it there"},
+      kHostFlightControllers, fc);
+  host.flight_controller = static_cast<HostFlightController>(fc);
+  v.require(!host.configurations.empty() && !host.recordings.empty(), "vehicle",
+            "needs folders for configurations and recordings; leave these keys out, or name some");
+  v.require(host.flight_controller == HostFlightController::own ||
+                (!host.programs.empty() && !host.can.empty()),
+            "flight_controller", "is emulated; name its bus in `can`, and `programs`");
+}
+
 void world_fields(FieldVisitor& v, Scenario& s) {
   origin_section(v, s.origin);
   seconds(v, {"duration_max_s", "the run is stopped, and fails, at this mission time", kRequired},
@@ -222,6 +273,13 @@ void fields(FieldVisitor& v, Scenario& s) {
                           [](const ReferenceSite& site) { return site.site.value; }));
   v.section({"expect", "what the run is judged by"},
             [&s](FieldVisitor& inner) { expect_fields(inner, s.expect); });
+  epoch_field(v, s.epoch_unix_ns);
+  console_section(v, s.console);
+  v.list({"hosts",
+          "where the programs run in the field (docs/fleet.md); a bench heeds those of external "
+          "vehicles only"},
+         unique_groups_of(s.hosts, kListMax, host_fields, "vehicle",
+                          [](const Host& host) { return host.node.value; }));
 }
 
 }  // namespace skein::configuration

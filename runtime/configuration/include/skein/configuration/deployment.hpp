@@ -11,8 +11,9 @@
 
 namespace skein::configuration {
 
-/// How one run of a scenario is spread over processes of one machine. Node i (the ground station is
-/// node 0, the vehicles follow in the order of the file) has port port_base + 2 i.
+/// How one run of a scenario is spread over processes. Node i (the ground station is node 0, the
+/// vehicles follow in the order of the file) has port port_base + 2 i of this machine's `address`,
+/// unless it is one of `elsewhere`.
 struct Deployment {
   std::string address = "127.0.0.1";
   std::uint16_t port_base = 17400;
@@ -24,6 +25,7 @@ struct Deployment {
   /// For the vehicles whose flight controller is on a CAN bus that the scenario does not name: one
   /// for each, or one for all. They get node ids of their own on it, and are taken over in flight.
   std::vector<std::string> can_buses;
+  std::vector<NetworkPeer> elsewhere;
 };
 
 /// The configuration of every vehicle process. Every node is a peer of every other. Vehicles know

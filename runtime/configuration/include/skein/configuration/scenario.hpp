@@ -14,6 +14,8 @@
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/host.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
@@ -109,6 +111,10 @@ struct Scenario {
   std::vector<Fault> faults;
   std::vector<ReferenceSite> reference;
   Expectations expect;
+  // Of a fleet in the field (docs/fleet.md); a bench heeds the hosts of external vehicles only.
+  std::optional<std::int64_t> epoch_unix_ns;  ///< nothing: given when it is rendered
+  ConsoleConfig console;
+  std::vector<Host> hosts;
 
   /// Some vehicle does, by orders of the ground station.
   [[nodiscard]] bool flies_formation() const;

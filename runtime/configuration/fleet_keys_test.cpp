@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a scenario says of a fleet in the field, and how two configurations are compared.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skein/configuration/deployment.hpp"
+#include "skein/configuration/differences.hpp"
+#include "skein/configuration/scenario.hpp"
+#include "skein/configuration/utc.hpp"
+
+namespace skein::configuration {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kMission = R"(version: 1
+title: Two
+duration_max_s: 60
+origin: {latitude_deg: 31.5, longitude_deg: 105.0}
+all: {cruise_speed_mps: 28, speed_min_mps: 23, speed_max_mps: 33, turn_radius_m: 70, range_m: 6000,
+      capabilities: [survey], sensor_radius_m: 120, heading_deg: 0, north_m: 0}
+vehicles:
+  - {id: 1, east_m: 0, height_m: 100}
+  - {id: 2, east_m: 50, height_m: 110}
+sites: [{id: 1, east_m: 0, north_m: 500, survey: {dwell_s: 5}}]
+)";
+
+Scenario mission(const std::string& more) {
+  auto scenario = parse_scenario(kMission + more, "fleet.yaml");
+  EXPECT_TRUE(scenario.ok()) << (scenario ? "" : scenario.error().message);
+  return scenario ? *scenario : Scenario{};
+}
+
+std::string mistakes(const std::string& more) {
+  const auto scenario = parse_scenario(kMission + more, "fleet.yaml");
+  return scenario ? "" : scenario.error().message;
+}
+
+TEST(FleetKeys, HostsEpochAndConsoleAreReadAndWritten) {
+  const Scenario s = mission(
+      "epoch: 2026-11-23T08:00:00Z\n"
+      "console: {port: 7461}\n"
+      "hosts:\n"
+      "  - {vehicle: 0, address: 10.0.0.9}\n"
+      "  - {vehicle: 2, address: 10.0.0.2, port: 7500, ssh: pi@two, run: sudo -n, can: vcan0,\n"
+      "     programs: /opt/skein/bin, flight_controller: emulated}\n");
+  EXPECT_EQ(s.epoch_unix_ns, 1'795'420'800'000'000'000);
+  EXPECT_EQ(s.console.port, 7461);
+  ASSERT_EQ(s.hosts.size(), 2U);
+  EXPECT_EQ(s.hosts[0].configurations, "/etc/skein");
+  EXPECT_EQ(s.hosts[1].node, VehicleId{2});
+  EXPECT_EQ(s.hosts[1].ssh, "pi@two");
+  EXPECT_EQ(s.hosts[1].flight_controller, HostFlightController::emulated);
+  const auto again = parse_scenario(to_yaml(s), "written");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  EXPECT_EQ(again->hosts, s.hosts);
+  EXPECT_EQ(again->epoch_unix_ns, s.epoch_unix_ns);
+}
+
+TEST(FleetKeys, MistakesAreToldWithTheirLine) {
+  EXPECT_THAT(mistakes("epoch: tomorrow\n"), HasSubstr("fleet.yaml:11: epoch: is no time in UTC"));
+  EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0}]\n"),
+              HasSubstr("is no IPv4 address"));
+  EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, programs: bin}]\n"),
+              HasSubstr("hosts[1].programs: is no absolute path"));
+  EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, flight_controller: emulated}]\n"),
+              HasSubstr("name its bus in `can`"));
+  EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, port: 80}]\n"),
+              HasSubstr("outside 1024 to 65534"));
+}
+
+TEST(Utc, IsReadAsItIsWritten) {
+  for (const std::int64_t ns : {std::int64_t{0}, std::int64_t{951'782'399'000'000'000},
+                                std::int64_t{1'795'420'800'250'000'001}}) {
+    EXPECT_EQ(parse_utc(utc_text(ns)), ns) << utc_text(ns);
+  }
+  EXPECT_EQ(utc_text(1'795'420'800'250'000'000), "2026-11-23T08:00:00.25Z");
+  EXPECT_EQ(parse_utc("2024-02-29T00:00:00Z"), 1'709'164'800'000'000'000);
+}
+
+TEST(Utc, AnythingElseIsNoTime) {
+  for (const char* const text :
+       {"", "Z", "2026-11-23", "2026-11-23T08:00:00", "2026-02-29T08:00:00Z",
+        "2026-11-23T24:00:00Z", "2026-11-23T08:00:60Z", "2026-11-23 08:00:00Z",
+        "2026-11-23T08:00:00.Z", "2026-11-23T08:00:00.0123456789Z", "-026-11-23T08:00:00Z",
+        "1969-12-31T23:59:59Z"}) {
+    EXPECT_EQ(parse_utc(text), std::nullopt) << text;
+  }
+}
+
+TEST(Differences, NameTheKeysAndTheirValues) {
+  const auto configs = vehicle_configs(mission(""), {});
+  VehicleConfig other = configs[0];
+  EXPECT_TRUE(differences(configs[0], other).empty());
+  other.origin.latitude_deg = 31.6;
+  other.network.peers[1].port = 9000;
+  other.hazards.push_back({HazardId{7}, {1.0, 2.0}, 30.0});
+  const auto found = differences(configs[0], other);
+  ASSERT_EQ(found.size(), 6U);
+  EXPECT_EQ(found[0], (Difference{"origin.latitude_deg", "31.5", "31.6"}));
+  EXPECT_EQ(found[1], (Difference{"network.peers[2].port", "17404", "9000"}));
+  EXPECT_EQ(found[2], (Difference{"hazards[7].east_m", "", "1"}));
+}
+
+TEST(Deployment, NodesElsewhereAreWhereTheyAre) {
+  Deployment deployment;
+  deployment.address = "10.0.0.9";
+  deployment.elsewhere = {{VehicleId{1}, "10.0.0.1", 7400}};
+  const auto configs = vehicle_configs(mission(""), deployment);
+  EXPECT_EQ(configs[0].network.address, "10.0.0.1");
+  EXPECT_EQ(configs[0].network.port, 7400);
+  EXPECT_THAT(configs[0].network.peers,
+              testing::ElementsAre(NetworkPeer{VehicleId{0}, "10.0.0.9", 17400},
+                                   NetworkPeer{VehicleId{2}, "10.0.0.9", 17404}));
+  EXPECT_EQ(configs[1].network.peers[1], (NetworkPeer{VehicleId{1}, "10.0.0.1", 7400}));
+}
+
+}  // namespace
+}  // namespace skein::configuration
