@@ -54,7 +54,7 @@ class Listing final : public FieldVisitor {
     const std::string outer = path_;
     for (std::size_t i = 0; i < list.size; ++i) {
       path_ = outer;
-      const std::size_t number = list.id_of ? list.id_of(i) : i;
+      const std::size_t number = list.id_of ? list.id_of(i) : i + 1;
       path_ = path_of(field.key).append("[").append(std::to_string(number)).append("]");
       list.element(*this, i);
     }

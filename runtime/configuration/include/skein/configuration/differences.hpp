@@ -10,7 +10,8 @@
 namespace skein::configuration {
 
 /// A key whose value differs between two configurations, as people find it in the files:
-/// "origin.latitude_deg", "network.peers[3].port" (by id, where the elements have one).
+/// "origin.latitude_deg", "network.peers[3].port" (by id, where the elements have one,
+/// otherwise counted from 1).
 struct Difference {
   std::string key;
   std::string first;   ///< empty: not there

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+#
+# From the fleet's file to the mission on four machines that are network namespaces, and what the
+# status says of a host that somebody has changed: fleet.sh PROGRAMS
+set -euo pipefail
+
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+if [[ ${2-} != --inside ]]; then exec "$here/namespaces.sh" 4 "$0" "$1" --inside; fi
+
+readonly programs=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+readonly file=$folder/fleet.yaml
+sed "s|PROGRAMS|$programs|; s|FOLDER|$folder|g" "$here/fleet.yaml" >"$file"
+
+fail() {
+  echo "FAILED: $*" >&2
+  tail -n 5 "$folder"/?/var/*.log >&2 || true
+  exit 1
+}
+fleet() { "$programs/skein" fleet "$1" "$file" --out "$folder/rendered" "${@:2}"; }
+tell() { ip netns exec skein0 "$programs/skein-ground" tell --json "$@"; }
+# until_holds SECONDS WHAT COMMAND...
+until_holds() {
+  local end=$((SECONDS + $1)) what=$2
+  shift 2
+  until "$@"; do
+    ((SECONDS < end)) || fail "not within the time: $what"
+    sleep 0.2
+  done
+}
+has() { grep -qE -- "$1" <<<"$2"; }
+
+echo "- without an epoch nothing is rendered, and check says so"
+refused=$(fleet check 2>&1) && fail "a fleet without an epoch is good"
+has 'has no epoch' "$refused" || fail "$refused"
+
+echo "- a fleet that is pushed and started"
+fleet push --epoch now || fail "push"
+epoch=$(cat "$folder/rendered/epoch")
+fleet start || fail "start"
+all_heard() { [[ $(tell status 2>/dev/null | grep -c '"silent": false') == 3 ]]; }
+until_holds 20 "the ground station hears all three" all_heard
+fleet status || fail "the status of a fleet that was just started"
+
+echo "- a program that runs is given no other configuration"
+refused=$(fleet push --only 2 2>&1) && fail "vehicle 2 runs and was configured"
+has 'vehicle 2 .*stop it first' "$refused" || fail "$refused"
+
+echo "- a host that somebody has changed is named with its key"
+sed -i 's/latitude_deg: 31.522062/latitude_deg: 31.6/' "$folder/3/etc/onboard-3.yaml"
+drifted=$(fleet status --json) && fail "vehicle 3 has drifted"
+has '"key": "origin.latitude_deg"' "$drifted" || fail "$drifted"
+[[ $(grep -c '"as_the_file": true' <<<"$drifted") == 3 ]] || fail "$drifted"
+fleet stop --only 3
+refused=$(fleet start --only 3 2>&1) && fail "vehicle 3 was started with another origin"
+has 'vehicle 3 .*origin.latitude_deg' "$refused" || fail "$refused"
+
+echo "- another address of one host is written once, and the epoch stays"
+ip -n skein3 address del 10.53.0.3/24 dev eth0
+ip -n skein3 address add 10.53.0.33/24 dev eth0
+sed -i 's/10.53.0.3,/10.53.0.33,/' "$file"
+fleet stop || fail "stop"
+fleet push || fail "push with the new address"
+fleet start || fail "start at the new address"
+[[ $(cat "$folder/rendered/epoch") == "$epoch" ]] || fail "the epoch has changed"
+until_holds 20 "the ground station hears all three again" all_heard
+fleet status || fail "the status at the new address"
+
+fleet stop || fail "the last stop"
+ls "$folder"/[123]/var/onboard-?/*.mcap >/dev/null || fail "nothing is recorded"
+echo "PASS"
