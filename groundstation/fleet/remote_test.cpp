@@ -160,6 +160,7 @@ TEST_F(Remote, SshIsGivenOneLineForTheShellThere) {
                           R"('env' 'A=b' 'sh' '-c' 'echo '\''x'\''')"));
   // What ssh does with it: a shell reads the line.
   script(folder_ / "bin" / "ssh", "#!/bin/sh\nfor line; do :; done\nexec sh -c \"$line\"\n");
+  // Nobody else reads the environment now. NOLINTBEGIN(concurrency-mt-unsafe)
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", (folder_ / "bin").string().append(":").append(path).c_str(), 1);
   EXPECT_TRUE(push(program(), false).ok());
@@ -169,6 +170,7 @@ TEST_F(Remote, SshIsGivenOneLineForTheShellThere) {
   EXPECT_FALSE(there.reachable);
   EXPECT_THAT(there.trouble, HasSubstr("is not reached: Connection refused"));
   ::setenv("PATH", path.c_str(), 1);
+  // NOLINTEND(concurrency-mt-unsafe)
   host_.ssh.clear();
 }
 

@@ -75,8 +75,9 @@ std::optional<std::int64_t> parse_utc(std::string_view text) {
                                          std::chrono::day{static_cast<unsigned>(*day)}};
   if (!date.ok() || *year < 1970 || *year > 2200) return std::nullopt;
   if (*hour > 23 || *minute > 59 || *second > 59) return std::nullopt;
-  const std::int64_t days = std::chrono::sys_days{date}.time_since_epoch().count();
-  return ((days * 24 + *hour) * 3600 + *minute * 60 + *second) * kSecond_ns + *fraction;
+  const auto at = std::chrono::sys_days{date} + std::chrono::hours{*hour} +
+                  std::chrono::minutes{*minute} + std::chrono::seconds{*second};
+  return at.time_since_epoch().count() * kSecond_ns + *fraction;
 }
 
 }  // namespace skein::configuration
