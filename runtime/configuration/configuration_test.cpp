@@ -49,6 +49,7 @@ network:
   peers:
     - {id: 0, port: 17400}
     - {id: 8, port: 17404}
+time: {epoch_unix_ns: 1700000000000000000}
 )";
 
 std::string vehicle_error(const std::string& from, const std::string& to) {

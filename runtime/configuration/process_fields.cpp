@@ -384,9 +384,10 @@ void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
                     std::string& recording_folder, std::uint32_t& recording_limit_mb) {
   v.section({"network", "the mission network", kRequired},
             [&network](FieldVisitor& inner) { network_fields(inner, network); });
-  v.section({"time", "mission time"}, [&time](FieldVisitor& inner) {
-    inner.integer({"epoch_unix_ns", "mission time zero, Unix time; 0: when the process starts"},
-                  {0.0, 9e18, "ns"}, time.epoch_unix_ns);
+  v.section({"time", "mission time", kRequired}, [&time](FieldVisitor& inner) {
+    inner.integer(
+        {"epoch_unix_ns", "mission time zero, Unix time; the same for the whole fleet", kRequired},
+        {1.0, 9e18, "ns"}, time.epoch_unix_ns);
     inner.number({"rate", "mission seconds in a second"}, {0.01, 100.0}, time.rate);
   });
   v.text({"recording_folder", "where the process writes what happened; empty: nowhere"},

@@ -42,14 +42,13 @@ BothClocks read_both_clocks() {
 
 }  // namespace
 
-MissionClock::MissionClock(std::int64_t epoch_unix_ns, double rate) : rate_{rate} {
+MissionClock::MissionClock(std::int64_t epoch_unix_ns, double rate)
+    : rate_{rate}, epoch_unix_ns_{epoch_unix_ns} {
+  SKEIN_ASSERT(epoch_unix_ns > 0);
   SKEIN_ASSERT(rate > 0.0);
   const BothClocks start = read_both_clocks();
   steady_start_ = start.steady;
-  const Duration since_epoch =
-      epoch_unix_ns == 0 ? Duration{} : start.unix_time - Duration{epoch_unix_ns};
-  mission_start_ = Instant{scaled(since_epoch, rate_)};
-  epoch_unix_ns_ = epoch_unix_ns == 0 ? start.unix_time.count() : epoch_unix_ns;
+  mission_start_ = Instant{scaled(start.unix_time - Duration{epoch_unix_ns}, rate_)};
 }
 
 Instant MissionClock::now() const {

@@ -34,6 +34,12 @@ using ::testing::HasSubstr;
 constexpr auto kPatience = std::chrono::seconds{60};  // a loaded machine, under a sanitizer
 constexpr VehicleId kVehicle{7};
 
+std::int64_t unix_ns_in(Duration d) {
+  return std::chrono::duration_cast<Duration>(
+             (std::chrono::system_clock::now() + d).time_since_epoch())
+      .count();
+}
+
 /// Holds a UDP port of loopback.
 class HeldPort {
  public:
@@ -86,6 +92,7 @@ class Programs : public ::testing::Test {
 
   [[nodiscard]] configuration::VehicleConfig vehicle() const {
     configuration::VehicleConfig config;
+    config.time.epoch_unix_ns = unix_ns_in({});
     config.vehicle.id = kVehicle;
     config.vehicle.cruise_speed_mps = 50.0;
     config.vehicle.speed_min_mps = 40.0;
@@ -102,6 +109,7 @@ class Programs : public ::testing::Test {
   }
   [[nodiscard]] configuration::GroundConfig ground() const {
     configuration::GroundConfig config;
+    config.time.epoch_unix_ns = unix_ns_in({});
     config.network = network_of(kGroundStation);
     config.vehicles = {kVehicle};
     config.recording_folder = folder_ / "ground";
@@ -175,10 +183,7 @@ TEST_F(Programs, AVehicleJoinsFliesAndStops) {
 TEST_F(Programs, AVehicleWaitsForItsEpochOnTheNetwork) {
   open_node(kGroundStation);
   auto config = vehicle();
-  config.time.epoch_unix_ns =
-      std::chrono::duration_cast<Duration>(
-          (std::chrono::system_clock::now() + std::chrono::hours{1}).time_since_epoch())
-          .count();
+  config.time.epoch_unix_ns = unix_ns_in(std::chrono::hours{1});
   auto child = start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(config))});
   const auto telemetry = hear<mission::Telemetry>();
   ASSERT_TRUE(telemetry) << text_of("log");

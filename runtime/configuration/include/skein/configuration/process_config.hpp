@@ -31,7 +31,9 @@ struct NetworkConfig {
 
 /// Mission time = (system time - epoch) * rate.
 struct TimeConfig {
-  std::int64_t epoch_unix_ns = 0;  ///< 0: the moment the process starts
+  /// Of the whole fleet, and of whoever starts anew: never the moment when a process starts. 0: not
+  /// given, which no file may say.
+  std::int64_t epoch_unix_ns = 0;
   double rate = 1.0;
   friend bool operator==(const TimeConfig&, const TimeConfig&) = default;
 };

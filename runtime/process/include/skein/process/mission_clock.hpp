@@ -13,7 +13,7 @@ namespace skein::process {
 /// the mission moves nobody. Thread-safe; now() never decreases.
 class MissionClock {
  public:
-  /// `epoch_unix_ns` 0 means now. Precondition: rate > 0.
+  /// Preconditions: an epoch after that of Unix, rate > 0.
   MissionClock(std::int64_t epoch_unix_ns, double rate);
 
   [[nodiscard]] Instant now() const;
