@@ -13,7 +13,9 @@
 #include <thread>
 #include <utility>
 
+#include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/configuration/setup_params.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -44,8 +46,11 @@ constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop
 constexpr int kMessagesPerStep = 1000;   // nor one of messages
 constexpr std::string_view kJsonPrefix = "json ";
 
-mission::GroundNodeConfig node_config(const configuration::GroundConfig& config) {
+mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
+                                      InstanceId instance) {
   mission::GroundNodeConfig node;
+  node.instance = instance;
+  node.setup = configuration::setup_params(config, {SKEIN_VERSION, codec::wire_versions()});
   mission::GroundAgentConfig& agent = node.agent;
   agent.expected = config.vehicles;
   for (const Hazard& hazard : config.hazards) agent.hazards.push_back(hazard.id);
@@ -414,13 +419,13 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     spdlog::critical("the mission origin is unusable: {}", origin.error().message);
     return process::kExitBadInput;
   }
-  mission::GroundNode ground{node_config(config), clock.now()};
+  const InstanceId instance = process::new_instance();
+  mission::GroundNode ground{node_config(config, instance), clock.now()};
   auto formation = FormationDesk::open(config.formation, config.vehicles, ground);
   if (!formation) {
     spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
   }
-  const InstanceId instance = process::new_instance();
   recording::Writer::Options options;
   options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
                      clock.epoch_unix_ns(), to_yaml(config)};

@@ -22,6 +22,7 @@ std::string health_of(const mission::FleetEntry& entry) {
   };
   if (!entry.expected) add("not in the fleet");
   if (entry.silent) add("SILENT");
+  if (entry.differs) add(mission::text_of(*entry.differs) + ", NOT WORKED WITH");
   const auto& telemetry = *entry.telemetry;
   if (telemetry.control_overruns > 0) {
     add(fmt::format("{} control overruns", telemetry.control_overruns));

@@ -43,6 +43,9 @@ TEST(FleetTable, ShowsStateAndHealth) {
   fleet[{4}] = heard(9.5);
   fleet[{4}].duplicate = true;
   for (auto& [vehicle, entry] : fleet) entry.expected = true;
+  fleet[{5}] = heard(9.5);
+  fleet[{5}].expected = true;
+  fleet[{5}].differs = mission::SetupDifference{"origin.latitude_deg", 3.0};
   fleet[{9}] = heard(9.5);
   fleet[{9}].telemetry->control_overruns = 7;
   const auto table = fleet_table(fleet, at_seconds(10.0));
@@ -51,6 +54,9 @@ TEST(FleetTable, ShowsStateAndHealth) {
   EXPECT_THAT(line_of(table, "never heard"), HasSubstr("2  -"));
   EXPECT_THAT(line_of(table, "SILENT"), AllOf(HasSubstr("3  executing"), HasSubstr("8.0 s")));
   EXPECT_THAT(line_of(table, "TWO VEHICLES"), HasSubstr("4  executing"));
+  EXPECT_THAT(line_of(table, "NOT WORKED WITH"),
+              AllOf(HasSubstr("5  executing"), HasSubstr("another origin.latitude_deg"),
+                    HasSubstr("a clock that is 3.0 s ahead")));
   EXPECT_THAT(line_of(table, "not in the fleet"),
               AllOf(HasSubstr("9  executing"), HasSubstr("7 control overruns")));
 }

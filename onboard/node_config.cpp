@@ -3,6 +3,9 @@
 
 #include <utility>
 
+#include "skein/codec/codec.hpp"
+#include "skein/configuration/setup_params.hpp"
+
 namespace skein::onboard {
 namespace {
 
@@ -55,6 +58,8 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
   } else {
     node.agent = vehicle_agent(config, route, instance);
   }
+  node.setup = configuration::setup_params(
+      config, {program.substr(program.rfind(' ') + 1), codec::wire_versions()});
   node.program = std::move(program);
   const bool ardupilot =
       config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;

@@ -28,6 +28,10 @@ inline constexpr std::array kActivityRules{
     ActivityRule{[](const PartStates& s) { return s.failsafe == Failsafe::Action::obey; },
                  Activity::holding},
     ActivityRule{[](const PartStates& s) {
+                   return s.failsafe == Failsafe::Action::stay && !s.has_task && !s.leads;
+                 },
+                 Activity::holding},
+    ActivityRule{[](const PartStates& s) {
                    return s.failsafe == Failsafe::Action::come_home && !s.has_task && !s.leads;
                  },
                  Activity::holding},

@@ -31,15 +31,36 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
     facts_.id_in_use = true;
     response = &kIdInUse;
   }
+  if (news.bar) response = on_bar(*news.bar);
   if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
   if (news.order) response = response_to(*news.order);
   if (response == &kHold || response == &kReturnHome) facts_.ordered = true;
-  if (response == &kResume) facts_.ordered = false;
+  if (response == &kResume) {
+    facts_.ordered = false;
+    if (barred() != nullptr) response = barred();
+  }
   rule_ = nullptr;
   for (const Rule& rule : kRules) {
     if (facts_.*rule.holds) rule_ = &rule;
   }
   return response;
+}
+
+/// The response that its bar asks for; null where there is none, or its range is for the way home.
+const Failsafe::Response* Failsafe::barred() const {
+  if (facts_.range_spent) return nullptr;
+  if (facts_.setup_differs) return &kSetupDiffers;
+  return facts_.orders_unknown ? &kOrdersUnknown : nullptr;
+}
+
+/// What it is ordered, and the way home, come first.
+const Failsafe::Response* Failsafe::on_bar(Bar bar) {
+  const bool was_barred = facts_.setup_differs || facts_.orders_unknown;
+  facts_.setup_differs = bar == Bar::setup_differs;
+  facts_.orders_unknown = bar == Bar::orders_unknown;
+  if (facts_.ordered) return nullptr;
+  if (bar != Bar::none) return barred();
+  return was_barred ? &kMayWork : nullptr;
 }
 
 /// True when it is news that the range is spent.
@@ -51,8 +72,8 @@ bool Failsafe::watch_range(double spare_s, Instant now) {
 }
 
 std::string_view to_string(Failsafe::Action action) {
-  static constexpr std::array<std::string_view, 4> kNames{"none", "take_up_nothing", "come_home",
-                                                          "obey"};
+  static constexpr std::array<std::string_view, 5> kNames{"none", "take_up_nothing", "stay",
+                                                          "come_home", "obey"};
   static_assert(kNames.size() == static_cast<std::size_t>(Failsafe::Action::count));
   return kNames.at(static_cast<std::size_t>(action));
 }

@@ -9,6 +9,7 @@
 
 #include "skein/coalition/messages.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/mission/onboard_agent.hpp"
 
 namespace skein::mission {
 
@@ -20,14 +21,17 @@ class Failsafe {
   enum class Action : std::uint8_t {
     none,
     take_up_nothing,  ///< what it was awarded is flown
+    stay,             ///< and hold there, until it may work with the others
     come_home,        ///< or hold, to be recovered; only a run that has begun is flown to its end
     obey,             ///< the operator: hold, or come home, until told to go on
     count
   };
   struct Facts {
-    bool id_in_use = false;    ///< by another vehicle too
-    bool range_spent = false;  ///< what is left of its range is for the way home
-    bool ordered = false;      ///< by the operator to hold or to come home
+    bool id_in_use = false;       ///< by another vehicle too
+    bool setup_differs = false;   ///< from the ground station's
+    bool orders_unknown = false;  ///< to a program that has started anew
+    bool range_spent = false;     ///< what is left of its range is for the way home
+    bool ordered = false;         ///< by the operator to hold or to come home
   };
   struct Rule {
     std::string_view fact;
@@ -38,6 +42,9 @@ class Failsafe {
   /// Later entries take precedence.
   static constexpr std::array kRules{
       Rule{"id_in_use", &Facts::id_in_use, Action::take_up_nothing, coalition::Reason::id_in_use},
+      Rule{"setup_differs", &Facts::setup_differs, Action::stay, coalition::Reason::setup_differs},
+      Rule{"orders_unknown", &Facts::orders_unknown, Action::stay,
+           coalition::Reason::orders_unknown},
       Rule{"range_spent", &Facts::range_spent, Action::come_home, coalition::Reason::out_of_range},
       Rule{"ordered", &Facts::ordered, Action::obey, coalition::Reason::held_by_operator},
   };
@@ -68,6 +75,12 @@ class Failsafe {
   static constexpr Response kPathBarred{"path_barred", Reason::path_barred, false, Lead::kept,
                                         Manoeuvre::hold};
   static constexpr Response kIdInUse{"id_in_use", Reason::none, false, Lead::kept, Manoeuvre::none};
+  static constexpr Response kSetupDiffers{"setup_differs", Reason::setup_differs, true,
+                                          Lead::put_off, Manoeuvre::hold};
+  static constexpr Response kOrdersUnknown{"orders_unknown", Reason::orders_unknown, true,
+                                           Lead::put_off, Manoeuvre::hold};
+  static constexpr Response kMayWork{"may_work", Reason::none, false, Lead::kept,
+                                     Manoeuvre::search};
   static constexpr Response kRangeSpent{"range_spent", Reason::out_of_range, true, Lead::handed_on,
                                         Manoeuvre::come_home};
   static constexpr Response kHold{"hold", Reason::held_by_operator, true, Lead::put_off,
@@ -75,13 +88,15 @@ class Failsafe {
   static constexpr Response kReturnHome{"return_home", Reason::sent_home, true, Lead::put_off,
                                         Manoeuvre::fly_home};
   static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
-  static constexpr std::array kResponses{kPathBarred, kIdInUse,    kRangeSpent,
-                                         kHold,       kReturnHome, kResume};
+  static constexpr std::array kResponses{kPathBarred,    kIdInUse,    kSetupDiffers,
+                                         kOrdersUnknown, kMayWork,    kRangeSpent,
+                                         kHold,          kReturnHome, kResume};
 
   /// One of these at a time.
   struct News {
-    bool path_barred = false;  ///< by a hazard, and there is no other way to its task
-    bool id_in_use = false;    ///< another vehicle was heard under its number
+    bool path_barred = false;     ///< by a hazard, and there is no other way to its task
+    bool id_in_use = false;       ///< another vehicle was heard under its number
+    std::optional<Bar> bar = {};  ///< what keeps it from working with the others
     std::optional<double> spare_s =
         {};  ///< for how long it can surely fly on before it must turn for home
     std::optional<CommandKind> order = {};  ///< new, from the operator
@@ -99,12 +114,16 @@ class Failsafe {
   [[nodiscard]] const Facts& facts() const { return facts_; }
   [[nodiscard]] Action action() const { return rule_ == nullptr ? Action::none : rule_->action; }
   [[nodiscard]] bool in(Action action) const { return this->action() == action; }
+  /// It takes up nothing of its own, not even its search.
+  [[nodiscard]] bool holds_still() const { return in(Action::obey) || in(Action::stay); }
   /// Why it neither bids nor leads; none where it may.
   [[nodiscard]] coalition::Reason reason() const {
     return rule_ == nullptr ? coalition::Reason::none : rule_->reason;
   }
 
  private:
+  [[nodiscard]] const Response* on_bar(Bar bar);
+  [[nodiscard]] const Response* barred() const;
   [[nodiscard]] bool watch_range(double spare_s, Instant now);
 
   Facts facts_;

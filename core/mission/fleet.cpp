@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "names.hpp"
+
 namespace skein::mission {
 
 using event::FleetNews;
@@ -88,6 +90,27 @@ bool Fleet::expects(VehicleId vehicle) const {
 bool Fleet::duplicate(VehicleId vehicle) const {
   const auto found = vehicles_.find(vehicle);
   return found != vehicles_.end() && found->second.duplicate;
+}
+
+void Fleet::set_difference(VehicleId vehicle, const SetupDifference* difference) {
+  const auto found = vehicles_.find(vehicle);
+  if (found == vehicles_.end()) return;
+  found->second.differs =
+      difference == nullptr ? std::nullopt : std::optional<SetupDifference>{*difference};
+}
+
+std::optional<std::string> Fleet::why_not_with(VehicleId vehicle) const {
+  const auto found = vehicles_.find(vehicle);
+  if (found == vehicles_.end()) return std::nullopt;
+  if (found->second.duplicate) {
+    return "two vehicles answer to the id of " + name_of(vehicle) +
+           "; stop or renumber one of them first";
+  }
+  if (found->second.differs) {
+    return name_of(vehicle) + " has " + text_of(*found->second.differs) +
+           "; give it what the ground station runs with, and start it anew";
+  }
+  return std::nullopt;
 }
 
 void Fleet::forget_instances(FleetEntry& entry, Instant now) const {

@@ -59,7 +59,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   for (const formation::Mover& mover : change.movers) {
     if (mover.vehicle != config_.vehicle) not_begun_.insert(mover.vehicle);
   }
-  execution_->hold(held_ || !not_begun_.empty());
+  execution_->hold(waits());
   arrived_ = false;
   waits_since_.reset();
   report(event::ChangeTakenUp{change.number}, now);
@@ -69,6 +69,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
 std::optional<event::ChangeRefusal> FormationAgent::why_not(const Change& change,
                                                             std::size_t self) const {
   using enum event::ChangeRefusal;
+  if (bar_ != Bar::none) return setup_differs;
   if (change_ && !execution_->at_rest()) return another_is_flown;
   const auto& limits = change.limits;
   if (limits.speed_mps > config_.limits.speed_mps ||
@@ -87,7 +88,7 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   const auto mover = formation::mover_of(*change_, status.vehicle);
   if (!mover) return;
   if (status.progress.change == change_->number) {
-    if (not_begun_.erase(status.vehicle) > 0) execution_->hold(held_ || !not_begun_.empty());
+    if (not_begun_.erase(status.vehicle) > 0) execution_->hold(waits());
     execution_->on_progress(*mover, status.progress, status.reference_m);
   } else if (status.progress.change < change_->number) {
     // It has not taken up the change, and stays where it is: perhaps not where the change begins.
@@ -106,8 +107,13 @@ void FormationAgent::on_command(const Command& command, Instant now) {
   const bool holds = command.kind == CommandKind::hold;
   if (!holds && command.kind != CommandKind::resume) return;
   held_ = holds;
-  if (execution_) execution_->hold(held_ || !not_begun_.empty());
+  if (execution_) execution_->hold(waits());
   report(event::Commanded{command.kind}, now);
+}
+
+void FormationAgent::on_bar(Bar bar, Instant /*now*/) {
+  bar_ = bar;
+  if (execution_) execution_->hold(waits());
 }
 
 void FormationAgent::on_timeout(Instant now) {

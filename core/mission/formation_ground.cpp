@@ -226,6 +226,7 @@ std::string FormationGround::unknown() const {
 }
 
 Result<FormationPreview> FormationGround::preview(const FormationOrder& order) const {
+  if (const auto why = barred_.why()) return Error{*why};
   if (moving()) return Error{"vehicles are still moving; wait until they are in place"};
   auto wanted = transfers(order);
   if (!wanted) return wanted.error();

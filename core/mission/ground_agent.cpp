@@ -327,10 +327,9 @@ Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, co
       return Error{"a delivery of this plan is over by now; its leader will ask again"};
     }
     for (const auto& delivery : request.deliveries) {
-      if (!fleet_.duplicate(delivery.assignment.vehicle)) continue;
-      return Error{"two vehicles answer to the id of " + name_of(delivery.assignment.vehicle) +
-                   ", which is part of this plan; stop or renumber one of them first"};
+      if (auto why = fleet_.why_not_with(delivery.assignment.vehicle)) return Error{*why};
     }
+    if (auto why = fleet_.why_not_with(request.round.coalition.leader)) return Error{*why};
   }
   take(pending, Authorisation{request.round, request.site, granted, by, now});
   report(granted ? EventBody{event::Authorised{by}} : EventBody{event::AuthorisationRefused{by}},
@@ -396,9 +395,11 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
   if (!all && !fleet_.expects(vehicle)) return Error{name_of(vehicle) + " is not in the fleet"};
   for (const auto& [id, entry] : fleet_.vehicles()) {
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
-    if (!concerned || !entry.duplicate) continue;
-    return Error{"two vehicles answer to the id of " + name_of(id) +
-                 "; stop or renumber one of them first"};
+    const bool takes_part =
+        id == vehicle && (kind == CommandKind::resume || kind == CommandKind::give_back);
+    if ((concerned && entry.duplicate) || (takes_part && entry.differs)) {
+      return Error{*fleet_.why_not_with(id)};
+    }
   }
   // Numbers grow also over a restart of this process, or vehicles would take new commands for old.
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(

@@ -10,11 +10,27 @@
 
 namespace skein::mission {
 
+namespace {
+
+/// It may have given orders before that it does not recall: vehicles that know them tell each other
+/// first.
+constexpr Duration kOthersAnswer = std::chrono::seconds{10};
+
+}  // namespace
+
 GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
-    : agent_{config.agent, now}, formation_{config.formation, now}, tracks_{config.tracks, now} {}
+    : agent_{config.agent, now},
+      formation_{config.formation, now},
+      tracks_{config.tracks, now},
+      setup_{config.setup, kGroundStation, config.instance, now},
+      knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now} {}
 
 void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
-  if (may_say(message, sender)) agent_.recall(message, sender, at);
+  if (!may_say(message, sender)) return;
+  agent_.recall(message, sender, at);
+  const auto* command = std::get_if<Command>(&message);
+  if (command != nullptr && sender == kGroundStation) orders_.note(*command);
+  knows_orders_at_ = at;
 }
 
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
@@ -22,13 +38,31 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     ++refused_;
     return false;
   }
+  if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
   agent_.on_message(message, now);
   formation_.on_message(message, now);
   tracks_.on_message(message, now);
   return true;
 }
 
+void GroundNode::on_setup(const Setup& setup, Instant now) {
+  setup_.on_setup(setup, now);
+  while (auto news = setup_.poll_news()) {
+    MissionEvent event{kGroundStation, now, {}, {}, *std::move(news)};
+    messages_.push(event);
+    events_.push(std::move(event));
+  }
+  agent_.fleet().set_difference(setup.node, setup_.difference(setup.node));
+  const auto why_not = fleet().why_not_with(setup.node);
+  formation_.barred().set(setup.node, why_not);
+  tracks_.barred().set(setup.node, why_not);
+  const Command standing = orders_.standing(setup.node, kGroundStation);
+  const bool asks = !setup.knows_orders && now >= knows_orders_at_;
+  if (asks || standing.number > setup.newest_order) messages_.push(Message{standing});
+}
+
 void GroundNode::on_timeout(Instant now) {
+  if (auto ours = setup_.poll_setup({}, now)) messages_.push(Message{*std::move(ours)});
   agent_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
@@ -74,6 +108,7 @@ std::optional<Message> GroundNode::poll_message() {
   if (auto message = agent_.poll_message()) {
     // What the operator tells of is to be planned around, too.
     if (const auto* hazard = std::get_if<HazardReport>(&*message)) tracks_.know(hazard->hazard);
+    if (const auto* command = std::get_if<Command>(&*message)) orders_.note(*command);
     return message;
   }
   if (auto message = formation_.poll_message()) return message;
@@ -88,7 +123,8 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 }
 
 Instant GroundNode::next_timeout() const {
-  return std::min({agent_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout()});
+  return std::min({agent_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
+                   setup_.next_timeout()});
 }
 
 }  // namespace skein::mission

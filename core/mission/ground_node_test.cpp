@@ -81,7 +81,8 @@ TEST(GroundNode, HearsOfAFormationAndTellsOfIt) {
   const auto* warning = std::get_if<event::FormationWarning>(&event->body);
   ASSERT_NE(warning, nullptr);
   EXPECT_EQ(warning->news, event::FormationNews::lost);
-  const auto message = ground.poll_message();
+  auto message = ground.poll_message();
+  if (message && std::holds_alternative<mission::Setup>(*message)) message = ground.poll_message();
   ASSERT_TRUE(message);
   EXPECT_TRUE(std::holds_alternative<MissionEvent>(*message));
 }
@@ -103,6 +104,91 @@ TEST(GroundNode, TwoThatAnswerToOneIdAreFoundInTheOneFleetPicture) {
   EXPECT_FALSE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.3)).ok());
   ground.on_timeout(at_seconds(7.0));
   EXPECT_FALSE(ground.fleet().duplicate(kVehicle));
+}
+
+template <class T>
+std::vector<T> said_of(GroundNode& ground) {
+  std::vector<T> found;
+  while (const auto message = ground.poll_message()) {
+    if (const auto* wanted = std::get_if<T>(&*message)) found.push_back(*wanted);
+  }
+  return found;
+}
+
+Setup setup_of(VehicleId vehicle, const std::string& latitude) {
+  SetupBook book{
+      {.common = {{"origin.latitude_deg", setup_hash(latitude)}}}, vehicle, {5}, at_seconds(1.0)};
+  return *book.poll_setup({}, at_seconds(1.0));
+}
+
+TEST(GroundNode, DoesNotWorkWithAVehicleOfAnotherSetup) {
+  GroundNodeConfig config;
+  config.agent.expected = {{1}, {2}, {3}};
+  config.formation.vehicles = {{1}, {2}, {3}};
+  config.setup = {.common = {{"origin.latitude_deg", setup_hash("48.1")}}};
+  GroundNode ground{config, Instant{}};
+  AuthorisationRequest request;
+  request.round = kRound;
+  request.site = kSite;
+  request.decide_by = at_seconds(20.0);
+  ASSERT_TRUE(ground.on_message(request, kVehicle, at_seconds(1.0)));
+
+  ground.on_message(setup_of(kVehicle, "48.2"), kVehicle, at_seconds(1.0));
+  const auto resumed = ground.command(kVehicle, CommandKind::resume, at_seconds(1.0));
+  ASSERT_FALSE(resumed.ok());
+  EXPECT_NE(resumed.error().message.find("another origin.latitude_deg"), std::string::npos);
+  EXPECT_FALSE(ground.agent().authorise(kSite, "test", at_seconds(1.0)).ok());
+  EXPECT_FALSE(ground.formation().preview({}).ok());
+  EXPECT_NE(ground.formation().preview({}).error().message.find("origin"), std::string::npos);
+  EXPECT_TRUE(ground.command(kVehicle, CommandKind::hold, at_seconds(1.0)).ok());
+  const auto event = ground.poll_event();
+  ASSERT_TRUE(event);
+  EXPECT_EQ(event->body, EventBody{(event::SetupDiffers{kVehicle, "origin.latitude_deg", 0.0})});
+
+  ground.on_message(setup_of(kVehicle, "48.1"), kVehicle, at_seconds(2.0));
+  EXPECT_TRUE(ground.command(kVehicle, CommandKind::resume, at_seconds(2.0)).ok());
+  EXPECT_TRUE(ground.agent().authorise(kSite, "test", at_seconds(2.0)).ok());
+}
+
+TEST(GroundNode, TellsAVehicleThatStartedAnewWhichOrdersStand) {
+  GroundNode ground = node();
+  ASSERT_TRUE(ground.command(kGroundStation, CommandKind::hold, at_seconds(1.0)).ok());
+  for (int second = 2; second < 10; ++second) ground.on_timeout(at_seconds(second));
+  (void)said_of<Command>(ground);
+  mission::Setup asks = setup_of(kVehicle, "");
+  asks.knows_orders = false;
+  ground.on_message(asks, kVehicle, at_seconds(60.0));
+  auto told = said_of<Command>(ground);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].vehicle, kVehicle);
+  EXPECT_EQ(told[0].kind, CommandKind::hold);
+  // It has heard; another has missed the order.
+  asks.knows_orders = true;
+  asks.newest_order = told[0].number;
+  ground.on_message(asks, kVehicle, at_seconds(61.0));
+  EXPECT_TRUE(said_of<Command>(ground).empty());
+  mission::Setup missed = setup_of({1}, "");
+  ground.on_message(missed, {1}, at_seconds(61.0));
+  EXPECT_EQ(said_of<Command>(ground).size(), 1U);
+}
+
+TEST(GroundNode, ThatStartedAnewWithoutRecollectionLetsOthersAnswerFirst) {
+  GroundNodeConfig config;
+  config.agent.expected = {{1}, {2}, {3}};
+  GroundNode ground{config, at_seconds(100.0)};
+  mission::Setup asks = setup_of(kVehicle, "");
+  asks.knows_orders = false;
+  ground.on_message(asks, kVehicle, at_seconds(101.0));
+  EXPECT_TRUE(said_of<Command>(ground).empty());
+  ground.on_message(asks, kVehicle, at_seconds(110.0));
+  EXPECT_EQ(said_of<Command>(ground).size(), 1U);
+
+  GroundNode recalls{config, at_seconds(100.0)};
+  recalls.recall(Command{kVehicle, 5, CommandKind::hold}, kGroundStation, at_seconds(1.0));
+  recalls.on_message(asks, kVehicle, at_seconds(101.0));
+  const auto told = said_of<Command>(recalls);
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].kind, CommandKind::hold);
 }
 
 }  // namespace

@@ -58,6 +58,10 @@ std::vector<std::string> SelfReport::problems(const Facts& facts, Instant now) c
     std::snprintf(seconds.data(), seconds.size(), "%.1f", to_seconds(now - *facts.state_at));
     all.push_back("no state from its flight controller for " + std::string{seconds.data()} + " s");
   }
+  if (facts.differs != nullptr) {
+    all.push_back("the ground station has " + text_of(*facts.differs) + ": it holds");
+  }
+  if (!facts.knows_orders) all.emplace_back("it does not know which orders stand: it holds");
   const auto more = [&all](std::uint64_t count, std::uint64_t told, const char* what) {
     if (count > told) all.push_back(std::to_string(count - told) + what);
   };

@@ -12,6 +12,7 @@
 #include "skein/base/time.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/setup_book.hpp"
 
 namespace skein::mission {
 
@@ -40,8 +41,10 @@ class SelfReport {
   /// What can be wrong, counted since the start.
   struct Facts {
     Condition condition;
-    std::optional<Instant> state_at = {};  ///< of the newest state; none: none came yet
-    std::uint64_t refused = 0;             ///< messages that were not their sender's to say
+    std::optional<Instant> state_at = {};      ///< of the newest state; none: none came yet
+    std::uint64_t refused = 0;                 ///< messages that were not their sender's to say
+    const SetupDifference* differs = nullptr;  ///< from the ground station
+    bool knows_orders = true;
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }

@@ -84,6 +84,7 @@ std::optional<event::ChangeRefusal> TrackAgent::why_not(const TrackFlight& fligh
                                                         Instant now) const {
   using enum event::ChangeRefusal;
   const TimedPath& timed = flight.plan.timed;
+  if (bar_ != Bar::none) return setup_differs;
   if (ordered_ || range_spent_) return obeys_others;
   double fastest = 0.0;
   for (const double pace : timed.paces) fastest = std::max(fastest, pace * timed.speed_mps);
@@ -116,6 +117,14 @@ void TrackAgent::on_command(const Command& command, Instant now) {
   if (command.kind == CommandKind::return_home) flight_->fly_home(hazards_, now);
   if (ordered_) leave();
   report(event::Commanded{command.kind}, now);
+}
+
+/// It leaves the formation, and orbits until it is given a place again.
+void TrackAgent::on_bar(Bar bar, Instant now) {
+  bar_ = bar;
+  if (bar == Bar::none || !(flown_ || next_flight_) || ordered_ || range_spent_) return;
+  flight_->hold(hazards_, now);
+  leave();
 }
 
 void TrackAgent::on_hazard(const Hazard& hazard, Instant now) {

@@ -78,6 +78,7 @@ PlannedTrack TrackGround::present() const {
 }
 
 Result<TrackPreview> TrackGround::preview(const TrackOrder& order, Instant now) const {
+  if (const auto why = barred_.why()) return Error{*why};
   const auto request = request_of(order, now);
   if (!request) return request.error();
   const bool reshapes = order.kind == OrderKind::reshape;

@@ -11,8 +11,12 @@
 namespace skein::mission {
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
+  const bool starts = !ownship_.flight().started();
   if (!ownship_.on_state(state, now)) {
     outbox.report(event::VehicleTrouble{event::Trouble::route_not_flown}, {}, {}, now);
+  }
+  if (starts && ownship_.flight().started() && failsafe_.in(Failsafe::Action::stay)) {
+    ownship_.hold(now);
   }
   step(now);
 }
@@ -26,7 +30,8 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [&](const Telemetry& m) { on_telemetry(m, now); },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
-                        [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {}},
+                        [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
+                        [](const Setup&) {}},
              message);
   step(now);
 }
@@ -123,7 +128,7 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
 
 /// Nothing to do: search on, or take up a site that waits.
 void VehicleAgent::Impl::idle(Instant now) {
-  if (failsafe_.in(Failsafe::Action::obey) || flyer_.flying() || scout_.flying()) return;
+  if (failsafe_.holds_still() || flyer_.flying() || scout_.flying()) return;
   if (!flyer_.free() || ownship_.flight().en_route(now)) return;
   if (failsafe_.in(Failsafe::Action::come_home)) {
     if (ownship_.comes_home()) ownship_.come_home(now);
@@ -188,6 +193,7 @@ std::optional<MissionEvent> VehicleAgent::poll_event() { return impl_->outbox.ev
 std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
   return impl_->outbox.planning_requests.pop();
 }
+void VehicleAgent::on_bar(Bar bar, Instant now) { impl_->on_bar(bar, now); }
 Instant VehicleAgent::next_timeout() const { return impl_->next_timeout(); }
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }

@@ -11,6 +11,11 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
   if (response != nullptr) respond(*response, now);
 }
 
+void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
+  const auto* response = failsafe_.update(now, {.bar = bar});
+  if (response != nullptr && ownship_.flight().started()) respond(*response, now);
+}
+
 void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
   const bool other =
       message.vehicle == ownship_.spec().id && message.instance != ownship_.config().instance;

@@ -2,10 +2,12 @@
 #include "skein/mission/vehicle_node.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "self_report.hpp"
 #include "skein/mission/may_say.hpp"
+#include "skein/mission/order_book.hpp"
 
 namespace skein::mission {
 namespace {
@@ -22,6 +24,13 @@ struct MakeAgent {
     return std::make_unique<TrackAgent>(config, now);
   }
 };
+
+/// What is of no use from a node that runs with another setup.
+bool is_joint_work(const Message& message) {
+  return std::holds_alternative<coalition::Message>(message) ||
+         std::holds_alternative<SiteReport>(message) ||
+         std::holds_alternative<Authorisation>(message);
+}
 
 Health unchanging(const VehicleNodeConfig& config, const Telemetry& telemetry) {
   Health health;
@@ -41,7 +50,11 @@ class VehicleNode::Impl {
         self{agent->telemetry().vehicle},
         telemetry_period{config.telemetry_period},
         self_report{unchanging(config, agent->telemetry()), now},
+        setup{config.setup, self, agent->telemetry().instance, now},
+        knows_orders{!starts_anew(now)},
         next_telemetry{now} {
+    if (!knows_orders) report(event::VehicleTrouble{event::Trouble::orders_unknown}, now);
+    update_bar(now);
     take_guidance();
   }
 
@@ -52,11 +65,51 @@ class VehicleNode::Impl {
     guidance = *newest;
   }
 
-  void on_command(const Command& command) {
-    if (!commands.take(command, self)) return;
-    if (command.kind == CommandKind::give_back && command.vehicle == self) {
+  void report(EventBody body, Instant at) {
+    MissionEvent event{self, at, {}, {}, std::move(body)};
+    messages.push(event);
+    events.push(std::move(event));
+  }
+
+  void update_bar(Instant now) {
+    const Bar now_barred = setup.difference(kGroundStation) != nullptr ? Bar::setup_differs
+                           : knows_orders                              ? Bar::none
+                                                                       : Bar::orders_unknown;
+    if (now_barred == std::exchange(bar, now_barred)) return;
+    agent->on_bar(bar, now);
+  }
+
+  void on_setup(const Setup& message, Instant now) {
+    setup.on_setup(message, now);
+    while (auto news = setup.poll_news()) report(*std::move(news), now);
+    update_bar(now);
+    // The ground station is asked first; where it does not answer, whoever knows does.
+    if (message.knows_orders || message.node == kGroundStation || !knows_orders) return;
+    const auto asked = asked_before.find(message.node);
+    if (asked != asked_before.end() && asked->second == message.instance) {
+      messages.push(Message{orders.standing(message.node, self)});
+    } else if (asked != asked_before.end() || asked_before.size() < OrderBook::kVehiclesMax) {
+      asked_before[message.node] = message.instance;
+    }
+  }
+
+  void on_command(const Command& command, VehicleId sender, Instant now) {
+    const bool passed_on = sender != kGroundStation;
+    if (passed_on && (knows_orders || command.vehicle != self)) return;
+    if (!passed_on) orders.note(command);
+    const bool is_new = commands.take(command, self);
+    if (is_new && command.kind == CommandKind::give_back && command.vehicle == self) {
       give_back = issued_at(command);
     }
+    if (is_new) agent->on_message(Message{command}, kGroundStation, now);
+    if (knows_orders || command.vehicle != self) return;
+    knows_orders = true;
+    report(event::OrdersKnown{sender}, now);
+    update_bar(now);
+  }
+
+  [[nodiscard]] bool is_of_use(const Message& message, VehicleId sender) const {
+    return !is_joint_work(message) || setup.difference(sender) == nullptr;
   }
 
   void report_itself(Instant now) {
@@ -69,8 +122,14 @@ class VehicleNode::Impl {
       messages.push(Message{telemetry});
     }
     if (const auto plan = self_report.plan_due(now)) messages.push(Message{*plan});
+    if (const auto ours = setup.poll_setup({knows_orders, commands.newest()}, now)) {
+      messages.push(Message{*ours});
+    }
     if (!self_report.health_due(now)) return;
-    SelfReport::Facts facts{.condition = condition, .refused = refused};
+    SelfReport::Facts facts{.condition = condition,
+                            .refused = refused,
+                            .differs = setup.difference(kGroundStation),
+                            .knows_orders = knows_orders};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});
@@ -92,6 +151,11 @@ class VehicleNode::Impl {
   VehicleId self;
   Duration telemetry_period;
   SelfReport self_report;
+  SetupBook setup;
+  OrderBook orders;
+  std::map<VehicleId, InstanceId> asked_before = {};  ///< who wanted to know the orders
+  bool knows_orders;
+  Bar bar = Bar::none;
   std::optional<VehicleState> state;
   Condition condition;
   std::optional<Guidance> guidance;
@@ -124,8 +188,13 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
     return;
   }
   impl_->self_report.on_heard(sender, now);
-  if (const auto* command = std::get_if<Command>(&message)) impl_->on_command(*command);
-  impl_->agent->on_message(message, sender, now);
+  if (const auto* command = std::get_if<Command>(&message)) {
+    impl_->on_command(*command, sender, now);
+  } else if (const auto* setup = std::get_if<Setup>(&message)) {
+    impl_->on_setup(*setup, now);
+  } else if (impl_->is_of_use(message, sender)) {
+    impl_->agent->on_message(message, sender, now);
+  }
   impl_->take_guidance();
 }
 
@@ -136,9 +205,7 @@ void VehicleNode::on_planning_result(const PlanningResult& result, Instant now) 
 
 void VehicleNode::on_notice(const FlightNotice& notice) {
   if (!notice.warning) return;
-  MissionEvent event{impl_->self, notice.time, {}, {}, event::FlightWarning{notice.what}};
-  impl_->messages.push(event);
-  impl_->events.push(std::move(event));
+  impl_->report(event::FlightWarning{notice.what}, notice.time);
 }
 
 void VehicleNode::on_condition(const Condition& condition) { impl_->condition = condition; }
@@ -172,8 +239,8 @@ std::optional<MissionEvent> VehicleNode::poll_event() {
 std::optional<Instant> VehicleNode::poll_give_back() { return std::exchange(impl_->give_back, {}); }
 
 Instant VehicleNode::next_timeout() const {
-  return std::min(
-      {impl_->next_telemetry, impl_->self_report.next_due(), impl_->agent->next_timeout()});
+  return std::min({impl_->next_telemetry, impl_->self_report.next_due(),
+                   impl_->setup.next_timeout(), impl_->agent->next_timeout()});
 }
 
 const OnboardAgent& VehicleNode::agent() const { return *impl_->agent; }

@@ -29,6 +29,8 @@ VehicleNodeConfig config() {
 }
 
 struct Vehicle {
+  explicit Vehicle(const VehicleNodeConfig& what = config(), Instant from = at_seconds(-5.0))
+      : node{what, from} {}
   void step(double seconds) {
     now = at_seconds(seconds);
     node.on_state({.time = now, .groundspeed_mps = 50.0, .airspeed_mps = 50.0}, now);
@@ -54,7 +56,7 @@ struct Vehicle {
     return found;
   }
 
-  VehicleNode node{config(), at_seconds(-5.0)};
+  VehicleNode node;
   Instant now{};
   std::vector<Message> said;
   std::uint32_t guided = 0;
@@ -162,6 +164,141 @@ TEST(VehicleNode, AMultirotorIsANodeTheSame) {
     EXPECT_FALSE(std::holds_alternative<PlanReport>(*message));
   }
   EXPECT_EQ(told, 2);
+}
+
+// --- what all have in common ---
+
+SetupParams setup(const std::string& latitude) {
+  return {.common = {{"origin.latitude_deg", setup_hash(latitude)}}};
+}
+Setup said_by(VehicleId node, const std::string& latitude, Instant when) {
+  SetupBook book{setup(latitude), node, {1}, when};
+  return *book.poll_setup({}, when);
+}
+VehicleNodeConfig config_at(const std::string& latitude) {
+  VehicleNodeConfig c = config();
+  c.setup = setup(latitude);
+  return c;
+}
+
+TEST(VehicleNode, HoldsWhileItsSetupIsNotTheGroundStations) {
+  Vehicle vehicle{config_at("48.1"), at_seconds(-5.0)};
+  vehicle.step(0.0);
+  vehicle.step(1.0);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+
+  vehicle.hear(said_by(kGroundStation, "48.2", vehicle.now), kGroundStation);
+  vehicle.step(1.1);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+  const auto events = vehicle.said_of<MissionEvent>();
+  ASSERT_FALSE(events.empty());
+  EXPECT_EQ(events.back().body,
+            EventBody{(event::SetupDiffers{kGroundStation, "origin.latitude_deg", 0.0})});
+  vehicle.step(2.2);
+  EXPECT_EQ(
+      vehicle.said_of<Health>().back().problems,
+      std::vector<std::string>{"the ground station has another origin.latitude_deg: it holds"});
+
+  vehicle.hear(said_by(kGroundStation, "48.1", vehicle.now), kGroundStation);
+  vehicle.step(2.3);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+}
+
+TEST(VehicleNode, AnOrderAndTheWayHomeComeBeforeADifference) {
+  Vehicle vehicle{config_at("48.1"), at_seconds(-5.0)};
+  vehicle.step(0.0);
+  vehicle.hear(Command{kSelf, 2'001, CommandKind::return_home}, kGroundStation);
+  const std::uint32_t homeward = vehicle.guided;
+  vehicle.hear(said_by(kGroundStation, "48.2", vehicle.now), kGroundStation);
+  vehicle.step(0.1);
+  EXPECT_EQ(vehicle.guided, homeward) << "it flies home";
+  vehicle.hear(Command{kSelf, 3'001, CommandKind::resume}, kGroundStation);
+  vehicle.step(0.2);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding) << "and no search";
+}
+
+coalition::Announcement announcement(VehicleId leader) {
+  coalition::Announcement call;
+  call.round = {{leader, {1}, 1}, 1};
+  call.site.id = {3};
+  call.site.position = {500.0, 0.0};
+  call.tasks = {{{3}, TaskKind::assess, 0}};
+  call.site.assessments = {{.dwell = std::chrono::seconds{5}}};
+  call.announced_at = at_seconds(1.0);
+  call.bids_until = at_seconds(1.5);
+  call.formed_at = at_seconds(2.5);
+  call.reward = 1.0;
+  return call;
+}
+
+TEST(VehicleNode, DoesNotBidForALeaderOfAnotherSetup) {
+  for (const bool differs : {false, true}) {
+    VehicleNodeConfig c = config_at("48.1");
+    std::get<VehicleAgentConfig>(c.agent).vehicle.capabilities.add(TaskKind::assess);
+    Vehicle vehicle{c, at_seconds(-5.0)};
+    vehicle.step(1.0);
+    vehicle.hear(said_by({9}, differs ? "48.2" : "48.1", vehicle.now), {9});
+    vehicle.hear(coalition::Message{announcement({9})}, {9});
+    vehicle.step(1.1);
+    EXPECT_EQ(vehicle.said_of<coalition::Message>().empty(), differs);
+  }
+}
+
+TEST(VehicleNode, ThatStartsAnewHoldsUntilItIsToldWhichOrdersStand) {
+  Vehicle vehicle{config(), at_seconds(100.0)};
+  vehicle.step(100.0);
+  vehicle.step(101.5);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+  const auto asked = vehicle.said_of<mission::Setup>();
+  ASSERT_EQ(asked.size(), 2U);
+  EXPECT_FALSE(asked.back().knows_orders);
+
+  Command other{{5}, 0, CommandKind::resume};
+  vehicle.hear(other, kGroundStation);
+  vehicle.hear(Command{kGroundStation, 99'001, CommandKind::resume}, kGroundStation);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding) << "not said to it";
+
+  Command none{kSelf, 0, CommandKind::resume};
+  none.told_by = {9};
+  vehicle.hear(none, {9});
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+  EXPECT_EQ(vehicle.said_of<MissionEvent>().back().body, EventBody{event::OrdersKnown{{9}}});
+  vehicle.step(110.0);
+  EXPECT_TRUE(vehicle.said_of<mission::Setup>().back().knows_orders);
+}
+
+TEST(VehicleNode, ThatStartsAnewUnderAHoldGoesOnHolding) {
+  Vehicle vehicle{config(), at_seconds(100.0)};
+  vehicle.step(100.0);
+  Command hold{kSelf, 50'001, CommandKind::hold};
+  hold.told_by = {9};
+  vehicle.hear(hold, {9});
+  vehicle.step(110.0);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+  // No other vehicle can order it from now on.
+  Command resume{kSelf, 60'001, CommandKind::resume};
+  resume.told_by = {9};
+  vehicle.hear(resume, {9});
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+  vehicle.hear(Command{kGroundStation, 60'002, CommandKind::resume}, kGroundStation);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+}
+
+TEST(VehicleNode, TellsWhoDoesNotKnowWhichOrdersStandFromTheSecondTimeOn) {
+  Vehicle vehicle;
+  vehicle.step(0.0);
+  vehicle.hear(Command{{7}, 5, CommandKind::hold}, kGroundStation);
+  mission::Setup asks = said_by({7}, "", vehicle.now);
+  asks.knows_orders = false;
+  vehicle.hear(asks, {7});
+  EXPECT_TRUE(vehicle.said_of<Command>().empty()) << "the ground station may answer";
+  vehicle.hear(asks, {7});
+  ASSERT_EQ(vehicle.said_of<Command>().size(), 1U);
+  const Command told = vehicle.said_of<Command>().front();
+  EXPECT_EQ(told.vehicle, VehicleId{7});
+  EXPECT_EQ(told.number, 5U);
+  EXPECT_EQ(told.kind, CommandKind::hold);
+  EXPECT_EQ(told.told_by, kSelf);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                                      m);
                         },
                         [](const mission::MissionEvent&) {}, [](const mission::Command&) {},
-                        [](const mission::Health&) {},
+                        [](const mission::Health&) {}, [](const mission::Setup&) {},
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
                           formation_.flights[m.vehicle] = {m.number, m.joined};

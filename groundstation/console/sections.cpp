@@ -96,6 +96,10 @@ Json problems_of(VehicleId id, const mission::FleetEntry& entry,
     all.push_back(
         problem("alarm", fmt::format("two programs call themselves vehicle {}", id.value)));
   }
+  if (entry.differs) {
+    all.push_back(problem("alarm", fmt::format("it has {}: it is not worked with",
+                                               mission::text_of(*entry.differs))));
+  }
   if (entry.silent) {
     all.push_back(
         problem("alarm", fmt::format("not heard for {:.0f} s", to_seconds(now - entry.heard_at))));

@@ -62,7 +62,7 @@ void Aircraft::take_off(Instant now) {
   for (const auto& h : mission_.hazards) {
     if (h.known_from <= now) known.push_back(h.hazard);
   }
-  start_program(known);
+  start_program(known, now);
 }
 
 mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) const {
@@ -77,12 +77,13 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   auto node = onboard::node_config(config, std::nullopt, instance(what_.spec.id, life_),
                                    "skein-hil simulate");
   node.telemetry_period = kTelemetryPeriod;
+  node.setup.common.clear();  // of one configuration: only clocks can differ
   return node;
 }
 
-void Aircraft::start_program(const std::vector<Hazard>& hazards) {
+void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   numbers_before_ = recorded_.number;
-  node_.emplace(config(hazards), local(state_.time));
+  node_.emplace(config(hazards), local(now));
 }
 
 bool Aircraft::in_place() const {

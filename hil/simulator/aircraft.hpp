@@ -31,7 +31,7 @@ class Aircraft {
   /// Is there an orbit here that is clear of the hazards?
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
-  void start_program(const std::vector<Hazard>& hazards);
+  void start_program(const std::vector<Hazard>& hazards, Instant now);
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;

@@ -21,6 +21,7 @@ std::vector<VehicleId> formation_of(const TeamMission& mission) {
 
 mission::GroundNodeConfig node_config(const TeamMission& mission) {
   mission::GroundNodeConfig node;
+  node.setup.clock_guard = mission.protocol.clock_guard;
   for (const auto& v : mission.vehicles) node.agent.expected.push_back(v.spec.id);
   node.agent.decisions = mission.decisions;
   if (mission.formation && mission.formation->planes) {

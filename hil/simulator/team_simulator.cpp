@@ -152,7 +152,7 @@ class Team {
         ground_.start(now);
         result_.ground_warning.reset();
       } else {
-        vehicles_[i].start_program(hazards_);
+        vehicles_[i].start_program(hazards_, now);
       }
       nodes_[i].on = true;
       tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);

@@ -44,4 +44,12 @@ std::string text_of(const Refusal& refusal, Topic topic) {
          std::to_string(info(topic).version);
 }
 
+std::string wire_versions() {
+  std::string text;
+  for (const TopicInfo& topic : kTopics) {
+    text.append(topic.type).append(" ").append(std::to_string(topic.version)).append("; ");
+  }
+  return text;
+}
+
 }  // namespace skein::codec

@@ -180,6 +180,16 @@ TEST(Codec, CountsAnotherVersionAsSuch) {
   }
 }
 
+/// Without what was appended since: understood, and said again with it.
+bool is_of_older_release(Topic topic, const Bytes& bytes) {
+  const auto decoded = decode(topic, bytes);
+  const auto* message = std::get_if<mission::Message>(&decoded);
+  if (message == nullptr) return false;
+  const Bytes now = encode(*message).value();
+  const auto end = bytes.end() - (bytes[3] & 3);  // what only fills up
+  return now.size() > bytes.size() && std::equal(bytes.begin() + 4, end, now.begin() + 4);
+}
+
 TEST(Codec, RefusesTruncatedAndOverlongSamples) {
   Random random{3};
   for (std::size_t kind = 0; kind < kMessageKinds; ++kind) {
@@ -187,6 +197,7 @@ TEST(Codec, RefusesTruncatedAndOverlongSamples) {
     const Bytes bytes = encode(message).value();
     for (std::size_t size = 0; size < bytes.size(); ++size) {
       const Bytes cut{bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
+      if (is_of_older_release(topic_of(message), cut)) continue;
       EXPECT_EQ(fault_of(topic_of(message), cut), Fault::malformed);
     }
     Bytes longer = bytes;
@@ -197,7 +208,7 @@ TEST(Codec, RefusesTruncatedAndOverlongSamples) {
 
 TEST(Codec, RefusesEnumeratorsThatDoNotExist) {
   Bytes command = encode(mission::Command{VehicleId{1}, 2, mission::CommandKind::resume}).value();
-  put<std::uint32_t>(command, command.size() - 4, 4);
+  put<std::uint32_t>(command, 4 + 8, 4);  // after version, vehicle and number
   EXPECT_EQ(fault_of(Topic::command, command), Fault::unknown_kind);
   Bytes cancel = encode(coalition::Message{coalition::Cancel{}}).value();
   put<std::uint32_t>(cancel, 8, 99);  // the union's discriminator

@@ -100,6 +100,8 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   config.origin = scenario.origin;
   config.network = network_of(0, nodes_of(scenario, deployment), deployment);
   config.time = deployment.time;
+  config.protocol = scenario.protocol;
+  config.planning = scenario.planning;
   for (const ScenarioVehicle& vehicle : scenario.vehicles) {
     config.vehicles.push_back(vehicle.spec.id);
   }

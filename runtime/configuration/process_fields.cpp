@@ -431,6 +431,14 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
             "a certificate needs its key, and a key its certificate; give both or neither");
 }
 
+void coalition_sections(FieldVisitor& v, coalition::ProtocolParams& protocol,
+                        planning::AllocationParams& planning) {
+  v.section({"protocol", "the contract net; the same for the whole fleet"},
+            [&protocol](FieldVisitor& inner) { protocol_fields(inner, protocol); });
+  v.section({"planning", "how tasks are given to vehicles; the same for the whole fleet"},
+            [&planning](FieldVisitor& inner) { planning_fields(inner, planning); });
+}
+
 }  // namespace
 
 void console_section(FieldVisitor& v, ConsoleConfig& config) {
@@ -456,10 +464,7 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
     wind_fields(inner, config.flight_controller.wind, "wind_");
   });
   turn_rules(v, config.vehicle, "vehicle.");
-  v.section({"protocol", "the contract net; the same for the whole fleet"},
-            [&config](FieldVisitor& inner) { protocol_fields(inner, config.protocol); });
-  v.section({"planning", "how tasks are given to vehicles; the same for the whole fleet"},
-            [&config](FieldVisitor& inner) { planning_fields(inner, config.planning); });
+  coalition_sections(v, config.protocol, config.planning);
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
@@ -474,6 +479,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   origin_section(v, config.origin);
   ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
   operator_decisions_list(v, config.operator_decisions);
+  coalition_sections(v, config.protocol, config.planning);
   v.list({"hazards", "known before the mission, for the map"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <string_view>
 
+#include "skein/mission/setup_book.hpp"
+
 namespace skein::wording {
 namespace {
 
@@ -75,6 +77,8 @@ constexpr std::array kReasons{
     std::string_view{"refused by the operator"},
     std::string_view{"yields to a larger reward"},
     std::string_view{"the site is done"},
+    std::string_view{"its setup is not the ground station's"},
+    std::string_view{"it has started anew and does not know which orders stand"},
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 
@@ -105,7 +109,8 @@ std::string_view sentence_of(event::Trouble trouble) {
   static constexpr Sentences<event::Trouble> kSentences{
       "neither its speed nor another path keeps its time in this wind",
       "it is not where its route has it at this time: the route is not flown",
-      "another vehicle uses this id; this one bids and leads no more"};
+      "another vehicle uses this id; this one bids and leads no more",
+      "it has started anew, and holds until it is told which orders stand"};
   return sentence_in(kSentences, trouble);
 }
 
@@ -113,7 +118,8 @@ std::string_view sentence_of(event::ChangeRefusal why) {
   static constexpr Sentences<event::ChangeRefusal> kSentences{
       "the one before is still flown", "it is faster than this vehicle", "it begins somewhere else",
       "it is told to hold or to come home, "
-      "or its range is spent"};
+      "or its range is spent",
+      "its setup is not the ground station's, or it does not know which orders stand"};
   return sentence_in(kSentences, why);
 }
 
@@ -356,6 +362,16 @@ struct News {
     return fmt::format("the script waits at '{}': {}", e.order, e.detail);
   }
   std::string operator()(const event::FlightWarning& e) const { return text_of(e.notice); }
+  std::string operator()(const event::SetupDiffers& e) const {
+    return text_of(e.node) + " has " + mission::text_of({e.keys, e.clock_ahead_s}) +
+           ": they do not work together";
+  }
+  std::string operator()(const event::SetupAgrees& e) const {
+    return text_of(e.node) + " has the same setup again";
+  }
+  std::string operator()(const event::OrdersKnown& e) const {
+    return "told by the " + text_of(e.told_by);
+  }
 };
 
 /// Does the event concern one task, rather than a site or nothing?

@@ -9,6 +9,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/time.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/mission/setup_book.hpp"
 
 namespace skein::mission {
 
@@ -19,6 +20,7 @@ struct FleetEntry {
   Instant heard_at{};                            ///< of it
   std::optional<Health> health;                  ///< the newest
   bool silent = false;                           ///< was heard, and not since FleetParams::silence
+  std::optional<SetupDifference> differs;        ///< from the ground station
   bool duplicate = false;                        ///< two instances speak with this id
   std::map<InstanceId, Instant> instances = {};  ///< who spoke with it lately, and when
 };
@@ -50,6 +52,11 @@ class Fleet {
   [[nodiscard]] const std::map<VehicleId, FleetEntry>& vehicles() const { return vehicles_; }
   [[nodiscard]] bool expects(VehicleId vehicle) const;
   [[nodiscard]] bool duplicate(VehicleId vehicle) const;
+
+  /// What that vehicle has in common with the ground station has changed.
+  void set_difference(VehicleId vehicle, const SetupDifference* difference);
+  /// Why that vehicle is not worked with, as a sentence: its setup, or its id; none where it is.
+  [[nodiscard]] std::optional<std::string> why_not_with(VehicleId vehicle) const;
 
  private:
   void on_telemetry(const Telemetry& telemetry, Instant now);

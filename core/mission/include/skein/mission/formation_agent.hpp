@@ -38,6 +38,7 @@ class FormationAgent final : public OnboardAgent {
   void on_state(const VehicleState& state, Instant now) override;
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_timeout(Instant now) override;
+  void on_bar(Bar bar, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   /// A new one in every slot, once there is a change.
@@ -58,6 +59,7 @@ class FormationAgent final : public OnboardAgent {
   void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
+  [[nodiscard]] bool waits() const { return held_ || bar_ != Bar::none || !not_begun_.empty(); }
   [[nodiscard]] double off_m(Instant now) const;
   void report(EventBody body, Instant now);
 
@@ -72,7 +74,8 @@ class FormationAgent final : public OnboardAgent {
   std::optional<Instant> waits_since_;
   std::uint32_t refused_ = 0;  ///< number of the newest change that it could not take
   CommandFilter commands_;
-  bool held_ = false;
+  bool held_ = false;  ///< by the operator
+  Bar bar_ = Bar::none;
   bool arrived_ = false;
   std::uint64_t bad_messages_ = 0;
   BoundedQueue<Message> messages_{64};

@@ -14,6 +14,7 @@
 #include "skein/formation/change_planner.hpp"
 #include "skein/formation/place_assignment.hpp"
 #include "skein/formation/shapes.hpp"
+#include "skein/mission/barred_vehicles.hpp"
 #include "skein/mission/messages.hpp"
 
 namespace skein::mission {
@@ -64,6 +65,9 @@ class FormationGround {
   /// is heard.
   [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order) const;
   Result<FormationPreview> command(const FormationOrder& order, Instant now);
+
+  /// While there are any no order is taken.
+  [[nodiscard]] BarredVehicles& barred() { return barred_; }
 
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
@@ -133,6 +137,7 @@ class FormationGround {
   std::optional<Instant> rest_since_;
   Instant next_;
   Instant now_{};  ///< when it was called last
+  BarredVehicles barred_;
   BoundedQueue<Message> messages_{64};
   BoundedQueue<MissionEvent> events_{256};
 };

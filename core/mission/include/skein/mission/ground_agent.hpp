@@ -93,6 +93,7 @@ class GroundAgent {
   }
 
   [[nodiscard]] const Fleet& fleet() const { return fleet_; }
+  [[nodiscard]] Fleet& fleet() { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
 
  private:

@@ -8,6 +8,8 @@
 #include "skein/mission/fleet.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/ground_agent.hpp"
+#include "skein/mission/order_book.hpp"
+#include "skein/mission/setup_book.hpp"
 #include "skein/mission/track_ground.hpp"
 
 namespace skein::mission {
@@ -16,11 +18,15 @@ struct GroundNodeConfig {
   GroundAgentConfig agent;
   FormationGroundConfig formation;
   TrackGroundConfig tracks{};  ///< of planes in formation; without planes it does nothing
+  SetupParams setup{};
+  InstanceId instance{};  ///< of this program
 };
 
 /// Everything that the ground station decides and says: its agents and the one picture of the fleet
 /// that they, the prompt and the page read. A message that is not its sender's to say is refused
-/// and counted, whatever it is. Calling rules as of VehicleNode.
+/// and counted, whatever it is. Vehicles that run with another setup are told so, and are neither
+/// authorised nor led in formation; those that do not know which orders stand are told them.
+/// Calling rules as of VehicleNode.
 class GroundNode {
  public:
   GroundNode(const GroundNodeConfig& config, Instant now);
@@ -64,11 +70,15 @@ class GroundNode {
 
  private:
   void take_events();
+  void on_setup(const Setup& setup, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
 
   GroundAgent agent_;
   FormationGround formation_;
   TrackGround tracks_;
+  SetupBook setup_;
+  OrderBook orders_;
+  Instant knows_orders_at_;  ///< from then on it says of who has none that it has none
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

@@ -29,6 +29,7 @@ class CommandFilter {
     newest_ = command.number;
     return true;
   }
+  [[nodiscard]] std::uint32_t newest() const { return newest_; }
 
  private:
   std::uint32_t newest_ = 0;

@@ -46,6 +46,13 @@ struct Condition {
   friend bool operator==(const Condition&, const Condition&) = default;
 };
 
+/// What keeps a vehicle from working with the others, whatever it is told: it holds until it ends.
+enum class Bar : std::uint8_t {
+  none,
+  setup_differs,   ///< it does not run with what the ground station runs with
+  orders_unknown,  ///< it has started anew, and does not know which orders stand
+};
+
 /// What was of no use, or had no room, since the start.
 struct Counters {
   std::uint64_t protocol_errors = 0;   ///< inputs that no state machine had an entry for
@@ -68,6 +75,8 @@ class OnboardAgent {
   virtual void on_message(const Message& message, VehicleId sender, Instant now) = 0;
   virtual void on_planning_result(const PlanningResult& /*result*/, Instant /*now*/) {}
   virtual void on_timeout(Instant now) = 0;
+  /// From now on; before the first state, too.
+  virtual void on_bar(Bar bar, Instant now) = 0;
 
   /// To be sent; events are among them.
   [[nodiscard]] virtual std::optional<Message> poll_message() = 0;

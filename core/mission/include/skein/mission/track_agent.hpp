@@ -39,6 +39,7 @@ class TrackAgent final : public OnboardAgent {
   void on_state(const VehicleState& state, Instant now) override;
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_timeout(Instant now) override;
+  void on_bar(Bar bar, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   [[nodiscard]] std::optional<Guidance> poll_guidance() override;
@@ -77,6 +78,7 @@ class TrackAgent final : public OnboardAgent {
   std::uint32_t refused_ = 0;
   CommandFilter commands_;
   bool ordered_ = false;  ///< to hold or to come home
+  Bar bar_ = Bar::none;
   bool arrived_ = false;
   bool range_spent_ = false;
   Instant now_{};

@@ -10,6 +10,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/result.hpp"
 #include "skein/formation/track_planner.hpp"
+#include "skein/mission/barred_vehicles.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -50,6 +51,9 @@ class TrackGround {
   /// Fails with what is wrong and what to change.
   [[nodiscard]] Result<TrackPreview> preview(const TrackOrder& order, Instant now) const;
   Result<TrackPreview> command(const TrackOrder& order, Instant now);
+
+  /// While there are any no order is taken.
+  [[nodiscard]] BarredVehicles& barred() { return barred_; }
 
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
@@ -103,6 +107,7 @@ class TrackGround {
   std::optional<Instant> near_since_;
   std::optional<Instant> held_since_;
   Instant next_;
+  BarredVehicles barred_;
   BoundedQueue<Message> messages_{256};
   BoundedQueue<MissionEvent> events_{256};
 };

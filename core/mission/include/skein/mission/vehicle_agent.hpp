@@ -39,6 +39,7 @@ class VehicleAgent final : public OnboardAgent {
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_planning_result(const PlanningResult& result, Instant now) override;
   void on_timeout(Instant now) override;
+  void on_bar(Bar bar, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override;
   [[nodiscard]] std::optional<Guidance> poll_guidance() override;

@@ -10,6 +10,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/mission/formation_agent.hpp"
 #include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/setup_book.hpp"
 #include "skein/mission/track_agent.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 
@@ -20,13 +21,18 @@ struct VehicleNodeConfig {
   std::string program;            ///< name and version, for whoever watches
   std::string flight_controller;  ///< its kind
   Duration telemetry_period = std::chrono::milliseconds{100};
+  SetupParams setup{};
 };
 
 /// Everything that a vehicle decides and says: its agent, the telemetry and what it tells of itself
 /// for people who watch it, and what of the operator's words is for the flight controller. Calling
 /// rules as of OnboardAgent: the same inputs give the same outputs, byte for byte.
 ///
-/// A message that is not its sender's to say is refused and counted, whatever it is. A vehicle is
+/// A message that is not its sender's to say is refused and counted, whatever it is. Who runs with
+/// another setup (SetupBook) is not worked with: its words of the contract net and of sites count
+/// for nothing. A vehicle whose setup is not the ground station's, and one that starts anew in the
+/// mission and has not been told which orders stand, holds (Bar). A vehicle that knows them tells
+/// whoever does not. A vehicle is
 /// on the network before the mission begins: it tells of itself at any time, but its agent sees
 /// neither a state nor a timeout before mission time 0.
 class VehicleNode {

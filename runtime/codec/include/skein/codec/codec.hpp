@@ -14,6 +14,9 @@
 
 namespace skein::codec {
 
+/// Which versions of which messages this release understands, as one line: equal where they are.
+[[nodiscard]] std::string wire_versions();
+
 /// The bytes of a sample (cdr.hpp). None where a value is out of its limits in idl/: a node does
 /// not send what its peers would drop. Texts are cut at a character to what is allowed.
 [[nodiscard]] std::optional<Bytes> encode(const mission::Message& message);

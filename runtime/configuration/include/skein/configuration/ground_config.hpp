@@ -9,10 +9,12 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
+#include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/planning/allocation.hpp"
 
 namespace skein::configuration {
 
@@ -35,6 +37,8 @@ struct ConsoleConfig {
 struct GroundConfig {
   Wgs84 origin;
   NetworkConfig network;
+  coalition::ProtocolParams protocol;
+  planning::AllocationParams planning;
   TimeConfig time;
   std::vector<VehicleId> vehicles;  ///< the fleet that is expected
   /// Empty: the operator types at the prompt.

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/base/time.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// FNV-1a, 32 bits, over the bytes: the same on every machine and in every release.
+[[nodiscard]] std::uint32_t setup_hash(std::string_view text);
+
+/// What nodes must have in common, as its place in the configuration ("origin.latitude_deg"), and
+/// what it is set to here.
+struct CommonKey {
+  std::string name;
+  std::uint32_t value = 0;  ///< setup_hash() of the value as text
+  friend bool operator==(const CommonKey&, const CommonKey&) = default;
+};
+
+/// Has the mission begun before this program did? Then orders may stand that it does not know.
+[[nodiscard]] constexpr bool starts_anew(Instant now) {
+  return now >= Instant{} + std::chrono::seconds{2};
+}
+
+struct SetupParams {
+  std::vector<CommonKey> common;  ///< kSetupItemsMax at most
+  /// Clocks that differ by more do not work together. It is noticed where the other's is ahead by
+  /// more than this and the message's delay; no message arrives before it is sent, so it is never
+  /// noticed where it is not so.
+  Duration clock_guard = std::chrono::milliseconds{500};
+};
+
+/// In what another node differs from this one.
+struct SetupDifference {
+  std::string keys;          ///< with commas; empty: the clock alone
+  double clock_ahead_s = 0;  ///< of the other; 0: within the guard
+  friend bool operator==(const SetupDifference&, const SetupDifference&) = default;
+};
+/// "another origin.latitude_deg", "a clock that is 3.0 s ahead": what a sentence goes on with.
+[[nodiscard]] std::string text_of(const SetupDifference& difference);
+
+/// What this node runs with, told to all every kPeriod and at once where somebody new is heard; and
+/// what of that others run with too. `now` is of this node's clock and never decreases.
+class SetupBook {
+ public:
+  static constexpr Duration kPeriod = std::chrono::seconds{5};
+  static constexpr Duration kPeriodWhileNew = std::chrono::seconds{1};
+  static constexpr std::size_t kNodesMax = 512;
+
+  SetupBook(const SetupParams& params, VehicleId self, InstanceId instance, Instant now);
+
+  /// Of who may say it (may_say()).
+  void on_setup(const Setup& setup, Instant now);
+
+  /// Told in it: the orders that this node knows of.
+  struct Orders {
+    bool known = true;
+    std::uint32_t newest = 0;
+  };
+  [[nodiscard]] std::optional<Setup> poll_setup(const Orders& orders, Instant now);
+  /// What has changed in what others have in common with this one.
+  [[nodiscard]] std::optional<EventBody> poll_news() { return news_.pop(); }
+  [[nodiscard]] Instant next_timeout() const { return next_; }
+
+  /// Null for a node that runs with the same, or has told nothing yet.
+  [[nodiscard]] const SetupDifference* difference(VehicleId node) const;
+
+ private:
+  /// A clock counts as within the guard again after so many setups in which it was.
+  static constexpr int kClean = 3;
+  struct Node {
+    InstanceId instance;
+    std::string keys;
+    double ahead_s = 0;
+    int clean = 0;
+    std::optional<SetupDifference> difference;
+  };
+
+  [[nodiscard]] std::string differing_keys(const Setup& setup) const;
+  void watch_clock(Node& node, const Setup& setup, Instant now) const;
+
+  SetupParams params_;
+  Setup own_;
+  std::map<std::uint32_t, const CommonKey*> by_key_;
+  std::map<VehicleId, Node> nodes_;
+  Instant said_at_ = Instant::min();
+  Instant next_;
+  BoundedQueue<EventBody> news_{64};
+};
+
+}  // namespace skein::mission

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/setup_book.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
+
+namespace skein::mission {
+namespace {
+
+/// A place in the configuration is short: so many fit into a text of a message.
+constexpr std::size_t kKeysTextMax = 160;
+
+/// But for how far the clock is out, which every message measures anew.
+bool same(const std::optional<SetupDifference>& a, const std::optional<SetupDifference>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  return a->keys == b->keys && (a->clock_ahead_s == 0.0) == (b->clock_ahead_s == 0.0);
+}
+
+}  // namespace
+
+std::uint32_t setup_hash(std::string_view text) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : text) {
+    hash ^= static_cast<std::uint8_t>(c);
+    hash *= 16777619U;
+  }
+  return hash;
+}
+
+std::string text_of(const SetupDifference& difference) {
+  std::string text = difference.keys.empty() ? "" : "another " + difference.keys;
+  if (difference.clock_ahead_s != 0.0) {
+    std::array<char, 64> clock{};
+    std::snprintf(clock.data(), clock.size(), "a clock that is %.1f s %s",
+                  std::abs(difference.clock_ahead_s),
+                  difference.clock_ahead_s > 0.0 ? "ahead" : "behind");
+    text.append(text.empty() ? "" : ", and ").append(clock.data());
+  }
+  return text;
+}
+
+SetupBook::SetupBook(const SetupParams& params, VehicleId self, InstanceId instance, Instant now)
+    : params_{params}, next_{now} {
+  SKEIN_ASSERT(params_.common.size() <= kSetupItemsMax);
+  own_.node = self;
+  own_.instance = instance;
+  own_.clock_guard = params_.clock_guard;
+  for (const CommonKey& common : params_.common) {
+    const std::uint32_t key = setup_hash(common.name);
+    own_.items.push_back({key, common.value});
+    by_key_.emplace(key, &common);
+  }
+}
+
+void SetupBook::on_setup(const Setup& setup, Instant now) {
+  if (setup.node == own_.node) return;
+  if (!nodes_.contains(setup.node) && nodes_.size() >= kNodesMax) return;
+  Node& node = nodes_[setup.node];
+  if (node.instance != setup.instance) {
+    // Whoever is new has not heard of this node either.
+    next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
+    auto before = std::move(node.difference);
+    node = {};
+    node.instance = setup.instance;
+    node.difference = std::move(before);
+  }
+  node.keys = differing_keys(setup);
+  watch_clock(node, setup, now);
+  std::optional<SetupDifference> difference;
+  if (!node.keys.empty() || node.ahead_s != 0.0) {
+    difference = SetupDifference{node.keys, node.ahead_s};
+  }
+  const bool is_news = !same(difference, node.difference);
+  node.difference = std::move(difference);
+  if (!is_news) return;
+  if (node.difference) {
+    news_.push(event::SetupDiffers{setup.node, node.keys, node.ahead_s});
+  } else {
+    news_.push(event::SetupAgrees{setup.node});
+  }
+}
+
+/// Keys that only one of the two knows of are of another release, which is a key of its own.
+std::string SetupBook::differing_keys(const Setup& setup) const {
+  std::string keys;
+  std::size_t more = 0;
+  for (const SetupItem& item : setup.items) {
+    const auto own = by_key_.find(item.key);
+    if (own == by_key_.end() || own->second->value == item.value) continue;
+    if (keys.size() + own->second->name.size() > kKeysTextMax) {
+      ++more;
+    } else {
+      keys.append(keys.empty() ? "" : ", ").append(own->second->name);
+    }
+  }
+  if (more > 0) keys.append(" and ").append(std::to_string(more)).append(" more");
+  return keys;
+}
+
+/// Ahead: as measured here. Behind: as the other says, who finds this one ahead; by how much is
+/// measured here, less the delay.
+void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
+  const Duration ahead = setup.time - now;
+  const bool is_ahead = ahead > std::min(params_.clock_guard, setup.clock_guard);
+  const bool is_behind = contains(setup.ahead, own_.node) && ahead < Duration{};
+  if (is_ahead || is_behind) {
+    node.ahead_s = to_seconds(ahead);
+    node.clean = 0;
+  } else if (node.ahead_s != 0.0 && ++node.clean >= kClean) {
+    node.ahead_s = 0.0;
+  }
+}
+
+std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
+  if (now < next_) return std::nullopt;
+  said_at_ = now;
+  next_ = now + (orders.known ? kPeriod : kPeriodWhileNew);
+  Setup setup = own_;
+  setup.time = now;
+  setup.knows_orders = orders.known;
+  setup.newest_order = orders.newest;
+  for (const auto& [id, node] : nodes_) {
+    if (node.ahead_s > 0.0 && setup.ahead.size() < kHeardMax) setup.ahead.push_back(id);
+  }
+  return setup;
+}
+
+const SetupDifference* SetupBook::difference(VehicleId node) const {
+  const auto known = nodes_.find(node);
+  return known == nodes_.end() || !known->second.difference ? nullptr : &*known->second.difference;
+}
+
+}  // namespace skein::mission
