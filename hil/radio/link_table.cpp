@@ -36,12 +36,26 @@ Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
     return Error{"radio table " + name + ": " + std::generic_category().message(reason)};
   }
   LinkTable table{name, static_cast<Table*>(memory), create};
-  if (create) {  // fresh pages are zero: every link down
-    for (auto& row : table.table_->cells) {
-      for (auto& cell : row) cell.up = true;
-    }
-  }
+  if (create) table.all_up();
   return table;
+}
+
+Result<LinkTable> LinkTable::create_private() {
+  void* memory =
+      ::mmap(nullptr, sizeof(Table), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (memory == MAP_FAILED) {
+    return Error{"no memory for a radio table: " + std::generic_category().message(errno)};
+  }
+  LinkTable table{"", static_cast<Table*>(memory), false};
+  table.all_up();
+  return table;
+}
+
+/// Fresh pages are zero: every link down.
+void LinkTable::all_up() {
+  for (auto& row : table_->cells) {
+    for (auto& cell : row) cell.up = true;
+  }
 }
 
 LinkTable::~LinkTable() {

@@ -6,7 +6,8 @@
 // moment in the bench's table. Own traffic passes, and so does that of senders that are not in the
 // table (the bench itself).
 //
-// Environment: SKEIN_RADIO_TABLE, name of the link table; SKEIN_RADIO_SEED, number.
+// Environment: SKEIN_RADIO_TABLE, name of the link table; without it, as on machines that are not
+// the bench's, the bench is listened to (link_feed.hpp). SKEIN_RADIO_SEED, number.
 
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
@@ -26,6 +27,7 @@
 #include <vector>
 
 #include "skein/base/random.hpp"
+#include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/network/transport_plugin.hpp"
 
@@ -195,28 +197,37 @@ struct RadioDescriptor : rtps::ChainingTransportDescriptor {
   std::uint64_t seed;
 };
 
+/// The table of this process's links, whoever keeps it.
+Result<std::shared_ptr<const LinkTable>> links_of(VehicleId self) {
+  // Nobody changes the environment while a node opens.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  const char* name = std::getenv("SKEIN_RADIO_TABLE");
+  if (name == nullptr) {
+    auto feed = FeedReceiver::open(self);
+    if (!feed) return feed.error();
+    return std::shared_ptr<const LinkTable>{*feed, &(*feed)->table()};
+  }
+  auto table = LinkTable::open(name);
+  if (!table) return table.error();
+  return std::make_shared<const LinkTable>(std::move(table).value());
+}
+
 }  // namespace
 }  // namespace skein::hil::radio
 
 extern "C" __attribute__((visibility("default"))) const char* skein_wrap_transport(
     std::shared_ptr<eprosima::fastdds::rtps::TransportDescriptorInterface>& transport,
     std::uint16_t self) {
-  using skein::hil::radio::LinkTable;
-  // Nobody changes the environment while a node opens.
-  // NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const char* name = std::getenv("SKEIN_RADIO_TABLE");
-  if (name == nullptr) return "the radio needs SKEIN_RADIO_TABLE, the name of a link table";
-  auto table = LinkTable::open(name);
-  if (!table) {
+  auto links = skein::hil::radio::links_of(skein::VehicleId{self});
+  if (!links) {
     static std::string reason;
-    reason = table.error().message;
+    reason = links.error().message;
     return reason.c_str();
   }
   // NOLINTNEXTLINE(concurrency-mt-unsafe)
   const char* seed = std::getenv("SKEIN_RADIO_SEED");
   transport = std::make_shared<skein::hil::radio::RadioDescriptor>(
-      transport, skein::VehicleId{self},
-      std::make_shared<const LinkTable>(std::move(table).value()),
+      transport, skein::VehicleId{self}, std::move(links).value(),
       seed != nullptr ? std::strtoull(seed, nullptr, 10) : 1);
   return nullptr;
 }

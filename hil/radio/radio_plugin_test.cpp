@@ -15,6 +15,7 @@
 #include <thread>
 #include <vector>
 
+#include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/network/node.hpp"
 
@@ -190,7 +191,7 @@ TEST_F(Radio, ClosesWithPacketsOnTheirWay) {
   anna_.reset();
 }
 
-TEST(RadioPlugin, RefusesWithoutItsTable) {
+TEST(RadioPlugin, RefusesWithoutItsTableAndWithoutABenchToHear) {
   network::NodeConfig config;
   config.self = kAnna;
   config.instance = InstanceId{1};
@@ -203,9 +204,13 @@ TEST(RadioPlugin, RefusesWithoutItsTable) {
   } while (!is_free(port) || !is_free(port + 1));
   config.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(port)};
   name_table("");
-  const auto unnamed = Node::open(config);
-  ASSERT_FALSE(unnamed);
-  EXPECT_NE(unnamed.error().message.find("SKEIN_RADIO_TABLE"), std::string::npos);
+  {
+    const auto taken = FeedReceiver::open(kAnna);
+    ASSERT_TRUE(taken) << taken.error().message;
+    const auto deaf = Node::open(config);
+    ASSERT_FALSE(deaf);
+    EXPECT_NE(deaf.error().message.find(std::to_string(feed_port(kAnna))), std::string::npos);
+  }
   name_table("/skein-radio-of-nobody");
   const auto missing = Node::open(config);
   ASSERT_FALSE(missing);

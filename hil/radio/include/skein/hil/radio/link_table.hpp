@@ -25,6 +25,8 @@ class LinkTable {
   /// Makes the table under a new name ("/skein-radio-PID-N"); all links are up and perfect. The
   /// name goes with the object.
   [[nodiscard]] static Result<LinkTable> create();
+  /// A table of this process alone; all links are up and perfect.
+  [[nodiscard]] static Result<LinkTable> create_private();
   /// Opens an existing table, read-only in spirit. Fails with the name where there is none.
   [[nodiscard]] static Result<LinkTable> open(const std::string& name);
 
@@ -59,6 +61,7 @@ class LinkTable {
   LinkTable(std::string name, Table* table, bool owner)
       : name_{std::move(name)}, table_{table}, owner_{owner} {}
   [[nodiscard]] static Result<LinkTable> map(const std::string& name, bool create);
+  void all_up();
 
   std::string name_;
   Table* table_;
