@@ -19,6 +19,7 @@
 #include <thread>
 #include <utility>
 
+#include "external_hosts.hpp"
 #include "flight_controllers.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
@@ -72,26 +73,32 @@ class InterruptWatch {
   struct sigaction old_term_ {};
 };
 
-/// `type` is SOCK_DGRAM or SOCK_STREAM.
-bool port_free(int type, std::uint16_t port) {
+constexpr const char* kLoopback = "127.0.0.1";
+/// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
+constexpr auto kExternalSilence = std::chrono::seconds{10};
+/// What configuring and starting external hosts takes, all at once.
+constexpr double kExternalLead_s = 6.0;
+
+/// `type` is SOCK_DGRAM or SOCK_STREAM; port 0 is free where the address is this machine's.
+bool port_free(int type, const std::string& of, std::uint16_t port) {
   const int s = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
   const int reuse = type == SOCK_STREAM ? 1 : 0;  // connections that end are in nobody's way
   ::setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ::inet_pton(AF_INET, of.c_str(), &address.sin_addr);
   const bool free = ::bind(s, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
   ::close(s);
   return free;
 }
 
 /// The first port of a free block, or why there is none.
-Result<std::uint16_t> port_block(std::uint16_t wanted, std::size_t count) {
-  const auto taken = [count](std::uint16_t base) -> std::optional<std::uint16_t> {
+Result<std::uint16_t> port_block(const std::string& of, std::uint16_t wanted, std::size_t count) {
+  const auto taken = [&](std::uint16_t base) -> std::optional<std::uint16_t> {
     for (std::size_t i = 0; i < count; ++i) {
       const auto port = static_cast<std::uint16_t>(base + i);
-      if (!port_free(SOCK_DGRAM, port)) return port;
+      if (!port_free(SOCK_DGRAM, of, port)) return port;
     }
     return std::nullopt;
   };
@@ -112,16 +119,17 @@ Result<std::uint16_t> port_block(std::uint16_t wanted, std::size_t count) {
     const auto base = static_cast<std::uint16_t>(12'000 + 2 * random.index(10'000));
     if (!taken(base)) return base;
   }
-  return Error{"no free block of " + std::to_string(count) + " UDP ports was found on loopback"};
+  return Error{"no free block of " + std::to_string(count) + " UDP ports was found on " + of};
 }
 
 class Bench {
  public:
   Bench(const configuration::Scenario& scenario, const BenchOptions& options,
-        const std::function<void(const BenchProgress&)>& on_progress)
+        ExternalHosts external, const std::function<void(const BenchProgress&)>& on_progress)
       : scenario_{scenario},
         options_{options},
         on_progress_{on_progress},
+        external_{std::move(external)},
         sensors_{scenario.sites, specs(scenario)},
         timeline_{faults_of(scenario)} {
     progress_.now = Instant{Duration::min()};
@@ -130,7 +138,7 @@ class Bench {
   Result<void> start() {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
     if (const auto possible = check_options(); !possible) return possible;
-    const auto base = port_block(options_.port_base, 2 * nodes);
+    const auto base = port_block(options_.address, options_.port_base, 2 * nodes);
     if (!base) return base.error();
     const auto buses = can_buses(*base);
     if (!buses) return buses.error();
@@ -141,26 +149,10 @@ class Bench {
     for (const auto& end : configuration::route_ends(scenario_)) {
       routes_end_ = std::max(routes_end_, end.planned);
     }
-    // Everybody has started and found each other before mission time 0.
-    const double lead_s = options_.lead_s > 0.0
-                              ? options_.lead_s
-                              : 3.0 + 0.3 * static_cast<double>(scenario_.vehicles.size());
-    const auto lead = std::chrono::duration_cast<std::chrono::milliseconds>(
-        std::chrono::duration<double>{lead_s});
+    const configuration::Deployment deployment = deploy(*base, *buses);
+    const auto configs = configuration::vehicle_configs(scenario_, deployment);
+    if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
-    epoch_ = started_ + lead;
-    configuration::Deployment deployment;
-    deployment.port_base = *base;
-    deployment.domain_id = static_cast<std::uint16_t>(*base % 200);
-    deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
-    deployment.time.rate = options_.rate;
-    deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                        (system_clock::now() + lead).time_since_epoch())
-                                        .count();
-    deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
-    deployment.can_buses = *buses;
-    deployment.console_port = options_.console_port;
-
     const auto ground = configuration::ground_config(scenario_, deployment);
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
         !up)
@@ -170,28 +162,16 @@ class Bench {
     bench.self = kBench;
     bench.instance = InstanceId{static_cast<std::uint64_t>(deployment.time.epoch_unix_ns)};
     bench.role = codec::Role::ground;
-    bench.endpoint = {"127.0.0.1", static_cast<std::uint16_t>(*base + 2 * (nodes - 1))};
+    bench.endpoint = {options_.address, static_cast<std::uint16_t>(*base + 2 * (nodes - 1))};
     bench.queue_limit = 16384;
     bench.peers.push_back({kGroundStation, {ground.network.address, ground.network.port}});
-    for (const auto& config : configuration::vehicle_configs(scenario_, deployment)) {
+    nodes_.push_back(kGroundStation);
+    for (const auto& config : configs) {
+      nodes_.push_back(config.vehicle.id);
       bench.peers.push_back({config.vehicle.id, {config.network.address, config.network.port}});
-      if (auto up = launch_flight_controller(config); !up) return up;
-      const std::string name = "vehicle-" + std::to_string(config.vehicle.id.value);
-      if (auto up =
-              launch(config.vehicle.id, "skein-onboard", name, configuration::to_yaml(config));
-          !up)
-        return up;
+      if (auto up = launch_vehicle(config); !up) return up;
     }
-    recording::Writer::Options recorder;
-    recorder.session = {
-        kBench, bench.instance, "skein-hil", SKEIN_VERSION, deployment.time.epoch_unix_ns, ""};
-    auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
-    if (!writer) return writer.error();
-    writer_ = std::move(writer).value();
-    auto node = network::Node::open(bench);
-    if (!node) return node.error();
-    node_ = std::move(node).value();
-    return {};
+    return listen(bench, deployment);
   }
 
   BenchOutcome run() {
@@ -223,7 +203,11 @@ class Bench {
 
   /// What can be told before anything is started.
   [[nodiscard]] Result<void> check_options() const {
-    if (options_.console_port != 0 && !port_free(SOCK_STREAM, options_.console_port)) {
+    if (!port_free(SOCK_DGRAM, options_.address, 0)) {
+      return Error{"no network interface of this machine has the address " + options_.address +
+                   "; give --address the one where the hosts reach it"};
+    }
+    if (options_.console_port != 0 && !port_free(SOCK_STREAM, kLoopback, options_.console_port)) {
       return Error{"port " + std::to_string(options_.console_port) +
                    " of loopback is in use; name another for --console, or stop who uses it "
                    "(ss -tlpn shows who)"};
@@ -234,6 +218,54 @@ class Bench {
                    " is beyond the bench's radio, which has ids 1 to " +
                    std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
     }
+    return {};
+  }
+
+  /// Where everybody is, and when mission time 0 is: all have started and found each other before.
+  configuration::Deployment deploy(std::uint16_t port_base, const std::vector<std::string>& buses) {
+    const double lead_s = options_.lead_s > 0.0
+                              ? options_.lead_s
+                              : 3.0 + 0.3 * static_cast<double>(scenario_.vehicles.size()) +
+                                    (external_.empty() ? 0.0 : kExternalLead_s);
+    const auto lead = std::chrono::duration_cast<std::chrono::milliseconds>(
+        std::chrono::duration<double>{lead_s});
+    epoch_ = steady_clock::now() + lead;
+    configuration::Deployment deployment;
+    deployment.address = options_.address;
+    deployment.port_base = port_base;
+    deployment.domain_id = static_cast<std::uint16_t>(port_base % 200);
+    deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
+    deployment.time.rate = options_.rate;
+    deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        (system_clock::now() + lead).time_since_epoch())
+                                        .count();
+    deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
+    deployment.can_buses = buses;
+    deployment.elsewhere = external_.nodes();
+    deployment.console_port = options_.console_port;
+    return deployment;
+  }
+
+  Result<void> launch_vehicle(const configuration::VehicleConfig& config) {
+    if (external_.has(config.vehicle.id)) return {};
+    if (auto up = launch_flight_controller(config); !up) return up;
+    return launch(config.vehicle.id, "skein-onboard",
+                  "vehicle-" + std::to_string(config.vehicle.id.value),
+                  configuration::to_yaml(config));
+  }
+
+  /// Opens the bench's own node and recording.
+  Result<void> listen(const network::NodeConfig& bench,
+                      const configuration::Deployment& deployment) {
+    recording::Writer::Options recorder;
+    recorder.session = {
+        kBench, bench.instance, "skein-hil", SKEIN_VERSION, deployment.time.epoch_unix_ns, ""};
+    auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
+    if (!writer) return writer.error();
+    writer_ = std::move(writer).value();
+    auto node = network::Node::open(bench);
+    if (!node) return node.error();
+    node_ = std::move(node).value();
     return {};
   }
 
@@ -261,22 +293,32 @@ class Bench {
   [[nodiscard]] Result<std::vector<std::string>> can_buses(std::uint16_t port_base) const {
     std::size_t on_can = 0;
     std::size_t ours = 0;
+    std::vector<std::string> buses;  // of those that the scenario leaves to us; of ours, empty
     for (const auto& vehicle : scenario_.vehicles) {
       const auto& fc = vehicle.flight_controller;
       if (fc.kind != configuration::FlightControllerKind::ardupilot) continue;
       ++on_can;
-      if (fc.ardupilot.can.empty()) ++ours;
+      if (!fc.ardupilot.can.empty()) continue;
+      const configuration::Host* const host = external_.host_of(vehicle.spec.id);
+      buses.push_back(host != nullptr ? host->can : options_.can);
+      if (buses.back().empty()) ++ours;
     }
     if (on_can > 0 && options_.rate != 1.0) {
       return Error{"flight controllers on CAN fly in real time; leave --rate out"};
     }
-    if (ours == 0) return std::vector<std::string>{};
-    if (ours > kCanVehiclesMax) {
+    if (buses.size() > kCanVehiclesMax) {
       return Error{"at most " + std::to_string(kCanVehiclesMax) +
                    " vehicles can be on CAN; make the others simulated"};
     }
-    if (!options_.can.empty()) return std::vector<std::string>{options_.can};
-    return quiet_buses(ours, port_base);
+    if (ours == 0) return buses;
+    auto quiet = quiet_buses(ours, port_base);
+    if (!quiet) return quiet.error();
+    for (std::string& bus : buses) {
+      if (!bus.empty()) continue;
+      bus = std::move(quiet->back());
+      quiet->pop_back();
+    }
+    return buses;
   }
 
   Result<void> launch_flight_controller(const configuration::VehicleConfig& config) {
@@ -294,6 +336,7 @@ class Bench {
     while (const auto received = node_->poll()) {
       if (const auto* telemetry = std::get_if<mission::Telemetry>(&received->message)) {
         last_[telemetry->vehicle] = *telemetry;
+        if (external_.has(telemetry->vehicle)) heard_at_[telemetry->vehicle] = steady_clock::now();
         progress_.vehicles_heard = last_.size();
         if (!outcome_.all_heard_s && last_.size() == scenario_.vehicles.size()) {
           outcome_.all_heard_s =
@@ -350,12 +393,28 @@ class Bench {
           (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
       say(outcome_.deaths.back());
     }
+    watch_for_silence(now);
+  }
+
+  void watch_for_silence(Instant now) {
     if (now >= Instant{} && !outcome_.all_heard_s && outcome_.deaths.empty()) {
       std::string missing;
+      std::string hosts;
       for (const auto& v : scenario_.vehicles) {
-        if (!last_.contains(v.spec.id)) missing += " " + std::to_string(v.spec.id.value);
+        if (last_.contains(v.spec.id)) continue;
+        missing += " " + std::to_string(v.spec.id.value);
+        if (const auto* host = external_.host_of(v.spec.id)) {
+          hosts += "; vehicle " + std::to_string(v.spec.id.value) + " is on " + host->address +
+                   ": do " + host->address + " and " + options_.address +
+                   " reach each other by UDP? Its log is on the host";
+        }
       }
-      outcome_.deaths.push_back("not heard before the mission began: vehicle" + missing);
+      outcome_.deaths.push_back("not heard before the mission began: vehicle" + missing + hosts);
+      say(outcome_.deaths.back());
+    }
+    for (const auto& [id, at] : heard_at_) {
+      if (steady_clock::now() - at < kExternalSilence || !reported_.insert(id).second) continue;
+      outcome_.deaths.push_back(name_of(id) + ", which is external, is not heard any more");
       say(outcome_.deaths.back());
     }
   }
@@ -398,13 +457,17 @@ class Bench {
       return radio::Node{id, found == at.end() ? std::nullopt : std::optional{found->second}};
     };
     const auto params = radio_params(scenario_.radio);
-    for (const auto& [from, p] : processes_) {
-      for (const auto& [to, q] : processes_) {
+    const auto& interference = timeline_.interference();
+    for (const VehicleId to : nodes_) {
+      radio::Hearing hearing{
+          to, radio::in_real_time(radio::link_when_up(params, interference), options_.rate), {}};
+      for (const VehicleId from : nodes_) {
         if (from == to) continue;
-        const auto link =
-            radio::link_between(params, timeline_.interference(), node(from), node(to));
+        const auto link = radio::link_between(params, interference, node(from), node(to));
         table_->set(from, to, radio::in_real_time(link, options_.rate));
+        hearing.hears.set(from.value, link.up);
       }
+      external_.tell(hearing);
     }
   }
 
@@ -457,6 +520,7 @@ class Bench {
     for (auto& [id, process] : processes_) {
       if (id != kGroundStation && !killed_.contains(id)) vehicles.push_back(&process);
     }
+    for (std::string& problem : external_.stop()) outcome_.deaths.push_back(std::move(problem));
     const bool clean = stop_all(vehicles, kStopWithin);
     std::vector<ChildProcess*> controllers;
     for (auto& [id, process] : flight_controllers_) {
@@ -470,6 +534,10 @@ class Bench {
       const auto how = process.ended();
       if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
       outcome_.deaths.push_back(name_of(id) + " did not end cleanly when asked: " + *how);
+    }
+    outcome_.external = external_.nodes().size();
+    for (const auto& missing : external_.collect(options_.run_folder)) {
+      outcome_.not_collected.push_back(missing.why);
     }
     return outcome_;
   }
@@ -516,6 +584,7 @@ class Bench {
   const BenchOptions& options_;
   const std::function<void(const BenchProgress&)>& on_progress_;
   InterruptWatch interrupts_;
+  ExternalHosts external_;
   std::optional<radio::LinkTable> table_;
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
@@ -524,7 +593,9 @@ class Bench {
   SurveySensors sensors_;
   steady_clock::time_point started_;
   steady_clock::time_point epoch_;
+  std::vector<VehicleId> nodes_;  ///< all of the radio
   std::map<VehicleId, mission::Telemetry> last_;
+  std::map<VehicleId, steady_clock::time_point> heard_at_;  ///< external vehicles
   std::set<SiteId> sites_done_;
   Instant routes_end_ = Instant::min();  ///< the last planned one
   bool script_done_ = false;             ///< of a formation
@@ -553,7 +624,11 @@ Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOpt
   }
   std::filesystem::create_directories(options.run_folder, failed);
   if (failed) return Error{options.run_folder.string() + ": cannot be made: " + failed.message()};
-  Bench bench{scenario, options, on_progress};
+  auto external = ExternalHosts::make(scenario, options.external);
+  if (!external) return external.error();
+  configuration::Scenario here = scenario;
+  give_buses(here, *external);
+  Bench bench{here, options, std::move(external).value(), on_progress};
   if (const auto started = bench.start(); !started) return started.error();
   return bench.run();
 }

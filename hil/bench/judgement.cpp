@@ -93,6 +93,14 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                   "processes", "", outcome.deaths.empty() && outcome.stopped_cleanly,
                   deaths.empty() ? "a process did not end cleanly when it was asked to" : deaths));
 
+  if (outcome.external > 0) {
+    std::string why;
+    for (const auto& one : outcome.not_collected) why += (why.empty() ? "" : "; ") + one;
+    results.push_back(
+        bench_check("collected", "what external vehicles recorded is here, and judged",
+                    outcome.external, "vehicles", "", outcome.not_collected.empty(), why));
+  }
+
   if (scenario.flies_formation()) {
     if (scenario.formation.script.empty()) return results;  // an operator gave the orders
     const bool left_alone = std::find(outcome.killed.begin(), outcome.killed.end(),

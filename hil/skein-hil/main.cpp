@@ -40,6 +40,22 @@ void add_first_seed(CLI::App& command, const std::string& name, Seed& seed) {
       ->capture_default_str();
 }
 
+/// Of vehicles that are not on this machine.
+void add_external(CLI::App& command, RunArguments& arguments) {
+  auto* external = command.add_option(
+      "--external", arguments.external,
+      "Vehicles on other machines, such as 1-3,7: they are configured, started and ended there");
+  command
+      .add_option("--fleet", arguments.fleet,
+                  "The fleet's file, which names their hosts (default: the scenario does)")
+      ->needs(external);
+  command
+      .add_option("--address", arguments.address,
+                  "IPv4 address where they reach this machine (default: the ground station's of "
+                  "that file)")
+      ->needs(external);
+}
+
 void add_run(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<RunArguments>();
   arguments->programs = std::filesystem::canonical("/proc/self/exe").parent_path();
@@ -75,9 +91,11 @@ void add_run(CLI::App& app, int& status) {
                    "Serve the ground station's console on this port of loopback (such as 7460); "
                    "with --prompt you decide there")
       ->check(CLI::Range(1, 65535));
+  add_external(*command, *arguments);
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
-      "Example: skein-hil run scenarios/coalition-6.yaml --rate 2");
+      "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"
+      "          skein-hil run scenarios/hil-5-27.yaml --external 1-5 --fleet fleet.yaml");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -11,6 +11,7 @@
 
 #include "commands.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/fleet/fleet.hpp"
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
 #include "skein/hil/team_mission.hpp"
@@ -63,6 +64,28 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
     scenario->formation.script.clear();
   }
   return scenario;
+}
+
+/// Who is external, on which hosts.
+Result<void> give_hosts(configuration::Scenario& scenario, BenchOptions& options,
+                        const RunArguments& arguments) {
+  if (arguments.external.empty()) return {};
+  auto external = fleet::parse_ids(arguments.external);
+  if (!external) return Error{"--external " + external.error().message};
+  options.external = std::move(external).value();
+  if (!arguments.fleet.empty()) {
+    auto file = configuration::load_scenario(arguments.fleet);
+    if (!file) return file.error();
+    scenario.hosts = std::move(file->hosts);
+  }
+  options.address = arguments.address;
+  for (const auto& host : scenario.hosts) {
+    if (options.address.empty() && host.node == kGroundStation) options.address = host.address;
+  }
+  if (!options.address.empty()) return {};
+  return Error{
+      "the hosts need an address of this machine; name the ground station's host "
+      "(vehicle: 0), or give --address"};
 }
 
 BenchOptions options_of(const RunArguments& arguments) {
@@ -119,9 +142,12 @@ bool wants_an_operator(const configuration::Scenario& scenario) {
 }
 
 int run(const RunArguments& arguments) {
-  const auto scenario = flyable_scenario(arguments);
+  auto scenario = flyable_scenario(arguments);
   if (!scenario) return complain(scenario.error().message);
-  const BenchOptions options = options_of(arguments);
+  BenchOptions options = options_of(arguments);
+  if (const auto given = give_hosts(*scenario, options, arguments); !given) {
+    return complain(given.error().message);
+  }
   if (!std::filesystem::exists(options.radio_plugin)) {
     return complain(options.radio_plugin.string() + ": not there; build it with ./dev build");
   }

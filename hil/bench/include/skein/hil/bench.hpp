@@ -21,6 +21,9 @@ struct BenchOptions {
   std::filesystem::path run_folder;    ///< made; configurations, logs and recordings go there
   double rate = 1.0;                   ///< mission seconds in a real second
   std::uint16_t port_base = 0;         ///< UDP; 0 looks for free ports
+  std::string address = "127.0.0.1";   ///< of this machine, where all nodes reach it
+  /// Vehicles whose programs run on the hosts that the scenario names.
+  std::vector<VehicleId> external;
   /// From the start of the programs to mission time 0; 0: by the number of vehicles.
   double lead_s = 0.0;
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
@@ -42,24 +45,27 @@ struct BenchProgress {
 
 /// What happened on the bench besides what the processes recorded.
 struct BenchOutcome {
-  bool finished = false;               ///< all sites done, or the script of a formation
-  Instant ended_at{};                  ///< mission time
-  std::optional<double> all_heard_s;   ///< real seconds from the first start until all were heard
-  std::vector<VehicleId> killed;       ///< on purpose, by the scenario's faults
-  std::vector<std::string> deaths;     ///< processes that ended by themselves, and how
-  bool stopped_cleanly = false;        ///< all ended with status 0 when asked to
-  bool interrupted = false;            ///< by Ctrl-C
-  bool quit = false;                   ///< by the operator at the ground station's prompt
-  std::uint64_t control_overruns = 0;  ///< missed control periods, all vehicles together
-  std::uint64_t messages_dropped = 0;  ///< by full queues or as damaged, all vehicles together
+  bool finished = false;              ///< all sites done, or the script of a formation
+  Instant ended_at{};                 ///< mission time
+  std::optional<double> all_heard_s;  ///< real seconds from the first start until all were heard
+  std::vector<VehicleId> killed;      ///< on purpose, by the scenario's faults
+  std::vector<std::string> deaths;    ///< processes that ended by themselves, and how
+  bool stopped_cleanly = false;       ///< all ended with status 0 when asked to
+  bool interrupted = false;           ///< by Ctrl-C
+  bool quit = false;                  ///< by the operator at the ground station's prompt
+  std::size_t external = 0;           ///< vehicles on other machines
+  std::vector<std::string> not_collected;  ///< why, of each of these without its recording
+  std::uint64_t control_overruns = 0;      ///< missed control periods, all vehicles together
+  std::uint64_t messages_dropped = 0;      ///< by full queues or as damaged, all vehicles together
 };
 
 /// Starts one skein-onboard for each vehicle, one skein-fc for each whose flight controller is an
 /// ardupilot, one skein-ground and the radio between them, plays the sensors and the faults, and
 /// stops everything when all sites are done, at the scenario's duration_max, when a process dies
 /// unasked, when the operator at the prompt quits, or on SIGINT or SIGTERM. Nothing is left running
-/// or in /dev/shm, whatever happens. Fails, with what to do, when it cannot start, and where the
-/// run folder has something in it.
+/// or in /dev/shm, whatever happens. External vehicles are configured and started on their hosts,
+/// told of the radio, ended with the rest, and what they recorded is fetched into the run folder.
+/// Fails, with what to do, when it cannot start, and where the run folder has something in it.
 [[nodiscard]] Result<BenchOutcome> fly(
     const configuration::Scenario& scenario, const BenchOptions& options,
     const std::function<void(const BenchProgress&)>& on_progress);
