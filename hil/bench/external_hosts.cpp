@@ -157,10 +157,11 @@ std::vector<std::string> ExternalHosts::stop() {
   const auto ended = at_once(started_, [](Started& started) {
     std::string problem;
     if (!started.ours) return problem;
-    for (auto program = started.programs.rbegin(); program != started.programs.rend(); ++program) {
-      const auto stopped = fleet::stop(*program);
-      if (!stopped && problem.empty()) problem = stopped.error().message;
-    }
+    std::for_each(started.programs.rbegin(), started.programs.rend(),
+                  [&problem](const fleet::Program& program) {
+                    const auto stopped = fleet::stop(program);
+                    if (!stopped && problem.empty()) problem = stopped.error().message;
+                  });
     started.ours = false;
     return problem;
   });

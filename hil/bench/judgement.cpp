@@ -61,6 +61,25 @@ CheckResult bench_check(std::string name, std::string requirement, std::size_t j
   return result;
 }
 
+/// Without a recording a vehicle is not judged.
+CheckResult collected(const BenchOutcome& outcome) {
+  std::string why;
+  for (const auto& one : outcome.not_collected) why += (why.empty() ? "" : "; ") + one;
+  return bench_check("collected", "what external vehicles recorded is here, and judged",
+                     outcome.external, "vehicles", "", outcome.not_collected.empty(), why);
+}
+
+/// Of a formation that flies by one.
+CheckResult script_flown(const configuration::Scenario& scenario, const BenchOutcome& outcome) {
+  const bool left_alone = std::find(outcome.killed.begin(), outcome.killed.end(), kGroundStation) !=
+                          outcome.killed.end();
+  return bench_check("script",
+                     left_alone ? "what was ordered before the ground station's end is flown"
+                                : "every order is flown",
+                     scenario.formation.script.size(), "orders", "", outcome.finished,
+                     "the script was not done when the run ended");
+}
+
 }  // namespace
 
 std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
@@ -93,24 +112,11 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                   "processes", "", outcome.deaths.empty() && outcome.stopped_cleanly,
                   deaths.empty() ? "a process did not end cleanly when it was asked to" : deaths));
 
-  if (outcome.external > 0) {
-    std::string why;
-    for (const auto& one : outcome.not_collected) why += (why.empty() ? "" : "; ") + one;
-    results.push_back(
-        bench_check("collected", "what external vehicles recorded is here, and judged",
-                    outcome.external, "vehicles", "", outcome.not_collected.empty(), why));
-  }
+  if (outcome.external > 0) results.push_back(collected(outcome));
 
   if (scenario.flies_formation()) {
     if (scenario.formation.script.empty()) return results;  // an operator gave the orders
-    const bool left_alone = std::find(outcome.killed.begin(), outcome.killed.end(),
-                                      kGroundStation) != outcome.killed.end();
-    results.push_back(bench_check("script",
-                                  left_alone
-                                      ? "what was ordered before the ground station's end is flown"
-                                      : "every order is flown",
-                                  scenario.formation.script.size(), "orders", "", outcome.finished,
-                                  "the script was not done when the run ended"));
+    results.push_back(script_flown(scenario, outcome));
     return results;
   }
   if (scenario.sites.empty()) return results;
