@@ -175,6 +175,43 @@ TEST_F(Remote, SshIsGivenOneLineForTheShellThere) {
   host_.ssh.clear();
 }
 
+/// A systemctl that keeps in a file what runs, and notes what it was asked for.
+constexpr const char* kSystemctl = R"(#!/bin/sh
+echo "$*" >>FOLDER/asked
+case "$1" in
+  is-active) [ -e FOLDER/active ] && { [ "$2" = --quiet ] || echo active; exit 0; }
+    [ "$2" = --quiet ] || echo inactive; exit 3 ;;
+  start) [ -e FOLDER/broken ] && exit 1; touch FOLDER/active ;;
+  stop) rm -f FOLDER/active ;;
+  show) echo $PPID ;;
+esac
+)";
+
+TEST_F(Remote, UnitsOfSystemdAreStartedAndStoppedByTheirNames) {
+  std::string text = kSystemctl;
+  for (auto at = text.find("FOLDER"); at != std::string::npos; at = text.find("FOLDER")) {
+    text.replace(at, 6, folder_.string());
+  }
+  script(folder_ / "bin" / "systemctl", text);
+  host_.programs.clear();
+  host_.run = "env PATH=" + (folder_ / "bin").string() + ":/usr/bin:/bin";
+  ASSERT_TRUE(push(program(), false).ok());
+  EXPECT_EQ(status(program()).state, "inactive");
+  EXPECT_EQ(status(program()).version, "skein-onboard 9.9");
+  std::ofstream{folder_ / "broken"};
+  EXPECT_FALSE(start(program()).ok());
+  fs::remove(folder_ / "broken");
+  ASSERT_TRUE(start(program()).ok());
+  EXPECT_EQ(status(program()).state, "active");
+  EXPECT_TRUE(status(program()).running);
+  EXPECT_FALSE(push(program(), false).ok());
+  ASSERT_TRUE(stop(program()).ok());
+  EXPECT_FALSE(status(program()).running);
+  const std::string asked = text_of(folder_ / "asked");
+  EXPECT_THAT(asked, HasSubstr("\nstart skein-onboard@3.service\n"));
+  EXPECT_THAT(asked, HasSubstr("\nstop skein-onboard@3.service\n"));
+}
+
 TEST_F(Remote, FoldersAreCollectedAndRemoved) {
   const fs::path there = fs::path{host_.recordings} / "run";
   fs::create_directories(there);

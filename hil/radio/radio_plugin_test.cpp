@@ -70,7 +70,10 @@ class Radio : public testing::Test {
     ASSERT_TRUE(made) << made.error().message;
     table_ = std::make_unique<LinkTable>(std::move(made).value());
     name_table(table_->name());
+    open_both();
+  }
 
+  void open_both() {
     std::random_device device;
     std::uniform_int_distribution<int> quarter{2500, 7999};
     int port = 0;
@@ -189,6 +192,45 @@ TEST_F(Radio, ClosesWithPacketsOnTheirWay) {
   for (std::uint32_t i = 0; i < 50; ++i) ASSERT_TRUE(send_cancel(i));
   bert_.reset();
   anna_.reset();
+}
+
+/// As on machines that do not share the bench's memory.
+class ToldRadio : public Radio {
+ protected:
+  void SetUp() override {
+    name_table("");
+    open_both();
+  }
+  /// Bert hears everybody, or nobody.
+  void tell(bool hears) {
+    Hearing hearing{kBert, {}, {}};
+    if (hears) hearing.hears.set();
+    feed_->send(hearing, "127.0.0.1");
+  }
+  /// Anna speaks and the bench tells, until so many of her words in a row were (not) heard.
+  bool until(bool heard, std::uint32_t in_a_row) {
+    std::uint32_t count = 0;
+    return eventually([&] {
+      tell(heard);
+      EXPECT_TRUE(send_telemetry(++number_));
+      std::this_thread::sleep_for(milliseconds{5});
+      bool any = false;
+      while (bert_->poll()) any = true;
+      count = any == heard ? count + 1 : 0;
+      return count >= in_a_row;
+    });
+  }
+
+ private:
+  Result<FeedSender> feed_ = FeedSender::open();
+  std::uint32_t number_ = 0;
+};
+
+TEST_F(ToldRadio, WhatTheBenchTellsHoldsOnAnotherMachine) {
+  ASSERT_TRUE(eventually([&] { return matched(); }));
+  EXPECT_TRUE(until(true, 5));
+  EXPECT_TRUE(until(false, 50));
+  EXPECT_TRUE(until(true, 5));
 }
 
 TEST(RadioPlugin, RefusesWithoutItsTableAndWithoutABenchToHear) {

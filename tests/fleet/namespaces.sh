@@ -3,14 +3,16 @@
 #
 # Machines of a fleet as network namespaces: namespaces.sh COUNT COMMAND [ARGUMENT...]
 # Runs the command where namespaces skein0, skein1, ... hang on one bridge, with the addresses
-# 10.53.0.10, 10.53.0.1, 10.53.0.2, ...; the bridge itself is 10.53.0.254. Needs no right but to make
-# user namespaces; without it the exit status is 77. Whatever the command starts ends with it.
+# 10.53.0.10, 10.53.0.1, 10.53.0.2, ...; the bridge itself is 10.53.0.254. Needs root, or the right to
+# make user namespaces; without it the exit status is 77. Whatever the command starts ends with it.
 set -euo pipefail
 
 readonly skipped=77
 
 if [[ $1 != --inside ]]; then
-  new=(unshare --user --map-root-user --net --mount --pid --fork --kill-child --mount-proc)
+  # In a user namespace nobody has real-time priority, so root goes without.
+  new=(unshare --net --mount --pid --fork --kill-child --mount-proc)
+  ((EUID == 0)) || new+=(--user --map-root-user)
   if ! "${new[@]}" true 2>/dev/null || ! command -v ip >/dev/null; then
     echo "skipped: this machine lets us make no network namespaces (or has no iproute2)" >&2
     exit "$skipped"
