@@ -281,6 +281,16 @@ int check(const FleetArguments& arguments) {
         "what the file decides and orders by script is for the bench; in the field an "
         "operator does\n");
   }
+  const auto simulated = std::count_if(
+      fleet.scenario.vehicles.begin(), fleet.scenario.vehicles.end(), [](const auto& vehicle) {
+        return vehicle.flight_controller.kind == configuration::FlightControllerKind::simulated;
+      });
+  if (simulated > 0) {
+    fmt::print(
+        "{} of {} vehicles are simulated, each on its host; flight_controller: {{kind: "
+        "ardupilot}} makes them fly\n",
+        simulated, fleet.scenario.vehicles.size());
+  }
   return kExitAsTheFile;
 }
 

@@ -326,11 +326,7 @@ Result<void> collect(const Host& host, const std::string& from,
 }
 
 Result<void> remove(const Host& host, const std::string& folder) {
-  const auto removed =
-      run_on(host,
-             "rm -rf -- " + shell_word(folder) + " && { rmdir -- " +
-                 shell_word(folder.substr(0, folder.rfind('/'))) + " 2>/dev/null || true; }",
-             "");
+  const auto removed = run_on(host, "rm -rf -- " + shell_word(folder), "");
   if (!removed) return removed.error();
   if (removed->status == 0) return {};
   return Error{folder + " on " + place_of(host) + " is not removed: " + last_line(removed->errors)};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <utility>
 
@@ -20,10 +21,13 @@ using configuration::Host;
 using configuration::HostFlightController;
 using configuration::VehicleConfig;
 
-/// Of one run, so that what an earlier one left is not fetched again.
+/// Of a host: half of what the protocol allows two clocks to differ, by default.
+constexpr double kClockOffMax_s = 0.25;
+
+/// Of one run, so that what an earlier one left is not fetched again; within the program's own
+/// folder, since it may have the right to write there only.
 std::string recordings_of(const Host& host, const VehicleConfig& config) {
-  return fmt::format("{}/run-{}/onboard-{}", host.recordings, config.time.epoch_unix_ns,
-                     host.node.value);
+  return fmt::format("{}/run-{}", fleet::recordings_of(host), config.time.epoch_unix_ns);
 }
 
 bool is_on_can(const configuration::FlightControllerConfig& fc) {
@@ -138,8 +142,15 @@ Result<void> ExternalHosts::start(const std::vector<VehicleConfig>& configs) {
 }
 
 Result<void> ExternalHosts::bring_up(Started& started) {
+  const fleet::Program& companion = started.programs.back();
+  const fleet::Status there = fleet::status(companion);
+  if (!there.reachable) return Error{there.trouble};
+  if (std::abs(there.clock_offset_s) > kClockOffMax_s) {
+    return Error{fmt::format("the clock of the host of {} is {:+.1f} s off; set it, as by NTP",
+                             fleet::name_of(started.host.node), there.clock_offset_s)};
+  }
   // The companion's configuration first, which is refused where it flies.
-  if (auto pushed = fleet::push(started.programs.back(), false); !pushed) return pushed;
+  if (auto pushed = fleet::push(companion, false); !pushed) return pushed;
   started.ours = true;
   for (const fleet::Program& program : started.programs) {
     if (auto up = fleet::start(program); !up) return up;

@@ -50,7 +50,7 @@ struct Status {
 /// Fetches a folder of the host into `folder`, which is made.
 [[nodiscard]] Result<void> collect(const configuration::Host& host, const std::string& from,
                                    const std::filesystem::path& folder);
-/// Removes a folder of the host that was collected, and the one around it where that is empty then.
+/// Removes a folder of the host that was collected.
 [[nodiscard]] Result<void> remove(const configuration::Host& host, const std::string& folder);
 
 }  // namespace skein::fleet
