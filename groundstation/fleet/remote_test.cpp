@@ -198,7 +198,7 @@ TEST_F(Remote, UnitsOfSystemdAreStartedAndStoppedByTheirNames) {
   ASSERT_TRUE(push(program(), false).ok());
   EXPECT_EQ(status(program()).state, "inactive");
   EXPECT_EQ(status(program()).version, "skein-onboard 9.9");
-  std::ofstream{folder_ / "broken"};
+  std::ofstream{folder_ / "broken"} << "";
   EXPECT_FALSE(start(program()).ok());
   fs::remove(folder_ / "broken");
   ASSERT_TRUE(start(program()).ok());
