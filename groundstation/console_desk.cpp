@@ -9,6 +9,7 @@
 #include "skein/codec/json_text.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/recording/published.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::groundstation {
 console::PictureParams picture_params(const configuration::GroundConfig& config) {
@@ -18,8 +19,6 @@ console::PictureParams picture_params(const configuration::GroundConfig& config)
   params.place_tolerance_m = config.formation.place_tolerance_m;
   return params;
 }
-
-std::string version() { return SKEIN_VERSION; }
 
 console::ServerConfig server_config(const configuration::ConsoleConfig& config) {
   console::ServerConfig server;

@@ -34,6 +34,7 @@
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
+#include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
@@ -50,7 +51,7 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
                                       InstanceId instance) {
   mission::GroundNodeConfig node;
   node.instance = instance;
-  node.setup = configuration::setup_params(config, {SKEIN_VERSION, codec::wire_versions()});
+  node.setup = configuration::setup_params(config, {version(), codec::wire_versions()});
   mission::GroundAgentConfig& agent = node.agent;
   agent.expected = config.vehicles;
   for (const Hazard& hazard : config.hazards) agent.hazards.push_back(hazard.id);
@@ -427,7 +428,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     return process::kExitBadInput;
   }
   recording::Writer::Options options;
-  options.session = {kGroundStation,        instance,       "skein-ground", SKEIN_VERSION,
+  options.session = {kGroundStation,        instance,       "skein-ground", version(),
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   recall_mission(config, clock.epoch_unix_ns(), ground);

@@ -26,6 +26,7 @@
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
+#include "skein/version/version.hpp"
 
 namespace {
 
@@ -244,7 +245,8 @@ class CommandLine {
         ->capture_default_str();
     app_.add_flag("--check-config", arguments_.check_only,
                   "Read the configuration, say whether it is good, end");
-    app_.set_version_flag("--version", "skein-ground " SKEIN_VERSION);
+    app_.set_version_flag("--version", "skein-ground " + skein::version());
+    app_.set_help_all_flag("--help-all", "The same of every command");
     app_.require_subcommand(0, 1);  // 'tell record stop': what follows a command is its own
     add_orders();
     add_plan();

@@ -6,6 +6,7 @@
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/onboard/vehicle_process.hpp"
 #include "skein/process/log.hpp"
+#include "skein/version/version.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{
@@ -20,7 +21,8 @@ int main(int argc, char** argv) {
   bool check_only = false;
   app.add_option("--config", file, "The vehicle's configuration, YAML")->required();
   app.add_flag("--check-config", check_only, "Read the configuration, say whether it is good, end");
-  app.set_version_flag("--version", "skein-onboard " SKEIN_VERSION);
+  app.set_version_flag("--version", "skein-onboard " + skein::version());
+  app.set_help_all_flag("--help-all", "The same of every command");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

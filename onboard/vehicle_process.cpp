@@ -27,6 +27,7 @@
 #include "skein/process/mission_network.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::onboard {
 namespace {
@@ -143,7 +144,7 @@ class Threads {
                  *flight_controllers_.any,
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
-        agent_{node_config(config, route, instance, "skein-onboard " SKEIN_VERSION),
+        agent_{node_config(config, route, instance, "skein-onboard " + version()),
                link_to(node, flight_controllers_.on_can, writer ? &records_ : nullptr),
                ports_,
                planner_,
@@ -255,7 +256,7 @@ int fly(const configuration::VehicleConfig& config) {
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
     recording::Writer::Options options;
-    options.session = {config.vehicle.id,     instance,       "skein-onboard", SKEIN_VERSION,
+    options.session = {config.vehicle.id,     instance,       "skein-onboard", version(),
                        clock.epoch_unix_ns(), to_yaml(config)};
     options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
     auto opened = recording::Writer::open(config.recording_folder, options);

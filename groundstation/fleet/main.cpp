@@ -4,6 +4,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::fleet {
 namespace {
@@ -29,7 +30,8 @@ void add_only(CLI::App& command, FleetArguments& arguments) {
 class CommandLine {
  public:
   CommandLine() {
-    app_.set_version_flag("--version", "skein " SKEIN_VERSION);
+    app_.set_version_flag("--version", "skein " + skein::version());
+    app_.set_help_all_flag("--help-all", "The same of every command");
     app_.require_subcommand(1);
     fleet_.require_subcommand(1);
     fleet_.footer(

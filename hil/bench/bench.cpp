@@ -32,6 +32,7 @@
 #include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
 #include "skein/recording/writer.hpp"
+#include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
@@ -259,7 +260,7 @@ class Bench {
                       const configuration::Deployment& deployment) {
     recording::Writer::Options recorder;
     recorder.session = {
-        kBench, bench.instance, "skein-hil", SKEIN_VERSION, deployment.time.epoch_unix_ns, ""};
+        kBench, bench.instance, "skein-hil", version(), deployment.time.epoch_unix_ns, ""};
     auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
     if (!writer) return writer.error();
     writer_ = std::move(writer).value();

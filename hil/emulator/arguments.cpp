@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "skein/base/angles.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::hil {
 namespace {
@@ -144,7 +145,8 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
 std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   CLI::App app{kDescription};
   app.footer(kFooter);
-  app.set_version_flag("--version", "skein-fc " SKEIN_VERSION);
+  app.set_version_flag("--version", "skein-fc " + version());
+  app.set_help_all_flag("--help-all", "The same of every command");
   FcArguments arguments;
   Texts texts;
   add_options(app, arguments, texts);

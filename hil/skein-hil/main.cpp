@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "skein/hil/fault_profiles.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::hil {
 namespace {
@@ -343,7 +344,8 @@ int main(int argc, char** argv) {
       "  skein-hil can dump vcan0                          what is said on a CAN bus\n"
       "Scenario files are explained in docs/scenarios.md.");
   app.require_subcommand(1);
-  app.set_version_flag("--version", "skein-hil " SKEIN_VERSION);
+  app.set_version_flag("--version", "skein-hil " + skein::version());
+  app.set_help_all_flag("--help-all", "The same of every command");
 
   int status = 0;
   const std::string program = argv[0];

@@ -91,7 +91,7 @@ Result<void> give_hosts(configuration::Scenario& scenario, BenchOptions& options
 BenchOptions options_of(const RunArguments& arguments) {
   BenchOptions options;
   options.programs = arguments.programs;
-  options.radio_plugin = arguments.programs.parent_path() / "lib" / "libskein_radio.so";
+  options.radio_plugin = arguments.programs.parent_path() / "lib" / "skein" / "libskein_radio.so";
   options.rate = arguments.rate;
   options.port_base = arguments.port_base;
   options.lead_s = arguments.lead_s;

@@ -55,9 +55,6 @@ class ConsoleDesk {
 /// What the configuration says of it.
 [[nodiscard]] console::PictureParams picture_params(const configuration::GroundConfig& config);
 
-/// The version of this program.
-[[nodiscard]] std::string version();
-
 /// Where and what a console serves, without who may use it and its hello.
 [[nodiscard]] console::ServerConfig server_config(const configuration::ConsoleConfig& config);
 
