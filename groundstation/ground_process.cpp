@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdio>
 #include <memory>
@@ -20,6 +21,7 @@
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/formation_desk.hpp"
+#include "skein/groundstation/health_report.hpp"
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
@@ -28,9 +30,11 @@
 #include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
 #include "skein/process/close_limit.hpp"
+#include "skein/process/host.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
+#include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
@@ -42,9 +46,11 @@ namespace {
 
 constexpr Duration kStepPeriod = std::chrono::milliseconds{50};
 constexpr Duration kStepSpacing = std::chrono::milliseconds{20};  // telemetry comes all the time
+constexpr Duration kReportPeriod = std::chrono::seconds{1};
 constexpr Duration kFlushPeriod = std::chrono::seconds{1};
 constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop from its deadlines
 constexpr int kMessagesPerStep = 1000;   // nor one of messages
+constexpr std::chrono::seconds kLookAgain{1};
 constexpr std::string_view kJsonPrefix = "json ";
 
 mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
@@ -72,6 +78,12 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
 void print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stdout);
   std::fflush(stdout);
+}
+
+bool on_one_machine(const configuration::GroundConfig& config) {
+  return std::ranges::all_of(config.network.peers, [&config](const auto& peer) {
+    return peer.address == config.network.address;
+  });
 }
 
 constexpr const char* kConsole = "console";
@@ -133,7 +145,9 @@ class GroundLoop {
         formation_{std::move(formation)},
         control_{std::move(control)},
         console_{std::move(console)},
-        audit_{std::move(audit)} {}
+        audit_{std::move(audit)},
+        recording_folder_{config.recording_folder},
+        among_machines_{!on_one_machine(config)} {}
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
@@ -145,6 +159,8 @@ class GroundLoop {
       node_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
+      report(now);
+      steps_.fetch_add(1, std::memory_order_relaxed);
       const Instant soonest = now + kStepSpacing;
       clock_.sleep_until(soonest);
       if (!heard_all) continue;
@@ -153,6 +169,8 @@ class GroundLoop {
     }
     recorder_.flush();
   }
+  /// From another thread: grows with every step.
+  [[nodiscard]] std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
   /// From another thread.
   void stop() {
     stopping_ = true;
@@ -334,6 +352,29 @@ class GroundLoop {
     }
   }
 
+  /// To machines that watch.
+  void report(Instant now) {
+    if (now < next_report_) return;
+    next_report_ = now + kReportPeriod;
+    const auto traffic = process::traffic_of(network_);
+    HealthFacts facts;
+    facts.version = version();
+    facts.now = now;
+    facts.sent = traffic.sent;
+    facts.received = traffic.received;
+    facts.dropped = traffic.dropped + node_.dropped();
+    facts.refused = node_.refused();
+    facts.authorisations_waiting = static_cast<std::size_t>(
+        std::ranges::count_if(node_.agent().authorisations(),
+                              [](const auto& pending) { return !pending.decision.has_value(); }));
+    facts.recordings = recorder_.running();
+    facts.shall_record = !recording_folder_.empty();
+    if (facts.shall_record) facts.disk_free_bytes = process::free_bytes(recording_folder_);
+    facts.clock = process::clock_state();
+    facts.among_machines = among_machines_;
+    console_.report(machine_report(facts, node_.fleet()));
+  }
+
   void tell_of(const mission::MissionEvent& event) {
     const bool warning = mission::is_warning(event.kind());
     spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
@@ -362,6 +403,10 @@ class GroundLoop {
   Audit audit_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};
+  std::string recording_folder_;
+  bool among_machines_;
+  Instant next_report_{Instant::min()};
+  std::atomic<std::uint64_t> steps_{0};
   std::atomic<bool> stopping_{false};
 };
 
@@ -469,7 +514,17 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   std::move(console),
                   std::move(*audit)};
   std::thread thread{[&loop] { loop.run(); }};
-  spdlog::info("{}: stopping", shutdown.wait());
+  const process::Service service;
+  service.ready();
+  const char* signal = nullptr;
+  for (process::ProgressWatch progress{1, std::chrono::steady_clock::now()}; signal == nullptr;
+       signal = shutdown.wait_for(service.watchdog_period().value_or(kLookAgain))) {
+    const bool moved =
+        progress.all_moved(std::array{loop.steps()}, std::chrono::steady_clock::now());
+    if (moved) service.feed_watchdog();
+  }
+  service.stopping();
+  spdlog::info("{}: stopping", signal);
   loop.stop();
   thread.join();
   const auto traffic = process::traffic_of(**node);

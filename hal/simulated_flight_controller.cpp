@@ -7,7 +7,7 @@ namespace skein::hal {
 
 SimulatedFlightController::SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
                                                      const models::WindParams& wind, Instant from)
-    : model_{vehicle, models::Wind{wind}, start, from} {}
+    : from_{from}, model_{vehicle, models::Wind{wind}, start, from} {}
 
 void SimulatedFlightController::advance_to(Instant now) {
   if (now > model_.state().time) model_.advance_to(now);

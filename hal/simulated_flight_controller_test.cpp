@@ -32,10 +32,12 @@ TEST(SimulatedFlightController, StaysAtItsStartBeforeTheMission) {
 TEST(SimulatedFlightController, FliesFromMissionTimeZero) {
   auto fc = controller();
   (void)fc.state(at_seconds(-1.0));
+  EXPECT_EQ(fc.airborne(), Airborne::no);
   const auto state = fc.state(at_seconds(2.0));
   ASSERT_TRUE(state);
   EXPECT_NEAR(state->x_m, 110.0, 1e-6);
   EXPECT_EQ(state->time, at_seconds(2.0));
+  EXPECT_EQ(fc.airborne(), Airborne::yes);
 }
 
 TEST(SimulatedFlightController, ACommandHoldsFromItsTimeOn) {

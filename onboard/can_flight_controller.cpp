@@ -49,6 +49,11 @@ void CanFlightController::step(Instant now) {
   if (const auto sample = link_.companion().sample()) sample_.write(*sample);
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));
   tell_mode();
+  const auto in_use = link_.companion().in_use();
+  airborne_.store(!in_use   ? hal::Airborne::unknown
+                  : *in_use ? hal::Airborne::yes
+                            : hal::Airborne::no,
+                  std::memory_order_relaxed);
 }
 
 void CanFlightController::wait(Duration at_most) const {

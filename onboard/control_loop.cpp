@@ -27,6 +27,7 @@ void ControlLoop::step(Instant now) {
     }
   }
   const auto state = flight_controller_->state(now);
+  ports_->airborne.store(flight_controller_->airborne(), std::memory_order_relaxed);
   if (!state || now - state->time > mission::kFlightControllerSilence) {
     ports_->stale_states.fetch_add(1, std::memory_order_relaxed);
     return;

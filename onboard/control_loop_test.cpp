@@ -52,10 +52,12 @@ struct Cockpit {
 
 TEST(ControlLoop, FollowsTheNewestPlan) {
   Cockpit cockpit;
+  EXPECT_EQ(cockpit.ports.airborne.load(), hal::Airborne::unknown);
   cockpit.ports.guidance.write(plan(1));
   const auto state = cockpit.fly(0.0, 20.0);
   const Pose2 wanted = plan(1).timed.pose_at(state.time);
   EXPECT_LT((state.pose().position() - wanted.position()).norm(), 10.0);
+  EXPECT_EQ(cockpit.ports.airborne.load(), hal::Airborne::yes);
 }
 
 TEST(ControlLoop, FliesTheHoldWhenTheAgentFallsSilent) {

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -20,11 +22,14 @@
 #include "skein/onboard/node_config.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/recorder.hpp"
+#include "skein/onboard/status.hpp"
 #include "skein/onboard/threads.hpp"
 #include "skein/process/close_limit.hpp"
+#include "skein/process/host.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
+#include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/version/version.hpp"
@@ -94,11 +99,13 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
       config.vehicle, config.start,
       models::WindParams{.steady_mps = -wind.speed_mps * unit_vector(wind.from_rad),
                          .gust_mps = wind.gust_mps,
-                         .seed = config.seed});
+                         .seed = config.seed},
+      // Where the mission has begun without it, it begins now: not so many months ago.
+      std::max(Instant{}, now));
   return made;
 }
 
-AgentLink link_to(network::Node& node) {
+AgentLink link_to(network::Node& node, HealthBoard& health) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
@@ -107,12 +114,17 @@ AgentLink link_to(network::Node& node) {
             }
             return AgentLink::Received{std::move(received->message), received->sender};
           },
-          .send = [&node](const mission::Message& message) { node.publish(message); },
+          .send =
+              [&node, &health](const mission::Message& message) {
+                if (const auto* told = std::get_if<mission::Health>(&message)) health.put(*told);
+                node.publish(message);
+              },
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
 
-AgentLink link_to(network::Node& node, CanFlightController* on_can, AgentRing* records) {
-  AgentLink link = link_to(node);
+AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
+                  AgentRing* records) {
+  AgentLink link = link_to(node, health);
   if (records != nullptr) {
     link.record = [records](recording::AgentRecord record) { records->push(std::move(record)); };
   }
@@ -136,7 +148,7 @@ class Threads {
   Threads(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
           InstanceId instance, std::optional<recording::Writer> writer,
-          FlightControllers flight_controllers, Instant now)
+          FlightControllers flight_controllers, HealthBoard& health, Instant now)
       : clock_{clock},
         wake_agent_{wake_agent},
         flight_controllers_{std::move(flight_controllers)},
@@ -145,7 +157,7 @@ class Threads {
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{node_config(config, route, instance, "skein-onboard " + version()),
-               link_to(node, flight_controllers_.on_can, writer ? &records_ : nullptr),
+               link_to(node, flight_controllers_.on_can, health, writer ? &records_ : nullptr),
                ports_,
                planner_,
                events_,
@@ -172,6 +184,13 @@ class Threads {
     recorder_.stop();
     recorder_thread_.join();
   }
+
+  /// Moves with every period of control, and with every step of the agent.
+  [[nodiscard]] std::array<std::uint64_t, 2> progress() const {
+    return {ports_.periods.load(std::memory_order_relaxed),
+            agent_steps_.load(std::memory_order_relaxed)};
+  }
+  [[nodiscard]] const ControlPorts& ports() const { return ports_; }
 
   void log_summary(const network::Node& node) const {
     const auto traffic = process::traffic_of(node);
@@ -216,6 +235,7 @@ class Threads {
     while (!stopping_) {
       const Instant now = clock_.now();
       agent_.step(now);
+      agent_steps_.fetch_add(1, std::memory_order_relaxed);
       clock_.sleep_until(now + AgentLoop::kStepSpacing);
       wake_agent_.wait_until(clock_.steady_time_of(agent_.next_step()));
     }
@@ -232,6 +252,7 @@ class Threads {
   AgentLoop agent_;
   Recorder recorder_;
   std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> agent_steps_{0};
   std::thread control_thread_;
   std::thread can_thread_;
   std::thread agent_thread_;
@@ -239,9 +260,94 @@ class Threads {
   std::thread recorder_thread_;
 };
 
+/// What the process tells its host, from its main thread: the watchdog, fed by progress alone; the
+/// status socket; the machine's clock and disk.
+class HostDesk {
+ public:
+  HostDesk(const configuration::VehicleConfig& config, const HostOptions& options,
+           const process::MissionClock& clock, const HealthBoard& health, const Threads& threads,
+           const process::Service& service)
+      : folder_{config.recording_folder},
+        vehicle_{config.vehicle.id},
+        clock_{clock},
+        health_{health},
+        threads_{threads},
+        service_{service} {
+    if (options.status_socket.empty()) return;
+    auto opened = StatusSocket::open(options.status_socket);
+    if (opened) {
+      socket_ = std::move(*opened);
+    } else {
+      spdlog::warn("there is no status socket: {}", opened.error().message);
+    }
+  }
+
+  /// How often step() is to be called.
+  [[nodiscard]] std::chrono::nanoseconds period() const {
+    const auto watchdog = service_.watchdog_period();
+    return watchdog ? std::min<std::chrono::nanoseconds>(*watchdog, kPeriod) : kPeriod;
+  }
+
+  void step() {
+    const auto now = std::chrono::steady_clock::now();
+    if (progress_.all_moved(threads_.progress(), now)) service_.feed_watchdog();
+    if (now >= next_look_) look(now);
+    if (socket_) socket_->serve([this, now] { return status_json(status(now)); });
+  }
+
+ private:
+  static constexpr std::chrono::nanoseconds kPeriod = std::chrono::milliseconds{200};
+  static constexpr std::chrono::seconds kLookPeriod{5};
+
+  void look(std::chrono::steady_clock::time_point now) {
+    clock_state_ = process::clock_state();
+    if (!folder_.empty()) {
+      const std::uint64_t bytes = process::bytes_in(folder_);
+      const std::chrono::duration<double> since = now - looked_at_;
+      const double rate =
+          bytes < bytes_ ? 0.0 : static_cast<double>(bytes - bytes_) / since.count();
+      recording_ = Status::Recording{folder_, process::free_bytes(folder_), bytes,
+                                     looked_at_ == decltype(looked_at_){} ? 0.0 : rate};
+      bytes_ = bytes;
+    }
+    looked_at_ = now;
+    next_look_ = now + kLookPeriod;
+  }
+
+  [[nodiscard]] Status status(std::chrono::steady_clock::time_point now) const {
+    const ControlPorts& ports = threads_.ports();
+    Status status{.health = health_.get(),
+                  .now = clock_.now(),
+                  .airborne = ports.airborne.load(std::memory_order_relaxed),
+                  .clock = clock_state_,
+                  .recording = recording_,
+                  .overruns = ports.overruns.load(std::memory_order_relaxed),
+                  .stale_states = ports.stale_states.load(std::memory_order_relaxed),
+                  .control_age = progress_.age(0, now),
+                  .agent_age = progress_.age(1, now),
+                  .watched = service_.watchdog_period().has_value()};
+    status.health.vehicle = vehicle_;
+    return status;
+  }
+
+  std::string folder_;
+  VehicleId vehicle_;
+  const process::MissionClock& clock_;
+  const HealthBoard& health_;
+  const Threads& threads_;
+  const process::Service& service_;
+  process::ProgressWatch progress_{2, std::chrono::steady_clock::now()};
+  std::unique_ptr<StatusSocket> socket_;
+  std::optional<process::ClockState> clock_state_;
+  std::optional<Status::Recording> recording_;
+  std::uint64_t bytes_ = 0;
+  std::chrono::steady_clock::time_point looked_at_{};
+  std::chrono::steady_clock::time_point next_look_{};
+};
+
 }  // namespace
 
-int fly(const configuration::VehicleConfig& config) {
+int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
@@ -282,10 +388,17 @@ int fly(const configuration::VehicleConfig& config) {
 
   spdlog::info("vehicle {} joins the mission network, instance {:016x}", config.vehicle.id.value,
                instance.value);
-  const auto threads =
-      std::make_unique<Threads>(config, *route, clock, **node, wake_agent, instance,
-                                std::move(writer), std::move(controllers).value(), clock.now());
-  spdlog::info("{}: stopping", shutdown.wait());
+  HealthBoard health;
+  const auto threads = std::make_unique<Threads>(
+      config, *route, clock, **node, wake_agent, instance, std::move(writer),
+      std::move(controllers).value(), health, clock.now());
+  const process::Service service;
+  HostDesk desk{config, host, clock, health, *threads, service};
+  service.ready();
+  const char* signal = nullptr;
+  while ((signal = shutdown.wait_for(desk.period())) == nullptr) desk.step();
+  service.stopping();
+  spdlog::info("{}: stopping", signal);
   threads->stop();
   threads->log_summary(**node);
   close_limit.start(process::kCloseWithin);

@@ -14,8 +14,8 @@ namespace skein::console {
 
 inline constexpr std::string_view kPageProtocol = "skein.console.1";
 
-/// HTTP, until it asks for a socket.
-void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream);
+/// HTTP, until it asks for a socket; `local`: with this machine.
+void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream, bool local);
 /// The page's socket, of who sent these cookies.
 void serve_page(Hub& hub, std::unique_ptr<WebSocket> socket, const Identity& identity,
                 std::string cookies, std::shared_ptr<Hub::Place> place);

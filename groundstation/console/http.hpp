@@ -19,6 +19,7 @@ struct HttpRequest {
   std::string cookie;
   std::string body;
   bool wants_socket = false;
+  bool local = false;                     ///< from this machine
   std::vector<std::string> subprotocols;  ///< that the socket may speak
 };
 
@@ -31,6 +32,7 @@ enum class HttpStatus {
   method_not_allowed = 405,
   misdirected_request = 421,
   too_many_requests = 429,
+  service_unavailable = 503,
 };
 
 /// With it go the header fields that every answer of ours has: no page, script or style from

@@ -20,8 +20,11 @@ HttpResponse refusal(HttpStatus status, const char* why) {
 /// A connection that speaks HTTP, until it asks for the socket.
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(Hub& hub, std::unique_ptr<HttpStream> stream)
-      : hub_{hub}, stream_{std::move(stream)}, place_{std::make_shared<Hub::Place>(hub)} {}
+  HttpConnection(Hub& hub, std::unique_ptr<HttpStream> stream, bool local)
+      : hub_{hub},
+        stream_{std::move(stream)},
+        local_{local},
+        place_{std::make_shared<Hub::Place>(hub)} {}
 
   void run() {
     stream_->handshake([self = shared_from_this()](bool ok) {
@@ -33,6 +36,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
   void read() {
     stream_->read([self = shared_from_this()](std::optional<HttpRequest> request) {
       if (!request) return self->stream_->close();
+      request->local = self->local_;
       self->handle(*request);
     });
   }
@@ -46,7 +50,8 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
                    "{}",
                    {{"Set-Cookie", hub_.gate().dismiss(request.cookie)}}});
     }
-    send(hub_.pages().respond(request));
+    auto told = hub_.machine_pages().respond(request, std::chrono::steady_clock::now());
+    send(told ? *std::move(told) : hub_.pages().respond(request));
   }
 
   void upgrade(const HttpRequest& request) {
@@ -108,13 +113,14 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
 
   Hub& hub_;
   std::unique_ptr<HttpStream> stream_;
+  bool local_;
   std::shared_ptr<Hub::Place> place_;
 };
 
 }  // namespace
 
-void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream) {
-  std::make_shared<HttpConnection>(hub, std::move(stream))->run();
+void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream, bool local) {
+  std::make_shared<HttpConnection>(hub, std::move(stream), local)->run();
 }
 
 }  // namespace skein::console

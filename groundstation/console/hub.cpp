@@ -84,6 +84,10 @@ void Hub::live(const Server::LiveRecord& record) {
   for (LiveClient* client : all) client->on_record(channel->id, record);
 }
 
+void Hub::report(Server::MachineReport report) {
+  machine_pages_.report(std::move(report), std::chrono::steady_clock::now());
+}
+
 void Hub::join(Client& client) {
   clients_.insert(&client);
   watched_ = true;

@@ -13,6 +13,7 @@
 #include "board.hpp"
 #include "foxglove.hpp"
 #include "gate.hpp"
+#include "machine_pages.hpp"
 #include "pages.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/console/server.hpp"
@@ -67,6 +68,7 @@ class Hub {
   void append(std::vector<std::string> events);
   void restart(std::uint64_t next_seq, const std::string& series);
   void live(const Server::LiveRecord& record);
+  void report(Server::MachineReport report);
 
   void join(Client& client);
   void leave(Client& client);
@@ -80,6 +82,7 @@ class Hub {
   [[nodiscard]] std::string hello(const Identity& identity) const;
   [[nodiscard]] Gate& gate() { return gate_; }
   [[nodiscard]] const Pages& pages() const { return *pages_; }
+  [[nodiscard]] const MachinePages& machine_pages() const { return machine_pages_; }
   [[nodiscard]] const Board& board() const { return board_; }
   [[nodiscard]] const std::vector<LiveChannel>& channels() const { return channels_; }
   [[nodiscard]] const std::string& run_id() const { return run_; }
@@ -107,6 +110,7 @@ class Hub {
   Gate gate_;
   std::string run_;
   std::optional<Pages> pages_;
+  MachinePages machine_pages_{gate_};
   Board board_;
   std::size_t logins_waiting_ = 0;
   std::size_t connections_ = 0;

@@ -137,8 +137,11 @@ void Server::Impl::accept() {
 void Server::Impl::serve(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::no_delay{true}, ignored);
+  const auto peer = socket.remote_endpoint(ignored);
+  const bool local = !ignored && peer.address().is_loopback();
   serve_http(hub_,
-             open_http(tls_ ? open_tls(std::move(socket), *tls_) : open_plain(std::move(socket))));
+             open_http(tls_ ? open_tls(std::move(socket), *tls_) : open_plain(std::move(socket))),
+             local);
 }
 
 std::string Server::Impl::url() const {
@@ -164,6 +167,10 @@ void Server::publish(double time_s, Sections sections) {
 void Server::append(std::vector<std::string> events) {
   Hub& hub = impl_->hub();
   hub.post([&hub, events = std::move(events)]() mutable { hub.append(std::move(events)); });
+}
+void Server::report(MachineReport report) {
+  Hub& hub = impl_->hub();
+  hub.post([&hub, report = std::move(report)]() mutable { hub.report(std::move(report)); });
 }
 void Server::restart(std::uint64_t next_seq, const std::string& series) {
   Hub& hub = impl_->hub();

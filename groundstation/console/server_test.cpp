@@ -14,6 +14,8 @@
 #include <semaphore>
 #include <thread>
 
+#include "machine_pages.hpp"
+
 namespace skein::console {
 namespace {
 
@@ -399,6 +401,38 @@ TEST(Server, GivesTilesAndOverlays) {
   EXPECT_EQ(hello["tiles"]["min_zoom"], 3);
   EXPECT_EQ(hello["overlays"][0]["url"], "/overlays/area");
   std::filesystem::remove_all(folder);
+}
+
+TEST(Server, TellsMachinesHowItIs) {
+  Station station;
+  EXPECT_EQ(ask(station, get("/health")).result(), http::status::service_unavailable);
+  station.server().report({true, "{}", "skein_up 1\n"});
+  EXPECT_EQ(ask(station, get("/health")).result(), http::status::ok);
+  const auto metrics = ask(station, get("/metrics"));
+  EXPECT_EQ(metrics.body(), "skein_up 1\n");
+  EXPECT_THAT(std::string{metrics[http::field::content_type]}, HasSubstr("version=0.0.4"));
+  station.server().report({false, "{\"healthy\":false}", ""});
+  EXPECT_EQ(ask(station, get("/health")).result(), http::status::service_unavailable);
+  auto foreign = get("/metrics");
+  foreign.set(http::field::host, "example.org");
+  EXPECT_EQ(ask(station, foreign).result(), http::status::misdirected_request);
+}
+
+TEST(MachinePages, AreForThisMachineAndForWhoHasLoggedIn) {
+  const Gate gate{Users{}, true};
+  MachinePages pages{gate};
+  const MachinePages::Time now{};
+  pages.report({true, "{}", "m"}, now);
+  HttpRequest request;
+  request.target = "/metrics";
+  request.host = "ground.example.org";
+  EXPECT_EQ(pages.respond(request, now)->status, HttpStatus::unauthorized);
+  request.local = true;
+  EXPECT_EQ(pages.respond(request, now)->status, HttpStatus::ok);
+  EXPECT_EQ(pages.respond(request, now + MachinePages::kReportAgeMax * 2)->status,
+            HttpStatus::service_unavailable);
+  request.target = "/";
+  EXPECT_FALSE(pages.respond(request, now));
 }
 
 TEST(Server, SpeaksToFoxgloveClients) {

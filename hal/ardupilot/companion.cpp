@@ -2,6 +2,7 @@
 #include "skein/ardupilot/companion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "companion_impl.hpp"
@@ -189,6 +190,13 @@ bool Companion::Impl::airborne() const {
 
 bool Companion::Impl::high() const {
   return motion_.relative_height_m() >= params_.takeoff_height_m * 0.9;
+}
+
+std::optional<bool> Companion::Impl::in_use() const {
+  static constexpr std::array kDeaf{State::searching, State::refused,  State::lost,
+                                    State::silent,    State::checking, State::duplicated};
+  if (std::ranges::find(kDeaf, machine_.state()) != kDeaf.end()) return std::nullopt;
+  return armed_ || airborne();
 }
 
 void Companion::Impl::stand_by(Instant now) {
@@ -477,6 +485,7 @@ std::optional<mavlink::WireBytes> Companion::poll_packet() {
 std::optional<Notice> Companion::poll_notice() { return impl_->poll_notice(); }
 std::optional<MotionSample> Companion::sample() const { return impl_->sample(); }
 Companion::State Companion::state() const { return impl_->machine().state(); }
+std::optional<bool> Companion::in_use() const { return impl_->in_use(); }
 std::string Companion::mode() const { return impl_->mode(); }
 std::uint64_t Companion::protocol_errors() const { return impl_->machine().protocol_errors(); }
 const mavlink::ParserStatistics& Companion::parser() const { return impl_->parser(); }

@@ -51,6 +51,7 @@ class Companion::Impl {
     frame_heard_ = now;
     if (machine_.in(State::lost)) fire(Event::autopilot_silent, now);
   }
+  [[nodiscard]] std::optional<bool> in_use() const;
   [[nodiscard]] std::string mode() const {
     return system_ == 0 ? std::string{} : name_of_mode(params_.airframe, mode_);
   }

@@ -36,6 +36,22 @@ TEST(Companion, ConnectsTakesTheAircraftInFlightAndFliesSetpoints) {
   EXPECT_TRUE(line.warnings.empty()) << line.warnings.front();
 }
 
+TEST(Companion, KnowsWhetherTheAircraftIsInUse) {
+  Line line;
+  EXPECT_FALSE(line.companion.in_use().has_value());  // nobody has said anything yet
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.companion.in_use(), std::optional{true});
+  line.autopilot.armed = false;
+  line.run(2.0);
+  EXPECT_EQ(line.companion.in_use(), std::optional{true});  // in the air
+  line.autopilot.landed = 1;
+  line.run(2.0);
+  EXPECT_EQ(line.companion.in_use(), std::optional{false});
+  line.autopilot.armed = true;
+  line.run(2.0);
+  EXPECT_EQ(line.companion.in_use(), std::optional{true});
+}
+
 TEST(Companion, BanksForTheTurnWithRollAlone) {
   Line line;
   line.setpoint.heading_rad = line.autopilot.truth.heading_rad + 0.1;  // to the left

@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "skein/base/assert.hpp"
 #include "skein/process/close_limit.hpp"
+#include "skein/process/host.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
+#include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
 
 namespace skein::process {
@@ -57,6 +62,47 @@ TEST(Shutdown, WaitsUntilAsked) {
   std::thread other{[&] { shutdown.request(); }};
   EXPECT_STREQ(shutdown.wait(), "SIGTERM");
   other.join();
+}
+
+TEST(Shutdown, WaitsNoLongerThanItIsTold) {
+  const Shutdown shutdown;
+  EXPECT_EQ(shutdown.wait_for(std::chrono::milliseconds{1}), nullptr);
+  std::thread other{[&] { shutdown.request(); }};
+  EXPECT_STREQ(shutdown.wait_for(std::chrono::seconds{60}), "SIGTERM");
+  other.join();
+}
+
+TEST(ProgressWatch, IsContentOnlyWhereEveryPartHasMovedSince) {
+  const auto start = ProgressWatch::Time{};
+  const auto at = [start](int s) { return start + std::chrono::seconds{s}; };
+  ProgressWatch watch{2, start};
+  const auto moved = [&watch, at](std::uint64_t control, std::uint64_t agent, int s) {
+    return watch.all_moved(std::array{control, agent}, at(s));
+  };
+  EXPECT_FALSE(moved(0, 0, 1));
+  EXPECT_FALSE(moved(5, 0, 2));  // control alone
+  EXPECT_TRUE(moved(5, 1, 3));   // each since the last time, not at one moment
+  EXPECT_FALSE(moved(5, 2, 4));  // a stuck control
+  EXPECT_FALSE(moved(5, 9, 9));
+  EXPECT_EQ(watch.age(0, at(9)), std::chrono::seconds{7});
+  EXPECT_EQ(watch.age(1, at(9)), std::chrono::seconds{0});
+  EXPECT_TRUE(moved(6, 9, 10));
+}
+
+TEST(Host, KnowsItsClockAndItsDisk) {
+  const auto folder = std::filesystem::temp_directory_path() /
+                      ("skein-host-" + std::to_string(unix_ns_in(Duration::zero())));
+  EXPECT_EQ(bytes_in(folder), 0U);
+  EXPECT_FALSE(free_bytes(folder));
+  std::filesystem::create_directories(folder / "deeper");
+  std::ofstream{folder / "a"} << "123";
+  std::ofstream{folder / "b"} << "45";
+  std::ofstream{folder / "deeper" / "c"} << "6";
+  EXPECT_EQ(bytes_in(folder), 5U);
+  EXPECT_TRUE(free_bytes(folder));
+  std::filesystem::remove_all(folder);
+  const auto clock = clock_state();
+  EXPECT_TRUE(!clock || clock->error_max.count() >= 0);
 }
 
 TEST(LogDeathTest, ABrokenInvariantIsLoggedAndEndsTheProcess) {

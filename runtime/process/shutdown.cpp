@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <ctime>
 
 namespace skein::process {
 namespace {
@@ -15,6 +16,8 @@ sigset_t stop_signals() {
   sigaddset(&set, SIGTERM);
   return set;
 }
+
+const char* name_of(int signal) { return signal == SIGINT ? "SIGINT" : "SIGTERM"; }
 
 }  // namespace
 
@@ -28,7 +31,17 @@ const char* Shutdown::wait() const {
   int signal = 0;
   while (sigwait(&set, &signal) != 0) {
   }
-  return signal == SIGINT ? "SIGINT" : "SIGTERM";
+  return name_of(signal);
+}
+
+const char* Shutdown::wait_for(std::chrono::nanoseconds at_most) const {
+  const sigset_t set = stop_signals();
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(at_most);
+  timespec timeout{};
+  timeout.tv_sec = static_cast<std::time_t>(whole.count());
+  timeout.tv_nsec = static_cast<long>((at_most - whole).count());
+  const int signal = sigtimedwait(&set, nullptr, &timeout);
+  return signal > 0 ? name_of(signal) : nullptr;
 }
 
 void Shutdown::request() const { kill(getpid(), SIGTERM); }

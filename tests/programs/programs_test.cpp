@@ -3,10 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -178,6 +181,65 @@ TEST_F(Programs, AVehicleJoinsFliesAndStops) {
   ASSERT_TRUE(recorded.ok()) << recorded.error().message;
   EXPECT_FALSE(recorded->track.empty());
   EXPECT_FALSE(recorded->plans.empty());
+}
+
+/// What a service manager is sent (sd_notify(3)).
+class NotifySocket {
+ public:
+  explicit NotifySocket(const std::filesystem::path& path)
+      : socket_{::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.string().copy(address.sun_path, sizeof address.sun_path - 1);
+    bound_ = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  }
+  ~NotifySocket() { ::close(socket_); }
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+  [[nodiscard]] bool bound() const { return bound_; }
+
+  /// Whether that comes within kPatience.
+  [[nodiscard]] bool hears(std::string_view wanted) const {
+    const auto until = steady_clock::now() + kPatience;
+    pollfd readable{socket_, POLLIN, 0};
+    while (steady_clock::now() < until) {
+      if (::poll(&readable, 1, 200) < 1) continue;
+      std::array<char, 512> text{};
+      const auto size = ::recv(socket_, text.data(), text.size(), 0);
+      if (size > 0 && std::string_view{text.data(), static_cast<std::size_t>(size)} == wanted) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  int socket_;
+  bool bound_ = false;
+};
+
+TEST_F(Programs, AVehicleTellsItsHostHowItIs) {
+  const NotifySocket manager{folder_ / "notify"};
+  ASSERT_TRUE(manager.bound());
+  const std::string socket = folder_ / "status.sock";
+  auto started = hil::ChildProcess::start(
+      {SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(vehicle())), "--status-socket", socket},
+      folder_ / "log", {{"NOTIFY_SOCKET", folder_ / "notify"}, {"WATCHDOG_USEC", "2000000"}});
+  ASSERT_TRUE(started.ok());
+  auto child = std::move(started).value();
+  EXPECT_TRUE(manager.hears("READY=1"));
+  EXPECT_TRUE(manager.hears("WATCHDOG=1"));
+  auto flying = start({SKEIN_ONBOARD, "status", "--socket", socket, "--flying"});
+  ASSERT_TRUE(flying.wait(kPatience));
+  EXPECT_EQ(flying.ended(), "exit status 0") << text_of("log");
+  auto text = start({SKEIN_ONBOARD, "status", "--socket", socket});
+  ASSERT_TRUE(text.wait(kPatience));
+  EXPECT_THAT(text_of("log"), HasSubstr("vehicle     7, "));
+  child.signal(SIGTERM);
+  ASSERT_TRUE(child.wait(kPatience));
+  auto gone = start({SKEIN_ONBOARD, "status", "--socket", socket, "--flying"});
+  ASSERT_TRUE(gone.wait(kPatience));
+  EXPECT_EQ(gone.ended(), "exit status 3");
 }
 
 TEST_F(Programs, AVehicleWaitsForItsEpochOnTheNetwork) {

@@ -36,6 +36,11 @@ class ConsoleDesk {
   /// `audit` is its section.
   void on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now);
 
+  /// For /health and /metrics.
+  void report(console::Server::MachineReport report) {
+    if (server_) server_->report(std::move(report));
+  }
+
   [[nodiscard]] std::optional<console::Server::Line> next();
   [[nodiscard]] std::string section(console::Section section, const mission::Fleet& fleet,
                                     Instant now) const;

@@ -31,6 +31,8 @@ class Recorder {
   void write(const mission::MissionEvent& event);
   /// Its places once, however often it is sent.
   void write_places(const formation::Change& change);
+  /// How many run.
+  [[nodiscard]] std::size_t running() const { return running_.size(); }
   /// To the system. A recording that fails ends, with an error in the log.
   void flush();
 

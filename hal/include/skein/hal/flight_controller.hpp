@@ -10,6 +10,9 @@
 
 namespace skein::hal {
 
+/// Whether an aircraft may be in the air: its motors are armed or turn, or it is off the ground.
+enum class Airborne : std::uint8_t { unknown, no, yes };
+
 /// A flight controller, as the control thread sees it. All calls are made from that one thread at
 /// the control rate; none blocks, allocates or locks.
 class FlightController {
@@ -24,6 +27,9 @@ class FlightController {
   /// has no effect: a position, of a fixed wing; a heading, of a simulated multirotor. (An
   /// ArduPilot copter is flown by either.)
   virtual void command(const Demand& demand, Instant now) = 0;
+
+  /// As of the newest state(); unknown where nobody has said so.
+  [[nodiscard]] virtual Airborne airborne() const { return Airborne::unknown; }
 };
 
 }  // namespace skein::hal

@@ -16,10 +16,15 @@ class SimulatedFlightController final : public FlightController {
 
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
   void command(const Demand& demand, Instant now) override;
+  /// From mission time `from` on it flies for good.
+  [[nodiscard]] Airborne airborne() const override {
+    return model_.state().time > from_ ? Airborne::yes : Airborne::no;
+  }
 
  private:
   void advance_to(Instant now);
 
+  Instant from_;
   models::HeadingDynamics model_;
 };
 

@@ -50,6 +50,9 @@ class SimulatedMultirotor final : public FlightController {
 
   /// The motors turn.
   [[nodiscard]] bool flying() const { return flying_; }
+  [[nodiscard]] Airborne airborne() const override {
+    return flying_ ? Airborne::yes : Airborne::no;
+  }
   /// Where it really is, as of the last call.
   [[nodiscard]] Position<MissionEnu> true_position() const;
 

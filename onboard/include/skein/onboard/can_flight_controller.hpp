@@ -26,6 +26,9 @@ class CanFlightController final : public hal::FlightController {
   // Of the control thread.
   [[nodiscard]] std::optional<VehicleState> state(Instant now) override;
   void command(const Demand& demand, Instant now) override;
+  [[nodiscard]] hal::Airborne airborne() const override {
+    return airborne_.load(std::memory_order_relaxed);
+  }
 
   // Of the CAN thread.
   void step(Instant now);
@@ -57,6 +60,7 @@ class CanFlightController final : public hal::FlightController {
   Mode told_mode_;                               ///< CAN's
   Mode newest_mode_;                             ///< the agent's
   void tell_mode();
+  std::atomic<hal::Airborne> airborne_{hal::Airborne::unknown};  ///< CAN to control
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued
   std::optional<ardupilot::MotionSample> newest_;   ///< control's

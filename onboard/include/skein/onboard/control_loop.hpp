@@ -27,6 +27,7 @@ struct ControlPorts {
   std::atomic<std::uint32_t> periods{0};
   std::atomic<std::uint32_t> overruns{0};      ///< periods that were missed
   std::atomic<std::uint32_t> stale_states{0};  ///< periods without a fresh state
+  std::atomic<hal::Airborne> airborne{hal::Airborne::unknown};
 };
 
 /// When the periods of a thread start. Pure.

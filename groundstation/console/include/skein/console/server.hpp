@@ -73,6 +73,14 @@ class Server {
   /// many as there were) again when append() brings them.
   void restart(std::uint64_t next_seq, const std::string& series);
 
+  /// What /health and /metrics answer from now on; not for long, or whoever reports is stuck.
+  struct MachineReport {
+    bool healthy = false;
+    std::string health;   ///< JSON
+    std::string metrics;  ///< Prometheus's text
+  };
+  void report(MachineReport report);
+
   /// A record for clients that speak as Foxglove does, CDR by a ros2msg schema. A topic is told to
   /// them with its first record.
   struct LiveRecord {

@@ -144,6 +144,8 @@ class Companion {
   [[nodiscard]] State state() const;
   /// What the autopilot's newest HEARTBEAT says, as its pilots call it: "GUIDED"; empty before one.
   [[nodiscard]] std::string mode() const;
+  /// Armed or in the air, by what the autopilot says now; nothing while none is heard.
+  [[nodiscard]] std::optional<bool> in_use() const;
   [[nodiscard]] bool may_send() const { return state() != State::duplicated; }
   /// Events that the table had no entry for.
   [[nodiscard]] std::uint64_t protocol_errors() const;

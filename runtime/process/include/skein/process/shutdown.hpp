@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
+
 namespace skein::process {
 
 /// How a process is asked to end: SIGINT, SIGTERM, or itself. Blocks both signals in the thread
@@ -14,6 +16,8 @@ class Shutdown {
 
   /// Blocks until asked. Gives the name of the signal.
   const char* wait() const;
+  /// The same, or null once `at_most` is over.
+  [[nodiscard]] const char* wait_for(std::chrono::nanoseconds at_most) const;
   /// Asks. From any thread.
   void request() const;
 };
