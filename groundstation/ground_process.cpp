@@ -31,6 +31,7 @@
 #include "skein/network/node.hpp"
 #include "skein/process/close_limit.hpp"
 #include "skein/process/host.hpp"
+#include "skein/process/journal.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
@@ -39,7 +40,6 @@
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
-#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -376,8 +376,7 @@ class GroundLoop {
   }
 
   void tell_of(const mission::MissionEvent& event) {
-    const bool warning = mission::is_warning(event.kind());
-    spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
+    process::log_event(event);
     recorder_.write(event);
     console_.on_event(event);
   }

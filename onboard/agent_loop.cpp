@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "skein/onboard/threads.hpp"
+#include "skein/process/journal.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::onboard {
@@ -85,8 +86,7 @@ void AgentLoop::note(recording::AgentRecord record) const {
 }
 
 void AgentLoop::report(mission::MissionEvent event) {
-  const bool warning = mission::is_warning(event.kind());
-  spdlog::log(warning ? spdlog::level::warn : spdlog::level::info, wording::text_of(event));
+  process::log_event(event);
   events_->push(std::move(event));
 }
 

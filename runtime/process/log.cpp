@@ -5,11 +5,15 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <memory>
+#include <utility>
 
+#include "journal_sink.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/process/journal.hpp"
 
 namespace skein::process {
 namespace {
@@ -38,8 +42,16 @@ void log_and_exit(const char* condition, const char* file, int line) {
 }  // namespace
 
 void start_log(const MissionClock& clock) {
-  auto logger =
-      std::make_shared<spdlog::logger>("skein", std::make_shared<spdlog::sinks::stdout_sink_mt>());
+  // Of the environment that the process was started in. NOLINTNEXTLINE(concurrency-mt-unsafe)
+  const char* stream = std::getenv("JOURNAL_STREAM");
+  const bool journal = stream != nullptr && is_journal(STDOUT_FILENO, stream);
+  std::shared_ptr<spdlog::sinks::sink> sink;
+  if (journal) {
+    sink = journal_sink(clock);
+  } else {
+    sink = std::make_shared<spdlog::sinks::stdout_sink_mt>();
+  }
+  auto logger = std::make_shared<spdlog::logger>("skein", std::move(sink));
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   formatter->add_flag<MissionTimeFlag>('*', clock).set_pattern("%* %-8l %v");
   logger->set_formatter(std::move(formatter));
