@@ -451,6 +451,28 @@ void recall_mission(const configuration::GroundConfig& config, std::int64_t epoc
   spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
 }
 
+/// Until the process is asked to end; the service manager's watchdog is fed while the loop gets on.
+const char* wait_watched(const GroundLoop& loop, const process::Shutdown& shutdown,
+                         const process::Service& service) {
+  service.ready();
+  process::ProgressWatch progress{1, std::chrono::steady_clock::now()};
+  while (true) {
+    const auto period = service.watchdog_period().value_or(kLookAgain);
+    if (const char* signal = shutdown.wait_for(period)) return signal;
+    const auto now = std::chrono::steady_clock::now();
+    if (progress.all_moved(std::array{loop.steps()}, now)) service.feed_watchdog();
+  }
+}
+
+Result<Recorder> open_recorder(const configuration::GroundConfig& config, InstanceId instance,
+                               std::int64_t epoch_unix_ns) {
+  recording::Writer::Options options;
+  options.session = {kGroundStation, instance,      "skein-ground",
+                     version(),      epoch_unix_ns, to_yaml(config)};
+  options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
+  return Recorder::open(config.recording_folder, std::move(options));
+}
+
 }  // namespace
 
 int run(const configuration::GroundConfig& config, const std::string& operator_name) {
@@ -471,12 +493,8 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
   }
-  recording::Writer::Options options;
-  options.session = {kGroundStation,        instance,       "skein-ground", version(),
-                     clock.epoch_unix_ns(), to_yaml(config)};
-  options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   recall_mission(config, clock.epoch_unix_ns(), ground);
-  auto recorder = Recorder::open(config.recording_folder, std::move(options));
+  auto recorder = open_recorder(config, instance, clock.epoch_unix_ns());
   if (!recorder) {
     spdlog::critical("cannot record: {}", recorder.error().message);
     return process::kExitCannotStart;
@@ -514,14 +532,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   std::move(*audit)};
   std::thread thread{[&loop] { loop.run(); }};
   const process::Service service;
-  service.ready();
-  const char* signal = nullptr;
-  for (process::ProgressWatch progress{1, std::chrono::steady_clock::now()}; signal == nullptr;
-       signal = shutdown.wait_for(service.watchdog_period().value_or(kLookAgain))) {
-    const bool moved =
-        progress.all_moved(std::array{loop.steps()}, std::chrono::steady_clock::now());
-    if (moved) service.feed_watchdog();
-  }
+  const char* signal = wait_watched(loop, shutdown, service);
   service.stopping();
   spdlog::info("{}: stopping", signal);
   loop.stop();
