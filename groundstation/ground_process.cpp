@@ -80,12 +80,6 @@ void print(const std::string& text) {
   std::fflush(stdout);
 }
 
-bool on_one_machine(const configuration::GroundConfig& config) {
-  return std::ranges::all_of(config.network.peers, [&config](const auto& peer) {
-    return peer.address == config.network.address;
-  });
-}
-
 constexpr const char* kConsole = "console";
 
 /// Who gave a line.
@@ -147,7 +141,7 @@ class GroundLoop {
         console_{std::move(console)},
         audit_{std::move(audit)},
         recording_folder_{config.recording_folder},
-        among_machines_{!on_one_machine(config)} {}
+        among_machines_{process::among_machines(config.network)} {}
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};

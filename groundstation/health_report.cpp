@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "skein/codec/json_text.hpp"
@@ -132,13 +133,11 @@ std::string metrics_text(const HealthFacts& facts, const mission::Fleet& fleet) 
 std::vector<std::string> problems(const HealthFacts& facts) {
   std::vector<std::string> all;
   if (facts.shall_record && facts.recordings == 0) all.emplace_back("nothing is recorded");
-  if (facts.disk_free_bytes && mission::nearly_full(*facts.disk_free_bytes)) {
-    all.emplace_back("the disk of its recording is nearly full");
+  mission::HostFacts host{.disk_free_bytes = facts.disk_free_bytes, .clock = {}};
+  if (facts.clock && facts.among_machines) {
+    host.clock = mission::HostFacts::Clock{facts.clock->synchronised, facts.clock->error_max};
   }
-  if (facts.clock && facts.among_machines &&
-      !mission::trusted_clock(facts.clock->synchronised, facts.clock->error_max)) {
-    all.emplace_back("its clock is not synchronised");
-  }
+  for (std::string& problem : mission::host_problems(host)) all.push_back(std::move(problem));
   return all;
 }
 

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "skein/codec/json_text.hpp"
 
 namespace skein::onboard {
@@ -66,6 +68,15 @@ std::string text_of(const codec::ParsedJson& json) {
 }
 
 }  // namespace
+
+mission::Health HealthBoard::with_host(mission::Health health) const {
+  const std::lock_guard lock{mutex_};
+  for (std::string& problem : mission::host_problems(host_)) {
+    if (health.problems.size() >= mission::kProblemsMax) break;
+    health.problems.push_back(std::move(problem));
+  }
+  return health;
+}
 
 std::string status_json(const Status& status) {
   const mission::Health& health = status.health;

@@ -67,6 +67,18 @@ TEST(Status, SaysWhetherTheVehicleFlies) {
   EXPECT_EQ(airborne_in("gibberish"), hal::Airborne::unknown);
 }
 
+TEST(HealthBoard, AddsWhatTheHostKnowsWithinTheMessagesLimit) {
+  HealthBoard board;
+  mission::Health health;
+  EXPECT_TRUE(board.with_host(health).problems.empty());
+  mission::HostFacts facts;
+  facts.clock = mission::HostFacts::Clock{false, {}};
+  board.put(facts);
+  EXPECT_EQ(board.with_host(health).problems.size(), 1U);
+  health.problems.assign(mission::kProblemsMax, "another");
+  EXPECT_EQ(board.with_host(health).problems, health.problems);
+}
+
 TEST_F(Socket, GivesALineToWhoeverConnects) {
   auto opened = StatusSocket::open(path_);
   ASSERT_TRUE(opened.ok()) << opened.error().message;

@@ -116,8 +116,14 @@ AgentLink link_to(network::Node& node, HealthBoard& health) {
           },
           .send =
               [&node, &health](const mission::Message& message) {
-                if (const auto* told = std::get_if<mission::Health>(&message)) health.put(*told);
-                node.publish(message);
+                const auto* told = std::get_if<mission::Health>(&message);
+                if (told == nullptr) {
+                  node.publish(message);
+                  return;
+                }
+                const mission::Health whole = health.with_host(*told);
+                health.put(whole);
+                node.publish(mission::Message{whole});
               },
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
@@ -265,9 +271,10 @@ class Threads {
 class HostDesk {
  public:
   HostDesk(const configuration::VehicleConfig& config, const HostOptions& options,
-           const process::MissionClock& clock, const HealthBoard& health, const Threads& threads,
+           const process::MissionClock& clock, HealthBoard& health, const Threads& threads,
            const process::Service& service)
       : folder_{config.recording_folder},
+        among_machines_{process::among_machines(config.network)},
         vehicle_{config.vehicle.id},
         clock_{clock},
         health_{health},
@@ -310,6 +317,12 @@ class HostDesk {
                                      looked_at_ == decltype(looked_at_){} ? 0.0 : rate};
       bytes_ = bytes;
     }
+    mission::HostFacts facts;
+    if (recording_) facts.disk_free_bytes = recording_->free_bytes;
+    if (among_machines_ && clock_state_) {
+      facts.clock = mission::HostFacts::Clock{clock_state_->synchronised, clock_state_->error_max};
+    }
+    health_.put(facts);
     looked_at_ = now;
     next_look_ = now + kLookPeriod;
   }
@@ -331,9 +344,10 @@ class HostDesk {
   }
 
   std::string folder_;
+  bool among_machines_;  ///< else it does not matter what time it is here
   VehicleId vehicle_;
   const process::MissionClock& clock_;
-  const HealthBoard& health_;
+  HealthBoard& health_;
   const Threads& threads_;
   const process::Service& service_;
   process::ProgressWatch progress_{2, std::chrono::steady_clock::now()};

@@ -3,6 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <random>
 #include <utility>
 
@@ -28,6 +29,12 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, Vehi
   node.transport_plugin = config.transport_plugin;
   node.on_received = std::move(on_received);
   return node;
+}
+
+bool among_machines(const configuration::NetworkConfig& config) {
+  return std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
+    return peer.address != config.address;
+  });
 }
 
 void log_misfits(network::Node& node) {

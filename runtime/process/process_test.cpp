@@ -12,6 +12,7 @@
 #include "skein/process/host.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
+#include "skein/process/mission_network.hpp"
 #include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
 
@@ -103,6 +104,15 @@ TEST(Host, KnowsItsClockAndItsDisk) {
   std::filesystem::remove_all(folder);
   const auto clock = clock_state();
   EXPECT_TRUE(!clock || clock->error_max.count() >= 0);
+}
+
+TEST(MissionNetwork, KnowsATeamOnOneMachine) {
+  configuration::NetworkConfig network;
+  EXPECT_FALSE(among_machines(network));
+  network.peers = {{.id = {1}, .address = network.address, .port = 7402}};
+  EXPECT_FALSE(among_machines(network));
+  network.peers.push_back({.id = {2}, .address = "10.0.0.2", .port = 7400});
+  EXPECT_TRUE(among_machines(network));
 }
 
 TEST(LogDeathTest, ABrokenInvariantIsLoggedAndEndsTheProcess) {

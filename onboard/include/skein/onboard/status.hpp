@@ -12,6 +12,7 @@
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/hal/flight_controller.hpp"
+#include "skein/mission/host_watch.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/process/host.hpp"
 
@@ -56,9 +57,17 @@ class HealthBoard {
     return health_;
   }
 
+  /// The other way: what the host knows, among what the agent tells.
+  void put(const mission::HostFacts& facts) {
+    const std::lock_guard lock{mutex_};
+    host_ = facts;
+  }
+  [[nodiscard]] mission::Health with_host(mission::Health health) const;
+
  private:
   mutable std::mutex mutex_;
   mission::Health health_;
+  mission::HostFacts host_;
 };
 
 /// A Unix socket that gives whoever connects one line, and closes: for the crew, for scripts, for

@@ -19,6 +19,9 @@ namespace skein::process {
                                               VehicleId self, InstanceId instance,
                                               std::function<void()> on_received);
 
+/// Are nodes of the team on other machines, by their addresses?
+[[nodiscard]] bool among_machines(const configuration::NetworkConfig& config);
+
 /// What a node counted, in three numbers.
 struct Traffic {
   std::uint64_t sent = 0;
