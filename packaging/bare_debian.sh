@@ -36,14 +36,14 @@ shopt -s nullglob
 for package in onboard ground; do
   found=("$packages"/skein-"$package"_*_"$(dpkg --print-architecture)".deb)
   ((${#found[@]} == 1)) || fail "there are ${#found[@]} packages of skein-$package in $packages"
-  cp "${found[0]}" "$work/root/root/$package.deb"
+  cp "${found[0]}" "$work/root/opt/$package.deb"
 done
 
-cat >"$work/root/root/trial" <<'END'
+cat >"$work/root/opt/trial" <<'END'
 set -euo pipefail
 export DEBIAN_FRONTEND=noninteractive PATH=/usr/sbin:/usr/bin:/sbin:/bin
 shopt -s nullglob
-cd /root
+cd /opt
 case $1 in
   install)
     apt-get -qq update
@@ -54,11 +54,11 @@ case $1 in
   fly)  # as the units would: systemd does not run here
     ip link set lo up
     install -d -o skein -g skein /run/skein /var/lib/skein
-    as_skein() { setpriv --reuid=skein --regid=skein --clear-groups -- "$@" </dev/null; }
-    as_skein skein-ground --config /etc/skein/ground.yaml >ground.log 2>&1 &
+    as_skein=(setpriv --reuid=skein --regid=skein --clear-groups --)
+    "${as_skein[@]}" skein-ground --config /etc/skein/ground.yaml </dev/null >ground.log 2>&1 &
     pids=($!)
     for n in 1 2 3; do
-      as_skein skein-onboard --config /etc/skein/onboard-$n.yaml --status-socket /run/skein/onboard-$n.sock >onboard-$n.log 2>&1 &
+      "${as_skein[@]}" skein-onboard --config /etc/skein/onboard-$n.yaml --status-socket /run/skein/onboard-$n.sock </dev/null >onboard-$n.log 2>&1 &
       pids+=($!)
     done
     ask() { { exec 3<>/dev/tcp/127.0.0.1/7460 && printf 'GET %s HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n' "$1" >&3 && cat <&3; } 2>/dev/null; }
@@ -87,10 +87,10 @@ esac
 END
 
 began=$(date +%s)
-unshare --mount --pid --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /root/trial install
+unshare --mount --pid --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /opt/trial install
 say "installed in $(($(date +%s) - began)) s"
-unshare --mount --pid --net --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /root/trial fly
-took=$(($(<"$work/root/root/heard") - began))
+unshare --mount --pid --net --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /opt/trial fly
+took=$(($(<"$work/root/opt/heard") - began))
 say "a team on the console $took s after the installation began"
 ((took <= 120)) || fail "that is more than two minutes"
 rm -rf "$work/root"
