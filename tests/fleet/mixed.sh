@@ -4,7 +4,7 @@
 # A mission of the bench whose first vehicles are on other machines, which are network namespaces:
 #   mixed.sh PROGRAMS SCENARIO COUNT [ARGUMENT...]
 # Vehicles 1 to COUNT are external; those that the scenario has on CAN have an emulated flight
-# controller there. The arguments go to `skein-hil run`; its exit status is ours.
+# controller there, on vcan0 where the kernel has it. The arguments go to `skein-hil run`; its exit status is ours.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -34,7 +34,12 @@ cp -r "$(dirname "$scenario")/." "$folder"
   for ((id = 1; id <= count; id++)); do
     can=
     if on_can "$id"; then
-      can="can: 'mcast:$((100 + id))', flight_controller: emulated,"
+      bus=mcast:$((100 + id))
+      if ip -n "skein$id" link add dev vcan0 type vcan 2>/dev/null; then
+        ip -n "skein$id" link set dev vcan0 mtu 72 txqueuelen 200 up
+        bus=vcan0
+      fi
+      can="can: '$bus', flight_controller: emulated,"
     fi
     echo "  - {vehicle: $id, address: 10.53.0.$id, run: ip netns exec skein$id, $can"
     echo "     programs: $programs, radio_plugin: $(dirname "$programs")/lib/libskein_radio.so,"
