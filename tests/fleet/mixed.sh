@@ -42,7 +42,7 @@ cp -r "$(dirname "$scenario")/." "$folder"
       can="can: '$bus', flight_controller: emulated,"
     fi
     echo "  - {vehicle: $id, address: 10.53.0.$id, run: ip netns exec skein$id, $can"
-    echo "     programs: $programs, radio_plugin: $(dirname "$programs")/lib/libskein_radio.so,"
+    echo "     programs: $programs, radio_plugin: $(dirname "$programs")/lib/skein/libskein_radio.so,"
     echo "     configurations: $folder/$id/etc, recordings: $folder/$id/var}"
   done
 } >>"$fleet"
