@@ -338,7 +338,8 @@ int stop_all(const FleetArguments& arguments) {
   if (const auto refused = load(arguments, fleet, Epoch::any)) {
     return complain(arguments, refused->sentences, refused->status);
   }
-  return tell_of(arguments, fleet, "stopped", stop);
+  return tell_of(arguments, fleet, "stopped",
+                 [&](const Program& program) { return stop(program, arguments.force); });
 }
 
 int show_status(const FleetArguments& arguments) {

@@ -49,7 +49,9 @@ class CommandLine {
                   "Also where the program runs, which heeds it at its next start");
     add("start", "Starts the programs whose configuration is as the file says", start_all,
         add_only);
-    add("stop", "Asks the programs to end, and waits until they have", stop_all, add_only);
+    auto& stop =
+        add("stop", "Asks the programs to end, and waits until they have", stop_all, add_only);
+    stop.add_flag("--force", arguments_->force, "Also of vehicles that fly");
     add("status", "Shows hosts, programs and clocks, and every key that differs from the file",
         show_status, add_only);
   }

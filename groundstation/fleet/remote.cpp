@@ -16,7 +16,7 @@ namespace {
 
 using configuration::Host;
 
-constexpr std::chrono::seconds kAnswerWithin{30};  ///< a program may take 10 of them to end
+constexpr std::chrono::seconds kAnswerWithin{90};  ///< a unit may take 60 of them to start
 constexpr std::chrono::minutes kCollectWithin{10};
 constexpr int kSshFailed = 255;
 // What our scripts end with.
@@ -24,6 +24,7 @@ constexpr int kRuns = 75;
 constexpr int kBadConfiguration = 76;
 constexpr int kDidNotStay = 77;
 constexpr int kDidNotEnd = 78;
+constexpr int kFlies = 79;
 
 /// One word for a shell.
 std::string shell_word(std::string_view text) {
@@ -138,10 +139,16 @@ std::string start_script(const Program& program) {
          "main_pid >/dev/null || { tail -n 1 \"$log\" >&2; exit 77; }\n";
 }
 
-std::string stop_script(const Program& program) {
+std::string stop_script(const Program& program, bool force) {
   std::string script = names(program);
   if (program.host.programs.empty()) {
-    return script + "main_pid >/dev/null || exit 0\nsystemctl stop \"$unit\" || exit 78\n";
+    script += "main_pid >/dev/null || exit 0\n";
+    if (!force && !program.is_ground()) {
+      script += fmt::format(
+          "\"$program\" status --socket /run/skein/{}.sock --flying >/dev/null 2>&1 && exit 79\n",
+          program.name);
+    }
+    return script + "systemctl stop \"$unit\" || exit 78\n";
   }
   return script +
          "p=$(main_pid) || exit 0\n"
@@ -270,10 +277,15 @@ Result<void> start(const Program& program) {
   return failed(program, program.name + " could not be started", *outcome);
 }
 
-Result<void> stop(const Program& program) {
-  const auto outcome = run_on(program.host, stop_script(program), "");
+Result<void> stop(const Program& program, bool force) {
+  const auto outcome = run_on(program.host, stop_script(program, force), "");
   if (!outcome) return outcome.error();
   if (outcome->status == 0) return {};
+  if (outcome->status == kFlies) {
+    return Error{fmt::format(
+        "{} ({}) flies: land it first, or --force, and its flight controller's failsafe takes over",
+        name_of(program.host.node), place_of(program.host))};
+  }
   if (outcome->status == kDidNotEnd) {
     return failed(program, program.name + " was asked to end and still runs", *outcome);
   }

@@ -27,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* kProgram = R"(#!/bin/sh
 case "$*" in
   *--version*) echo "skein-onboard 9.9"; exit 0 ;;
+  *--flying*) [ -e "${0%/*}/flies" ]; exit ;;
   *--check-config*) if grep -q refused "$2"; then echo "line 1: refused"; exit 2; fi; exit 0 ;;
 esac
 if grep -q "title: dies" "$2"; then echo "cannot join"; exit 3; fi
@@ -46,7 +47,7 @@ class Remote : public testing::Test {
     host_.recordings = (folder_ / "it's here").string();
   }
   void TearDown() override {
-    (void)stop(program());
+    (void)stop(program(), false);
     fs::remove_all(folder_);
   }
   static void script(const fs::path& path, const std::string& text) {
@@ -122,9 +123,9 @@ TEST_F(Remote, AProgramThatRunsKeepsItsConfiguration) {
   const auto later = fs::last_write_time(program().file) + std::chrono::seconds{3};
   fs::last_write_time(program().file, later);
   EXPECT_TRUE(status(program()).outdated);
-  ASSERT_TRUE(stop(program()).ok());
+  ASSERT_TRUE(stop(program(), false).ok());
   EXPECT_FALSE(status(program()).running);
-  EXPECT_TRUE(stop(program()).ok()) << "it does not run";
+  EXPECT_TRUE(stop(program(), false).ok()) << "it does not run";
 }
 
 TEST_F(Remote, AConfigurationThatTheProgramRefusesReplacesNothing) {
@@ -150,7 +151,7 @@ TEST_F(Remote, AProcessIdThatSomebodyElseHasIsNotOurs) {
   fs::create_directories(host_.recordings);
   std::ofstream{host_.recordings + "/onboard-3.pid"} << ::getpid() << "\n";
   EXPECT_FALSE(status(program()).running);
-  EXPECT_TRUE(stop(program()).ok());  // and we are still there
+  EXPECT_TRUE(stop(program(), false).ok());  // and we are still there
 }
 
 TEST_F(Remote, SshIsGivenOneLineForTheShellThere) {
@@ -205,7 +206,13 @@ TEST_F(Remote, UnitsOfSystemdAreStartedAndStoppedByTheirNames) {
   EXPECT_EQ(status(program()).state, "active");
   EXPECT_TRUE(status(program()).running);
   EXPECT_FALSE(push(program(), false).ok());
-  ASSERT_TRUE(stop(program()).ok());
+  std::ofstream{folder_ / "bin" / "flies"} << "";
+  const auto refused = stop(program(), false);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("flies: land it first"));
+  EXPECT_TRUE(status(program()).running);
+  fs::remove(folder_ / "bin" / "flies");
+  ASSERT_TRUE(stop(program(), false).ok());
   EXPECT_FALSE(status(program()).running);
   const std::string asked = text_of(folder_ / "asked");
   EXPECT_THAT(asked, HasSubstr("\nstart skein-onboard@3.service\n"));

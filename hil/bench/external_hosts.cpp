@@ -170,7 +170,7 @@ std::vector<std::string> ExternalHosts::stop() {
     if (!started.ours) return problem;
     std::for_each(started.programs.rbegin(), started.programs.rend(),
                   [&problem](const fleet::Program& program) {
-                    const auto stopped = fleet::stop(program);
+                    const auto stopped = fleet::stop(program, true);
                     if (!stopped && problem.empty()) problem = stopped.error().message;
                   });
     started.ours = false;

@@ -24,8 +24,9 @@ namespace skein::fleet {
 
 /// Starts the program; one that runs already is left alone. Fails where it does not stay.
 [[nodiscard]] Result<void> start(const Program& program);
-/// Asks the program to end, and waits until it has. One that does not run is left alone.
-[[nodiscard]] Result<void> stop(const Program& program);
+/// Asks the program to end, and waits until it has. One that does not run is left alone. Fails for
+/// a unit of systemd whose vehicle says that it flies, unless `force`.
+[[nodiscard]] Result<void> stop(const Program& program, bool force);
 
 /// What a host says of its program.
 struct Status {
