@@ -31,8 +31,8 @@ Status status() {
 
 class Socket : public ::testing::Test {
  protected:
-  Socket() { std::filesystem::create_directories(folder_); }
-  ~Socket() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
                                   ("skein-status-" + std::to_string(std::random_device{}()));
   std::string path_ = folder_ / "onboard-7.sock";
