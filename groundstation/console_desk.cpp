@@ -35,6 +35,7 @@ console::ServerConfig server_config(const configuration::ConsoleConfig& config) 
 
 std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>& expected,
                        const std::vector<std::string>& shapes,
+                       const std::vector<std::string>& site_templates,
                        const std::optional<ShownRecording>& recording) {
   const Wgs84& place = origin.origin();
   codec::Json hello{{"program", "skein-ground " + version()},
@@ -44,6 +45,7 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                       {"height_m", place.height_m}}},
                     {"expected", codec::Json::array()},
                     {"shapes", shapes},
+                    {"site_templates", site_templates},
                     {"limits", codec::parse_own_json(limits_json())},
                     {"replay", nullptr}};
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
@@ -72,6 +74,8 @@ std::optional<console::Section> section_of(View view) {
     case View::hazards:
       return Section::hazards;
     case View::help:
+    case View::proposals:
+      return Section::proposals;
     case View::audit:
       break;
   }
@@ -91,7 +95,9 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
   }
   std::vector<std::string> shapes = shape_names();
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);
-  server.hello = hello_text(origin_, config.vehicles, shapes, {});
+  std::vector<std::string> templates;
+  for (const auto& kind : config.site_templates) templates.push_back(kind.name);
+  server.hello = hello_text(origin_, config.vehicles, shapes, templates, {});
   auto opened = console::Server::open(std::move(server), std::move(wake));
   if (!opened) return opened.error();
   server_ = std::move(*opened);

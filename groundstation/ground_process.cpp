@@ -26,6 +26,7 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
+#include "skein/groundstation/site_desk.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
@@ -60,7 +61,8 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
   node.setup = configuration::setup_params(config, {version(), codec::wire_versions()});
   mission::GroundAgentConfig& agent = node.agent;
   agent.expected = config.vehicles;
-  for (const Hazard& hazard : config.hazards) agent.hazards.push_back(hazard.id);
+  node.hazards = config.hazards;
+  node.detections = detections_config(config);
   for (const auto& decision : config.operator_decisions) {
     agent.decisions.push_back({.site = decision.site,
                                .grant = decision.grant,
@@ -91,8 +93,9 @@ struct Asker {
 
 bool only_looks(const Input& input) {
   const auto* formation = std::get_if<Formation>(&input);
+  const auto* site = std::get_if<NewSite>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
-         (formation != nullptr && formation->preview);
+         (formation != nullptr && formation->preview) || (site != nullptr && site->preview);
 }
 
 /// The console is on other machines: it opens no files here, and ends nothing that it cannot start.
@@ -103,6 +106,9 @@ const char* why_not_on_console(const Input& input) {
   const auto* formation = std::get_if<Formation>(&input);
   if (formation != nullptr && (names_file(formation->shape) || names_file(formation->track))) {
     return "the console takes shapes and tracks by their names; files are for the prompt\n";
+  }
+  if (std::holds_alternative<SitesFromFile>(input)) {
+    return "files of sites are for the prompt and the command line\n";
   }
   if (std::holds_alternative<Record>(input)) {
     return "record is for the prompt and the command line\n";
@@ -137,6 +143,7 @@ class GroundLoop {
         decisions_{config.operator_decisions},
         node_{node},
         formation_{std::move(formation)},
+        sites_{config, origin, node},
         control_{std::move(control)},
         console_{std::move(console)},
         audit_{std::move(audit)},
@@ -233,6 +240,7 @@ class GroundLoop {
       return {true, text_of(*view, now), data_of(*view, now)};
     }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
+    if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
     return {true, ""};
   }
 
@@ -249,9 +257,21 @@ class GroundLoop {
       return answer_to(node_.command(order->vehicle, order->kind, now));
     }
     if (const auto* hazard = std::get_if<NewHazard>(&input)) {
-      const auto added = node_.agent().add_hazard(hazard->centre_m, hazard->radius_m, now);
+      const auto added = node_.hazards().add(hazard->centre_m, hazard->radius_m, now);
       if (!added) return refusal(added.error());
       return {true, fmt::format("hazard {} is told to all\n", added->value)};
+    }
+    if (const auto* gone = std::get_if<WithdrawHazard>(&input)) {
+      return answer_to(node_.hazards().withdraw(gone->hazard, now));
+    }
+    if (const auto* site = std::get_if<NewSite>(&input))
+      return sites_.answer(*site, asker.who, now);
+    if (const auto* file = std::get_if<SitesFromFile>(&input)) return sites_.answer(*file, now);
+    if (const auto* site = std::get_if<WithdrawSite>(&input)) {
+      return sites_.answer(*site, asker.who, now);
+    }
+    if (const auto* proposal = std::get_if<ProposalAnswer>(&input)) {
+      return sites_.answer(*proposal, asker.who, now);
     }
     if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
     if (const auto* record = std::get_if<Record>(&input)) return record_into(*record);
@@ -301,6 +321,8 @@ class GroundLoop {
         return hazards_text(console_.picture());
       case View::audit:
         return audit_.text();
+      case View::proposals:
+        return sites_.proposals_text();
     }
     return "";
   }
@@ -391,6 +413,7 @@ class GroundLoop {
       decisions_;  ///< of the scenario, in the operator's place
   mission::GroundNode& node_;
   FormationDesk formation_;
+  SiteDesk sites_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   Audit audit_;

@@ -36,6 +36,21 @@ class Reader {
     }
     return static_cast<std::uint32_t>(number(name, {low, high}));
   }
+  std::vector<double> numbers(const char* name, const Limit& limit, std::size_t most) {
+    std::vector<double> values;
+    const auto found = json_.find(name);
+    const bool list = found != json_.end() && found->is_array() && found->size() <= most;
+    for (std::size_t i = 0; list && i < found->size(); ++i) {
+      const auto& value = (*found)[i];
+      if (value.is_number() && limit.has(value.get<double>()))
+        values.push_back(value.get<double>());
+    }
+    if (!list || values.size() != found->size()) {
+      fail(fmt::format("{} is to be a list of {} numbers at most, from {} to {}", name, most,
+                       limit.low, limit.high));
+    }
+    return values;
+  }
   bool flag(const char* name) {
     const auto found = json_.find(name);
     if (found != json_.end() && found->is_boolean()) return found->get<bool>();
@@ -95,6 +110,51 @@ Input hazard(Reader& from) {
   return hazard;
 }
 
+template <class T>
+void take(Reader& from, const char* name, const Limit& limit, std::optional<T>& value) {
+  if (from.has(name)) value = static_cast<T>(from.number(name, limit));
+}
+
+Input site_order(Reader& from) {
+  NewSite order;
+  order.preview = from.flag("preview");
+  SiteWishes& wishes = order.wishes;
+  if (from.has("site")) {
+    order.changes = SiteId{static_cast<std::uint16_t>(from.integer("site", 1.0, kIdMax))};
+  }
+  if (!order.changes || from.has("x")) {
+    wishes.place_m = Vec2{from.number("x", kCoordinate_m), from.number("y", kCoordinate_m)};
+  }
+  if (from.has("like")) wishes.like = from.text("like");
+  if (from.has("bearings_deg")) {
+    wishes.bearings_rad = from.numbers("bearings_deg", kHeading_deg, kTasksPerKindMax);
+    for (double& bearing : *wishes.bearings_rad) bearing = heading_from_compass_deg(bearing);
+  }
+  take(from, "interval_s", limit_of(configuration::kDeliveryInterval_s), wishes.interval_s);
+  take(from, "assessments", kTasks, wishes.assessments);
+  take(from, "wait_s", limit_of(configuration::kAssessmentWait_s), wishes.assessment_wait_s);
+  take(from, "dwell_s", limit_of(configuration::kAssessmentDwell_s), wishes.assessment_dwell_s);
+  take(from, "survey_s", limit_of(configuration::kSurveyDwell_s), wishes.survey_dwell_s);
+  take(from, "reward", limit_of(configuration::kSiteReward), wishes.reward);
+  take(from, "decay_per_s", limit_of(configuration::kRewardDecay_per_s), wishes.reward_decay_per_s);
+  if (from.has("vehicle")) {
+    wishes.surveyor = VehicleId{static_cast<std::uint16_t>(from.integer("vehicle", 1.0, kIdMax))};
+  }
+  if (from.has("anyway")) wishes.anyway = from.flag("anyway");
+  return order;
+}
+
+Input withdrawal(Reader& from) {
+  if (from.has("hazard")) {
+    return WithdrawHazard{{static_cast<std::uint16_t>(from.integer("hazard", 1.0, kIdMax))}};
+  }
+  return WithdrawSite{{static_cast<std::uint16_t>(from.integer("site", 1.0, kIdMax))}};
+}
+
+Input proposal_answer(Reader& from) {
+  return ProposalAnswer{from.integer("number", 1.0, kIdMax), from.flag("accept")};
+}
+
 Input formation_order(Reader& from) {
   Formation input;
   input.preview = from.flag("preview");
@@ -140,6 +200,9 @@ Result<Input> read_order(std::string_view text) {
     if (kind == "command") return command(from);
     if (kind == "decision") return decision(from);
     if (kind == "hazard") return hazard(from);
+    if (kind == "site") return site_order(from);
+    if (kind == "withdraw") return withdrawal(from);
+    if (kind == "proposal") return proposal_answer(from);
     if (kind == "formation") return formation_order(from);
     from.fail("there is no order '" + kind + "'");
     return {};
@@ -155,7 +218,11 @@ std::string limits_json() {
                            {"hazard_radius_m", range(kHazardRadius_m)},
                            {"spacing_m", range(kSpacing_m)},
                            {"heading_deg", range(kHeading_deg)},
-                           {"places", range(kPlaces)}});
+                           {"places", range(kPlaces)},
+                           {"tasks", range(kTasks)},
+                           {"interval_s", range(limit_of(configuration::kDeliveryInterval_s))},
+                           {"dwell_s", range(limit_of(configuration::kAssessmentDwell_s))},
+                           {"reward", range(limit_of(configuration::kSiteReward))}});
 }
 
 }  // namespace skein::groundstation

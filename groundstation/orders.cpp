@@ -7,14 +7,16 @@
 #include <array>
 #include <string_view>
 
+#include "site_words.hpp"
 #include "skein/base/angles.hpp"
 
 namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 8> kWords{
-      "help", "status", "sites", "pending", "places", "coalitions", "hazards", "audit"};
+  static constexpr std::array<std::string_view, 9> kWords{"help",    "status", "sites",
+                                                          "pending", "places", "coalitions",
+                                                          "hazards", "audit",  "proposals"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -38,6 +40,17 @@ struct Line {
   std::string operator()(const NewHazard& hazard) const {
     return fmt::format("hazard {} {} {}", hazard.centre_m.x(), hazard.centre_m.y(),
                        hazard.radius_m);
+  }
+  std::string operator()(const WithdrawHazard& hazard) const {
+    return fmt::format("withdraw hazard {}", hazard.hazard.value);
+  }
+  std::string operator()(const NewSite& site) const { return site_line(site); }
+  std::string operator()(const SitesFromFile& from) const { return "sites " + from.file; }
+  std::string operator()(const WithdrawSite& site) const {
+    return fmt::format("withdraw site {}", site.site.value);
+  }
+  std::string operator()(const ProposalAnswer& answer) const {
+    return fmt::format("{} {}", answer.accept ? "accept" : "dismiss", answer.number);
   }
   std::string operator()(const Formation& formation) const {
     const formation::ShapeSpec& shape = formation.order.shape;

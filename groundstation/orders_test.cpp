@@ -33,6 +33,20 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "authorise 3",
                            "refuse 4",
                            "hazard 1200 -300 250",
+                           "site 1200 -300",
+                           "site 59.1234N 17.5W deliver 90,180 every 4 by 3",
+                           "site like fire at 10 20.5 deliver none anyway",
+                           "site 1 2 deliver 90 simultaneous assess 2 wait 3 dwell 8 survey 5 "
+                           "reward 3 decay 0.1",
+                           "preview site 1 2",
+                           "change site 10034 at 5 6",
+                           "preview change site 10034 reward 5",
+                           "sites fires.yaml",
+                           "withdraw site 10034",
+                           "withdraw hazard 10034",
+                           "accept 1",
+                           "dismiss 2",
+                           "proposals",
                            "take-off",
                            "rally",
                            "land",
@@ -60,6 +74,19 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"command","command":"return_home","vehicle":7})"), "return 7");
   EXPECT_EQ(line_of_json(R"({"kind":"hazard","x":1200,"y":-300,"radius_m":250})"),
             "hazard 1200 -300 250");
+  EXPECT_EQ(line_of_json(R"({"kind":"site","preview":false,"x":10,"y":20,"like":"fire",
+                             "bearings_deg":[90,180],"interval_s":4,"assessments":2,"wait_s":3,
+                             "dwell_s":8,"survey_s":5,"reward":3,"vehicle":7})"),
+            "site like fire at 10 20 deliver 90,180 every 4 assess 2 wait 3 dwell 8 survey 5 "
+            "reward 3 by 7");
+  EXPECT_EQ(line_of_json(R"({"kind":"site","preview":true,"site":10034,"reward":3})"),
+            "preview change site 10034 reward 3");
+  EXPECT_EQ(line_of_json(R"({"kind":"withdraw","site":10034})"), "withdraw site 10034");
+  EXPECT_EQ(line_of_json(R"({"kind":"withdraw","hazard":10034})"), "withdraw hazard 10034");
+  EXPECT_EQ(line_of_json(R"({"kind":"proposal","number":3,"accept":true})"), "accept 3");
+  EXPECT_THAT(trouble_with(R"({"kind":"site","preview":false,"x":1,"y":2,"bearings_deg":[900]})"),
+              HasSubstr("bearings_deg is to be a list"));
+  EXPECT_THAT(trouble_with(R"({"kind":"site","preview":false})"), HasSubstr("x is to be"));
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":true,"order":"take_off"})"),
             "preview take-off");
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"form","shape":"echelon",

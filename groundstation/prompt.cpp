@@ -5,10 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <vector>
 
+#include "prompt_words.hpp"
+#include "site_words.hpp"
 #include "skein/base/angles.hpp"
 
 namespace skein::groundstation {
@@ -23,14 +24,6 @@ std::vector<std::string_view> words_of(std::string_view line) {
     begin = end == std::string_view::npos ? end : line.find_first_not_of(kBlank, end);
   }
   return words;
-}
-
-/// A number from 1 up, as sites and vehicles have.
-std::optional<std::uint16_t> id_of(std::string_view word) {
-  std::uint16_t id = 0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
-  if (error != std::errc{} || end != word.data() + word.size() || id == 0) return std::nullopt;
-  return id;
 }
 
 Result<Input> view(View which, const std::vector<std::string_view>& words) {
@@ -55,17 +48,6 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
         fmt::format("'{0}' needs the number of a vehicle or 'all', as in '{0} 7'", words[0])};
   }
   return Input{Order{{*vehicle}, kind}};
-}
-
-/// A number after a keyword.
-Result<double> number_after(std::string_view keyword, std::string_view word, const Limit& limit) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size() || !limit.has(value)) {
-    return Error{fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, limit.low,
-                             limit.high, word)};
-  }
-  return value;
 }
 
 Result<Input> hazard(const std::vector<std::string_view>& words) {
@@ -200,8 +182,13 @@ bool is_formation_verb(std::string_view word) {
 
 Result<Input> preview(std::vector<std::string_view> words) {
   words.erase(words.begin());
+  if (!words.empty() && (words[0] == "site" || words[0] == "change")) {
+    return site_order(words, true);
+  }
   if (words.empty() || !is_formation_verb(words[0])) {
-    return Error{"'preview' needs an order to the formation, as in 'preview form wedge spacing 5'"};
+    return Error{
+        "'preview' needs an order to the formation or of a site, as in 'preview form wedge "
+        "spacing 5'"};
   }
   return formation_order(words, true);
 }
@@ -229,7 +216,12 @@ Result<Input> parse_input(std::string_view line) {
   const auto verb = words[0];
   if (verb == "help") return view(View::help, words);
   if (verb == "status") return view(View::status, words);
+  if (verb == "sites" && words.size() == 2) return Input{SitesFromFile{std::string{words[1]}}};
   if (verb == "sites") return view(View::sites, words);
+  if (verb == "site" || verb == "change") return site_order(words, false);
+  if (verb == "withdraw") return withdrawal(words);
+  if (verb == "accept" || verb == "dismiss") return proposal_answer(verb == "accept", words);
+  if (verb == "proposals") return view(View::proposals, words);
   if (verb == "pending") return view(View::pending, words);
   if (verb == "authorise") return decision(true, words);
   if (verb == "refuse") return decision(false, words);
@@ -256,7 +248,8 @@ Result<Input> parse_input(std::string_view line) {
 bool is_of_formation(std::string_view line) {
   const auto words = words_of(line);
   return !words.empty() &&
-         (is_formation_verb(words[0]) || words[0] == "preview" || words[0] == "places");
+         (is_formation_verb(words[0]) || words[0] == "places" ||
+          (words[0] == "preview" && words.size() > 1 && is_formation_verb(words[1])));
 }
 
 std::string help_text() {
@@ -268,8 +261,23 @@ std::string help_text() {
          "coalitions        what was announced, bid and awarded, and what came of it\n"
          "hazards           the circles to keep out of\n"
          "hazard EAST NORTH RADIUS\n"
-         "                  tell all of another one, in metres from the origin; there is no way "
-         "back\n"
+         "                  tell all of another one, in metres from the origin\n"
+         "withdraw hazard N there is none any more\n"
+         "site EAST NORTH ...\n"
+         "                  tell the team of a site, in metres from the origin or as 59.12N "
+         "17.23E;\n"
+         "                  then, as wanted, like NAME, deliver BEARINGS, simultaneous or every "
+         "S,\n"
+         "                  assess N, wait S, dwell S, survey S, reward R, decay R, by ID, "
+         "anyway:\n"
+         "                  site 1200 -300 deliver 090,180 every 4 assess 2 reward 3\n"
+         "                  site like NAME at EAST NORTH ...: as the configuration's template has "
+         "it\n"
+         "sites FILE        tell it of those of a file\n"
+         "change site N ... until a delivery there is authorised; a place goes after 'at'\n"
+         "withdraw site N   nobody goes on with it, but for a delivery that has begun\n"
+         "proposals         what detectors have seen and you have not answered\n"
+         "accept N          take proposal N as a site; dismiss N: it is none\n"
          "audit             who gave which order, from where, and what came of it\n"
          "hold ID|all       fly a holding pattern until told otherwise\n"
          "resume ID|all     go on with the mission\n"
@@ -290,7 +298,8 @@ std::string help_text() {
          "they\n"
          "                  slide into another shape on the way\n"
          "land              it comes straight down\n"
-         "preview ORDER     what one of these five would do, and whether it is safe\n"
+         "preview ORDER     what one of these five, site or change would do, and whether it is "
+         "safe\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
          "record FOLDER     record all that is said into FOLDER, too, from now on; record stop: no "
          "more\n"

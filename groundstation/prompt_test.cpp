@@ -49,6 +49,23 @@ TEST(Prompt, UnderstandsEveryCommand) {
   parsed<std::monostate>("");
 }
 
+TEST(Prompt, SaysWhatIsWrongWithASite) {
+  EXPECT_THAT(refusal_of("site"), HasSubstr("needs a place"));
+  EXPECT_THAT(refusal_of("site 100"), HasSubstr("a place is EAST NORTH"));
+  EXPECT_THAT(refusal_of("site 100 x"), HasSubstr("'EAST NORTH' needs a number"));
+  EXPECT_THAT(refusal_of("site 99N 17E"), HasSubstr("no latitude and longitude"));
+  EXPECT_THAT(refusal_of("site 59N 17"), HasSubstr("no latitude and longitude"));
+  EXPECT_THAT(refusal_of("site 1 2 deliver"), HasSubstr("as in 'deliver 090,180'"));
+  EXPECT_THAT(refusal_of("site 1 2 deliver 90,"), HasSubstr("needs a number from -360"));
+  EXPECT_THAT(refusal_of("site 1 2 assess 17"), HasSubstr("from 0 to 16"));
+  EXPECT_THAT(refusal_of("site 1 2 every"), HasSubstr("needs a number after it"));
+  EXPECT_THAT(refusal_of("site 1 2 drop"), HasSubstr("is none of at PLACE"));
+  EXPECT_THAT(refusal_of("site like fire"), HasSubstr("needs a place"));
+  EXPECT_THAT(refusal_of("change site"), HasSubstr("number of a site"));
+  EXPECT_THAT(refusal_of("withdraw 3"), HasSubstr("withdraw site 10034"));
+  EXPECT_THAT(refusal_of("accept"), HasSubstr("number of a proposal"));
+}
+
 TEST(Prompt, SaysWhatIsWrong) {
   EXPECT_THAT(refusal_of("launch"), HasSubstr("no command 'launch'"));
   EXPECT_THAT(refusal_of("record"), HasSubstr("needs a folder, or 'stop'"));

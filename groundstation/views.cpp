@@ -33,7 +33,12 @@ std::string health_of(const mission::FleetEntry& entry) {
   return health.empty() ? "good" : health;
 }
 
-/// "1234 m from the origin towards 045 deg, 31.530000 N 105.050000 E"
+bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {
+  return !pending.decision && now < pending.request.decide_by;
+}
+
+}  // namespace
+
 std::string place_text(const Vec2& position, const MissionOrigin& origin) {
   const Wgs84 geodetic = origin.to_wgs84(Position<MissionEnu>{position.x(), position.y(), 0.0});
   const double distance_m = position.norm();
@@ -46,12 +51,6 @@ std::string place_text(const Vec2& position, const MissionOrigin& origin) {
                      geodetic.latitude_deg < 0.0 ? "S" : "N", std::abs(geodetic.longitude_deg),
                      geodetic.longitude_deg < 0.0 ? "W" : "E");
 }
-
-bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {
-  return !pending.decision && now < pending.request.decide_by;
-}
-
-}  // namespace
 
 std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet, Instant now) {
   std::string text = fmt::format("{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", "vehicle", "activity",
@@ -146,7 +145,10 @@ std::string sites_text(const console::Picture& picture) {
           of.state == coalition::TaskState::done ? 1 : 0;
     }
     fmt::format_to(std::back_inserter(text), "site {}: {}, {}, {} delivered, {} assessed", id.value,
-                   site.leader ? "led by " + wording::text_of(*site.leader) : "no leader yet",
+                   site.withdrawn  ? "withdrawn"
+                   : site.leader   ? "led by " + wording::text_of(*site.leader)
+                   : site.surveyor ? "told to " + wording::text_of(*site.surveyor)
+                                   : "no leader yet",
                    site.surveyed ? "surveyed" : "not surveyed",
                    done[static_cast<std::size_t>(TaskKind::deliver)],
                    done[static_cast<std::size_t>(TaskKind::assess)]);

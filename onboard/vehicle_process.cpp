@@ -13,8 +13,10 @@
 #include <utility>
 
 #include "skein/can/bus.hpp"
+#include "skein/detectors/detector_socket.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
+#include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
@@ -128,9 +130,34 @@ AgentLink link_to(network::Node& node, HealthBoard& health) {
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
 
+Result<std::optional<detectors::DetectorSocket>> detector_socket(
+    const configuration::VehicleConfig& config) {
+  if (config.detections_socket.empty()) return std::optional<detectors::DetectorSocket>{};
+  const auto origin = MissionOrigin::make(config.origin);
+  if (!origin) return origin.error();
+  auto socket = detectors::DetectorSocket::open(config.detections_socket, *origin);
+  if (!socket) return socket.error();
+  return std::optional<detectors::DetectorSocket>{std::move(*socket)};
+}
+
+/// After what the network has, what detectors on this machine tell.
+void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
+  link.receive = [receive = std::move(link.receive),
+                  &socket]() -> std::optional<AgentLink::Received> {
+    if (auto received = receive()) return received;
+    auto detection = socket.poll();
+    if (const auto trouble = socket.poll_trouble()) {
+      spdlog::warn("a detection cannot be read: {}", *trouble);
+    }
+    if (!detection) return std::nullopt;
+    return AgentLink::Received{mission::Message{*std::move(detection)}, mission::kSensors};
+  };
+}
+
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
-                  AgentRing* records) {
+                  std::optional<detectors::DetectorSocket>& socket, AgentRing* records) {
   AgentLink link = link_to(node, health);
+  if (socket) listen_to(*socket, link);
   if (records != nullptr) {
     link.record = [records](recording::AgentRecord record) { records->push(std::move(record)); };
   }
@@ -154,8 +181,10 @@ class Threads {
   Threads(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
           InstanceId instance, std::optional<recording::Writer> writer,
-          FlightControllers flight_controllers, HealthBoard& health, Instant now)
+          FlightControllers flight_controllers, std::optional<detectors::DetectorSocket> detectors,
+          HealthBoard& health, Instant now)
       : clock_{clock},
+        detectors_{std::move(detectors)},
         wake_agent_{wake_agent},
         flight_controllers_{std::move(flight_controllers)},
         control_{config.vehicle,
@@ -163,7 +192,8 @@ class Threads {
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{node_config(config, route, instance, "skein-onboard " + version()),
-               link_to(node, flight_controllers_.on_can, health, writer ? &records_ : nullptr),
+               link_to(node, flight_controllers_.on_can, health, detectors_,
+                       writer ? &records_ : nullptr),
                ports_,
                planner_,
                events_,
@@ -252,6 +282,7 @@ class Threads {
   AgentRing records_;
   Planner planner_{[this] { wake_agent_.notify(); }, [this] { return clock_.now(); }};
   const process::MissionClock& clock_;
+  std::optional<detectors::DetectorSocket> detectors_;
   process::Wake& wake_agent_;
   FlightControllers flight_controllers_;
   ControlLoop control_;
@@ -400,12 +431,18 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
 
+  auto detectors = detector_socket(config);
+  if (!detectors) {
+    spdlog::critical("cannot listen to detectors: {}", detectors.error().message);
+    return process::kExitCannotStart;
+  }
+
   spdlog::info("vehicle {} joins the mission network, instance {:016x}", config.vehicle.id.value,
                instance.value);
   HealthBoard health;
   const auto threads = std::make_unique<Threads>(
       config, *route, clock, **node, wake_agent, instance, std::move(writer),
-      std::move(controllers).value(), health, clock.now());
+      std::move(controllers).value(), std::move(*detectors), health, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, health, *threads, service};
   service.ready();

@@ -134,6 +134,8 @@ void Participant::refuse(const Why& why, Instant /*now*/) {
 
 void Participant::on_cancel(const Cancel& message, Instant now) {
   if (message.round != round_ || machine_.in(State::free)) return;
+  // The operator may withdraw a site until a delivery has begun: that one is not broken off.
+  if (message.why.reason == Reason::site_withdrawn && delivery_in_progress()) return finish_alone();
   // The leader counts on what it was told has begun.
   for (const auto& lease : leases_) {
     if (lease.state == TaskState::started) give_up(lease, now);
@@ -256,6 +258,12 @@ bool Participant::has_news(Instant now) const {
 bool Participant::task_in_progress() const {
   return std::any_of(leases_.begin(), leases_.end(),
                      [](const Lease& l) { return l.state == TaskState::started; });
+}
+
+bool Participant::delivery_in_progress() const {
+  return std::any_of(leases_.begin(), leases_.end(), [](const Lease& l) {
+    return l.state == TaskState::started && l.task.kind == TaskKind::deliver;
+  });
 }
 
 bool Participant::holds(const TaskId& task, Instant now, Instant until) const {

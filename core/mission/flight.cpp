@@ -217,6 +217,17 @@ void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
   continue_with(at, way, tail, now);
 }
 
+bool Flight::orbit_keeps_clear(const Pose2& from, double curvature_per_m,
+                               const std::vector<Hazard>& hazards) const {
+  const double radius = 1.0 / std::abs(curvature_per_m);
+  const double side = curvature_per_m > 0.0 ? 1.0 : -1.0;
+  const Vec2 centre = from.position() + side * radius * left_of(unit_vector(from.heading_rad));
+  return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
+    const double distance = (hazard.centre - centre).norm();
+    return std::abs(distance - radius) >= avoidance_.safety_radius_m(hazard);
+  });
+}
+
 bool Flight::keeps_clear(const std::vector<Hazard>& hazards, Instant now) const {
   std::vector<Hazard> circles = hazards;
   for (Hazard& circle : circles) circle.radius_m = avoidance_.safety_radius_m(circle);

@@ -52,6 +52,13 @@ class Flight {
   /// where it can.
   [[nodiscard]] double hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const;
 
+  /// Does an orbit of that curvature from there stay outside the safety circles of the hazards?
+  [[nodiscard]] bool orbit_keeps_clear(const Pose2& from, double curvature_per_m,
+                                       const std::vector<Hazard>& hazards) const;
+  /// The way to where there is room for an orbit, where there is none at the path's end. The
+  /// orbit's curvature.
+  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
+
   /// Does what is left of the plan, one lap of its orbit included, stay outside the safety circles
   /// of the hazards?
   [[nodiscard]] bool keeps_clear(const std::vector<Hazard>& hazards, Instant now) const;
@@ -65,9 +72,6 @@ class Flight {
     double clearance_m = 0.0;  ///< from the nearest hazard, as far as it matters
   };
   [[nodiscard]] Orbit best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const;
-  /// The way to where there is room for an orbit, where there is none at the path's end. The
-  /// orbit's curvature.
-  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
   /// Where the vehicle is inside a hazard that has just become known, or no turn at the planning
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
   /// shortest. Empty elsewhere.

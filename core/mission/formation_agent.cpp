@@ -182,6 +182,7 @@ std::optional<Guidance> FormationAgent::poll_guidance() {
 
 Telemetry FormationAgent::telemetry() const {
   Telemetry telemetry;
+  telemetry.capabilities = {};  // it takes no part in the work at sites
   telemetry.vehicle = config_.vehicle;
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;

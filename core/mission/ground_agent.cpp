@@ -13,7 +13,6 @@ namespace skein::mission {
 namespace {
 
 constexpr Duration kAuthorisationRepeat = std::chrono::milliseconds{500};
-constexpr Duration kHazardRepeat = std::chrono::seconds{5};
 constexpr Duration kCommandRepeat = std::chrono::seconds{1};
 constexpr Duration kCommandRepeatedFor = std::chrono::seconds{5};
 // What a flood from the network can make us remember.
@@ -21,7 +20,6 @@ constexpr std::size_t kAuthorisationsMax = 64;
 constexpr std::size_t kSeenEventsMax = 8192;
 constexpr std::size_t kTasksRememberedMax = 1024;
 constexpr std::size_t kSitesRememberedMax = 64;
-constexpr std::size_t kHazardsRememberedMax = 4096;
 // How often it passes on what a leader says, and that a site is closed.
 constexpr Duration kLeaderPassedOn = std::chrono::seconds{10};
 constexpr Duration kClosedPassedOn = std::chrono::seconds{1};
@@ -39,9 +37,7 @@ Instant last_delivery(const AuthorisationRequest& request) {
 }  // namespace
 
 GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/)
-    : config_{config}, fleet_{{.expected = config.expected, .silence = config.silence}} {
-  taken_hazards_.insert(config_.hazards.begin(), config_.hazards.end());
-}
+    : config_{config}, fleet_{{.expected = config.expected, .silence = config.silence}} {}
 
 void GroundAgent::recall(const Message& message, VehicleId sender, Instant at) {
   if (std::holds_alternative<Telemetry>(message) || std::holds_alternative<Health>(message)) return;
@@ -64,14 +60,8 @@ void GroundAgent::recall_own(const Message& message, Instant at) {
       take(pending, *decision);
       next_repeat_ = std::min(next_repeat_, at + kAuthorisationRepeat);
     }
-  } else if (const auto* report = std::get_if<HazardReport>(&message)) {
-    const Hazard& hazard = report->hazard;
-    const bool known = std::ranges::any_of(
-        hazards_, [&hazard](const Hazard& other) { return other.id == hazard.id; });
-    if (known || hazards_.size() >= kHazardsMax) return;
-    taken_hazards_.insert(hazard.id);
-    hazards_.push_back(hazard);
-    next_hazards_ = std::min(next_hazards_, at + kHazardRepeat);
+  } else if (const auto* report = std::get_if<SiteReport>(&message)) {
+    if (report->withdrawn) end_site(report->site.id, "the operator", at);
   } else if (const auto* command = std::get_if<Command>(&message)) {
     last_command_ = std::max(last_command_, command->number);
   }
@@ -88,8 +78,6 @@ void GroundAgent::hear(const Message& message, Instant now) {
     on_request(*request, now);
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
-  } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
-    if (taken_hazards_.size() < kHazardsRememberedMax) taken_hazards_.insert(hazard->hazard.id);
   } else if (const auto* said = std::get_if<coalition::Message>(&message)) {
     if (const auto* status = std::get_if<coalition::MemberStatus>(said)) on_status(*status);
     if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
@@ -118,6 +106,11 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
     return !p.decision && p.request.site == request.site &&
            p.request.round.coalition == request.round.coalition;
   });
+  if (const auto by = withdrawn_.find(request.site); by != withdrawn_.end()) {
+    // Its leader has not heard of it, or is of a release that does not know that sites can be.
+    messages_.push(Message{Authorisation{request.round, request.site, false, by->second, now}});
+    return;
+  }
   if (tell_what_is_over(request, now) || granted_to_another(request) != nullptr) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
   const Authorisation* before = granted_before(request);
@@ -414,30 +407,20 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
   return {};
 }
 
-Result<HazardId> GroundAgent::add_hazard(const Vec2& centre, double radius_m, Instant now) {
-  if (!centre.allFinite() || !(radius_m > 0.0) || !std::isfinite(radius_m)) {
-    return Error{"a hazard is a circle: a centre, and a radius above 0 m"};
+void GroundAgent::end_site(SiteId site, const std::string& by, Instant now) {
+  withdrawn_.emplace(site, by);
+  if (const auto led = led_.find(site); led != led_.end()) led->second.announcement.reset();
+  for (auto& pending : pending_) {
+    const bool waits = pending.request.site == site && !pending.decision;
+    if (waits) (void)decide(pending, false, by, now);
   }
-  if (hazards_.size() >= kHazardsMax) return Error{"there are too many hazards already"};
-  constexpr std::int64_t kLast = std::numeric_limits<std::uint16_t>::max();
-  const auto second = static_cast<std::int64_t>(to_seconds(std::max(now, Instant{})));
-  std::int64_t number = std::min<std::int64_t>(kFirstHazard.value + second, kLast);
-  // Down from the last one where the mission is that long.
-  const int step = number == kLast ? -1 : 1;
-  while (taken_hazards_.contains({static_cast<std::uint16_t>(number)})) number += step;
-  const HazardId id{static_cast<std::uint16_t>(number)};
-  taken_hazards_.insert(id);
-  hazards_.push_back({id, centre, radius_m});
-  messages_.push(Message{HazardReport{hazards_.back()}});
-  next_hazards_ = std::min(next_hazards_, now + kHazardRepeat);
-  return id;
+  // What was granted is not said any more: who has not heard it holds.
+  std::erase_if(pending_, [site](const PendingAuthorisation& pending) {
+    return pending.request.site == site && pending.decision && pending.decision->granted;
+  });
 }
 
 void GroundAgent::send_again(Instant now) {
-  if (now >= next_hazards_) {
-    for (const Hazard& hazard : hazards_) messages_.push(Message{HazardReport{hazard}});
-    next_hazards_ = now + kHazardRepeat;
-  }
   if (now >= next_repeat_) {
     next_repeat_ = Instant::max();
     for (const auto& pending : pending_) {
@@ -470,7 +453,7 @@ std::optional<Message> GroundAgent::poll_message() { return messages_.pop(); }
 std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
 
 Instant GroundAgent::next_timeout() const {
-  Instant next = std::min({next_repeat_, next_hazards_, fleet_.next_timeout()});
+  Instant next = std::min(next_repeat_, fleet_.next_timeout());
   for (const auto& sent : commands_) next = std::min(next, sent.next);
   for (const auto& [site, led] : led_) {
     if (led.last.closed && led.times_closed < kClosedTimes) {

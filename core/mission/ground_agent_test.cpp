@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 namespace skein::mission {
 namespace {
@@ -433,40 +432,23 @@ TEST(GroundAgent, GivesAnAircraftBackAloneAndTellsWhen) {
   EXPECT_EQ(issued_at(sent[0]), at_seconds(10.25));
 }
 
-TEST(GroundAgent, TellsOfAHazardAgainAndAgain) {
-  GroundAgentConfig config = fleet_of_three();
-  config.hazards = {{10'001}};
-  Bench bench{config};
-  bench.agent.on_message(Message{HazardReport{{{10'002}, {0.0, 0.0}, 10.0}}}, at_seconds(0.5));
-  const auto id = bench.agent.add_hazard({100.0, -200.0}, 300.0, at_seconds(1.0));
-  ASSERT_TRUE(id.ok());
-  EXPECT_EQ(*id, HazardId{10'003});  // none that is known
-  EXPECT_EQ(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(2.0)).value(), HazardId{10'004});
-  bench.run_until(30.0);
-  const auto told = bench.sent<HazardReport>();
-  EXPECT_GE(told.size(), 10U);
-  EXPECT_EQ(std::count_if(
-                told.begin(), told.end(),
-                [&](const auto& m) { return m.hazard.id == *id && m.hazard.radius_m == 300.0; }),
-            static_cast<std::ptrdiff_t>(told.size() / 2));
-  for (const double radius : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_FALSE(bench.agent.add_hazard({0.0, 0.0}, radius, at_seconds(31.0)).ok());
-  }
-  for (std::size_t i = 2; i < GroundAgent::kHazardsMax; ++i) {
-    EXPECT_TRUE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
-  }
-  EXPECT_FALSE(bench.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(31.0)).ok());
-}
-
-TEST(GroundAgent, AHazardAfterANewStartIsANewOne) {
-  Bench before;
-  const auto first = before.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(100.0));
-  Bench after;
-  EXPECT_NE(after.agent.add_hazard({5.0, 5.0}, 1.0, at_seconds(110.0)).value(), *first);
-  // However long the mission is, and whatever others say.
-  Bench late;
-  late.agent.on_message(Message{HazardReport{{{65'535}, {0.0, 0.0}, 10.0}}}, at_seconds(0.0));
-  EXPECT_EQ(late.agent.add_hazard({0.0, 0.0}, 1.0, at_seconds(1e6)).value(), HazardId{65'534});
+TEST(GroundAgent, WhatIsAskedForAWithdrawnSiteIsRefused) {
+  Bench bench;
+  bench.ask(request(1, 90.0, 120.0), 80.0);
+  bench.ask(request(1, 90.0, 120.0, {4}), 80.0);
+  ASSERT_TRUE(bench.agent.authorise({4}, "ada", at_seconds(81.0)).ok());
+  (void)bench.sent<Authorisation>();
+  bench.agent.end_site(kSite, "ada", at_seconds(82.0));
+  bench.agent.end_site({4}, "ada", at_seconds(82.0));
+  auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].site, kSite);
+  EXPECT_FALSE(sent[0].granted);
+  // A leader that has not heard of it asks on; nobody is asked.
+  bench.ask(request(2, 100.0, 120.0), 85.0);
+  bench.run_until(99.0);
+  for (const auto& said : bench.sent<Authorisation>()) EXPECT_FALSE(said.granted);
+  EXPECT_FALSE(bench.agent.authorise(kSite, "ada", at_seconds(99.0)).ok());
 }
 
 TEST(GroundAgent, DecidesOnThePlanThatWasSeenOrOnNone) {

@@ -23,11 +23,16 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       formation_{config.formation, now},
       tracks_{config.tracks, now},
       setup_{config.setup, kGroundStation, config.instance, now},
-      knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now} {}
+      knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now},
+      hazards_{config.hazards},
+      detections_{config.detections} {}
 
 void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   if (!may_say(message, sender)) return;
   agent_.recall(message, sender, at);
+  sites_.recall(message, sender, at);
+  hazards_.recall(message, sender, at);
+  detections_.recall(message, sender, sites_);
   const auto* command = std::get_if<Command>(&message);
   if (command != nullptr && sender == kGroundStation) orders_.note(*command);
   knows_orders_at_ = at;
@@ -40,6 +45,11 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
   agent_.on_message(message, now);
+  sites_.on_message(message, now);
+  hazards_.on_message(message);
+  if (auto site = detections_.on_message(message, sites_, now)) {
+    (void)sites_.add(*std::move(site), std::nullopt, fleet(), now);  // full: it is seen again
+  }
   formation_.on_message(message, now);
   tracks_.on_message(message, now);
   return true;
@@ -64,6 +74,9 @@ void GroundNode::on_setup(const Setup& setup, Instant now) {
 void GroundNode::on_timeout(Instant now) {
   if (auto ours = setup_.poll_setup({}, now)) messages_.push(Message{*std::move(ours)});
   agent_.on_timeout(now);
+  sites_.on_timeout(fleet(), now);
+  hazards_.on_timeout(now);
+  detections_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
 }
@@ -86,6 +99,34 @@ Result<void> GroundNode::command(VehicleId vehicle, CommandKind kind, Instant no
   return agent_.command(vehicle, kind, now);
 }
 
+Result<std::vector<TaskId>> GroundNode::withdraw_site(SiteId site, const std::string& by,
+                                                      Instant now) {
+  auto flown_on = sites_.withdraw(site, by, now);
+  if (flown_on) agent_.end_site(site, by, now);
+  return flown_on;
+}
+
+Result<SiteId> GroundNode::change_site(SiteId old, Site site, std::optional<VehicleId> surveyor,
+                                       const std::string& by, Instant now) {
+  auto changed = sites_.change(old, std::move(site), surveyor, fleet(), by, now);
+  if (changed) agent_.end_site(old, by, now);
+  return changed;
+}
+
+Result<SiteId> GroundNode::answer_proposal(std::uint32_t number, bool accepted,
+                                           const std::string& by, Instant now) {
+  auto site = detections_.proposed(number);
+  if (!site) return site.error();
+  SiteId added;
+  if (accepted) {
+    const auto given = add_site(*std::move(site), std::nullopt, now);
+    if (!given) return given;
+    added = *given;
+  }
+  (void)detections_.answer(number, accepted, by, now);
+  return added;
+}
+
 void GroundNode::say(MissionEvent event) {
   take_events();  // which were before this one
   messages_.push(event);
@@ -101,13 +142,21 @@ void GroundNode::take_events() {
   };
   take(formation_);
   take(tracks_);
+  take(sites_);
+  take(detections_);
 }
 
 std::optional<Message> GroundNode::poll_message() {
   take_events();
-  if (auto message = agent_.poll_message()) {
+  if (auto message = hazards_.poll_message()) {
     // What the operator tells of is to be planned around, too.
-    if (const auto* hazard = std::get_if<HazardReport>(&*message)) tracks_.know(hazard->hazard);
+    if (const auto* hazard = std::get_if<HazardReport>(&*message)) tracks_.know(*hazard);
+    return message;
+  }
+  if (auto message = sites_.poll_message()) return message;
+  if (auto message = agent_.poll_message()) {
+    const auto* decision = std::get_if<Authorisation>(&*message);
+    if (decision != nullptr && decision->granted) sites_.on_granted(decision->site);
     if (const auto* command = std::get_if<Command>(&*message)) orders_.note(*command);
     return message;
   }
@@ -123,8 +172,8 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 }
 
 Instant GroundNode::next_timeout() const {
-  return std::min({agent_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
-                   setup_.next_timeout()});
+  return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
+                   formation_.next_timeout(), tracks_.next_timeout(), setup_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -149,6 +149,15 @@ void Leader::hand_on(Reason why, Instant now) {
   give_up({why}, now);
 }
 
+void Leader::withdraw(SiteId site, Instant now) {
+  if (!leading() || initiator_->site().id != site) return;
+  if (!machine_.in(State::parting)) {
+    outbox_.report(event::Cancelled{{Reason::site_withdrawn}}, initiator_->round(), about_site(),
+                   now);
+  }
+  give_up({Reason::site_withdrawn}, now);
+}
+
 void Leader::give_up(const coalition::Why& why, Instant now) {
   initiator_->close(why, now);
   end();

@@ -72,6 +72,8 @@ class Leader {
   /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
   /// silence tells the others to take the site up.
   void hand_on(coalition::Reason why, Instant now);
+  /// Gives that site up for good, where it leads it: the operator has withdrawn it.
+  void withdraw(SiteId site, Instant now);
 
   [[nodiscard]] std::optional<coalition::Message> poll_message();
   /// Of these only what is left to say of a site that was given up. A part that is told of the same

@@ -81,6 +81,22 @@ TEST(Leader, AwaitsTheDecisionOnWhatHasFormed) {
   EXPECT_FALSE(l.sent<AuthorisationRequest>());
 }
 
+TEST(Leader, GivesUpASiteThatIsWithdrawnAndSaysWhy) {
+  Leading l;
+  l.form();
+  l.leader.withdraw({2}, l.now);
+  EXPECT_TRUE(l.leader.leading()) << "it leads another";
+  (void)l.said<coalition::Cancel>();
+  l.leader.withdraw({1}, l.now);
+  EXPECT_FALSE(l.leader.leading());
+  EXPECT_EQ(l.reported(EventKind::cancelled), 1);
+  const auto words = l.leader.poll_last_words();
+  ASSERT_TRUE(words);
+  const auto* cancel = std::get_if<coalition::Cancel>(&*words);
+  ASSERT_NE(cancel, nullptr);
+  EXPECT_EQ(cancel->why.reason, coalition::Reason::site_withdrawn);
+}
+
 TEST(Leader, PlansWithoutTheBidsThatNothingCanBePlannedFor) {
   Leading l;
   const auto call = l.said<coalition::Announcement>();

@@ -36,7 +36,7 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
     flight_.start_route(*config_.route);
     return true;
   }
-  flight_.start(state.pose(), hazards_, range_to_spend(now), now);
+  flight_.start(state.pose(), hazards(), range_to_spend(now), now);
   return !config_.route;
 }
 
@@ -52,7 +52,9 @@ bool Ownship::is_at_route() const {
          std::abs(wrap_pi(state_.heading_rad - pose.heading_rad)) <= kPi / 4.0;
 }
 
-bool Ownship::on_hazard(const Hazard& hazard) { return add_if_new(hazards_, hazard); }
+bool Ownship::on_hazard(const HazardReport& report) {
+  return report.withdrawn ? hazards_.withdraw(report.hazard.id) : hazards_.add(report.hazard);
+}
 
 void Ownship::use_load() {
   if (loads_ > 0) --loads_;
@@ -67,7 +69,7 @@ void Ownship::come_home(Instant now) {
 }
 
 bool Ownship::keeps_clear(Instant now) {
-  if (flight_.keeps_clear(hazards_, now)) return true;
+  if (flight_.keeps_clear(hazards(), now)) return true;
   if (flight_.homing()) {
     fly_home(now);
   } else if (flight_.searching()) {
@@ -82,7 +84,7 @@ bool Ownship::way_is_open(Instant now) const {
   const auto& timed = flight_.plan().timed;
   const double ahead = timed.distance_at(now);
   const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
-  return rest && planning::is_clear(*rest, hazards_);
+  return rest && planning::is_clear(*rest, hazards());
 }
 
 bool Ownship::on_track(const TimedPath& timed) const {
@@ -103,11 +105,12 @@ double Ownship::range_for(const Site& site, Instant at) const {
   if (!comes_home()) return range_to_spend(at);
   const Pose2 there{site.position.x(), site.position.y(), 0.0};
   const double turn_m = kTwoPi * spec().planning_radius_m();
-  return range_to_spend(at) - flight_.way_home_m(there, hazards_) - spec().assess_radius_m - turn_m;
+  return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
+         turn_m;
 }
 
 double Ownship::spare_s(Instant now) const {
-  const double spare_m = range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards_);
+  const double spare_m = range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards());
   // A metre of flight brings it at most a metre further from home.
   return spare_m / (2.0 * spec().cruise_speed_mps);
 }
@@ -133,6 +136,7 @@ Telemetry Ownship::telemetry() const {
   t.range_left_m = spec().range_m - state_.distance_flown_m;
   t.loads = loads_;
   t.plan_number = flight_.plan().number;
+  t.capabilities = spec().capabilities;
   return t;
 }
 

@@ -19,14 +19,14 @@ class Ownship {
   /// The first state at its height starts the route, where the vehicle is there, else the search.
   /// False where it has a route and is elsewhere.
   bool on_state(const VehicleState& state, Instant now);
-  /// False where it is known already.
-  bool on_hazard(const Hazard& hazard);
+  /// False where it is no news.
+  bool on_hazard(const HazardReport& report);
   void use_load();
 
   [[nodiscard]] const VehicleAgentConfig& config() const { return config_; }
   [[nodiscard]] const VehicleSpec& spec() const { return config_.vehicle; }
   [[nodiscard]] const VehicleState& state() const { return state_; }
-  [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_; }
+  [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_.all(); }
   [[nodiscard]] std::uint8_t loads() const { return loads_; }
   [[nodiscard]] Flight& flight() { return flight_; }
   [[nodiscard]] const Flight& flight() const { return flight_; }
@@ -34,9 +34,9 @@ class Ownship {
   [[nodiscard]] std::optional<Guidance> poll_guidance();
 
   // Flight, around the known hazards. Precondition: flight().started().
-  void search(Instant now) { flight_.search(hazards_, range_to_spend(now), now); }
-  void hold(Instant now) { flight_.hold(hazards_, now); }
-  void fly_home(Instant now) { flight_.fly_home(hazards_, now); }
+  void search(Instant now) { flight_.search(hazards(), range_to_spend(now), now); }
+  void hold(Instant now) { flight_.hold(hazards(), now); }
+  void fly_home(Instant now) { flight_.fly_home(hazards(), now); }
   /// Home where it is recovered there, an orbit where it is recovered anywhere.
   void come_home(Instant now);
   /// Does the plan keep clear of the hazards, if need be after a search or a way home was planned
@@ -68,7 +68,7 @@ class Ownship {
   VehicleState state_;
   TakeOff take_off_;
   Flight flight_;
-  std::vector<Hazard> hazards_;
+  KnownHazards hazards_;
   std::uint8_t loads_;
 };
 

@@ -28,15 +28,41 @@ void Scout::fire(Event event) {
 }
 
 void Scout::on_site_report(const SiteReport& message, Instant now) {
-  if (message.finder != ownship_.spec().id || known_.contains(message.site.id)) return;
+  const SiteId id = message.site.id;
+  const bool ours = message.finder == ownship_.spec().id &&
+                    ownship_.spec().capabilities.has(TaskKind::survey) && !is_withdrawn(id);
+  if (!ours) return;
+  if (known_.contains(id)) {
+    const bool waits =
+        std::ranges::any_of(found_, [id](const Found& f) { return f.site.id == id; });
+    if (waits || (flying() && site_.id == id)) report_detected(message.site, now);
+    return;
+  }
   if (found_.size() >= kFoundMax) {  // so that it is taken up when it is seen again
     ++dropped_;
     return;
   }
-  known_.insert(message.site.id);
-  const double range = (message.site.position - ownship_.state().position().horizontal()).norm();
-  outbox_.report(event::SiteDetected{range}, {}, survey_of(message.site), now);
+  known_.insert(id);
+  report_detected(message.site, now);
   found_.push_back({message.site});
+}
+
+void Scout::report_detected(const Site& site, Instant now) {
+  const double range = (site.position - ownship_.state().position().horizontal()).norm();
+  outbox_.report(event::SiteDetected{range}, {}, survey_of(site), now);
+}
+
+bool Scout::withdraw(SiteId site, Instant now) {
+  if (!withdrawn_.insert(site).second) return false;
+  known_.insert(site);
+  sites_.forget(site);
+  std::erase_if(found_, [site](const Found& f) { return f.site.id == site; });
+  std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
+  if (flying() && site_.id == site) {
+    fire(Event::called_off);
+    ownship_.search(now);
+  }
+  return true;
 }
 
 void Scout::on_message(const coalition::Message& message, Instant now) {
@@ -108,7 +134,7 @@ void Scout::take_up_relief(Instant now) {
 }
 
 /// The flight to a site and around it, for its survey or (`relief`) to lead there, is the flight
-/// plan from now on. It goes on circling the site on the same arc.
+/// plan from now on. It goes on circling the site on the same arc where hazards leave room for it.
 std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site& site, bool relief,
                                                                       Instant now) {
   const Instant start = now + kLead;
@@ -128,7 +154,13 @@ std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site
       ownship_.range_to_spend(start)) {
     return event::TaskFailed{TaskFailure::out_of_range};
   }
-  if (!flight.continue_with(start, path, plan->timed.tail_curvature_per_m, now)) {
+  // A site may lie where there is room for the arc, and not for a whole lap on it.
+  Path way = path;
+  double tail = plan->timed.tail_curvature_per_m;
+  if (!flight.orbit_keeps_clear(way.end(), tail, ownship_.hazards())) {
+    tail = flight.append_hold(way, ownship_.hazards());
+  }
+  if (!flight.continue_with(start, way, tail, now)) {
     return event::TaskFailed{TaskFailure::path_too_long};
   }
   return *plan;

@@ -49,8 +49,12 @@ class Scout {
 
   Scout(Ownship& ownship, Outbox& outbox) : ownship_{ownship}, outbox_{outbox} {}
 
-  /// Its own sensor has seen a site.
+  /// Its own sensor has seen a site, or the operator tells this vehicle of one. Told again, it says
+  /// again that it has taken it up. Precondition: it is not withdrawn.
   void on_site_report(const SiteReport& message, Instant now);
+  /// The operator has withdrawn it: it is forgotten for good. False where that is known.
+  bool withdraw(SiteId site, Instant now);
+  [[nodiscard]] bool is_withdrawn(SiteId site) const { return withdrawn_.contains(site); }
   /// What others say of the sites that they lead, or this vehicle itself.
   void on_message(const coalition::Message& message, Instant now);
   /// Nobody shall lead it any more.
@@ -78,6 +82,7 @@ class Scout {
     bool told = false;  ///< that it cannot be surveyed now
   };
   void fire(Event event);
+  void report_detected(const Site& site, Instant now);
   void take_up_survey(Instant now);
   void take_up_relief(Instant now);
   [[nodiscard]] std::variant<planning::TaskPlan, event::TaskFailed> fly_around(const Site& site,
@@ -94,6 +99,7 @@ class Scout {
   Site site_;                   ///< unless idle: that it flies to
   planning::TaskPlan plan_;     ///< of that flight
   std::set<SiteId> known_;      ///< found or announced by anybody
+  std::set<SiteId> withdrawn_;  ///< by the operator
   std::vector<Found> found_;    ///< found here, waiting to be surveyed
   std::vector<Site> surveyed_;  ///< led here before, waiting to be led again
   SiteBook sites_;              ///< as others lead them

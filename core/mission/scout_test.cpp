@@ -38,7 +38,7 @@ TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
   Scouting s;
   s.find(test_site(1));
   s.find(test_site(1));
-  EXPECT_EQ(s.reported(EventKind::site_detected), 1);
+  EXPECT_EQ(s.reported(EventKind::site_detected), 2) << "who tells it again has not heard that";
   EXPECT_FALSE(s.scout.take_up(s.now)) << "it is to be surveyed first";
   EXPECT_EQ(s.scout.state(), State::to_survey);
   s.be_at(to_seconds(s.scout.next_timeout()));
@@ -91,6 +91,51 @@ TEST(SiteBook, WhatIsClosedMakesRoomAndStaysClosed) {
   book.on_leader(test_site(7), at_seconds(4.0));
   EXPECT_EQ(book.lost({7}, at_seconds(60.0)), nullptr);
   EXPECT_TRUE(book.led({7}, at_seconds(60.0)));
+}
+
+TEST(Scout, WhatIsWithdrawnIsForgottenForGood) {
+  Scouting s;
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  ASSERT_EQ(s.scout.state(), State::to_survey);
+  EXPECT_TRUE(s.scout.withdraw({1}, s.now));
+  EXPECT_FALSE(s.scout.withdraw({1}, s.now)) << "it is told again and again";
+  EXPECT_EQ(s.scout.state(), State::idle);
+  EXPECT_TRUE(s.ownship.flight().searching());
+  (void)s.reported(EventKind::site_detected);
+  s.find(test_site(1));
+  EXPECT_EQ(s.reported(EventKind::site_detected), 0) << "a late copy of its report";
+  s.be_at(30.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::idle);
+  // Nor is it relieved, whether it was known before or is announced afterwards.
+  s.is_announced(test_site(1));
+  s.is_announced(test_site(2));
+  EXPECT_TRUE(s.scout.withdraw({2}, s.now));
+  s.be_at(200.0);
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::idle);
+}
+
+TEST(Scout, DoesNotCircleASiteThroughAHazard) {
+  VehicleAgentConfig config = plane_config();
+  // On the circle around the site, and not on the arc that is flown.
+  for (const Vec2& side : {Vec2{110.0, 0.0}, Vec2{0.0, 110.0}}) {
+    config.hazards.push_back({{1}, test_site(1).position + side, 20.0});
+  }
+  Scouting s{config};
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  ASSERT_EQ(s.scout.state(), State::to_survey);
+  EXPECT_TRUE(s.ownship.flight().keeps_clear(s.ownship.hazards(), s.now + std::chrono::seconds{1}));
+}
+
+TEST(Scout, TakesUpNothingThatItCannotSurvey) {
+  VehicleAgentConfig carrier = plane_config();
+  carrier.vehicle.capabilities = Capabilities{}.add(TaskKind::deliver);
+  Scouting s{carrier};
+  s.find(test_site(1));
+  EXPECT_EQ(s.reported(EventKind::site_detected), 0);
 }
 
 TEST(Scout, ASurveyThatWasCalledOffIsMadeUpFor) {

@@ -52,6 +52,11 @@ void SiteBook::close(SiteId site) {
   if (known != entries_.end()) known->second.closed = true;
 }
 
+void SiteBook::forget(SiteId site) {
+  entries_.erase(site);
+  closed_.insert(site);
+}
+
 std::vector<const SiteBook::Entry*> SiteBook::lost(Instant before) const {
   std::vector<const Entry*> all;
   for (const auto& [site, entry] : entries_) {

@@ -26,6 +26,8 @@ class SiteBook {
   void on_status(const coalition::MemberStatus& message);
   /// The site needs nobody any more: it is done, or the operator wants it no more.
   void close(SiteId site);
+  /// As if it had been closed and had made room: also where nothing is known of it.
+  void forget(SiteId site);
 
   struct Entry {
     Site site;

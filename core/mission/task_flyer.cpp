@@ -176,6 +176,9 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
     path = *to_gate;
     tail = flight.hold_curvature(path.end(), hazards);
   }
+  if (!task.is_delivery() && !flight.orbit_keeps_clear(path.end(), tail, hazards)) {
+    tail = flight.append_hold(path, hazards);
+  }
   if (!flight.continue_with(start, path, tail, now, speed_mps)) return Why{Reason::path_too_long};
   return task;
 }
@@ -185,6 +188,15 @@ void TaskFlyer::on_authorisation(const Authorisation& message, Instant now) {
       task_->site.id == message.site && task_->grant()) {
     outbox_.report(event::Authorised{message.decided_by}, message.round, task_->assignment.task,
                    now);
+  }
+}
+
+void TaskFlyer::leave_site(SiteId site, Instant now) {
+  if (!task_ || task_->site.id != site) return;
+  if (task_->is_delivery() && task_->in(TaskFlight::State::begun)) {
+    participant_.finish_alone();
+  } else {
+    participant_.withdraw(Reason::site_withdrawn, now);
   }
 }
 

@@ -38,6 +38,9 @@ class TaskFlyer {
                    Instant now);
   /// Leaves its coalition. Its task is dropped when the outputs are answered.
   void withdraw(coalition::Reason reason, Instant now) { participant_.withdraw(reason, now); }
+  /// As withdraw(), of that site, which the operator wants nobody at any more. A delivery that has
+  /// begun is flown to its end.
+  void leave_site(SiteId site, Instant now);
   /// Another way to its task at the same time, clear of a hazard that bars the one it is on; false
   /// where there is none.
   [[nodiscard]] bool detour(HazardId hazard, Instant now);

@@ -69,6 +69,26 @@ TEST(TaskFlyer, BidsUnlessItIsOtherwiseEngaged) {
   EXPECT_FALSE(f.flyer.flying());
 }
 
+TEST(TaskFlyer, OfAWithdrawnSiteOnlyABegunDeliveryIsFlownToItsEnd) {
+  for (const bool told : {true, false}) {  // by the operator, or by the leader's cancel alone
+    for (const bool begun : {false, true}) {
+      Flying f;
+      f.call();
+      f.award(60.0, 120.0);
+      f.grant();
+      f.fly_until(begun ? 58.5 : 50.0);
+      ASSERT_EQ(f.reported(EventKind::task_started), begun ? 1 : 0);
+      if (told) f.flyer.leave_site({1}, f.now);
+      f.hear(coalition::Message{coalition::Cancel{kRound, {Reason::site_withdrawn}}});
+      f.fly_until(65.0);
+      EXPECT_EQ(f.reported(EventKind::task_done), begun ? 1 : 0);
+      EXPECT_EQ(f.reported(EventKind::task_started), 0);
+      EXPECT_TRUE(f.flyer.free());
+      EXPECT_FALSE(f.flyer.flying());
+    }
+  }
+}
+
 TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
   Flying f;
   f.call();

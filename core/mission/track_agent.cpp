@@ -47,7 +47,7 @@ TrackAgent::~TrackAgent() = default;
 
 void TrackAgent::on_state(const VehicleState& state, Instant now) {
   state_ = state;
-  if (!flight_->started()) flight_->start(state.pose(), hazards_, range_left_m(), now);
+  if (!flight_->started()) flight_->start(state.pose(), hazards_.all(), range_left_m(), now);
   on_timeout(now);
 }
 
@@ -57,7 +57,7 @@ void TrackAgent::on_message(const Message& message, VehicleId /*sender*/, Instan
   } else if (const auto* command = std::get_if<Command>(&message)) {
     on_command(*command, now);
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
-    on_hazard(hazard->hazard, now);
+    on_hazard(*hazard, now);
   }
 }
 
@@ -113,8 +113,8 @@ void TrackAgent::on_command(const Command& command, Instant now) {
   if (!flight_->started() || !commands_.take(command, config_.vehicle.id)) return;
   if (command.kind == CommandKind::give_back) return;
   ordered_ = command.kind != CommandKind::resume;
-  if (command.kind == CommandKind::hold) flight_->hold(hazards_, now);
-  if (command.kind == CommandKind::return_home) flight_->fly_home(hazards_, now);
+  if (command.kind == CommandKind::hold) flight_->hold(hazards_.all(), now);
+  if (command.kind == CommandKind::return_home) flight_->fly_home(hazards_.all(), now);
   if (ordered_) leave();
   report(event::Commanded{command.kind}, now);
 }
@@ -123,19 +123,24 @@ void TrackAgent::on_command(const Command& command, Instant now) {
 void TrackAgent::on_bar(Bar bar, Instant now) {
   bar_ = bar;
   if (bar == Bar::none || !(flown_ || next_flight_) || ordered_ || range_spent_) return;
-  flight_->hold(hazards_, now);
+  flight_->hold(hazards_.all(), now);
   leave();
 }
 
-void TrackAgent::on_hazard(const Hazard& hazard, Instant now) {
-  if (!add_if_new(hazards_, hazard)) return;
+void TrackAgent::on_hazard(const HazardReport& told, Instant now) {
+  const Hazard& hazard = told.hazard;
+  if (told.withdrawn) {
+    if (hazards_.withdraw(hazard.id)) report(event::HazardWithdrawn{hazard.id}, now);
+    return;
+  }
+  if (!hazards_.add(hazard)) return;
   report(event::HazardKnown{hazard.id, hazard.radius_m}, now);
-  if (!flight_->started() || flight_->keeps_clear(hazards_, now)) return;
+  if (!flight_->started() || flight_->keeps_clear(hazards_.all(), now)) return;
   leave();
   if (flight_->homing()) {
-    flight_->fly_home(hazards_, now);
+    flight_->fly_home(hazards_.all(), now);
   } else {
-    flight_->hold(hazards_, now);
+    flight_->hold(hazards_.all(), now);
   }
 }
 
@@ -160,13 +165,13 @@ void TrackAgent::step(Instant now) {
 void TrackAgent::watch_range(Instant now) {
   if (range_spent_ || now < next_range_) return;
   next_range_ = next_multiple(now, kRangePeriod);
-  const double left_m = range_left_m() - flight_->way_home_m(flight_->pose_at(now), hazards_);
+  const double left_m = range_left_m() - flight_->way_home_m(flight_->pose_at(now), hazards_.all());
   if (left_m > config_.vehicle.cruise_speed_mps * 2.0 * to_seconds(kRangePeriod)) return;
   range_spent_ = true;
   leave();
   const bool comes_home = config_.vehicle.recovery == Recovery::home;
-  if (!comes_home && !ordered_) flight_->hold(hazards_, now);
-  if (comes_home && !flight_->homing()) flight_->fly_home(hazards_, now);
+  if (!comes_home && !ordered_) flight_->hold(hazards_.all(), now);
+  if (comes_home && !flight_->homing()) flight_->fly_home(hazards_.all(), now);
   report(event::RangeSpent{range_left_m(), comes_home}, now);
 }
 
@@ -206,6 +211,7 @@ std::optional<Guidance> TrackAgent::poll_guidance() {
 
 Telemetry TrackAgent::telemetry() const {
   Telemetry telemetry;
+  telemetry.capabilities = {};  // it takes no part in the work at sites
   telemetry.vehicle = config_.vehicle.id;
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;

@@ -24,7 +24,7 @@ constexpr std::size_t kSentMax = 16;
 }  // namespace
 
 TrackGround::TrackGround(const TrackGroundConfig& config, Instant now)
-    : config_{config}, next_{now} {}
+    : config_{config}, hazards_{config.rules.hazards}, next_{now} {}
 
 // --- orders --------------------------------------------------------------------------------------
 
@@ -159,11 +159,14 @@ void TrackGround::on_message(const Message& message, Instant now) {
     const auto member = members_.find(telemetry->vehicle);
     if (member != members_.end()) member->second.range_left_m = telemetry->range_left_m;
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
-    know(hazard->hazard);
+    know(*hazard);
   }
 }
 
-void TrackGround::know(const Hazard& hazard) { add_if_new(config_.rules.hazards, hazard); }
+void TrackGround::know(const HazardReport& report) {
+  report.withdrawn ? hazards_.withdraw(report.hazard.id) : hazards_.add(report.hazard);
+  config_.rules.hazards = hazards_.all();
+}
 
 void TrackGround::on_status(const FormationStatus& status, Instant now) {
   Member& member = members_[status.vehicle];

@@ -25,13 +25,13 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
   std::visit(Overloaded{[&](const coalition::Message& m) { receive(m, now); },
                         [&](const Authorisation& m) { on_authorisation(m, now); },
                         [&](const Command& m) { on_command(m, now); },
-                        [&](const SiteReport& m) { scout_.on_site_report(m, now); },
-                        [&](const HazardReport& m) { on_hazard(m.hazard, now); },
+                        [&](const SiteReport& m) { on_site(m, now); },
+                        [&](const HazardReport& m) { on_hazard(m, now); },
                         [&](const Telemetry& m) { on_telemetry(m, now); },
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
                         [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
-                        [](const Setup&) {}},
+                        [](const Setup&) {}, [](const Detection&) {}},
              message);
   step(now);
 }
@@ -106,7 +106,7 @@ void VehicleAgent::Impl::answer(const coalition::Participant::Output& output, In
   if (const auto* call = std::get_if<coalition::Participant::BidWanted>(&output)) {
     flyer_.answer_call(call->announcement, otherwise_engaged(call->announcement), now);
   } else if (const auto* won = std::get_if<coalition::Participant::LeadershipWon>(&output)) {
-    leader_.take_over(*won, now);
+    if (!scout_.is_withdrawn(won->plan.site.id)) leader_.take_over(*won, now);
   } else {
     flyer_.answer(output, now);
   }
@@ -114,6 +114,7 @@ void VehicleAgent::Impl::answer(const coalition::Participant::Output& output, In
 
 coalition::Reason VehicleAgent::Impl::otherwise_engaged(const coalition::Announcement& call) const {
   if (!failsafe_.in(Failsafe::Action::none)) return failsafe_.reason();
+  if (scout_.is_withdrawn(call.site.id)) return coalition::Reason::site_withdrawn;
   if (scout_.flying()) return coalition::Reason::surveying;
   if (leader_.leads_other(call.round.coalition)) return coalition::Reason::leading;
   return coalition::Reason::none;
@@ -124,6 +125,16 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
   if (!message.granted) scout_.close(message.site);
   leader_.on_authorisation(message, now);
   say_last_words(now);
+}
+
+/// Of one that is withdrawn only what has begun is flown to its end.
+void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
+  if (!message.withdrawn) return scout_.on_site_report(message, now);
+  const SiteId site = message.site.id;
+  if (!scout_.withdraw(site, now)) return;
+  leader_.withdraw(site, now);
+  say_last_words(now);
+  flyer_.leave_site(site, now);
 }
 
 /// Nothing to do: search on, or take up a site that waits.

@@ -26,8 +26,13 @@ void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
   respond(*response, now);
 }
 
-void VehicleAgent::Impl::on_hazard(const Hazard& hazard, Instant now) {
-  if (!ownship_.on_hazard(hazard)) return;
+void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
+  if (!ownship_.on_hazard(told)) return;
+  const Hazard& hazard = told.hazard;
+  if (told.withdrawn) {  // what is flown keeps clear of more than it must; the next plan need not
+    outbox.report(event::HazardWithdrawn{hazard.id}, {}, {}, now);
+    return;
+  }
   failsafe_.on_hazard(now);
   outbox.report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
   if (!ownship_.flight().started() || ownship_.keeps_clear(now)) return;

@@ -45,7 +45,8 @@ class VehicleAgent::Impl {
   void idle(Instant now);
 
   void on_command(const Command& message, Instant now);
-  void on_hazard(const Hazard& hazard, Instant now);
+  void on_site(const SiteReport& message, Instant now);
+  void on_hazard(const HazardReport& told, Instant now);
   void on_telemetry(const Telemetry& message, Instant now);
   void watch_range(Instant now);
   void respond(const Failsafe::Response& response, Instant now);

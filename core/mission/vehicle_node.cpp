@@ -12,6 +12,11 @@
 namespace skein::mission {
 namespace {
 
+// A detection is said several times, since a lost one is seen by nobody.
+constexpr int kDetectionTimes = 3;
+constexpr Duration kDetectionAgain = std::chrono::seconds{2};
+constexpr std::size_t kDetectionsMax = 16;
+
 struct MakeAgent {
   Instant now;
   std::unique_ptr<OnboardAgent> operator()(const VehicleAgentConfig& config) const {
@@ -112,7 +117,30 @@ class VehicleNode::Impl {
     return !is_joint_work(message) || setup.difference(sender) == nullptr;
   }
 
+  /// Of a detector on board. One that tells more than can be said is not heard in everything.
+  void on_detection(Detection detection, Instant now) {
+    if (told.size() >= kDetectionsMax) {
+      ++detections_dropped;
+      return;
+    }
+    detection.vehicle = self;
+    detection.number = ++detections;
+    told.push_back({std::move(detection), now, kDetectionTimes});
+    say_detections(now);
+  }
+
+  void say_detections(Instant now) {
+    for (Told& of : told) {
+      if (now < of.next) continue;
+      messages.push(Message{of.detection});
+      of.next = now + kDetectionAgain;
+      --of.times;
+    }
+    std::erase_if(told, [](const Told& of) { return of.times == 0; });
+  }
+
   void report_itself(Instant now) {
+    say_detections(now);
     if (now >= next_telemetry && state) {
       next_telemetry = next_multiple(now, telemetry_period);
       Telemetry telemetry = agent->telemetry();
@@ -138,7 +166,7 @@ class VehicleNode::Impl {
   [[nodiscard]] Counters counters() const {
     Counters all = agent->counters();
     all.refused += refused;
-    all.messages_dropped += messages.dropped();
+    all.messages_dropped += messages.dropped() + detections_dropped;
     all.events_dropped += events.dropped();
     return all;
   }
@@ -162,6 +190,14 @@ class VehicleNode::Impl {
   std::optional<Instant> give_back;
   CommandFilter commands;
   std::uint64_t refused = 0;
+  struct Told {
+    Detection detection;
+    Instant next{};
+    int times = 0;  ///< still to be said
+  };
+  std::vector<Told> told;  ///< to the ground station
+  std::uint32_t detections = 0;
+  std::uint64_t detections_dropped = 0;
   Instant next_telemetry;
   BoundedQueue<Message> messages{64};  ///< the node's own
   BoundedQueue<MissionEvent> events{64};
@@ -188,6 +224,10 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
     return;
   }
   impl_->self_report.on_heard(sender, now);
+  if (const auto* detection = std::get_if<Detection>(&message)) {
+    if (sender == kSensors) impl_->on_detection(*detection, now);
+    return;  // others tell the ground station
+  }
   if (const auto* command = std::get_if<Command>(&message)) {
     impl_->on_command(*command, sender, now);
   } else if (const auto* setup = std::get_if<Setup>(&message)) {

@@ -65,10 +65,13 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                         },
                         [&](const mission::AuthorisationRequest& m) { on(m, now); },
                         [&](const mission::Authorisation& m) { on(m); },
-                        [&](const mission::SiteReport& m) { know(m.site); },
+                        [&](const mission::SiteReport& m) { on(m); },
                         [&](const mission::HazardReport& m) {
-                          if (hazards_.size() < params_.hazards_max)
+                          if (m.withdrawn) {
+                            hazards_.erase(m.hazard.id);
+                          } else if (hazards_.size() < params_.hazards_max) {
                             hazards_[m.hazard.id] = m.hazard;
+                          }
                         },
                         [&](const formation::Change& m) {
                           if (sender != kGroundStation || !formation::valid(m)) return;
@@ -87,6 +90,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                         },
                         [](const mission::MissionEvent&) {}, [](const mission::Command&) {},
                         [](const mission::Health&) {}, [](const mission::Setup&) {},
+                        [](const mission::Detection&) {},
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
                           formation_.flights[m.vehicle] = {m.number, m.joined};
@@ -171,6 +175,14 @@ RoundPicture& Picture::round_of(const coalition::Round& round) {
 SitePicture* Picture::site_of(SiteId id) {
   const bool full = sites_.size() >= params_.sites_max && !sites_.contains(id);
   return full ? nullptr : &sites_[id];
+}
+
+void Picture::on(const mission::SiteReport& m) {
+  know(m.site);
+  SitePicture* const site = site_of(m.site.id);
+  if (site == nullptr) return;
+  site->withdrawn = site->withdrawn || m.withdrawn;
+  if (!m.withdrawn) site->surveyor = m.finder;
 }
 
 void Picture::know(const Site& site) {
@@ -275,6 +287,13 @@ void Picture::on(const coalition::MemberStatus& m) {
 
 void Picture::on_event(const mission::MissionEvent& event) {
   using enum mission::EventKind;
+  if (const auto* proposed = std::get_if<mission::event::SiteProposed>(&event.body)) {
+    if (proposals_.size() < params_.proposals_max) {
+      proposals_[proposed->number] = {*proposed, event.time};
+    }
+  } else if (const auto* answer = std::get_if<mission::event::ProposalAnswered>(&event.body)) {
+    proposals_.erase(answer->number);
+  }
   if (event.task.site == SiteId{}) return;
   SitePicture* known = site_of(event.task.site);
   if (known == nullptr) return;

@@ -254,7 +254,10 @@ Json site_json(SiteId id, const SitePicture& site) {
           {"x", site.site ? metres(site.site->position.x()) : Json(nullptr)},
           {"y", site.site ? metres(site.site->position.y()) : Json(nullptr)},
           {"leader", id_or_null(site.leader)},
-          {"status", site.done       ? "done"
+          {"surveyor", id_or_null(site.surveyor)},
+          {"reward", site.site ? number(site.site->reward, 2) : Json(nullptr)},
+          {"status", site.withdrawn  ? "withdrawn"
+                     : site.done     ? "done"
                      : site.surveyed ? "surveyed"
                                      : "found"},
           {"tasks", std::move(tasks)},
@@ -367,6 +370,21 @@ Json authorisations_json(const Picture& picture, const MissionOrigin& origin, In
   return all;
 }
 
+Json proposals_json(const Picture& picture) {
+  Json all = Json::array();
+  for (const auto& [number_of, proposal] : picture.proposals()) {
+    const auto& said = proposal.said;
+    all.push_back({{"number", number_of},
+                   {"kind", to_string(said.kind)},
+                   {"x", metres(said.x_m)},
+                   {"y", metres(said.y_m)},
+                   {"seen_by", said.seen_by.value},
+                   {"detector", said.detector},
+                   {"time_s", seconds(proposal.at)}});
+  }
+  return all;
+}
+
 Json hazards_json(const Picture& picture) {
   Json all = Json::array();
   for (const auto& [id, hazard] : picture.hazards()) {
@@ -459,8 +477,8 @@ Json timeline_json(const Picture& picture) {
 
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
-      "vehicles", "plans",     "sites",    "coalitions", "authorisations",
-      "hazards",  "formation", "timeline", "audit",      "replay"};
+      "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
+      "formation", "timeline", "audit", "replay",     "proposals"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -504,6 +522,8 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return codec::json_text(formation_json(picture, now));
     case Section::timeline:
       return codec::json_text(timeline_json(picture));
+    case Section::proposals:
+      return codec::json_text(proposals_json(picture));
     case Section::audit:
     case Section::replay:
     case Section::count:

@@ -72,6 +72,18 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
     if (!done.contains(task)) excuse(task, "may have been flown by who fell silent");
   }
 
+  for (const auto& event : record.ground_events) {
+    if (event.kind() != mission::EventKind::site_withdrawn) continue;
+    for (const Site& site : record.sites) {
+      if (site.id != event.task.site) continue;
+      std::vector<TaskId> tasks = tasks_after_survey(site);
+      tasks.push_back({site.id, TaskKind::survey, 0});
+      for (const TaskId& task : tasks) {
+        if (!done.contains(task)) excuse(task, "withdrawn by the operator");
+      }
+    }
+  }
+
   std::vector<const VehicleSpec*> specs;
   std::vector<const VehicleEnd*> left;
   for (const auto& end : vehicles) {

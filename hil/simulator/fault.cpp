@@ -61,6 +61,14 @@ struct Sentence {
                        to_seconds(what.offset));
   }
   std::string operator()(const SitesReported& /*what*/) const { return "all sites are reported"; }
+  std::string operator()(const PlaceSeen& what) const {
+    return fmt::format("detectors of {} see something at ({:.1f}, {:.1f})", names_of(what.by),
+                       what.place.x(), what.place.y());
+  }
+  std::string operator()(const SiteWithdrawal& what) const {
+    return what.site ? fmt::format("site {} is withdrawn", what.site->value)
+                     : "what detectors have seen is withdrawn";
+  }
   std::string operator()(const Healing& /*what*/) const { return "the radio heals"; }
 };
 

@@ -80,6 +80,12 @@ FaultParams ground_anew() {
   p.ground = 2;
   return p;
 }
+FaultParams sites_told() {
+  FaultParams p = phase_only();
+  p.seen = 3;
+  p.withdrawn = 1;
+  return p;
+}
 FaultParams slow_planner() {
   FaultParams p = phase_only();
   p.planning = seconds{3};
@@ -199,7 +205,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 15> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 16> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -213,7 +219,8 @@ constexpr std::array<Profile, 15> kProfiles{{{"none", nullptr, no_fault},
                                              {"hazards", hazards},
                                              {"operator", slow_operator},
                                              {"joining", joining},
-                                             {"planner", slow_planner}}};
+                                             {"planner", slow_planner},
+                                             {"sites", sites_told}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
@@ -353,6 +360,31 @@ void draw_hazards(Random& random, TeamMission& mission, const FaultParams& param
   }
 }
 
+/// What detectors see: where there is nothing, or at a site of the mission; by one of them or by
+/// two. Some of that, and of the mission's sites, the operator withdraws.
+void draw_sites(Random& random, TeamMission& mission, const FaultParams& params) {
+  if (params.seen == 0 || mission.sites.empty()) return;
+  const Instant end = Instant{} + params.phase;
+  for (std::size_t n = count(random, params.seen); n > 0; --n) {
+    const Instant at = Instant{} + between(random, seconds{2}, params.phase * 3 / 4);
+    PlaceSeen seen;
+    seen.place = random.chance(0.3) ? mission.sites[random.index(mission.sites.size())].position
+                                    : draw_place(random, mission);
+    for (std::size_t i = random.chance(0.5) ? 2 : 1; i > 0; --i) {
+      seen.by.push_back(mission.vehicles[random.index(mission.vehicles.size())].spec.id);
+    }
+    mission.faults.push_back({{.not_before = at}, {}, seen});
+    if (!random.chance(0.5)) continue;
+    const Instant gone = at + between(random, seconds{2}, seconds{20});
+    mission.faults.push_back({{.not_before = gone, .not_after = end}, {}, SiteWithdrawal{}});
+  }
+  for (std::size_t n = count(random, params.withdrawn); n > 0; --n) {
+    const SiteId site = mission.sites[random.index(mission.sites.size())].id;
+    const Instant at = Instant{} + between(random, seconds{5}, params.phase);
+    mission.faults.push_back({{.not_before = at, .not_after = end}, {}, SiteWithdrawal{site}});
+  }
+}
+
 /// Late, refused, or only from some moment on; a plan is always decided about in the end.
 void draw_decisions(Random& random, TeamMission& mission, const FaultParams& params) {
   mission.decisions.clear();
@@ -389,6 +421,8 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   ground = std::max(ground, other.ground);
   planning = std::max(planning, other.planning);
   hazards = std::max(hazards, other.hazards);
+  seen = std::max(seen, other.seen);
+  withdrawn = std::max(withdrawn, other.withdrawn);
   slow_operator = slow_operator || other.slow_operator;
   sites_together = sites_together || other.sites_together;
   return *this;
@@ -483,6 +517,7 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     const Duration down = between(random, seconds{1}, seconds{30});
     faults.push_back({{.not_before = at}, down, ProgramsEnd{{kGroundStation}}});
   }
+  draw_sites(random, mission, params);
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }

@@ -194,7 +194,7 @@ class Series : public testing::TestWithParam<const char*> {};
 TEST_P(Series, HoldsAndIsFinished) { EXPECT_EQ(broken(GetParam(), 30), ""); }
 INSTANTIATE_TEST_SUITE_P(Faults, Series,
                          testing::Values("clocks", "crash", "hazards", "joining", "lossy",
-                                         "operator", "partition"));
+                                         "operator", "partition", "sites"));
 
 TEST(Faults, WhoCannotMissAHazardLeavesItForGood) {
   auto mission = drawn("none", 1);

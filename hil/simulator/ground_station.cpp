@@ -19,11 +19,20 @@ std::vector<VehicleId> formation_of(const TeamMission& mission) {
   return ids;
 }
 
+/// What detectors see is looked at.
+mission::GroundDetectionsConfig taken_at_once() {
+  mission::GroundDetectionsConfig config;
+  config.take = true;
+  config.otherwise.survey.dwell = std::chrono::seconds{5};
+  return config;
+}
+
 mission::GroundNodeConfig node_config(const TeamMission& mission) {
   mission::GroundNodeConfig node;
   node.setup.clock_guard = mission.protocol.clock_guard;
   for (const auto& v : mission.vehicles) node.agent.expected.push_back(v.spec.id);
   node.agent.decisions = mission.decisions;
+  node.detections = taken_at_once();
   if (mission.formation && mission.formation->planes) {
     std::vector<VehicleSpec> planes;
     std::vector<Hazard> hazards;
@@ -80,6 +89,17 @@ void GroundStation::end() {
   if (desk_) script_done_ += desk_->script_line();
   desk_.reset();
   node_.reset();
+}
+
+bool GroundStation::withdraw(const std::optional<SiteId>& site, Instant now) {
+  if (!node_) return false;
+  std::optional<SiteId> which = site;
+  for (const auto& [id, entry] : node_->sites().sites()) {
+    if (!site && entry.of_operator && entry.state < mission::SiteState::over) which = id;
+  }
+  if (!which || !node_->sites().sites().contains(*which)) return false;
+  (void)node_->withdraw_site(*which, "scenario", now + clock_);  // fails where it is over
+  return true;
 }
 
 void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {

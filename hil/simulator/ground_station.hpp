@@ -25,6 +25,10 @@ class GroundStation {
   void end();
   [[nodiscard]] bool running() const { return node_.has_value(); }
 
+  /// The operator withdraws that site, or the newest that detectors have seen. False where nothing
+  /// is known of it yet.
+  bool withdraw(const std::optional<SiteId>& site, Instant now);
+
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);

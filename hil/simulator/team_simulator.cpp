@@ -181,6 +181,15 @@ class Team {
       tell(now, FaultEvent::Kind::joined, late->vehicle);
       return true;
     }
+    if (const auto* seen = std::get_if<PlaceSeen>(&fault.what)) {
+      see(*seen, now);
+      return true;
+    }
+    if (const auto* gone = std::get_if<SiteWithdrawal>(&fault.what)) {
+      const bool done = ground_.withdraw(gone->site, now);
+      if (done) drain_ground(now);
+      return done;
+    }
     const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
     if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
       tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
@@ -191,6 +200,15 @@ class Team {
       hand_over_sites(finder_.report_all(vehicles_), now, true);
     }
     return true;
+  }
+
+  void see(const PlaceSeen& what, Instant now) {
+    mission::Detection detection;
+    detection.position = what.place;
+    for (const VehicleId id : what.by) {
+      hand_over(now, index_of(id), std::make_shared<const Content>(mission::Message{detection}));
+      detection.position.x() += 8.0;
+    }
   }
 
   bool end_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
@@ -355,12 +373,22 @@ class Team {
   void on_event(Aircraft& v, const mission::MissionEvent& event) {
     using mission::EventKind;
     finder_.on_event(event);
-    if (event.kind() == EventKind::site_done) sites_done_.insert(event.task.site);
+    if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
+      sites_done_.insert(event.task.site);
     if (event.kind() == EventKind::site_done || event.kind() == EventKind::authorisation_refused)
-      sites_over_.insert(event.task.site);
+      over(event.task.site);
     if (event.kind() == EventKind::task_started && event.task.kind == TaskKind::deliver)
       v.began_delivery();
     if (observer_.event) observer_.event(v.in_true_time(event));
+  }
+
+  /// Not one that detectors have seen: nobody waits for the end of those.
+  [[nodiscard]] bool is_of_mission(SiteId site) const {
+    return std::any_of(mission_.sites.begin(), mission_.sites.end(),
+                       [site](const Site& s) { return s.id == site; });
+  }
+  void over(SiteId site) {
+    if (is_of_mission(site)) sites_over_.insert(site);
   }
 
   void drain_ground(Instant now) {
@@ -369,6 +397,7 @@ class Team {
     }
     while (const auto event = ground_.poll_event()) {
       if (observer_.event) observer_.event(*event);
+      if (event->kind() == mission::EventKind::site_withdrawn) over(event->task.site);
       if (mission_.formation) on_formation_event(*event, now);
     }
   }

@@ -163,6 +163,29 @@ TEST(Codec, ReadsWhatTheReleaseBeforeHasWritten) {
   }
 }
 
+/// What sites, hazards and telemetry were before they could be withdrawn, and told capabilities.
+TEST(Codec, WhatAnOlderReleaseSaysIsNotWithdrawnAndMayHaveAnyCapability) {
+  const auto each = [](const char* name, Topic topic, const auto& look) {
+    const auto older =
+        messages_of(read(std::string{SKEIN_SOURCE_DIR} + "/idl/golden/older/" + name + ".hex"));
+    ASSERT_EQ(older.size(), 3U) << name;
+    for (const Bytes& bytes : older) {
+      const auto decoded = decode(topic, bytes);
+      const auto* message = std::get_if<mission::Message>(&decoded);
+      ASSERT_NE(message, nullptr) << name;
+      look(*message);
+    }
+  };
+  each("site_report", Topic::site_report,
+       [](const mission::Message& m) { EXPECT_FALSE(std::get<mission::SiteReport>(m).withdrawn); });
+  each("hazard_report", Topic::hazard_report, [](const mission::Message& m) {
+    EXPECT_FALSE(std::get<mission::HazardReport>(m).withdrawn);
+  });
+  each("telemetry", Topic::telemetry, [](const mission::Message& m) {
+    EXPECT_EQ(std::get<mission::Telemetry>(m).capabilities.bits(), 7);
+  });
+}
+
 TEST(Topics, DocumentIsUpToDate) {
   expect_golden(SKEIN_SOURCE_DIR "/docs/topics.md", read(SKEIN_IDL_GENERATED "/topics.md"));
 }
@@ -231,8 +254,9 @@ TEST(Codec, RefusesNumbersOutOfRange) {
   EXPECT_TRUE(refused([](auto& t) { t.state.time = Instant::max(); }));
   EXPECT_TRUE(refused([](auto& t) { t.activity = mission::Activity::count; }));
 
-  Bytes bytes = encode(mission::HazardReport{{HazardId{1}, {1.0, 2.0}, 3.0}}).value();
-  put(bytes, bytes.size() - 8, nan);
+  Bytes bytes = encode(mission::HazardReport{{HazardId{1}, {1.0, 2.0}, 3.0}, false}).value();
+  const std::size_t radius = 4 + 4 + 4 + 8 + 16;  // after header, version, size, number and centre
+  put(bytes, radius, nan);
   EXPECT_EQ(fault_of(Topic::hazard_report, bytes), Fault::bad_value);
 }
 

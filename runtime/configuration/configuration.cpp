@@ -9,6 +9,7 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/shape_file.hpp"
+#include "skein/configuration/site_config.hpp"
 #include "skein/configuration/track_file.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "writer.hpp"
@@ -128,6 +129,12 @@ Result<ShapeFile> parse_shape(std::string_view yaml, const std::string& name) {
   return parse<ShapeFile>(yaml, name);
 }
 std::string to_yaml(const ShapeFile& shape) { return written(shape); }
+
+Result<SitesFile> load_sites(const std::filesystem::path& file) { return load<SitesFile>(file); }
+Result<SitesFile> parse_sites(std::string_view yaml, const std::string& name) {
+  return parse<SitesFile>(yaml, name);
+}
+std::string to_yaml(const SitesFile& file) { return written(file); }
 
 Result<TrackFile> load_track(const std::filesystem::path& file) { return load<TrackFile>(file); }
 Result<TrackFile> parse_track(std::string_view yaml, const std::string& name) {

@@ -106,6 +106,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
     config.vehicles.push_back(vehicle.spec.id);
   }
   config.operator_decisions = scenario.operator_decisions;
+  config.site_templates = scenario.site_templates;
   for (const ScenarioHazard& hazard : scenario.hazards) {
     if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
   }

@@ -84,6 +84,7 @@ void fields(FieldVisitor& v, Scenario& scenario);
 void fields(FieldVisitor& v, ScenarioVehicle& vehicle);
 void fields(FieldVisitor& v, Experiment& experiment);
 void fields(FieldVisitor& v, ShapeFile& shape);
+void fields(FieldVisitor& v, SitesFile& file);
 void fields(FieldVisitor& v, TrackFile& track);
 void fields(FieldVisitor& v, RoutePlan& plan);
 

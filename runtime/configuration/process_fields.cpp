@@ -468,6 +468,12 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
+  v.section({"detections", "what detectors on this machine tell"}, [&config](FieldVisitor& inner) {
+    inner.text({"socket",
+                "path of the Unix datagram socket where they tell it (docs/detections.md), such as "
+                "/run/skein/detections-3.sock; empty: nowhere"},
+               config.detections_socket);
+  });
   formation_section(v, config.formation);
   process_fields(v, config.network, config.time, config.recording_folder,
                  config.recording_limit_mb);
@@ -483,6 +489,9 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   v.list({"hazards", "known before the mission, for the map"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
+  site_templates_list(v, config.site_templates);
+  v.section({"detections", "of sites, by detectors on board"},
+            [&config](FieldVisitor& inner) { detections_fields(inner, config.detections); });
   formation_section(v, config.formation);
   v.list({"planes", "of a formation of planes: what each can do, as in its own file"},
          unique_groups_of(config.planes, kListMax, spec_fields, "vehicle",

@@ -10,6 +10,7 @@
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/routes_config.hpp"
+#include "skein/configuration/site_config.hpp"
 #include "skein/planning/allocation.hpp"
 
 /// The parts that several tables share.
@@ -31,6 +32,9 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec);
 void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
+void site_fields(FieldVisitor& v, Site& site);
+void site_templates_list(FieldVisitor& v, std::vector<SiteTemplate>& templates);
+void detections_fields(FieldVisitor& v, DetectionsConfig& config);
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& protocol);
 void planning_fields(FieldVisitor& v, planning::AllocationParams& planning);
 void flight_route_fields(FieldVisitor& v, FlightRoute& route);

@@ -8,7 +8,6 @@
 namespace skein::configuration {
 namespace {
 
-constexpr std::array<std::string_view, 2> kDeliveryModes{"simultaneous", "sequential"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(HostFlightController::count)>
     kHostFlightControllers{"own", "emulated"};
 
@@ -22,76 +21,6 @@ void radio_fields(FieldVisitor& v, RadioConfig& radio) {
   v.require(radio.delay_jitter <= radio.delay_mean, "delay_ms_jitter",
             "must not exceed delay_ms_mean; mend one of them");
   v.number({"loss_ratio", "share of the messages that are lost"}, {0.0, 1.0}, radio.loss_ratio);
-}
-
-void delivery_fields(FieldVisitor& v, std::vector<DeliveryRequirement>& deliveries) {
-  Duration interval{};
-  std::vector<double> bearings;
-  bearings.reserve(kTasksPerKindMax);
-  for (const DeliveryRequirement& d : deliveries) bearings.push_back(d.bearing_rad);
-  if (deliveries.size() > 1) interval = deliveries[1].offset;
-  std::size_t mode = interval == Duration{} ? 0 : 1;
-  v.choice({"mode", "all at one time, or one after the other", kRequired}, kDeliveryModes, mode);
-  v.list(
-      {"bearings_deg", "compass direction of travel on arrival, one for each delivery", kRequired},
-      list_of(bearings, kTasksPerKindMax,
-              [](FieldVisitor& inner, double& bearing) { compass(inner, {}, bearing); }));
-  seconds(v, {"interval_s", "from one delivery to the next, when sequential"}, {0.0, 3600.0, "s"},
-          interval);
-  v.require((mode == 1) == (interval > Duration{}), "interval_s",
-            "must be above 0 s when the mode is sequential, and is left out when simultaneous");
-  deliveries.clear();
-  for (const double bearing : bearings) {
-    deliveries.push_back({bearing, static_cast<Duration::rep>(deliveries.size()) * interval});
-  }
-}
-
-void assessment_fields(FieldVisitor& v, Site& site) {
-  std::int64_t count = static_cast<std::int64_t>(site.assessments.size());
-  Duration dwell = site.assessments.empty() ? from_seconds(1.0) : site.assessments.front().dwell;
-  std::vector<double> angles;
-  for (const ArcRequirement& arc : site.assessments) {
-    if (arc.start_angle_rad) angles.push_back(*arc.start_angle_rad);
-  }
-  v.integer({"count", "of assessments", kRequired}, {0.0, static_cast<double>(kTasksPerKindMax)},
-            count);
-  seconds(v, {"wait_s", "from the last delivery to their start"}, {0.0, 3600.0, "s"},
-          site.assess_wait);
-  seconds(v, {"dwell_s", "length of each", kRequired}, {1.0, 3600.0, "s"}, dwell);
-  v.list({"start_angles_deg",
-          "compass direction of the vehicle as seen from the site when it starts, one for each "
-          "assessment; without any the vehicles choose"},
-         list_of(angles, kTasksPerKindMax,
-                 [](FieldVisitor& inner, double& angle_rad) { compass(inner, {}, angle_rad); }));
-  v.require(angles.empty() || angles.size() == static_cast<std::size_t>(count), "start_angles_deg",
-            "must have one angle for each assessment, or none; compare with count");
-  site.assessments.assign(static_cast<std::size_t>(count), {std::nullopt, dwell});
-  for (std::size_t i = 0; i < std::min(angles.size(), site.assessments.size()); ++i) {
-    site.assessments[i].start_angle_rad = angles[i];
-  }
-}
-
-void site_fields(FieldVisitor& v, Site& site) {
-  id(v, {"id", "number of the site, its own", kRequired}, site.id);
-  v.number({"east_m", "position", kRequired}, kMetres, site.position.x());
-  v.number({"north_m", "position", kRequired}, kMetres, site.position.y());
-  v.section({"survey", "an arc of the sensor radius around the site", kRequired},
-            [&site](FieldVisitor& inner) {
-              compass(inner,
-                      {"start_angle_deg",
-                       "compass direction of the vehicle as seen from the site when it starts; "
-                       "without it the vehicle chooses"},
-                      site.survey.start_angle_rad);
-              seconds(inner, {"dwell_s", "length of the survey", kRequired}, {1.0, 3600.0, "s"},
-                      site.survey.dwell);
-            });
-  v.section({"deliveries", "overflights of the site; left out: none"},
-            [&site](FieldVisitor& inner) { delivery_fields(inner, site.deliveries); });
-  v.section({"assessments", "arcs of the assess radius, after the last delivery; left out: none"},
-            [&site](FieldVisitor& inner) { assessment_fields(inner, site); });
-  v.number({"reward", "of each task, when done at once"}, {0.0, 1e9}, site.reward);
-  v.number({"reward_decay_per_s", "exponential decay of the reward"}, {0.0, 10.0, "1/s"},
-           site.reward_decay_per_s);
 }
 
 void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {
@@ -260,6 +189,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   v.list({"sites", "places with tasks; a vehicle finds one within its sensor radius"},
          unique_groups_of(s.sites, kListMax, site_fields, "site",
                           [](const Site& site) { return site.id.value; }));
+  site_templates_list(v, s.site_templates);
   v.list({"hazards", "circles to keep out of"},
          unique_groups_of(s.hazards, kListMax, scenario_hazard_fields, "hazard",
                           [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));

@@ -79,6 +79,7 @@ constexpr std::array kReasons{
     std::string_view{"the site is done"},
     std::string_view{"its setup is not the ground station's"},
     std::string_view{"it has started anew and does not know which orders stand"},
+    std::string_view{"the operator has withdrawn the site"},
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 
@@ -371,6 +372,22 @@ struct News {
   }
   std::string operator()(const event::OrdersKnown& e) const {
     return "told by the " + text_of(e.told_by);
+  }
+  std::string operator()(const event::SiteTold& e) const {
+    return text_of(e.surveyor) + " is to survey it";
+  }
+  std::string operator()(const event::SiteWithdrawn& e) const { return "by " + e.by; }
+  std::string operator()(const event::HazardWithdrawn& e) const {
+    return fmt::format("hazard {}", e.hazard.value);
+  }
+  std::string operator()(const event::SiteProposed& e) const {
+    return fmt::format("{} of {} has seen {}: proposal {} waits for the operator",
+                       e.detector.empty() ? "a detector" : e.detector, text_of(e.seen_by),
+                       words_of(to_string(e.kind)), e.number);
+  }
+  std::string operator()(const event::ProposalAnswered& e) const {
+    return fmt::format("proposal {} is {} by {}", e.number, e.accepted ? "taken" : "dismissed",
+                       e.by);
   }
 };
 

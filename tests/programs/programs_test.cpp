@@ -307,6 +307,86 @@ TEST_F(Programs, WithoutAScriptTheGroundStationAsksAndNothingIsAuthorised) {
   }
 }
 
+/// A team of one that knows of no site, and an operator at a shell.
+class Told : public Programs {
+ protected:
+  static constexpr double kRate = 5.0;  // a mission of minutes
+
+  void fly() {
+    auto plane = vehicle();
+    plane.vehicle.capabilities.add(TaskKind::deliver).add(TaskKind::assess);
+    plane.vehicle.loads = 4;
+    plane.vehicle.assess_radius_m = 300.0;
+    plane.vehicle.final_approach_m = 200.0;
+    plane.time.rate = kRate;
+    plane.detections_socket = folder_ / "detections.sock";
+    auto station = ground();
+    station.time = plane.time;
+    station.origin = plane.origin;
+    station.console.port = 0;
+    station.control_socket = "skein-told-" + std::to_string(ground_port_);
+    children_.push_back(start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(station))}));
+    children_.push_back(start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(plane))}));
+    ASSERT_TRUE(comes_to({"status"}, "searching")) << text_of("log");
+  }
+  /// Whether the answer to that line comes to have those words.
+  bool comes_to(const std::vector<std::string>& line, const std::string& words) {
+    const auto until = steady_clock::now() + kPatience;
+    while (steady_clock::now() < until) {
+      if (tell(line).find(words) != std::string::npos) return true;
+      wake_.wait_until(steady_clock::now() + std::chrono::milliseconds{200});
+    }
+    return false;
+  }
+  std::string tell(const std::vector<std::string>& line) {
+    std::vector<std::string> words{SKEIN_GROUND, "tell", "--config", folder_ / "g.yaml"};
+    words.insert(words.end(), line.begin(), line.end());
+    std::filesystem::remove(folder_ / "answer");
+    auto child = hil::ChildProcess::start(words, folder_ / "answer", {});
+    EXPECT_TRUE(child.ok() && child->wait(kPatience));
+    return text_of("answer");
+  }
+  void TearDown() override {
+    for (auto& child : children_) child.signal(SIGTERM);
+    for (auto& child : children_) EXPECT_TRUE(child.wait(kPatience));
+    Programs::TearDown();
+  }
+  static std::string number_in(const std::string& answer) {
+    const auto at = answer.find("site 1");
+    return at == std::string::npos ? answer : answer.substr(at + 5, 5);
+  }
+
+  std::vector<hil::ChildProcess> children_;
+};
+
+TEST_F(Told, ASiteOfTheOperatorIsSurveyedAndDeliveredTo) {
+  fly();
+  const std::string answer = tell({"site", "1500", "600", "deliver", "090", "reward", "3"});
+  EXPECT_THAT(answer, HasSubstr("told to vehicle 7"));
+  const std::string site = number_in(answer);
+  ASSERT_TRUE(comes_to({"pending"}, "authorise " + site)) << tell({"sites"}) << text_of("log");
+  EXPECT_THAT(tell({"authorise", site}), HasSubstr("done"));
+  EXPECT_TRUE(comes_to({"sites"}, "1 delivered")) << tell({"sites"}) << text_of("log");
+  EXPECT_THAT(tell({"withdraw", "site", site}), HasSubstr("nothing is left of it"));
+}
+
+TEST_F(Told, WhatADetectorSeesIsProposedTakenAndCanBeWithdrawn) {
+  fly();
+  // 1 km north and 2.2 km east of the origin.
+  auto detector =
+      start({"/usr/bin/env", "python3", SKEIN_SOURCE_DIR "/onboard/detectors/example/detector.py",
+             folder_ / "detections.sock", "flood", "0.009", "0.02"});
+  ASSERT_TRUE(detector.wait(kPatience));
+  ASSERT_EQ(detector.ended(), "exit status 0") << text_of("log");
+  ASSERT_TRUE(comes_to({"proposals"}, "proposal 1: flood")) << text_of("log");
+  const std::string site = number_in(tell({"accept", "1"}));
+  EXPECT_TRUE(comes_to({"sites"}, "told to vehicle 7")) << tell({"sites"});
+  EXPECT_TRUE(comes_to({"status"}, "surveying")) << text_of("log");
+  EXPECT_THAT(tell({"withdraw", "site", site}), HasSubstr("is withdrawn"));
+  EXPECT_TRUE(comes_to({"status"}, "searching")) << tell({"status"});
+  EXPECT_THAT(tell({"hazard", "0", "5000", "100"}), HasSubstr("is told to all"));
+}
+
 struct BadStart {
   const char* name;
   std::vector<std::string> words;

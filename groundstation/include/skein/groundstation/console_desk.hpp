@@ -73,6 +73,7 @@ struct ShownRecording {
 [[nodiscard]] std::string hello_text(const MissionOrigin& origin,
                                      const std::vector<VehicleId>& expected,
                                      const std::vector<std::string>& shapes,
+                                     const std::vector<std::string>& site_templates,
                                      const std::optional<ShownRecording>& recording);
 
 /// The section that has what a view of the prompt shows; none for those that are not of the

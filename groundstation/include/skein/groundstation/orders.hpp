@@ -6,8 +6,10 @@
 #include <string_view>
 #include <variant>
 
+#include "skein/base/frames.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
+#include "skein/configuration/site_config.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -29,7 +31,15 @@ inline constexpr Limit kTrackSpeed_mps{1.0, 200.0};
 inline constexpr Limit kLaps{1.0, 32.0};
 inline constexpr Limit kWait_s{0.0, 86400.0};
 
-enum class View { help, status, sites, pending, places, coalitions, hazards, audit };
+inline constexpr Limit kLatitude_deg{-90.0, 90.0};
+inline constexpr Limit kLongitude_deg{-180.0, 180.0};
+inline constexpr Limit kTasks{0.0, static_cast<double>(kTasksPerKindMax)};
+/// Those of files of sites.
+[[nodiscard]] constexpr Limit limit_of(const configuration::SiteLimit& of) {
+  return {of.low, of.high};
+}
+
+enum class View { help, status, sites, pending, places, coalitions, hazards, audit, proposals };
 /// The operator's decision on the deliveries at a site.
 struct Decision {
   SiteId site;
@@ -45,6 +55,46 @@ struct Order {
 struct NewHazard {
   Vec2 centre_m{0.0, 0.0};
   double radius_m = 0.0;
+};
+/// That hazard is no more.
+struct WithdrawHazard {
+  HazardId hazard;
+};
+/// What is asked of a site; what is not said is as its template has it, or the site that it
+/// changes.
+struct SiteWishes {
+  std::string like;                                 ///< a template's name; empty: none
+  std::optional<Vec2> place_m;                      ///< mission frame; or
+  std::optional<Wgs84> place;                       ///< without a height
+  std::optional<std::vector<double>> bearings_rad;  ///< of the deliveries
+  std::optional<double> interval_s;                 ///< from one to the next; 0: all at one time
+  std::optional<int> assessments;
+  std::optional<double> assessment_wait_s;
+  std::optional<double> assessment_dwell_s;
+  std::optional<double> survey_dwell_s;
+  std::optional<double> reward;
+  std::optional<double> reward_decay_per_s;
+  std::optional<VehicleId> surveyor;  ///< none: the nearest that can
+  bool anyway = false;                ///< also where a site is known to be
+};
+/// A new site, or one in place of another.
+struct NewSite {
+  SiteWishes wishes;
+  std::optional<SiteId> changes = {};
+  bool preview = false;  ///< only show what it would be
+};
+/// Those of a file.
+struct SitesFromFile {
+  std::string file;
+};
+/// Nobody shall go on with it.
+struct WithdrawSite {
+  SiteId site;
+};
+/// What a detector has seen is taken as a site, or is none.
+struct ProposalAnswer {
+  std::uint32_t number = 0;
+  bool accept = false;
 };
 /// To the formation. A free shape has its name or file, and no points yet.
 struct Formation {
@@ -70,7 +120,8 @@ struct Record {
 struct Quit {};
 /// monostate: an empty line.
 using Input =
-    std::variant<std::monostate, View, Decision, Order, NewHazard, Formation, Wait, Record, Quit>;
+    std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard, NewSite,
+                 SitesFromFile, WithdrawSite, ProposalAnswer, Formation, Wait, Record, Quit>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

@@ -16,6 +16,9 @@
 /// mission seconds.
 namespace skein::groundstation {
 
+/// "1234 m from the origin towards 045 deg, 31.530000 N 105.050000 E"
+[[nodiscard]] std::string place_text(const Vec2& position, const MissionOrigin& origin);
+
 /// One line a vehicle: number, activity, seconds since it was heard, range left, loads, health.
 [[nodiscard]] std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
                                       Instant now);

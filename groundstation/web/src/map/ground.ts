@@ -97,7 +97,8 @@ export function progress_of(site: Site): string {
     if (of_kind.length === 0) return null;
     return `${of_kind.filter((task) => task.state === "done").length}/${of_kind.length} ${word}`;
   };
-  const parts = [site.status === "done" ? "done" : site.status];
+  if (site.status === "withdrawn") return "withdrawn";
+  const parts = [site.status];
   if (site.status !== "found") parts.push(...[count("deliver", "delivered"), count("assess", "assessed")].filter((part) => part !== null));
   return parts.join(" · ");
 }

@@ -28,6 +28,7 @@ const tool_words = {
   hazard: "Press the middle of the hazard. Esc ends.",
   hazard_edge: "Press its edge. Esc ends.",
   place: "Press where the formation shall be. Esc ends.",
+  site: "Press where the site is. Esc ends.",
 } as const;
 
 function Cursor({ at }: { at: Spot | null }) {

@@ -5,7 +5,7 @@ import { effect } from "@preact/signals";
 import L from "leaflet";
 import { request_key } from "../mission/requests";
 import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, selected, theme, tiles_shown } from "../shell/view";
-import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell/view";
+import { formation_spot, hazard_draft, measure_from, measure_to, site_spot } from "../shell/view";
 import { read_colours } from "../theme/colours";
 import { line_colour } from "../theme/palette";
 import type { Colours } from "../theme/colours";
@@ -175,7 +175,7 @@ export class MissionMap {
   }
 
   private on_drawing(): void {
-    void [preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value];
+    void [preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value, site_spot.value];
     this.moving.redraw();
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What presses on the map do while a tool is out.
 
-import { formation_spot, hazard_draft, measure_from, measure_to, tool } from "../shell/view";
+import { formation_spot, hazard_draft, measure_from, measure_to, site_spot, tool } from "../shell/view";
 import type { Spot } from "../shell/view";
 import { distance_and_bearing } from "./geodesy";
 
@@ -28,6 +28,10 @@ export function press(at: Spot): void {
       break;
     case "place":
       formation_spot.value = at;
+      tool.value = "select";
+      break;
+    case "site":
+      site_spot.value = at;
       tool.value = "select";
       break;
     case "select":

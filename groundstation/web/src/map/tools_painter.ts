@@ -2,7 +2,7 @@
 // What the person draws: a measured distance, a hazard, the place of a formation.
 
 import { bearing, distance } from "../shell/format";
-import { formation_spot, hazard_draft, measure_from, measure_to } from "../shell/view";
+import { formation_spot, hazard_draft, measure_from, measure_to, site_spot } from "../shell/view";
 import type { View } from "./canvas_layer";
 import { font, label } from "./draw";
 import { distance_and_bearing } from "./geodesy";
@@ -39,6 +39,13 @@ export function paint_tools(view: View): void {
     context.textAlign = "center";
     context.textBaseline = "bottom";
     label(view, `new hazard, radius ${distance(draft.radius_m)}`, view.px(draft.x), view.py(draft.y) - 8, colours.preview);
+  }
+  const site = site_spot.value;
+  if (site) {
+    cross(view, site.x, site.y, colours.preview);
+    context.textAlign = "center";
+    context.textBaseline = "bottom";
+    label(view, "new site", view.px(site.x), view.py(site.y) - 8, colours.preview);
   }
   const spot = formation_spot.value;
   if (spot) cross(view, spot.x, spot.y, colours.preview);

@@ -53,6 +53,9 @@ export function HazardForm() {
               E {number(hazard.x)} N {number(hazard.y)} m
             </span>
             <span class="muted">radius {distance(hazard.radius_m)}</span>
+            <HoldButton testid={`hazard-withdraw-${hazard.id}`} on_held={() => void give({ kind: "withdraw", hazard: hazard.id })}>
+              Withdraw
+            </HoldButton>
           </li>
         ))}
       </ul>

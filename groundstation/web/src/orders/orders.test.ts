@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { a_hello } from "../wire/samples";
-import { acknowledgements, command, formation_order, hazard_order, no_fields, words_of_order } from "./orders";
+import { acknowledgements, command, formation_order, hazard_order, no_fields, no_site, site_order, words_of_order } from "./orders";
 
 const wedge = { ...no_fields, shape: "wedge" };
 
@@ -46,4 +46,21 @@ test("who has taken the change, who not, who is lost", () => {
   const formation = { in_place: false, moving: true, change, places: [place(1, 4), place(2, 3), place(3, 3, true)] };
   assert.deepEqual(acknowledgements(formation), { yes: [1], no: [2], lost: [3] });
   assert.equal(acknowledgements({ ...formation, change: null }), null);
+});
+
+test("a site says what is filled in, and needs a place unless it changes one", () => {
+  const fields = { ...no_site, east: "100", north: "-20", like: "fire", bearings: "90, 180", interval: "4", assessments: "2", reward: "3" };
+  const made = site_order(fields, limits, null);
+  assert.equal("order" in made && words_of_order(made.order), "site like fire at 100 -20 deliver 90,180 every 4 assess 2 reward 3");
+  assert.deepEqual(made, {
+    order: { kind: "site", preview: false, x: 100, y: -20, like: "fire", bearings_deg: [90, 180], interval_s: 4, assessments: 2, reward: 3 },
+  });
+  assert.deepEqual(site_order({ ...no_site, reward: "5" }, limits, 10034), { order: { kind: "site", preview: false, site: 10034, reward: 5 } });
+  for (const wrong of [{ east: "" }, { bearings: "90;x" }, { bearings: "900" }, { assessments: "99" }, { interval: "-1" }]) {
+    assert.ok("trouble" in site_order({ ...fields, ...wrong }, limits, null), JSON.stringify(wrong));
+  }
+  assert.ok("trouble" in site_order({ ...no_site, east: "1" }, limits, 10034));
+  assert.equal(words_of_order({ kind: "withdraw", hazard: 3 }), "withdraw hazard 3");
+  assert.equal(words_of_order({ kind: "withdraw", site: 3 }), "withdraw site 3");
+  assert.equal(words_of_order({ kind: "proposal", number: 2, accept: false }), "dismiss 2");
 });

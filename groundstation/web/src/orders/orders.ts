@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders, from the fields of a form.
 
-import type { Command, Formation, FormationOrder, Limits, Order } from "../wire/protocol";
+import type { Command, Formation, FormationOrder, Limits, Order, SiteOrder } from "../wire/protocol";
 
 export interface FormFields {
   kind: FormationOrder["order"];
@@ -73,6 +73,71 @@ export function hazard_order(draft: { x: number; y: number; radius_m: number }):
   return { kind: "hazard", x: whole(draft.x), y: whole(draft.y), radius_m: whole(draft.radius_m) };
 }
 
+/** Texts of the fields of a site; an empty one is left to the template, or the site before. */
+export interface SiteFields {
+  like: string;
+  east: string;
+  north: string;
+  bearings: string;
+  interval: string;
+  assessments: string;
+  dwell: string;
+  reward: string;
+}
+
+export const no_site: SiteFields = { like: "", east: "", north: "", bearings: "", interval: "", assessments: "", dwell: "", reward: "" };
+
+const site_limit_of = {
+  east: "coordinate_m",
+  north: "coordinate_m",
+  interval: "interval_s",
+  assessments: "tasks",
+  dwell: "dwell_s",
+  reward: "reward",
+} as const satisfies Partial<Record<keyof SiteFields, keyof Limits>>;
+
+/** The order of a new site, or in place of one, or what is wrong with the fields. */
+export function site_order(fields: SiteFields, limits: Limits, site: number | null): { order: SiteOrder } | { trouble: string } {
+  const order: SiteOrder = { kind: "site", preview: false };
+  const values: Partial<Record<keyof typeof site_limit_of, number>> = {};
+  for (const name of Object.keys(site_limit_of) as (keyof typeof site_limit_of)[]) {
+    const text = fields[name].trim();
+    if (text === "") continue;
+    const value = Number(text);
+    const [low, high] = limits[site_limit_of[name]];
+    if (!Number.isFinite(value) || value < low || value > high) return { trouble: `${name} is to be from ${low} to ${high}` };
+    values[name] = value;
+  }
+  if (site !== null) order.site = site;
+  if (values.east !== undefined && values.north !== undefined) Object.assign(order, { x: values.east, y: values.north });
+  else if (site === null || values.east !== undefined || values.north !== undefined) return { trouble: "a site needs a place: east and north, or a press on the map" };
+  if (fields.like !== "") order.like = fields.like;
+  const bearings = fields.bearings.trim();
+  if (bearings !== "") {
+    const [low, high] = limits.heading_deg;
+    const all = bearings === "none" ? [] : bearings.split(/[\s,]+/).map(Number);
+    if (!all.every((value) => Number.isFinite(value) && value >= low && value <= high)) return { trouble: "bearings are degrees with commas between, such as 90, 180" };
+    order.bearings_deg = all;
+  }
+  if (values.interval !== undefined) order.interval_s = values.interval;
+  if (values.assessments !== undefined) order.assessments = Math.trunc(values.assessments);
+  if (values.dwell !== undefined) order.dwell_s = values.dwell;
+  if (values.reward !== undefined) order.reward = values.reward;
+  return { order };
+}
+
+function words_of_site(order: SiteOrder): string {
+  const words = [order.site === undefined ? "site" : `change site ${order.site}`];
+  if (order.like !== undefined) words.push(`like ${order.like}`);
+  if (order.x !== undefined) words.push(`at ${order.x} ${order.y}`);
+  if (order.bearings_deg) words.push(`deliver ${order.bearings_deg.join(",") || "none"}`);
+  if (order.interval_s !== undefined) words.push(`every ${order.interval_s}`);
+  if (order.assessments !== undefined) words.push(`assess ${order.assessments}`);
+  if (order.dwell_s !== undefined) words.push(`dwell ${order.dwell_s}`);
+  if (order.reward !== undefined) words.push(`reward ${order.reward}`);
+  return words.join(" ");
+}
+
 export function command(command: Command["command"], vehicle: number): Command {
   return { kind: "command", command, vehicle };
 }
@@ -86,6 +151,12 @@ export function words_of_order(order: Order): string {
       return `${order.grant ? "authorise" : "refuse"} ${order.site}`;
     case "hazard":
       return `hazard ${order.x} ${order.y} ${order.radius_m}`;
+    case "site":
+      return words_of_site(order);
+    case "withdraw":
+      return order.hazard === undefined ? `withdraw site ${order.site}` : `withdraw hazard ${order.hazard}`;
+    case "proposal":
+      return `${order.accept ? "accept" : "dismiss"} ${order.number}`;
     case "formation": {
       const words = [order.order.replaceAll("_", " "), order.shape];
       if (order.spacing_m !== undefined) words.push(`spacing ${order.spacing_m}`);

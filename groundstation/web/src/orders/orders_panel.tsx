@@ -5,6 +5,7 @@ import { formation, hello, in_replay, may_order } from "../wire/store";
 import { FormationForm } from "./formation_form";
 import { HazardForm } from "./hazard_form";
 import { command } from "./orders";
+import { SiteForm } from "./site_form";
 
 function ToAll() {
   return (
@@ -34,6 +35,7 @@ export function OrdersPanel() {
     <div class="scroll orders" tabIndex={0} role="region" aria-label="Orders">
       <ToAll />
       {formation.value && (hello.value?.shapes.length ?? 0) > 0 && <FormationForm />}
+      {!formation.value && <SiteForm />}
       <HazardForm />
     </div>
   );

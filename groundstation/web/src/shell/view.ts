@@ -42,7 +42,7 @@ export const tiles_shown = signal(true);
 export const overlays_hidden = signal<ReadonlySet<string>>(new Set());
 
 /** What a press on the map means. */
-export type Tool = "select" | "measure" | "hazard" | "hazard_edge" | "place";
+export type Tool = "select" | "measure" | "hazard" | "hazard_edge" | "place" | "site";
 export const tool = signal<Tool>("select");
 export interface Spot {
   x: number;
@@ -52,6 +52,10 @@ export const measure_from = signal<Spot | null>(null);
 export const measure_to = signal<Spot | null>(null);
 /** A hazard that is being drawn; not yet the server's. */
 export const hazard_draft = signal<(Spot & { radius_m: number }) | null>(null);
+/** Where a site shall be; of the order's form. */
+export const site_spot = signal<Spot | null>(null);
+/** The site that the form changes; null: it makes a new one. */
+export const site_changed = signal<number | null>(null);
 /** Where a formation shall be; of the order's form. */
 export const formation_spot = signal<Spot | null>(null);
 

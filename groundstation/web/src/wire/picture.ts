@@ -33,6 +33,7 @@ export const section_names = [
   "timeline",
   "audit",
   "replay",
+  "proposals",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -49,6 +50,7 @@ export function empty_picture(): Picture {
     timeline: [],
     audit: [],
     replay: null,
+    proposals: [],
     events: [],
     next_seq: 0,
     events_missed: 0,

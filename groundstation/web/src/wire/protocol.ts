@@ -2,7 +2,7 @@
 // What skein-ground and the page say to each other (docs/console-socket.md). Positions are metres
 // east, north and up of the origin, directions compass degrees, times mission seconds.
 
-import type { Activity, EventKind, TaskKind } from "./messages";
+import type { Activity, EventKind, IncidentKind, TaskKind } from "./messages";
 
 export type Level = "info" | "warning";
 export type Role = "operator" | "observer";
@@ -29,6 +29,10 @@ export interface Limits {
   spacing_m: Limit;
   heading_deg: Limit;
   places: Limit;
+  tasks: Limit;
+  interval_s: Limit;
+  dwell_s: Limit;
+  reward: Limit;
 }
 
 export interface Hello {
@@ -40,6 +44,7 @@ export interface Hello {
   origin: Origin;
   expected: number[];
   shapes: string[];
+  site_templates: string[];
   limits: Limits;
   replay: { name: string; from_s: number; to_s: number } | null;
   tiles: Tiles | null;
@@ -127,6 +132,9 @@ export interface Site {
   x: number | null;
   y: number | null;
   leader: number | null;
+  /** The vehicle that was told of it. */
+  surveyor: number | null;
+  reward: number | null;
   status: string;
   tasks: SiteTask[];
   news: string | null;
@@ -241,6 +249,18 @@ export interface Sections {
   timeline: { id: number; spans: Span[] }[];
   audit: AuditEntry[];
   replay: ReplayState | null;
+  proposals: Proposal[];
+}
+
+/** What a detector has seen, and nobody has answered. */
+export interface Proposal {
+  number: number;
+  kind: IncidentKind;
+  x: number;
+  y: number;
+  seen_by: number;
+  detector: string;
+  time_s: number;
 }
 
 export type State = { type: "state"; time_s: number } & Partial<Sections>;
@@ -328,7 +348,36 @@ export interface FormationOrder {
   places?: number;
 }
 
-export type Order = Command | Decision | NewHazard | FormationOrder;
+/** A new site, or one in place of `site`. What is left out is as the template, or the site before, has it. */
+export interface SiteOrder {
+  kind: "site";
+  preview: boolean;
+  site?: number;
+  x?: number;
+  y?: number;
+  like?: string;
+  bearings_deg?: number[];
+  interval_s?: number;
+  assessments?: number;
+  dwell_s?: number;
+  reward?: number;
+  anyway?: boolean;
+}
+
+/** One of the two. */
+export interface Withdrawal {
+  kind: "withdraw";
+  site?: number;
+  hazard?: number;
+}
+
+export interface ProposalAnswer {
+  kind: "proposal";
+  number: number;
+  accept: boolean;
+}
+
+export type Order = Command | Decision | NewHazard | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
 
 export interface Session {
   user: string;

@@ -34,6 +34,7 @@ export const sites = computed(() => shown.value.sites);
 export const coalitions = computed(() => shown.value.coalitions);
 export const authorisations = computed(() => shown.value.authorisations);
 export const hazards = computed(() => shown.value.hazards);
+export const proposals = computed(() => shown.value.proposals);
 export const formation = computed(() => shown.value.formation);
 export const timeline = computed(() => shown.value.timeline);
 export const audit = computed(() => shown.value.audit);

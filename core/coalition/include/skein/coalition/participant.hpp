@@ -113,6 +113,9 @@ class Participant {
   void task_failed(const TaskId& task, Instant now);
   /// Leaves the coalition: tasks that are not done are reported as failed.
   void withdraw(Reason reason, Instant now);
+  /// What has begun is flown to its end under its lease, and nobody is followed after it: the site
+  /// is withdrawn.
+  void finish_alone() { elector_.leave(); }
 
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<Output> poll_output();
@@ -156,6 +159,7 @@ class Participant {
   void give_up(const Lease& lease, Instant now);
   void send_status(Instant now);
   [[nodiscard]] bool task_in_progress() const;
+  [[nodiscard]] bool delivery_in_progress() const;
   [[nodiscard]] bool has_news(Instant now) const;
 
   ProtocolParams params_;

@@ -2,18 +2,38 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 #include <vector>
 
 #include "skein/idl/domain.hpp"
 
 namespace skein {
 
-/// False, and nothing added, where one of that id is known: a hazard does not change.
-inline bool add_if_new(std::vector<Hazard>& known, const Hazard& hazard) {
-  const auto same = [&](const Hazard& h) { return h.id == hazard.id; };
-  if (std::any_of(known.begin(), known.end(), same)) return false;
-  known.push_back(hazard);
-  return true;
-}
+/// The hazards that a node knows. One does not change, and what was withdrawn does not come back.
+class KnownHazards {
+ public:
+  KnownHazards() = default;
+  explicit KnownHazards(std::vector<Hazard> known) : all_{std::move(known)} {}
+
+  /// False, and nothing added, where one of that id is known, or was.
+  bool add(const Hazard& hazard) {
+    if (withdrawn_.contains(hazard.id) || knows(hazard.id)) return false;
+    all_.push_back(hazard);
+    return true;
+  }
+  /// False where that is known already, or nothing was known of it.
+  bool withdraw(HazardId id) {
+    withdrawn_.insert(id);
+    return std::erase_if(all_, [id](const Hazard& h) { return h.id == id; }) > 0;
+  }
+  [[nodiscard]] bool knows(HazardId id) const {
+    return std::ranges::any_of(all_, [id](const Hazard& h) { return h.id == id; });
+  }
+  [[nodiscard]] const std::vector<Hazard>& all() const { return all_; }
+
+ private:
+  std::vector<Hazard> all_;
+  std::set<HazardId> withdrawn_;
+};
 
 }  // namespace skein

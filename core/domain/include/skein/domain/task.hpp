@@ -12,6 +12,7 @@ namespace skein {
 class Capabilities {
  public:
   constexpr Capabilities() = default;
+  explicit constexpr Capabilities(unsigned bits) : bits_{static_cast<std::uint8_t>(bits & 0x7U)} {}
   [[nodiscard]] constexpr bool has(TaskKind kind) const { return (bits_ & bit(kind)) != 0; }
   constexpr Capabilities& add(TaskKind kind) {
     bits_ = static_cast<std::uint8_t>(bits_ | bit(kind));
@@ -19,9 +20,7 @@ class Capabilities {
   }
   [[nodiscard]] constexpr std::uint8_t bits() const { return bits_; }
   [[nodiscard]] static constexpr Capabilities from_bits(std::uint8_t bits) {
-    Capabilities c;
-    c.bits_ = bits & 0x7U;
-    return c;
+    return Capabilities{bits};
   }
   friend constexpr bool operator==(Capabilities, Capabilities) = default;
 

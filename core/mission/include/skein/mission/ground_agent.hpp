@@ -29,7 +29,6 @@ struct ScriptedDecision {
 struct GroundAgentConfig {
   std::vector<VehicleId> expected;          ///< the fleet
   std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
-  std::vector<HazardId> hazards = {};       ///< numbers that are taken
   Duration silence = std::chrono::seconds{5};
 };
 
@@ -74,14 +73,9 @@ class GroundAgent {
   /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
-  /// Tells everybody of a hazard, every 5 s from now on, so that who was out of reach hears of it
-  /// too. Gives its number, which no hazard that is known has: kFirstHazard and the mission second,
-  /// or more. So it is not one that this process gave before it was started anew, which vehicles
-  /// would take for the old one. Nothing takes it back: vehicles plan around it. Fails where the
-  /// circle is no circle, or after kHazardsMax.
-  Result<HazardId> add_hazard(const Vec2& centre, double radius_m, Instant now);
-  static constexpr HazardId kFirstHazard{10'000};
-  static constexpr std::size_t kHazardsMax = 100;
+  /// The operator has withdrawn that site: what waits for a decision on it is refused, now and
+  /// whenever it is asked for again.
+  void end_site(SiteId site, const std::string& by, Instant now);
 
   [[nodiscard]] std::optional<Message> poll_message();
   [[nodiscard]] std::optional<MissionEvent>
@@ -152,9 +146,7 @@ class GroundAgent {
   std::map<TaskId, coalition::TaskStatus> done_;
   std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
-  std::vector<Hazard> hazards_;  ///< of the operator
-  std::set<HazardId> taken_hazards_;
-  Instant next_hazards_ = Instant::max();
+  std::map<SiteId, std::string> withdrawn_;  ///< and by whom
   std::uint32_t last_command_ = 0;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations
   std::set<EventKey> seen_events_;

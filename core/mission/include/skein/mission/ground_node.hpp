@@ -8,6 +8,9 @@
 #include "skein/mission/fleet.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/ground_agent.hpp"
+#include "skein/mission/ground_detections.hpp"
+#include "skein/mission/ground_hazards.hpp"
+#include "skein/mission/ground_sites.hpp"
 #include "skein/mission/order_book.hpp"
 #include "skein/mission/setup_book.hpp"
 #include "skein/mission/track_ground.hpp"
@@ -17,7 +20,9 @@ namespace skein::mission {
 struct GroundNodeConfig {
   GroundAgentConfig agent;
   FormationGroundConfig formation;
-  TrackGroundConfig tracks{};  ///< of planes in formation; without planes it does nothing
+  TrackGroundConfig tracks{};     ///< of planes in formation; without planes it does nothing
+  std::vector<Hazard> hazards{};  ///< known before the mission
+  GroundDetectionsConfig detections{};
   SetupParams setup{};
   InstanceId instance{};  ///< of this program
 };
@@ -42,6 +47,20 @@ class GroundNode {
   /// in a formation.
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
+  // As of GroundSites, with the fleet as it is heard.
+  Result<SiteId> add_site(Site site, std::optional<VehicleId> surveyor, Instant now) {
+    return sites_.add(std::move(site), surveyor, fleet(), now);
+  }
+  Result<std::vector<TaskId>> withdraw_site(SiteId site, const std::string& by, Instant now);
+  Result<SiteId> change_site(SiteId old, Site site, std::optional<VehicleId> surveyor,
+                             const std::string& by, Instant now);
+  [[nodiscard]] const GroundSites& sites() const { return sites_; }
+  /// Takes a proposal as a site, whose number it gives, or dismisses it (0).
+  Result<SiteId> answer_proposal(std::uint32_t number, bool accepted, const std::string& by,
+                                 Instant now);
+  [[nodiscard]] const GroundDetections& detections() const { return detections_; }
+  [[nodiscard]] GroundHazards& hazards() { return hazards_; }
+
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
 
@@ -65,7 +84,7 @@ class GroundNode {
   /// What queues had no room for.
   [[nodiscard]] std::uint64_t dropped() const {
     return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
-           tracks_.dropped();
+           tracks_.dropped() + sites_.dropped() + hazards_.dropped() + detections_.dropped();
   }
 
  private:
@@ -79,6 +98,9 @@ class GroundNode {
   SetupBook setup_;
   OrderBook orders_;
   Instant knows_orders_at_;  ///< from then on it says of who has none that it has none
+  GroundSites sites_;
+  GroundHazards hazards_;
+  GroundDetections detections_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

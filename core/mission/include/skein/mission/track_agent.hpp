@@ -56,7 +56,7 @@ class TrackAgent final : public OnboardAgent {
   [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const TrackFlight& flight,
                                                             Instant now) const;
   void on_command(const Command& command, Instant now);
-  void on_hazard(const Hazard& hazard, Instant now);
+  void on_hazard(const HazardReport& told, Instant now);
   void step(Instant now);
   void begin(Instant now);
   void leave();
@@ -70,7 +70,7 @@ class TrackAgent final : public OnboardAgent {
 
   TrackAgentConfig config_;
   std::unique_ptr<Flight> flight_;
-  std::vector<Hazard> hazards_;
+  KnownHazards hazards_;
   std::optional<VehicleState> state_;
   std::optional<TrackFlight> next_flight_;  ///< taken up, and not begun yet
   std::optional<TrackFlight> flown_;        ///< none where it has left its formation

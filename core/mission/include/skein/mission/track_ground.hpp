@@ -9,6 +9,7 @@
 
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/result.hpp"
+#include "skein/domain/hazard.hpp"
 #include "skein/formation/track_planner.hpp"
 #include "skein/mission/barred_vehicles.hpp"
 #include "skein/mission/formation_ground.hpp"
@@ -57,7 +58,7 @@ class TrackGround {
 
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
-  void know(const Hazard& hazard);
+  void know(const HazardReport& report);
   void on_timeout(Instant now);
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }
@@ -95,6 +96,7 @@ class TrackGround {
   void report(EventBody body, Instant now);
 
   TrackGroundConfig config_;
+  KnownHazards hazards_;
   std::map<VehicleId, Member> members_;
   std::map<VehicleId, FlightPlan> flies_;  ///< what planes have told of
   std::optional<TrackOrder> order_;

@@ -26,6 +26,7 @@ struct PictureParams {
   std::size_t vehicles_max = 1000;  ///< strangers included
   std::size_t sites_max = 1000;
   std::size_t hazards_max = 1000;
+  std::size_t proposals_max = 200;
 };
 
 /// What an operator sees of one vehicle besides its entry in mission::Fleet.
@@ -83,8 +84,16 @@ struct SitePicture {
   std::optional<VehicleId> leader;
   bool surveyed = false;
   bool done = false;
+  bool withdrawn = false;             ///< by the operator
+  std::optional<VehicleId> surveyor;  ///< that was told of it
   std::map<TaskId, TaskPicture> tasks;
   std::optional<mission::MissionEvent> news;  ///< the newest event of the site
+};
+
+/// What a detector has seen and the operator has not answered.
+struct ProposalPicture {
+  mission::event::SiteProposed said;
+  Instant at{};
 };
 
 struct AuthorisationPicture {
@@ -135,6 +144,9 @@ class Picture {
     return authorisations_;
   }
   [[nodiscard]] const std::map<HazardId, Hazard>& hazards() const { return hazards_; }
+  [[nodiscard]] const std::map<std::uint32_t, ProposalPicture>& proposals() const {
+    return proposals_;
+  }
   [[nodiscard]] const FormationPicture& formation() const { return formation_; }
 
   /// The task that the vehicle does now or next.
@@ -147,6 +159,7 @@ class Picture {
   void on(const mission::Telemetry& telemetry, Instant now);
   void on(const mission::AuthorisationRequest& request, Instant now);
   void on(const mission::Authorisation& decision);
+  void on(const mission::SiteReport& m);
   void on(const coalition::Announcement& m);
   void on(const coalition::Bid& m);
   void on(const coalition::Award& m);
@@ -165,6 +178,7 @@ class Picture {
   std::vector<std::pair<coalition::CoalitionId, CoalitionPicture>> coalitions_;
   std::deque<AuthorisationPicture> authorisations_;
   std::map<HazardId, Hazard> hazards_;
+  std::map<std::uint32_t, ProposalPicture> proposals_;
   FormationPicture formation_;
 };
 

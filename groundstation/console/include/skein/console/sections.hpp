@@ -25,6 +25,7 @@ enum class Section : std::uint8_t {
   timeline,
   audit,
   replay,
+  proposals,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "skein/base/geometry.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
 #include "skein/configuration/scenario.hpp"
@@ -48,6 +49,17 @@ struct ClockOff {
 };
 /// Somebody tells the team of all sites that are hidden still.
 struct SitesReported {};
+/// Detectors of those vehicles tell of a place, each of one that is 8 m from the one before: of
+/// something where there is nothing, or of what is known already. The ground station takes it as a
+/// site to be surveyed.
+struct PlaceSeen {
+  Vec2 place{0.0, 0.0};
+  std::vector<VehicleId> by;
+};
+/// The operator withdraws that site; without one the newest of those that detectors have seen.
+struct SiteWithdrawal {
+  std::optional<SiteId> site;
+};
 /// The radio is perfect from now on, and sites that nobody is at work on are reported: what is left
 /// of the team must finish its work.
 struct Healing {};
@@ -56,7 +68,7 @@ struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
   std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, SitesReported,
-               Healing>
+               PlaceSeen, SiteWithdrawal, Healing>
       what;
 };
 

@@ -12,6 +12,7 @@
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/configuration/site_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
@@ -44,6 +45,8 @@ struct GroundConfig {
   /// Empty: the operator types at the prompt.
   std::vector<OperatorDecision> operator_decisions;
   std::vector<Hazard> hazards;  ///< known before the mission
+  std::vector<SiteTemplate> site_templates;
+  DetectionsConfig detections;
   FormationConfig formation;
   std::vector<VehicleSpec> planes;  ///< of a formation of planes: what each can do
   ConsoleConfig console;

@@ -18,6 +18,7 @@
 #include "skein/configuration/host.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/routes_config.hpp"
+#include "skein/configuration/site_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
@@ -104,6 +105,7 @@ struct Scenario {
   planning::AllocationParams planning;
   std::vector<ScenarioVehicle> vehicles;
   std::vector<Site> sites;
+  std::vector<SiteTemplate> site_templates;  ///< for the ground station
   std::vector<ScenarioHazard> hazards;
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;

@@ -70,8 +70,9 @@ struct VehicleConfig {
   NetworkConfig network;
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
-  std::vector<Hazard> hazards;  ///< known before the mission
-  FormationConfig formation;    ///< of a vehicle that flies in formation
+  std::vector<Hazard> hazards;    ///< known before the mission
+  FormationConfig formation;      ///< of a vehicle that flies in formation
+  std::string detections_socket;  ///< path, where detectors tell of sites; empty: nowhere
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded
   std::uint32_t recording_limit_mb = 1000;

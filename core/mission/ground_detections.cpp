@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_detections.hpp"
+
+#include <algorithm>
+
+namespace skein::mission {
+
+void GroundDetections::recall(const Message& message, VehicleId sender, const GroundSites& sites) {
+  if (const auto* detection = std::get_if<Detection>(&message)) {
+    if (config_.take || is_known(detection->position, sites)) return;
+    if (!is_proposed(detection->position)) (void)propose(*detection);
+    recalled_ = true;
+  } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
+    const auto* answer = std::get_if<event::ProposalAnswered>(&event->body);
+    if (answer == nullptr || sender != kGroundStation) return;
+    const auto known = proposals_.find(answer->number);
+    if (known == proposals_.end()) return;
+    known->second.state = answer->accepted ? Proposal::State::taken : Proposal::State::dismissed;
+  }
+}
+
+std::optional<Site> GroundDetections::on_message(const Message& message, const GroundSites& sites,
+                                                 Instant now) {
+  const auto* detection = std::get_if<Detection>(&message);
+  if (detection == nullptr || is_known(detection->position, sites)) return std::nullopt;
+  if (config_.take) return site_of(*detection);
+  if (is_proposed(detection->position)) return std::nullopt;
+  const std::uint32_t number = propose(*detection);
+  if (number > 0) report(number, now);
+  return std::nullopt;
+}
+
+void GroundDetections::on_timeout(Instant now) {
+  if (!recalled_) return;
+  recalled_ = false;
+  for (const auto& [number, proposal] : proposals_) {
+    if (proposal.state == Proposal::State::open) report(number, now);
+  }
+}
+
+void GroundDetections::report(std::uint32_t number, Instant now) {
+  const Detection& seen = proposals_.at(number).detection;
+  events_.push({kGroundStation,
+                now,
+                {},
+                {},
+                event::SiteProposed{number, seen.vehicle, seen.kind, seen.position.x(),
+                                    seen.position.y(), seen.detector}});
+}
+
+/// 0 where there is no room.
+std::uint32_t GroundDetections::propose(const Detection& detection) {
+  if (proposals_.size() >= kProposalsMax) {
+    ++left_out_;
+    return 0;
+  }
+  const auto number = static_cast<std::uint32_t>(proposals_.size() + 1);
+  proposals_.emplace(number, Proposal{detection});
+  return number;
+}
+
+bool GroundDetections::is_known(const Vec2& place, const GroundSites& sites) const {
+  return std::ranges::any_of(sites.sites(), [&](const auto& known) {
+    const GroundSite& entry = known.second;
+    return entry.placed && (entry.site.position - place).norm() <= config_.same_site_m;
+  });
+}
+
+bool GroundDetections::is_proposed(const Vec2& place) const {
+  return std::ranges::any_of(proposals_, [&](const auto& known) {
+    return (known.second.detection.position - place).norm() <= config_.same_site_m;
+  });
+}
+
+Site GroundDetections::site_of(const Detection& detection) const {
+  const auto known = config_.sites.find(detection.kind);
+  Site site = known == config_.sites.end() ? config_.otherwise : known->second;
+  site.position = detection.position;
+  return site;
+}
+
+Result<Site> GroundDetections::proposed(std::uint32_t number) const {
+  const auto known = proposals_.find(number);
+  if (known == proposals_.end()) {
+    return Error{"there is no proposal " + std::to_string(number) + "; 'proposals' lists them"};
+  }
+  if (known->second.state != Proposal::State::open) {
+    return Error{"proposal " + std::to_string(number) + " is answered already"};
+  }
+  return site_of(known->second.detection);
+}
+
+Result<Site> GroundDetections::answer(std::uint32_t number, bool accepted, const std::string& by,
+                                      Instant now) {
+  auto site = proposed(number);
+  if (!site) return site;
+  proposals_.at(number).state = accepted ? Proposal::State::taken : Proposal::State::dismissed;
+  events_.push({kGroundStation, now, {}, {}, event::ProposalAnswered{number, accepted, by}});
+  return site;
+}
+
+}  // namespace skein::mission

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "skein/base/result.hpp"
+#include "skein/groundstation/orders.hpp"
+
+/// The words of a typed line.
+namespace skein::groundstation {
+
+/// The whole word as a number.
+[[nodiscard]] inline std::optional<double> number_of(std::string_view word) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
+  return value;
+}
+
+/// A number from 1 up, as sites and vehicles have.
+[[nodiscard]] inline std::optional<std::uint16_t> id_of(std::string_view word) {
+  std::uint16_t id = 0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
+  if (error != std::errc{} || end != word.data() + word.size() || id == 0) return std::nullopt;
+  return id;
+}
+
+/// A number after a keyword.
+[[nodiscard]] inline Result<double> number_after(std::string_view keyword, std::string_view word,
+                                                 const Limit& limit) {
+  const auto value = number_of(word);
+  if (!value || !limit.has(*value)) {
+    return Error{fmt::format("'{}' needs a number from {} to {}, not '{}'", keyword, limit.low,
+                             limit.high, word)};
+  }
+  return *value;
+}
+
+}  // namespace skein::groundstation
