@@ -44,6 +44,14 @@ all_heard() { [[ $(tell status 2>/dev/null | grep -c '"silent": false') == 3 ]];
 until_holds 20 "the ground station hears all three" all_heard
 fleet status || fail "the status of a fleet that was just started"
 
+echo "- the mission: a site is told, surveyed, authorised and delivered to"
+told=$(tell site 0 0 survey 5 deliver 0,120 simultaneous) || fail "$told"
+site=$(grep -oE 'site [0-9]+' <<<"$told" | head -n 1 | cut -d ' ' -f 2)
+authorised() { tell authorise "$site" >/dev/null 2>&1; }
+delivered() { has '2 delivered' "$(tell sites)"; }
+until_holds 30 "an authorisation is asked for" authorised
+until_holds 40 "both deliveries are flown" delivered
+
 echo "- a program that runs is given no other configuration"
 refused=$(fleet push --only 2 2>&1) && fail "vehicle 2 runs and was configured"
 has 'vehicle 2 .*stop it first' "$refused" || fail "$refused"
