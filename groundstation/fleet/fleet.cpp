@@ -264,6 +264,12 @@ configuration::Deployment deployment_of(const Scenario& scenario, std::int64_t e
   return deployment;
 }
 
+/// Where detectors on board tell what they see: with the unit's other sockets, if it is one.
+std::string detections_socket_of(const Host& host) {
+  return fmt::format("{}/detections-{}.sock",
+                     host.programs.empty() ? "/run/skein" : host.recordings, host.node.value);
+}
+
 /// What the hosts read must be what was meant.
 Result<void> read_again(const Program& program) {
   const auto outcome = [](const auto& read) {
@@ -321,6 +327,7 @@ Result<std::vector<Program>> render(const Scenario& scenario, std::int64_t epoch
   for (auto& config : configuration::vehicle_configs(fleet, deployment)) {
     const Host& host = *host_of(scenario, config.vehicle.id);
     config.recording_folder = recordings_of(host);
+    config.detections_socket = detections_socket_of(host);
     programs.push_back(program_of(host, to_yaml(config)));
   }
   for (const Program& program : programs) {

@@ -66,6 +66,7 @@ TEST(Fleet, EveryHostIsGivenItsConfiguration) {
   const auto config = configuration::parse_vehicle_config(second.configuration, "vehicle");
   ASSERT_TRUE(config.ok());
   EXPECT_EQ(config->recording_folder, "/var/lib/skein/onboard-2");
+  EXPECT_EQ(config->detections_socket, "/run/skein/detections-2.sock");
   EXPECT_EQ(config->network.address, "10.0.0.2");
   EXPECT_THAT(config->network.peers,
               ElementsAre(configuration::NetworkPeer{VehicleId{0}, "10.0.0.9", 7400},
