@@ -44,6 +44,10 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     return false;
   }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
+  if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
+    setup_.on_time(sender, telemetry->state.time, now);
+    take_differences(sender, now);
+  }
   agent_.on_message(message, now);
   sites_.on_message(message, now);
   hazards_.on_message(message);
@@ -55,17 +59,24 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   return true;
 }
 
-void GroundNode::on_setup(const Setup& setup, Instant now) {
-  setup_.on_setup(setup, now);
-  while (auto news = setup_.poll_news()) {
+void GroundNode::take_differences(VehicleId vehicle, Instant now) {
+  bool any = false;
+  for (auto news = setup_.poll_news(); news; news = setup_.poll_news()) {
     MissionEvent event{kGroundStation, now, {}, {}, *std::move(news)};
     messages_.push(event);
     events_.push(std::move(event));
+    any = true;
   }
-  agent_.fleet().set_difference(setup.node, setup_.difference(setup.node));
-  const auto why_not = fleet().why_not_with(setup.node);
-  formation_.barred().set(setup.node, why_not);
-  tracks_.barred().set(setup.node, why_not);
+  if (!any) return;
+  agent_.fleet().set_difference(vehicle, setup_.difference(vehicle));
+  const auto why_not = fleet().why_not_with(vehicle);
+  formation_.barred().set(vehicle, why_not);
+  tracks_.barred().set(vehicle, why_not);
+}
+
+void GroundNode::on_setup(const Setup& setup, Instant now) {
+  setup_.on_setup(setup, now);
+  take_differences(setup.node, now);
   const Command standing = orders_.standing(setup.node, kGroundStation);
   const bool asks = !setup.knows_orders && now >= knows_orders_at_;
   if (asks || standing.number > setup.newest_order) messages_.push(Message{standing});

@@ -72,6 +72,20 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   }
   node.keys = differing_keys(setup);
   watch_clock(node, setup, now);
+  compare(setup.node, node, now);
+}
+
+void SetupBook::on_ahead(VehicleId id, Duration ahead, Instant now) {
+  if (id == own_.node || (!nodes_.contains(id) && nodes_.size() >= kNodesMax)) return;
+  Node& node = nodes_[id];
+  node.clean = 0;
+  if (node.ahead_s > 0.0) return;
+  node.ahead_s = to_seconds(ahead);
+  compare(id, node, now);
+}
+
+/// What is news is told the others at once: they may not know it of themselves.
+void SetupBook::compare(VehicleId id, Node& node, Instant now) {
   std::optional<SetupDifference> difference;
   if (!node.keys.empty() || node.ahead_s != 0.0) {
     difference = SetupDifference{node.keys, node.ahead_s};
@@ -79,10 +93,11 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   const bool is_news = !same(difference, node.difference);
   node.difference = std::move(difference);
   if (!is_news) return;
+  next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
   if (node.difference) {
-    news_.push(event::SetupDiffers{setup.node, node.keys, node.ahead_s});
+    news_.push(event::SetupDiffers{id, node.keys, node.ahead_s});
   } else {
-    news_.push(event::SetupAgrees{setup.node});
+    news_.push(event::SetupAgrees{id});
   }
 }
 

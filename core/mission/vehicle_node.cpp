@@ -84,10 +84,18 @@ class VehicleNode::Impl {
     agent->on_bar(bar, now);
   }
 
+  void take_news(Instant now) {
+    bool any = false;
+    for (auto news = setup.poll_news(); news; news = setup.poll_news()) {
+      report(*std::move(news), now);
+      any = true;
+    }
+    if (any) update_bar(now);
+  }
+
   void on_setup(const Setup& message, Instant now) {
     setup.on_setup(message, now);
-    while (auto news = setup.poll_news()) report(*std::move(news), now);
-    update_bar(now);
+    take_news(now);
     // The ground station is asked first; where it does not answer, whoever knows does.
     if (message.knows_orders || message.node == kGroundStation || !knows_orders) return;
     const auto asked = asked_before.find(message.node);
@@ -98,6 +106,20 @@ class VehicleNode::Impl {
     }
   }
 
+  /// Before the agent has its first state it could do nothing about it.
+  void obey(const Command& command, Instant now) {
+    if (started) {
+      agent->on_message(Message{command}, kGroundStation, now);
+    } else {
+      waiting = command;
+    }
+  }
+
+  void on_first_state(Instant now) {
+    started = true;
+    if (waiting) obey(*std::exchange(waiting, {}), now);
+  }
+
   void on_command(const Command& command, VehicleId sender, Instant now) {
     const bool passed_on = sender != kGroundStation;
     if (passed_on && (knows_orders || command.vehicle != self)) return;
@@ -106,7 +128,7 @@ class VehicleNode::Impl {
     if (is_new && command.kind == CommandKind::give_back && command.vehicle == self) {
       give_back = issued_at(command);
     }
-    if (is_new) agent->on_message(Message{command}, kGroundStation, now);
+    if (is_new) obey(command, now);
     if (knows_orders || command.vehicle != self) return;
     knows_orders = true;
     report(event::OrdersKnown{sender}, now);
@@ -183,6 +205,8 @@ class VehicleNode::Impl {
   OrderBook orders;
   std::map<VehicleId, InstanceId> asked_before = {};  ///< who wanted to know the orders
   bool knows_orders;
+  bool started = false;            ///< the agent has had a state
+  std::optional<Command> waiting;  ///< for that
   Bar bar = Bar::none;
   std::optional<VehicleState> state;
   Condition condition;
@@ -213,6 +237,7 @@ void VehicleNode::on_state(const VehicleState& state, Instant now) {
   impl_->state = state;
   if (now >= Instant{} && state.time >= Instant{}) {
     impl_->agent->on_state(state, now);
+    if (!impl_->started) impl_->on_first_state(now);
     impl_->take_guidance();
   }
   impl_->report_itself(now);
@@ -233,6 +258,10 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
   } else if (const auto* setup = std::get_if<Setup>(&message)) {
     impl_->on_setup(*setup, now);
   } else if (impl_->is_of_use(message, sender)) {
+    if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
+      impl_->setup.on_time(sender, telemetry->state.time, now);
+      impl_->take_news(now);
+    }
     impl_->agent->on_message(message, sender, now);
   }
   impl_->take_guidance();
@@ -284,6 +313,7 @@ Instant VehicleNode::next_timeout() const {
 }
 
 const OnboardAgent& VehicleNode::agent() const { return *impl_->agent; }
+Bar VehicleNode::bar() const { return impl_->bar; }
 VehicleId VehicleNode::vehicle() const { return impl_->self; }
 InstanceId VehicleNode::instance() const { return impl_->agent->telemetry().instance; }
 Counters VehicleNode::counters() const { return impl_->counters(); }

@@ -58,8 +58,8 @@ std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
   for (const auto check :
        {check_recordings, check_turn_radius, check_continuity, check_range, check_hazards,
         check_precedence, check_capabilities, check_loads, check_leases, check_authorisation,
-        check_single_delivery, check_completion, check_separation, check_deliveries, check_surveys,
-        check_assessments}) {
+        check_standing_orders, check_single_delivery, check_completion, check_separation,
+        check_deliveries, check_surveys, check_assessments}) {
     results.push_back(check(record, limits));
   }
   return results;

@@ -11,8 +11,10 @@
 namespace skein::checks {
 namespace {
 
+using mission::CommandKind;
 using mission::EventKind;
 using mission::MissionEvent;
+namespace event = mission::event;
 
 std::string round_name(const coalition::Round& round) {
   return "coalition " + std::to_string(round.coalition.number) + " of " +
@@ -247,6 +249,47 @@ CheckResult check_authorisation(const RunRecord& record, const Limits& /*limits*
       result.violations.push_back({run.vehicle, run.begin(),
                                    run_name(run) + " (" + round_name(run.round) + ") began " +
                                        at(run.begin()) + ", but " + why});
+    }
+  }
+  return result;
+}
+
+namespace {
+
+/// What was begun before may be flown to its end.
+bool takes_up_something(EventKind kind) {
+  return kind == EventKind::survey_started || kind == EventKind::announced ||
+         kind == EventKind::bid_sent || kind == EventKind::confirmed ||
+         kind == EventKind::lease_granted || kind == EventKind::relief_begun;
+}
+
+}  // namespace
+
+CheckResult check_standing_orders(const RunRecord& record, const Limits& /*limits*/) {
+  CheckResult result{"standing orders",
+                     "who was told to hold or to come home takes up nothing",
+                     0,
+                     "orders",
+                     "",
+                     {}};
+  for (const recording::Recording& recorded : record.recordings) {
+    std::optional<Instant> held_since;
+    for (const MissionEvent& event : recorded.events) {
+      const auto* commanded = std::get_if<event::Commanded>(&event.body);
+      const auto* told = std::get_if<event::OrdersKnown>(&event.body);
+      if (commanded != nullptr) {
+        ++result.judged;
+        const bool goes_on = commanded->command == CommandKind::resume;
+        if (goes_on) held_since.reset();
+        if (!goes_on && commanded->command != CommandKind::give_back) held_since = event.time;
+      } else if (told != nullptr && told->told_by != kGroundStation) {
+        held_since.reset();
+      } else if (held_since && takes_up_something(event.kind())) {
+        result.violations.push_back(
+            {event.vehicle, event.time,
+             vehicle_name(event.vehicle) + ": " + std::string{to_string(event.kind())} + " " +
+                 at(event.time) + ", but it was told to hold or to come home " + at(*held_since)});
+      }
     }
   }
   return result;

@@ -158,6 +158,27 @@ TEST(ProtocolChecks, ADeliveryWithNoStartToldStillNeedsAuthorisation) {
   EXPECT_EQ(check_authorisation(record, {}).violations.size(), 2U);
 }
 
+mission::MissionEvent said_by_surveyor(double seconds, mission::EventBody body) {
+  return {kSurveyor, at_seconds(seconds), {}, {}, std::move(body)};
+}
+
+TEST(ProtocolChecks, WhoTakesUpSomethingUnderAHoldIsFound) {
+  using mission::CommandKind;
+  namespace event = mission::event;
+  const auto with = [](double told, mission::EventBody body) {
+    RunRecord record = good_record();
+    auto& events = of(record, kSurveyor).events;
+    events.insert(events.begin(), {said_by_surveyor(1.0, event::Commanded{CommandKind::hold}),
+                                   said_by_surveyor(told, std::move(body))});
+    return check_standing_orders(record, {});
+  };
+  const CheckResult forgotten = with(5.0, event::OrdersKnown{kGroundStation});
+  ASSERT_FALSE(forgotten.held());
+  EXPECT_THAT(forgotten.violations.front().sentence, HasSubstr("told to hold"));
+  EXPECT_TRUE(with(5.0, event::Commanded{CommandKind::resume}).held());
+  EXPECT_TRUE(with(5.0, event::OrdersKnown{kAssessor}).held()) << "which may have missed it";
+}
+
 TEST(ProtocolChecks, ADeliveryFlownTwiceIsFound) {
   RunRecord record = good_record();
   auto& events = of(record, kAssessor).events;

@@ -10,6 +10,9 @@ namespace {
 using mission::EventKind;
 using mission::MissionEvent;
 
+/// A survey is told as a survey and as a task.
+constexpr Duration kToldTwice = std::chrono::seconds{1};
+
 bool is_start(EventKind kind) {
   return kind == EventKind::task_started || kind == EventKind::survey_started;
 }
@@ -52,10 +55,13 @@ void add_to_runs(const MissionEvent& event, std::vector<TaskRun>& runs) {
   // Who loses the lease within an arc may fly it to its end or leave it; a new start tells.
   if (is_start(event.kind()) && last != runs.rend() && last->lease_lost && !last->done)
     last->failed = true;
+  // Who is told to hold leaves its survey, and begins it anew afterwards.
+  if (event.kind() == EventKind::survey_started && last != runs.rend() && last->started &&
+      event.time - *last->started >= kToldTwice && !last->done)
+    last->failed = true;
   const bool open = last != runs.rend() && !last->done && !last->failed && !last->cut_off;
-  // A survey is told twice, as a survey and as a task: one run.
   const bool told_again = !open && last != runs.rend() && task.kind == TaskKind::survey &&
-                          last->done && event.time - *last->done < std::chrono::seconds{1};
+                          last->done && event.time - *last->done < kToldTwice;
   if (!open && !told_again) {
     if (unleased || event.kind() == EventKind::task_failed) return;  // given up before it began
     runs.push_back({task, event.vehicle, event.round, {}, {}, false, {}, false, false});

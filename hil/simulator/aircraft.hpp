@@ -42,6 +42,10 @@ class Aircraft {
   [[nodiscard]] bool running() const { return node_.has_value(); }
   /// Its program runs, and it can be found a leader or member of a coalition.
   [[nodiscard]] bool in_coalitions() const { return running() && !what_.flies_formation; }
+  /// And it works with the others.
+  [[nodiscard]] bool takes_part() const {
+    return in_coalitions() && node_->bar() == mission::Bar::none;
+  }
   /// Precondition: running().
   [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
   /// It has come to where its newest change of formation ends, or there is none.

@@ -60,6 +60,11 @@ struct Sentence {
     return fmt::format("the clock of {} is {:+.6f} s off", names_of({what.node}),
                        to_seconds(what.offset));
   }
+  std::string operator()(const Ordered& what) const {
+    return fmt::format("the operator orders {}: {}",
+                       what.vehicle == kGroundStation ? "all" : names_of({what.vehicle}),
+                       to_string(what.kind));
+  }
   std::string operator()(const SitesReported& /*what*/) const { return "all sites are reported"; }
   std::string operator()(const PlaceSeen& what) const {
     return fmt::format("detectors of {} see something at ({:.1f}, {:.1f})", names_of(what.by),

@@ -86,6 +86,17 @@ FaultParams sites_told() {
   p.withdrawn = 1;
   return p;
 }
+FaultParams orders() {
+  FaultParams p = phase_only();
+  p.orders = 6;
+  p.restarts = 2;
+  return p;
+}
+FaultParams wrong_clock() {
+  FaultParams p = phase_only();
+  p.wrong_clock = true;
+  return p;
+}
 FaultParams slow_planner() {
   FaultParams p = phase_only();
   p.planning = seconds{3};
@@ -205,7 +216,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 16> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 18> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -220,7 +231,9 @@ constexpr std::array<Profile, 16> kProfiles{{{"none", nullptr, no_fault},
                                              {"operator", slow_operator},
                                              {"joining", joining},
                                              {"planner", slow_planner},
-                                             {"sites", sites_told}}};
+                                             {"sites", sites_told},
+                                             {"orders", orders},
+                                             {"clock", wrong_clock}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
@@ -418,6 +431,8 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   restarts = std::max(restarts, other.restarts);
   joiners = std::max(joiners, other.joiners);
   clock_offset = std::max(clock_offset, other.clock_offset);
+  orders = std::max(orders, other.orders);
+  wrong_clock = wrong_clock || other.wrong_clock;
   ground = std::max(ground, other.ground);
   planning = std::max(planning, other.planning);
   hazards = std::max(hazards, other.hazards);
@@ -460,6 +475,40 @@ Result<std::vector<Fault>> formation_faults(const std::string& profiles,
   }
   return std::move(draw.faults);
 }
+
+namespace {
+
+/// The last goes to all: go on, once the radio has healed.
+void draw_orders(Random& random, TeamMission& mission, const FaultParams& params) {
+  const std::size_t orders = count(random, params.orders);
+  for (std::size_t n = 0; n < orders; ++n) {
+    const Instant at = Instant{} + between(random, seconds{1}, params.phase);
+    VehicleId whom = kGroundStation;
+    if (random.chance(0.7)) whom = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+    static constexpr std::array kKinds{mission::CommandKind::hold, mission::CommandKind::hold,
+                                       mission::CommandKind::return_home,
+                                       mission::CommandKind::resume};
+    mission.faults.push_back({{.not_before = at}, {}, Ordered{whom, kKinds.at(random.index(4))}});
+  }
+  // The ground station's program may be down for up to half a minute then.
+  for (int i = 1; i <= 2; ++i) {
+    mission.faults.push_back({{.not_before = Instant{} + params.phase + i * seconds{20}},
+                              {},
+                              Ordered{kGroundStation, mission::CommandKind::resume}});
+  }
+}
+
+void draw_wrong_clock(Random& random, TeamMission& mission) {
+  const VehicleId whose = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+  const Duration off = between(random, seconds{1}, seconds{5});
+  std::erase_if(mission.faults, [whose](const Fault& fault) {
+    const auto* clock = std::get_if<ClockOff>(&fault.what);
+    return clock != nullptr && clock->node == whose;
+  });
+  mission.faults.push_back({{}, {}, ClockOff{whose, random.chance(0.5) ? off : -off}});
+}
+
+}  // namespace
 
 void add_faults(TeamMission& mission, const FaultParams& params) {
   if (params.phase == Duration{}) return;
@@ -518,6 +567,8 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     faults.push_back({{.not_before = at}, down, ProgramsEnd{{kGroundStation}}});
   }
   draw_sites(random, mission, params);
+  if (params.orders > 0) draw_orders(random, mission, params);
+  if (params.wrong_clock) draw_wrong_clock(random, mission);
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }

@@ -32,6 +32,10 @@ class GroundStation {
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
+  /// Of the operator, who gives it while the program runs.
+  void command(VehicleId vehicle, mission::CommandKind kind, Instant now) {
+    if (node_) (void)node_->command(vehicle, kind, now + clock_);
+  }
   [[nodiscard]] std::optional<mission::Message> poll_message(Instant now);
   [[nodiscard]] std::optional<mission::MissionEvent> poll_event();
 

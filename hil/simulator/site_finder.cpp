@@ -73,19 +73,34 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft
   return all;
 }
 
+/// What nobody has found, or only vehicles that do not work with the others.
+std::vector<Site> SiteFinder::unattended(const std::vector<Aircraft>& vehicles) const {
+  std::vector<Site> all = sensors_.hidden();
+  const auto barred = [&](VehicleId id) {
+    const auto v = std::find_if(vehicles.begin(), vehicles.end(),
+                                [id](const Aircraft& a) { return a.spec().id == id; });
+    return v != vehicles.end() && v->running() && !v->takes_part();
+  };
+  for (const Site& site : mission_.sites) {
+    const auto knowing = knowing_.find(site.id);
+    if (knowing == knowing_.end() || knowing->second.empty() || done_.contains(site.id)) continue;
+    if (std::all_of(knowing->second.begin(), knowing->second.end(), barred)) all.push_back(site);
+  }
+  return all;
+}
+
 std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft>& vehicles) {
   std::vector<Found> all;
   std::vector<Site> nobody;
   std::set<std::size_t> busy;
-  for (const Site& site : sensors_.hidden()) {
+  for (const Site& site : unattended(vehicles)) {
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t i) {
       return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
     };
     const auto consider = [&](bool also_busy) {
       for (std::size_t i = 0; i < vehicles.size(); ++i) {
-        const bool can = vehicles[i].in_coalitions() &&
-                         specs_[i].capabilities.has(TaskKind::survey) &&
+        const bool can = vehicles[i].takes_part() && specs_[i].capabilities.has(TaskKind::survey) &&
                          (also_busy || !busy.contains(i));
         if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
       }

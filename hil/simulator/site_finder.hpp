@@ -35,6 +35,7 @@ class SiteFinder {
   void on_agent_end(std::size_t vehicle);
 
  private:
+  [[nodiscard]] std::vector<Site> unattended(const std::vector<Aircraft>& vehicles) const;
   Found found(std::size_t vehicle, const Site& site);
 
   const TeamMission& mission_;

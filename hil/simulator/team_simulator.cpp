@@ -190,6 +190,11 @@ class Team {
       if (done) drain_ground(now);
       return done;
     }
+    if (const auto* order = std::get_if<Ordered>(&fault.what)) {
+      ground_.command(order->vehicle, order->kind, now);
+      tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
+      return true;
+    }
     const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
     if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
       tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
@@ -455,6 +460,7 @@ class Team {
     VehicleEnd end;
     end.vehicle = v.spec().id;
     end.gone = gone_at_[i].has_value();
+    end.barred = v.in_coalitions() && !v.takes_part();
     end.loads = v.loads_left();
     end.in_place = v.in_place();
     if (v.flying()) {

@@ -90,6 +90,7 @@ class GroundNode {
  private:
   void take_events();
   void on_setup(const Setup& setup, Instant now);
+  void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
 
   GroundAgent agent_;

@@ -60,6 +60,10 @@ class SetupBook {
 
   /// Of who may say it (may_say()).
   void on_setup(const Setup& setup, Instant now);
+  /// That node has said, by its clock, that it was `then`: its telemetry, many times a second.
+  void on_time(VehicleId node, Instant then, Instant now) {
+    if (then > now + params_.clock_guard) on_ahead(node, then - now, now);
+  }
 
   /// Told in it: the orders that this node knows of.
   struct Orders {
@@ -87,6 +91,8 @@ class SetupBook {
 
   [[nodiscard]] std::string differing_keys(const Setup& setup) const;
   void watch_clock(Node& node, const Setup& setup, Instant now) const;
+  void on_ahead(VehicleId id, Duration ahead, Instant now);
+  void compare(VehicleId id, Node& node, Instant now);
 
   SetupParams params_;
   Setup own_;

@@ -67,6 +67,7 @@ class VehicleNode {
 
   /// What decides, for whoever looks on.
   [[nodiscard]] const OnboardAgent& agent() const;
+  [[nodiscard]] Bar bar() const;
   [[nodiscard]] VehicleId vehicle() const;
   [[nodiscard]] InstanceId instance() const;
   [[nodiscard]] Counters counters() const;

@@ -59,6 +59,10 @@ struct CheckResult {
 /// A delivery starts only after the ground station authorised its round and site, and the vehicle
 /// heard of it.
 [[nodiscard]] CheckResult check_authorisation(const RunRecord& record, const Limits& limits);
+/// A vehicle that was told to hold or to come home takes up nothing until it is told to go on,
+/// whatever its program forgets; but where only another vehicle could tell it which orders stand,
+/// which may have missed them.
+[[nodiscard]] CheckResult check_standing_orders(const RunRecord& record, const Limits& limits);
 /// No delivery is flown twice.
 [[nodiscard]] CheckResult check_single_delivery(const RunRecord& record, const Limits& limits);
 /// Every task of every site is done; what the operator refused, and what waits for it, is excused.

@@ -12,6 +12,7 @@
 #include "skein/base/time.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/radio/radio_model.hpp"
+#include "skein/mission/messages.hpp"
 
 /// What goes wrong in a mission, and when: one list, written in a scenario or drawn from a seed,
 /// done by the simulator in virtual time and by the bench to processes.
@@ -47,6 +48,11 @@ struct ClockOff {
   VehicleId node;
   Duration offset{};
 };
+/// The operator orders one vehicle, or all (0).
+struct Ordered {
+  VehicleId vehicle;
+  mission::CommandKind kind{};
+};
 /// Somebody tells the team of all sites that are hidden still.
 struct SitesReported {};
 /// Detectors of those vehicles tell of a place, each of one that is 8 m from the one before: of
@@ -67,8 +73,8 @@ struct Healing {};
 struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
-  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, SitesReported,
-               PlaceSeen, SiteWithdrawal, Healing>
+  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, Ordered,
+               SitesReported, PlaceSeen, SiteWithdrawal, Healing>
       what;
 };
 

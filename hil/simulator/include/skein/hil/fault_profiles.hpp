@@ -44,6 +44,8 @@ struct FaultParams {
   Duration clock_offset{};   ///< of each vehicle's clock, to either side
   std::size_t ground = 0;    ///< times that the ground station's program ends and starts anew
   Duration planning{};       ///< a plan takes up to so long, in every vehicle
+  std::size_t orders = 0;    ///< of the operator: to hold, to come home, to go on
+  bool wrong_clock = false;  ///< one vehicle's, by seconds
   // World:
   std::size_t hazards = 0;      ///< appear in flight
   std::size_t seen = 0;         ///< places that detectors tell of: false, doubled

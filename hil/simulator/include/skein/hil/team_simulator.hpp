@@ -85,7 +85,8 @@ struct FaultEvent {
     reported,
     appeared,
     healed,
-    radio
+    radio,
+    ordered
   };
   Instant time{};
   Kind kind = Kind::healed;
@@ -119,7 +120,8 @@ struct TeamObserver {
 /// A vehicle when the mission ended.
 struct VehicleEnd {
   VehicleId vehicle;
-  bool gone = false;  ///< its agent ended for good
+  bool gone = false;    ///< its agent ended for good
+  bool barred = false;  ///< it does not work with the others (mission::Bar)
   std::uint8_t loads = 0;
   double range_left_m = 0.0;
   Vec2 position{0.0, 0.0};
