@@ -37,6 +37,13 @@ bool is_joint_work(const Message& message) {
          std::holds_alternative<Authorisation>(message);
 }
 
+bool speaks_of_ground(const EventBody& news) {
+  const auto* differs = std::get_if<event::SetupDiffers>(&news);
+  const auto* agrees = std::get_if<event::SetupAgrees>(&news);
+  return (differs != nullptr && differs->node == kGroundStation) ||
+         (agrees != nullptr && agrees->node == kGroundStation);
+}
+
 Health unchanging(const VehicleNodeConfig& config, const Telemetry& telemetry) {
   Health health;
   health.vehicle = telemetry.vehicle;
@@ -87,7 +94,8 @@ class VehicleNode::Impl {
   void take_news(Instant now) {
     bool any = false;
     for (auto news = setup.poll_news(); news; news = setup.poll_news()) {
-      report(*std::move(news), now);
+      // In a large team everybody would tell of everybody: the ground station tells of vehicles.
+      if (!setup.knows(kGroundStation) || speaks_of_ground(*news)) report(*std::move(news), now);
       any = true;
     }
     if (any) update_bar(now);

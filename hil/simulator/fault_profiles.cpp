@@ -241,6 +241,9 @@ FaultParams mixed(std::uint64_t seed) {
   for (const Profile& profile : kProfiles) {
     if (profile.sites != nullptr && random.chance(0.45)) all.add(profile.sites());
   }
+  // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
+  // one that another site needs.
+  if (all.wrong_clock) all.crashes = std::min<std::size_t>(all.crashes, 1);
   return all;
 }
 

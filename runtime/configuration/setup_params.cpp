@@ -75,11 +75,16 @@ Duration clock_guard(const coalition::ProtocolParams& protocol, const FormationC
   return std::min(protocol.clock_guard, from_seconds(tracked_s));
 }
 
+/// Without the commit: builds of one release work together.
+std::string_view number_of(std::string_view version) {
+  return version.substr(0, version.find('+'));
+}
+
 template <class Config>
 mission::SetupParams params_of(Config config, const Release& release, bool in_formation) {
   mission::SetupParams params;
   params.common = CommonKeys{}.list([&config](FieldVisitor& v) { fields(v, config); });
-  params.common.push_back({"program.version", mission::setup_hash(release.version)});
+  params.common.push_back({"program.version", mission::setup_hash(number_of(release.version))});
   params.common.push_back({"program.wire", mission::setup_hash(release.wire)});
   params.clock_guard = clock_guard(config.protocol, config.formation, in_formation);
   return params;

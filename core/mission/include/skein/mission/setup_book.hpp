@@ -75,6 +75,8 @@ class SetupBook {
   [[nodiscard]] std::optional<EventBody> poll_news() { return news_.pop(); }
   [[nodiscard]] Instant next_timeout() const { return next_; }
 
+  /// Has that node told anything of its setup or its clock?
+  [[nodiscard]] bool knows(VehicleId node) const { return nodes_.contains(node); }
   /// Null for a node that runs with the same, or has told nothing yet.
   [[nodiscard]] const SetupDifference* difference(VehicleId node) const;
 
