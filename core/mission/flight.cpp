@@ -217,6 +217,14 @@ void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
   continue_with(at, way, tail, now);
 }
 
+std::optional<double> Flight::orbit_after(Path& path, double arc_curvature_per_m,
+                                          const std::vector<Hazard>& hazards) const {
+  if (orbit_keeps_clear(path.end(), arc_curvature_per_m, hazards)) return arc_curvature_per_m;
+  const double curvature = append_hold(path, hazards);
+  if (!orbit_keeps_clear(path.end(), curvature, hazards)) return std::nullopt;
+  return curvature;
+}
+
 bool Flight::orbit_keeps_clear(const Pose2& from, double curvature_per_m,
                                const std::vector<Hazard>& hazards) const {
   const double radius = 1.0 / std::abs(curvature_per_m);

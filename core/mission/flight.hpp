@@ -52,12 +52,10 @@ class Flight {
   /// where it can.
   [[nodiscard]] double hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const;
 
-  /// Does an orbit of that curvature from there stay outside the safety circles of the hazards?
-  [[nodiscard]] bool orbit_keeps_clear(const Pose2& from, double curvature_per_m,
-                                       const std::vector<Hazard>& hazards) const;
-  /// The way to where there is room for an orbit, where there is none at the path's end. The
-  /// orbit's curvature.
-  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
+  /// The curvature of the orbit after an arc around a site: the arc's own where hazards leave room
+  /// for a whole lap on it, else one that `path` is led on to; none where there is room for none.
+  [[nodiscard]] std::optional<double> orbit_after(Path& path, double arc_curvature_per_m,
+                                                  const std::vector<Hazard>& hazards) const;
 
   /// Does what is left of the plan, one lap of its orbit included, stay outside the safety circles
   /// of the hazards?
@@ -71,6 +69,12 @@ class Flight {
     double curvature_per_m = 0.0;
     double clearance_m = 0.0;  ///< from the nearest hazard, as far as it matters
   };
+  /// Does an orbit of that curvature from there stay outside the safety circles of the hazards?
+  [[nodiscard]] bool orbit_keeps_clear(const Pose2& from, double curvature_per_m,
+                                       const std::vector<Hazard>& hazards) const;
+  /// The way to where there is room for an orbit, where there is none at the path's end. The
+  /// orbit's curvature.
+  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
   [[nodiscard]] Orbit best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const;
   /// Where the vehicle is inside a hazard that has just become known, or no turn at the planning
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the

@@ -156,11 +156,11 @@ std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site
   }
   // A site may lie where there is room for the arc, and not for a whole lap on it.
   Path way = path;
-  double tail = plan->timed.tail_curvature_per_m;
-  if (!flight.orbit_keeps_clear(way.end(), tail, ownship_.hazards())) {
-    tail = flight.append_hold(way, ownship_.hazards());
+  const auto tail = flight.orbit_after(way, plan->timed.tail_curvature_per_m, ownship_.hazards());
+  if (!tail) {
+    return event::TaskFailed{TaskFailure::no_plan, {}, "hazards leave no room for an orbit there"};
   }
-  if (!flight.continue_with(start, way, tail, now)) {
+  if (!flight.continue_with(start, way, *tail, now)) {
     return event::TaskFailed{TaskFailure::path_too_long};
   }
   return *plan;

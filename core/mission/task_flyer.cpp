@@ -169,17 +169,17 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
     return Why{Reason::out_of_range};
   }
   task.plan = *plan;
-  double tail = plan->timed.tail_curvature_per_m;
+  std::optional<double> tail;
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
     if (!to_gate) return Why{Reason::path_too_long};
     path = *to_gate;
     tail = flight.hold_curvature(path.end(), hazards);
+  } else {
+    tail = flight.orbit_after(path, plan->timed.tail_curvature_per_m, hazards);
+    if (!tail) return Why{Reason::path_barred};
   }
-  if (!task.is_delivery() && !flight.orbit_keeps_clear(path.end(), tail, hazards)) {
-    tail = flight.append_hold(path, hazards);
-  }
-  if (!flight.continue_with(start, path, tail, now, speed_mps)) return Why{Reason::path_too_long};
+  if (!flight.continue_with(start, path, *tail, now, speed_mps)) return Why{Reason::path_too_long};
   return task;
 }
 

@@ -47,6 +47,7 @@ vehicles: [1, 2]
 console: {port: ${port}, passwords: passwords, certificate: cert.pem, key: key.pem}
 control_socket: skein-console-test-${port}
 network: {port: ${network}}
+time: {epoch_unix_ns: ${BigInt(Date.now()) * 1000000n}}
 recording_folder: recording
 `,
   );
