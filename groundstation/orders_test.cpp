@@ -25,6 +25,9 @@ std::string trouble_with(const char* json) {
   return order ? "" : order.error().message;
 }
 
+constexpr const char* kLongSite =
+    "site 1 2 deliver 90 simultaneous assess 2 wait 3 dwell 8 survey 5 reward 3 decay 0.1";
+
 TEST(Orders, WhatIsTypedComesBackAsItsLine) {
   for (const char* line : {"hold all",
                            "resume 7",
@@ -36,8 +39,7 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "site 1200 -300",
                            "site 59.1234N 17.5W deliver 90,180 every 4 by 3",
                            "site like fire at 10 20.5 deliver none anyway",
-                           "site 1 2 deliver 90 simultaneous assess 2 wait 3 dwell 8 survey 5 "
-                           "reward 3 decay 0.1",
+                           kLongSite,
                            "preview site 1 2",
                            "change site 10034 at 5 6",
                            "preview change site 10034 reward 5",

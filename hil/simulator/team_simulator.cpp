@@ -508,9 +508,9 @@ std::string trace_line(const mission::MissionEvent& event) {
 }
 
 std::string text_of(const FaultEvent& event) {
-  static constexpr std::array<const char*, 8> kNames{
-      "its program ends", "its program ends for good", "starts anew", "joins", "is told of",
-      "appears",          "the radio heals",           "the radio,"};
+  static constexpr std::array<const char*, 9> kNames{
+      "its program ends", "its program ends for good", "starts anew", "joins",      "is told of",
+      "appears",          "the radio heals",           "the radio,",  "is ordered,"};
   return kNames.at(static_cast<std::size_t>(event.kind)) +
          (event.text.empty() ? "" : " " + event.text);
 }

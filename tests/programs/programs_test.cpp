@@ -373,9 +373,9 @@ TEST_F(Told, ASiteOfTheOperatorIsSurveyedAndDeliveredTo) {
 TEST_F(Told, WhatADetectorSeesIsProposedTakenAndCanBeWithdrawn) {
   fly();
   // 1 km north and 2.2 km east of the origin.
-  auto detector =
-      start({"/usr/bin/env", "python3", SKEIN_SOURCE_DIR "/onboard/detectors/example/detector.py",
-             folder_ / "detections.sock", "flood", "0.009", "0.02"});
+  const std::string example = SKEIN_SOURCE_DIR "/onboard/detectors/example/detector.py";
+  auto detector = start(
+      {"/usr/bin/env", "python3", example, folder_ / "detections.sock", "flood", "0.009", "0.02"});
   ASSERT_TRUE(detector.wait(kPatience));
   ASSERT_EQ(detector.ended(), "exit status 0") << text_of("log");
   ASSERT_TRUE(comes_to({"proposals"}, "proposal 1: flood")) << text_of("log");
