@@ -68,8 +68,10 @@ void GroundNode::take_differences(VehicleId vehicle, Instant now) {
     any = true;
   }
   if (!any) return;
-  agent_.fleet().set_difference(vehicle, setup_.difference(vehicle));
-  const auto why_not = fleet().why_not_with(vehicle);
+  const SetupDifference* const difference = setup_.difference(vehicle);
+  agent_.fleet().set_difference(vehicle, difference);
+  // An id that is used twice is no matter of setups, and its end would not be heard of here.
+  const auto why_not = difference == nullptr ? std::nullopt : fleet().why_not_with(vehicle);
   formation_.barred().set(vehicle, why_not);
   tracks_.barred().set(vehicle, why_not);
 }

@@ -150,6 +150,24 @@ TEST(GroundNode, DoesNotWorkWithAVehicleOfAnotherSetup) {
   EXPECT_TRUE(ground.agent().authorise(kSite, "test", at_seconds(2.0)).ok());
 }
 
+TEST(GroundNode, AnIdThatWasUsedTwiceBarsNoFormationAfterASetupThatAgrees) {
+  GroundNodeConfig config;
+  config.agent.expected = config.formation.vehicles = {{1}, {2}, {3}};
+  config.setup = {.common = {{"origin.latitude_deg", setup_hash("48.1")}}};
+  GroundNode ground{config, Instant{}};
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  for (const std::uint64_t instance : {1U, 2U, 1U}) {
+    telemetry.instance = {instance};
+    ground.on_message(telemetry, kVehicle, at_seconds(1.0));
+  }
+  ASSERT_TRUE(ground.fleet().duplicate(kVehicle));
+  ground.on_message(setup_of(kVehicle, "48.2"), kVehicle, at_seconds(1.0));
+  ASSERT_TRUE(ground.formation().barred().why());
+  ground.on_message(setup_of(kVehicle, "48.1"), kVehicle, at_seconds(2.0));
+  EXPECT_FALSE(ground.formation().barred().why());
+}
+
 TEST(GroundNode, TellsAVehicleThatStartedAnewWhichOrdersStand) {
   GroundNode ground = node();
   ASSERT_TRUE(ground.command(kGroundStation, CommandKind::hold, at_seconds(1.0)).ok());
