@@ -28,11 +28,9 @@ inline constexpr std::array kActivityRules{
     ActivityRule{[](const PartStates& s) { return s.failsafe == Failsafe::Action::obey; },
                  Activity::holding},
     ActivityRule{[](const PartStates& s) {
-                   return s.failsafe == Failsafe::Action::stay && !s.has_task && !s.leads;
-                 },
-                 Activity::holding},
-    ActivityRule{[](const PartStates& s) {
-                   return s.failsafe == Failsafe::Action::come_home && !s.has_task && !s.leads;
+                   const bool leaves_work = s.failsafe == Failsafe::Action::stay ||
+                                            s.failsafe == Failsafe::Action::come_home;
+                   return leaves_work && !s.has_task && !s.leads;
                  },
                  Activity::holding},
     ActivityRule{[](const PartStates& s) { return s.has_task; }, Activity::executing},

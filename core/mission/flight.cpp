@@ -147,12 +147,21 @@ double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazard
 }
 
 /// The first orbit that keeps its distance; where none does, the one that keeps most.
+namespace {
+
+/// `radius_m` is positive to the left.
+Vec2 orbit_centre(const Pose2& from, double radius_m) {
+  return from.position() + radius_m * left_of(unit_vector(from.heading_rad));
+}
+
+}  // namespace
+
 Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const {
   Orbit best{1.0 / vehicle_.planning_radius_m(), -std::numeric_limits<double>::infinity()};
   for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
     for (const double side : {1.0, -1.0}) {
       const double radius = factor * vehicle_.planning_radius_m();
-      const Vec2 centre = at.position() + side * radius * left_of(unit_vector(at.heading_rad));
+      const Vec2 centre = orbit_centre(at, side * radius);
       double clearance = kHoldClearanceM;
       for (const Hazard& h : hazards) {
         const double d = (h.centre - centre).norm();
@@ -229,7 +238,7 @@ bool Flight::orbit_keeps_clear(const Pose2& from, double curvature_per_m,
                                const std::vector<Hazard>& hazards) const {
   const double radius = 1.0 / std::abs(curvature_per_m);
   const double side = curvature_per_m > 0.0 ? 1.0 : -1.0;
-  const Vec2 centre = from.position() + side * radius * left_of(unit_vector(from.heading_rad));
+  const Vec2 centre = orbit_centre(from, side * radius);
   return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
     const double distance = (hazard.centre - centre).norm();
     return std::abs(distance - radius) >= avoidance_.safety_radius_m(hazard);

@@ -41,8 +41,7 @@ bool can_survey(const FleetEntry& known) {
 
 }  // namespace
 
-// --- what is heard, and was said
-// -------------------------------------------------------------------
+// --- what is heard, and was said ---
 
 void GroundSites::recall(const Message& message, VehicleId sender, Instant at) {
   const auto* report = std::get_if<SiteReport>(&message);
@@ -182,8 +181,7 @@ const GroundSite* GroundSites::open_near(const Vec2& place, double radius_m) con
   return nearest;
 }
 
-// --- orders
-// ----------------------------------------------------------------------------------------
+// --- orders ---
 
 Result<SiteId> GroundSites::add(Site site, std::optional<VehicleId> surveyor, const Fleet& fleet,
                                 Instant now) {
@@ -247,8 +245,7 @@ Result<SiteId> GroundSites::change(SiteId old, Site site, std::optional<VehicleI
   return added;
 }
 
-// --- who surveys
-// -----------------------------------------------------------------------------------
+// --- who surveys ---
 
 /// It does something, or has another site of the operator to survey.
 bool GroundSites::is_busy(VehicleId vehicle, const FleetEntry& known, SiteId with) const {
