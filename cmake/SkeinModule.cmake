@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 #
-# skein_module(NAME LAYER n SOURCES ... HEADERS ... [IDL ...] [DEPS ...] [PRIVATE_DEPS ...]
+# skein_module(NAME LAYER n [COLD] SOURCES ... HEADERS ... [IDL ...] [DEPS ...] [PRIVATE_DEPS ...]
 #              [LIBRARIES ...] [PRIVATE_LIBRARIES ...] [TESTS ...] [TEST_DEPS ...])
 #   A library skein::NAME with its own include root `include/`. DEPS and PRIVATE_DEPS are Skein
 #   modules and must lie in a lower layer, or the configuration fails. A header of a module that was
 #   not named is not on the include path. LIBRARIES are packages. IDL names the files of
 #   idl/ whose types are this module's, as skein/idl/FILE.hpp. TESTS (x_test.cpp beside the code)
-#   become one test program NAME_test; TEST_DEPS are what only the tests use.
+#   become one test program NAME_test; TEST_DEPS are what only the tests use. COLD: it waits for people
+#   and files and computes little, so it is compiled with -O1, in two thirds of the time.
 #
 # skein_program(NAME COMMAND_LINE ... [SOURCES ...] DEPS ... [LIBRARIES ...])
 #   An executable; the top of the graph. Nothing can depend on it. COMMAND_LINE are the sources that
@@ -55,7 +56,7 @@ function(_skein_tests name)
 endfunction()
 
 function(skein_module name)
-  cmake_parse_arguments(M "" "LAYER"
+  cmake_parse_arguments(M "COLD" "LAYER"
     "SOURCES;HEADERS;IDL;DEPS;PRIVATE_DEPS;LIBRARIES;PRIVATE_LIBRARIES;TESTS;TEST_DEPS" ${ARGN})
   if(M_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "skein_module(${name}): unknown words ${M_UNPARSED_ARGUMENTS}")
@@ -68,7 +69,10 @@ function(skein_module name)
     target_sources(skein_${name} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${M_HEADERS})
     target_link_libraries(skein_${name} PUBLIC ${deps} ${M_LIBRARIES}
       PRIVATE ${private_deps} ${M_PRIVATE_LIBRARIES} $<BUILD_INTERFACE:skein_warnings>)
-    if(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/core/")
+    if(M_COLD)
+      target_link_libraries(skein_${name} PRIVATE $<BUILD_INTERFACE:skein_cold>)
+      _skein_precompiled(skein_${name} cold)
+    elseif(CMAKE_CURRENT_SOURCE_DIR MATCHES "^${PROJECT_SOURCE_DIR}/core/")
       _skein_precompiled(skein_${name} core)
     else()
       _skein_precompiled(skein_${name} module)
@@ -94,8 +98,8 @@ function(skein_program name)
   _skein_check_layers(${name} 100 ${P_DEPS})
   list(TRANSFORM P_DEPS PREPEND "skein::")
   add_executable(${name} ${P_COMMAND_LINE} ${P_SOURCES})
-  target_link_libraries(${name} PRIVATE ${P_DEPS} ${P_LIBRARIES} skein_warnings)
-  _skein_precompiled(${name} module)
+  target_link_libraries(${name} PRIVATE ${P_DEPS} ${P_LIBRARIES} skein_warnings skein_cold)
+  _skein_precompiled(${name} cold)
   target_compile_options(${name} PRIVATE -fPIC)  # as those are, or GCC would not take it
   set_source_files_properties(${P_COMMAND_LINE} PROPERTIES
     COMPILE_OPTIONS -O0 SKIP_PRECOMPILE_HEADERS ON)

@@ -26,6 +26,10 @@ target_compile_options(skein_warnings INTERFACE
   # False alarms on sums of strings in GCC 12 (its bug 105651). Clang, which lints and fuzzes, has them.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>)
 
+# Of modules that are COLD (SkeinModule.cmake); sanitized and debug builds have their own levels.
+add_library(skein_cold INTERFACE)
+target_compile_options(skein_cold INTERFACE $<$<CONFIG:Release>:-O1>)
+
 # Every object: the same doubles on every compiler (no fused multiply-add), sanitizers where asked.
 add_compile_options(-ffp-contract=off)
 if(SKEIN_SANITIZE)
@@ -58,12 +62,14 @@ if(SKEIN_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   set(precompiled_module ${precompiled_core} <fmt/format.h>)
   set(precompiled_test ${precompiled_module} <gmock/gmock.h> <gtest/gtest.h>)
   file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "")
-  foreach(kind core module test)
+  set(precompiled_cold ${precompiled_module})
+  foreach(kind core module cold test)
     add_library(skein_precompiled_${kind} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
     target_link_libraries(skein_precompiled_${kind} PRIVATE Eigen3::Eigen skein_warnings)
     target_precompile_headers(skein_precompiled_${kind} PRIVATE ${precompiled_${kind}})
   endforeach()
   target_link_libraries(skein_precompiled_test PRIVATE GTest::gmock)
+  target_link_libraries(skein_precompiled_cold PRIVATE skein_cold)
   # As programs are compiled, or GCC would not take it.
   set_target_properties(skein_precompiled_test PROPERTIES POSITION_INDEPENDENT_CODE OFF)
   target_compile_options(skein_precompiled_test PRIVATE -fPIE)
