@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/groundstation/control_socket.hpp"
 
+#include <pwd.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <boost/asio.hpp>
@@ -13,6 +15,7 @@
 #include <string_view>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "skein/base/bounded_queue.hpp"
 #include "skein/groundstation/prompt.hpp"
@@ -25,6 +28,7 @@ using asio::local::stream_protocol;
 using boost::system::error_code;
 
 constexpr std::size_t kConnectionsMax = 16;
+constexpr std::size_t kGroupsMax = 65536;  // Linux's
 constexpr auto kConnectionLasts = std::chrono::seconds{30};
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
 constexpr auto kLastWords = std::chrono::milliseconds{200};
@@ -32,17 +36,56 @@ constexpr std::string_view kDone = "done\n";
 constexpr std::string_view kRefused = "refused\n";
 
 /// Who holds the other end.
-std::optional<uid_t> user_of(stream_protocol::socket& socket) {
+std::optional<ucred> peer_of(stream_protocol::socket& socket) {
   ucred peer{};
   socklen_t size = sizeof peer;
   if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &peer, &size) != 0)
     return std::nullopt;
-  return peer.uid;
+  return peer;
 }
 
-bool is_trusted(stream_protocol::socket& socket) {
-  const auto user = user_of(socket);
-  return user == ::geteuid() || user == uid_t{0};
+/// The account that the packages' service runs as, whose group is the crew.
+struct Account {
+  uid_t user;
+  gid_t group;
+};
+std::optional<Account> service_account() {
+  std::array<char, 4096> text{};
+  passwd account{};
+  passwd* found = nullptr;
+  if (::getpwnam_r("skein", &account, text.data(), text.size(), &found) != 0 || found == nullptr) {
+    return std::nullopt;
+  }
+  return Account{account.pw_uid, account.pw_gid};
+}
+
+bool is_of_group(stream_protocol::socket& socket, const ucred& peer, gid_t group) {
+  if (peer.gid == group) return true;
+  std::vector<gid_t> groups(kGroupsMax);
+  auto size = static_cast<socklen_t>(groups.size() * sizeof(gid_t));
+  if (::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) {
+    return false;
+  }
+  groups.resize(size / sizeof(gid_t));
+  return std::ranges::find(groups, group) != groups.end();
+}
+
+/// Whose orders are taken: the same user's, root's, and, by the service, those of its group.
+bool may_order(stream_protocol::socket& socket) {
+  const auto peer = peer_of(socket);
+  if (!peer) return false;
+  if (peer->uid == ::geteuid() || peer->uid == 0) return true;
+  const auto service = service_account();
+  return service && service->user == ::geteuid() && is_of_group(socket, *peer, service->group);
+}
+
+/// Who is given orders: anybody may take a name, so the same user, root, and the service.
+bool may_be_told(stream_protocol::socket& socket) {
+  const auto peer = peer_of(socket);
+  if (!peer) return false;
+  if (peer->uid == ::geteuid() || peer->uid == 0) return true;
+  const auto service = service_account();
+  return service && service->user == peer->uid;
 }
 
 Result<stream_protocol::endpoint> endpoint_of(const std::string& name) {
@@ -174,7 +217,7 @@ class ControlSocket::Impl {
         });
         return;
       }
-      if (connections_.size() < kConnectionsMax && is_trusted(accepted)) {
+      if (connections_.size() < kConnectionsMax && may_order(accepted)) {
         const auto connection = std::make_shared<Connection>(*this, std::move(accepted));
         connections_.insert(connection);
         connection->start();
@@ -232,18 +275,27 @@ Result<Answer> ask(const std::string& name, const std::string& line,
     return Error{"no ground station has the control socket " + name + " (" + failed.message() +
                  "); start one, or give its configuration with --config"};
   }
-  if (!is_trusted(socket)) {
+  if (!may_be_told(socket)) {
     return Error{"the program that has the control socket " + name + " is of another user"};
   }
   const std::string request = line + "\n";
   std::string reply;
   bool ended = false;
+  bool closed = false;
   asio::async_write(socket, asio::buffer(request), [&](const error_code& error, std::size_t) {
-    if (error) return;
-    asio::async_read(socket, asio::dynamic_buffer(reply),
-                     [&](const error_code& end, std::size_t) { ended = end == asio::error::eof; });
+    closed = error.failed();
+    if (closed) return;
+    asio::async_read(socket, asio::dynamic_buffer(reply), [&](const error_code& end, std::size_t) {
+      ended = end == asio::error::eof;
+      closed = true;
+    });
   });
   io.run_for(at_most);
+  if (closed && reply.empty()) {
+    return Error{"the ground station at the control socket " + name +
+                 " takes no order from you: it does from its user, from root and, as a service, "
+                 "from the group skein, 16 at a time"};
+  }
   const bool done = reply.starts_with(kDone);
   if (!ended || !(done || reply.starts_with(kRefused))) {
     return Error{"the ground station at the control socket " + name + " does not answer"};

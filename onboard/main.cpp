@@ -77,6 +77,10 @@ int show_status(const std::string& socket, const StatusArguments& arguments) {
   if (asked.failed == onboard::NoStatus::nobody_there) {
     return fail("no process of a vehicle has the status socket " + socket, kNobodyThere);
   }
+  if (asked.failed == onboard::NoStatus::not_allowed) {
+    return fail("you may not ask " + socket + ": root and the group of its process may (skein)",
+                kNotKnown);
+  }
   if (asked.failed) return fail("the process of " + socket + " does not answer", kNotKnown);
   if (arguments.flying) {
     const Airborne airborne = onboard::airborne_in(asked.line);

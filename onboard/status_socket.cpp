@@ -2,6 +2,7 @@
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kWaiting = 8;
 constexpr int kAnswersAtOnce = 8;  // so that a flood cannot keep the process from its watchdog
+constexpr std::chrono::milliseconds kLeftOverWithin{500};
 constexpr mode_t kMode = 0660;
 
 std::optional<sockaddr_un> address_of(const std::string& path) {
@@ -49,9 +51,24 @@ class Descriptor {
 
 int new_socket(int more) { return ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | more, 0); }
 
+/// A process that stands still has a queue, in which connect() waits.
+std::optional<NoStatus> connect_to(const sockaddr_un& address, int socket,
+                                   std::chrono::milliseconds at_most) {
+  const auto whole = std::chrono::duration_cast<std::chrono::seconds>(at_most);
+  timeval wait{};
+  wait.tv_sec = whole.count();
+  wait.tv_usec = std::chrono::microseconds{at_most - whole}.count();
+  if (::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &wait, sizeof wait) != 0) {
+    return NoStatus::no_answer;
+  }
+  if (::connect(socket, generic(address), sizeof address) == 0) return std::nullopt;
+  if (errno == ENOENT || errno == ECONNREFUSED) return NoStatus::nobody_there;
+  return errno == EACCES ? NoStatus::not_allowed : NoStatus::no_answer;
+}
+
 bool is_left_over(const sockaddr_un& address) {
   const Descriptor socket{new_socket(0)};
-  return ::connect(socket.get(), generic(address), sizeof address) != 0 && errno == ECONNREFUSED;
+  return connect_to(address, socket.get(), kLeftOverWithin) == NoStatus::nobody_there;
 }
 
 }  // namespace
@@ -87,10 +104,9 @@ void StatusSocket::serve(const std::function<std::string()>& line) const {
 
 AskedStatus ask_status(const std::string& path, std::chrono::milliseconds at_most) {
   const auto address = address_of(path);
+  if (!address) return {{}, NoStatus::nobody_there};
   const Descriptor socket{new_socket(0)};
-  if (!address || ::connect(socket.get(), generic(*address), sizeof *address) != 0) {
-    return {{}, NoStatus::nobody_there};
-  }
+  if (const auto failed = connect_to(*address, socket.get(), at_most)) return {{}, failed};
   std::string line;
   std::array<char, 4096> part{};
   pollfd readable{socket.get(), POLLIN, 0};

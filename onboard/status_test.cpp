@@ -101,6 +101,22 @@ TEST_F(Socket, TellsWhoIsNotThereFromWhoIsSilent) {
   EXPECT_EQ(ask_status(path_, std::chrono::milliseconds{1}).failed, NoStatus::no_answer);
 }
 
+TEST_F(Socket, WaitsNoLongerBehindOthersOfOneThatStandsStill) {
+  const auto opened = StatusSocket::open(path_);
+  ASSERT_TRUE(opened.ok());
+  for (int i = 0; i < 40; ++i) {  // nobody takes the others from its queue
+    EXPECT_EQ(ask_status(path_, std::chrono::milliseconds{1}).failed, NoStatus::no_answer) << i;
+  }
+}
+
+TEST_F(Socket, TellsWhoMayNotAskFromWhoIsNotThere) {
+  if (::geteuid() == 0) GTEST_SKIP() << "root may ask everybody";
+  const auto opened = StatusSocket::open(path_);
+  ASSERT_TRUE(opened.ok());
+  std::filesystem::permissions(path_, std::filesystem::perms::none);
+  EXPECT_EQ(ask_status(path_, std::chrono::seconds{1}).failed, NoStatus::not_allowed);
+}
+
 TEST_F(Socket, TakesOverWhatAProcessThatDiedHasLeft) {
   std::filesystem::path elsewhere = folder_ / "left";
   auto first = StatusSocket::open(path_);

@@ -23,11 +23,11 @@ struct Answer {
 /// gives another.
 [[nodiscard]] std::string control_socket_name(std::uint16_t port);
 
-/// Takes the lines of the prompt from other programs of the same user, over a Unix socket: one line
-/// a connection, answered by "done" or "refused" in a line, the text, and the end of the stream.
-/// The socket has a name and no file (unix(7), abstract), so nothing is left of who is killed. In a
-/// thread of its own from construction to destruction. Not more than 16 connections at once, each
-/// closed after 30 s.
+/// Takes the lines of the prompt from other programs of the same user, of root and, where it is the
+/// packages' service, of its group, `skein`, over a Unix socket: one line a connection, answered by
+/// "done" or "refused" in a line, the text, and the end of the stream. The socket has a name and no
+/// file (unix(7), abstract), so nothing is left of who is killed. In a thread of its own from
+/// construction to destruction. Not more than 16 connections at once, each closed after 30 s.
 class ControlSocket {
  public:
   struct Request {

@@ -91,13 +91,14 @@ class StatusSocket {
   std::string path_;
 };
 
-/// Why a status could not be had.
-enum class NoStatus : std::uint8_t { nobody_there, no_answer };
+/// Why a status could not be had. Nobody is there only where that is certain: an upgrade goes by
+/// it.
+enum class NoStatus : std::uint8_t { nobody_there, not_allowed, no_answer };
 struct AskedStatus {
   std::string line;                ///< empty where there is none
   std::optional<NoStatus> failed;  ///< and why
 };
-/// Asks a process for its line, and waits so long.
+/// Asks a process for its line, and waits so long, though others wait before it.
 [[nodiscard]] AskedStatus ask_status(const std::string& path, std::chrono::milliseconds at_most);
 
 }  // namespace skein::onboard
