@@ -4,12 +4,15 @@
 # bare_debian.sh PACKAGES WORK: installs the packages of the folder PACKAGES on a bare Debian 12 that
 # mmdebstrap makes in WORK (once), and flies the team of the examples there: all must be heard at the
 # ground station within two minutes of the beginning of the installation, an upgrade in flight must
-# be refused, one on the ground must keep the configuration, and a removal the recordings.
+# be refused, one on the ground must keep the configuration, and a removal the recordings. Then the
+# same installation is booted, and its units are tried (units_trial.sh), where systemd starts.
 # Needs root and a mirror of Debian; else it ends with 77. Its network is its own.
 set -euo pipefail
 
 readonly packages=$1 work=$2 skipped=77
 readonly bare=$work/bare
+here=$(dirname "$(realpath "${BASH_SOURCE[0]}")")
+readonly here
 
 say() { printf 'bare Debian: %s\n' "$*"; }
 fail() {
@@ -30,7 +33,7 @@ if [[ ! -d $bare ]]; then
   fi
   mv "$bare.new" "$bare"
 fi
-rm -rf "$work/root"
+rm -rf "$work/root" "$work/booted"
 cp -a "$bare" "$work/root"
 shopt -s nullglob
 for package in onboard ground; do
@@ -51,7 +54,7 @@ case $1 in
       { tail -20 install.log; exit 1; }
     cp /usr/share/skein/examples/*.yaml /etc/skein/
     ;;
-  fly)  # as the units would: systemd does not run here
+  fly) # as the units would, without systemd
     ip link set lo up
     install -d -o skein -g skein /run/skein /var/lib/skein
     as_skein=(setpriv --reuid=skein --regid=skein --clear-groups --)
@@ -89,8 +92,20 @@ END
 began=$(date +%s)
 unshare --mount --pid --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /opt/trial install
 say "installed in $(($(date +%s) - began)) s"
+cp -a "$work/root" "$work/booted"
 unshare --mount --pid --net --fork --mount-proc="$work/root/proc" chroot "$work/root" bash /opt/trial fly
 took=$(($(<"$work/root/opt/heard") - began))
 say "a team on the console $took s after the installation began"
 ((took <= 120)) || fail "that is more than two minutes"
-rm -rf "$work/root"
+
+# The fleet of tests/fleet, whose hosts are this one machine.
+{
+  sed '/^hosts:/,$d' "$here/../tests/fleet/fleet.yaml"
+  echo 'hosts:'
+  for n in 0 1 2 3; do echo "  - {vehicle: $n, address: 127.0.0.1, port: $((7400 + 2 * n))}"; done
+} >"$work/booted/opt/fleet.yaml"
+cp "$here/units_trial.sh" "$work/booted/opt/"
+status=0
+"$here/booted_debian.sh" "$work/booted" bash /opt/units_trial.sh /opt || status=$?
+((status == 0 || status == skipped)) || fail "the units do not do what they promise"
+rm -rf "$work/root" "$work/booted"

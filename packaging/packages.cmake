@@ -24,14 +24,18 @@ if(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
   set(CPACK_DEBIAN_PACKAGE_ARCHITECTURE arm64)
 endif()
 
-set(about_onboard "The process of one vehicle: joins the mission network, takes part in coalitions and formations
-and flies the vehicle's flight controller. With a systemd unit for each vehicle,
-skein-onboard@N.service, and examples for CAN and batman-adv by systemd-networkd.")
-set(about_ground "The ground station: shows the fleet and its mission in a browser, and is where an operator
-authorises or refuses deliveries and gives a formation its orders.")
-set(about_bench "The bench: flies missions on one machine, with every process, a radio and its faults, flight
-controllers on CAN, and in virtual time; judges them and writes a report.")
-set(about_doc "The documents: what Skein does, how it is configured and flown, and why it is as it is.")
+set(about_onboard "The process of one vehicle: joins the mission network, takes part in
+coalitions and formations and flies the vehicle's flight controller. With a
+systemd unit for each vehicle, skein-onboard@N.service, and examples for CAN
+and batman-adv by systemd-networkd.")
+set(about_ground "The ground station: shows the fleet and its mission in a browser, and is
+where an operator authorises or refuses deliveries and gives a formation its
+orders. With skein, which configures and starts a fleet.")
+set(about_bench "The bench: flies missions on one machine, with every process, a radio and its
+faults, flight controllers on CAN, and in virtual time; judges them and
+writes a report.")
+set(about_doc "The documents: what Skein does, how it is configured and flown, and why it
+is as it is.")
 
 # The scripts of maintainers, with what they share.
 file(READ debian/functions FUNCTIONS)
@@ -56,10 +60,11 @@ foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME skein-${component})
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${about_${component}}")
 endforeach()
-set(CPACK_DEBIAN_ONBOARD_PACKAGE_DEPENDS systemd)
+# procps: skein fleet status asks it when a program was started.
+set(CPACK_DEBIAN_ONBOARD_PACKAGE_DEPENDS "systemd, procps")
 set(CPACK_DEBIAN_ONBOARD_PACKAGE_RECOMMENDS "chrony | systemd-timesyncd")
 set(CPACK_DEBIAN_ONBOARD_PACKAGE_SUGGESTS "skein-doc, can-utils, batctl, iw")
-set(CPACK_DEBIAN_GROUND_PACKAGE_DEPENDS systemd)
+set(CPACK_DEBIAN_GROUND_PACKAGE_DEPENDS "systemd, procps")
 set(CPACK_DEBIAN_GROUND_PACKAGE_RECOMMENDS "chrony | systemd-timesyncd")
 set(CPACK_DEBIAN_GROUND_PACKAGE_SUGGESTS skein-doc)
 set(CPACK_DEBIAN_BENCH_PACKAGE_DEPENDS "skein-onboard (= @version@), skein-ground (= @version@)")

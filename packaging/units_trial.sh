@@ -61,11 +61,12 @@ first_mission() {
 }
 
 rights() {
-  local n unit pid threads
+  local n unit pid threads realtime=
+  ! prlimit --rtprio=60:60 true 2>/dev/null || realtime=yes
   for n in "${vehicles[@]}"; do
     pid=$(property "skein-onboard@$n" MainPID)
     threads=$(for thread in "/proc/$pid/task/"*; do chrt --pid "${thread##*/}"; done)
-    grep -q SCHED_FIFO <<<"$threads" || fail "vehicle $n has no thread with real-time priority: $threads"
+    [[ ! $realtime ]] || grep -q SCHED_FIFO <<<"$threads" || fail "vehicle $n has no thread with real-time priority: $threads"
     [[ -n $(find "/var/lib/skein/onboard-$n" -user skein -name '*.mcap' -size +0) ]] || fail "vehicle $n records nothing"
     skein-onboard status --socket "/run/skein/onboard-$n.sock" >/dev/null || fail "no status of vehicle $n"
   done
@@ -76,14 +77,15 @@ rights() {
     grep -qE '^Seccomp:\s2$' "/proc/$pid/status" || fail "$unit has no filter of system calls"
     systemd-analyze security --no-pager --threshold=20 "$unit.service" >/tmp/exposure || fail "$(tail -n 1 /tmp/exposure)"
   done
-  ! journalctl --no-pager --quiet --grep 'real-time priority|not permitted|[Pp]ermission denied|Read-only' ||
-    fail "that was refused to a unit"
+  ! journalctl --no-pager --quiet --unit 'skein-*' --grep 'not permitted|ermission denied|Read-only' |
+    { [[ $realtime ]] && cat || grep -v 'without real-time priority'; } | grep . || fail "that was refused to a unit"
   # Who is neither root nor of the group learns nothing, and is told why.
   if setpriv --reuid=nobody --regid=nogroup --clear-groups skein-onboard status --socket /run/skein/onboard-1.sock >/tmp/said 2>&1; then
     fail "anybody may ask for the status"
   fi
   grep -q 'may not' /tmp/said || fail "nobody is told: $(</tmp/said)"
-  say "real-time priority, recordings, status and no capability under all restrictions"
+  [[ $realtime ]] || say "SKIPPED: nobody is given real-time priority here (that takes CAP_SYS_RESOURCE); the rest of the rights follows"
+  say "${realtime:+real-time priority, }recordings, status and no capability under all restrictions"
 }
 
 journal() {
@@ -101,7 +103,7 @@ journal() {
 watchdog() {
   local unit=skein-onboard@2 fed pid
   fed=$(property $unit WatchdogTimestampMonotonic)
-  moved() { (($(property $unit WatchdogTimestampMonotonic) > fed)); }
+  moved() { (($(property "$unit" WatchdogTimestampMonotonic) > fed)); }
   until_holds 10 "the watchdog is fed" moved
   pid=$(property $unit MainPID)
   kill -STOP "$pid"
