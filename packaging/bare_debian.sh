@@ -105,7 +105,10 @@ say "a team on the console $took s after the installation began"
   for n in 0 1 2 3; do echo "  - {vehicle: $n, address: 127.0.0.1, port: $((7400 + 2 * n))}"; done
 } >"$work/booted/opt/fleet.yaml"
 cp "$here/units_trial.sh" "$work/booted/opt/"
-status=0
-"$here/booted_debian.sh" "$work/booted" bash /opt/units_trial.sh /opt || status=$?
-((status == 0 || status == skipped)) || fail "the units do not do what they promise"
+for time in first again; do
+  status=0
+  "$here/booted_debian.sh" "$work/booted" bash /opt/units_trial.sh /opt $time || status=$?
+  ((status != skipped)) || break # it has said so
+  ((status == 0)) || fail "the units do not do what they promise"
+done
 rm -rf "$work/root" "$work/booted"

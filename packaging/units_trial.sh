@@ -1,10 +1,11 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 #
-# units_trial.sh FOLDER: what is run in a Debian that was booted (booted_debian.sh) and has
+# units_trial.sh FOLDER [again]: what is run in a Debian that was booted (booted_debian.sh) and has
 # skein-onboard and skein-ground: the team of the examples is started as the pages say and flies a
 # mission within two minutes, and the units keep what they promise of watchdog, restarts, rights,
-# journal and upgrades. FOLDER has the packages, and fleet.yaml.
+# journal and upgrades. FOLDER has the packages, and fleet.yaml. `again`, after another start of the
+# same Debian: the units that were enabled run.
 set -euo pipefail
 
 readonly folder=$1 vehicles=(1 2 3) first_mission_within_s=120
@@ -79,11 +80,15 @@ rights() {
   done
   ! journalctl --no-pager --quiet --unit 'skein-*' --grep 'not permitted|ermission denied|Read-only' |
     { [[ $realtime ]] && cat || grep -v 'without real-time priority'; } | grep . || fail "that was refused to a unit"
-  # Who is neither root nor of the group learns nothing, and is told why.
-  if setpriv --reuid=nobody --regid=nogroup --clear-groups skein-onboard status --socket /run/skein/onboard-1.sock >/tmp/said 2>&1; then
-    fail "anybody may ask for the status"
-  fi
-  grep -q 'may not' /tmp/said || fail "nobody is told: $(</tmp/said)"
+  # The crew is the group. Who is not of it learns nothing, and is told why.
+  local crew=(setpriv --reuid=nobody --regid=nogroup --groups=skein --)
+  local stranger=(setpriv --reuid=nobody --regid=nogroup --clear-groups --)
+  "${crew[@]}" skein-ground tell sites >/tmp/said 2>&1 || fail "the crew gives no orders: $(</tmp/said)"
+  "${crew[@]}" skein-onboard status --socket /run/skein/onboard-1.sock >/tmp/said 2>&1 || fail "the crew: $(</tmp/said)"
+  ! "${stranger[@]}" skein-ground tell sites >/tmp/said 2>&1 || fail "anybody gives orders"
+  grep -q 'takes no order from you' /tmp/said || fail "who gives orders is told: $(</tmp/said)"
+  ! "${stranger[@]}" skein-onboard status --socket /run/skein/onboard-1.sock >/tmp/said 2>&1 || fail "anybody asks for the status"
+  grep -q 'you may not ask' /tmp/said || fail "who asks for the status is told: $(</tmp/said)"
   [[ $realtime ]] || say "SKIPPED: nobody is given real-time priority here (that takes CAP_SYS_RESOURCE); the rest of the rights follows"
   say "${realtime:+real-time priority, }recordings, status and no capability under all restrictions"
 }
@@ -161,6 +166,12 @@ fleet() {
   say "skein fleet pushes, starts, sees and stops the units"
 }
 
+if [[ ${2:-} == again ]]; then
+  until_holds 30 "the units that were enabled are active after a start" systemctl is-active --quiet "${units[@]}"
+  until_holds 30 "all vehicles are heard after a start" all_heard
+  say "what is enabled runs after a start"
+  exit
+fi
 first_mission
 rights
 journal
