@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/result.hpp"
+
+namespace skein::identity_desk {
+
+/// The lines that an argument names: itself where it begins with `prefix`, standard input for "-",
+/// else those of a file; without the empty ones. Fails where there are none, or more than 4 MB.
+[[nodiscard]] Result<std::vector<std::string>> given_lines(const std::string& argument,
+                                                           std::string_view prefix);
+
+/// By this machine's clock.
+[[nodiscard]] std::int64_t now_unix_s();
+
+}  // namespace skein::identity_desk
