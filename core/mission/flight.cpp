@@ -112,6 +112,12 @@ void Flight::fly(const TimedPath& timed) {
   replace(timed);
 }
 
+void Flight::fly_route(const TimedPath& timed, Instant now) {
+  if (searching_) pass_waypoints(now);
+  fly(timed);
+  en_route_ = true;
+}
+
 void Flight::replace(const TimedPath& timed) {
   plan_.timed = timed;
   ++plan_.number;

@@ -378,6 +378,10 @@ void GroundAgent::decide_by_script(Instant now) {
   }
 }
 
+bool GroundAgent::has_granted(SiteId site) const {
+  return std::ranges::any_of(granted_, [site](const auto& one) { return one.first.site == site; });
+}
+
 Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant now) {
   const bool all = vehicle == kGroundStation;
   if (kind == CommandKind::give_back && (all || now < Instant{})) {
@@ -399,8 +403,11 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
                                std::max(now, Instant{}).time_since_epoch())
                                .count();
   last_command_ = std::max(last_command_, static_cast<std::uint32_t>(since_epoch)) + 1;
-  std::erase_if(commands_,
-                [&](const SentCommand& sent) { return all || sent.command.vehicle == vehicle; });
+  const auto is_act = [](CommandKind of) { return of == CommandKind::give_back; };
+  std::erase_if(commands_, [&](const SentCommand& sent) {  // an act takes no order's place
+    const bool same = is_act(sent.command.kind) == is_act(kind);
+    return same && (all || sent.command.vehicle == vehicle);
+  });
   const Command command{vehicle, last_command_, kind};
   messages_.push(Message{command});
   commands_.push_back({command, now + kCommandRepeat, now + kCommandRepeatedFor});

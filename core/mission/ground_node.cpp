@@ -32,10 +32,19 @@ void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   agent_.recall(message, sender, at);
   sites_.recall(message, sender, at);
   hazards_.recall(message, sender, at);
+  routes_.recall(message, sender, at);
   detections_.recall(message, sender, sites_);
   const auto* command = std::get_if<Command>(&message);
   if (command != nullptr && sender == kGroundStation) orders_.note(*command);
+  const auto* decision = std::get_if<Authorisation>(&message);
+  if (decision != nullptr && !decision->granted) note_refusal(*decision, at);
   knows_orders_at_ = at;
+}
+
+/// It stands for the rest of the mission, whoever may lead there by then.
+void GroundNode::note_refusal(const Authorisation& decision, Instant now) {
+  sites_.on_refused(decision.site, now);
+  agent_.end_site(decision.site, decision.decided_by, now);
 }
 
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
@@ -51,6 +60,7 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   agent_.on_message(message, now);
   sites_.on_message(message, now);
   hazards_.on_message(message);
+  routes_.on_message(message, now);
   if (auto site = detections_.on_message(message, sites_, now)) {
     (void)sites_.add(*std::move(site), std::nullopt, fleet(), now);  // full: it is seen again
   }
@@ -89,6 +99,7 @@ void GroundNode::on_timeout(Instant now) {
   agent_.on_timeout(now);
   sites_.on_timeout(fleet(), now);
   hazards_.on_timeout(now);
+  routes_.on_timeout(fleet(), now);
   detections_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
@@ -121,6 +132,7 @@ Result<std::vector<TaskId>> GroundNode::withdraw_site(SiteId site, const std::st
 
 Result<SiteId> GroundNode::change_site(SiteId old, Site site, std::optional<VehicleId> surveyor,
                                        const std::string& by, Instant now) {
+  if (agent_.has_granted(old)) sites_.on_granted(old);  // in this very moment, perhaps
   auto changed = sites_.change(old, std::move(site), surveyor, fleet(), by, now);
   if (changed) agent_.end_site(old, by, now);
   return changed;
@@ -156,6 +168,7 @@ void GroundNode::take_events() {
   take(formation_);
   take(tracks_);
   take(sites_);
+  take(routes_);
   take(detections_);
 }
 
@@ -167,9 +180,13 @@ std::optional<Message> GroundNode::poll_message() {
     return message;
   }
   if (auto message = sites_.poll_message()) return message;
-  if (auto message = agent_.poll_message()) {
+  if (auto message = routes_.poll_message()) return message;
+  while (auto message = agent_.poll_message()) {
     const auto* decision = std::get_if<Authorisation>(&*message);
+    const bool grants = decision != nullptr && decision->granted;
+    if (grants && sites_.is_withdrawn(decision->site)) continue;  // since it was decided
     if (decision != nullptr && decision->granted) sites_.on_granted(decision->site);
+    if (decision != nullptr && !decision->granted) note_refusal(*decision, decision->decided_at);
     if (const auto* command = std::get_if<Command>(&*message)) orders_.note(*command);
     return message;
   }
@@ -186,7 +203,8 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 
 Instant GroundNode::next_timeout() const {
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
-                   formation_.next_timeout(), tracks_.next_timeout(), setup_.next_timeout()});
+                   routes_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
+                   setup_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace skein::mission {
 namespace {
 
@@ -45,6 +48,50 @@ TEST(GroundNode, OnlyTheLeaderOfARoundAsksForItsAuthorisation) {
   EXPECT_TRUE(ground.agent().authorisations().empty());
   EXPECT_TRUE(ground.on_message(request, kVehicle, at_seconds(1.0)));
   EXPECT_EQ(ground.agent().authorisations().size(), 1U);
+}
+
+/// As a later leader and a vehicle that starts anew must hear of it.
+TEST(GroundNode, ARefusalIsToldAsAWithdrawalForTheRestOfTheMissionAlsoAfterANewStart) {
+  GroundNode ground = node();
+  AuthorisationRequest request;
+  request.round = kRound;
+  request.site = kSite;
+  request.decide_by = at_seconds(20.0);
+  std::vector<std::pair<Message, VehicleId>> record{{Message{request}, kVehicle}};
+  ground.on_message(request, kVehicle, at_seconds(1.0));
+  ASSERT_TRUE(ground.agent().refuse(kSite, "Ada", at_seconds(2.0)).ok());
+  const auto withdrawals = [](GroundNode& node, double from_s, double to_s, auto&& keep) {
+    int said = 0;
+    for (double s = from_s; s < to_s; s += 0.5) {
+      node.on_timeout(at_seconds(s));
+      while (const auto message = node.poll_message()) {
+        keep(*message);
+        const auto* report = std::get_if<SiteReport>(&*message);
+        said += report != nullptr && report->withdrawn && report->site.id == kSite ? 1 : 0;
+      }
+    }
+    return said;
+  };
+  const auto record_it = [&](const Message& message) {
+    record.emplace_back(message, kGroundStation);
+  };
+  EXPECT_EQ(withdrawals(ground, 2.0, 6.0, record_it), 0) << "its leader hears why, first";
+  GroundNode next = node();
+  for (const auto& [message, sender] : record) next.recall(message, sender, at_seconds(2.0));
+  EXPECT_GE(withdrawals(ground, 6.0, 28.0, record_it), 4);
+  EXPECT_GE(withdrawals(next, 30.0, 50.0, [](const Message&) {}), 4);
+
+  // Another leader that has not heard of it is refused at once, and the operator is not asked.
+  request.round = {{{3}, {78}, 1}, 1};
+  request.decide_by = at_seconds(80.0);
+  next.on_message(request, {3}, at_seconds(51.0));
+  bool refused = false;
+  while (const auto message = next.poll_message()) {
+    const auto* decision = std::get_if<Authorisation>(&*message);
+    refused = refused || (decision != nullptr && !decision->granted &&
+                          decision->round == request.round && decision->decided_by == "Ada");
+  }
+  EXPECT_TRUE(refused);
 }
 
 TEST(GroundNode, SendsNoCopterHomeThatIsInAFormation) {

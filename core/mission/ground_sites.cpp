@@ -136,6 +136,16 @@ void GroundSites::on_granted(SiteId site) {
   if (GroundSite* const entry = know(site)) entry->granted = true;
 }
 
+void GroundSites::on_refused(SiteId site, Instant now) {
+  GroundSite* const entry = know(site);
+  if (entry == nullptr || entry->state == SiteState::withdrawn) return;
+  entry->state = SiteState::withdrawn;
+  of_operator_ += entry->of_operator ? 0 : 1;
+  entry->of_operator = true;
+  entry->next = now + kWithdrawnAgain;  // first its leader hears why
+  next_ = std::min(next_, entry->next);
+}
+
 GroundSite* GroundSites::find(SiteId site) {
   const auto known = sites_.find(site);
   return known == sites_.end() ? nullptr : &known->second;

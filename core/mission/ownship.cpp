@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
@@ -37,7 +38,16 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
     return true;
   }
   flight_.start(state.pose(), hazards(), range_to_spend(now), now);
-  return !config_.route;
+  return !config_.route || told_route_;
+}
+
+void Ownship::give_route(const TimedPath& route) {
+  config_.route = route;
+  told_route_ = true;
+}
+
+void Ownship::take_route_back() {
+  if (std::exchange(told_route_, false)) config_.route.reset();
 }
 
 std::optional<Guidance> Ownship::poll_guidance() {
@@ -107,6 +117,14 @@ double Ownship::range_for(const Site& site, Instant at) const {
   const double turn_m = kTwoPi * spec().planning_radius_m();
   return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
          turn_m;
+}
+
+double Ownship::range_for_route(const TimedPath& route, Instant at) const {
+  const Pose2 end = route.path.end();
+  if (!comes_home()) return range_to_spend(at);
+  if (flight_.started()) return range_to_spend(at) - flight_.way_home_m(end, hazards());
+  // It starts where the route does.
+  return range_to_spend(at) - (end.position() - route.path.start.position()).norm();
 }
 
 double Ownship::spare_s(Instant now) const {

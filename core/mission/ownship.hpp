@@ -17,7 +17,7 @@ class Ownship {
   explicit Ownship(const VehicleAgentConfig& config);
 
   /// The first state at its height starts the route, where the vehicle is there, else the search.
-  /// False where it has a route and is elsewhere.
+  /// False where its configuration has a route and it is elsewhere.
   bool on_state(const VehicleState& state, Instant now);
   /// False where it is no news.
   bool on_hazard(const HazardReport& report);
@@ -30,6 +30,11 @@ class Ownship {
   [[nodiscard]] std::uint8_t loads() const { return loads_; }
   [[nodiscard]] Flight& flight() { return flight_; }
   [[nodiscard]] const Flight& flight() const { return flight_; }
+
+  /// Told over the air, before the flight has started: flown as the configuration's would be.
+  void give_route(const TimedPath& route);
+  /// It is not flown, where it has not been begun.
+  void take_route_back();
 
   [[nodiscard]] std::optional<Guidance> poll_guidance();
 
@@ -53,6 +58,8 @@ class Ownship {
   [[nodiscard]] double range_to_spend(Instant at) const;
   /// What a task at that site may use up, so that it can come home from any end of it.
   [[nodiscard]] double range_for(const Site& site, Instant at) const;
+  /// What it may use to the end of that route and on the way to it.
+  [[nodiscard]] double range_for_route(const TimedPath& route, Instant at) const;
   /// For how long it can surely fly on before it must turn for home; 0 or less: it must now.
   [[nodiscard]] double spare_s(Instant now) const;
 
@@ -70,6 +77,7 @@ class Ownship {
   Flight flight_;
   KnownHazards hazards_;
   std::uint8_t loads_;
+  bool told_route_ = false;  ///< config_.route came over the air
 };
 
 }  // namespace skein::mission

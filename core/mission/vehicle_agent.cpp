@@ -18,6 +18,9 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   if (starts && ownship_.flight().started() && failsafe_.in(Failsafe::Action::stay)) {
     ownship_.hold(now);
   }
+  if (order_at_start_ && ownship_.flight().started()) {
+    obey(*std::exchange(order_at_start_, {}), now);
+  }
   step(now);
 }
 
@@ -31,7 +34,8 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
                         [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
-                        [](const Setup&) {}, [](const Detection&) {}},
+                        [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
+                        [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
              message);
   step(now);
 }
@@ -41,6 +45,7 @@ void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instan
 }
 
 void VehicleAgent::Impl::step(Instant now) {
+  routes_.step(route_standing(), now);
   if (!ownship_.flight().started()) return;
   leader_.on_timeout(now);
   flyer_.fly_begun(now);
@@ -151,6 +156,14 @@ void VehicleAgent::Impl::idle(Instant now) {
   }
   if (scout_.flying() || leader_.leading() || ownship_.flight().searching()) return;
   ownship_.search(now);
+}
+
+RouteStanding VehicleAgent::Impl::route_standing() const {
+  const Failsafe::Facts& facts = failsafe_.facts();
+  return {.orders_unknown = facts.orders_unknown,
+          .setup_differs = facts.setup_differs,
+          .obeys_others = facts.ordered || facts.range_spent,
+          .has_task = flyer_.flying() || scout_.flying() || leader_.leading()};
 }
 
 Instant VehicleAgent::Impl::next_timeout() const {

@@ -5,9 +5,17 @@
 namespace skein::mission {
 
 void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
-  if (!ownship_.flight().started() || !commands_.take(message, ownship_.spec().id)) return;
-  outbox.report(event::Commanded{message.kind}, {}, {}, now);
-  const auto* response = failsafe_.update(now, {.order = message.kind});
+  if (!commands_.take(message, ownship_.spec().id)) return;
+  if (!ownship_.flight().started()) {
+    order_at_start_ = message.kind;
+    return;
+  }
+  obey(message.kind, now);
+}
+
+void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
+  outbox.report(event::Commanded{order}, {}, {}, now);
+  const auto* response = failsafe_.update(now, {.order = order});
   if (response != nullptr) respond(*response, now);
 }
 

@@ -5,6 +5,7 @@
 #include "leader.hpp"
 #include "outbox.hpp"
 #include "ownship.hpp"
+#include "route_flyer.hpp"
 #include "scout.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "task_flyer.hpp"
@@ -45,9 +46,11 @@ class VehicleAgent::Impl {
   void idle(Instant now);
 
   void on_command(const Command& message, Instant now);
+  void obey(CommandKind order, Instant now);
   void on_site(const SiteReport& message, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void on_telemetry(const Telemetry& message, Instant now);
+  [[nodiscard]] RouteStanding route_standing() const;
   void watch_range(Instant now);
   void respond(const Failsafe::Response& response, Instant now);
 
@@ -56,7 +59,9 @@ class VehicleAgent::Impl {
   Scout scout_{ownship_, outbox};
   Leader leader_{ownship_, outbox};
   TaskFlyer flyer_{ownship_, outbox};
+  RouteFlyer routes_{ownship_, outbox};
   CommandFilter commands_;
+  std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 
 }  // namespace skein::mission

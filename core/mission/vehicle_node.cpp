@@ -16,6 +16,8 @@ namespace {
 constexpr int kDetectionTimes = 3;
 constexpr Duration kDetectionAgain = std::chrono::seconds{2};
 constexpr std::size_t kDetectionsMax = 16;
+/// From the first answer about the orders on, the answers of others are heard for so long.
+constexpr Duration kAnswersFor = std::chrono::seconds{5};
 
 struct MakeAgent {
   Instant now;
@@ -60,10 +62,13 @@ class VehicleNode::Impl {
   Impl(const VehicleNodeConfig& config, Instant now)
       : agent{std::visit(MakeAgent{now}, config.agent)},
         self{agent->telemetry().vehicle},
+        flies_routes{std::holds_alternative<VehicleAgentConfig>(config.agent)},
         telemetry_period{config.telemetry_period},
         self_report{unchanging(config, agent->telemetry()), now},
         setup{config.setup, self, agent->telemetry().instance, now},
         knows_orders{!starts_anew(now)},
+        knows_orders_first_hand{knows_orders},
+        answers_until{knows_orders ? Instant::min() : Instant::max()},
         next_telemetry{now} {
     if (!knows_orders) report(event::VehicleTrouble{event::Trouble::orders_unknown}, now);
     update_bar(now);
@@ -105,7 +110,8 @@ class VehicleNode::Impl {
     setup.on_setup(message, now);
     take_news(now);
     // The ground station is asked first; where it does not answer, whoever knows does.
-    if (message.knows_orders || message.node == kGroundStation || !knows_orders) return;
+    // Who has it from others alone cannot tell that none stands for somebody else.
+    if (message.knows_orders || message.node == kGroundStation || !knows_orders_first_hand) return;
     const auto asked = asked_before.find(message.node);
     if (asked != asked_before.end() && asked->second == message.instance) {
       messages.push(Message{orders.standing(message.node, self)});
@@ -128,19 +134,35 @@ class VehicleNode::Impl {
     if (waiting) obey(*std::exchange(waiting, {}), now);
   }
 
+  /// An act, which buries no order that was said before it and comes after it.
+  void on_give_back(const Command& command, Instant now) {
+    if (!acts.take(command, self)) return;
+    report(event::Commanded{command.kind}, now);
+    if (command.vehicle == self) give_back = issued_at(command);
+  }
+
   void on_command(const Command& command, VehicleId sender, Instant now) {
     const bool passed_on = sender != kGroundStation;
-    if (passed_on && (knows_orders || command.vehicle != self)) return;
-    if (!passed_on) orders.note(command);
-    const bool is_new = commands.take(command, self);
-    if (is_new && command.kind == CommandKind::give_back && command.vehicle == self) {
-      give_back = issued_at(command);
+    // Of those who answer some have missed the newest: each is heard for a while.
+    if (passed_on && (command.vehicle != self || now > answers_until)) return;
+    if (!passed_on) {
+      orders.note(command);
+      knows_orders_first_hand = knows_orders_first_hand || command.vehicle == self;
     }
-    if (is_new) obey(command, now);
+    if (command.kind == CommandKind::give_back) return on_give_back(command, now);
+    if (commands.take(command, self)) obey(command, now);
     if (knows_orders || command.vehicle != self) return;
     knows_orders = true;
+    answers_until = now + kAnswersFor;
     report(event::OrdersKnown{sender}, now);
     update_bar(now);
+  }
+
+  /// In formation: routes are for vehicles that work in coalitions.
+  void refuse_route(const Route& route) {
+    if (route.vehicle != self || route.step == RouteStep::call_off) return;
+    messages.push(Message{RouteStatus{self, agent->telemetry().instance, route.plan,
+                                      RouteState::refused, RouteObstacle::in_formation}});
   }
 
   [[nodiscard]] bool is_of_use(const Message& message, VehicleId sender) const {
@@ -207,12 +229,15 @@ class VehicleNode::Impl {
 
   std::unique_ptr<OnboardAgent> agent;
   VehicleId self;
+  bool flies_routes;
   Duration telemetry_period;
   SelfReport self_report;
   SetupBook setup;
   OrderBook orders;
   std::map<VehicleId, InstanceId> asked_before = {};  ///< who wanted to know the orders
   bool knows_orders;
+  bool knows_orders_first_hand;    ///< was there, or has it from the ground station
+  Instant answers_until;           ///< of others than the ground station
   bool started = false;            ///< the agent has had a state
   std::optional<Command> waiting;  ///< for that
   Bar bar = Bar::none;
@@ -220,7 +245,8 @@ class VehicleNode::Impl {
   Condition condition;
   std::optional<Guidance> guidance;
   std::optional<Instant> give_back;
-  CommandFilter commands;
+  CommandFilter commands;  ///< that stand
+  CommandFilter acts;
   std::uint64_t refused = 0;
   struct Told {
     Detection detection;
@@ -265,6 +291,9 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
     impl_->on_command(*command, sender, now);
   } else if (const auto* setup = std::get_if<Setup>(&message)) {
     impl_->on_setup(*setup, now);
+  } else if (const auto* route = std::get_if<Route>(&message);
+             route != nullptr && !impl_->flies_routes) {
+    impl_->refuse_route(*route);
   } else if (impl_->is_of_use(message, sender)) {
     if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
       impl_->setup.on_time(sender, telemetry->state.time, now);

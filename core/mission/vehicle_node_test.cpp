@@ -301,5 +301,61 @@ TEST(VehicleNode, TellsWhoDoesNotKnowWhichOrdersStandFromTheSecondTimeOn) {
   EXPECT_EQ(told.told_by, kSelf);
 }
 
+TEST(VehicleNode, ThatIsToldThatNoneStandsHearsWhoKnowsBetterForAWhile) {
+  Vehicle vehicle{config(), at_seconds(100.0)};
+  vehicle.step(100.0);
+  Command none{kSelf, 0, CommandKind::resume};
+  none.told_by = {8};
+  vehicle.hear(none, {8});
+  vehicle.step(101.0);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+  Command hold{kSelf, 50'001, CommandKind::hold};
+  hold.told_by = {9};
+  vehicle.hear(hold, {9});
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+
+  // And who has it from others alone tells nobody that none stands.
+  mission::Setup asks = said_by({7}, "", vehicle.now);
+  asks.knows_orders = false;
+  vehicle.hear(asks, {7});
+  vehicle.hear(asks, {7});
+  EXPECT_TRUE(vehicle.said_of<Command>().empty());
+}
+
+TEST(VehicleNode, AnAircraftThatIsGivenBackBuriesNoHoldThatItMissed) {
+  Vehicle vehicle;
+  vehicle.step(1.0);
+  vehicle.hear(Command{kSelf, 2'001, CommandKind::give_back}, kGroundStation);
+  vehicle.step(10.0);
+  EXPECT_EQ(vehicle.said_of<mission::Setup>().back().newest_order, 0U);
+  vehicle.hear(Command{kSelf, 1'501, CommandKind::hold}, kGroundStation);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+}
+
+TEST(VehicleNode, ACopterObeysWhatItHeardOnItsWayUp) {
+  VehicleNodeConfig what = config();
+  auto& agent = std::get<VehicleAgentConfig>(what.agent);
+  agent.vehicle.airframe = Airframe::copter;
+  agent.vehicle.height_m = 100.0;
+  agent.vehicle.cruise_speed_mps = 8.0;
+  agent.vehicle.speed_min_mps = 0.5;
+  agent.vehicle.speed_max_mps = 10.0;
+  agent.vehicle.turn_radius_m = 30.0;
+  VehicleNode node{what, at_seconds(-1.0)};
+  const auto at = [&node](double seconds, double height_m) {
+    const Instant now = at_seconds(seconds);
+    node.on_state({.time = now, .z_m = height_m}, now);
+    node.on_timeout(now);
+    while (node.poll_message()) {
+    }
+  };
+  at(0.0, 0.0);
+  at(1.0, 2.0);
+  node.on_message(Command{kGroundStation, 1'001, CommandKind::hold}, kGroundStation,
+                  at_seconds(1.0));
+  for (int i = 0; i <= 200; ++i) at(1.5 + 0.5 * i, std::min(100.0, 2.0 + i));
+  EXPECT_EQ(node.agent().telemetry().activity, Activity::holding);
+}
+
 }  // namespace
 }  // namespace skein::mission

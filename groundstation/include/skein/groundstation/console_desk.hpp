@@ -31,6 +31,8 @@ class ConsoleDesk {
   /// cannot be served; the picture is kept all the same.
   Result<void> serve(const configuration::GroundConfig& config, std::function<void()> wake);
 
+  /// What an earlier process of this ground station heard or said: it is shown as it was then.
+  void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event);
   /// `audit` is its section.
@@ -74,6 +76,7 @@ struct ShownRecording {
                                      const std::vector<VehicleId>& expected,
                                      const std::vector<std::string>& shapes,
                                      const std::vector<std::string>& site_templates,
+                                     std::optional<bool> sealed,
                                      const std::optional<ShownRecording>& recording);
 
 /// The section that has what a view of the prompt shows; none for those that are not of the

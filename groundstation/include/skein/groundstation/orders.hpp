@@ -30,6 +30,7 @@ inline constexpr Limit kPlaces{1.0, 1000.0};
 inline constexpr Limit kTrackSpeed_mps{1.0, 200.0};
 inline constexpr Limit kLaps{1.0, 32.0};
 inline constexpr Limit kWait_s{0.0, 86400.0};
+inline constexpr Limit kRoutesIn_s{5.0, 86400.0};
 
 inline constexpr Limit kLatitude_deg{-90.0, 90.0};
 inline constexpr Limit kLongitude_deg{-180.0, 180.0};
@@ -39,7 +40,18 @@ inline constexpr Limit kTasks{0.0, static_cast<double>(kTasksPerKindMax)};
   return {of.low, of.high};
 }
 
-enum class View { help, status, sites, pending, places, coalitions, hazards, audit, proposals };
+enum class View {
+  help,
+  status,
+  sites,
+  pending,
+  places,
+  coalitions,
+  hazards,
+  audit,
+  proposals,
+  routes
+};
 /// The operator's decision on the deliveries at a site.
 struct Decision {
   SiteId site;
@@ -91,6 +103,14 @@ struct SitesFromFile {
 struct WithdrawSite {
   SiteId site;
 };
+/// Routes of a plan's file, over the air.
+struct RoutesFromFile {
+  std::string file;
+  std::optional<double> in_s = {};  ///< so much from now on; none: from mission time 0
+  bool preview = false;             ///< only show whether they could be given
+};
+/// Nobody shall fly them, or go on with them.
+struct CallOffRoutes {};
 /// What a detector has seen is taken as a site, or is none.
 struct ProposalAnswer {
   std::uint32_t number = 0;
@@ -119,9 +139,9 @@ struct Record {
 };
 struct Quit {};
 /// monostate: an empty line.
-using Input =
-    std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard, NewSite,
-                 SitesFromFile, WithdrawSite, ProposalAnswer, Formation, Wait, Record, Quit>;
+using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard,
+                           NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
+                           ProposalAnswer, Formation, Wait, Record, Quit>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

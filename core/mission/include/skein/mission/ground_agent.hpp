@@ -67,6 +67,7 @@ class GroundAgent {
   Result<void> authorise(SiteId site, const std::string& operator_name, Instant now);
   Result<void> refuse(SiteId site, const std::string& operator_name, Instant now);
   /// The same, for that plan and no other: one that a person has seen.
+  [[nodiscard]] bool has_granted(SiteId site) const;
   Result<void> decide_on(const coalition::Round& round, SiteId site, bool granted,
                          const std::string& operator_name, Instant now);
   /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,

@@ -35,6 +35,9 @@ class GroundHazards {
   /// never comes back.
   Result<void> withdraw(HazardId id, Instant now);
 
+  /// All that are known here.
+  [[nodiscard]] const std::vector<Hazard>& known() const { return known_.all(); }
+
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] Instant next_timeout() const { return next_; }
   [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped(); }

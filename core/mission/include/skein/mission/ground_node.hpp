@@ -10,6 +10,7 @@
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/ground_detections.hpp"
 #include "skein/mission/ground_hazards.hpp"
+#include "skein/mission/ground_routes.hpp"
 #include "skein/mission/ground_sites.hpp"
 #include "skein/mission/order_book.hpp"
 #include "skein/mission/setup_book.hpp"
@@ -42,6 +43,8 @@ class GroundNode {
   /// False where it is refused.
   bool on_message(const Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
+  /// A word to everybody, whoever has been told little lately.
+  void speak() { setup_.say_at_once(); }
 
   /// As GroundAgent::command(). Fails also where those that are to return home are copters that fly
   /// in a formation.
@@ -60,6 +63,16 @@ class GroundNode {
                                  Instant now);
   [[nodiscard]] const GroundDetections& detections() const { return detections_; }
   [[nodiscard]] GroundHazards& hazards() { return hazards_; }
+
+  // As of GroundRoutes, with the fleet as it is heard and the hazards that are known.
+  [[nodiscard]] Result<void> check_routes(const GroundRoutes::Routes& routes, Instant now) const {
+    return routes_.check(routes, hazards_.known(), fleet(), now);
+  }
+  Result<std::uint32_t> give_routes(const GroundRoutes::Routes& routes, Instant now) {
+    return routes_.give(routes, hazards_.known(), fleet(), now);
+  }
+  Result<void> call_off_routes(Instant now) { return routes_.call_off(now); }
+  [[nodiscard]] const GroundRoutes& routes() const { return routes_; }
 
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
@@ -84,11 +97,13 @@ class GroundNode {
   /// What queues had no room for.
   [[nodiscard]] std::uint64_t dropped() const {
     return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
-           tracks_.dropped() + sites_.dropped() + hazards_.dropped() + detections_.dropped();
+           tracks_.dropped() + sites_.dropped() + hazards_.dropped() + routes_.dropped() +
+           detections_.dropped();
   }
 
  private:
   void take_events();
+  void note_refusal(const Authorisation& decision, Instant now);
   void on_setup(const Setup& setup, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
@@ -101,6 +116,7 @@ class GroundNode {
   Instant knows_orders_at_;  ///< from then on it says of who has none that it has none
   GroundSites sites_;
   GroundHazards hazards_;
+  GroundRoutes routes_;
   GroundDetections detections_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own

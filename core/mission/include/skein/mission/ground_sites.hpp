@@ -61,6 +61,9 @@ class GroundSites {
   void on_timeout(const Fleet& fleet, Instant now);
   /// The operator's grant for that site has been said.
   void on_granted(SiteId site);
+  /// The operator's refusal has been said. It is final: from now on the site is told as withdrawn,
+  /// to who has not heard it, takes over from its leader or starts anew.
+  void on_refused(SiteId site, Instant now);
 
   /// A new site; its number is given here (new_number()). `surveyor`: by the operator's wish. Fails
   /// where that vehicle cannot survey, and after kSitesMax.

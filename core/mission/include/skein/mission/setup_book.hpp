@@ -71,6 +71,8 @@ class SetupBook {
     std::uint32_t newest = 0;
   };
   [[nodiscard]] std::optional<Setup> poll_setup(const Orders& orders, Instant now);
+  /// Says it at the next poll_setup(), whenever it was said before.
+  void say_at_once() { next_ = Instant::min(); }
   /// What has changed in what others have in common with this one.
   [[nodiscard]] std::optional<EventBody> poll_news() { return news_.pop(); }
   [[nodiscard]] Instant next_timeout() const { return next_; }

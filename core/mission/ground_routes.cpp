@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_routes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "names.hpp"
+#include "skein/base/angles.hpp"
+#include "skein/planning/avoidance.hpp"
+
+namespace skein::mission {
+namespace {
+
+constexpr Duration kTellAgain = std::chrono::seconds{1};
+/// Who flies is asked now and then how far it is.
+constexpr Duration kAskAgain = std::chrono::seconds{5};
+/// All must have taken theirs so long before the plan begins, or there is no time to tell them.
+constexpr Duration kAllTakenBefore = std::chrono::seconds{2};
+constexpr Duration kBegunWithin = std::chrono::seconds{3};
+/// Who has not heard that a plan is called off gives it up by itself, or is lost.
+constexpr Duration kCalledOffFor = std::chrono::seconds{60};
+constexpr Duration kOverAfter = std::chrono::seconds{60};  ///< the last route's end
+constexpr double kAtStart_m = 50.0;
+/// A vehicle may hurry to where its route begins, by so much at most.
+constexpr double kHurry = 1.5;
+
+bool has_ended(const GivenRoute& route) {
+  return route.answer && *route.answer != RouteState::taken && *route.answer != RouteState::flies;
+}
+
+bool answers(const GivenRoute& route, RouteStep step) {
+  if (!route.answer) return false;
+  return step == RouteStep::offer || *route.answer != RouteState::taken;
+}
+
+/// Beyond the end: straight on, and around as tightly as the route itself turns.
+Path with_way_on(const TimedPath& timed) {
+  Path path = timed.path;
+  const double curvature = path.curvature_max_per_m();
+  const double radius_m = curvature > 0.0 ? 1.0 / curvature : 1.0;
+  (void)(path.append(Segment{0.0, 2.0 * radius_m}) &&
+         path.append(Segment{1.0 / radius_m, kTwoPi * radius_m}));
+  return path;
+}
+
+std::string whole(double metres) { return std::to_string(std::lround(metres)); }
+
+Result<void> check_one(VehicleId id, const TimedPath& timed, const std::vector<Hazard>& hazards,
+                       const Fleet& fleet, Instant now) {
+  const auto known = fleet.vehicles().find(id);
+  if (known == fleet.vehicles().end() || !known->second.expected) {
+    return Error{name_of(id) + " has a route, and is not in the fleet"};
+  }
+  if (auto why = fleet.why_not_with(id)) return Error{*why};
+  const FleetEntry& entry = known->second;
+  if (!entry.telemetry || entry.silent) return Error{name_of(id) + " is not heard"};
+  const Telemetry& telemetry = *entry.telemetry;
+  if (telemetry.activity == Activity::holding) {
+    return Error{name_of(id) + " holds; let it resume before it is given a route"};
+  }
+  if (telemetry.activity == Activity::forming) {
+    return Error{name_of(id) + " flies in a formation"};
+  }
+  const Path path = with_way_on(timed);
+  if (const Hazard* hazard = planning::first_entered(path, hazards)) {
+    return Error{"the route of " + name_of(id) + " enters hazard " +
+                 std::to_string(hazard->id.value) + "; plan it anew"};
+  }
+  const Vec2 at{telemetry.state.x_m, telemetry.state.y_m};
+  const double away_m = (at - timed.path.start.position()).norm();
+  if (timed.path.length_m() + away_m > telemetry.range_left_m) {
+    return Error{"the route of " + name_of(id) + ", with the way to it, is longer than the " +
+                 whole(telemetry.range_left_m) + " m that are left of its range"};
+  }
+  const double time_s = to_seconds(timed.start_time - std::max(now, Instant{}));
+  if (away_m > std::max(kAtStart_m, kHurry * timed.speed_mps * time_s)) {
+    return Error{name_of(id) + " is " + whole(away_m) +
+                 " m from where its route begins, and cannot be there in time; begin later"};
+  }
+  return {};
+}
+
+}  // namespace
+
+// --- what is heard, and was said ---
+
+void GroundRoutes::recall(const Message& message, VehicleId sender, Instant at) {
+  const auto* route = std::get_if<Route>(&message);
+  if (sender != kGroundStation) {
+    on_message(message, at);
+  } else if (route != nullptr) {
+    recall_own(*route, at);
+  }
+}
+
+void GroundRoutes::recall_own(const Route& route, Instant at) {
+  if (given_ && route.plan < given_->plan) return;
+  if (!given_ || route.plan > given_->plan) {
+    given_.emplace();
+    given_->plan = route.plan;
+    given_->begins = route.timed.start_time;
+  }
+  GivenRoutes& plan = *given_;
+  GivenRoute& entry = plan.routes[route.vehicle];
+  entry.timed = route.timed;
+  if (route.step > plan.step) {
+    plan.step = route.step;
+    plan.step_at = at;
+    for (auto& [id, known] : plan.routes) known.told_since = answers(known, plan.step);
+  }
+  // Nobody looked while this program was down: who has not begun says so, and is told alone.
+  plan.begun = plan.step == RouteStep::fly && at >= plan.begins;
+  next_ = at;
+}
+
+void GroundRoutes::on_message(const Message& message, Instant now) {
+  if (const auto* status = std::get_if<RouteStatus>(&message)) on_status(*status, now);
+}
+
+void GroundRoutes::on_status(const RouteStatus& status, Instant now) {
+  if (!given_ || status.plan != given_->plan) return;
+  const auto known = given_->routes.find(status.vehicle);
+  if (known == given_->routes.end()) return;
+  GivenRoute& route = known->second;
+  route.answer = status.state;
+  route.why = status.why;
+  route.instance = status.instance;
+  route.told_since = answers(route, given_->step);
+  if (!given_->over) next_ = std::min(next_, now);
+}
+
+// --- orders ---
+
+Result<void> GroundRoutes::check(const Routes& routes, const std::vector<Hazard>& hazards,
+                                 const Fleet& fleet, Instant now) const {
+  if (routes.empty()) return Error{"the plan has no routes"};
+  if (routes.size() > kVehiclesMax) return Error{"the plan is of too many vehicles"};
+  const Instant begins = routes.begin()->second.start_time;
+  if (begins < now + kNotice) {
+    return Error{"the plan begins too soon for all to answer; begin it later, as in 'in 60'"};
+  }
+  if (stands()) {
+    return Error{"the routes of plan " + std::to_string(given_->plan) +
+                 " are not over; 'withdraw routes' calls them off"};
+  }
+  for (const auto& [id, timed] : routes) {
+    if (auto good = check_one(id, timed, hazards, fleet, now); !good) return good;
+  }
+  return {};
+}
+
+Result<std::uint32_t> GroundRoutes::give(const Routes& routes, const std::vector<Hazard>& hazards,
+                                         const Fleet& fleet, Instant now) {
+  if (auto good = check(routes, hazards, fleet, now); !good) return good.error();
+  // Numbers grow also over a restart of this process, or vehicles would take a new plan for old.
+  const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(
+                               std::max(now, Instant{}).time_since_epoch())
+                               .count();
+  const std::uint32_t last = given_ ? given_->plan : 0;
+  given_.emplace();
+  given_->plan = std::max(last, static_cast<std::uint32_t>(since_epoch)) + 1;
+  given_->begins = routes.begin()->second.start_time;
+  given_->step_at = now;
+  for (const auto& [id, timed] : routes) given_->routes[id].timed = timed;
+  report(event::RoutesGiven{given_->plan, static_cast<std::uint8_t>(routes.size()), given_->begins,
+                            false},
+         now);
+  next_ = now;
+  return given_->plan;
+}
+
+Result<void> GroundRoutes::call_off(Instant now) {
+  if (!stands() || given_->step == RouteStep::call_off) {
+    return Error{"there are no routes to be called off"};
+  }
+  call_off({given_->plan, RoutesEnd::by_operator, {}, RouteObstacle::nothing}, now);
+  return {};
+}
+
+// --- what becomes of them ---
+
+void GroundRoutes::take_step(RouteStep step, Instant now) {
+  given_->step = step;
+  given_->step_at = now;
+  for (auto& [id, route] : given_->routes) {
+    route.told_since = answers(route, step) && (step != RouteStep::call_off || has_ended(route));
+    route.next = now;
+  }
+}
+
+void GroundRoutes::call_off(const event::RoutesCalledOff& why, Instant now) {
+  take_step(RouteStep::call_off, now);
+  report(why, now);
+  next_ = now;
+}
+
+void GroundRoutes::decide_offer(Instant now) {
+  GivenRoutes& plan = *given_;
+  const VehicleId* silent = nullptr;
+  for (const auto& [id, route] : plan.routes) {
+    if (has_ended(route)) {
+      return call_off({plan.plan, RoutesEnd::route_refused, id, route.why}, now);
+    }
+    if (!route.answer && silent == nullptr) silent = &id;
+  }
+  if (silent != nullptr) {
+    if (now < plan.begins - kAllTakenBefore) return;
+    return call_off({plan.plan, RoutesEnd::not_answered, *silent, RouteObstacle::nothing}, now);
+  }
+  take_step(RouteStep::fly, now);
+  report(event::RoutesGiven{plan.plan, static_cast<std::uint8_t>(plan.routes.size()), plan.begins,
+                            true},
+         now);
+}
+
+void GroundRoutes::decide_flight(Instant now) {
+  GivenRoutes& plan = *given_;
+  if (plan.begun) return;
+  for (const auto& [id, route] : plan.routes) {
+    if (route.answer == RouteState::flown || !has_ended(route)) continue;
+    return call_off({plan.plan, RoutesEnd::route_refused, id, route.why}, now);
+  }
+  if (now < plan.begins + kBegunWithin) return;
+  plan.begun = true;
+  for (const auto& [id, route] : plan.routes) {
+    if (route.answer == RouteState::flies || route.answer == RouteState::flown) continue;
+    return call_off({plan.plan, RoutesEnd::not_begun, id, RouteObstacle::nothing}, now);
+  }
+}
+
+void GroundRoutes::decide(Instant now) {
+  GivenRoutes& plan = *given_;
+  if (plan.step == RouteStep::offer) decide_offer(now);
+  if (plan.step == RouteStep::fly) decide_flight(now);
+  Instant end = plan.begins;
+  for (const auto& [id, route] : plan.routes) end = std::max(end, route.timed.end_time());
+  const bool all_ended =
+      std::ranges::all_of(plan.routes, [](const auto& r) { return has_ended(r.second); });
+  plan.over = (plan.step == RouteStep::call_off && now >= plan.step_at + kCalledOffFor) ||
+              (plan.step != RouteStep::offer && all_ended) || now >= end + kOverAfter;
+}
+
+void GroundRoutes::tell(const Fleet& fleet, Instant now) {
+  GivenRoutes& plan = *given_;
+  for (auto& [id, route] : plan.routes) {
+    const auto known = fleet.vehicles().find(id);
+    const bool anew = route.instance && known != fleet.vehicles().end() &&
+                      known->second.telemetry &&
+                      known->second.telemetry->instance != *route.instance;
+    if (anew && route.answer != RouteState::flown) {
+      route.answer.reset();
+      route.instance.reset();
+      route.told_since = false;
+      route.next = now;
+    }
+    if (route.told_since && has_ended(route)) {
+      route.next = Instant::max();
+    } else if (now >= route.next) {
+      messages_.push(Message{Route{id, plan.plan, plan.step, route.timed}});
+      const bool flies = route.told_since && plan.step == RouteStep::fly;
+      route.next = now + (flies ? kAskAgain : kTellAgain);
+    }
+  }
+}
+
+void GroundRoutes::on_timeout(const Fleet& fleet, Instant now) {
+  if (!stands()) return;
+  decide(now);
+  if (given_->over) {
+    next_ = Instant::max();
+    return;
+  }
+  tell(fleet, now);
+  next_ = now + kTellAgain;
+}
+
+void GroundRoutes::report(EventBody body, Instant now) {
+  events_.push({kGroundStation, now, {}, {}, std::move(body)});
+}
+
+}  // namespace skein::mission

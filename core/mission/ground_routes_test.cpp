@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/ground_routes.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace skein::mission {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr VehicleId kOne{1};
+constexpr VehicleId kTwo{2};
+
+/// North from there for 1 km, at 20 m/s.
+TimedPath north(double east_m, double begins_s) {
+  TimedPath timed;
+  timed.start_time = at_seconds(begins_s);
+  timed.speed_mps = 20.0;
+  timed.path.start = {east_m, 0.0, 1.5707963};
+  EXPECT_TRUE(timed.path.append(Segment{0.0, 900.0}));
+  EXPECT_TRUE(timed.path.append(Segment{0.01, 100.0}));
+  return timed;
+}
+
+struct GroundRoutesTest : ::testing::Test {
+  GroundRoutesTest() {
+    for (const VehicleId id : {kOne, kTwo}) {
+      Telemetry t;
+      t.vehicle = id;
+      t.instance = {id.value + 10U};
+      t.state.x_m = id == kOne ? 0.0 : 300.0;
+      t.range_left_m = 20'000.0;
+      heard[id] = t;
+      hear(id);
+    }
+  }
+  void hear(VehicleId id) {
+    heard[id].state.time = now;
+    fleet.on_message(Message{heard[id]}, now);
+  }
+  void run_until(double seconds) {
+    while (now < at_seconds(seconds)) {
+      now += std::chrono::milliseconds{250};
+      for (const auto& [id, t] : heard) hear(id);
+      routes.on_timeout(fleet, now);
+      while (const auto message = routes.poll_message()) {
+        said.push_back(std::get<Route>(*message));
+        record.push_back(*message);
+        answer(said.back());
+      }
+      while (auto event = routes.poll_event()) events.push_back(*event);
+    }
+  }
+  /// What vehicles that hear everything say.
+  void answer(const Route& route) {
+    if (deaf.contains(route.vehicle)) return;
+    RouteState state = RouteState::taken;
+    if (route.step == RouteStep::fly) state = RouteState::flies;
+    if (route.step == RouteStep::call_off) state = RouteState::called_off;
+    status(route.vehicle, state);
+  }
+  void status(VehicleId id, RouteState state, RouteObstacle why = RouteObstacle::nothing) {
+    const Message message{RouteStatus{id, heard[id].instance, routes.given()->plan, state, why}};
+    record.push_back(message);
+    routes.on_message(message, now);
+  }
+  std::uint32_t give(double begins_s) {
+    const auto plan =
+        routes.give({{kOne, north(0.0, begins_s)}, {kTwo, north(300.0, begins_s)}}, {}, fleet, now);
+    EXPECT_TRUE(plan.ok()) << (plan ? "" : plan.error().message);
+    return plan ? *plan : 0;
+  }
+  [[nodiscard]] std::size_t told(VehicleId id, RouteStep step) const {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        said, [&](const Route& r) { return r.vehicle == id && r.step == step; }));
+  }
+  /// The only plan that was called off.
+  [[nodiscard]] std::optional<event::RoutesCalledOff> called_off() const {
+    std::optional<event::RoutesCalledOff> found;
+    for (const auto& event : events) {
+      const auto* off = std::get_if<event::RoutesCalledOff>(&event.body);
+      if (off == nullptr) continue;
+      EXPECT_FALSE(found) << "it is told once";
+      found = *off;
+    }
+    return found;
+  }
+
+  Instant now = at_seconds(100.0);
+  Fleet fleet{{.expected = {kOne, kTwo}}};
+  GroundRoutes routes;
+  std::map<VehicleId, Telemetry> heard;
+  std::set<VehicleId> deaf;
+  std::vector<Route> said;
+  std::vector<Message> record;
+  std::vector<MissionEvent> events;
+};
+
+TEST_F(GroundRoutesTest, AllTakeTheirsBeforeAnybodyIsToldToFly) {
+  deaf = {kTwo};
+  const auto plan = give(130.0);
+  EXPECT_EQ(plan, 100'001U);
+  run_until(110.0);
+  EXPECT_EQ(told(kOne, RouteStep::fly), 0U);
+  EXPECT_GE(told(kTwo, RouteStep::offer), 8U) << "until it answers";
+  EXPECT_EQ(told(kOne, RouteStep::offer), 10U) << "who has answered is told with the others";
+  deaf.clear();
+  run_until(115.0);
+  EXPECT_GE(told(kOne, RouteStep::fly), 1U);
+  EXPECT_GE(told(kTwo, RouteStep::fly), 1U);
+  EXPECT_EQ(routes.given()->step, RouteStep::fly);
+  for (const VehicleId id : {kOne, kTwo}) {
+    EXPECT_EQ(routes.given()->routes.at(id).answer, RouteState::flies);
+  }
+  EXPECT_FALSE(called_off());
+  run_until(185.0);
+  status(kOne, RouteState::flown);
+  status(kTwo, RouteState::flown);
+  run_until(186.0);
+  EXPECT_TRUE(routes.given()->over);
+  EXPECT_GT(give(300.0), plan);
+}
+
+TEST_F(GroundRoutesTest, OneThatRefusesCallsThePlanOffForAll) {
+  deaf = {kTwo};
+  give(130.0);
+  run_until(102.0);
+  status(kTwo, RouteState::refused, RouteObstacle::too_tight);
+  run_until(105.0);
+  EXPECT_EQ(called_off(), (event::RoutesCalledOff{100'001U, RoutesEnd::route_refused, kTwo,
+                                                  RouteObstacle::too_tight}));
+  EXPECT_EQ(told(kOne, RouteStep::fly), 0U);
+  EXPECT_GE(told(kOne, RouteStep::call_off), 1U);
+  EXPECT_TRUE(routes.given()->over) << "all have ended";
+}
+
+TEST_F(GroundRoutesTest, GivesUpWhereSomebodyDoesNotAnswerOrHasNotBegunInTime) {
+  deaf = {kTwo};
+  give(130.0);
+  run_until(140.0);
+  EXPECT_EQ(called_off(), (event::RoutesCalledOff{100'001U, RoutesEnd::not_answered, kTwo,
+                                                  RouteObstacle::nothing}));
+  EXPECT_EQ(told(kOne, RouteStep::fly), 0U);
+  run_until(210.0);
+  EXPECT_TRUE(routes.given()->over);
+  events.clear();
+  deaf.clear();
+  give(240.0);
+  run_until(210.25);
+  deaf = {kTwo};  // it has taken its route, and hears nothing more
+  run_until(230.0);
+  EXPECT_EQ(routes.given()->step, RouteStep::fly);
+  run_until(250.0);
+  ASSERT_TRUE(called_off());
+  EXPECT_EQ(called_off()->end, RoutesEnd::not_begun);
+  EXPECT_EQ(called_off()->vehicle, kTwo);
+  EXPECT_GE(told(kOne, RouteStep::call_off), 1U);
+}
+
+TEST_F(GroundRoutesTest, AfterItsBeginOneThatLeavesLeavesAloneAndOneThatStartsAnewIsToldAgain) {
+  give(110.0);
+  run_until(120.0);
+  ASSERT_TRUE(routes.given()->begun);
+  status(kTwo, RouteState::left, RouteObstacle::has_task);
+  said.clear();
+  heard[kOne].instance = {99};
+  run_until(122.0);
+  EXPECT_GE(told(kOne, RouteStep::fly), 1U);
+  EXPECT_EQ(told(kTwo, RouteStep::fly), 0U);
+  EXPECT_EQ(routes.given()->routes.at(kOne).instance, InstanceId{99});
+  EXPECT_FALSE(called_off());
+}
+
+TEST_F(GroundRoutesTest, ANewGroundStationGoesOnWithWhatWasRecorded) {
+  give(130.0);
+  run_until(105.0);
+  GroundRoutes next;
+  for (const Message& message : record) {
+    const bool own = std::holds_alternative<Route>(message);
+    next.recall(message, own ? kGroundStation : kOne, now);
+  }
+  ASSERT_TRUE(next.given());
+  EXPECT_EQ(next.given()->step, RouteStep::fly);
+  EXPECT_EQ(next.given()->plan, 100'001U);
+  EXPECT_EQ(next.given()->routes.at(kTwo).answer, RouteState::flies);
+  EXPECT_FALSE(next.given()->over);
+  next.on_timeout(fleet, now);
+  EXPECT_TRUE(next.poll_message()) << "it asks how far they are";
+}
+
+TEST_F(GroundRoutesTest, TheOperatorCallsThemOff) {
+  EXPECT_FALSE(routes.call_off(now).ok());
+  give(130.0);
+  run_until(105.0);
+  EXPECT_TRUE(routes.call_off(now).ok());
+  EXPECT_FALSE(routes.call_off(now).ok());
+  run_until(107.0);
+  ASSERT_TRUE(called_off());
+  EXPECT_EQ(called_off()->end, RoutesEnd::by_operator);
+  EXPECT_EQ(routes.given()->routes.at(kOne).answer, RouteState::called_off);
+}
+
+TEST_F(GroundRoutesTest, RefusesWhatItKnowsToBeWrong) {
+  const auto refusal = [this](const GroundRoutes::Routes& asked,
+                              const std::vector<Hazard>& hazards = {}) {
+    const auto good = routes.check(asked, hazards, fleet, now);
+    return good ? std::string{} : good.error().message;
+  };
+  EXPECT_EQ(refusal({{kOne, north(0.0, 130.0)}}), "");
+  EXPECT_THAT(refusal({}), HasSubstr("no routes"));
+  EXPECT_THAT(refusal({{kOne, north(0.0, 104.0)}}), HasSubstr("begins too soon"));
+  EXPECT_THAT(refusal({{VehicleId{7}, north(0.0, 130.0)}}), HasSubstr("not in the fleet"));
+  EXPECT_THAT(refusal({{kOne, north(0.0, 130.0)}}, {{{4}, {0.0, 500.0}, 50.0}}),
+              HasSubstr("enters hazard 4"));
+  EXPECT_THAT(refusal({{kOne, north(2000.0, 130.0)}}), HasSubstr("cannot be there in time"));
+  heard[kOne].range_left_m = 900.0;
+  hear(kOne);
+  EXPECT_THAT(refusal({{kOne, north(0.0, 130.0)}}), HasSubstr("left of its range"));
+  heard[kOne].activity = Activity::holding;
+  hear(kOne);
+  EXPECT_THAT(refusal({{kOne, north(0.0, 130.0)}}), HasSubstr("holds"));
+  heard[kOne].range_left_m = 20'000.0;
+  heard[kOne].activity = Activity::searching;
+  hear(kOne);
+  give(130.0);
+  EXPECT_THAT(refusal({{kTwo, north(300.0, 130.0)}}), HasSubstr("withdraw routes"));
+}
+
+}  // namespace
+}  // namespace skein::mission

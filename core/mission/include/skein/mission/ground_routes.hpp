@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "skein/base/bounded_queue.hpp"
+#include "skein/base/result.hpp"
+#include "skein/base/time.hpp"
+#include "skein/mission/fleet.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// One vehicle's route of a plan, and what the vehicle says to it.
+struct GivenRoute {
+  TimedPath timed;
+  std::optional<RouteState> answer;  ///< the newest; none: not heard
+  RouteObstacle why = RouteObstacle::nothing;
+  std::optional<InstanceId> instance{};  ///< of the program that has answered
+  bool told_since = false;               ///< it has answered the plan's step
+  Instant next{};                        ///< when it is told again
+};
+
+/// A plan of the operator's: routes that are flown together, or not at all.
+struct GivenRoutes {
+  std::uint32_t plan = 0;
+  RouteStep step = RouteStep::offer;
+  Instant begins{};
+  bool begun = false;  ///< from here on each flies its own
+  bool over = false;   ///< nobody is told any more
+  Instant step_at{};   ///< when the step was decided on
+  std::map<VehicleId, GivenRoute> routes;
+};
+
+/// The routes that the operator gives vehicles over the air. A plan is offered to all its vehicles,
+/// every second until each has answered; when all have taken theirs they are told to fly, in the
+/// same way. Where one refuses, does not answer until shortly before the plan begins, or has not
+/// taken up the word to fly when it does, the plan is called off for all. From its begin on a
+/// vehicle that leaves its route leaves it alone; one whose program starts anew is told again.
+/// One plan at a time. Calling rules as of GroundAgent.
+class GroundRoutes {
+ public:
+  /// A plan must begin this much later, so that all can answer.
+  static constexpr Duration kNotice = std::chrono::seconds{5};
+
+  static constexpr std::size_t kVehiclesMax = 100;
+
+  void recall(const Message& message, VehicleId sender, Instant at);
+  void on_message(const Message& message, Instant now);
+  void on_timeout(const Fleet& fleet, Instant now);
+
+  using Routes = std::map<VehicleId, TimedPath>;
+  /// What the ground station knows to be wrong with them; what it does not know of the vehicles,
+  /// these judge themselves. All begin at one time, which is that of the first.
+  [[nodiscard]] Result<void> check(const Routes& routes, const std::vector<Hazard>& hazards,
+                                   const Fleet& fleet, Instant now) const;
+  /// Gives the plan's number. Fails as check() does, and while another plan is given.
+  Result<std::uint32_t> give(const Routes& routes, const std::vector<Hazard>& hazards,
+                             const Fleet& fleet, Instant now);
+  /// Of the operator. Fails where there is none.
+  Result<void> call_off(Instant now);
+
+  /// The newest; none before the first.
+  [[nodiscard]] const std::optional<GivenRoutes>& given() const { return given_; }
+
+  [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
+  [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }
+  [[nodiscard]] Instant next_timeout() const { return next_; }
+  [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped() + events_.dropped(); }
+
+ private:
+  [[nodiscard]] bool stands() const { return given_ && !given_->over; }
+  void recall_own(const Route& route, Instant at);
+  void on_status(const RouteStatus& status, Instant now);
+  void decide(Instant now);
+  void decide_offer(Instant now);
+  void decide_flight(Instant now);
+  void take_step(RouteStep step, Instant now);
+  void call_off(const event::RoutesCalledOff& why, Instant now);
+  void tell(const Fleet& fleet, Instant now);
+  void report(EventBody body, Instant now);
+
+  std::optional<GivenRoutes> given_;
+  Instant next_ = Instant::max();
+  BoundedQueue<Message> messages_{128};
+  BoundedQueue<MissionEvent> events_{64};
+};
+
+}  // namespace skein::mission
