@@ -13,6 +13,7 @@
 #include "skein/configuration/deployment.hpp"
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/reference.hpp"
+#include "skein/configuration/setup_params.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -128,7 +129,7 @@ constexpr auto kMistakes = std::to_array<Mistake>({
      "cruise_speed_mps?"},
     {"  port: 17402", "  port: 17402\n  colour: red",
      "v.yaml:15: network.colour: is no key of this group, which knows domain_id, address, port, "
-     "peers, transport_plugin"},
+     "peers, keys, transport_plugin"},
     {"  range_m: 18000\n", "",
      "v.yaml:3: vehicle.range_m: is missing; add it: a number from 100 to 10000000 m"},
     {"range_m: 18000", "range_m: far",
@@ -178,6 +179,11 @@ constexpr auto kMistakes = std::to_array<Mistake>({
      "v.yaml:12: search[2]: is not [east, north]; write two numbers from -1000000 to 1000000 m"},
     {"id: 8, port", "id: 8, address: ten.one, port",
      "v.yaml:17: network.peers[2].address: is no IPv4 address; write one such as 192.168.1.7"},
+    {"id: 8, port", "id: 8, address: 0.0.0.0, port",
+     "v.yaml:17: network.peers[2].address: is of no one machine; write the machine's own"},
+    {"1700000000000000000", "17000000000",
+     "v.yaml:18: time.epoch_unix_ns: is before the year 2020; write Unix time in nanoseconds, as "
+     "`date +%s%N` prints it"},
     {"start:", "recording_folder: \"a\\x01\"\nstart:",
      "v.yaml:12: recording_folder: has control characters or is no UTF-8; save the file as UTF-8"},
     {"start:", "recording_folder: a\xFF\nstart:",
@@ -304,6 +310,13 @@ TEST(ScenarioFile, NamesEveryMistake) {
        "s.yaml:11: vehicles[1].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
        "s.yaml:12: vehicles[2].turn_radius_m: is missing; add it: a number from 1 to 5000 m\n"
        "s.yaml:13: vehicles[3].turn_radius_m: is missing; add it: a number from 1 to 5000 m"},
+      // Said once of the level that has it, not of every vehicle below.
+      {"turn_radius_m: 150,", "turn_radius_m: 20,",
+       "s.yaml:5: all.turn_radius_m: is less than cruise_speed_mps^2 / 59 m/s2, a turn of 6 g; "
+       "raise it or lower cruise_speed_mps"},
+      {"{id: 3, type: carrier", "{id: 3, type: carrier, turn_radius_m: 20",
+       "s.yaml:13: vehicles[3].turn_radius_m: is less than cruise_speed_mps^2 / 59 m/s2, a turn of "
+       "6 g; raise it or lower cruise_speed_mps"},
       {"final_approach_m: 300", "final_aproach_m: 300",
        "s.yaml:9: types.carrier.final_aproach_m: is no key of this group; did you mean "
        "final_approach_m?"},
@@ -401,7 +414,7 @@ TEST(ScenarioFile, ACopterThatTakesTasksMustBeAbleToFlyItsPlans) {
                              "speed_min_mps: 0.5, speed_max_mps: 12,";
   EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 27,"), "no error") << "81 / 27 = 3";
   EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 26,"),
-            "s.yaml:11: vehicles[1].turn_radius_m: is less than cruise_speed_mps^2 / "
+            "s.yaml:8: types.scout.turn_radius_m: is less than cruise_speed_mps^2 / "
             "acceleration_max_mps2, which a copter's turn takes; raise it or lower "
             "cruise_speed_mps");
   EXPECT_EQ(scenario_error(scout, copter + " turn_radius_m: 26, acceleration_max_mps2: 3.2,"),
@@ -529,6 +542,24 @@ TEST(Deployment, GivesEveryNodeItsPortItsPeersAndItsSeed) {
   EXPECT_EQ(vehicles[2].hazards.size(), 1U);
   EXPECT_NE(vehicles[0].seed, vehicles[1].seed);
   EXPECT_THAT(ground.vehicles, testing::ElementsAre(VehicleId{1}, VehicleId{2}, VehicleId{3}));
+}
+
+TEST(SetupParams, OfFormationsOnlyWhatVehiclesFlyByIsInCommon) {
+  GroundConfig config;
+  const auto common = [&config] { return setup_params(config, {"1.0", "wire"}).common; };
+  const auto before = common();
+  config.formation.rally.spacing_m = 9.0;
+  config.formation.separation.horizontal_m = 7.0;
+  config.formation.reserve_m = 2.0;
+  config.formation.ceiling_m = 90.0;
+  config.formation.wind_mps = 3.0;
+  EXPECT_EQ(common(), before) << "the ground station plans by these, and vehicles do not read them";
+  config.formation.tracking_m = 0.7;
+  EXPECT_NE(common(), before);
+  config.formation.tracking_m = FormationConfig{}.tracking_m;
+  EXPECT_EQ(common(), before);
+  config.formation.limits.speed_mps = 2.0;
+  EXPECT_NE(common(), before);
 }
 
 TEST(Deployment, GivesFlightControllersOnCanBusesAndNodesOfTheirOwn) {

@@ -27,8 +27,13 @@ std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& de
 
 NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes,
                          const Deployment& deployment) {
-  NetworkConfig network{
-      deployment.domain_id, nodes[node].address, nodes[node].port, {}, deployment.transport_plugin};
+  const auto keys = deployment.keys.find(nodes[node].id);
+  NetworkConfig network{deployment.domain_id,
+                        nodes[node].address,
+                        nodes[node].port,
+                        {},
+                        keys == deployment.keys.end() ? "" : keys->second,
+                        deployment.transport_plugin};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i != node) network.peers.push_back(nodes[i]);
   }

@@ -61,6 +61,10 @@ TEST(FleetKeys, MistakesAreToldWithTheirLine) {
   EXPECT_THAT(mistakes("epoch: tomorrow\n"), HasSubstr("fleet.yaml:11: epoch: is no time in UTC"));
   EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0}]\n"),
               HasSubstr("is no IPv4 address"));
+  for (const char* nobody : {"0.0.0.0", "239.1.2.3", "255.255.255.255"}) {
+    EXPECT_THAT(mistakes(std::string{"hosts: [{vehicle: 1, address: "} + nobody + "}]\n"),
+                HasSubstr("hosts[1].address: is of no one machine"));
+  }
   EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, programs: bin}]\n"),
               HasSubstr("hosts[1].programs: is no absolute path"));
   EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, flight_controller: emulated}]\n"),

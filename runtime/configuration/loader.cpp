@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "number_text.hpp"
+#include "skein/base/contains.hpp"
 #include "skein/base/text.hpp"
 
 namespace skein::configuration {
@@ -129,7 +130,8 @@ void Loader::fail(int line, const std::string& path, const std::string& what) {
   if (line > 0) text.append(":").append(std::to_string(line));
   text += ": ";
   if (!path.empty()) text.append(path).append(": ");
-  errors_.push_back(text + what);
+  text += what;
+  if (!contains(errors_, text)) errors_.push_back(std::move(text));
 }
 
 void Loader::fail(const YAML::Node& node, std::string_view key, const std::string& what) {
@@ -380,7 +382,9 @@ void Loader::read_level(const YAML::Node& node, const std::string& path, Level& 
   place.partial = true;
   if (node.IsMap()) {
     for (const auto& pair : node) {
-      if (pair.first.IsScalar()) level.given.insert(pair.first.Scalar());
+      if (!pair.first.IsScalar()) continue;
+      const std::string key = pair.first.Scalar();
+      level.given.insert_or_assign(key, Given{path + "." + key, line_of(pair.first)});
     }
   }
   read_group(std::move(place), [&level](FieldVisitor& v) { fields(v, level.vehicle); });
@@ -437,6 +441,14 @@ void Loader::fleet(std::vector<ScenarioVehicle>& vehicles) {
 
 void Loader::require(bool holds, std::string_view key, std::string_view what) {
   if (holds || place_->partial) return;
+  const std::string_view outermost = key.substr(0, key.find('.'));
+  const auto given = place_->given.find(std::string{outermost});
+  if (given != place_->given.end() && !place_->has(outermost)) {
+    // Of a level above: the same mistake for all below it.
+    const std::string rest{key.substr(outermost.size())};
+    fail(given->second.line, given->second.path + rest, std::string{what});
+    return;
+  }
   // "start.heading_deg" is a key of a group of this group.
   int line = line_of(place_->node);
   YAML::Node group = place_->node;

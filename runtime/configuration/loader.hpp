@@ -3,7 +3,8 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <set>
+#include <algorithm>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -41,19 +42,28 @@ class Loader final : public FieldVisitor {
     YAML::Node value;
     int line = 0;
   };
+  /// Where a level of the fleet gives a key to the vehicles below it.
+  struct Given {
+    std::string path;
+    int line = 0;
+  };
   /// What is being read: a group of keys, or one element of a list.
   struct Place {
     std::string path;
     YAML::Node node;
     std::vector<Entry> entries;
     std::vector<std::string> known;
-    bool partial = false;         ///< a level of the fleet: nothing is required
-    std::set<std::string> given;  ///< by a level above
+    bool partial = false;                ///< a level of the fleet: nothing is required
+    std::map<std::string, Given> given;  ///< by a level above
+    [[nodiscard]] bool has(std::string_view key) const {
+      return std::any_of(entries.begin(), entries.end(),
+                         [key](const Entry& entry) { return entry.key == key; });
+    }
   };
   /// Keys that one level of the fleet gives to those below it.
   struct Level {
     ScenarioVehicle vehicle;
-    std::set<std::string> given;
+    std::map<std::string, Given> given;
   };
 
   [[nodiscard]] const YAML::Node* find(const Field& field, const std::string& remedy);

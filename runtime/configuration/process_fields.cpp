@@ -26,6 +26,7 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(TakeOverKind::co
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
 constexpr double kPlaneTurnMax_mps2 = 59.0;
 constexpr Range kPort{1.0, 65535.0};
+constexpr std::int64_t kYear2020_unix_ns = 1'577'836'800'000'000'000;
 constexpr double kCopterHeightMin_m = 5.0;
 
 template <class Choice, std::size_t Count>
@@ -350,8 +351,12 @@ void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& dec
 void ipv4(FieldVisitor& v, const Field& field, std::string& address) {
   v.text(field, address);
   in_addr parsed{};
-  v.require(inet_pton(AF_INET, address.c_str(), &parsed) == 1, field.key,
-            "is no IPv4 address; write one such as 192.168.1.7");
+  const bool read = inet_pton(AF_INET, address.c_str(), &parsed) == 1;
+  v.require(read, field.key, "is no IPv4 address; write one such as 192.168.1.7");
+  constexpr std::uint32_t kFirstGroup = 224U << 24U;
+  const std::uint32_t number = ntohl(parsed.s_addr);
+  v.require(!read || (number != 0 && number < kFirstGroup), field.key,
+            "is of no one machine; write the machine's own");
 }
 
 namespace {
@@ -376,6 +381,8 @@ void network_fields(FieldVisitor& v, NetworkConfig& network) {
                whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
              },
              "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
+  v.text({"keys", "folder of this node's keys; empty: it speaks in clear, on loopback only"},
+         network.keys);
   v.text({"transport_plugin", "shared library that carries the messages; empty: plain UDP"},
          network.transport_plugin);
 }
@@ -388,6 +395,10 @@ void process_fields(FieldVisitor& v, NetworkConfig& network, TimeConfig& time,
     inner.integer(
         {"epoch_unix_ns", "mission time zero, Unix time; the same for the whole fleet", kRequired},
         {1.0, 9e18, "ns"}, time.epoch_unix_ns);
+    // Of a clock without a battery, or a number in seconds.
+    inner.require(time.epoch_unix_ns >= kYear2020_unix_ns, "epoch_unix_ns",
+                  "is before the year 2020; write Unix time in nanoseconds, as `date +%s%N` prints "
+                  "it");
     inner.number({"rate", "mission seconds in a second"}, {0.01, 100.0}, time.rate);
   });
   v.text({"recording_folder", "where the process writes what happened; empty: nowhere"},

@@ -17,6 +17,13 @@ namespace {
 constexpr std::array<std::string_view, 5> kCommonGroups{"origin", "time", "protocol", "planning",
                                                         "formation"};
 
+/// Of formations what vehicles fly by themselves. Where they fly, how far apart and how high,
+/// reaches them with every change or flight: for that the ground station's file alone counts, and
+/// may be another one from one of its starts to the next.
+constexpr std::array<std::string_view, 7> kFormationKeys{
+    "airframe",   "speed_mps", "acceleration_mps2", "jerk_mps3",
+    "tracking_m", "avoidance", "place_tolerance_m"};
+
 /// Lists the keys of those groups with what they are set to. Lists are left out: shapes, tracks and
 /// the script of formations are the ground station's, and reach vehicles as changes.
 class CommonKeys final : public FieldVisitor {
@@ -60,6 +67,8 @@ class CommonKeys final : public FieldVisitor {
  private:
   void add(const Field& field, std::string_view value) {
     if (path_.empty()) return;
+    const bool of_formation = path_.starts_with("formation.");
+    if (of_formation && (path_ != "formation." || !contains(kFormationKeys, field.key))) return;
     keys_.push_back({path_ + std::string{field.key}, mission::setup_hash(value)});
   }
 

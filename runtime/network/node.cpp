@@ -30,8 +30,11 @@
 #include <utility>
 
 #include "byte_sample.hpp"
+#include "sealed_transport.hpp"
+#include "skein/base/assert.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/codec/codec.hpp"
+#include "skein/network/rtps_guid.hpp"
 #include "skein/network/transport_plugin.hpp"
 
 namespace skein::network {
@@ -233,7 +236,23 @@ Result<void> wrap(const NodeConfig& config,
   return {};
 }
 
-Result<dds::DomainParticipantQos> participant_qos(const NodeConfig& config) {
+/// Both ports of each peer.
+std::map<Seals::Place, VehicleId> places_of(const NodeConfig& config) {
+  std::map<Seals::Place, VehicleId> places;
+  for (const PeerConfig& peer : config.peers) {
+    in_addr address{};
+    if (inet_pton(AF_INET, peer.endpoint.address.c_str(), &address) != 1) continue;  // see check()
+    for (const int port : {0, 1}) {
+      places.emplace(Seals::Place{ntohl(address.s_addr),
+                                  static_cast<std::uint16_t>(peer.endpoint.port + port)},
+                     peer.id);
+    }
+  }
+  return places;
+}
+
+Result<dds::DomainParticipantQos> participant_qos(const NodeConfig& config,
+                                                  const std::shared_ptr<Seals>& seals) {
   auto udp = std::make_shared<UDPv4TransportDescriptor>();
   udp->interfaceWhiteList.push_back(config.endpoint.address);
   udp->non_blocking_send = true;
@@ -241,6 +260,7 @@ Result<dds::DomainParticipantQos> participant_qos(const NodeConfig& config) {
   udp->receiveBufferSize = kSocketBufferBytes;
   std::shared_ptr<TransportDescriptorInterface> transport = udp;
   if (auto r = wrap(config, transport); !r) return r.error();
+  if (seals) transport = sealed(std::move(transport), seals);  // above a radio, as on the air
 
   dds::DomainParticipantQos qos;
   qos.name("skein-" + std::to_string(config.self.value));
@@ -314,6 +334,9 @@ class Node::Impl : public dds::DomainParticipantListener {
       : config_{config},
         prefix_{guid_prefix(config.self, config.instance)},
         queue_{config.queue_limit} {
+    if (config.seal) {
+      seals_ = std::make_shared<Seals>(config.seal->start, config.seal->key, places_of(config));
+    }
     for (std::size_t i = 0; i < kTopicCount; ++i) {
       listeners_.at(i).node = this;
       listeners_.at(i).topic = static_cast<Topic>(i);
@@ -329,6 +352,11 @@ class Node::Impl : public dds::DomainParticipantListener {
   std::vector<Peer> peers() const;
   std::vector<Misfit> take_misfits();
   std::map<std::string, std::uint64_t> counters() const;
+  void change_key(const seal::EpochKey& key, Duration old_for);
+  [[nodiscard]] std::optional<std::uint8_t> epoch() const {
+    return seals_ ? std::optional{seals_->epoch()} : std::nullopt;
+  }
+  [[nodiscard]] KeyNewsDesk* news() { return seals_ ? &seals_->news : nullptr; }
 
  private:
   /// One per topic, so that a sample is known by its listener.
@@ -361,6 +389,7 @@ class Node::Impl : public dds::DomainParticipantListener {
 
   NodeConfig config_;
   rtps::GuidPrefix_t prefix_;
+  std::shared_ptr<Seals> seals_;  ///< none: in clear
   std::array<std::atomic<std::uint64_t>, kCounterNames.size()> counters_{};
   mutable std::mutex queue_mutex_;
   BoundedQueue<Received> queue_;
@@ -376,7 +405,7 @@ class Node::Impl : public dds::DomainParticipantListener {
 
 Result<void> Node::Impl::open() {
   if (auto r = check(config_); !r) return r;
-  auto qos = participant_qos(config_);
+  auto qos = participant_qos(config_, seals_);
   if (!qos) return qos.error();
   const std::string who = "node " + std::to_string(config_.self.value);
   participant_ = dds::DomainParticipantFactory::get_instance()->create_participant(
@@ -524,6 +553,11 @@ void Node::Impl::matched(const rtps::InstanceHandle_t& handle, std::int32_t chan
   }
 }
 
+void Node::Impl::change_key(const seal::EpochKey& key, Duration old_for) {
+  SKEIN_ASSERT(seals_ != nullptr);
+  seals_->change_key(key, old_for);
+}
+
 std::vector<Peer> Node::Impl::peers() const {
   std::vector<Peer> all;
   const std::lock_guard lock{peers_mutex_};
@@ -540,6 +574,13 @@ std::map<std::string, std::uint64_t> Node::Impl::counters() const {
   for (std::size_t i = 0; i < counters_.size(); ++i) {
     all.emplace(kCounterNames.at(i), counters_.at(i).load(std::memory_order_relaxed));
   }
+  if (seals_) {
+    const auto counts = seals_->opener.counts();
+    for (std::size_t i = 0; i < counts.size(); ++i) {
+      all.emplace(std::string{"seal_"} + seal::to_text(static_cast<seal::Opened>(i)), counts.at(i));
+    }
+    all.emplace("seal_misformed", seals_->misformed.load(std::memory_order_relaxed));
+  }
   return all;
 }
 
@@ -555,6 +596,17 @@ Result<std::unique_ptr<Node>> Node::open(const NodeConfig& config) {
 bool Node::publish(const mission::Message& message) { return impl_->publish(message); }
 std::optional<Received> Node::poll() { return impl_->poll(); }
 std::vector<Peer> Node::peers() const { return impl_->peers(); }
+void Node::change_key(const seal::EpochKey& key, Duration old_for) {
+  impl_->change_key(key, old_for);
+}
+std::optional<std::uint8_t> Node::epoch() const { return impl_->epoch(); }
+void Node::tell(const std::vector<KeyNews>& news) {
+  if (auto* desk = impl_->news()) desk->tell(news);
+}
+std::optional<std::vector<std::uint8_t>> Node::take_key_news() {
+  auto* desk = impl_->news();
+  return desk != nullptr ? desk->take() : std::nullopt;
+}
 std::vector<Misfit> Node::take_misfits() { return impl_->take_misfits(); }
 std::map<std::string, std::uint64_t> Node::counters() const { return impl_->counters(); }
 

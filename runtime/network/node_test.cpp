@@ -289,5 +289,75 @@ TEST(Node, SaysWhatIsWrongWithItsConfiguration) {
   EXPECT_THAT(refusal(c), HasSubstr("cannot load the transport"));
 }
 
+seal::EpochKey key(std::uint8_t epoch) {
+  seal::EpochKey made{.epoch = epoch};
+  made.secret.fill(static_cast<std::uint8_t>(100 + epoch));
+  return made;
+}
+
+std::vector<NodeConfig> sealed_fleet(std::size_t vehicles) {
+  auto configs = fleet(vehicles);
+  for (NodeConfig& config : configs) {
+    config.seal =
+        SealConfig{.start = {.sender = config.self, .number = 1, .random = 5}, .key = key(1)};
+  }
+  return configs;
+}
+
+bool know_each_other(const Node& a, const Node& b) {
+  return a.peers().size() == 1 && b.peers().size() == 1;
+}
+
+/// Messages of every kind from the ground station arrive at the vehicle as they were.
+void expect_exchange(Node& ground, Node& vehicle, std::uint64_t seed) {
+  std::vector<mission::Message> messages;
+  const auto sent = some_of_every_kind(Role::ground, seed, messages);
+  for (const auto& message : messages) EXPECT_TRUE(ground.publish(message));
+  EXPECT_EQ(take(vehicle, sent.size(), kGroundStation), sent);
+}
+
+TEST(SealedNode, ExchangesAsAnyOther) {
+  const auto configs = sealed_fleet(1);
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+  expect_exchange(*ground, *vehicle, 3);
+  for (const Node* node : {ground.get(), vehicle.get()}) {
+    const auto counts = node->counters();
+    EXPECT_GT(counts.at("seal_opened"), 0U);
+    EXPECT_EQ(counts.at("seal_forged") + counts.at("seal_misformed"), 0U);
+  }
+}
+
+TEST(SealedNode, GoesOnWhileKeysChangeOneAfterTheOther) {
+  const auto configs = sealed_fleet(1);
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+  vehicle->change_key(key(2), seconds{3600});
+  expect_exchange(*ground, *vehicle, 4);  // the ground station still seals with the old one
+  ground->change_key(key(2), Duration{});
+  expect_exchange(*ground, *vehicle, 5);
+}
+
+TEST(SealedNode, HearsNobodyInClearOrOfAnotherTeam) {
+  auto configs = sealed_fleet(3);
+  configs[2].seal.reset();
+  configs[3].seal->key = key(1);
+  configs[3].seal->key.secret[0] ^= 1U;
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  const auto in_clear = open(configs[2]);
+  const auto foreign = open(configs[3]);
+  ASSERT_TRUE(eventually([&] {
+    const auto counts = ground->counters();
+    return know_each_other(*ground, *vehicle) && counts.at("seal_not_sealed") > 5 &&
+           counts.at("seal_forged") > 5;
+  }));
+  EXPECT_TRUE(in_clear->peers().empty());
+  EXPECT_TRUE(foreign->peers().empty());
+  EXPECT_EQ(ground->peers().at(0).id, VehicleId{1});
+}
+
 }  // namespace
 }  // namespace skein::network

@@ -7,23 +7,70 @@
 #include <random>
 #include <utility>
 
+#include "skein/identity_desk/given.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::process {
 
-InstanceId new_instance() {
+namespace {
+
+InstanceId random_instance() {
   std::random_device device;
   const std::uint64_t high = device();
   return {high << 32U | device()};
 }
 
-network::NodeConfig node_config(const configuration::NetworkConfig& config, VehicleId self,
-                                InstanceId instance, std::function<void()> on_received) {
+bool is_loopback(const std::string& address) { return address.starts_with("127."); }
+
+bool is_this_machine_alone(const configuration::NetworkConfig& config) {
+  return is_loopback(config.address) &&
+         std::ranges::all_of(config.peers, [](const configuration::NetworkPeer& peer) {
+           return is_loopback(peer.address);
+         });
+}
+
+}  // namespace
+
+Result<NodeStart> start_node(const configuration::NetworkConfig& config, VehicleId self) {
+  NodeStart start;
+  start.self = self;
+  if (config.keys.empty()) {
+    if (!is_this_machine_alone(config)) {
+      return Error{
+          "network.keys is not given, and other machines are in the network: whoever reaches it "
+          "could fly the team; enrol the nodes (docs/keys.md)"};
+    }
+    start.instance = random_instance();
+    return start;
+  }
+  const auto keys = identity::KeyFolder::of(config.keys);
+  auto known = identity::Identity::open(keys, identity_desk::now_unix_s());
+  if (!known) return known.error();
+  if (known->own().node != self) {
+    return Error{config.keys + ": has the keys of " + wording::text_of(known->own().node) +
+                 ", and this is " + wording::text_of(self) + "; give it a folder of its own"};
+  }
+  const auto counted = identity::count_start(keys, self);
+  if (!counted) return counted.error();
+  start.instance = identity::instance_of(*counted);
+  start.seal = network::SealConfig{*counted, known->epoch_key()};
+  start.identity = std::move(*known);
+  return start;
+}
+
+std::string how_it_speaks(const NodeStart& start) {
+  return start.seal ? "sealed, epoch " + std::to_string(start.seal->key.epoch)
+                    : "in clear, on this machine alone";
+}
+
+network::NodeConfig node_config(const configuration::NetworkConfig& config, const NodeStart& start,
+                                std::function<void()> on_received) {
   network::NodeConfig node;
   node.domain = config.domain_id;
-  node.self = self;
-  node.instance = instance;
-  node.role = self == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
+  node.self = start.self;
+  node.instance = start.instance;
+  node.role = start.self == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
+  node.seal = start.seal;
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
   node.transport_plugin = config.transport_plugin;
@@ -51,6 +98,8 @@ Traffic traffic_of(const network::Node& node) {
       traffic.sent += count;
     } else if (name == "received") {
       traffic.received += count;
+    } else if (name.starts_with("seal_")) {
+      if (name != "seal_opened") traffic.of_strangers += count;
     } else {
       traffic.dropped += count;
     }

@@ -26,6 +26,8 @@ std::string two_digits(VehicleId vehicle) {
 
 }  // namespace
 
+std::string older_file_name(int age) { return "recording." + std::to_string(age) + ".mcap"; }
+
 std::string folder_name(VehicleId vehicle) {
   return vehicle == kGroundStation ? "ground" : "vehicle-" + two_digits(vehicle);
 }

@@ -161,6 +161,13 @@ Result<Log> Log::open(const std::filesystem::path& path) {
   return Log{std::make_unique<Impl>(std::move(files), own_only)};
 }
 
+Result<Log> Log::of_mission(const std::filesystem::path& folder, VehicleId node,
+                            std::int64_t epoch_unix_ns) {
+  auto files = open_mission(folder, node, epoch_unix_ns);
+  if (files.empty()) return Error{folder.string() + " has no recordings of this mission"};
+  return Log{std::make_unique<Impl>(std::move(files), false)};
+}
+
 Result<Log> Log::of_bytes(std::span<const std::uint8_t> bytes, const std::string& name) {
   auto reader = mcap::Reader::of_bytes(bytes, name);
   if (!reader) return reader.error();

@@ -29,19 +29,46 @@ Result<NodeFile> open_file(const std::filesystem::path& path) {
   return known_file(std::move(*reader));
 }
 
+namespace {
+
+bool is_there(const std::filesystem::path& path) {
+  std::error_code none;
+  return std::filesystem::exists(path, none);
+}
+
+}  // namespace
+
 Result<std::vector<NodeFile>> open_node(const std::filesystem::path& folder) {
   auto newest = open_file(folder / kFileName);
   if (!newest) return newest.error();
+  const InstanceId instance = newest->sessions.front().instance;
   std::vector<NodeFile> files;
-  std::error_code none;
-  if (std::filesystem::exists(folder / kOlderFileName, none)) {
-    // That of an earlier process is not this one's, whatever state it is in.
-    auto older = open_file(folder / kOlderFileName);
-    if (older && older->sessions.front().instance == newest->sessions.front().instance) {
-      files.push_back(std::move(*older));
-    }
-  }
   files.push_back(std::move(*newest));
+  for (int age = 1; is_there(folder / older_file_name(age)); ++age) {
+    // That of an earlier process is not this one's, whatever state it is in.
+    auto older = open_file(folder / older_file_name(age));
+    if (!older || older->sessions.front().instance != instance) break;
+    files.push_back(std::move(*older));
+  }
+  std::ranges::reverse(files);
+  return files;
+}
+
+std::vector<NodeFile> open_mission(const std::filesystem::path& folder, VehicleId node,
+                                   std::int64_t epoch_unix_ns) {
+  std::vector<NodeFile> files;
+  const auto take = [&](const std::filesystem::path& path) {
+    auto file = open_file(path);
+    if (!file) return;
+    const Session& session = file->sessions.front();
+    if (session.node == node && session.epoch_unix_ns == epoch_unix_ns) {
+      files.push_back(std::move(*file));
+    }
+  };
+  take(folder / kFileName);
+  for (int age = 1; is_there(folder / older_file_name(age)); ++age)
+    take(folder / older_file_name(age));
+  std::ranges::reverse(files);
   return files;
 }
 

@@ -23,8 +23,11 @@ struct NodeFile {
 [[nodiscard]] Result<NodeFile> known_file(mcap::Reader reader);
 [[nodiscard]] Result<NodeFile> open_file(const std::filesystem::path& path);
 
-/// The files of one process in a node's folder, the older first.
+/// The files of the newest process in a node's folder, the older first.
 [[nodiscard]] Result<std::vector<NodeFile>> open_node(const std::filesystem::path& folder);
+/// Those of all processes of that node in the mission with that epoch; none that cannot be read.
+[[nodiscard]] std::vector<NodeFile> open_mission(const std::filesystem::path& folder,
+                                                 VehicleId node, std::int64_t epoch_unix_ns);
 
 /// The folders in that of a run that have a recording, by name.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> node_folders(

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "skein/recording/log.hpp"
 #include "skein/recording/reader.hpp"
 #include "skein/recording/writer.hpp"
 
@@ -145,10 +146,34 @@ TEST_F(RecordingTest, AnEarlierProcessDoesNotCount) {
     ASSERT_TRUE(writer.ok());
     writer->write(awkward_event());
   }
-  EXPECT_TRUE(std::filesystem::exists(folder_ / kOlderFileName));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / older_file_name(1)));
   const auto read_back = read(folder_, VehicleId{7});
   ASSERT_TRUE(read_back.ok());
   EXPECT_EQ(read_back->events.size(), 1U);
+}
+
+TEST_F(RecordingTest, ManyNewStartsTakeNothingOfTheMissionWhileThereIsRoom) {
+  const auto start = [this](std::uint64_t instance, std::int64_t epoch_unix_ns) {
+    Writer::Options options;
+    options.session.node = VehicleId{7};
+    options.session.instance = InstanceId{instance};
+    options.session.epoch_unix_ns = epoch_unix_ns;
+    auto writer = Writer::open(folder_, options);
+    ASSERT_TRUE(writer.ok());
+    writer->write(awkward_event());
+  };
+  start(1, 4'000'000'000);
+  for (std::uint64_t instance = 2; instance < 12; ++instance) start(instance, 5'000'000'000);
+  auto log = Log::of_mission(folder_, VehicleId{7}, 5'000'000'000);
+  ASSERT_TRUE(log.ok()) << log.error().message;
+  std::vector<std::uint64_t> instances;
+  for (const Session& session : log->sessions()) instances.push_back(session.instance.value);
+  EXPECT_THAT(instances, testing::ElementsAre(2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
+  int records = 0;
+  while (log->next()) ++records;
+  EXPECT_EQ(records, 10);
+  EXPECT_FALSE(Log::of_mission(folder_, VehicleId{7}, 6'000'000'000).ok());
+  EXPECT_FALSE(Log::of_mission(folder_, VehicleId{8}, 5'000'000'000).ok());
 }
 
 TEST_F(RecordingTest, TheNewestHalfOfTheLimitIsAlwaysThere) {

@@ -24,14 +24,43 @@ Result<mcap::Writer> open_file(const std::filesystem::path& folder,
   return opened;
 }
 
-/// The file that is there becomes the older one. What is no plain file is left alone.
-Result<void> set_aside(const std::filesystem::path& folder) {
+/// A program that is started again and again leaves a small file each time.
+constexpr int kOlderFilesMax = 200;
+
+bool is_plain_file(const std::filesystem::path& path) {
   std::error_code failure;
-  const auto status = std::filesystem::symlink_status(folder / kFileName, failure);
-  if (!std::filesystem::is_regular_file(status)) return {};
-  std::filesystem::rename(folder / kFileName, folder / kOlderFileName, failure);
+  return std::filesystem::is_regular_file(std::filesystem::symlink_status(path, failure));
+}
+
+Result<void> move_file(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code failure;
+  std::filesystem::rename(from, to, failure);
   if (!failure) return {};
-  return Error{"cannot rename " + (folder / kFileName).string() + ": " + failure.message()};
+  return Error{"cannot rename " + from.string() + ": " + failure.message()};
+}
+
+/// The file that is there becomes the first of the older ones. Of those as many are kept as have
+/// room in `bytes`, and that one in any case. What is no plain file is left alone.
+Result<void> set_aside(const std::filesystem::path& folder, std::uint64_t bytes) {
+  if (!is_plain_file(folder / kFileName)) return {};
+  int older = 0;
+  while (older < kOlderFilesMax && is_plain_file(folder / older_file_name(older + 1))) ++older;
+  std::error_code none;
+  std::uint64_t sum = std::filesystem::file_size(folder / kFileName, none);
+  int kept = 0;
+  while (kept < std::min(older, kOlderFilesMax - 1)) {
+    sum += std::filesystem::file_size(folder / older_file_name(kept + 1), none);
+    if (sum > bytes) break;
+    ++kept;
+  }
+  for (int age = older; age > kept; --age) {
+    std::filesystem::remove(folder / older_file_name(age), none);
+  }
+  for (int age = kept; age > 0; --age) {
+    auto done = move_file(folder / older_file_name(age), folder / older_file_name(age + 1));
+    if (!done) return done;
+  }
+  return move_file(folder / kFileName, folder / older_file_name(1));
 }
 
 }  // namespace
@@ -72,7 +101,7 @@ class Writer::Impl {
     auto done = file_->close();
     file_.reset();
     channels_ = {};
-    if (done) done = set_aside(folder_);
+    if (done) done = set_aside(folder_, options_.bytes_max / 2);
     if (done) {
       auto opened = open_file(folder_, options_);
       if (opened) {
@@ -103,7 +132,7 @@ Result<Writer> Writer::open(const std::filesystem::path& folder, const Options& 
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
   if (failure) return Error{"cannot make folder " + folder.string() + ": " + failure.message()};
-  if (const auto free = set_aside(folder); !free) return free.error();
+  if (const auto free = set_aside(folder, options.bytes_max / 2); !free) return free.error();
   auto file = open_file(folder, options);
   if (!file) return file.error();
   // Whose file it is can be read even if the process is killed at once.

@@ -124,6 +124,39 @@ std::string_view sentence_of(event::ChangeRefusal why) {
   return sentence_in(kSentences, why);
 }
 
+std::string_view sentence_of(mission::RouteObstacle why) {
+  static constexpr Sentences<mission::RouteObstacle> kSentences{
+      "",
+      "its arcs are tighter than this vehicle's paths are planned",
+      "its speed is none that this vehicle flies",
+      "it leads into a hazard",
+      "not enough range for it",
+      "it is not where the route has it, and cannot be there in time",
+      "it is told to hold or to come home, or its range is spent",
+      "its setup is not the ground station's",
+      "it has a task",
+      "it flies by orders to a formation",
+      "it is no route",
+      "it was not told to fly it before it began"};
+  return sentence_in(kSentences, why);
+}
+
+std::string cause_of(const event::RoutesCalledOff& off) {
+  const std::string who = skein::wording::text_of(off.vehicle);
+  switch (off.end) {
+    case mission::RoutesEnd::route_refused:
+      return because(who + " does not fly its own", std::string{sentence_of(off.why)});
+    case mission::RoutesEnd::not_answered:
+      return who + " has not answered in time";
+    case mission::RoutesEnd::not_begun:
+      return who + " had not begun in time";
+    case mission::RoutesEnd::by_operator:
+    case mission::RoutesEnd::count:
+      break;
+  }
+  return "by the operator";
+}
+
 std::string_view sentence_of(Given given) {
   switch (given) {
     case Given::taken_by_others:
@@ -389,6 +422,16 @@ struct News {
     return fmt::format("proposal {} is {} by {}", e.number, e.accepted ? "taken" : "dismissed",
                        e.by);
   }
+  std::string operator()(const event::RouteAnswered& e) const {
+    return fmt::format("plan {}: {}", e.plan, text_of(e.state, e.why));
+  }
+  std::string operator()(const event::RoutesGiven& e) const {
+    return fmt::format("plan {} of {} vehicles from {:.1f} s on{}", e.plan, e.vehicles,
+                       to_seconds(e.begins), e.taken ? ": all have taken theirs" : "");
+  }
+  std::string operator()(const event::RoutesCalledOff& e) const {
+    return fmt::format("the routes of plan {} are called off: {}", e.plan, cause_of(e));
+  }
 };
 
 /// Does the event concern one task, rather than a site or nothing?
@@ -402,6 +445,10 @@ bool names_task(mission::EventKind kind) {
 
 std::string text_of(VehicleId vehicle) {
   return vehicle == kGroundStation ? "ground station" : fmt::format("vehicle {}", vehicle.value);
+}
+
+std::string text_of(mission::RouteState state, mission::RouteObstacle why) {
+  return because(words_of(to_string(state)), std::string{sentence_of(why)});
 }
 
 std::string text_of(const coalition::Why& why) {

@@ -27,7 +27,7 @@ class RecordingExport : public ::testing::Test {
               ("skein-export-" + std::to_string(::getpid()) + "-" +
                ::testing::UnitTest::GetInstance()->current_test_info()->name());
     configuration::VehicleConfig config;
-    config.time.epoch_unix_ns = 1;
+    config.time.epoch_unix_ns = 1'700'000'000'000'000'000;
     config.vehicle.id = VehicleId{7};
     config.vehicle.cruise_speed_mps = 50.0;
     config.vehicle.speed_min_mps = 40.0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct Deployment {
   std::uint16_t port_base = 17400;
   std::uint16_t domain_id = 0;
   std::string transport_plugin;
+  std::map<VehicleId, std::string> keys;  ///< folders; who has none speaks in clear
   TimeConfig time;
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
   std::string recording_folder;    ///< each process gets its own in it; empty: no recordings

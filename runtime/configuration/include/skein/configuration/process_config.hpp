@@ -25,6 +25,7 @@ struct NetworkConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 7400;  ///< UDP, for discovery; port + 1 is for data
   std::vector<NetworkPeer> peers;
+  std::string keys;              ///< folder of this node's keys; empty: in clear, on loopback only
   std::string transport_plugin;  ///< a shared library; empty: plain UDP
   friend bool operator==(const NetworkConfig&, const NetworkConfig&) = default;
 };

@@ -14,6 +14,8 @@
 #include "skein/base/result.hpp"
 #include "skein/codec/topics.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/network/key_news.hpp"
+#include "skein/seal/keys.hpp"
 
 namespace skein::network {
 
@@ -29,6 +31,12 @@ struct PeerConfig {
   Endpoint endpoint;
 };
 
+/// With what a node seals all that it sends, and opens what it receives (skein/seal).
+struct SealConfig {
+  seal::SenderStart start;
+  seal::EpochKey key;
+};
+
 struct NodeConfig {
   std::uint32_t domain = 0;  ///< nodes of other domains are not heard; 0 to 232
   VehicleId self;
@@ -39,6 +47,8 @@ struct NodeConfig {
   /// that is not listed here still finds this one if it lists it.
   std::vector<PeerConfig> peers;
   std::size_t queue_limit = 1024;  ///< received messages waiting for poll()
+  /// None: in clear, to be read and written by everybody who hears it.
+  std::optional<SealConfig> seal;
   /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
   std::string transport_plugin;
   /// Called on a thread of the network after messages became ready for poll(). Must be short, must
@@ -86,6 +96,18 @@ class Node {
   [[nodiscard]] std::optional<Received> poll();
 
   [[nodiscard]] std::vector<Peer> peers() const;
+
+  /// Seals with this key from now on, and goes on to open the present one's for so long.
+  /// Precondition: the node seals.
+  void change_key(const seal::EpochKey& key, Duration old_for);
+
+  /// Of the key that it seals with; none in clear.
+  [[nodiscard]] std::optional<std::uint8_t> epoch() const;
+  /// From now on told to these peers, as long as each is not heard under the new key. A node in
+  /// clear has no such news.
+  void tell(const std::vector<KeyNews>& news);
+  /// A key change that was heard, as bytes from anybody; nothing where none waits.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news();
 
   /// Those that were found since the last call: each sender, type and version once.
   [[nodiscard]] std::vector<Misfit> take_misfits();

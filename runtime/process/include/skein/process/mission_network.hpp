@@ -3,30 +3,48 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
 
 #include "skein/base/ids.hpp"
+#include "skein/base/result.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/identity/identity.hpp"
 #include "skein/network/node.hpp"
 
 namespace skein::process {
 
-/// Made at random: two processes with one vehicle id differ in it.
-[[nodiscard]] InstanceId new_instance();
+/// Which start of which node this process is.
+struct NodeStart {
+  VehicleId self;       ///< the ground station is the node with its id (0)
+  InstanceId instance;  ///< two processes with one vehicle id differ in it
+  /// Who it is by its keys; none on loopback without: there it is who it says, and speaks in clear.
+  std::optional<identity::Identity> identity;
+  std::optional<network::SealConfig> seal;
+};
+/// To be called once in a process: with keys it counts the start. Fails with what to do where the
+/// keys are no good, or there are none and other machines are in the network.
+[[nodiscard]] Result<NodeStart> start_node(const configuration::NetworkConfig& config,
+                                           VehicleId self);
 
-/// The node that the configuration describes. The ground station is the node with its id (0).
-/// `on_received` is called on a thread of the network; see network::NodeConfig.
+/// "sealed, epoch 1" or "in clear, on this machine alone".
+[[nodiscard]] std::string how_it_speaks(const NodeStart& start);
+
+/// The node that the configuration describes. `on_received` is called on a thread of the network;
+/// see network::NodeConfig.
 [[nodiscard]] network::NodeConfig node_config(const configuration::NetworkConfig& config,
-                                              VehicleId self, InstanceId instance,
+                                              const NodeStart& start,
                                               std::function<void()> on_received);
 
 /// Are nodes of the team on other machines, by their addresses?
 [[nodiscard]] bool among_machines(const configuration::NetworkConfig& config);
 
-/// What a node counted, in three numbers.
+/// What a node counted, in four numbers.
 struct Traffic {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
-  std::uint64_t dropped = 0;  ///< for whatever reason, in both directions
+  std::uint64_t dropped = 0;       ///< of the team's, for whatever reason, in both directions
+  std::uint64_t of_strangers = 0;  ///< datagrams that nobody sealed with the team's key
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 

@@ -54,6 +54,9 @@ class Log {
   /// `path` is a file, a node's folder, or a run's folder (whose merged file is used if it has
   /// one). Fails where nothing is there that can be read, or it is of another version of Skein.
   [[nodiscard]] static Result<Log> open(const std::filesystem::path& path);
+  /// What all processes of that node have recorded in its folder in the mission with that epoch.
+  [[nodiscard]] static Result<Log> of_mission(const std::filesystem::path& folder, VehicleId node,
+                                              std::int64_t epoch_unix_ns);
   /// One file's bytes, which outlive it.
   [[nodiscard]] static Result<Log> of_bytes(std::span<const std::uint8_t> bytes,
                                             const std::string& name);

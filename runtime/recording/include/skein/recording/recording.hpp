@@ -64,10 +64,11 @@ struct Session {
 /// The name of a node's folder within the folder of a run: "vehicle-07", "ground".
 [[nodiscard]] std::string folder_name(VehicleId vehicle);
 
-/// A node's files within its folder: the newest, and the one before it. A run's file, within its
-/// folder, when merge_run() has made it.
+/// A node's files within its folder: the newest, and those before it, the newest of them first. A
+/// run's file, within its folder, when merge_run() has made it.
 inline constexpr const char* kFileName = "recording.mcap";
-inline constexpr const char* kOlderFileName = "recording.1.mcap";
+/// "recording.1.mcap"
+[[nodiscard]] std::string older_file_name(int age);
 inline constexpr const char* kRunFileName = "mission.mcap";
 
 }  // namespace skein::recording

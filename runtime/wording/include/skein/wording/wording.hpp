@@ -20,6 +20,9 @@ namespace skein::wording {
 /// "form wedge, straight"; "correction of rally, layers"
 [[nodiscard]] std::string text_of(const mission::event::ChangeBegun& change);
 
+/// "refused: it leads into a hazard"
+[[nodiscard]] std::string text_of(mission::RouteState state, mission::RouteObstacle why);
+
 /// What an event says besides its kind, its vehicle and its task: "planned for 60.0 s". May be
 /// empty.
 [[nodiscard]] std::string news_of(const mission::MissionEvent& event);
