@@ -14,8 +14,12 @@ constexpr std::size_t kBacklogMax = 4U << 20U;  ///< bytes that wait; then recor
 class FoxgloveClient final : public LiveClient,
                              public std::enable_shared_from_this<FoxgloveClient> {
  public:
-  FoxgloveClient(Hub& hub, std::unique_ptr<WebSocket> socket, std::shared_ptr<Hub::Place> place)
-      : hub_{hub}, socket_{std::move(socket)}, place_{std::move(place)} {}
+  FoxgloveClient(Hub& hub, std::unique_ptr<WebSocket> socket, std::string cookies,
+                 std::shared_ptr<Connections::Place> place)
+      : hub_{hub},
+        socket_{std::move(socket)},
+        cookies_{std::move(cookies)},
+        place_{std::move(place)} {}
   ~FoxgloveClient() override { hub_.leave(*this); }
   FoxgloveClient(const FoxgloveClient&) = delete;
   FoxgloveClient& operator=(const FoxgloveClient&) = delete;
@@ -30,6 +34,9 @@ class FoxgloveClient final : public LiveClient,
     });
   }
 
+  void on_log_out() override {
+    if (!has_session()) stop();
+  }
   void on_channel(const LiveChannel& channel) override {
     say(FoxgloveSession::advertise({&channel, 1}));
   }
@@ -59,6 +66,7 @@ class FoxgloveClient final : public LiveClient,
   }
   void write() {
     if (writing_ || stopped_ || texts_.empty()) return;
+    if (!has_session()) return stop();
     writing_ = true;
     const WebSocket::Text& text = texts_.front();
     socket_->write(text.bytes, text.binary, [self = shared_from_this()](bool ok) {
@@ -69,6 +77,9 @@ class FoxgloveClient final : public LiveClient,
       self->write();
     });
   }
+  [[nodiscard]] bool has_session() {
+    return hub_.gate().identify(cookies_, std::chrono::steady_clock::now()).has_value();
+  }
   void stop() {
     stopped_ = true;
     hub_.leave(*this);
@@ -77,7 +88,8 @@ class FoxgloveClient final : public LiveClient,
 
   Hub& hub_;
   std::unique_ptr<WebSocket> socket_;
-  std::shared_ptr<Hub::Place> place_;
+  std::string cookies_;
+  std::shared_ptr<Connections::Place> place_;
   FoxgloveSession session_;
   std::deque<WebSocket::Text> texts_;
   std::size_t waiting_bytes_ = 0;
@@ -88,8 +100,9 @@ class FoxgloveClient final : public LiveClient,
 }  // namespace
 
 void serve_foxglove(Hub& hub, std::unique_ptr<WebSocket> socket, std::string_view protocol,
-                    std::shared_ptr<Hub::Place> place) {
-  std::make_shared<FoxgloveClient>(hub, std::move(socket), std::move(place))->run(protocol);
+                    std::string cookies, std::shared_ptr<Connections::Place> place) {
+  std::make_shared<FoxgloveClient>(hub, std::move(socket), std::move(cookies), std::move(place))
+      ->run(protocol);
 }
 
 }  // namespace skein::console

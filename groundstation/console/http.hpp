@@ -42,6 +42,7 @@ struct HttpResponse {
   std::string type;  ///< of the media
   std::string body;
   std::vector<std::pair<std::string_view, std::string>> fields = {};  ///< names: literals
+  bool last = false;  ///< the connection ends with it
 };
 
 namespace media {

@@ -20,13 +20,15 @@ HttpResponse refusal(HttpStatus status, const char* why) {
 /// A connection that speaks HTTP, until it asks for the socket.
 class HttpConnection final : public std::enable_shared_from_this<HttpConnection> {
  public:
-  HttpConnection(Hub& hub, std::unique_ptr<HttpStream> stream, bool local)
-      : hub_{hub},
-        stream_{std::move(stream)},
-        local_{local},
-        place_{std::make_shared<Hub::Place>(hub)} {}
+  HttpConnection(Hub& hub, std::unique_ptr<HttpStream> stream, std::string address, bool local)
+      : hub_{hub}, stream_{std::move(stream)}, address_{std::move(address)}, local_{local} {}
 
   void run() {
+    place_ = hub_.connections().enter(address_, [self = weak_from_this()] {
+      const auto connection = self.lock();
+      if (connection && connection->stream_) connection->stream_->drop();
+    });
+    if (!place_) return;
     stream_->handshake([self = shared_from_this()](bool ok) {
       if (ok) self->read();
     });
@@ -45,10 +47,8 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     if (request.wants_socket) return upgrade(request);
     if (request.target == "/session" && request.method == HttpMethod::post) return log_in(request);
     if (request.target == "/session" && request.method == HttpMethod::remove) {
-      return send({HttpStatus::ok,
-                   media::kJson,
-                   "{}",
-                   {{"Set-Cookie", hub_.gate().dismiss(request.cookie)}}});
+      return send(
+          {HttpStatus::ok, media::kJson, "{}", {{"Set-Cookie", hub_.log_out(request.cookie)}}});
     }
     auto told = hub_.machine_pages().respond(request, std::chrono::steady_clock::now());
     send(told ? *std::move(told) : hub_.pages().respond(request));
@@ -64,9 +64,10 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     }
     const auto identity = gate.identify(request.cookie, std::chrono::steady_clock::now());
     if (!identity) return refuse(HttpStatus::unauthorized, "log in first");
+    place_->has_session();
     for (const std::string_view protocol : kFoxgloveProtocols) {
       if (!offers(request, protocol)) continue;
-      return serve_foxglove(hub_, stream_->upgrade(), protocol, place_);
+      return serve_foxglove(hub_, stream_->upgrade(), protocol, request.cookie, place_);
     }
     if (request.target != "/socket" || !offers(request, kPageProtocol)) {
       return refuse(HttpStatus::bad_request, "the socket is at /socket and speaks skein.console.1");
@@ -86,8 +87,8 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
         !json["user"].is_string() || !json["password"].is_string()) {
       return send(refusal(HttpStatus::bad_request, "a login has a user and a password"));
     }
-    const bool taken = hub_.log_in(
-        json["user"], json["password"],
+    const auto taken = hub_.log_in(
+        address_, json["user"], json["password"],
         [self = shared_from_this()](const std::optional<Identity>& identity) {
           if (!identity) {
             return self->send(refusal(HttpStatus::unauthorized, "wrong user or password"));
@@ -99,28 +100,31 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
                codec::json_text({{"user", identity->user}, {"role", to_string(identity->role)}}),
                {{"Set-Cookie", self->hub_.gate().admit(*identity, now)}}});
         });
-    if (!taken) {
-      send(refusal(HttpStatus::too_many_requests, "too many log in at once; try again"));
-    }
+    if (!taken) send(refusal(HttpStatus::too_many_requests, taken.error().message.c_str()));
   }
 
   void send(HttpResponse response) {
+    response.last = ++answers_ >= kAnswersMax;
     stream_->write(std::move(response), [self = shared_from_this()](bool more) {
       if (!more) return self->stream_->close();
       self->read();
     });
   }
 
+  static constexpr int kAnswersMax = 1000;
+
   Hub& hub_;
   std::unique_ptr<HttpStream> stream_;
+  std::string address_;
   bool local_;
-  std::shared_ptr<Hub::Place> place_;
+  std::shared_ptr<Connections::Place> place_;
+  int answers_ = 0;
 };
 
 }  // namespace
 
-void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream, bool local) {
-  std::make_shared<HttpConnection>(hub, std::move(stream), local)->run();
+void serve_http(Hub& hub, std::unique_ptr<HttpStream> stream, std::string address, bool local) {
+  std::make_shared<HttpConnection>(hub, std::move(stream), std::move(address), local)->run();
 }
 
 }  // namespace skein::console

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hub.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
+#include "skein/base/text.hpp"
 #include "skein/codec/json_text.hpp"
 
 namespace skein::console {
@@ -14,7 +17,8 @@ using codec::Json;
 
 constexpr std::size_t kRequestsMax = 256;
 constexpr int kPublicationsMax = 4;
-constexpr std::size_t kLoginsMax = 4;  ///< that wait; each takes some 0.1 s
+constexpr std::size_t kNameMax = 64;    ///< bytes of a user's name, for a log
+constexpr std::size_t kLoginsMax = 16;  ///< that wait, of as many addresses; each takes some 0.1 s
 
 }  // namespace
 
@@ -108,18 +112,50 @@ void Hub::leave(LiveClient& client) {
   live_watched_ = !live_clients_.empty();
 }
 
-bool Hub::log_in(std::string user, std::string password,
-                 std::function<void(std::optional<Identity>)> done) {
-  if (logins_waiting_ >= kLoginsMax) return false;
-  ++logins_waiting_;
-  post_login_([this, user = std::move(user), password = std::move(password),
+Result<void> Hub::log_in(const std::string& address, std::string user, std::string password,
+                         std::function<void(std::optional<Identity>)> done) {
+  const auto wait = login_waits_.wait(address, std::chrono::steady_clock::now());
+  if (wait) {
+    return Error{fmt::format("too many wrong passwords; try again in {} s", wait->count())};
+  }
+  if (logins_.size() >= kLoginsMax || !logins_.insert(address).second) {
+    return Error{"too many log in at once; try again"};
+  }
+  post_login_([this, address, user = std::move(user), password = std::move(password),
                done = std::move(done)]() mutable {
-    post([this, identity = gate_.check(user, password), done = std::move(done)] {
-      --logins_waiting_;
+    auto identity = gate_.check(user, password);
+    post([this, address, user = std::move(user), identity = std::move(identity),
+          done = std::move(done)] {
+      logins_.erase(address);
+      if (identity) {
+        login_waits_.right(address);
+      } else {
+        refused_login(address, user);
+      }
       done(identity);
     });
   });
-  return true;
+  return {};
+}
+
+void Hub::refused_login(const std::string& address, const std::string& user) {
+  const auto now = std::chrono::steady_clock::now();
+  const int in_a_row = login_waits_.wrong(address, now);
+  const auto wait = login_waits_.wait(address, now).value_or(std::chrono::seconds{0});
+  if (config_.on_refused_login) {
+    config_.on_refused_login({as_text(user, kNameMax), address, in_a_row, wait});
+  }
+}
+
+std::string Hub::log_out(std::string_view cookies) {
+  std::string field = gate_.dismiss(cookies);
+  for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) {
+    client->on_log_out();
+  }
+  for (LiveClient* client : std::vector<LiveClient*>{live_clients_.begin(), live_clients_.end()}) {
+    client->on_log_out();
+  }
+  return field;
 }
 
 std::string Hub::hello(const Identity& identity) const {

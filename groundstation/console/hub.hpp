@@ -11,8 +11,10 @@
 #include <vector>
 
 #include "board.hpp"
+#include "connections.hpp"
 #include "foxglove.hpp"
 #include "gate.hpp"
+#include "login_waits.hpp"
 #include "machine_pages.hpp"
 #include "pages.hpp"
 #include "skein/base/bounded_queue.hpp"
@@ -27,6 +29,8 @@ class Client {
   virtual ~Client() = default;
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
+  /// A session has ended: its own, perhaps.
+  virtual void on_log_out() = 0;
   virtual void on_news() = 0;
   virtual void on_restart(const std::string& history, std::uint64_t next_seq) = 0;
 };
@@ -38,6 +42,7 @@ class LiveClient {
   virtual ~LiveClient() = default;
   LiveClient(const LiveClient&) = delete;
   LiveClient& operator=(const LiveClient&) = delete;
+  virtual void on_log_out() = 0;
   virtual void on_channel(const LiveChannel& channel) = 0;
   virtual void on_record(std::uint32_t channel, const Server::LiveRecord& record) = 0;
 };
@@ -75,9 +80,11 @@ class Hub {
   void join(LiveClient& client);
   void leave(LiveClient& client);
 
-  /// Checks a password on the thread for that. False when too many wait.
-  bool log_in(std::string user, std::string password,
-              std::function<void(std::optional<Identity>)> done);
+  /// Checks a password on the thread for that. Else why it is not looked at now.
+  Result<void> log_in(const std::string& address, std::string user, std::string password,
+                      std::function<void(std::optional<Identity>)> done);
+  /// Ends the session and what is open by it.
+  [[nodiscard]] std::string log_out(std::string_view cookies);
 
   [[nodiscard]] std::string hello(const Identity& identity) const;
   [[nodiscard]] Gate& gate() { return gate_; }
@@ -87,21 +94,11 @@ class Hub {
   [[nodiscard]] const std::vector<LiveChannel>& channels() const { return channels_; }
   [[nodiscard]] const std::string& run_id() const { return run_; }
 
-  /// Counts a connection as long as it lives.
-  class Place {
-   public:
-    explicit Place(Hub& hub) : hub_{&hub} { ++hub.connections_; }
-    ~Place() { --hub_->connections_; }
-    Place(const Place&) = delete;
-    Place& operator=(const Place&) = delete;
-
-   private:
-    Hub* hub_;
-  };
-  [[nodiscard]] std::size_t connections() const { return connections_; }
+  [[nodiscard]] Connections& connections() { return connections_; }
 
  private:
   void tell_all();
+  void refused_login(const std::string& address, const std::string& user);
 
   const ServerConfig& config_;
   std::function<void()> on_request_;
@@ -112,8 +109,9 @@ class Hub {
   std::optional<Pages> pages_;
   MachinePages machine_pages_{gate_};
   Board board_;
-  std::size_t logins_waiting_ = 0;
-  std::size_t connections_ = 0;
+  std::set<std::string> logins_;  ///< that are being looked at: addresses
+  LoginWaits login_waits_;
+  Connections connections_;
   std::set<Client*> clients_;
   std::atomic<bool> watched_{false};
   std::atomic<int> publications_{0};  ///< that wait for the server's thread

@@ -19,7 +19,7 @@ constexpr int kTextsPerSecond = 20;
 class PageClient final : public Client, public std::enable_shared_from_this<PageClient> {
  public:
   PageClient(Hub& hub, std::unique_ptr<WebSocket> socket, Identity identity, std::string cookies,
-             std::shared_ptr<Hub::Place> place)
+             std::shared_ptr<Connections::Place> place)
       : hub_{hub},
         socket_{std::move(socket)},
         identity_{std::move(identity)},
@@ -38,6 +38,9 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     });
   }
 
+  void on_log_out() override {
+    if (!has_session()) close();
+  }
   void on_news() override { write(); }
   void on_restart(const std::string& history, std::uint64_t next_seq) override {
     if (!resumed_) return;
@@ -98,8 +101,7 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   }
 
   bool on(LineText& text) {
-    // Who has logged out gives no more orders by what is still open.
-    if (!hub_.gate().identify(cookies_, std::chrono::steady_clock::now())) return false;
+    if (!has_session()) return false;
     Server::Line given;
     given.line = std::move(text.line);
     given.user = identity_.user;
@@ -127,9 +129,14 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     write();
   }
 
+  [[nodiscard]] bool has_session() {
+    return hub_.gate().identify(cookies_, std::chrono::steady_clock::now()).has_value();
+  }
+
   /// What was asked for first, then events, then the newest state: one text at a time.
   void write() {
     if (writing_ || stopped_) return;
+    if (!has_session()) return close();
     if (!answers_.empty()) {
       text_ = std::move(answers_.front());
       answers_.pop_front();
@@ -166,7 +173,7 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   std::unique_ptr<WebSocket> socket_;
   Identity identity_;
   std::string cookies_;
-  std::shared_ptr<Hub::Place> place_;
+  std::shared_ptr<Connections::Place> place_;
   std::deque<std::string> answers_;
   std::string text_;  ///< that is being written
   Board::Seen seen_;
@@ -181,7 +188,7 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
 }  // namespace
 
 void serve_page(Hub& hub, std::unique_ptr<WebSocket> socket, const Identity& identity,
-                std::string cookies, std::shared_ptr<Hub::Place> place) {
+                std::string cookies, std::shared_ptr<Connections::Place> place) {
   std::make_shared<PageClient>(hub, std::move(socket), identity, std::move(cookies),
                                std::move(place))
       ->run();

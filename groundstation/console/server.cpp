@@ -21,7 +21,6 @@ namespace ssl = asio::ssl;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kConnectionsMax = 64;
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
 
 bool is_loopback(const std::string& address) {
@@ -83,6 +82,10 @@ Result<void> Server::Impl::open() {
     tls_.emplace(ssl::context::tls_server);
     tls_->set_options(ssl::context::default_workarounds | ssl::context::no_tlsv1 |
                       ssl::context::no_tlsv1_1);
+    // Of TLS 1.2 what keeps its secrets and is authenticated encryption; TLS 1.3 has no other.
+    if (SSL_CTX_set_cipher_list(tls_->native_handle(), "ECDHE+AESGCM:ECDHE+CHACHA20") != 1) {
+      return Error{"this OpenSSL has no modern cipher suites for TLS 1.2"};
+    }
     tls_->use_certificate_chain_file(config_.certificate, error);
     if (error) return Error{config_.certificate + ": no certificate: " + error.message()};
     tls_->use_private_key_file(config_.key, ssl::context::pem, error);
@@ -129,7 +132,7 @@ void Server::Impl::accept() {
       });
       return;
     }
-    if (hub_.connections() < kConnectionsMax) serve(std::move(socket));
+    serve(std::move(socket));
     accept();
   });
 }
@@ -138,10 +141,10 @@ void Server::Impl::serve(tcp::socket socket) {
   error_code ignored;
   socket.set_option(tcp::no_delay{true}, ignored);
   const auto peer = socket.remote_endpoint(ignored);
-  const bool local = !ignored && peer.address().is_loopback();
-  serve_http(hub_,
-             open_http(tls_ ? open_tls(std::move(socket), *tls_) : open_plain(std::move(socket))),
-             local);
+  if (ignored) return;  // it has gone already
+  auto bytes = tls_ ? open_tls(std::move(socket), *tls_) : open_plain(std::move(socket));
+  serve_http(hub_, open_http(std::move(bytes), tls_.has_value()), peer.address().to_string(),
+             peer.address().is_loopback());
 }
 
 std::string Server::Impl::url() const {

@@ -10,10 +10,12 @@
 #include <boost/beast.hpp>
 #include <filesystem>
 #include <fstream>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <semaphore>
 #include <thread>
 
+#include "login_waits.hpp"
 #include "machine_pages.hpp"
 
 namespace skein::console {
@@ -320,7 +322,7 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   EXPECT_EQ(ask(station, get("/session")).result(), http::status::unauthorized);
   EXPECT_FALSE(Page{station}.open());
   for (const auto& [user, password] :
-       {std::pair{"ada", "wrong"}, {"ada", ""}, {"eve", "difference"}, {"", ""}}) {
+       {std::pair{"ada", "wrong"}, {"eve", "difference"}, {"", ""}}) {
     EXPECT_EQ(ask(station, login(user, password)).result(), http::status::unauthorized);
   }
   const auto let_in = ask(station, login("ada", "difference"));
@@ -333,10 +335,49 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   EXPECT_EQ(Json::parse(ask(station, who).body())["user"], "ada");
   EXPECT_TRUE((Page{station, {.cookie = cookie}}.open()));
   EXPECT_FALSE((Page{station, {.cookie = cookie + "0"}}.open()));
+  Page open{station, {.cookie = cookie}};
+  ASSERT_TRUE(open.open());
   http::request<http::string_body> out{http::verb::delete_, "/session", 11};
   out.set(http::field::cookie, cookie);
   EXPECT_EQ(ask(station, out).result(), http::status::ok);
   EXPECT_FALSE((Page{station, {.cookie = cookie}}.open()));
+  while (!open.read().empty()) {
+  }
+  EXPECT_FALSE(open.open()) << "what is open by a session ends with it";
+}
+
+TEST(Server, WhoGuessesPasswordsWaitsAndIsTold) {
+  ServerConfig config = with_users();
+  std::mutex mutex;
+  std::vector<RefusedLogin> refused;
+  config.on_refused_login = [&](const RefusedLogin& one) {
+    const std::lock_guard lock{mutex};
+    refused.push_back(one);
+  };
+  const Station station{std::move(config)};
+  for (int i = 0; i <= LoginWaits::kFree; ++i) {
+    EXPECT_EQ(ask(station, login("ada\n", "guess")).result(), http::status::unauthorized);
+  }
+  const auto waits = ask(station, login("ada", "difference"));
+  EXPECT_EQ(waits.result(), http::status::too_many_requests);
+  EXPECT_THAT(waits.body(), HasSubstr("try again in 1 s"));
+  const std::lock_guard lock{mutex};
+  ASSERT_EQ(refused.size(), LoginWaits::kFree + 1U);
+  EXPECT_EQ(refused.back().user, "ada ");
+  EXPECT_EQ(refused.back().address, "127.0.0.1");
+  EXPECT_EQ(refused.back().in_a_row, LoginWaits::kFree + 1);
+  EXPECT_EQ(refused.back().wait, std::chrono::seconds{1});
+}
+
+TEST(Server, WhoOnlyConnectsKeepsNobodyOut) {
+  const Station station{with_users()};
+  asio::io_context context;
+  std::vector<std::unique_ptr<beast::tcp_stream>> idle;
+  for (int i = 0; i < 80; ++i) {
+    idle.push_back(std::make_unique<beast::tcp_stream>(context));
+    idle.back()->connect(tcp::endpoint{asio::ip::make_address("127.0.0.1"), station.port()});
+  }
+  EXPECT_EQ(ask(station, login("ada", "difference")).result(), http::status::ok);
 }
 
 TEST(Server, AnObserverIsKnownAsOne) {

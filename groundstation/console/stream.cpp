@@ -104,7 +104,7 @@ class BeastWebSocket final : public WebSocket {
 
 class BeastHttpStream final : public HttpStream {
  public:
-  explicit BeastHttpStream(AnyStream stream) : stream_{std::move(stream)} {}
+  BeastHttpStream(AnyStream stream, bool secure) : stream_{std::move(stream)}, secure_{secure} {}
 
   void handshake(std::function<void(bool)> done) override {
     stream_->expire_after(kPatience);
@@ -136,8 +136,9 @@ class BeastHttpStream final : public HttpStream {
     response_.set("Cross-Origin-Opener-Policy", "same-origin");
     response_.set("Cross-Origin-Resource-Policy", "same-origin");
     response_.set(http::field::cache_control, "no-store");
+    if (secure_) response_.set("Strict-Transport-Security", "max-age=31536000");
     for (const auto& [name, value] : response.fields) response_.set(beast_view(name), value);
-    response_.keep_alive(request_.keep_alive());
+    response_.keep_alive(request_.keep_alive() && !response.last);
     response_.content_length(response.body.size());
     // Of an answer to HEAD only the length is said.
     if (request_.method() != http::verb::head) response_.body() = std::move(response.body);
@@ -155,6 +156,7 @@ class BeastHttpStream final : public HttpStream {
   }
 
   void close() override { stream_->end_sending(); }
+  void drop() override { stream_->close(); }
 
  private:
   static constexpr const char* kPolicy =
@@ -164,6 +166,7 @@ class BeastHttpStream final : public HttpStream {
   static constexpr std::uint32_t kHeaderMax = 8192;
 
   AnyStream stream_;
+  bool secure_;
   boost::beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   BeastRequest request_;
@@ -172,8 +175,8 @@ class BeastHttpStream final : public HttpStream {
 
 }  // namespace
 
-std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes) {
-  return std::make_unique<BeastHttpStream>(AnyStream{std::move(bytes)});
+std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes, bool secure) {
+  return std::make_unique<BeastHttpStream>(AnyStream{std::move(bytes)}, secure);
 }
 
 }  // namespace skein::console

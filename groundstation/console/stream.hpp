@@ -54,10 +54,14 @@ class HttpStream {
   virtual void write(HttpResponse response, std::function<void(bool more)> done) = 0;
   /// Its stream, from now on for the WebSocket that was asked for last.
   [[nodiscard]] virtual std::unique_ptr<WebSocket> upgrade() = 0;
+  /// What was sent still arrives.
   virtual void close() = 0;
+  /// Ends it without a word.
+  virtual void drop() = 0;
 };
 
 class ByteStream;
-[[nodiscard]] std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes);
+/// `secure`: it is TLS, and browsers shall come by that only.
+[[nodiscard]] std::unique_ptr<HttpStream> open_http(std::unique_ptr<ByteStream> bytes, bool secure);
 
 }  // namespace skein::console

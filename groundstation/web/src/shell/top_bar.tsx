@@ -30,6 +30,12 @@ export function TopBar() {
         <span class="dot" aria-hidden="true" />
         {link_words[link.value]}
       </span>
+      {greeting?.sealed === false && (
+        <span class="link-state lost" data-testid="in-clear" title="Whoever reaches the mission network can read and command it">
+          <span class="dot" aria-hidden="true" />
+          network in clear
+        </span>
+      )}
       <button type="button" class="count" data-testid="count-heard" onClick={() => (panel.value = "fleet")} title="Vehicles heard, of those expected">
         <b>
           {counts.heard}/{counts.expected}

@@ -46,6 +46,8 @@ export interface Hello {
   shapes: string[];
   site_templates: string[];
   limits: Limits;
+  /** Whether the mission network is sealed; null in a replay. */
+  sealed: boolean | null;
   replay: { name: string; from_s: number; to_s: number } | null;
   tiles: Tiles | null;
   overlays: { name: string; url: string }[];

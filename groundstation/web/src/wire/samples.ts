@@ -14,6 +14,7 @@ export function a_hello(): Hello {
     expected: [1, 2, 3],
     shapes: [],
     site_templates: [],
+    sealed: true,
     limits: {
       coordinate_m: [-1e5, 1e5],
       hazard_radius_m: [1, 5e4],

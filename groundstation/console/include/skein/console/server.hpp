@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -21,6 +22,14 @@ struct Overlay {
   std::string file;  ///< GeoJSON
 };
 
+/// Somebody has named a user and a password that do not belong together.
+struct RefusedLogin {
+  std::string user;  ///< as it was given, without control characters
+  std::string address;
+  int in_a_row = 0;              ///< of this address
+  std::chrono::seconds wait{0};  ///< until another of this address is looked at
+};
+
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 7460;   ///< 0: any that is free
@@ -31,12 +40,15 @@ struct ServerConfig {
   std::vector<Overlay> overlays;
   /// Fields of the hello message that the server does not know itself, as a JSON object.
   std::string hello = "{}";
+  /// On the server's thread; must be short. Empty: none.
+  std::function<void(const RefusedLogin&)> on_refused_login;
 };
 
 /// The page and its socket (docs/console-socket.md) on one address, in a thread of its own from
 /// open() to destruction. Slow, silent and hostile clients cost it bounded memory and nobody else
-/// anything: at most 64 connections; states give way to newer ones; a client whose answers pile up
-/// is let go. All functions may be called from any thread.
+/// anything: at most 64 connections, of which those without a session give way; states give way to
+/// newer ones; a client whose answers pile up is let go. All functions may be called from any
+/// thread.
 class Server {
  public:
   /// A client has given a line or an order.
