@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/groundstation/console_desk.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -35,7 +38,7 @@ console::ServerConfig server_config(const configuration::ConsoleConfig& config) 
 
 std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>& expected,
                        const std::vector<std::string>& shapes,
-                       const std::vector<std::string>& site_templates,
+                       const std::vector<std::string>& site_templates, std::optional<bool> sealed,
                        const std::optional<ShownRecording>& recording) {
   const Wgs84& place = origin.origin();
   codec::Json hello{{"program", "skein-ground " + version()},
@@ -47,6 +50,7 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                     {"shapes", shapes},
                     {"site_templates", site_templates},
                     {"limits", codec::parse_own_json(limits_json())},
+                    {"sealed", sealed ? codec::Json(*sealed) : codec::Json(nullptr)},
                     {"replay", nullptr}};
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
   if (recording) {
@@ -73,10 +77,11 @@ std::optional<console::Section> section_of(View view) {
       return Section::coalitions;
     case View::hazards:
       return Section::hazards;
-    case View::help:
     case View::proposals:
       return Section::proposals;
+    case View::help:
     case View::audit:
+    case View::routes:
       break;
   }
   return std::nullopt;
@@ -97,11 +102,22 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);
   std::vector<std::string> templates;
   for (const auto& kind : config.site_templates) templates.push_back(kind.name);
-  server.hello = hello_text(origin_, config.vehicles, shapes, templates, {});
+  server.hello =
+      hello_text(origin_, config.vehicles, shapes, templates, !config.network.keys.empty(), {});
+  server.on_refused_login = [](const console::RefusedLogin& login) {
+    spdlog::warn("console: login of '{}' from {} refused, {} in a row; the next of that address {}",
+                 login.user, login.address, login.in_a_row,
+                 login.wait.count() == 0 ? "at once" : fmt::format("in {} s", login.wait.count()));
+  };
   auto opened = console::Server::open(std::move(server), std::move(wake));
   if (!opened) return opened.error();
   server_ = std::move(*opened);
   return {};
+}
+
+void ConsoleDesk::recall(const mission::Message& message, VehicleId sender, Instant at) {
+  picture_.on_message(message, sender, at);
+  if (const auto* event = std::get_if<mission::MissionEvent>(&message)) picture_.on_event(*event);
 }
 
 void ConsoleDesk::on_message(const mission::Message& message, VehicleId sender, Instant now) {

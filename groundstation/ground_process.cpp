@@ -26,6 +26,7 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
+#include "skein/groundstation/route_desk.hpp"
 #include "skein/groundstation/site_desk.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/mission/ground_node.hpp"
@@ -33,6 +34,7 @@
 #include "skein/process/close_limit.hpp"
 #include "skein/process/host.hpp"
 #include "skein/process/journal.hpp"
+#include "skein/process/key_watch.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
@@ -91,11 +93,27 @@ struct Asker {
   bool may_order = true;  ///< otherwise may only look
 };
 
+std::string network_text(std::optional<std::uint8_t> epoch) {
+  return epoch ? fmt::format("network: sealed, epoch {}\n", *epoch)
+               : "network: in clear, on this machine alone\n";
+}
+
+/// Said by an operator's word: a new start of this process goes on with it.
+bool must_outlast(const mission::Message& message) {
+  return std::holds_alternative<mission::Authorisation>(message) ||
+         std::holds_alternative<mission::Command>(message) ||
+         std::holds_alternative<mission::SiteReport>(message) ||
+         std::holds_alternative<mission::HazardReport>(message) ||
+         std::holds_alternative<mission::Route>(message);
+}
+
 bool only_looks(const Input& input) {
   const auto* formation = std::get_if<Formation>(&input);
   const auto* site = std::get_if<NewSite>(&input);
+  const auto* routes = std::get_if<RoutesFromFile>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
-         (formation != nullptr && formation->preview) || (site != nullptr && site->preview);
+         (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
+         (routes != nullptr && routes->preview);
 }
 
 /// The console is on other machines: it opens no files here, and ends nothing that it cannot start.
@@ -109,6 +127,9 @@ const char* why_not_on_console(const Input& input) {
   }
   if (std::holds_alternative<SitesFromFile>(input)) {
     return "files of sites are for the prompt and the command line\n";
+  }
+  if (std::holds_alternative<RoutesFromFile>(input)) {
+    return "files of routes are for the prompt and the command line\n";
   }
   if (std::holds_alternative<Record>(input)) {
     return "record is for the prompt and the command line\n";
@@ -144,6 +165,7 @@ class GroundLoop {
         node_{node},
         formation_{std::move(formation)},
         sites_{config, origin, node},
+        routes_{node},
         control_{std::move(control)},
         console_{std::move(console)},
         audit_{std::move(audit)},
@@ -153,10 +175,11 @@ class GroundLoop {
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
     while (!stopping_) {
+      const bool heard_all = take_messages();
       const Instant now = clock_.now();
-      const bool heard_all = take_messages(now);
       process::log_misfits(network_);
       take_lines(prompt, now);
+      if (speak_.exchange(false)) node_.speak();
       node_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
@@ -170,6 +193,11 @@ class GroundLoop {
     }
     recorder_.flush();
   }
+  /// From another thread: has something sent to everybody.
+  void speak() {
+    speak_ = true;
+    wake_.notify();
+  }
   /// From another thread: grows with every step.
   [[nodiscard]] std::uint64_t steps() const { return steps_.load(std::memory_order_relaxed); }
   /// From another thread.
@@ -180,10 +208,11 @@ class GroundLoop {
 
  private:
   /// False where more wait: lines, repeats and decisions come first.
-  bool take_messages(Instant now) {
+  bool take_messages() {
     for (int i = 0; i < kMessagesPerStep; ++i) {
       const auto received = network_.poll();
       if (!received) return true;
+      const Instant now = clock_.now();  // never before it was sent, or its sender's clock is ahead
       recorder_.write(received->message, received->sender, now);
       if (!node_.on_message(received->message, received->sender, now)) continue;
       console_.on_message(received->message, received->sender, now);
@@ -241,6 +270,9 @@ class GroundLoop {
     }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
     if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
+    if (const auto* preview = std::get_if<RoutesFromFile>(&input)) {
+      return routes_.answer(*preview, now);
+    }
     return {true, ""};
   }
 
@@ -270,6 +302,10 @@ class GroundLoop {
     if (const auto* site = std::get_if<WithdrawSite>(&input)) {
       return sites_.answer(*site, asker.who, now);
     }
+    if (const auto* routes = std::get_if<RoutesFromFile>(&input)) {
+      return routes_.answer(*routes, now);
+    }
+    if (const auto* off = std::get_if<CallOffRoutes>(&input)) return routes_.answer(*off, now);
     if (const auto* proposal = std::get_if<ProposalAnswer>(&input)) {
       return sites_.answer(*proposal, asker.who, now);
     }
@@ -308,7 +344,8 @@ class GroundLoop {
       case View::help:
         return help_text();
       case View::status:
-        return fleet_table(node_.fleet().vehicles(), now);
+        return fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
+               network_text(network_.epoch());
       case View::sites:
         return sites_text(console_.picture());
       case View::pending:
@@ -323,6 +360,8 @@ class GroundLoop {
         return audit_.text();
       case View::proposals:
         return sites_.proposals_text();
+      case View::routes:
+        return routes_.text(now);
     }
     return "";
   }
@@ -341,7 +380,7 @@ class GroundLoop {
   void send(const mission::Message& message, Instant now) {
     recorder_.write(message, kGroundStation, now);
     // What a process that starts anew must know of is in the file before anybody acts on it.
-    if (std::holds_alternative<mission::Authorisation>(message)) recorder_.flush();
+    if (must_outlast(message)) recorder_.flush();
     network_.publish(message);
     console_.on_message(message, kGroundStation, now);
   }
@@ -379,6 +418,7 @@ class GroundLoop {
     facts.sent = traffic.sent;
     facts.received = traffic.received;
     facts.dropped = traffic.dropped + node_.dropped();
+    facts.of_strangers = traffic.of_strangers;
     facts.refused = node_.refused();
     facts.authorisations_waiting = static_cast<std::size_t>(
         std::ranges::count_if(node_.agent().authorisations(),
@@ -414,6 +454,7 @@ class GroundLoop {
   mission::GroundNode& node_;
   FormationDesk formation_;
   SiteDesk sites_;
+  RouteDesk routes_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   Audit audit_;
@@ -423,6 +464,7 @@ class GroundLoop {
   bool among_machines_;
   Instant next_report_{Instant::min()};
   std::atomic<std::uint64_t> steps_{0};
+  std::atomic<bool> speak_{false};
   std::atomic<bool> stopping_{false};
 };
 
@@ -461,9 +503,13 @@ std::unique_ptr<ControlSocket> open_control(const configuration::GroundConfig& c
 }
 
 void recall_mission(const configuration::GroundConfig& config, std::int64_t epoch_unix_ns,
-                    mission::GroundNode& ground) {
+                    mission::GroundNode& ground, ConsoleDesk& console) {
   if (config.recording_folder.empty()) return;
-  const std::size_t messages = recall(config.recording_folder, epoch_unix_ns, ground);
+  const std::size_t messages =
+      recall(config.recording_folder, epoch_unix_ns, ground,
+             [&console](const mission::Message& message, VehicleId sender, Instant at) {
+               console.recall(message, sender, at);
+             });
   if (messages == 0) return;
   spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
 }
@@ -479,6 +525,30 @@ const char* wait_watched(const GroundLoop& loop, const process::Shutdown& shutdo
     const auto now = std::chrono::steady_clock::now();
     if (progress.all_moved(std::array{loop.steps()}, now)) service.feed_watchdog();
   }
+}
+
+void log_start(const configuration::GroundConfig& config, const process::NodeStart& start,
+               const std::string& operator_name) {
+  spdlog::info("ground station of {} vehicles, {}, {}; type help", config.vehicles.size(),
+               process::how_it_speaks(start), who_decides(config, operator_name));
+}
+
+void log_summary(const network::Node& node, const mission::GroundNode& ground) {
+  const auto traffic = process::traffic_of(node);
+  spdlog::info(
+      "ended: messages sent {}, received {}, dropped {}, refused of their senders {}; datagrams of "
+      "strangers {}",
+      traffic.sent, traffic.received, traffic.dropped + ground.dropped(), ground.refused(),
+      traffic.of_strangers);
+}
+
+/// None without keys.
+std::unique_ptr<process::KeyWatch> watch_keys(process::NodeStart& start,
+                                              const configuration::NetworkConfig& config,
+                                              network::Node& node, std::function<void()> on_told) {
+  if (!start.identity) return nullptr;
+  return std::make_unique<process::KeyWatch>(node, std::move(*start.identity), config.keys,
+                                             std::move(on_told));
 }
 
 Result<Recorder> open_recorder(const configuration::GroundConfig& config, InstanceId instance,
@@ -497,34 +567,38 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
   process::CloseLimit close_limit;
-
   const auto origin = MissionOrigin::make(config.origin);
   if (!origin) {
     spdlog::critical("the mission origin is unusable: {}", origin.error().message);
     return process::kExitBadInput;
   }
-  const InstanceId instance = process::new_instance();
+  auto start = process::start_node(config.network, kGroundStation);
+  if (!start) {
+    spdlog::critical("cannot join the mission network: {}", start.error().message);
+    return process::kExitCannotStart;
+  }
+  const InstanceId instance = start->instance;
   mission::GroundNode ground{node_config(config, instance), clock.now()};
   auto formation = FormationDesk::open(config.formation, config.vehicles, ground);
   if (!formation) {
     spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
     return process::kExitBadInput;
   }
-  recall_mission(config, clock.epoch_unix_ns(), ground);
+  ConsoleDesk console{config, *origin};
+  recall_mission(config, clock.epoch_unix_ns(), ground, console);
   auto recorder = open_recorder(config, instance, clock.epoch_unix_ns());
   if (!recorder) {
     spdlog::critical("cannot record: {}", recorder.error().message);
     return process::kExitCannotStart;
   }
   process::Wake wake;
-  auto node = network::Node::open(
-      process::node_config(config.network, kGroundStation, instance, [&wake] { wake.notify(); }));
+  auto node =
+      network::Node::open(process::node_config(config.network, *start, [&wake] { wake.notify(); }));
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;
   }
 
-  ConsoleDesk console{config, *origin};
   serve_console(console, config, wake);
   auto audit = Audit::open(config.recording_folder);
   if (!audit) {
@@ -532,8 +606,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
     return process::kExitCannotStart;
   }
 
-  spdlog::info("ground station of {} vehicles, {}; type help", config.vehicles.size(),
-               who_decides(config, operator_name));
+  log_start(config, *start, operator_name);
   GroundLoop loop{config,
                   *origin,
                   operator_name,
@@ -547,6 +620,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   open_control(config, wake),
                   std::move(console),
                   std::move(*audit)};
+  const auto keys = watch_keys(*start, config.network, **node, [&loop] { loop.speak(); });
   std::thread thread{[&loop] { loop.run(); }};
   const process::Service service;
   const char* signal = wait_watched(loop, shutdown, service);
@@ -554,10 +628,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   spdlog::info("{}: stopping", signal);
   loop.stop();
   thread.join();
-  const auto traffic = process::traffic_of(**node);
-  spdlog::info("ended: messages sent {}, received {}, dropped {}, refused of their senders {}",
-               traffic.sent, traffic.received, traffic.dropped + ground.dropped(),
-               ground.refused());
+  log_summary(**node, ground);
   close_limit.start(process::kCloseWithin);
   return 0;
 }

@@ -111,6 +111,10 @@ std::string metrics_text(const HealthFacts& facts, const mission::Fleet& fleet) 
       .value(facts.received);
   metrics.family("skein_messages_dropped_total", "counter", "Messages dropped, for any reason")
       .value(facts.dropped);
+  metrics
+      .family("skein_datagrams_of_strangers_total", "counter",
+              "Datagrams that nobody sealed with the team's key, or not just now")
+      .value(facts.of_strangers);
   metrics.family("skein_messages_refused_total", "counter", "Messages not their sender's to say")
       .value(facts.refused);
   metrics.family("skein_authorisations_waiting", "gauge", "Deliveries that wait for a decision")

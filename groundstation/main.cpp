@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <termios.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -8,7 +7,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
-#include <iostream>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "mission_commands.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/console/users.hpp"
@@ -27,6 +26,7 @@
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
 #include "skein/version/version.hpp"
+#include "typed_password.hpp"
 
 namespace {
 
@@ -34,7 +34,6 @@ namespace groundstation = skein::groundstation;
 using skein::configuration::GroundConfig;
 
 constexpr int kExitRefused = 1;
-constexpr std::size_t kPasswordMin = 8;
 constexpr std::chrono::seconds kAnswerWithin{20};  // a change of a thousand vehicles takes its time
 
 struct PlanArguments {
@@ -154,22 +153,8 @@ int password(const PasswordArguments& arguments) {
   if (arguments.name.empty() || arguments.name.find_first_of(":\n") != std::string::npos) {
     return fail("a name has no colon in it", skein::process::kExitBadInput);
   }
-  const bool terminal = ::isatty(STDIN_FILENO) == 1;
-  termios before{};
-  if (terminal) {
-    std::fprintf(stderr, "password of %s: ", arguments.name.c_str());
-    ::tcgetattr(STDIN_FILENO, &before);
-    termios silent = before;
-    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO);
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &silent);
-  }
-  std::string typed;
-  std::getline(std::cin, typed);
-  if (terminal) {
-    ::tcsetattr(STDIN_FILENO, TCSANOW, &before);
-    std::fputs("\n", stderr);
-  }
-  if (typed.size() < kPasswordMin) {
+  const std::string typed = groundstation::typed_password(arguments.name);
+  if (typed.size() < groundstation::kPasswordMin) {
     return fail("a password has at least 8 characters", skein::process::kExitBadInput);
   }
   const Role role = arguments.observer ? Role::observer : Role::op;
@@ -251,6 +236,9 @@ class CommandLine {
     add_orders();
     add_plan();
     add_password();
+    for (const CLI::App* group : {&missions_.mission(), &missions_.keys()}) {
+      actions_[group] = [this] { return missions_.run(); };
+    }
     add_recordings();
     add_replay();
   }
@@ -395,6 +383,7 @@ class CommandLine {
       "The ground station: shows the fleet and its mission, and is where an operator\n"
       "authorises or refuses deliveries and gives a formation its orders."};
   std::map<const CLI::App*, std::function<int()>> actions_;
+  groundstation::MissionCommands missions_{app_};
   Arguments arguments_;
   PlanArguments planning_;
   PasswordArguments account_;

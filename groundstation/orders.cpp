@@ -14,9 +14,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 9> kWords{"help",    "status", "sites",
-                                                          "pending", "places", "coalitions",
-                                                          "hazards", "audit",  "proposals"};
+  static constexpr std::array<std::string_view, 10> kWords{
+      "help",       "status",  "sites", "pending",   "places",
+      "coalitions", "hazards", "audit", "proposals", "routes"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -49,6 +49,11 @@ struct Line {
   std::string operator()(const WithdrawSite& site) const {
     return fmt::format("withdraw site {}", site.site.value);
   }
+  std::string operator()(const RoutesFromFile& from) const {
+    return fmt::format("{}routes {}{}", from.preview ? "preview " : "", from.file,
+                       from.in_s ? fmt::format(" in {}", *from.in_s) : "");
+  }
+  std::string operator()(const CallOffRoutes& /*off*/) const { return "withdraw routes"; }
   std::string operator()(const ProposalAnswer& answer) const {
     return fmt::format("{} {}", answer.accept ? "accept" : "dismiss", answer.number);
   }

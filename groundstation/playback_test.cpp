@@ -23,7 +23,7 @@ class PlaybackTest : public ::testing::Test {
               ("skein-playback-" + std::to_string(::getpid()) + "-" +
                ::testing::UnitTest::GetInstance()->current_test_info()->name());
     configuration::GroundConfig config;
-    config.time.epoch_unix_ns = 1;
+    config.time.epoch_unix_ns = 1'700'000'000'000'000'000;
     config.origin = {47.0, 8.0, 500.0};
     config.vehicles = {{1}, {2}, {3}};
     recording::Writer::Options options;

@@ -180,14 +180,34 @@ bool is_formation_verb(std::string_view word) {
          word == "fly-along";
 }
 
+/// `routes` alone looks; with a file it gives them.
+Result<Input> route_order(const std::vector<std::string_view>& words, bool preview) {
+  if (words.size() == 1 && !preview) return Input{View::routes};
+  const bool timed = words.size() == 4 && words[2] == "in";
+  if (words.size() != 2 && !timed) {
+    return Error{
+        "'routes' needs the file of a plan, and when it begins where that is not mission time 0, "
+        "as in 'routes plan.yaml in 60'"};
+  }
+  RoutesFromFile order{std::string{words[1]}, {}, preview};
+  if (timed) {
+    const auto seconds = number_after("in", words[3], kRoutesIn_s);
+    if (!seconds) return seconds.error();
+    order.in_s = *seconds;
+  }
+  return Input{order};
+}
+
 Result<Input> preview(std::vector<std::string_view> words) {
   words.erase(words.begin());
+  if (!words.empty() && words[0] == "routes") return route_order(words, true);
   if (!words.empty() && (words[0] == "site" || words[0] == "change")) {
     return site_order(words, true);
   }
   if (words.empty() || !is_formation_verb(words[0])) {
     return Error{
-        "'preview' needs an order to the formation or of a site, as in 'preview form wedge "
+        "'preview' needs an order to the formation, of a site or of routes, as in 'preview form "
+        "wedge "
         "spacing 5'"};
   }
   return formation_order(words, true);
@@ -219,6 +239,10 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "sites" && words.size() == 2) return Input{SitesFromFile{std::string{words[1]}}};
   if (verb == "sites") return view(View::sites, words);
   if (verb == "site" || verb == "change") return site_order(words, false);
+  if (verb == "routes") return route_order(words, false);
+  if (verb == "withdraw" && words.size() == 2 && words[1] == "routes") {
+    return Input{CallOffRoutes{}};
+  }
   if (verb == "withdraw") return withdrawal(words);
   if (verb == "accept" || verb == "dismiss") return proposal_answer(verb == "accept", words);
   if (verb == "proposals") return view(View::proposals, words);
@@ -276,6 +300,13 @@ std::string help_text() {
          "sites FILE        tell it of those of a file\n"
          "change site N ... until a delivery there is authorised; a place goes after 'at'\n"
          "withdraw site N   nobody goes on with it, but for a delivery that has begun\n"
+         "routes FILE       offer vehicles the routes of a plan (plan.yaml of skein-ground plan), "
+         "from\n"
+         "                  mission time 0 on, or in S seconds: routes FILE in S; they fly when "
+         "all\n"
+         "                  have taken theirs\n"
+         "routes            which plan is given, and how far each vehicle is with its route\n"
+         "withdraw routes   nobody flies them, or goes on with them\n"
          "proposals         what detectors have seen and you have not answered\n"
          "accept N          take proposal N as a site; dismiss N: it is none\n"
          "audit             who gave which order, from where, and what came of it\n"
@@ -298,7 +329,8 @@ std::string help_text() {
          "they\n"
          "                  slide into another shape on the way\n"
          "land              it comes straight down\n"
-         "preview ORDER     what one of these five, site or change would do, and whether it is "
+         "preview ORDER     what one of these five, site, change or routes would do, and whether "
+         "it is "
          "safe\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
          "record FOLDER     record all that is said into FOLDER, too, from now on; record stop: no "

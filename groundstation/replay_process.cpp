@@ -52,7 +52,7 @@ class ReplayLoop {
       : playback_{std::move(playback)}, speed_{speed}, shutdown_{shutdown} {}
 
   Result<void> serve(console::ServerConfig config, const std::string& name) {
-    config.hello = hello_text(playback_.origin(), playback_.picture().params().expected, {}, {},
+    config.hello = hello_text(playback_.origin(), playback_.picture().params().expected, {}, {}, {},
                               ShownRecording{name, playback_.begin(), playback_.end()});
     auto opened = console::Server::open(std::move(config), [this] { wake_.notify(); });
     if (!opened) return opened.error();

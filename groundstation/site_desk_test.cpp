@@ -21,7 +21,7 @@ version: 1
 origin: {latitude_deg: 59.0, longitude_deg: 17.0}
 vehicles: [1, 2]
 network: {port: 7410}
-time: {epoch_unix_ns: 1}
+time: {epoch_unix_ns: 1700000000000000000}
 site_templates:
   - name: fire
     survey: {dwell_s: 4}

@@ -35,23 +35,26 @@ void AgentLoop::step(Instant now) {
   for (int i = 0; i < kMessagesPerStep; ++i) {
     const auto received = link_.receive();
     if (!received) break;
+    // What comes now was sent since this step began, perhaps: by an older time its sender's clock
+    // would seem to be ahead.
+    if (link_.now) stepped_at_ = std::max(stepped_at_, link_.now());
     take_in(*received);
     hand_out();
   }
   while (const auto result = planner_->result()) {
-    note(recording::PlanningGiven{result->round, result->expired_after, result->took, now});
-    node_.on_planning_result(*result, now);
+    note(recording::PlanningGiven{result->round, result->expired_after, result->took, stepped_at_});
+    node_.on_planning_result(*result, stepped_at_);
     hand_out();
   }
   while (auto notice = link_.notice ? link_.notice() : std::nullopt) {
     spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time),
                  wording::text_of(notice->what));
-    note(recording::NoticeGiven{*notice, now});
+    note(recording::NoticeGiven{*notice, stepped_at_});
     node_.on_notice(*notice);
     hand_out();
   }
-  note(recording::TimeoutGiven{now});
-  node_.on_timeout(now);
+  note(recording::TimeoutGiven{stepped_at_});
+  node_.on_timeout(stepped_at_);
   hand_out();
 }
 

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "key_commands.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/vehicle_process.hpp"
@@ -118,7 +119,8 @@ int main(int argc, char** argv) {
       "The process of one vehicle: joins the mission network, takes part in coalitions and\n"
       "flies the vehicle's flight controller."};
   app.footer(
-      "Examples:\n  skein-onboard --config vehicle-07.yaml\n  skein-onboard status\n\n"
+      "Examples:\n  skein-onboard --config vehicle-07.yaml\n  skein-onboard status\n"
+      "  skein-onboard enrol --id 7\n\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
       "SIGINT or SIGTERM with exit code 0; 2 means bad arguments or configuration, 3 that it\n"
       "could not start.");
@@ -140,10 +142,12 @@ int main(int argc, char** argv) {
   asks.add_flag("--flying", status.flying,
                 "Only whether it may be in the air. Ends with 0 if so, with 1 on the ground, with "
                 "3 where there is no process, with 4 where it is not known");
+  const onboard::KeyCommands keys{app};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
   }
+  if (keys.given()) return keys.run();
   return asks.parsed() ? show_status(status) : fly(arguments);
 }

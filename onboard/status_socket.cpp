@@ -67,6 +67,9 @@ std::optional<NoStatus> connect_to(const sockaddr_un& address, int socket,
 }
 
 bool is_left_over(const sockaddr_un& address) {
+  struct stat there {};
+  // Nobody takes a connection to any other file, either.
+  if (::lstat(address.sun_path, &there) != 0 || !S_ISSOCK(there.st_mode)) return false;
   const Descriptor socket{new_socket(0)};
   return connect_to(address, socket.get(), kLeftOverWithin) == NoStatus::nobody_there;
 }

@@ -28,6 +28,7 @@
 #include "skein/onboard/threads.hpp"
 #include "skein/process/close_limit.hpp"
 #include "skein/process/host.hpp"
+#include "skein/process/key_watch.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/mission_clock.hpp"
 #include "skein/process/mission_network.hpp"
@@ -155,8 +156,10 @@ void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
 }
 
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
-                  std::optional<detectors::DetectorSocket>& socket, AgentRing* records) {
+                  std::optional<detectors::DetectorSocket>& socket, AgentRing* records,
+                  const process::MissionClock& clock) {
   AgentLink link = link_to(node, health);
+  link.now = [&clock] { return clock.now(); };
   if (socket) listen_to(*socket, link);
   if (records != nullptr) {
     link.record = [records](recording::AgentRecord record) { records->push(std::move(record)); };
@@ -193,7 +196,7 @@ class Threads {
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{node_config(config, route, instance, "skein-onboard " + version()),
                link_to(node, flight_controllers_.on_can, health, detectors_,
-                       writer ? &records_ : nullptr),
+                       writer ? &records_ : nullptr, clock),
                ports_,
                planner_,
                events_,
@@ -233,10 +236,12 @@ class Threads {
     const mission::Counters counters = agent_.node().counters();
     spdlog::info(
         "ended: {} control periods, {} overruns, {} without a state; messages sent {}, received "
-        "{}, dropped {}, refused of their senders {}; protocol errors {}; records dropped {}",
+        "{}, dropped {}, refused of their senders {}; datagrams of strangers {}; protocol errors "
+        "{}; "
+        "records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
-        counters.protocol_errors + counters.bad_messages,
+        traffic.of_strangers, counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;
@@ -403,7 +408,12 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     spdlog::critical("the route cannot be flown: {}", route.error().message);
     return process::kExitBadInput;
   }
-  const InstanceId instance = process::new_instance();
+  auto start = process::start_node(config.network, config.vehicle.id);
+  if (!start) {
+    spdlog::critical("cannot join the mission network: {}", start.error().message);
+    return process::kExitCannotStart;
+  }
+  const InstanceId instance = start->instance;
   std::optional<recording::Writer> writer;
   if (!config.recording_folder.empty()) {
     recording::Writer::Options options;
@@ -418,8 +428,8 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     writer = std::move(*opened);
   }
   process::Wake wake_agent;
-  auto node = network::Node::open(process::node_config(config.network, config.vehicle.id, instance,
-                                                       [&wake_agent] { wake_agent.notify(); }));
+  auto node = network::Node::open(
+      process::node_config(config.network, *start, [&wake_agent] { wake_agent.notify(); }));
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;
@@ -437,8 +447,10 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
 
-  spdlog::info("vehicle {} joins the mission network, instance {:016x}", config.vehicle.id.value,
-               instance.value);
+  spdlog::info("vehicle {} joins the mission network {}, instance {:016x}", config.vehicle.id.value,
+               process::how_it_speaks(*start), instance.value);
+  std::optional<process::KeyWatch> keys;
+  if (start->identity) keys.emplace(**node, std::move(*start->identity), config.network.keys);
   HealthBoard health;
   const auto threads = std::make_unique<Threads>(
       config, *route, clock, **node, wake_agent, instance, std::move(writer),

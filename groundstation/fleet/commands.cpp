@@ -44,6 +44,11 @@ std::optional<std::int64_t> kept_epoch(const FleetArguments& arguments) {
   return std::getline(file, text) ? configuration::parse_utc(text) : std::nullopt;
 }
 
+std::int64_t now_unix_ns() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
+
 /// The file's, the one that is given, or the one that was given before.
 Result<std::int64_t> epoch_of(const configuration::Scenario& fleet,
                               const FleetArguments& arguments) {
@@ -52,8 +57,7 @@ Result<std::int64_t> epoch_of(const configuration::Scenario& fleet,
     return Error{"the epoch stands in the file; leave --epoch out, or take it from there"};
   }
   if (arguments.epoch == "now") {
-    const auto now = std::chrono::system_clock::now().time_since_epoch();
-    return std::int64_t{std::chrono::duration_cast<std::chrono::nanoseconds>(now).count()};
+    return now_unix_ns();
   }
   if (!arguments.epoch.empty()) {
     const auto epoch = configuration::parse_utc(arguments.epoch);
@@ -117,7 +121,7 @@ std::optional<Refusal> load(const FleetArguments& arguments, Fleet& fleet,
     wrong.pop_back();
     return Refusal{wrong, no_epoch && !arguments.epoch.empty() ? kExitBadInput : kExitDiffers};
   }
-  fleet.epoch_unix_ns = epoch ? *epoch : 0;
+  fleet.epoch_unix_ns = epoch ? *epoch : now_unix_ns();
   auto programs = render(fleet.scenario, fleet.epoch_unix_ns);
   if (!programs) return Refusal{name + programs.error().message, kExitDiffers};
   fleet.programs = std::move(programs).value();
@@ -173,10 +177,9 @@ std::vector<Outcome> on_all(const std::vector<Program>& programs,
   return outcomes;
 }
 
-/// Tells what came of `what` on each host.
-int tell_of(const FleetArguments& arguments, const Fleet& fleet, const char* done,
-            const std::function<Result<void>(const Program&)>& what) {
-  const auto outcomes = on_all<Result<void>>(fleet.chosen, what);
+/// Tells what came of a command on each chosen host.
+int tell(const FleetArguments& arguments, const Fleet& fleet, const char* done,
+         const std::vector<Result<void>>& outcomes) {
   Json hosts = Json::array();
   bool all = true;
   for (std::size_t i = 0; i < outcomes.size(); ++i) {
@@ -196,11 +199,21 @@ int tell_of(const FleetArguments& arguments, const Fleet& fleet, const char* don
   return all ? kExitAsTheFile : kExitDiffers;
 }
 
+int tell_of(const FleetArguments& arguments, const Fleet& fleet, const char* done,
+            const std::function<Result<void>(const Program&)>& what) {
+  return tell(arguments, fleet, done, on_all<Result<void>>(fleet.chosen, what));
+}
+
 /// A program is started only with what the file says.
 Result<void> start_as_the_file(const Program& program) {
   const Status there = status(program);
   if (!there.reachable) return Error{there.trouble};
-  if (there.running) return start(program);
+  if (there.running && there.as_the_file() && !there.outdated) return start(program);
+  if (there.running) {
+    return Error{fmt::format("{} runs with another configuration than the file{}; stop it first",
+                             name_of(program.host.node),
+                             there.drift.empty() ? "" : ": " + there.drift.front().key)};
+  }
   if (!there.configured) {
     return Error{name_of(program.host.node) + " has no configuration; push it first"};
   }
@@ -317,12 +330,24 @@ int push_all(const FleetArguments& arguments) {
   if (const auto refused = load(arguments, fleet)) {
     return complain(arguments, refused->sentences, refused->status);
   }
-  if (const auto written = write_folder(fleet, folder_of(arguments)); !written) {
-    return complain(arguments, written.error().message, kExitBadInput);
+  const auto kept = kept_epoch(arguments);
+  if (!arguments.only.empty() && kept && *kept != fleet.epoch_unix_ns) {
+    return complain(arguments,
+                    "--only would give some hosts another epoch than the others have, " +
+                        configuration::utc_text(*kept) + "; push to all, or leave --epoch out",
+                    kExitBadInput);
   }
-  if (!arguments.json) fmt::print("{}\n", epoch_line(fleet));
-  return tell_of(arguments, fleet, "configured",
-                 [&](const Program& program) { return push(program, arguments.force); });
+  const auto outcomes = on_all<Result<void>>(
+      fleet.chosen, [&](const Program& program) { return push(program, arguments.force); });
+  const bool any = std::ranges::any_of(outcomes, [](const auto& outcome) { return outcome.ok(); });
+  // What no host has taken is not what the commands that follow go by.
+  if (any) {
+    if (const auto written = write_folder(fleet, folder_of(arguments)); !written) {
+      return complain(arguments, written.error().message, kExitBadInput);
+    }
+    if (!arguments.json) fmt::print("{}\n", epoch_line(fleet));
+  }
+  return tell(arguments, fleet, "configured", outcomes);
 }
 
 int start_all(const FleetArguments& arguments) {
@@ -338,8 +363,19 @@ int stop_all(const FleetArguments& arguments) {
   if (const auto refused = load(arguments, fleet, Epoch::any)) {
     return complain(arguments, refused->sentences, refused->status);
   }
-  return tell_of(arguments, fleet, "stopped",
-                 [&](const Program& program) { return stop(program, arguments.force); });
+  // The ground station last, and only where no vehicle is left in the air without it.
+  bool all = true;
+  std::vector<Result<void>> outcomes =
+      on_all<Result<void>>(fleet.chosen, [&](const Program& program) {
+        return program.is_ground() ? Result<void>{} : stop(program, arguments.force);
+      });
+  for (const auto& outcome : outcomes) all = all && outcome.ok();
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (!fleet.chosen[i].is_ground()) continue;
+    outcomes[i] = all ? stop(fleet.chosen[i], arguments.force)
+                      : Error{"the ground station goes on: not all vehicles have stopped"};
+  }
+  return tell(arguments, fleet, "stopped", outcomes);
 }
 
 int show_status(const FleetArguments& arguments) {

@@ -35,16 +35,10 @@ std::string short_name(VehicleId node) {
 /// Hosts with the same are one machine.
 std::pair<std::string, std::string> machine_of(const Host& host) { return {host.ssh, host.run}; }
 
-std::uint32_t number_of(const std::string& address) {
+bool is_loopback(const std::string& address) {
   in_addr parsed{};
   ::inet_pton(AF_INET, address.c_str(), &parsed);
-  return ntohl(parsed.s_addr);
-}
-bool is_loopback(const std::string& address) { return number_of(address) >> 24U == 127; }
-/// Not "any", and no group of machines.
-bool is_of_one_machine(const std::string& address) {
-  constexpr std::uint32_t kFirstGroup = 224U << 24U;
-  return number_of(address) != 0 && number_of(address) < kFirstGroup;
+  return ntohl(parsed.s_addr) >> 24U == 127;
 }
 
 /// What the files of a formation hold, by the paths that they get on the ground station's host.
@@ -150,10 +144,7 @@ class Check {
       return machine_of(host) != machine_of(s_.hosts.front());
     });
     for (const Host& host : s_.hosts) {
-      if (!is_of_one_machine(host.address)) {
-        problem("the host of {} has the address {}, which is of no one machine; write its own",
-                name_of(host.node), host.address);
-      } else if (spread && is_loopback(host.address)) {
+      if (spread && is_loopback(host.address)) {
         problem(
             "the host of {} has the address {}, where other machines do not reach it; write the "
             "one of its mission network",
@@ -302,6 +293,8 @@ std::string recordings_of(const Host& host) {
   return host.recordings + "/" + short_name(host.node);
 }
 
+std::string keys_of(const Host& host) { return recordings_of(host) + "/keys"; }
+
 std::vector<std::string> problems(const Scenario& scenario) { return Check{scenario}.run(); }
 
 Result<std::vector<Program>> render(const Scenario& scenario, std::int64_t epoch_unix_ns) {
@@ -321,12 +314,14 @@ Result<std::vector<Program>> render(const Scenario& scenario, std::int64_t epoch
   auto ground = configuration::ground_config(fleet, deployment);
   ground.console = fleet.console;
   ground.recording_folder = recordings_of(ground_host);
+  ground.network.keys = keys_of(ground_host);
   std::vector<Program> programs;
   programs.push_back(program_of(ground_host, to_yaml(ground)));
   programs.back().more = files.files;
   for (auto& config : configuration::vehicle_configs(fleet, deployment)) {
     const Host& host = *host_of(scenario, config.vehicle.id);
     config.recording_folder = recordings_of(host);
+    config.network.keys = keys_of(host);
     config.detections_socket = detections_socket_of(host);
     programs.push_back(program_of(host, to_yaml(config)));
   }

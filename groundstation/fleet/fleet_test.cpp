@@ -66,6 +66,7 @@ TEST(Fleet, EveryHostIsGivenItsConfiguration) {
   const auto config = configuration::parse_vehicle_config(second.configuration, "vehicle");
   ASSERT_TRUE(config.ok());
   EXPECT_EQ(config->recording_folder, "/var/lib/skein/onboard-2");
+  EXPECT_EQ(config->network.keys, "/var/lib/skein/onboard-2/keys");
   EXPECT_EQ(config->detections_socket, "/run/skein/detections-2.sock");
   EXPECT_EQ(config->network.address, "10.0.0.2");
   EXPECT_THAT(config->network.peers,
@@ -90,9 +91,6 @@ TEST(Fleet, AddressesAndPortsThatCannotBeAreTold) {
   };
   EXPECT_THAT(with_second("127.0.0.1", ", ssh: pi@two"),
               ElementsAre(HasSubstr("where other machines do not reach it")));
-  EXPECT_THAT(with_second("0.0.0.0", ", ssh: pi@two"), ElementsAre(HasSubstr("of no one machine")));
-  EXPECT_THAT(with_second("239.1.2.3", ", ssh: pi@two"),
-              ElementsAre(HasSubstr("of no one machine")));
   EXPECT_THAT(with_second("10.0.0.1", ", port: 7500, ssh: pi@two"),
               ElementsAre(HasSubstr("two machines with one address")));
   EXPECT_THAT(with_second("10.0.0.1", ", port: 7401, ssh: pi@one"),

@@ -19,8 +19,8 @@ void add_file(CLI::App& command, FleetArguments& arguments) {
 }
 void add_epoch(CLI::App& command, FleetArguments& arguments) {
   command.add_option("--epoch", arguments.epoch,
-                     "Mission time zero: now, or UTC such as 2026-11-23T08:00:00Z; it is kept for "
-                     "the commands that follow");
+                     "Mission time zero: now, or UTC such as 2026-11-23T08:00:00Z; push and "
+                     "render keep it for the commands that follow");
 }
 void add_only(CLI::App& command, FleetArguments& arguments) {
   command.add_option("--only", arguments.only,

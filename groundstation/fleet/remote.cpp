@@ -25,6 +25,7 @@ constexpr int kBadConfiguration = 76;
 constexpr int kDidNotStay = 77;
 constexpr int kDidNotEnd = 78;
 constexpr int kFlies = 79;
+constexpr int kMayFly = 80;
 
 /// One word for a shell.
 std::string shell_word(std::string_view text) {
@@ -79,7 +80,7 @@ Error failed(const Program& program, const std::string& what, const CommandOutco
 }
 
 /// Makes of a program what the scripts below use: main_pid prints its process id, and fails where
-/// it does not run; state prints a word.
+/// it does not run; state prints a word; runs says whether it does, or will by itself.
 std::string names(const Program& program) {
   const Host& host = program.host;
   std::string script = fmt::format("file={} unit={} program={}\n", shell_word(program.file),
@@ -88,7 +89,10 @@ std::string names(const Program& program) {
     return script +
            "main_pid() { systemctl is-active --quiet \"$unit\" && "
            "systemctl show -p MainPID --value \"$unit\"; }\n"
-           "state() { systemctl is-active \"$unit\"; }\n";
+           "state() { systemctl is-active \"$unit\"; }\n"
+           // One that waits to be started again runs in a moment.
+           "runs() { case $(systemctl is-active \"$unit\") in inactive|failed|unknown) return 1;; "
+           "esac; }\n";
   }
   // A process id is used again by others: the command line says whether it is still ours.
   return script +
@@ -98,7 +102,8 @@ std::string names(const Program& program) {
                      shell_word(program.mark)) +
          "main_pid() { p=$(cat \"$pidfile\" 2>/dev/null) && [ -r \"/proc/$p/cmdline\" ] && "
          "tr '\\0' ' ' <\"/proc/$p/cmdline\" | grep -qF -- \"$mark\" && echo \"$p\"; }\n"
-         "state() { if main_pid >/dev/null; then echo running; else echo stopped; fi; }\n";
+         "state() { if main_pid >/dev/null; then echo running; else echo stopped; fi; }\n"
+         "runs() { main_pid >/dev/null; }\n";
 }
 
 /// Puts what comes in where `path` is: complete, on the disk, or not at all.
@@ -108,6 +113,17 @@ std::string put_script(const std::string& path) {
       "new=\"${{path%/*}}/.${{path##*/}}.new\"\n"
       "mkdir -p \"${{path%/*}}\" && cat >\"$new\" && chmod 644 \"$new\" && sync \"$new\" || exit "
       "1\n",
+      shell_word(path));
+}
+/// As put_script, for whoever has the folder below which it is put.
+std::string put_secret_script(const std::string& path) {
+  return fmt::format(
+      "path={}\n"
+      "there=${{path%/*}}; made=$path\n"
+      "while [ ! -d \"$there\" ]; do made=$there; there=${{there%/*}}; done\n"
+      "umask 077; new=\"$path.new\"\n"
+      "mkdir -p \"${{path%/*}}\" && cat >\"$new\" && mv -f \"$new\" \"$path\" || exit 1\n"
+      "[ \"$(id -u)\" -ne 0 ] || chown -R --reference=\"$there\" \"$made\"\n",
       shell_word(path));
 }
 constexpr std::string_view kRename = "mv -f \"$new\" \"$path\" && sync \"${path%/*}\"\n";
@@ -142,10 +158,12 @@ std::string start_script(const Program& program) {
 std::string stop_script(const Program& program, bool force) {
   std::string script = names(program);
   if (program.host.programs.empty()) {
-    script += "main_pid >/dev/null || exit 0\n";
+    script += "runs || exit 0\n";
     if (!force && !program.is_ground()) {
+      // It says 1 on the ground, and 3 where no process has the socket.
       script += fmt::format(
-          "\"$program\" status --socket /run/skein/{}.sock --flying >/dev/null 2>&1 && exit 79\n",
+          "\"$program\" status --socket /run/skein/{}.sock --flying >/dev/null 2>&1\n"
+          "case $? in 0) exit 79;; 1|3) ;; *) exit 80;; esac\n",
           program.name);
     }
     return script + "systemctl stop \"$unit\" || exit 78\n";
@@ -240,10 +258,11 @@ std::vector<std::string> command_on(const Host& host, const std::string& script)
 
 Result<void> push(const Program& program, bool force) {
   std::string guard = names(program);
-  if (!force) guard += "if main_pid >/dev/null; then exit 75; fi\n";
+  if (!force) guard += "if runs; then exit 75; fi\n";
   for (const HostFile& file : program.more) {
-    const auto put =
-        run_on(program.host, guard + put_script(file.path) + std::string{kRename}, file.text);
+    const std::string script =
+        file.secret ? put_secret_script(file.path) : put_script(file.path) + std::string{kRename};
+    const auto put = run_on(program.host, guard + script, file.text);
     if (!put) return put.error();
     if (put->status == kRuns) break;  // which is told below
     if (put->status != 0) return failed(program, file.path + " could not be written", *put);
@@ -284,6 +303,11 @@ Result<void> stop(const Program& program, bool force) {
   if (outcome->status == kFlies) {
     return Error{fmt::format(
         "{} ({}) flies: land it first, or --force, and its flight controller's failsafe takes over",
+        name_of(program.host.node), place_of(program.host))};
+  }
+  if (outcome->status == kMayFly) {
+    return Error{fmt::format(
+        "{} ({}) does not say whether it flies: look, and --force where it is on the ground",
         name_of(program.host.node), place_of(program.host))};
   }
   if (outcome->status == kDidNotEnd) {

@@ -74,7 +74,7 @@ class Remote : public testing::Test {
     config.vehicle.range_m = 6000.0;
     config.vehicle.height_m = 100.0;
     config.origin = {31.5, 105.0, 0.0};
-    config.time.epoch_unix_ns = 1;
+    config.time.epoch_unix_ns = 1'700'000'000'000'000'000;
     return config;
   }();
 };

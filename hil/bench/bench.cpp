@@ -16,6 +16,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -29,8 +30,10 @@
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/identity/team.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
+#include "skein/process/mission_network.hpp"
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
@@ -43,6 +46,7 @@ using std::chrono::system_clock;
 
 /// The bench's own node: it hears everybody and is in no radio's table.
 constexpr VehicleId kBench = mission::kSensors;
+constexpr const char* kKeysFolder = "keys";  ///< of the run
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};
@@ -151,6 +155,9 @@ class Bench {
       routes_end_ = std::max(routes_end_, end.planned);
     }
     const configuration::Deployment deployment = deploy(*base, *buses);
+    if (options_.sealed) {
+      if (auto made = make_keys(); !made) return made;
+    }
     const auto configs = configuration::vehicle_configs(scenario_, deployment);
     if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
@@ -158,21 +165,17 @@ class Bench {
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
         !up)
       return up;
-    network::NodeConfig bench;
-    bench.domain = deployment.domain_id;
-    bench.self = kBench;
-    bench.instance = InstanceId{static_cast<std::uint64_t>(deployment.time.epoch_unix_ns)};
-    bench.role = codec::Role::ground;
-    bench.endpoint = {options_.address, static_cast<std::uint16_t>(*base + 2 * (nodes - 1))};
-    bench.queue_limit = 16384;
-    bench.peers.push_back({kGroundStation, {ground.network.address, ground.network.port}});
     nodes_.push_back(kGroundStation);
     for (const auto& config : configs) {
       nodes_.push_back(config.vehicle.id);
-      bench.peers.push_back({config.vehicle.id, {config.network.address, config.network.port}});
       if (auto up = launch_vehicle(config); !up) return up;
     }
-    return listen(bench, deployment);
+    configuration::NetworkConfig own = ground.network;
+    own.port = static_cast<std::uint16_t>(*base + 2 * (nodes - 1));
+    own.keys = options_.sealed ? deployment.keys.at(kBench) : "";
+    own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
+    own.transport_plugin.clear();  // it hears all
+    return listen(own, deployment);
   }
 
   BenchOutcome run() {
@@ -244,7 +247,30 @@ class Bench {
     deployment.can_buses = buses;
     deployment.elsewhere = external_.nodes();
     deployment.console_port = options_.console_port;
+    const auto keys = std::filesystem::absolute(options_.run_folder / kKeysFolder);
+    if (!options_.sealed) return deployment;
+    for (const VehicleId node : all_nodes()) {
+      deployment.keys[node] = identity::node_folder(keys, node).string();
+    }
     return deployment;
+  }
+
+  /// The bench among them.
+  [[nodiscard]] std::vector<VehicleId> all_nodes() const {
+    std::vector<VehicleId> nodes{kGroundStation, kBench};
+    for (const auto& vehicle : scenario_.vehicles) nodes.push_back(vehicle.spec.id);
+    return nodes;
+  }
+
+  /// A mission of its own for each run, so that it is flown sealed as in the field.
+  [[nodiscard]] Result<void> make_keys() const {
+    const auto now =
+        std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch());
+    const auto nodes = all_nodes();
+    std::error_code ignored;
+    std::filesystem::remove_all(options_.run_folder / kKeysFolder, ignored);  // of a run that died
+    return identity::make_team(options_.run_folder / kKeysFolder, std::span{nodes}.subspan(1),
+                               now.count());
   }
 
   Result<void> launch_vehicle(const configuration::VehicleConfig& config) {
@@ -256,14 +282,19 @@ class Bench {
   }
 
   /// Opens the bench's own node and recording.
-  Result<void> listen(const network::NodeConfig& bench,
+  Result<void> listen(const configuration::NetworkConfig& own,
                       const configuration::Deployment& deployment) {
+    const auto start = process::start_node(own, kBench);
+    if (!start) return start.error();
     recording::Writer::Options recorder;
     recorder.session = {
-        kBench, bench.instance, "skein-hil", version(), deployment.time.epoch_unix_ns, ""};
+        kBench, start->instance, "skein-hil", version(), deployment.time.epoch_unix_ns, ""};
     auto writer = recording::Writer::open(options_.run_folder / "bench", recorder);
     if (!writer) return writer.error();
     writer_ = std::move(writer).value();
+    network::NodeConfig bench = process::node_config(own, *start, {});
+    bench.role = codec::Role::ground;
+    bench.queue_limit = 16384;
     auto node = network::Node::open(bench);
     if (!node) return node.error();
     node_ = std::move(node).value();
@@ -540,6 +571,8 @@ class Bench {
     for (const auto& missing : external_.collect(options_.run_folder)) {
       outcome_.not_collected.push_back(missing.why);
     }
+    std::error_code ignored;
+    std::filesystem::remove_all(options_.run_folder / kKeysFolder, ignored);  // of no more use
     return outcome_;
   }
 

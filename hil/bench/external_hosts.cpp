@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <future>
+#include <iterator>
 #include <utility>
 
 #include "flight_controllers.hpp"
 #include "skein/fleet/remote.hpp"
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/identity/node_key.hpp"
 #include "skein/recording/recording.hpp"
 
 namespace skein::hil {
@@ -28,6 +31,13 @@ constexpr double kClockOffMax_s = 0.25;
 /// folder, since it may have the right to write there only.
 std::string recordings_of(const Host& host, const VehicleConfig& config) {
   return fmt::format("{}/run-{}", fleet::recordings_of(host), config.time.epoch_unix_ns);
+}
+
+Result<std::string> text_of(const std::filesystem::path& file) {
+  std::ifstream stream{file};
+  std::string text{std::istreambuf_iterator<char>{stream}, {}};
+  if (!stream) return Error{"cannot read " + file.string()};
+  return text;
 }
 
 bool is_on_can(const configuration::FlightControllerConfig& fc) {
@@ -124,16 +134,28 @@ Result<void> ExternalHosts::start(const std::vector<VehicleConfig>& configs) {
     const Host* const host = host_of(given.vehicle.id);
     if (host == nullptr) continue;
     VehicleConfig config = given;
+    const std::filesystem::path keys = given.network.keys;  // of the bench's making
     config.recording_folder = recordings_of(*host, config);
+    if (!keys.empty()) config.network.keys = config.recording_folder + "/keys";
     config.network.transport_plugin = host->radio_plugin;
     Started& started = started_.emplace_back();
     started.host = *host;
     started.recordings = config.recording_folder;
+    started.aircraft =
+        is_on_can(config.flight_controller) && host->flight_controller == HostFlightController::own;
     if (is_on_can(config.flight_controller) &&
         host->flight_controller == HostFlightController::emulated) {
       started.programs.push_back(emulator_of(*host, config));
     }
     started.programs.push_back(fleet::program_of(*host, to_yaml(config)));
+    if (keys.empty()) continue;
+    for (const char* name :
+         {identity::kNodeKeyFile, identity::kMembershipFile, identity::kStartsFile}) {
+      auto text = text_of(keys / name);
+      if (!text) return text.error();
+      started.programs.back().more.push_back(
+          {config.network.keys + "/" + name, std::move(*text), true});
+    }
   }
   for (const Result<void>& up : at_once(started_, &ExternalHosts::bring_up)) {
     if (!up) return up;
@@ -169,8 +191,8 @@ std::vector<std::string> ExternalHosts::stop() {
     std::string problem;
     if (!started.ours) return problem;
     std::for_each(started.programs.rbegin(), started.programs.rend(),
-                  [&problem](const fleet::Program& program) {
-                    const auto stopped = fleet::stop(program, true);
+                  [&](const fleet::Program& program) {
+                    const auto stopped = fleet::stop(program, !started.aircraft);
                     if (!stopped && problem.empty()) problem = stopped.error().message;
                   });
     started.ours = false;

@@ -63,7 +63,8 @@ class ExternalHosts {
     std::string recordings;
     /// In the order of their start; a flight controller outlives its companion.
     std::vector<fleet::Program> programs;
-    bool ours = false;  ///< otherwise somebody else flies it, and it is not for us to end
+    bool aircraft = false;  ///< with a flight controller of its own: not ours to end in flight
+    bool ours = false;      ///< otherwise somebody else flies it, and it is not for us to end
   };
   [[nodiscard]] static Result<void> bring_up(Started& started);
 

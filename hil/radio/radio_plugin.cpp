@@ -12,16 +12,15 @@
 #include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
 
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <queue>
 #include <set>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -29,7 +28,10 @@
 #include "skein/base/random.hpp"
 #include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/network/key_news.hpp"
+#include "skein/network/rtps_guid.hpp"
 #include "skein/network/transport_plugin.hpp"
+#include "skein/seal/header.hpp"
 
 namespace skein::hil::radio {
 namespace {
@@ -41,13 +43,11 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kWaitingMax = 8192;  ///< packets on their way; more are lost, as on the air
 
-/// Whose RTPS message this is, where it comes from a node of ours.
-std::optional<VehicleId> sender_of(const octet* message, std::uint32_t size) {
-  if (size < network::kRtpsHeaderSize || std::memcmp(message, "RTPS", 4) != 0) return std::nullopt;
-  const octet* prefix = message + network::kRtpsGuidPrefixOffset;
-  if (!std::equal(network::kGuidMark.begin(), network::kGuidMark.end(), prefix))
-    return std::nullopt;
-  return VehicleId{static_cast<std::uint16_t>(prefix[4] << 8 | prefix[5])};
+/// Who sends this, sealed or in clear, where it is a node of ours.
+std::optional<VehicleId> sender_of(std::span<const octet> datagram) {
+  if (const auto header = seal::read_header(datagram)) return header->from.sender;
+  if (const auto sender = network::key_news_sender(datagram)) return sender;
+  return network::rtps_sender(datagram);
 }
 
 class RadioTransport : public rtps::ChainingTransport {
@@ -82,7 +82,7 @@ class RadioTransport : public rtps::ChainingTransport {
 
   void receive(rtps::TransportReceiverInterface* next, const octet* buffer, std::uint32_t size,
                const Locator_t& local, const Locator_t& remote) override {
-    const auto sender = sender_of(buffer, size);
+    const auto sender = sender_of({buffer, size});
     const Link link = sender && *sender != self_ ? table_->get(*sender, self_) : Link{};
     if (!link.up) return;
     bool now = false;

@@ -62,8 +62,11 @@ void name_table(const std::string& name) {
   // NOLINTEND(concurrency-mt-unsafe)
 }
 
+/// A radio knows whose datagram it carries in clear and sealed.
+enum class Air : std::uint8_t { clear, sealed };
+
 /// Two vehicles that hear each other through the radio only.
-class Radio : public testing::Test {
+class Radio : public testing::TestWithParam<Air> {
  protected:
   void SetUp() override {
     auto made = LinkTable::create();
@@ -82,18 +85,20 @@ class Radio : public testing::Test {
     } while (!is_free(port) || !is_free(port + 1) || !is_free(port + 2) || !is_free(port + 3));
     const network::Endpoint anna{"127.0.0.1", static_cast<std::uint16_t>(port)};
     const network::Endpoint bert{"127.0.0.1", static_cast<std::uint16_t>(port + 2)};
-    anna_ = open(kAnna, anna, {kBert, bert}, device());
-    bert_ = open(kBert, bert, {kAnna, anna}, device());
+    anna_ = open(kAnna, anna, {kBert, bert}, device(), GetParam());
+    bert_ = open(kBert, bert, {kAnna, anna}, device(), GetParam());
   }
 
   static std::unique_ptr<Node> open(VehicleId self, const network::Endpoint& endpoint,
-                                    const network::PeerConfig& peer, std::uint64_t instance) {
+                                    const network::PeerConfig& peer, std::uint64_t instance,
+                                    Air air) {
     network::NodeConfig config;
     config.self = self;
     config.instance = InstanceId{instance};
     config.endpoint = endpoint;
     config.peers = {peer};
     config.transport_plugin = SKEIN_RADIO_PLUGIN;
+    if (air == Air::sealed) config.seal = network::SealConfig{.start = {self, 1, 2}, .key = {}};
     auto node = Node::open(config);
     EXPECT_TRUE(node) << node.error().message;
     return std::move(node).value();
@@ -124,7 +129,12 @@ class Radio : public testing::Test {
   std::unique_ptr<Node> bert_;
 };
 
-TEST_F(Radio, NothingPassesALinkThatIsDownAndWhatIsReliableIsRepaired) {
+constexpr auto kNameOfAir = [](const auto& air) {
+  return air.param == Air::clear ? "Clear" : "Sealed";
+};
+INSTANTIATE_TEST_SUITE_P(All, Radio, testing::Values(Air::clear, Air::sealed), kNameOfAir);
+
+TEST_P(Radio, NothingPassesALinkThatIsDownAndWhatIsReliableIsRepaired) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   both_ways({false, 0.0, Duration{}, Duration{}});
   for (std::uint32_t i = 0; i < 5; ++i) ASSERT_TRUE(send_cancel(i));
@@ -145,7 +155,7 @@ TEST_F(Radio, NothingPassesALinkThatIsDownAndWhatIsReliableIsRepaired) {
   EXPECT_EQ(numbers, (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
 }
 
-TEST_F(Radio, TheDelayIsThatOfTheLink) {
+TEST_P(Radio, TheDelayIsThatOfTheLink) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   both_ways({true, 0.0, milliseconds{150}, milliseconds{50}});
   for (std::uint32_t i = 0; i < 5; ++i) {
@@ -158,7 +168,7 @@ TEST_F(Radio, TheDelayIsThatOfTheLink) {
   }
 }
 
-TEST_F(Radio, BestEffortMessagesAreLostInTheGivenShare) {
+TEST_P(Radio, BestEffortMessagesAreLostInTheGivenShare) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   table_->set(kAnna, kBert, {true, 0.5, Duration{}, Duration{}});
   int received = 0;
@@ -172,7 +182,7 @@ TEST_F(Radio, BestEffortMessagesAreLostInTheGivenShare) {
   EXPECT_LT(received, kSent * 7 / 10);
 }
 
-TEST_F(Radio, WhatIsReliableGetsThroughLoss) {
+TEST_P(Radio, WhatIsReliableGetsThroughLoss) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   both_ways({true, 0.3, milliseconds{5}, milliseconds{5}});
   for (std::uint32_t i = 0; i < 40; ++i) ASSERT_TRUE(send_cancel(i));
@@ -186,7 +196,7 @@ TEST_F(Radio, WhatIsReliableGetsThroughLoss) {
   }));
 }
 
-TEST_F(Radio, ClosesWithPacketsOnTheirWay) {
+TEST_P(Radio, ClosesWithPacketsOnTheirWay) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   both_ways({true, 0.0, milliseconds{300}, Duration{}});
   for (std::uint32_t i = 0; i < 50; ++i) ASSERT_TRUE(send_cancel(i));
@@ -226,7 +236,9 @@ class ToldRadio : public Radio {
   std::uint32_t number_ = 0;
 };
 
-TEST_F(ToldRadio, WhatTheBenchTellsHoldsOnAnotherMachine) {
+INSTANTIATE_TEST_SUITE_P(All, ToldRadio, testing::Values(Air::clear, Air::sealed), kNameOfAir);
+
+TEST_P(ToldRadio, WhatTheBenchTellsHoldsOnAnotherMachine) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
   EXPECT_TRUE(until(true, 5));
   EXPECT_TRUE(until(false, 50));

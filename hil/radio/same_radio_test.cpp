@@ -21,6 +21,7 @@
 
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/hil/radio/radio_model.hpp"
+#include "skein/network/rtps_guid.hpp"
 #include "skein/network/transport_plugin.hpp"
 
 namespace skein::hil::radio {

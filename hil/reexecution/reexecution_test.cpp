@@ -33,7 +33,7 @@ constexpr const char* kProgram = "skein-onboard 1.0";
 
 configuration::VehicleConfig config(std::uint16_t id) {
   configuration::VehicleConfig c;
-  c.time.epoch_unix_ns = 1;
+  c.time.epoch_unix_ns = 1'700'000'000'000'000'000;
   c.vehicle.id = VehicleId{id};
   c.vehicle.cruise_speed_mps = 50.0;
   c.vehicle.speed_min_mps = 40.0;

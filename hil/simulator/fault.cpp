@@ -74,6 +74,9 @@ struct Sentence {
     return what.site ? fmt::format("site {} is withdrawn", what.site->value)
                      : "what detectors have seen is withdrawn";
   }
+  std::string operator()(const RoutesOrdered& what) const {
+    return fmt::format("{} vehicles are given routes", what.routes.size());
+  }
   std::string operator()(const Healing& /*what*/) const { return "the radio heals"; }
 };
 

@@ -138,7 +138,9 @@ TEST(Faults, ClocksThatDifferAreSeenByTheAgentsOnly) {
   mission.faults = {{{.not_before = at_seconds(1)}, {}, Healing{}}};
   const auto straight = fly(mission);
   for (const auto& v : mission.vehicles) {
-    mission.faults.push_back({{}, {}, ClockOff{v.spec.id, 200ms}});
+    Fault off;
+    off.what = ClockOff{v.spec.id, 200ms};
+    mission.faults.push_back(off);
   }
   const auto shifted = fly(mission);
   // All clocks are fast by the same: what is flown at which true time stays nearly the same.

@@ -102,6 +102,13 @@ bool GroundStation::withdraw(const std::optional<SiteId>& site, Instant now) {
   return true;
 }
 
+bool GroundStation::give(const RoutesOrdered& order, Instant now) {
+  if (!node_) return false;
+  mission::GroundRoutes::Routes routes = order.routes;
+  for (auto& [id, timed] : routes) timed.start_time = now + clock_ + order.begin_in;
+  return node_->give_routes(routes, now + clock_).ok();
+}
+
 void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {
   if (!node_) return;
   record(message, sender, now + clock_);

@@ -29,6 +29,13 @@ class GroundStation {
   /// is known of it yet.
   bool withdraw(const std::optional<SiteId>& site, Instant now);
 
+  /// The operator gives those routes. False where the ground station does not run, or refuses.
+  bool give(const RoutesOrdered& order, Instant now);
+  /// A plan was given, and nobody is told of it any more.
+  [[nodiscard]] bool routes_over() const {
+    return node_ && node_->routes().given() && node_->routes().given()->over;
+  }
+
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);

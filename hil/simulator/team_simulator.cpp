@@ -87,6 +87,9 @@ class Team {
         radio_{mission.radio, mission.seed},
         timeline_{mission.faults},
         healing_{healing_of(mission.faults)},
+        awaits_routes_{std::ranges::any_of(
+            mission.faults,
+            [](const Fault& f) { return std::holds_alternative<RoutesOrdered>(f.what); })},
         finder_{mission},
         ground_{mission} {
     Random gusts{mission.seed ^ kGustStream};
@@ -118,7 +121,8 @@ class Team {
       if (due(now, kNodePeriod)) step_ground(now);
       if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
-      if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now)) {
+      if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now) &&
+          (!awaits_routes_ || ground_.routes_over())) {
         const Duration afterwards = mission_.sites.empty() ? Duration{} : kAfterwards;
         stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + afterwards);
       }
@@ -193,6 +197,11 @@ class Team {
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
       ground_.command(order->vehicle, order->kind, now);
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
+      return true;
+    }
+    if (const auto* routes = std::get_if<RoutesOrdered>(&fault.what)) {
+      if (!ground_.give(*routes, now)) return false;
+      tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
       return true;
     }
     const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
@@ -402,7 +411,11 @@ class Team {
     }
     while (const auto event = ground_.poll_event()) {
       if (observer_.event) observer_.event(*event);
-      if (event->kind() == mission::EventKind::site_withdrawn) over(event->task.site);
+      const auto kind = event->kind();
+      if (kind == mission::EventKind::site_withdrawn ||
+          kind == mission::EventKind::authorisation_refused) {
+        over(event->task.site);
+      }
       if (mission_.formation) on_formation_event(*event, now);
     }
   }
@@ -476,6 +489,7 @@ class Team {
   radio::SimulatedRadio radio_;
   FaultTimeline timeline_;
   std::optional<Instant> healing_;
+  bool awaits_routes_;
   SiteFinder finder_;
   GroundStation ground_;
   std::vector<Aircraft> vehicles_;

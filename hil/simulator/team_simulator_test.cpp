@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -218,6 +219,126 @@ TEST(TeamSimulator, ARefusalEndsTheCoalition) {
   EXPECT_TRUE(flown.done(TaskKind::deliver).empty());
   EXPECT_EQ(flown.of(EventKind::authorisation_requested).size(), 1U);
   EXPECT_GE(flown.of(EventKind::released).size(), 4U);
+}
+
+/// Vehicles 2, 3 and 4 fly to the north side by side for 3 km, from 10 s + 60 s on.
+TeamMission given_routes() {
+  auto team = small_mission();
+  team.sites.clear();
+  team.decisions.clear();
+  RoutesOrdered order;
+  order.begin_in = from_seconds(60);
+  for (const std::uint16_t id : {std::uint16_t{2}, std::uint16_t{3}, std::uint16_t{4}}) {
+    TimedPath timed;
+    timed.speed_mps = 30.0;
+    timed.path.start = {-900.0 + 300.0 * id, -600.0, kPi / 2.0};
+    EXPECT_TRUE(timed.path.append(Segment{0.0, 3000.0}));
+    order.routes.emplace(VehicleId{id}, timed);
+  }
+  team.faults = {{{.not_before = at_seconds(10)}, {}, order}};
+  return team;
+}
+
+/// What each vehicle said last of its route.
+std::map<VehicleId, mission::event::RouteAnswered> answers(const Flown& flown) {
+  std::map<VehicleId, mission::event::RouteAnswered> newest;
+  for (const auto& event : flown.of(EventKind::route_answered)) {
+    newest[event.vehicle] = std::get<mission::event::RouteAnswered>(event.body);
+  }
+  return newest;
+}
+
+std::size_t vehicles_that_flew(const Flown& flown) {
+  const auto all = flown.of(EventKind::route_answered);
+  return static_cast<std::size_t>(std::ranges::count_if(all, [](const MissionEvent& e) {
+    return std::get<mission::event::RouteAnswered>(e.body).state == mission::RouteState::flies;
+  }));
+}
+
+TEST(TeamSimulator, RoutesOverTheAirSurviveLossAndNewStartsOfVehicleAndGroundStation) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto team = given_routes();
+    team.seed = seed;
+    team.radio.loss = 0.3;
+    // One before the routes begin, one on its way; the ground station between the two.
+    team.faults.push_back(
+        {{.not_before = at_seconds(30)}, from_seconds(2), ProgramsEnd{.who = {VehicleId{2}}}});
+    team.faults.push_back(
+        {{.not_before = at_seconds(50)}, from_seconds(4), ProgramsEnd{.who = {kGroundStation}}});
+    team.faults.push_back(
+        {{.not_before = at_seconds(85)}, from_seconds(1), ProgramsEnd{.who = {VehicleId{3}}}});
+    const auto flown = fly(team);
+    const auto newest = answers(flown);
+    ASSERT_EQ(newest.size(), 3U) << "seed " << seed;
+    for (const auto& [id, answer] : newest) {
+      EXPECT_EQ(answer.state, mission::RouteState::flown)
+          << "seed " << seed << ", " << id.value << ", " << to_string(answer.why);
+    }
+    EXPECT_TRUE(flown.of(EventKind::routes_called_off).empty());
+    for (const auto& event : flown.of(EventKind::route_answered)) {
+      const auto& body = std::get<mission::event::RouteAnswered>(event.body);
+      if (body.state != mission::RouteState::flown) continue;
+      // 3 km, and twice the planning radius beyond.
+      EXPECT_NEAR(to_seconds(event.time), 70.0 + (3000.0 + 2.0 * 66.0) / 30.0, 0.2);
+    }
+    EXPECT_EQ(flown.trace, fly(team).trace) << "seed " << seed;
+  }
+}
+
+TEST(TeamSimulator, WhoCannotGoOnWithItsRouteAfterANewStartSaysSoAndTheOthersFlyOn) {
+  auto team = given_routes();
+  team.faults.push_back(
+      {{.not_before = at_seconds(80)}, from_seconds(30), ProgramsEnd{.who = {VehicleId{3}}}});
+  const auto newest = answers(fly(team));
+  EXPECT_EQ(newest.at({2}).state, mission::RouteState::flown);
+  EXPECT_EQ(newest.at({3}).state, mission::RouteState::left);
+  EXPECT_EQ(newest.at({3}).why, mission::RouteObstacle::out_of_reach);
+  EXPECT_EQ(newest.at({4}).state, mission::RouteState::flown);
+}
+
+TEST(TeamSimulator, RoutesThatNotAllHaveTakenNobodyFlies) {
+  auto team = given_routes();
+  team.faults.push_back(
+      {{.not_before = at_seconds(9)}, from_seconds(70), radio::cut_off({VehicleId{4}})});
+  const auto flown = fly(team);
+  EXPECT_EQ(vehicles_that_flew(flown), 0U);
+  const auto off = flown.of(EventKind::routes_called_off);
+  ASSERT_EQ(off.size(), 1U);
+  EXPECT_EQ(std::get<mission::event::RoutesCalledOff>(off[0].body).vehicle, VehicleId{4});
+  EXPECT_EQ(answers(flown).at({2}).state, mission::RouteState::called_off);
+}
+
+/// The leader is lost in the moment of the refusal; who could relieve it, and the ground station,
+/// start anew afterwards.
+TEST(TeamSimulator, ARefusalOutlivesItsLeaderAndNewStarts) {
+  auto team = small_mission();
+  team.decisions[0].grant = false;
+  team.protocol.cut_max = from_seconds(15);
+  team.vehicles[4].spec.capabilities.add(TaskKind::survey);
+  // Nobody is done before this one is reported.
+  Site later = team.sites[0];
+  later.id = SiteId{2};
+  later.position = {5000.0, 5000.0};
+  team.sites.push_back(later);
+  team.reported[SiteId{2}] = at_seconds(195);
+  const auto refusals = fly(team).of(EventKind::authorisation_refused);
+  ASSERT_FALSE(refusals.empty());
+  const Instant refused_at = refusals[0].time;
+  team.faults = {{{.not_before = refused_at}, {}, ProgramsEnd{.who = {VehicleId{1}}}},
+                 {{.not_before = refused_at + from_seconds(8)},
+                  from_seconds(3),
+                  ProgramsEnd{.who = {kGroundStation}}},
+                 {{.not_before = refused_at + from_seconds(12)},
+                  from_seconds(3),
+                  ProgramsEnd{.who = {VehicleId{5}}}}};
+  const auto flown = fly(team);
+  for (const EventKind kind : {EventKind::relief_begun, EventKind::announced,
+                               EventKind::authorisation_requested, EventKind::task_started}) {
+    for (const auto& event : flown.of(kind)) {
+      const bool again = event.task.site == SiteId{1} && event.time > refused_at + from_seconds(7);
+      EXPECT_FALSE(again) << trace_line(event);
+    }
+  }
 }
 
 TEST(TeamSimulator, MessagesThatAreLostDelayTheMissionAndBreakNothing) {

@@ -83,6 +83,7 @@ void add_run(CLI::App& app, int& status) {
   command->add_option("--can", arguments->can,
                       "CAN bus of all flight controllers, such as vcan0 (default: multicast "
                       "buses of their own on loopback)");
+  add_external(*command, *arguments);
   command->add_flag("--headless", arguments->headless, "No progress line; news only");
   command->add_flag("--prompt", arguments->prompt,
                     "Decide about deliveries yourself, at the ground station's prompt, in "
@@ -92,7 +93,10 @@ void add_run(CLI::App& app, int& status) {
                    "Serve the ground station's console on this port of loopback (such as 7460); "
                    "with --prompt you decide there")
       ->check(CLI::Range(1, 65535));
-  add_external(*command, *arguments);
+  command
+      ->add_flag("--clear", arguments->clear,
+                 "Fly without keys, in clear, on loopback: to compare with a sealed run")
+      ->excludes("--external");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"

@@ -97,6 +97,7 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.lead_s = arguments.lead_s;
   options.can = arguments.can;
   options.prompt = arguments.prompt;
+  options.sealed = !arguments.clear;
   options.console_port = arguments.console_port;
   options.run_folder =
       !arguments.folder.empty()

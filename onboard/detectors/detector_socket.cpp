@@ -17,6 +17,7 @@
 namespace skein::detectors {
 namespace {
 
+constexpr int kUnreadableAtOnce = 16;
 constexpr mode_t kPermissions = S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP;
 
 Error trouble_at(const std::string& path, int error) {
@@ -30,6 +31,9 @@ const sockaddr* as_address(const sockaddr_un& address) {
 
 /// A process that is gone has left the file: nobody takes what is sent there.
 bool is_left_over(const sockaddr_un& address) {
+  struct stat there {};
+  // Nobody takes what is sent to any other file, either.
+  if (::lstat(address.sun_path, &there) != 0 || !S_ISSOCK(there.st_mode)) return false;
   const int probe = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (probe < 0) return false;
   const bool refused =
@@ -75,7 +79,7 @@ DetectorSocket::~DetectorSocket() {
 
 std::optional<mission::Detection> DetectorSocket::poll() {
   std::array<char, kTextMax + 1> buffer{};
-  while (true) {
+  for (int i = 0; i < kUnreadableAtOnce; ++i) {
     const ssize_t size = ::recv(descriptor_, buffer.data(), buffer.size(), 0);
     if (size < 0) return std::nullopt;
     auto detection = read_detection({buffer.data(), static_cast<std::size_t>(size)}, origin_);
@@ -83,6 +87,7 @@ std::optional<mission::Detection> DetectorSocket::poll() {
     ++unreadable_;
     trouble_ = detection.error().message;
   }
+  return std::nullopt;  // the rest waits: nobody keeps the vehicle's agent busy with nonsense
 }
 
 std::optional<std::string> DetectorSocket::poll_trouble() { return std::exchange(trouble_, {}); }

@@ -32,7 +32,7 @@ class Flight {
       : folder_{std::filesystem::temp_directory_path() /
                 ("skein-replay-" + std::to_string(::getpid()))} {
     configuration::GroundConfig config;
-    config.time.epoch_unix_ns = 1;
+    config.time.epoch_unix_ns = 1'700'000'000'000'000'000;
     config.origin = {47.0, 8.0, 500.0};
     for (std::uint16_t i = 1; i <= kVehicles; ++i) config.vehicles.push_back({i});
     recording::Writer::Options options;

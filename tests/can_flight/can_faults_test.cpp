@@ -135,8 +135,10 @@ class CanFaults : public ::testing::Test {
     return network;
   }
   void start_operator() {
-    auto opened = network::Node::open(process::node_config(
-        network_of(kGroundStation), kGroundStation, process::new_instance(), [] {}));
+    const auto start = process::start_node(network_of(kGroundStation), kGroundStation);
+    ASSERT_TRUE(start.ok()) << start.error().message;
+    auto opened =
+        network::Node::open(process::node_config(network_of(kGroundStation), *start, [] {}));
     ASSERT_TRUE(opened.ok()) << opened.error().message;
     operator_ = std::move(opened).value();
   }

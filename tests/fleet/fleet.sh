@@ -36,6 +36,20 @@ echo "- without an epoch nothing is rendered, and check says so"
 refused=$(fleet check 2>&1) && fail "a fleet without an epoch is good"
 has 'has no epoch' "$refused" || fail "$refused"
 
+echo "- without keys no program joins a network of other machines"
+fleet push --epoch now || fail "push"
+refused=$(fleet start 2>&1) && fail "programs without keys are up"
+has 'mission create' "$refused" || fail "$refused"
+
+echo "- the team is enrolled"
+keys() { echo "$folder/$1/var/$2/keys"; }
+"$programs/skein-ground" mission create team --keys "$(keys 0 ground)" || fail "create"
+for id in 1 2 3; do
+  "$programs/skein-onboard" enrol --id $id --keys "$(keys $id onboard-$id)" |
+    "$programs/skein-ground" mission enrol - --yes --keys "$(keys 0 ground)" |
+    "$programs/skein-onboard" enrol --membership - --keys "$(keys $id onboard-$id)" || fail "enrol $id"
+done
+
 echo "- a fleet that is pushed and started"
 fleet push --epoch now || fail "push"
 epoch=$(cat "$folder/rendered/epoch")
@@ -51,6 +65,16 @@ authorised() { tell authorise "$site" >/dev/null 2>&1; }
 delivered() { has '2 delivered' "$(tell sites)"; }
 until_holds 30 "an authorisation is asked for" authorised
 until_holds 40 "both deliveries are flown" delivered
+
+echo "- who is revoked is heard no more; the others have another key at once, and fly on"
+"$programs/skein-ground" mission revoke vehicle 3 --keys "$(keys 0 ground)" || fail "revoke"
+changed() { grep -qs 'another key' "$folder/1/var/"*.log && grep -qs 'another key' "$folder/2/var/"*.log; }
+until_holds 2 "the other two have the new key" changed
+two_heard() { [[ $(tell status 2>/dev/null | grep -c '"silent": false') == 2 ]]; }
+until_holds 20 "the one that was revoked is heard no more" two_heard
+"$programs/skein-ground" mission enrol --yes --keys "$(keys 0 ground)" \
+  "$("$programs/skein-onboard" enrol --id 3 --new-keys --keys "$(keys 3 onboard-3)")" |
+  "$programs/skein-onboard" enrol --membership - --keys "$(keys 3 onboard-3)" || fail "enrol 3 anew"
 
 echo "- a program that runs is given no other configuration"
 refused=$(fleet push --only 2 2>&1) && fail "vehicle 2 runs and was configured"

@@ -20,6 +20,7 @@
 #include <random>
 
 #include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/network/node.hpp"
@@ -134,8 +135,10 @@ class Programs : public ::testing::Test {
   }
 
   void open_node(VehicleId self) {
-    auto opened = network::Node::open(process::node_config(
-        network_of(self), self, process::new_instance(), [this] { wake_.notify(); }));
+    const auto start = process::start_node(network_of(self), self);
+    ASSERT_TRUE(start.ok()) << start.error().message;
+    auto opened = network::Node::open(
+        process::node_config(network_of(self), *start, [this] { wake_.notify(); }));
     ASSERT_TRUE(opened.ok()) << opened.error().message;
     node_ = std::move(opened).value();
   }
@@ -320,14 +323,43 @@ class Told : public Programs {
     plane.vehicle.final_approach_m = 200.0;
     plane.time.rate = kRate;
     plane.detections_socket = folder_ / "detections.sock";
+    const auto station = station_of(plane);
+    children_.push_back(start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(station))}));
+    children_.push_back(start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(plane))}));
+    ASSERT_TRUE(comes_to({"status"}, "searching")) << text_of("log");
+  }
+  /// Another vehicle besides, 1 km to the north.
+  void fly_two() {
+    constexpr VehicleId kOther{8};
+    const std::uint16_t port = free_port_pair();
+    auto plane = vehicle();
+    plane.time.rate = kRate;
+    auto station = station_of(plane);
+    auto other = plane;
+    other.vehicle.id = kOther;
+    other.vehicle.height_m = 150.0;
+    other.start = {0.0, 1000.0, 0.0};
+    other.search = {{2000.0, 1000.0}};
+    other.recording_folder = folder_ / "other";
+    other.network.port = port;
+    other.network.peers.push_back({.id = kVehicle, .port = vehicle_port_});
+    plane.network.peers.push_back({.id = kOther, .port = port});
+    station.network.peers.push_back({.id = kOther, .port = port});
+    station.vehicles.push_back(kOther);
+    children_.push_back(start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(station))}));
+    children_.push_back(start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(plane))}));
+    children_.push_back(start({SKEIN_ONBOARD, "--config", write("o.yaml", to_yaml(other))}));
+    ASSERT_TRUE(comes_to({"status"}, "7  searching")) << text_of("log");
+    ASSERT_TRUE(comes_to({"status"}, "8  searching")) << text_of("log");
+  }
+  [[nodiscard]] configuration::GroundConfig station_of(
+      const configuration::VehicleConfig& plane) const {
     auto station = ground();
     station.time = plane.time;
     station.origin = plane.origin;
     station.console.port = 0;
     station.control_socket = "skein-told-" + std::to_string(ground_port_);
-    children_.push_back(start({SKEIN_GROUND, "--config", write("g.yaml", to_yaml(station))}));
-    children_.push_back(start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(plane))}));
-    ASSERT_TRUE(comes_to({"status"}, "searching")) << text_of("log");
+    return station;
   }
   /// Whether the answer to that line comes to have those words.
   bool comes_to(const std::vector<std::string>& line, const std::string& words) {
@@ -385,6 +417,44 @@ TEST_F(Told, WhatADetectorSeesIsProposedTakenAndCanBeWithdrawn) {
   EXPECT_THAT(tell({"withdraw", "site", site}), HasSubstr("is withdrawn"));
   EXPECT_TRUE(comes_to({"status"}, "searching")) << tell({"status"});
   EXPECT_THAT(tell({"hazard", "0", "5000", "100"}), HasSubstr("is told to all"));
+}
+
+/// From 1.5 km north of where the vehicles circle: first to the east.
+std::string plan_of_two(double turn_radius_m) {
+  configuration::RoutePlan plan;
+  plan.title = "two";
+  plan.site = {5000.0, 3500.0};
+  plan.arrival_s = plan.bound_s = 60.0;
+  for (const std::uint16_t id : {std::uint16_t{7}, std::uint16_t{8}}) {
+    const double north_m = id == 7 ? 1500.0 : 2500.0;
+    configuration::VehicleRoute one;
+    one.vehicle = {id};
+    one.route = {{{2000.0, north_m}, {4000.0, north_m}, {5000.0, 3500.0}}, turn_radius_m, 50.0};
+    one.length_m = one.bound_m = 3000.0;
+    one.arrival_s = 60.0;
+    plan.routes.push_back(one);
+  }
+  return to_yaml(plan);
+}
+
+TEST_F(Told, RoutesReachVehiclesThatStartedWithoutAndAreFlownByAllOrNone) {
+  fly_two();
+  // Tighter than the vehicles' paths are planned, which only they know.
+  const std::string tight = write("tight.yaml", plan_of_two(40.0));
+  EXPECT_THAT(tell({"routes", tight, "in", "60"}), HasSubstr("is offered to 2 vehicles"));
+  EXPECT_TRUE(comes_to({"status"}, "called off")) << tell({"status"}) << text_of("log");
+  EXPECT_THAT(tell({"routes"}), HasSubstr("refused: its arcs are tighter"));
+  EXPECT_THAT(text_of("log"), HasSubstr("does not fly its own"));
+
+  const std::string plan = write("plan.yaml", plan_of_two(150.0));
+  EXPECT_THAT(tell({"routes", plan}), HasSubstr("begins too soon"));
+  EXPECT_THAT(tell({"preview", "routes", plan, "in", "60"}), HasSubstr("judge turns"));
+  EXPECT_THAT(tell({"routes", plan, "in", "60"}), HasSubstr("is offered to 2 vehicles"));
+  EXPECT_TRUE(comes_to({"status"}, "taken by all")) << tell({"status"}) << text_of("log");
+  EXPECT_TRUE(comes_to({"status"}, "7  en_route")) << tell({"status"});
+  EXPECT_TRUE(comes_to({"status"}, "8  en_route")) << tell({"status"});
+  EXPECT_TRUE(comes_to({"routes"}, "7  flown")) << tell({"routes"}) << text_of("log");
+  EXPECT_TRUE(comes_to({"routes"}, "8  flown")) << tell({"routes"}) << text_of("log");
 }
 
 struct BadStart {

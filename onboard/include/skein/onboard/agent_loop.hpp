@@ -30,6 +30,8 @@ struct AgentLink {
   std::function<std::uint64_t()> dropped;  ///< messages lost by full queues and bad packets so far
   /// What the flight controller lets people know; may be empty.
   std::function<std::optional<mission::FlightNotice>()> notice = {};
+  /// The time, where it is not that of the step all through it; may be empty.
+  std::function<Instant()> now = {};
   /// The mode that the flight controller is in; may be empty.
   std::function<std::string()> mode = {};
   /// The operator gives the aircraft back, by a word that was issued then; may be empty.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -25,8 +26,8 @@ struct ThreadSpec {
   Duration period;
 };
 
-/// All threads of the process but main and DDS's own, which are normal. `can` runs where the flight
-/// controller is on a bus, whenever a frame comes and at its period.
+/// All threads of the process but main, what watches keys and DDS's own, which are normal. `can`
+/// runs where the flight controller is on a bus, whenever a frame comes and at its period.
 inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::count)> kThreads{{
     {ThreadRole::control, "control", SchedulingPolicy::realtime, 50, std::chrono::milliseconds{20}},
     {ThreadRole::can, "can", SchedulingPolicy::realtime, 60, std::chrono::milliseconds{5}},
@@ -38,6 +39,9 @@ inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::cou
 [[nodiscard]] constexpr const ThreadSpec& spec_of(ThreadRole role) {
   return kThreads[static_cast<std::size_t>(role)];
 }
+
+/// A process whose real-time thread computes so long without a wait is ended (SIGXCPU).
+inline constexpr std::chrono::milliseconds kRealtimeWithoutWait{500};
 
 /// Starts the thread under its name and policy. Where SCHED_FIFO is not permitted it runs as a
 /// normal thread, with one warning in the log.

@@ -21,6 +21,7 @@ namespace skein::fleet {
 struct HostFile {
   std::string path;
   std::string text;
+  bool secret = false;  ///< of the program's user alone, who has the folder that it is put below
 };
 
 /// One program on its host. It is a unit of systemd, unless the host names a folder of programs.
@@ -45,6 +46,8 @@ struct Program {
 [[nodiscard]] Program program_of(const configuration::Host& host, std::string configuration);
 /// Where that program records.
 [[nodiscard]] std::string recordings_of(const configuration::Host& host);
+/// Where its keys are (docs/keys.md).
+[[nodiscard]] std::string keys_of(const configuration::Host& host);
 
 /// What does not fit together, one sentence each: hosts that are missing or twice, addresses and
 /// ports, buses and their nodes, files, a console that is open to everybody. Reads the shapes that

@@ -29,6 +29,7 @@ struct BenchOptions {
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
   /// one for each.
   std::string can;
+  bool sealed = true;              ///< with keys that are made for the run
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
   bool prompt =
       false;  ///< leave the decisions to skein-ground's prompt (its input is the terminal's)

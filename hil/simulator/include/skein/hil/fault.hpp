@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/domain/path.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -66,6 +68,11 @@ struct PlaceSeen {
 struct SiteWithdrawal {
   std::optional<SiteId> site;
 };
+/// The operator gives those vehicles these routes over the air. They begin so long afterwards.
+struct RoutesOrdered {
+  std::map<VehicleId, TimedPath> routes;
+  Duration begin_in{};
+};
 /// The radio is perfect from now on, and sites that nobody is at work on are reported: what is left
 /// of the team must finish its work.
 struct Healing {};
@@ -74,7 +81,7 @@ struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
   std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, Ordered,
-               SitesReported, PlaceSeen, SiteWithdrawal, Healing>
+               SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, Healing>
       what;
 };
 
