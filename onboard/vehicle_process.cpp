@@ -236,12 +236,12 @@ class Threads {
     const mission::Counters counters = agent_.node().counters();
     spdlog::info(
         "ended: {} control periods, {} overruns, {} without a state; messages sent {}, received "
-        "{}, dropped {}, refused of their senders {}; datagrams of strangers {}; protocol errors "
-        "{}; "
-        "records dropped {}",
+        "{}, dropped {}, refused of their senders {}; datagrams of strangers {}, decisions "
+        "unproven {}; "
+        "protocol errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
-        traffic.of_strangers, counters.protocol_errors + counters.bad_messages,
+        traffic.of_strangers, traffic.unproven, counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;

@@ -43,6 +43,16 @@ TEST(MaySay, AVehicleSpeaksForItself) {
   EXPECT_EQ(of(health), kItself);
 }
 
+TEST(MaySay, DecisionsAreSigned) {
+  EXPECT_TRUE(is_signed(Command{}));
+  EXPECT_TRUE(is_signed(Authorisation{}));
+  EXPECT_TRUE(is_signed(Route{}));
+  EXPECT_TRUE(is_signed(coalition::Message{coalition::Award{}}));
+  EXPECT_FALSE(is_signed(coalition::Message{coalition::Bid{}}));
+  EXPECT_TRUE(is_signed(mission::Setup{}));
+  EXPECT_FALSE(is_signed(Telemetry{}));
+}
+
 TEST(MaySay, ALeaderSpeaksForItsRounds) {
   coalition::Award award;
   award.round = kRound;

@@ -301,10 +301,16 @@ export function may_say_source(model, topics) {
   })
   const unions = topics.filter(t => model.types.get(t.type).kind === 'union')
     .map(t => `  bool operator()(const ${seen_from('skein::mission', t.type)}& m) const { return std::visit(*this, m); }\n`)
-  return `${made_from('the annotations @said_by of idl/')}#include "skein/mission/may_say.hpp"\n\n#include <variant>\n\nnamespace skein::mission {\nnamespace {\n\n` +
-    `struct MaySay {\n  VehicleId sender;\n\n${functions.join('')}${unions.join('')}};\n\n}  // namespace\n\n` +
-    `bool may_say(const Message& message, VehicleId sender) {\n  return std::visit(MaySay{sender}, message);\n}\n\n}  // namespace skein::mission\n`
+  const decisions = topics.flatMap(t => leaves(model, t.type)).map(t =>
+    `  bool operator()(const ${seen_from('skein::mission', t.name)}&) const { return ${Boolean(t.notes.signed)}; }\n`)
+  return `${made_from('the annotations @said_by and @signed of idl/')}#include "skein/mission/may_say.hpp"\n\n#include <variant>\n\nnamespace skein::mission {\nnamespace {\n\n` +
+    `struct MaySay {\n  VehicleId sender;\n\n${functions.join('')}${unions.join('')}};\n\n` +
+    `struct IsSigned {\n${decisions.join('')}${unions.join('')}};\n\n}  // namespace\n\n` +
+    `bool may_say(const Message& message, VehicleId sender) {\n  return std::visit(MaySay{sender}, message);\n}\n` +
+    `bool is_signed(const Message& message) { return std::visit(IsSigned{}, message); }\n\n}  // namespace skein::mission\n`
 }
+
+const protection = t => t.notes.signed ? 'sealed, signed' : 'sealed'
 
 const reached = { all: 'all', vehicles: 'vehicles', ground: 'ground' }
 
@@ -314,16 +320,18 @@ export function topics_document(model, topics) {
     const type = model.types.get(t.type)
     const of_union = type.kind === 'union'
     const said = of_union ? 'see below' : sayers(type).text
-    return `| \`skein/${t.name}\` | \`${t.type}\` | ${type.notes.version} | ${reached[t.writers]} | ${reached[t.readers]} | ${said} | ` +
+    const proof = of_union ? 'see below' : protection(type)
+    return `| \`skein/${t.name}\` | \`${t.type}\` | ${type.notes.version} | ${reached[t.writers]} | ${reached[t.readers]} | ${said} | ${proof} | ` +
       `${t.reliable ? 'reliable' : 'best effort'} | ${t.writer_history} | ${t.reader_history} | ${size_max(model.types, t.type)} |\n`
   })
   const parts = topics.filter(t => model.types.get(t.type).kind === 'union').map(t =>
-    `\n\`${t.type}\` is one of:\n\n| message | who may say it |\n|---|---|\n` +
-    leaves(model, t.type).map(l => `| ${last(l.name)} | ${sayers(l).text} |\n`).join(''))
+    `\n\`${t.type}\` is one of:\n\n| message | who may say it | where there are keys |\n|---|---|---|\n` +
+    leaves(model, t.type).map(l => `| ${last(l.name)} | ${sayers(l).text} | ${protection(l)} |\n`).join(''))
   return '# Topics\n\nPrinted from `idl/topics.json` and the types of `idl/` by `idl/generator`; a test compares them.\n' +
     'Durability is volatile, history is keep-last: the oldest sample gives way, so a writer never waits for a reader.\n' +
     'A reliable topic keeps the order of each sender; a loss is repaired at the next heartbeat, after 100 ms.\n' +
-    'Who may say it: `mission::may_say()` compares the sender with that field of the message; what is not the sender\'s to say is dropped.\n\n' +
-    '| topic | type | version | written by | read by | who may say it | delivery | kept by writer | kept by reader | bytes at most |\n' +
-    `|---|---|---|---|---|---|---|---|---|---|\n${rows.join('')}${parts.join('')}`
+    'Who may say it: `mission::may_say()` compares the sender with that field of the message; what is not the sender\'s to say is dropped.\n' +
+    'Where a team has keys every datagram is sealed, and decisions are signed by who takes them (security.md).\n\n' +
+    '| topic | type | version | written by | read by | who may say it | where there are keys | delivery | kept by writer | kept by reader | bytes at most |\n' +
+    `|---|---|---|---|---|---|---|---|---|---|---|\n${rows.join('')}${parts.join('')}`
 }

@@ -25,15 +25,18 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <mutex>
 #include <set>
+#include <span>
 #include <system_error>
 #include <tuple>
 #include <utility>
 
 #include "byte_sample.hpp"
 #include "sealed_transport.hpp"
+#include "signatures.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/codec/codec.hpp"
+#include "skein/mission/may_say.hpp"
 #include "skein/network/rtps_guid.hpp"
 #include "skein/network/transport_plugin.hpp"
 
@@ -75,6 +78,9 @@ enum class Counter : std::uint8_t {
   bad_value,
   unknown_kind,
   unknown_sender,
+  signature_missing,
+  signature_forged,
+  signature_replayed,
   count
 };
 constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCounterNames{
@@ -88,7 +94,10 @@ constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCou
     "bad_version",
     "bad_value",
     "unknown_kind",
-    "unknown_sender"};
+    "unknown_sender",
+    "signature_missing",
+    "signature_forged",
+    "signature_replayed"};
 
 Duration_t dds_duration(Duration d) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(d);
@@ -116,11 +125,27 @@ std::optional<VehicleId> vehicle_of(const rtps::GuidPrefix_t& prefix) {
   return VehicleId{static_cast<std::uint16_t>((prefix.value[4] << 8U) | prefix.value[5])};
 }
 
-/// Role and instance, as told to others with the announcement of the participant.
+/// As far as the prefix has it: all of one that has keys.
+InstanceId instance_of(const rtps::GuidPrefix_t& prefix) {
+  InstanceId instance;
+  for (unsigned i = 0; i < 6; ++i) {
+    instance.value |= std::uint64_t{prefix.value[6 + i]} << (8U * i);
+  }
+  return instance;
+}
+
+constexpr std::size_t kUserDataBytes = 9;  ///< before a certificate
+
+/// Role and instance, as told to others with the announcement of the participant, and the
+/// certificate of one that signs.
 std::vector<rtps::octet> user_data(const NodeConfig& config) {
   std::vector<rtps::octet> data{static_cast<rtps::octet>(config.role)};
   for (unsigned i = 0; i < 8; ++i) {
     data.push_back(static_cast<rtps::octet>((config.instance.value >> (8U * i)) & 0xFFU));
+  }
+  if (config.sign) {
+    const auto certificate = identity::to_bytes(config.sign->own);
+    data.insert(data.end(), certificate.begin(), certificate.end());
   }
   return data;
 }
@@ -128,7 +153,7 @@ std::vector<rtps::octet> user_data(const NodeConfig& config) {
 std::optional<Peer> read_peer(const rtps::ParticipantProxyData& proxy) {
   const auto id = vehicle_of(proxy.m_guid.guidPrefix);
   const std::vector<rtps::octet>& data = proxy.m_userData.data_vec();
-  if (!id || data.size() < 9 || data[0] < 1 || data[0] > 2) return std::nullopt;
+  if (!id || data.size() < kUserDataBytes || data[0] < 1 || data[0] > 2) return std::nullopt;
   std::uint64_t instance = 0;
   for (unsigned i = 0; i < 8; ++i) instance |= std::uint64_t{data[1 + i]} << (8U * i);
   return Peer{*id, InstanceId{instance}, static_cast<Role>(data[0])};
@@ -337,6 +362,9 @@ class Node::Impl : public dds::DomainParticipantListener {
     if (config.seal) {
       seals_ = std::make_shared<Seals>(config.seal->start, config.seal->key, places_of(config));
     }
+    if (config.sign) {
+      signatures_ = std::make_unique<Signatures>(*config.sign, config.self, config.instance);
+    }
     for (std::size_t i = 0; i < kTopicCount; ++i) {
       listeners_.at(i).node = this;
       listeners_.at(i).topic = static_cast<Topic>(i);
@@ -355,6 +383,9 @@ class Node::Impl : public dds::DomainParticipantListener {
   void change_key(const seal::EpochKey& key, Duration old_for);
   [[nodiscard]] std::optional<std::uint8_t> epoch() const {
     return seals_ ? std::optional{seals_->epoch()} : std::nullopt;
+  }
+  void learn(const identity::RevocationList& revoked) {
+    if (signatures_) signatures_->learn(revoked);
   }
   [[nodiscard]] KeyNewsDesk* news() { return seals_ ? &seals_->news : nullptr; }
 
@@ -382,6 +413,7 @@ class Node::Impl : public dds::DomainParticipantListener {
   void receive(Topic topic, dds::DataReader& reader);
   void accept(Topic topic, const ByteSample& sample, const rtps::GuidPrefix_t& from);
   void refuse(Topic topic, const codec::Refusal& refusal, VehicleId sender);
+  void refuse(Signatures::Judged judged);
   void matched(const rtps::InstanceHandle_t& handle, std::int32_t change);
   void count(Counter counter) {
     counters_.at(static_cast<std::size_t>(counter)).fetch_add(1, std::memory_order_relaxed);
@@ -389,7 +421,8 @@ class Node::Impl : public dds::DomainParticipantListener {
 
   NodeConfig config_;
   rtps::GuidPrefix_t prefix_;
-  std::shared_ptr<Seals> seals_;  ///< none: in clear
+  std::shared_ptr<Seals> seals_;            ///< none: in clear
+  std::unique_ptr<Signatures> signatures_;  ///< none: decisions are not signed
   std::array<std::atomic<std::uint64_t>, kCounterNames.size()> counters_{};
   mutable std::mutex queue_mutex_;
   BoundedQueue<Received> queue_;
@@ -425,8 +458,9 @@ Result<void> Node::Impl::open() {
     const bool reads = t.readers.has(config_.role);
     if (!writes && !reads) continue;
     const std::string type_name{t.type};
-    const dds::TypeSupport type{
-        new ByteSampleType{type_name, codec::encoded_size_max(static_cast<Topic>(index))}};
+    const std::size_t size_max =
+        codec::encoded_size_max(static_cast<Topic>(index)) + (signatures_ ? kSignatureBytes : 0);
+    const dds::TypeSupport type{new ByteSampleType{type_name, size_max}};
     dds::Topic* topic = nullptr;
     if (type.register_type(participant_) == ReturnCode_t::RETCODE_OK) {
       topic = participant_->create_topic(std::string{t.name}, type_name, dds::TOPIC_QOS_DEFAULT);
@@ -454,7 +488,8 @@ Node::Impl::~Impl() {
 }
 
 bool Node::Impl::publish(const mission::Message& message) {
-  dds::DataWriter* writer = writers_.at(static_cast<std::size_t>(codec::topic_of(message)));
+  const Topic topic = codec::topic_of(message);
+  dds::DataWriter* writer = writers_.at(static_cast<std::size_t>(topic));
   if (writer == nullptr) {
     count(Counter::publish_refused_role);
     return false;
@@ -464,6 +499,7 @@ bool Node::Impl::publish(const mission::Message& message) {
     count(Counter::publish_refused_value);
     return false;
   }
+  if (signatures_ && mission::is_signed(message)) signatures_->sign(topic, *bytes);
   ByteSample sample{std::move(*bytes)};
   const bool written = writer->write(&sample);
   count(written ? Counter::published : Counter::publish_failed);
@@ -492,17 +528,38 @@ void Node::Impl::accept(Topic topic, const ByteSample& sample, const rtps::GuidP
     count(Counter::unknown_sender);
     return;
   }
-  auto decoded = codec::decode(topic, sample.bytes);
+  std::span<const std::uint8_t> body{sample.bytes};
+  const auto signature = signatures_ ? cut_signature(body) : std::nullopt;
+  auto decoded = codec::decode(topic, body);
   if (const auto* refusal = std::get_if<codec::Refusal>(&decoded)) {
     return refuse(topic, *refusal, *sender);
+  }
+  auto& message = *std::get_if<mission::Message>(&decoded);
+  if (signatures_ && mission::is_signed(message)) {
+    const auto judged = signatures_->judge(topic, *sender, instance_of(from), body, signature);
+    if (judged != Signatures::Judged::good) return refuse(judged);
   }
   bool room = false;
   {
     const std::lock_guard lock{queue_mutex_};
-    room = queue_.push(Received{std::move(*std::get_if<mission::Message>(&decoded)), *sender});
+    room = queue_.push(Received{std::move(message), *sender});
   }
   count(room ? Counter::received : Counter::dropped_full);
   if (room && config_.on_received) config_.on_received();
+}
+
+void Node::Impl::refuse(Signatures::Judged judged) {
+  switch (judged) {
+    case Signatures::Judged::missing:
+      return count(Counter::signature_missing);
+    case Signatures::Judged::forged:
+      return count(Counter::signature_forged);
+    case Signatures::Judged::replayed:
+      return count(Counter::signature_replayed);
+    case Signatures::Judged::good:
+    case Signatures::Judged::count:
+      return;
+  }
 }
 
 void Node::Impl::refuse(Topic topic, const codec::Refusal& refusal, VehicleId sender) {
@@ -538,6 +595,10 @@ void Node::Impl::on_participant_discovery(dds::DomainParticipant*,
     peers_.erase(prefix);
   } else if (const auto peer = read_peer(discovered.info)) {
     peers_[prefix].peer = peer;
+    const auto& data = discovered.info.m_userData.data_vec();
+    if (signatures_ && data.size() > kUserDataBytes) {
+      signatures_->learn(std::span{data}.subspan(kUserDataBytes));
+    }
   }
 }
 
@@ -599,6 +660,7 @@ std::vector<Peer> Node::peers() const { return impl_->peers(); }
 void Node::change_key(const seal::EpochKey& key, Duration old_for) {
   impl_->change_key(key, old_for);
 }
+void Node::learn(const identity::RevocationList& revoked) { impl_->learn(revoked); }
 std::optional<std::uint8_t> Node::epoch() const { return impl_->epoch(); }
 void Node::tell(const std::vector<KeyNews>& news) {
   if (auto* desk = impl_->news()) desk->tell(news);

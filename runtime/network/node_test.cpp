@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <random>
@@ -16,6 +18,8 @@
 
 #include "free_ports.hpp"
 #include "skein/codec/codec.hpp"
+#include "skein/identity/identity.hpp"
+#include "skein/identity/team.hpp"
 #include "skein/random_messages/random_messages.hpp"
 
 namespace skein::network {
@@ -338,6 +342,79 @@ TEST(SealedNode, GoesOnWhileKeysChangeOneAfterTheOther) {
   expect_exchange(*ground, *vehicle, 4);  // the ground station still seals with the old one
   ground->change_key(key(2), Duration{});
   expect_exchange(*ground, *vehicle, 5);
+}
+
+/// Nodes 0 (the ground station), 1 and 2 with keys of a mission of their own.
+class SigningNodes : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = testing::TempDir() + "skein-node-XXXXXX";
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    folder_ = name;
+    const std::vector vehicles{VehicleId{1}, VehicleId{2}};
+    ASSERT_TRUE(identity::make_team(folder_, vehicles, now_unix_s()).ok());
+    configs_ = sealed_fleet(2);
+    for (NodeConfig& config : configs_) {
+      config.instance = InstanceId{(1ULL << 24U) + 5U};
+      config.sign = keys_of(config.self);
+    }
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] SignConfig keys_of(VehicleId node) const {
+    const auto who =
+        identity::Identity::open({identity::node_folder(folder_, node), {}}, now_unix_s());
+    EXPECT_TRUE(who.ok());
+    return {who->signer(), who->own(), who->verifier()};
+  }
+  static std::int64_t now_unix_s() {
+    return std::chrono::duration_cast<seconds>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
+  }
+
+  std::filesystem::path folder_;
+  std::vector<NodeConfig> configs_;
+};
+
+TEST_F(SigningNodes, ExchangeAsAnyOther) {
+  const auto ground = open(configs_[0]);
+  const auto vehicle = open(configs_[1]);
+  ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+  expect_exchange(*ground, *vehicle, 6);
+  EXPECT_EQ(vehicle->counters().at("signature_missing"), 0U);
+}
+
+TEST_F(SigningNodes, WhoHasCapturedAVehicleDecidesForNobodyElse) {
+  const auto vehicle = open(configs_[1]);
+  {
+    const auto ground = open(configs_[0]);
+    ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+    expect_exchange(*ground, *vehicle, 7);
+  }
+  // With the team's key and the keys of vehicle 2, in the ground station's name.
+  NodeConfig captured = configs_[0];
+  captured.instance = InstanceId{(2ULL << 24U) + 5U};
+  captured.seal->start.number = 2;
+  captured.sign = keys_of({2});
+  const auto insider = open(captured);
+  ASSERT_TRUE(eventually([&] { return !insider->peers().empty(); }));
+  const auto counted = [&vehicle](const char* name) { return vehicle->counters().at(name); };
+  ASSERT_TRUE(eventually([&] {
+    insider->publish(mission::Command{{1}, 77, mission::CommandKind::hold});
+    insider->publish(mission::Authorisation{});
+    return counted("signature_forged") > 10;
+  }));
+  captured.sign.reset();
+  captured.instance = InstanceId{(3ULL << 24U) + 5U};
+  captured.seal->start.number = 3;
+  captured.endpoint = captured.peers.back().endpoint;  // vehicle 2 is not there
+  captured.peers.pop_back();
+  const auto unsigned_one = open(captured);
+  ASSERT_TRUE(eventually([&] {
+    unsigned_one->publish(mission::Command{{1}, 77, mission::CommandKind::hold});
+    return counted("signature_missing") > 10;
+  }));
+  EXPECT_FALSE(vehicle->poll()) << "nothing of it is heard";
 }
 
 TEST(SealedNode, HearsNobodyInClearOrOfAnotherTeam) {

@@ -50,6 +50,7 @@ void KeyWatch::run() {
 }
 
 void KeyWatch::begin_epoch() {
+  node_.learn(identity_.revoked());
   node_.change_key(identity_.epoch_key(), kOldKeyFor);
   spdlog::info("the team has another key from now on, of epoch {}; revoked so far: {}",
                identity_.epoch_key().epoch, identity_.revoked().serials.size());

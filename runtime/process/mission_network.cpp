@@ -71,6 +71,10 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
   node.instance = start.instance;
   node.role = start.self == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
   node.seal = start.seal;
+  if (start.identity) {
+    node.sign = network::SignConfig{start.identity->signer(), start.identity->own(),
+                                    start.identity->verifier()};
+  }
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
   node.transport_plugin = config.transport_plugin;
@@ -98,6 +102,8 @@ Traffic traffic_of(const network::Node& node) {
       traffic.sent += count;
     } else if (name == "received") {
       traffic.received += count;
+    } else if (name.starts_with("signature_")) {
+      traffic.unproven += count;
     } else if (name.starts_with("seal_")) {
       if (name != "seal_opened") traffic.of_strangers += count;
     } else {

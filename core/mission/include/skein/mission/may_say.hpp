@@ -16,4 +16,8 @@ inline constexpr VehicleId kSensors{255};
 /// decided on.
 [[nodiscard]] bool may_say(const Message& message, VehicleId sender);
 
+/// Whether it is a decision, by which others fly: where a team has keys its sender signs it, and
+/// who is not shown that is not followed (network::SignConfig).
+[[nodiscard]] bool is_signed(const Message& message);
+
 }  // namespace skein::mission

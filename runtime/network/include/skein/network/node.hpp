@@ -15,6 +15,7 @@
 #include "skein/codec/topics.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/network/key_news.hpp"
+#include "skein/network/sign_config.hpp"
 #include "skein/seal/keys.hpp"
 
 namespace skein::network {
@@ -49,6 +50,8 @@ struct NodeConfig {
   std::size_t queue_limit = 1024;  ///< received messages waiting for poll()
   /// None: in clear, to be read and written by everybody who hears it.
   std::optional<SealConfig> seal;
+  /// None: decisions are neither signed nor judged.
+  std::optional<SignConfig> sign;
   /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
   std::string transport_plugin;
   /// Called on a thread of the network after messages became ready for poll(). Must be short, must
@@ -103,6 +106,8 @@ class Node {
 
   /// Of the key that it seals with; none in clear.
   [[nodiscard]] std::optional<std::uint8_t> epoch() const;
+  /// What members of that list have signed counts no more. Of a node that signs.
+  void learn(const identity::RevocationList& revoked);
   /// From now on told to these peers, as long as each is not heard under the new key. A node in
   /// clear has no such news.
   void tell(const std::vector<KeyNews>& news);

@@ -39,12 +39,13 @@ struct NodeStart {
 /// Are nodes of the team on other machines, by their addresses?
 [[nodiscard]] bool among_machines(const configuration::NetworkConfig& config);
 
-/// What a node counted, in four numbers.
+/// What a node counted, in a few numbers.
 struct Traffic {
   std::uint64_t sent = 0;
   std::uint64_t received = 0;
   std::uint64_t dropped = 0;       ///< of the team's, for whatever reason, in both directions
   std::uint64_t of_strangers = 0;  ///< datagrams that nobody sealed with the team's key
+  std::uint64_t unproven = 0;      ///< decisions without a good signature of who they name
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 

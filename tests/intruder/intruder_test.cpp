@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A live mission of processes, and somebody without keys on its network.
+// A live mission of processes, and on its network somebody without keys, or with those of a
+// vehicle.
+#include "intruder.hpp"
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -17,10 +21,10 @@
 #include <thread>
 #include <vector>
 
-#include "intruder.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/hil/child_process.hpp"
+#include "skein/identity/identity.hpp"
 #include "skein/network/node.hpp"
 #include "skein/random_messages/random_messages.hpp"
 
@@ -56,10 +60,10 @@ std::vector<mission::Message> forged_orders(Random& random) {
   return all;
 }
 
-class Outsider : public testing::Test {
+class Intruder : public testing::Test {
  protected:
-  Outsider() { fs::remove_all(folder_); }
-  ~Outsider() override {
+  void SetUp() override { fs::remove_all(folder_); }
+  void TearDown() override {
     if (!HasFailure()) fs::remove_all(folder_);
   }
   [[nodiscard]] fs::path run() const { return folder_ / "run"; }
@@ -105,6 +109,31 @@ class Outsider : public testing::Test {
     return opened ? std::move(opened).value() : nullptr;
   }
 
+  /// A node in the ground station's name, by whoever has captured that vehicle with its keys.
+  [[nodiscard]] std::unique_ptr<network::Node> join_as_ground_with_keys_of(
+      VehicleId captured) const {
+    const auto file = run() / ("vehicle-" + std::to_string(captured.value) + ".yaml");
+    const auto theirs = configuration::load_vehicle_config(file.string());
+    EXPECT_TRUE(theirs.ok());
+    const auto who = identity::Identity::open({theirs->network.keys, {}}, std::time(nullptr));
+    EXPECT_TRUE(who.ok()) << who.error().message;
+    constexpr std::uint32_t kRandom = 0x77;
+    network::NodeConfig config;
+    config.domain = domain_;
+    config.self = kGroundStation;
+    config.instance = InstanceId{(1ULL << 24U) | kRandom};  // its first start, too
+    config.role = codec::Role::ground;
+    config.endpoint = {"127.0.0.1", kIntrudersPort};
+    for (const auto& node : nodes_) {
+      if (node.id != kGroundStation) config.peers.push_back(node);
+    }
+    config.seal = network::SealConfig{{kGroundStation, 1, kRandom}, who->epoch_key()};
+    config.sign = network::SignConfig{who->signer(), who->own(), who->verifier()};
+    auto opened = network::Node::open(config);
+    EXPECT_TRUE(opened.ok()) << opened.error().message;
+    return opened ? std::move(opened).value() : nullptr;
+  }
+
   /// To both ports of every node.
   void send_to_all(const std::function<Bytes(VehicleId)>& make) const {
     for (const auto& node : nodes_) {
@@ -129,7 +158,7 @@ std::uint64_t number_in(const fs::path& log, const std::string& words) {
   return at == std::string::npos ? 0 : std::stoull(text.substr(at + words.size()));
 }
 
-TEST_F(Outsider, ChangesNothingAndIsCounted) {
+TEST_F(Intruder, WithoutKeysChangesNothingAndIsCounted) {
   ASSERT_NO_FATAL_FAILURE(start_mission());
   const auto ground = join(kGroundStation, kNobodysPorts[0]);
   const auto vehicle = join({2}, kNobodysPorts[1]);
@@ -156,6 +185,33 @@ TEST_F(Outsider, ChangesNothingAndIsCounted) {
   for (std::uint16_t id = 0; id <= kVehicles; ++id) {
     const auto log = run() / (id == 0 ? "ground.log" : "vehicle-" + std::to_string(id) + ".log");
     EXPECT_GT(number_in(log, "datagrams of strangers "), sent / 2) << log;
+  }
+}
+
+TEST_F(Intruder, WithAVehiclesKeysDecidesNothingForTheGroundStation) {
+  ASSERT_NO_FATAL_FAILURE(start_mission());
+  const auto insider = join_as_ground_with_keys_of({kVehicles});
+  Random random{20261124};
+  auto orders = forged_orders(random);
+  mission::Setup elsewhere;  // as if the ground station ran with something that nobody has
+  elsewhere.node = kGroundStation;
+  elsewhere.knows_orders = true;
+  elsewhere.items = {{1, 1}, {2, 2}};
+  orders.emplace_back(elsewhere);
+  std::size_t met = 0;
+  std::uint64_t rounds = 0;
+  while (!mission_->ended()) {
+    for (const auto& order : orders) insider->publish(order);
+    ++rounds;
+    met = std::max(met, insider->peers().size());
+    while (insider->poll()) continue;
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_TRUE(mission_->clean()) << *mission_->ended() << text_of(folder_ / "log");
+  EXPECT_EQ(met, kVehicles) << "it is of the team, as far as the network can tell";
+  for (std::uint16_t id = 1; id <= kVehicles; ++id) {
+    const auto log = run() / ("vehicle-" + std::to_string(id) + ".log");
+    EXPECT_GT(number_in(log, "decisions unproven "), rounds) << log;
   }
 }
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "signatures.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+namespace skein::network {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'S', 1};  // the last is the version
+constexpr std::size_t kSignatureAt = 16;
+
+std::chrono::nanoseconds since_1970() {
+  return std::chrono::system_clock::now().time_since_epoch();
+}
+
+void put(std::vector<std::uint8_t>& bytes, std::uint64_t number) {
+  for (unsigned i = 0; i < 8; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>((number >> (8U * i)) & 0xFFU));
+  }
+}
+
+std::uint64_t number_at(std::span<const std::uint8_t> bytes, std::size_t at) {
+  std::uint64_t number = 0;
+  for (unsigned i = 0; i < 8; ++i) number |= std::uint64_t{bytes[at + i]} << (8U * i);
+  return number;
+}
+
+identity::Statement statement_of(codec::Topic topic, VehicleId sender, InstanceId instance,
+                                 std::uint64_t sequence, std::int64_t time_ns,
+                                 std::span<const std::uint8_t> body) {
+  return {codec::kTopics.at(static_cast<std::size_t>(topic)).name,
+          sender,
+          instance,
+          sequence,
+          Instant{Duration{time_ns}},
+          body};
+}
+
+}  // namespace
+
+std::optional<std::span<const std::uint8_t>> cut_signature(std::span<const std::uint8_t>& bytes) {
+  if (bytes.size() < kSignatureBytes) return std::nullopt;
+  const auto behind = bytes.last(kSignatureBytes);
+  if (!std::ranges::equal(behind.last(kMark.size()), kMark)) return std::nullopt;
+  bytes = bytes.first(bytes.size() - kSignatureBytes);
+  return behind;
+}
+
+Signatures::Signatures(SignConfig config, VehicleId self, InstanceId instance)
+    : config_{std::move(config)}, self_{self}, instance_{instance}, verifier_{config_.verifier} {}
+
+void Signatures::learn(std::span<const std::uint8_t> certificate) {
+  const auto read = identity::certificate_from(certificate);
+  if (!read || read->role == identity::Role::op) return;
+  const std::lock_guard lock{mutex_};
+  (void)verifier_.learn(*read,
+                        std::chrono::duration_cast<std::chrono::seconds>(since_1970()).count());
+}
+
+void Signatures::learn(const identity::RevocationList& list) {
+  const std::lock_guard lock{mutex_};
+  (void)verifier_.learn(list);
+}
+
+void Signatures::sign(codec::Topic topic, std::vector<std::uint8_t>& bytes) {
+  const std::int64_t time_ns = since_1970().count();
+  std::uint64_t sequence = 0;
+  {
+    const std::lock_guard lock{mutex_};
+    sequence = ++said_.at(static_cast<std::size_t>(topic));
+  }
+  const auto signature =
+      config_.signer.sign(statement_of(topic, self_, instance_, sequence, time_ns, bytes));
+  put(bytes, sequence);
+  put(bytes, static_cast<std::uint64_t>(time_ns));
+  bytes.insert(bytes.end(), signature.begin(), signature.end());
+  bytes.insert(bytes.end(), kMark.begin(), kMark.end());
+}
+
+Signatures::Judged Signatures::judge(codec::Topic topic, VehicleId sender, InstanceId instance,
+                                     std::span<const std::uint8_t> body,
+                                     std::optional<std::span<const std::uint8_t>> signature) {
+  if (!signature) return Judged::missing;
+  const std::uint64_t sequence = number_at(*signature, 0);
+  const auto time_ns = static_cast<std::int64_t>(number_at(*signature, 8));
+  identity::Signature of{};
+  std::ranges::copy(signature->subspan(kSignatureAt, of.size()), of.begin());
+  const std::lock_guard lock{mutex_};
+  const auto known = newest_.find({sender, topic});
+  if (known != newest_.end() &&
+      std::pair{instance, sequence} <= std::pair{known->second.instance, known->second.sequence}) {
+    return Judged::replayed;
+  }
+  const auto statement = statement_of(topic, sender, instance, sequence, time_ns, body);
+  if (verifier_.verify(statement, of) != identity::Trust::good) return Judged::forged;
+  newest_[{sender, topic}] = {instance, sequence};
+  return Judged::good;
+}
+
+}  // namespace skein::network
