@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <utility>
 
 #include "skein/codec/json_text.hpp"
@@ -13,12 +15,30 @@ namespace skein::groundstation {
 namespace {
 
 constexpr std::size_t kLineMax = 200;
+constexpr double kLongest_s = 9e9;  ///< that an Instant can tell
 
 codec::Json json_of(const Audit::Entry& entry, std::uint64_t seq) {
   return {{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
           {"who", entry.who},   {"from", entry.from},
           {"line", entry.line}, {"done", entry.done},
           {"text", entry.text}};
+}
+
+/// What a line of the file has of it; what it has not is left empty.
+Audit::Entry entry_of(const codec::ParsedJson& line) {
+  const auto text = [&line](const char* name) {
+    const auto found = line.find(name);
+    return found != line.end() && found->is_string() ? found->get<std::string>() : std::string{};
+  };
+  const auto time = line.find("time_s");
+  const auto done = line.find("done");
+  const double time_s = time != line.end() && time->is_number() ? time->get<double>() : 0.0;
+  return {at_seconds(std::clamp(time_s, -kLongest_s, kLongest_s)),
+          text("who"),
+          text("from"),
+          text("line"),
+          done != line.end() && done->is_boolean() && done->get<bool>(),
+          text("text")};
 }
 
 /// Of what somebody typed: a line's worth, without what a terminal would obey.
@@ -32,35 +52,84 @@ std::string printable(std::string line) {
 
 }  // namespace
 
-Result<Audit> Audit::open(const std::string& folder) {
+Result<Audit> Audit::open(const std::string& folder, std::optional<AuditKey> key) {
   Audit audit;
   if (folder.empty()) return audit;
   audit.path_ = (std::filesystem::path{folder} / "audit.jsonl").string();
+  audit.key_ = std::move(key);
+  std::string before;
+  {
+    std::ifstream earlier{audit.path_, std::ios::binary};
+    before.assign(std::istreambuf_iterator<char>{earlier}, {});
+  }
   audit.file_.open(audit.path_, std::ios::app);
   if (!audit.file_) return Error{"cannot write " + audit.path_};
+  // A line that was cut short stays as it is.
+  if (!before.empty() && before.back() != '\n') audit.file_ << '\n' << std::flush;
+  audit.recall(before);
   return audit;
 }
 
-Result<void> Audit::add(Entry entry) {
-  entry.text = entry.text.substr(0, entry.text.find('\n'));
-  entry.line = printable(entry.line);
-  const auto line = json_of(entry, next_seq_++);
-  entries_.push_back(std::move(entry));
+/// Of what the file has; whether somebody has changed it is for verify_audit() to say.
+void Audit::recall(std::string_view text) {
+  while (!text.empty()) {
+    const auto end = text.find('\n');
+    const auto line = text.substr(0, end);
+    line_before_ = hash_of_line(line);
+    const auto json = codec::parse_json(line);
+    if (json.is_object()) {
+      const auto seq = json.find("seq");
+      if (seq != json.end() && seq->is_number_unsigned()) next_seq_ = seq->get<std::uint64_t>();
+      if (json.contains("who")) keep(entry_of(json), next_seq_);
+      ++next_seq_;
+    }
+    if (end == std::string_view::npos) break;
+    text.remove_prefix(end + 1);
+  }
+  show();
+}
+
+void Audit::keep(Entry entry, std::uint64_t seq) {
+  entries_.push_back({std::move(entry), seq});
   if (entries_.size() > kShown) entries_.pop_front();
+}
+
+void Audit::show() {
   auto all = codec::Json::array();
-  std::uint64_t seq = next_seq_ - entries_.size();
-  for (const Entry& one : entries_) all.push_back(json_of(one, seq++));
+  for (const auto& [one, number] : entries_) all.push_back(json_of(one, number));
   json_ = codec::json_text(all);
+}
+
+Result<void> Audit::write(const std::string& line) {
   if (path_.empty()) return {};
-  file_ << codec::json_text(line) << '\n' << std::flush;
+  line_before_ = hash_of_line(line);
+  file_ << line << '\n' << std::flush;
   if (file_) return {};
   file_.clear();
   return Error{"cannot write " + path_};
 }
 
+Result<void> Audit::add(Entry entry) {
+  entry.text = entry.text.substr(0, entry.text.find('\n'));
+  entry.line = printable(entry.line);
+  const std::uint64_t seq = next_seq_++;
+  auto line = json_of(entry, seq);
+  line["prev"] = line_before_;
+  keep(std::move(entry), seq);
+  show();
+  written_ = true;
+  return write(codec::json_text(line));
+}
+
+Result<void> Audit::close(Instant now, std::int64_t unix_s) {
+  if (!key_ || !written_) return {};
+  written_ = false;
+  return write(seal_line(*key_, next_seq_++, line_before_, now, unix_s));
+}
+
 std::string Audit::text() const {
   std::string text;
-  for (const Entry& entry : entries_) {
+  for (const auto& [entry, seq] : entries_) {
     text += fmt::format("{:.1f} s  {} ({}): {} -> {}{}\n", to_seconds(entry.time), entry.who,
                         entry.from, entry.line, entry.done ? "" : "refused: ", entry.text);
   }

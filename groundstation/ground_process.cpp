@@ -192,6 +192,12 @@ class GroundLoop {
           clock_.steady_time_of(std::clamp(node_.next_timeout(), soonest, now + kStepPeriod)));
     }
     recorder_.flush();
+    const Instant now = clock_.now();
+    const auto since_1970 =
+        std::chrono::nanoseconds{clock_.epoch_unix_ns()} + now.time_since_epoch();
+    const auto closed =
+        audit_.close(now, std::chrono::floor<std::chrono::seconds>(since_1970).count());
+    if (!closed) spdlog::error("the audit log: {}", closed.error().message);
   }
   /// From another thread: has something sent to everybody.
   void speak() {
@@ -419,6 +425,7 @@ class GroundLoop {
     facts.received = traffic.received;
     facts.dropped = traffic.dropped + node_.dropped();
     facts.of_strangers = traffic.of_strangers;
+    facts.unproven = traffic.unproven;
     facts.refused = node_.refused();
     facts.authorisations_waiting = static_cast<std::size_t>(
         std::ranges::count_if(node_.agent().authorisations(),
@@ -514,6 +521,11 @@ void recall_mission(const configuration::GroundConfig& config, std::int64_t epoc
   spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
 }
 
+std::optional<AuditKey> audit_key(const process::NodeStart& start) {
+  if (!start.identity) return std::nullopt;
+  return AuditKey{start.identity->signer(), start.identity->own(), start.instance};
+}
+
 /// Until the process is asked to end; the service manager's watchdog is fed while the loop gets on.
 const char* wait_watched(const GroundLoop& loop, const process::Shutdown& shutdown,
                          const process::Service& service) {
@@ -537,9 +549,9 @@ void log_summary(const network::Node& node, const mission::GroundNode& ground) {
   const auto traffic = process::traffic_of(node);
   spdlog::info(
       "ended: messages sent {}, received {}, dropped {}, refused of their senders {}; datagrams of "
-      "strangers {}",
+      "strangers {}, decisions unproven {}",
       traffic.sent, traffic.received, traffic.dropped + ground.dropped(), ground.refused(),
-      traffic.of_strangers);
+      traffic.of_strangers, traffic.unproven);
 }
 
 /// None without keys.
@@ -600,7 +612,7 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
   }
 
   serve_console(console, config, wake);
-  auto audit = Audit::open(config.recording_folder);
+  auto audit = Audit::open(config.recording_folder, audit_key(*start));
   if (!audit) {
     spdlog::critical("cannot record: {}", audit.error().message);
     return process::kExitCannotStart;

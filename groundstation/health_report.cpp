@@ -115,6 +115,10 @@ std::string metrics_text(const HealthFacts& facts, const mission::Fleet& fleet) 
       .family("skein_datagrams_of_strangers_total", "counter",
               "Datagrams that nobody sealed with the team's key, or not just now")
       .value(facts.of_strangers);
+  metrics
+      .family("skein_decisions_unproven_total", "counter",
+              "Decisions without a good signature of the member that they name")
+      .value(facts.unproven);
   metrics.family("skein_messages_refused_total", "counter", "Messages not their sender's to say")
       .value(facts.refused);
   metrics.family("skein_authorisations_waiting", "gauge", "Deliveries that wait for a decision")

@@ -6,7 +6,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,11 +20,13 @@
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/console/users.hpp"
+#include "skein/groundstation/audit_chain.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/replay_process.hpp"
 #include "skein/groundstation/route_planning.hpp"
+#include "skein/identity/identity.hpp"
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
 #include "skein/version/version.hpp"
@@ -206,6 +210,36 @@ int export_recording(const ExportArguments& arguments) {
   return 0;
 }
 
+struct AuditArguments {
+  std::string file;
+  std::string keys;
+};
+
+/// The certificate of the mission's authority, from the folder of a member's or the mission's keys.
+skein::Result<skein::identity::Certificate> authority_of(const std::string& folder) {
+  auto membership = skein::identity::read_membership(skein::identity::KeyFolder::of(folder));
+  if (!membership) return membership.error();
+  return std::move(membership->authority);
+}
+
+int verify_audit(const AuditArguments& arguments) {
+  std::ifstream file{arguments.file, std::ios::binary};
+  if (!file) return fail("cannot read " + arguments.file, skein::process::kExitBadInput);
+  const std::string text{std::istreambuf_iterator<char>{file}, {}};
+  std::optional<skein::identity::Certificate> authority;
+  if (!arguments.keys.empty()) {
+    auto found = authority_of(arguments.keys);
+    if (!found) return fail(found.error().message, skein::process::kExitBadInput);
+    authority = *std::move(found);
+  }
+  const auto findings = groundstation::verify_audit(text, authority ? &*authority : nullptr);
+  for (const std::string& fault : findings.faults) std::printf("%s\n", fault.c_str());
+  for (const std::string& remark : findings.remarks) std::printf("note: %s\n", remark.c_str());
+  std::printf("%s: %s, %zu orders and decisions, %zu signatures\n", arguments.file.c_str(),
+              findings.good() ? "unchanged" : "CHANGED", findings.entries, findings.signatures);
+  return findings.good() ? 0 : kExitRefused;
+}
+
 /// The command line: each command knows what to do once it was given.
 class CommandLine {
  public:
@@ -241,6 +275,7 @@ class CommandLine {
     }
     add_recordings();
     add_replay();
+    add_audit();
   }
 
   int run(int argc, char** argv) {
@@ -379,6 +414,23 @@ class CommandLine {
         "  skein-ground replay runs/mine --speed 4");
   }
 
+  void add_audit() {
+    CLI::App& group = add("audit", "Looks at the log of who gave which order, audit.jsonl",
+                          [this] { return verify_audit(auditing_); });
+    group.require_subcommand(1);
+    CLI::App& verify = *group.add_subcommand(
+        "verify", "Says whether a line was changed, left out or put in, and who signed");
+    verify.add_option("file", auditing_.file, "audit.jsonl of a ground station's recording folder")
+        ->required();
+    verify.add_option("--keys", auditing_.keys,
+                      "Folder of the mission's keys, or of a member's: its authority is believed");
+    verify.footer(
+        "Exit status 0: unchanged as far as it is signed; 1: not.\n"
+        "Example:\n"
+        "  skein-ground audit verify /var/lib/skein/ground/recording/audit.jsonl "
+        "--keys /var/lib/skein/ground/keys");
+  }
+
   CLI::App app_{
       "The ground station: shows the fleet and its mission, and is where an operator\n"
       "authorises or refuses deliveries and gives a formation its orders."};
@@ -390,6 +442,7 @@ class CommandLine {
   std::string looked_at_;
   ExportArguments exporting_;
   ReplayArguments replaying_;
+  AuditArguments auditing_;
 };
 
 }  // namespace
