@@ -63,7 +63,7 @@ void GroundAgent::recall_own(const Message& message, Instant at) {
   } else if (const auto* report = std::get_if<SiteReport>(&message)) {
     if (report->withdrawn) end_site(report->site.id, "the operator", at);
   } else if (const auto* command = std::get_if<Command>(&message)) {
-    last_command_ = std::max(last_command_, command->number);
+    last_command_ = std::max(last_command_, number_of(*command));
   }
 }
 
@@ -402,13 +402,14 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(
                                std::max(now, Instant{}).time_since_epoch())
                                .count();
-  last_command_ = std::max(last_command_, static_cast<std::uint32_t>(since_epoch)) + 1;
+  last_command_ = std::max(last_command_, static_cast<std::uint64_t>(since_epoch)) + 1;
   const auto is_act = [](CommandKind of) { return of == CommandKind::give_back; };
   std::erase_if(commands_, [&](const SentCommand& sent) {  // an act takes no order's place
     const bool same = is_act(sent.command.kind) == is_act(kind);
     return same && (all || sent.command.vehicle == vehicle);
   });
-  const Command command{vehicle, last_command_, kind};
+  Command command{.vehicle = vehicle, .kind = kind};
+  set_number(command, last_command_);
   messages_.push(Message{command});
   commands_.push_back({command, now + kCommandRepeat, now + kCommandRepeatedFor});
   return {};

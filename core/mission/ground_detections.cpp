@@ -5,14 +5,16 @@
 
 namespace skein::mission {
 
-void GroundDetections::recall(const Message& message, VehicleId sender, const GroundSites& sites) {
-  if (const auto* detection = std::get_if<Detection>(&message)) {
-    if (config_.take || is_known(detection->position, sites)) return;
-    if (!is_proposed(detection->position)) (void)propose(*detection);
+void GroundDetections::recall(const Message& message, VehicleId sender) {
+  const auto* event = std::get_if<MissionEvent>(&message);
+  if (event == nullptr || sender != kGroundStation) return;
+  if (const auto* said = std::get_if<event::SiteProposed>(&event->body)) {
+    if (proposals_.contains(said->number) || !make_room()) return;
+    newest_ = std::max(newest_, said->number);
+    proposals_[said->number].detection = {
+        said->seen_by, 0, said->kind, {said->x_m, said->y_m}, said->confidence, said->detector};
     recalled_ = true;
-  } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
-    const auto* answer = std::get_if<event::ProposalAnswered>(&event->body);
-    if (answer == nullptr || sender != kGroundStation) return;
+  } else if (const auto* answer = std::get_if<event::ProposalAnswered>(&event->body)) {
     const auto known = proposals_.find(answer->number);
     if (known == proposals_.end()) return;
     known->second.state = answer->accepted ? Proposal::State::taken : Proposal::State::dismissed;
@@ -45,18 +47,27 @@ void GroundDetections::report(std::uint32_t number, Instant now) {
                 {},
                 {},
                 event::SiteProposed{number, seen.vehicle, seen.kind, seen.position.x(),
-                                    seen.position.y(), seen.detector}});
+                                    seen.position.y(), seen.detector, seen.confidence}});
 }
 
 /// 0 where there is no room.
 std::uint32_t GroundDetections::propose(const Detection& detection) {
-  if (proposals_.size() >= kProposalsMax) {
+  if (!make_room()) {
     ++left_out_;
     return 0;
   }
-  const auto number = static_cast<std::uint32_t>(proposals_.size() + 1);
-  proposals_.emplace(number, Proposal{detection});
-  return number;
+  proposals_.emplace(++newest_, Proposal{detection});
+  return newest_;
+}
+
+/// Of those that are answered the oldest is forgotten.
+bool GroundDetections::make_room() {
+  if (proposals_.size() < kProposalsMax) return true;
+  const auto answered = std::ranges::find_if(
+      proposals_, [](const auto& one) { return one.second.state != Proposal::State::open; });
+  if (answered == proposals_.end()) return false;
+  proposals_.erase(answered);
+  return true;
 }
 
 bool GroundDetections::is_known(const Vec2& place, const GroundSites& sites) const {

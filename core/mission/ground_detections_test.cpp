@@ -80,18 +80,35 @@ TEST_F(GroundDetectionsTest, IsTakenAtOnceWhereThatIsConfigured) {
 }
 
 TEST_F(GroundDetectionsTest, ANewProcessKnowsWhatWasAnswered) {
-  detections.recall(Message{seen(100.0)}, {2}, sites);
-  detections.recall(Message{seen(100.0)}, {2}, sites);
-  detections.recall(Message{seen(300.0)}, {2}, sites);
-  const MissionEvent answer{
-      kGroundStation, at_seconds(5.0), {}, {}, event::ProposalAnswered{1, false, "ada"}};
-  detections.recall(Message{answer}, kGroundStation, sites);
+  hear(seen(100.0));
+  hear(seen(300.0));
+  (void)detections.answer(1, false, "ada", at_seconds(5.0));
+  std::vector<Message> said;
+  while (auto event = detections.poll_event()) said.emplace_back(*std::move(event));
+  detections = GroundDetections{config(false)};
+  for (const Message& message : said) detections.recall(message, kGroundStation);
+  for (const Message& message : said) detections.recall(message, {2});
   EXPECT_FALSE(detections.proposed(1).ok());
-  EXPECT_TRUE(detections.proposed(2).ok());
+  ASSERT_TRUE(detections.proposed(2).ok());
+  EXPECT_EQ(detections.proposals().at(2).detection.confidence, seen(300.0).confidence);
   EXPECT_EQ(events(), 0);
   detections.on_timeout(at_seconds(9.0));
   detections.on_timeout(at_seconds(9.5));
   EXPECT_EQ(events(), 1) << "what is open is told again, once";
+}
+
+TEST_F(GroundDetectionsTest, OfWhatIsAnsweredTheOldestMakesRoom) {
+  for (std::size_t i = 1; i <= GroundDetections::kProposalsMax; ++i) {
+    hear(seen(100.0 * static_cast<double>(i)));
+    (void)events();
+  }
+  hear(seen(50'000.0));
+  EXPECT_EQ(detections.dropped(), 1U) << "all wait for the operator";
+  (void)detections.answer(3, false, "ada", at_seconds(5.0));
+  hear(seen(50'000.0));
+  EXPECT_EQ(detections.dropped(), 1U);
+  EXPECT_FALSE(detections.proposals().contains(3));
+  EXPECT_TRUE(detections.proposed(GroundDetections::kProposalsMax + 1).ok());
 }
 
 }  // namespace

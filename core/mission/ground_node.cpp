@@ -7,6 +7,7 @@
 
 #include "names.hpp"
 #include "skein/mission/may_say.hpp"
+#include "told_book.hpp"
 
 namespace skein::mission {
 
@@ -33,7 +34,7 @@ void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   sites_.recall(message, sender, at);
   hazards_.recall(message, sender, at);
   routes_.recall(message, sender, at);
-  detections_.recall(message, sender, sites_);
+  detections_.recall(message, sender);
   const auto* command = std::get_if<Command>(&message);
   if (command != nullptr && sender == kGroundStation) orders_.note(*command);
   const auto* decision = std::get_if<Authorisation>(&message);
@@ -52,6 +53,7 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     ++refused_;
     return false;
   }
+  if (told_by(message) != kGroundStation) return false;  // to who has started anew, not to us
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
   if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
     setup_.on_time(sender, telemetry->state.time, now);
@@ -61,7 +63,9 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   sites_.on_message(message, now);
   hazards_.on_message(message);
   routes_.on_message(message, now);
-  if (auto site = detections_.on_message(message, sites_, now)) {
+  // Who runs with another origin has seen it somewhere else.
+  const bool differs = setup_.difference(sender) != nullptr;
+  if (auto site = differs ? std::nullopt : detections_.on_message(message, sites_, now)) {
     (void)sites_.add(*std::move(site), std::nullopt, fleet(), now);  // full: it is seen again
   }
   formation_.on_message(message, now);
@@ -91,7 +95,7 @@ void GroundNode::on_setup(const Setup& setup, Instant now) {
   take_differences(setup.node, now);
   const Command standing = orders_.standing(setup.node, kGroundStation);
   const bool asks = !setup.knows_orders && now >= knows_orders_at_;
-  if (asks || standing.number > setup.newest_order) messages_.push(Message{standing});
+  if (asks || number_of(standing) > setup.newest_order) messages_.push(Message{standing});
 }
 
 void GroundNode::on_timeout(Instant now) {

@@ -56,7 +56,7 @@ void GroundSites::recall(const Message& message, VehicleId sender, Instant at) {
     entry->of_operator = true;
     if (report->withdrawn) {
       entry->state = SiteState::withdrawn;
-    } else if (is_to_survey(*entry)) {
+    } else if (is_to_survey(*entry) && report->finder != VehicleId{}) {
       entry->surveyor = report->finder;
       entry->state = std::max(entry->state, SiteState::told);
       entry->told_at = at;
@@ -322,7 +322,10 @@ void GroundSites::care_for(GroundSite& entry, const Fleet& fleet, Instant now) {
   if (entry.surveyor) return;
   entry.state = SiteState::waits;
   const auto chosen = choose(entry, fleet);
-  if (!chosen) return;
+  if (!chosen) {
+    if (entry.said_at == Instant{}) say(entry, now);  // who looks on sees it, and who succeeds us
+    return;
+  }
   tell(entry, *chosen, vehicles.at(*chosen).telemetry->instance, now);
   report(event::SiteTold{*chosen}, entry.site.id, now);
 }

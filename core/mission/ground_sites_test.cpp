@@ -123,12 +123,28 @@ TEST_F(GroundSitesTest, CaresNoMoreForWhatIsLedUnlessEverybodyHasForgottenIt) {
   EXPECT_FALSE(said().empty()) << "nobody has said for long that it is led";
 }
 
+TEST_F(GroundSitesTest, WhatWaitsIsSaidOnceAndNotLostWithTheProcess) {
+  const SiteId id = add(1000.0);
+  run_until(110.0);
+  const auto first = said();
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].finder, VehicleId{});
+  EXPECT_FALSE(first[0].withdrawn);
+  sites = {};
+  for (const Message& message : record) sites.recall(message, kGroundStation, at_seconds(100.0));
+  EXPECT_EQ(at(id).state, SiteState::waits);
+  hear(1, 500.0);
+  run_until(112.0);
+  EXPECT_EQ(at(id).state, SiteState::told);
+  EXPECT_EQ(at(id).surveyor, VehicleId{1});
+}
+
 TEST_F(GroundSitesTest, WaitsForSomebodyWhoCan) {
   hear(1, 0.0, Activity::holding);
   const SiteId id = add(100.0);
   EXPECT_EQ(at(id).state, SiteState::waits);
   run_until(110.0);
-  EXPECT_TRUE(said().empty());
+  for (const SiteReport& report : said()) EXPECT_EQ(report.finder, VehicleId{});
   EXPECT_FALSE(sites.add(test_site(0), VehicleId{1}, fleet, now).ok()) << "held by the operator";
   hear(1, 0.0, Activity::searching);
   run_until(112.0);

@@ -2,12 +2,14 @@
 #include "skein/mission/vehicle_node.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <map>
 #include <utility>
 
 #include "self_report.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/mission/order_book.hpp"
+#include "told_book.hpp"
 
 namespace skein::mission {
 namespace {
@@ -18,6 +20,11 @@ constexpr Duration kDetectionAgain = std::chrono::seconds{2};
 constexpr std::size_t kDetectionsMax = 16;
 /// From the first answer about the orders on, the answers of others are heard for so long.
 constexpr Duration kAnswersFor = std::chrono::seconds{5};
+// Who passes on what was told begins in turn, and leaves out what others have passed on by then.
+constexpr Duration kTurn = std::chrono::milliseconds{50};
+constexpr unsigned kTurns = 16;
+constexpr int kPassedOnAtOnce = 8;
+constexpr Duration kPassedOnEvery = std::chrono::milliseconds{100};
 
 struct MakeAgent {
   Instant now;
@@ -115,6 +122,8 @@ class VehicleNode::Impl {
     const auto asked = asked_before.find(message.node);
     if (asked != asked_before.end() && asked->second == message.instance) {
       messages.push(Message{orders.standing(message.node, self)});
+      to_pass_on = told_book.all(self);
+      pass_on_at = now + kTurn * (self.value % kTurns);
     } else if (asked != asked_before.end() || asked_before.size() < OrderBook::kVehiclesMax) {
       asked_before[message.node] = message.instance;
     }
@@ -169,6 +178,27 @@ class VehicleNode::Impl {
     return !is_joint_work(message) || setup.difference(sender) == nullptr;
   }
 
+  /// Of hazards and sites. Whether it is for the agent: what others pass on is for who has just
+  /// started anew.
+  bool take_lasting(const Message& message, Instant now) {
+    if (told_by(message) == kGroundStation) {
+      told_book.note(message);
+      return true;
+    }
+    std::erase_if(to_pass_on, [&](const Message& ours) { return is_same_word(ours, message); });
+    const auto* site = std::get_if<SiteReport>(&message);
+    return now <= answers_until && (site == nullptr || site->withdrawn);
+  }
+
+  void pass_on(Instant now) {
+    if (now < pass_on_at) return;
+    for (int i = 0; i < kPassedOnAtOnce && !to_pass_on.empty(); ++i) {
+      messages.push(std::move(to_pass_on.front()));
+      to_pass_on.pop_front();
+    }
+    pass_on_at = to_pass_on.empty() ? Instant::max() : now + kPassedOnEvery;
+  }
+
   /// Of a detector on board. One that tells more than can be said is not heard in everything.
   void on_detection(Detection detection, Instant now) {
     if (told.size() >= kDetectionsMax) {
@@ -193,6 +223,7 @@ class VehicleNode::Impl {
 
   void report_itself(Instant now) {
     say_detections(now);
+    pass_on(now);
     if (now >= next_telemetry && state) {
       next_telemetry = next_multiple(now, telemetry_period);
       Telemetry telemetry = agent->telemetry();
@@ -234,6 +265,9 @@ class VehicleNode::Impl {
   SelfReport self_report;
   SetupBook setup;
   OrderBook orders;
+  ToldBook told_book;
+  std::deque<Message> to_pass_on;
+  Instant pass_on_at = Instant::max();
   std::map<VehicleId, InstanceId> asked_before = {};  ///< who wanted to know the orders
   bool knows_orders;
   bool knows_orders_first_hand;    ///< was there, or has it from the ground station
@@ -294,7 +328,7 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
   } else if (const auto* route = std::get_if<Route>(&message);
              route != nullptr && !impl_->flies_routes) {
     impl_->refuse_route(*route);
-  } else if (impl_->is_of_use(message, sender)) {
+  } else if (impl_->is_of_use(message, sender) && impl_->take_lasting(message, now)) {
     if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
       impl_->setup.on_time(sender, telemetry->state.time, now);
       impl_->take_news(now);
@@ -345,7 +379,7 @@ std::optional<MissionEvent> VehicleNode::poll_event() {
 std::optional<Instant> VehicleNode::poll_give_back() { return std::exchange(impl_->give_back, {}); }
 
 Instant VehicleNode::next_timeout() const {
-  return std::min({impl_->next_telemetry, impl_->self_report.next_due(),
+  return std::min({impl_->next_telemetry, impl_->self_report.next_due(), impl_->pass_on_at,
                    impl_->setup.next_timeout(), impl_->agent->next_timeout()});
 }
 

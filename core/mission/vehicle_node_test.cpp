@@ -301,6 +301,92 @@ TEST(VehicleNode, TellsWhoDoesNotKnowWhichOrdersStandFromTheSecondTimeOn) {
   EXPECT_EQ(told.told_by, kSelf);
 }
 
+HazardReport hazard(std::uint16_t id, double east_m) { return {{{id}, {east_m, 0.0}, 60.0}}; }
+
+TEST(VehicleNode, PassesOnHazardsAndWithdrawnSitesToWhoStartsAnew) {
+  Vehicle vehicle;
+  vehicle.step(0.0);
+  vehicle.hear(hazard(10'001, 9'000.0), kGroundStation);
+  vehicle.hear(hazard(10'002, 9'500.0), kGroundStation);
+  HazardReport gone = hazard(10'002, 9'500.0);
+  gone.withdrawn = true;
+  vehicle.hear(gone, kGroundStation);
+  vehicle.hear(hazard(10'002, 9'500.0), kGroundStation);  // a late copy
+  SiteReport withdrawn{{}, {}, true};
+  withdrawn.site.id = {10'007};
+  vehicle.hear(withdrawn, kGroundStation);
+  SiteReport open = withdrawn;
+  open.withdrawn = false;
+  open.site.id = {10'008};
+  vehicle.hear(open, kGroundStation);
+  mission::Setup asks = said_by({7}, "", vehicle.now);
+  asks.knows_orders = false;
+  vehicle.hear(asks, {7});
+  vehicle.hear(asks, {7});
+  vehicle.step(1.0);  // its turn
+  const auto hazards = vehicle.said_of<HazardReport>();
+  ASSERT_EQ(hazards.size(), 2U);
+  EXPECT_FALSE(hazards[0].withdrawn);
+  EXPECT_TRUE(hazards[1].withdrawn);
+  EXPECT_EQ(hazards[1].told_by, kSelf);
+  const auto sites = vehicle.said_of<SiteReport>();
+  ASSERT_EQ(sites.size(), 1U);
+  EXPECT_EQ(sites[0].site.id, SiteId{10'007});
+
+  // What another has passed on is not said once more.
+  vehicle.hear(asks, {7});
+  HazardReport of_other = hazard(10'001, 9'000.0);
+  of_other.told_by = {9};
+  vehicle.hear(of_other, {9});
+  vehicle.step(3.0);
+  EXPECT_EQ(vehicle.said_of<HazardReport>().size(), 3U);
+}
+
+TEST(VehicleNode, TakesWhatIsPassedOnOnlyWhileItDoesNotKnowTheOrders) {
+  Vehicle vehicle{config(), at_seconds(100.0)};
+  vehicle.step(100.0);
+  const auto knows = [&vehicle] {
+    std::size_t known = 0;
+    for (const MissionEvent& event : vehicle.said_of<MissionEvent>()) {
+      known += event.kind() == EventKind::hazard_known ? 1U : 0U;
+    }
+    return known;
+  };
+  HazardReport told = hazard(10'001, 9'000.0);
+  told.told_by = {9};
+  vehicle.hear(told, {9});
+  EXPECT_EQ(knows(), 1U);
+  Command none{kSelf, 0, CommandKind::resume};
+  none.told_by = {9};
+  vehicle.hear(none, {9});
+  told.hazard.id = {10'002};
+  vehicle.hear(told, {9});
+  EXPECT_EQ(knows(), 2U) << "others may answer for a while";
+  vehicle.step(110.0);
+  told.hazard.id = {10'003};
+  vehicle.hear(told, {9});
+  EXPECT_EQ(knows(), 2U);
+  told.told_by = {8};
+  vehicle.hear(told, {9});
+  EXPECT_EQ(vehicle.node.counters().refused, 1U) << "in another's name";
+}
+
+TEST(VehicleNode, OrdersHaveNumbersAfterMoreThanFortyNineDays) {
+  const Instant late = at_seconds(60.0 * 86'400.0);
+  Command before{kSelf, 0, CommandKind::hold};
+  set_number(before, 59ULL * 86'400'000ULL);
+  Command after{kSelf, 0, CommandKind::resume};
+  set_number(after, 60ULL * 86'400'000ULL + 1);
+  EXPECT_EQ(issued_at(after), late);
+  CommandFilter filter;
+  EXPECT_TRUE(filter.take(before, kSelf));
+  EXPECT_TRUE(filter.take(after, kSelf));
+  EXPECT_FALSE(filter.take(before, kSelf));
+  Command endless;
+  set_number(endless, ~0ULL);
+  EXPECT_GT(issued_at(endless), late);
+}
+
 TEST(VehicleNode, ThatIsToldThatNoneStandsHearsWhoKnowsBetterForAWhile) {
   Vehicle vehicle{config(), at_seconds(100.0)};
   vehicle.step(100.0);

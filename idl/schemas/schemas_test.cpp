@@ -36,7 +36,7 @@ TEST(Schemas, AStructIsItsFieldsAndWhatTheyAreMadeOf) {
             "uint32 number\n"
             "uint32 HOLD=0\nuint32 RESUME=1\nuint32 RETURN_HOME=2\nuint32 GIVE_BACK=3\n"
             "uint32 kind\n"
-            "uint16 told_by\n");
+            "uint16 told_by\nuint32 number_high\n");
   const Schema* health = named("skein/msg/Health");
   ASSERT_NE(health, nullptr);
   EXPECT_THAT(std::string{health->text},

@@ -148,7 +148,7 @@ class GroundAgent {
   std::map<SiteId, LedSite> led_;
   std::vector<SentCommand> commands_;
   std::map<SiteId, std::string> withdrawn_;  ///< and by whom
-  std::uint32_t last_command_ = 0;
+  std::uint64_t last_command_ = 0;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations
   std::set<EventKey> seen_events_;
   BoundedQueue<Message> messages_{256};

@@ -33,11 +33,11 @@ struct Proposal {
 /// withdrawn, or to an earlier proposal, is that one.
 class GroundDetections {
  public:
-  static constexpr std::size_t kProposalsMax = 200;
+  static constexpr std::size_t kProposalsMax = 200;  ///< that wait for an answer
 
   explicit GroundDetections(GroundDetectionsConfig config) : config_{std::move(config)} {}
 
-  void recall(const Message& message, VehicleId sender, const GroundSites& sites);
+  void recall(const Message& message, VehicleId sender);
   /// Tells the operator again of what an earlier process had proposed.
   void on_timeout(Instant now);
   /// The site that is to be added now, if any.
@@ -59,9 +59,11 @@ class GroundDetections {
   [[nodiscard]] Site site_of(const Detection& detection) const;
   void report(std::uint32_t number, Instant now);
   std::uint32_t propose(const Detection& detection);
+  bool make_room();
 
   GroundDetectionsConfig config_;
   std::map<std::uint32_t, Proposal> proposals_;
+  std::uint32_t newest_ = 0;
   bool recalled_ = false;  ///< something was, and is told again
   std::uint64_t left_out_ = 0;
   BoundedQueue<MissionEvent> events_{64};

@@ -19,12 +19,13 @@ class OrderBook {
   void note(const Command& command) {
     if (command.kind == CommandKind::give_back) return;  // an act, which stands for nothing
     if (command.vehicle == kGroundStation) {
-      if (command.number <= to_all_.number) return;
+      if (number_of(command) <= number_of(to_all_)) return;
       to_all_ = command;
-      std::erase_if(to_one_, [&](const auto& one) { return one.second.number < command.number; });
+      std::erase_if(to_one_,
+                    [&](const auto& one) { return number_of(one.second) < number_of(command); });
     } else if (to_one_.contains(command.vehicle) || to_one_.size() < kVehiclesMax) {
       Command& newest = to_one_[command.vehicle];
-      if (command.number > newest.number) newest = command;
+      if (number_of(command) > number_of(newest)) newest = command;
     }
   }
 
@@ -32,7 +33,7 @@ class OrderBook {
   [[nodiscard]] Command standing(VehicleId vehicle, VehicleId teller) const {
     Command command = to_all_;
     const auto own = to_one_.find(vehicle);
-    if (own != to_one_.end() && own->second.number > command.number) command = own->second;
+    if (own != to_one_.end() && number_of(own->second) > number_of(command)) command = own->second;
     command.vehicle = vehicle;
     command.told_by = teller;
     return command;

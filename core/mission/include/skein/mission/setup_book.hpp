@@ -68,7 +68,7 @@ class SetupBook {
   /// Told in it: the orders that this node knows of.
   struct Orders {
     bool known = true;
-    std::uint32_t newest = 0;
+    std::uint64_t newest = 0;
   };
   [[nodiscard]] std::optional<Setup> poll_setup(const Orders& orders, Instant now);
   /// Says it at the next poll_setup(), whenever it was said before.

@@ -32,9 +32,9 @@ struct VehicleNodeConfig {
 /// another setup (SetupBook) is not worked with: its words of the contract net and of sites count
 /// for nothing. A vehicle whose setup is not the ground station's, and one that starts anew in the
 /// mission and has not been told which orders stand, holds (Bar). A vehicle that knows them tells
-/// whoever does not. A vehicle is
-/// on the network before the mission begins: it tells of itself at any time, but its agent sees
-/// neither a state nor a timeout before mission time 0.
+/// whoever does not, and of the hazards and the withdrawn sites too. A vehicle is on the network
+/// before the mission begins: it tells of itself at any time, but its agent sees neither a state
+/// nor a timeout before mission time 0.
 class VehicleNode {
  public:
   VehicleNode(const VehicleNodeConfig& config, Instant now);
