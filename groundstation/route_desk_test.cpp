@@ -33,7 +33,7 @@ class RouteDeskTest : public ::testing::Test {
     plan.arrival_s = plan.bound_s = 98.0;
     std::ofstream{file_} << to_yaml(plan);
   }
-  ~RouteDeskTest() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove(file_); }
   Answer order(const std::string& line) {
     const auto input = parse_input(line);
     EXPECT_TRUE(input.ok()) << line << ": " << (input ? "" : input.error().message);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -14,6 +15,7 @@
 namespace skein::groundstation {
 namespace {
 
+constexpr double kSameRegion_deg = 1.0;
 constexpr Duration kSurvey = std::chrono::seconds{5};
 constexpr Duration kAssessment = std::chrono::seconds{6};
 
@@ -137,23 +139,64 @@ Result<Site> SiteDesk::completed(const NewSite& order) const {
 }
 
 std::string SiteDesk::why_not_at(const Vec2& place, std::optional<SiteId> but_for) const {
+  for (const Hazard& hazard : node_->hazards().known()) {
+    if ((hazard.centre - place).norm() > hazard.radius_m) continue;
+    return fmt::format(
+        "the place is inside hazard {}, where nobody flies; withdraw that, or say "
+        "'anyway'",
+        hazard.id.value);
+  }
   const auto* known = node_->sites().open_near(place, same_site_m_);
   if (known == nullptr || known->site.id == but_for) return "";
   return fmt::format("site {} is {:.0f} m from there; change or withdraw that one, or say 'anyway'",
                      known->site.id.value, (known->site.position - place).norm());
 }
 
+/// Two metres that are the latitude and longitude of this very region are hardly meant as metres.
+std::string SiteDesk::why_no_metres(const SiteWishes& wishes) const {
+  if (!wishes.place_m) return "";
+  const Vec2& place = *wishes.place_m;
+  const Wgs84& here = origin_.origin();
+  const bool whole = place.x() == std::round(place.x()) && place.y() == std::round(place.y());
+  const bool near = std::abs(place.x() - here.latitude_deg) < kSameRegion_deg &&
+                    std::abs(place.y() - here.longitude_deg) < kSameRegion_deg;
+  if (whole || !near) return "";
+  return fmt::format(
+      "{0} {1} looks like a latitude and a longitude, but without letters it is "
+      "metres; say 'site {0}N {1}E' (S and W for negative ones), or 'anyway'",
+      place.x(), place.y());
+}
+
+/// Why nobody can be told of a site there.
+std::string SiteDesk::nobody_text() const {
+  bool heard = false;
+  bool can = false;
+  bool free = false;
+  for (const auto& [vehicle, known] : node_->fleet().vehicles()) {
+    if (!known.telemetry || known.silent) continue;
+    heard = true;
+    if (!known.telemetry->capabilities.has(TaskKind::survey)) continue;
+    can = true;
+    free = free || (known.telemetry->activity != mission::Activity::holding && !known.differs &&
+                    !known.duplicate);
+  }
+  if (!heard) return "no vehicle is heard";
+  if (!can) return "no vehicle that is heard can survey";
+  if (!free) return "the vehicles that can survey hold; 'status' says why";
+  return "no vehicle that can survey has the range for it";
+}
+
 std::string SiteDesk::surveyor_text(SiteId site) const {
   const auto& known = node_->sites().sites().at(site);
   return known.surveyor ? "told to " + wording::text_of(*known.surveyor)
-                        : "told to nobody yet: no vehicle is heard that can survey it";
+                        : "told to nobody yet: " + nobody_text();
 }
 
 Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now) {
   auto site = completed(order);
   if (!site) return refusal(site.error());
-  const std::string twice =
-      order.wishes.anyway ? std::string{} : why_not_at(site->position, order.changes);
+  std::string twice = order.wishes.anyway ? "" : why_no_metres(order.wishes);
+  if (twice.empty() && !order.wishes.anyway) twice = why_not_at(site->position, order.changes);
   const std::string what =
       fmt::format("{}; {}", place_text(site->position, origin_), tasks_text(*site));
   if (order.preview) {
@@ -162,7 +205,7 @@ Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now
                               : node_->sites().nearest_surveyor(site->position, node_->fleet());
     return {true, fmt::format("{}\n{}\n{}", what,
                               surveyor ? wording::text_of(*surveyor) + " would survey it"
-                                       : "no vehicle is heard that can survey it now",
+                                       : "nobody would be told now: " + nobody_text(),
                               twice.empty() ? "" : "but " + twice + "\n")};
   }
   if (!twice.empty()) return {false, twice + "\n"};

@@ -117,6 +117,32 @@ TEST_F(SiteDeskTest, OnePlaceIsOneSiteUnlessTheOperatorInsists) {
   EXPECT_TRUE(order("site 200 0").done);
 }
 
+TEST_F(SiteDeskTest, WhatLooksLikeDegreesIsNotTakenForMetres) {
+  const Answer degrees = order("site 59.001 17.002");
+  EXPECT_FALSE(degrees.done);
+  EXPECT_THAT(degrees.text, HasSubstr("59.001N 17.002E"));
+  EXPECT_TRUE(order("site 59.001 17.002 anyway").done);
+  EXPECT_TRUE(order("site 159.5 17.5").done);
+}
+
+TEST_F(SiteDeskTest, APlaceInsideAHazardIsForTheOperatorToInsistOn) {
+  ASSERT_TRUE(node_.hazards().add({100.0, 0.0}, 50.0, now_).ok());
+  EXPECT_THAT(order("site 120 0").text, HasSubstr("inside hazard 10002"));
+  EXPECT_TRUE(order("site 120 0 anyway").done);
+}
+
+TEST_F(SiteDeskTest, SaysWhyNobodyIsTold) {
+  mission::Telemetry held;
+  held.vehicle = {2};
+  held.instance = {1};
+  held.range_left_m = 20'000.0;
+  held.capabilities = Capabilities{}.add(TaskKind::survey);
+  held.activity = mission::Activity::holding;
+  node_.on_message(mission::Message{held}, {2}, at_seconds(1.5));
+  EXPECT_THAT(order("site 100 0").text, HasSubstr("the vehicles that can survey hold"));
+  EXPECT_THAT(order("preview site 100 500").text, HasSubstr("the vehicles that can survey hold"));
+}
+
 TEST_F(SiteDeskTest, APreviewTellsNobody) {
   const Answer shown = order("preview site 100 0 deliver 45");
   EXPECT_TRUE(shown.done);

@@ -71,6 +71,11 @@ class SiteReader {
   Result<void> option(SiteWishes& into) {
     const auto keyword = take();
     if (keyword == "at") return place(into);
+    if ((keyword == "simultaneous" || keyword == "every") && into.interval_s) {
+      return Error{
+          "'simultaneous' and 'every S' each say when deliveries follow one another; give "
+          "one of them, once"};
+    }
     if (keyword == "simultaneous") {
       into.interval_s = 0.0;
       return {};

@@ -30,6 +30,9 @@ std::string health_of(const mission::FleetEntry& entry) {
   if (telemetry.messages_dropped > 0) {
     add(fmt::format("{} messages dropped", telemetry.messages_dropped));
   }
+  if (entry.health) {
+    for (const std::string& problem : entry.health->problems) add(problem);
+  }
   return health.empty() ? "good" : health;
 }
 

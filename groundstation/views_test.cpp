@@ -46,6 +46,9 @@ TEST(FleetTable, ShowsStateAndHealth) {
   fleet[{5}] = heard(9.5);
   fleet[{5}].expected = true;
   fleet[{5}].differs = mission::SetupDifference{"origin.latitude_deg", 3.0};
+  fleet[{6}] = heard(9.5);
+  fleet[{6}].expected = true;
+  fleet[{6}].health.emplace().problems = {"the clock is not synchronised"};
   fleet[{9}] = heard(9.5);
   fleet[{9}].telemetry->control_overruns = 7;
   const auto table = fleet_table(fleet, at_seconds(10.0));
@@ -57,6 +60,7 @@ TEST(FleetTable, ShowsStateAndHealth) {
   EXPECT_THAT(line_of(table, "NOT WORKED WITH"),
               AllOf(HasSubstr("5  executing"), HasSubstr("another origin.latitude_deg"),
                     HasSubstr("a clock that is 3.0 s ahead")));
+  EXPECT_THAT(line_of(table, "not synchronised"), HasSubstr("6  executing"));
   EXPECT_THAT(line_of(table, "not in the fleet"),
               AllOf(HasSubstr("9  executing"), HasSubstr("7 control overruns")));
 }

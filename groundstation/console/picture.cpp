@@ -183,7 +183,7 @@ void Picture::on(const mission::SiteReport& m) {
   SitePicture* const site = site_of(m.site.id);
   if (site == nullptr) return;
   site->withdrawn = site->withdrawn || m.withdrawn;
-  if (!m.withdrawn) site->surveyor = m.finder;
+  if (!m.withdrawn && m.finder != VehicleId{}) site->surveyor = m.finder;
 }
 
 void Picture::know(const Site& site) {

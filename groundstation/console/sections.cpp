@@ -379,6 +379,7 @@ Json proposals_json(const Picture& picture) {
                    {"x", metres(said.x_m)},
                    {"y", metres(said.y_m)},
                    {"seen_by", said.seen_by.value},
+                   {"confidence", said.confidence},
                    {"detector", said.detector},
                    {"time_s", seconds(proposal.at)}});
   }

@@ -41,6 +41,8 @@ class SiteDesk {
   [[nodiscard]] Result<Vec2> place_of(const SiteWishes& wishes) const;
   /// Why there is no other site to be added there; nothing where there may.
   [[nodiscard]] std::string why_not_at(const Vec2& place, std::optional<SiteId> but_for) const;
+  [[nodiscard]] std::string why_no_metres(const SiteWishes& wishes) const;
+  [[nodiscard]] std::string nobody_text() const;
   [[nodiscard]] std::string surveyor_text(SiteId site) const;
 
   MissionOrigin origin_;

@@ -135,6 +135,7 @@ function words_of_site(order: SiteOrder): string {
   if (order.assessments !== undefined) words.push(`assess ${order.assessments}`);
   if (order.dwell_s !== undefined) words.push(`dwell ${order.dwell_s}`);
   if (order.reward !== undefined) words.push(`reward ${order.reward}`);
+  if (order.anyway) words.push("anyway");
   return words.join(" ");
 }
 

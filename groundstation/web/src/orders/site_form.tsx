@@ -49,7 +49,7 @@ function Proposals() {
               E {number(seen.x)} N {number(seen.y)} m
             </span>
             <span class="muted">
-              {seen.detector || "a detector"} of {seen.seen_by}
+              {seen.detector || "a detector"} of {seen.seen_by}, {number(100 * seen.confidence)} % sure
             </span>
             <HoldButton kind="go" testid={`proposal-accept-${seen.number}`} on_held={() => void give({ kind: "proposal", number: seen.number, accept: true })}>
               Take as a site
@@ -67,10 +67,12 @@ function Proposals() {
 export function SiteForm() {
   const [fields, set_fields] = useState<SiteFields>(no_site);
   const [tried, set_tried] = useState<{ line: string; answer: Answer } | null>(null);
+  const [anyway, set_anyway] = useState(false);
   const spot = site_spot.value;
   const changed = site_changed.value;
   const change = (some: Partial<SiteFields>) => {
     set_tried(null);
+    set_anyway(false);
     set_fields((before) => ({ ...before, ...some }));
   };
   useEffect(() => {
@@ -87,7 +89,7 @@ export function SiteForm() {
   );
   const limits = hello.value?.limits;
   const made = limits ? site_order(fields, limits, changed) : { trouble: "not connected yet" };
-  const order = "order" in made ? made.order : null;
+  const order = "order" in made ? { ...made.order, ...(anyway && { anyway }) } : null;
   const line = order && words_of_order(order);
   const templates = hello.value?.site_templates ?? [];
 
@@ -100,6 +102,7 @@ export function SiteForm() {
     const answer = await give(order);
     if (!answer.done) return;
     set_tried(null);
+    set_anyway(false);
     set_fields(no_site);
     site_spot.value = null;
     site_changed.value = null;
@@ -154,6 +157,12 @@ export function SiteForm() {
         <p class={tried.answer.done ? "preview-outcome" : "problem alarm"} role="status" data-testid="site-outcome">
           {tried.answer.text}
         </p>
+      )}
+      {(anyway || tried?.answer.text.includes("'anyway'")) && (
+        <label>
+          <input type="checkbox" checked={anyway} data-testid="site-anyway" onChange={(event) => set_anyway(event.currentTarget.checked)} />
+          Anyway: preview it again
+        </label>
       )}
     </section>
   );

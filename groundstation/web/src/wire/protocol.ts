@@ -261,6 +261,8 @@ export interface Proposal {
   x: number;
   y: number;
   seen_by: number;
+  /** Of the detector, 0 to 1. */
+  confidence: number;
   detector: string;
   time_s: number;
 }
