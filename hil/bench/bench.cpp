@@ -87,6 +87,7 @@ constexpr double kExternalLead_s = 6.0;
 /// `type` is SOCK_DGRAM or SOCK_STREAM; port 0 is free where the address is this machine's.
 bool port_free(int type, const std::string& of, std::uint16_t port) {
   const int s = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
+  if (s < 0) return false;
   const int reuse = type == SOCK_STREAM ? 1 : 0;  // connections that end are in nobody's way
   ::setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
   sockaddr_in address{};

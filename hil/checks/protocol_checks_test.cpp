@@ -177,6 +177,7 @@ TEST(ProtocolChecks, WhoTakesUpSomethingUnderAHoldIsFound) {
   EXPECT_THAT(forgotten.violations.front().sentence, HasSubstr("told to hold"));
   EXPECT_TRUE(with(5.0, event::Commanded{CommandKind::resume}).held());
   EXPECT_TRUE(with(5.0, event::OrdersKnown{kAssessor}).held()) << "which may have missed it";
+  EXPECT_FALSE(with(1.0, event::OrdersKnown{kAssessor}).held()) << "which has told it of the hold";
 }
 
 TEST(ProtocolChecks, ADeliveryFlownTwiceIsFound) {

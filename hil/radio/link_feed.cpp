@@ -45,6 +45,18 @@ Result<int> udp_socket() {
   return socket;
 }
 
+/// A datagram from anywhere must not stop a node's radio for ever, nor fill its memory with what is
+/// held back.
+bool can_be(const Link& link) {
+  constexpr Duration kLongest = std::chrono::seconds{60};
+  const auto share = [](double of) { return of >= 0.0 && of <= 1.0; };
+  const auto bounded = [=](Duration of) { return of >= Duration{} && of <= kLongest; };
+  if (!share(link.loss) || !bounded(link.delay) || !bounded(link.jitter)) return false;
+  return !link.disorder ||
+         (share(link.disorder->duplicates) && share(link.disorder->held_back) &&
+          bounded(link.disorder->held_back_max));
+}
+
 /// Into the node's row.
 void put(LinkTable& table, const Hearing& hearing) {
   for (std::size_t id = 0; id < LinkTable::kNodes; ++id) {
@@ -103,6 +115,7 @@ std::optional<Hearing> decode(std::span<const std::uint8_t> bytes) {
   if (disordered) {
     hearing.link.disorder = {number_of(numbers[3]), number_of(numbers[4]), duration_of(numbers[5])};
   }
+  if (!can_be(hearing.link)) return std::nullopt;
   for (std::size_t id = 0; id < LinkTable::kNodes; ++id) {
     hearing.hears.set(id, ((bytes[id / 8] >> (id % 8)) & 1U) != 0);
   }

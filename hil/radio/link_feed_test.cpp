@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <thread>
 
@@ -54,6 +55,20 @@ TEST(LinkFeed, OtherBytesAreNone) {
   bytes[3] = 2;
   EXPECT_FALSE(decode(bytes)) << "another version";
   EXPECT_FALSE(decode({}));
+}
+
+TEST(LinkFeed, WhatNoRadioCanBeIsNone) {
+  const auto with = [](const std::function<void(Hearing&)>& spoil) {
+    Hearing h = hearing();
+    spoil(h);
+    return decode(encode(h)).has_value();
+  };
+  EXPECT_TRUE(with([](Hearing&) {}));
+  EXPECT_FALSE(with([](Hearing& h) { h.link.loss = 1.5; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.link.loss = std::nan(""); }));
+  EXPECT_FALSE(with([](Hearing& h) { h.link.delay = std::chrono::hours{1}; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.link.jitter = Duration{-1}; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.link.disorder->held_back_max = Duration::max(); }));
 }
 
 TEST(LinkFeed, AReceiverHearsWhomItIsToldAndEverybodyBefore) {

@@ -384,7 +384,9 @@ void Loader::read_level(const YAML::Node& node, const std::string& path, Level& 
     for (const auto& pair : node) {
       if (!pair.first.IsScalar()) continue;
       const std::string key = pair.first.Scalar();
-      level.given.insert_or_assign(key, Given{path + "." + key, line_of(pair.first)});
+      std::string full = path;
+      full.append(".").append(key);
+      level.given.insert_or_assign(key, Given{std::move(full), line_of(pair.first)});
     }
   }
   read_group(std::move(place), [&level](FieldVisitor& v) { fields(v, level.vehicle); });

@@ -77,8 +77,9 @@ Result<Certificate> certificate_from(Span bytes) {
   c.mission.bytes = in.array<16>("mission");
   c.serial.value = static_cast<std::uint32_t>(in.number(4, "serial"));
   const std::uint64_t role = in.number(1, "role");
-  in.require(role >= 1 && role <= static_cast<std::uint64_t>(Role::op), "role");
-  c.role = static_cast<Role>(role);
+  const bool is_role = role >= 1 && role <= static_cast<std::uint64_t>(Role::op);
+  in.require(is_role, "role");
+  if (is_role) c.role = static_cast<Role>(role);
   c.node.value = static_cast<std::uint16_t>(in.number(2, "node"));
   c.name = in.text(in.number(1, "name"), "name");
   c.sign_key = in.array<kKeyBytes>("sign_key");

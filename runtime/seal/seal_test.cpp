@@ -34,8 +34,7 @@ Bytes sealed(Sealer& sealer, std::string_view text) {
   return out;
 }
 
-class Opening : public testing::Test {
- protected:
+struct Opening : testing::Test {
   Opened open(const Bytes& datagram, Instant now = Instant{}) {
     return opener.open(datagram, plain, now).opened;
   }
