@@ -282,8 +282,9 @@ CheckResult check_standing_orders(const RunRecord& record, const Limits& /*limit
         const bool goes_on = commanded->command == CommandKind::resume;
         if (goes_on) held_since.reset();
         if (!goes_on && commanded->command != CommandKind::give_back) held_since = event.time;
-      } else if (told != nullptr && told->told_by != kGroundStation && held_since < event.time) {
-        held_since.reset();  // it starts anew, and those whom it hears know of no such order
+      } else if (told != nullptr && told->told_by != kGroundStation) {
+        // It starts anew; unless they have told it of the order, those whom it hears know of none.
+        if (held_since.value_or(event.time) < event.time) held_since.reset();
       } else if (held_since && takes_up_something(event.kind())) {
         result.violations.push_back(
             {event.vehicle, event.time,
