@@ -36,7 +36,8 @@ add_compile_options($<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CXX_COMPILER_ID:GNU>>:--pa
 # Every object: the same doubles on every compiler (no fused multiply-add), sanitizers where asked.
 add_compile_options(-ffp-contract=off)
 if(SKEIN_SANITIZE)
-  # GCC sees more paths in what is instrumented, and warns of what none of them does (its manual, -fsanitize).
+  # GCC sees more paths in what is instrumented, and warns of what none of them does (its manual,
+  # -fsanitize); so it does where the library asserts, in packages (CMakePresets.json).
   add_compile_options(-fsanitize=${SKEIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_compile_options(-Wno-maybe-uninitialized)
