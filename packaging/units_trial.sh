@@ -155,15 +155,21 @@ upgrades() {
   say "an upgrade is refused in flight, restarts nothing, and is taken on the ground"
 }
 
-# Its file is that of the examples' team, for one machine and its units.
+# Its file is that of the examples' team, for one machine and its units. A fleet has keys.
 fleet() {
+  skein-ground mission create trial --days 1 >/tmp/said 2>&1 || fail "$(</tmp/said)"
+  for n in "${vehicles[@]}"; do
+    { skein-onboard enrol --id "$n" | skein-ground mission enrol - --yes | skein-onboard enrol --membership -; } >/tmp/said 2>&1 ||
+      fail "$(</tmp/said)"
+  done
   skein fleet push "$folder/fleet.yaml" --epoch now --out /tmp/fleet >/tmp/said 2>&1 || fail "$(</tmp/said)"
   skein fleet start "$folder/fleet.yaml" --out /tmp/fleet >/tmp/said 2>&1 || fail "$(</tmp/said)"
   until_holds 30 "the fleet is heard" all_heard
   skein fleet status "$folder/fleet.yaml" --out /tmp/fleet >/tmp/said 2>&1 || fail "$(</tmp/said)"
   ! skein fleet stop "$folder/fleet.yaml" --out /tmp/fleet >/tmp/said 2>&1 || fail "a fleet that flies is stopped"
   skein fleet stop "$folder/fleet.yaml" --out /tmp/fleet --force >/tmp/said 2>&1 || fail "$(</tmp/said)"
-  say "skein fleet pushes, starts, sees and stops the units"
+  logged --unit skein-ground --grep 'sealed, epoch 1' || fail "the fleet speaks in clear"
+  say "skein fleet pushes, starts, sees and stops the units, which are enrolled"
 }
 
 if [[ ${2:-} == again ]]; then
