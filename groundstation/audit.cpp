@@ -57,35 +57,48 @@ Result<Audit> Audit::open(const std::string& folder, std::optional<AuditKey> key
   if (folder.empty()) return audit;
   audit.path_ = (std::filesystem::path{folder} / "audit.jsonl").string();
   audit.key_ = std::move(key);
-  std::string before;
-  {
-    std::ifstream earlier{audit.path_, std::ios::binary};
-    before.assign(std::istreambuf_iterator<char>{earlier}, {});
-  }
-  audit.file_.open(audit.path_, std::ios::app);
-  if (!audit.file_) return Error{"cannot write " + audit.path_};
-  // A line that was cut short stays as it is.
-  if (!before.empty() && before.back() != '\n') audit.file_ << '\n' << std::flush;
+  std::ifstream earlier{audit.path_, std::ios::binary};
+  const std::string before{std::istreambuf_iterator<char>{earlier}, {}};
   audit.recall(before);
+  if (auto opened = audit.open_file(); !opened) return opened.error();
   return audit;
+}
+
+/// To add to; a line that was cut short stays as it is.
+Result<void> Audit::open_file() {
+  std::string last;
+  {
+    std::ifstream earlier{path_, std::ios::binary};
+    bool ended = true;
+    for (std::string line; std::getline(earlier, line); last = std::move(line)) {
+      ended = !earlier.eof();
+    }
+    file_ = {};
+    file_.rdbuf()->pubsetbuf(nullptr, 0);  // what failed is not tried again behind our back
+    file_.open(path_, std::ios::app);
+    if (!ended) file_ << '\n' << std::flush;
+    line_before_ = ended && last.empty() ? kNoLineBefore : hash_of_line(last);
+  }
+  if (!file_) return Error{"cannot write " + path_};
+  return {};
 }
 
 /// Of what the file has; whether somebody has changed it is for verify_audit() to say.
 void Audit::recall(std::string_view text) {
   while (!text.empty()) {
     const auto end = text.find('\n');
-    const auto line = text.substr(0, end);
-    line_before_ = hash_of_line(line);
-    const auto json = codec::parse_json(line);
+    const auto json = codec::parse_json(text.substr(0, end));
     if (json.is_object()) {
       const auto seq = json.find("seq");
       if (seq != json.end() && seq->is_number_unsigned()) next_seq_ = seq->get<std::uint64_t>();
       if (json.contains("who")) keep(entry_of(json), next_seq_);
+      is_unsigned_ = !json.contains("signed_by");
       ++next_seq_;
     }
     if (end == std::string_view::npos) break;
     text.remove_prefix(end + 1);
   }
+  written_to_ = next_seq_;
   show();
 }
 
@@ -101,30 +114,47 @@ void Audit::show() {
 }
 
 Result<void> Audit::write(const std::string& line) {
-  if (path_.empty()) return {};
+  file_ << line + '\n' << std::flush;
+  is_broken_ = !file_;
+  if (is_broken_) return Error{"cannot write " + path_};
   line_before_ = hash_of_line(line);
-  file_ << line << '\n' << std::flush;
-  if (file_) return {};
-  file_.clear();
-  return Error{"cannot write " + path_};
+  return {};
+}
+
+/// What is kept and not yet in the file.
+Result<void> Audit::write_kept() {
+  if (path_.empty()) return {};
+  if (is_broken_) {
+    if (auto opened = open_file(); !opened) return opened;
+  }
+  for (const auto& [entry, seq] : entries_) {
+    if (seq < written_to_) continue;
+    auto line = json_of(entry, seq);
+    line["prev"] = line_before_;
+    if (auto written = write(codec::json_text(line)); !written) return written;
+    written_to_ = seq + 1;
+    is_unsigned_ = true;
+  }
+  return {};
 }
 
 Result<void> Audit::add(Entry entry) {
   entry.text = entry.text.substr(0, entry.text.find('\n'));
   entry.line = printable(entry.line);
-  const std::uint64_t seq = next_seq_++;
-  auto line = json_of(entry, seq);
-  line["prev"] = line_before_;
-  keep(std::move(entry), seq);
+  keep(std::move(entry), next_seq_++);
   show();
-  written_ = true;
-  return write(codec::json_text(line));
+  return write_kept();
 }
 
 Result<void> Audit::close(Instant now, std::int64_t unix_s) {
-  if (!key_ || !written_) return {};
-  written_ = false;
-  return write(seal_line(*key_, next_seq_++, line_before_, now, unix_s));
+  if (auto written = write_kept(); !written) return written;
+  if (!key_ || !is_unsigned_) return {};
+  if (auto written = write(seal_line(*key_, next_seq_, line_before_, now, unix_s)); !written) {
+    return written;
+  }
+  written_to_ = ++next_seq_;
+  is_unsigned_ = false;
+  return {};
 }
 
 std::string Audit::text() const {

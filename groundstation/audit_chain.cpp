@@ -53,9 +53,14 @@ std::string text_in(const codec::ParsedJson& line, const char* name) {
   return found != line.end() && found->is_string() ? found->get<std::string>() : "";
 }
 
-/// Why the line is no good signature; empty where it is one.
-std::string why_no_signature(const codec::ParsedJson& line,
-                             const identity::Certificate& authority) {
+struct SignatureLook {
+  enum class Is : std::uint8_t { good, bad, of_another_mission };
+  Is is = Is::bad;
+  std::string why = {};  ///< it is bad
+};
+
+SignatureLook look_at_signature(const codec::ParsedJson& line,
+                                const identity::Certificate& authority) {
   const auto own = identity::certificate_from_text(text_in(line, "signed_by"));
   const auto seq = number_in<std::uint64_t>(line, "seq");
   const auto instance = number_in<std::uint64_t>(line, "instance");
@@ -65,17 +70,23 @@ std::string why_no_signature(const codec::ParsedJson& line,
   const auto body = unix_s ? body_of(text_in(line, "prev"), *unix_s) : std::nullopt;
   if (!own || !seq || !instance || !time_ns || !body ||
       !read_hex(text_in(line, "signature"), signature)) {
-    return "the signature cannot be read";
+    return {.why = "the signature cannot be read"};
   }
-  if (own->role != identity::Role::ground) return "it is not signed by a ground station";
+  if (own->mission != authority.mission) return {SignatureLook::Is::of_another_mission};
+  if (own->role != identity::Role::ground) return {.why = "it is not signed by a ground station"};
   identity::Verifier verifier{authority};
-  if (const auto trust = verifier.learn(*own, *unix_s); trust != identity::Trust::good) {
-    return "whose signature it is: " + identity::why_not(*own, trust, *unix_s);
+  // A date does not end a flight, and the clock of that machine may have been wrong.
+  const auto learnt_s = std::clamp(*unix_s, own->not_before_unix_s,
+                                   std::max(own->not_before_unix_s, own->not_after_unix_s));
+  if (const auto trust = verifier.learn(*own, learnt_s); trust != identity::Trust::good) {
+    return {.why = "whose signature it is: " + identity::why_not(*own, trust, learnt_s)};
   }
   const identity::Statement statement{
       kTopic, own->node, {*instance}, *seq, Instant{Duration{*time_ns}}, *body};
-  const auto trust = verifier.verify(statement, signature);
-  return trust == identity::Trust::good ? "" : "what was signed was changed since";
+  if (verifier.verify(statement, signature) == identity::Trust::good) {
+    return {SignatureLook::Is::good};
+  }
+  return {.why = "what was signed was changed since"};
 }
 
 /// Goes through the lines.
@@ -102,10 +113,10 @@ class Chain {
           fmt::format("line {}, the last, is cut short or was written by nobody", number_));
     }
     if (findings_.after_signature > 0) {
-      findings_.remarks.push_back(
-          fmt::format("no signature follows the last {} entries: the ground station runs, did not "
-                      "end by itself or has no keys; some after them may have been cut off",
-                      findings_.after_signature));
+      findings_.remarks.push_back(fmt::format(
+          "no signature follows the last {} entries: the ground station runs, did not end by "
+          "itself or has no keys; who can write the file can have changed them or cut some off",
+          findings_.after_signature));
     }
   }
 
@@ -126,19 +137,37 @@ class Chain {
     }
     chained_ = chained_ || !prev.empty();
     const auto seq = number_in<std::uint64_t>(line, "seq");
-    if (chained_ && next_seq_ && seq != next_seq_) {
-      fault(fmt::format("its number should be {}", *next_seq_));
-    }
+    if (chained_ && next_seq_ && seq != next_seq_) number_is_not(*next_seq_, seq);
     if (seq && chained_) next_seq_ = *seq + 1;
     if (line.contains("signed_by")) {
-      ++findings_.signatures;
-      findings_.after_signature = 0;
-      if (authority_ == nullptr) return;
-      if (const std::string why = why_no_signature(line, *authority_); !why.empty()) fault(why);
+      look_at_seal(line);
     } else {
       ++findings_.entries;
       ++findings_.after_signature;
     }
+  }
+
+  void number_is_not(std::uint64_t expected, std::optional<std::uint64_t> seq) {
+    if (!seq || *seq < expected) return fault(fmt::format("its number should be {}", expected));
+    findings_.remarks.push_back(fmt::format("line {}: {} entries before it could not be written",
+                                            number_, *seq - expected));
+  }
+
+  void look_at_seal(const codec::ParsedJson& line) {
+    ++findings_.signatures;
+    if (authority_ == nullptr) {
+      findings_.after_signature = 0;
+      return;
+    }
+    const auto [is, why] = look_at_signature(line, *authority_);
+    if (is == SignatureLook::Is::bad) fault(why);
+    if (is == SignatureLook::Is::of_another_mission) {
+      findings_.remarks.push_back(fmt::format(
+          "line {} was signed in another mission: its signature is not checked", number_));
+    }
+    if (is != SignatureLook::Is::good) return;
+    ++findings_.good_signatures;
+    findings_.after_signature = 0;
   }
 
   const identity::Certificate* authority_;

@@ -3,11 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "skein/codec/json_text.hpp"
@@ -142,8 +145,72 @@ TEST_F(AuditTest, ASignatureOfAnotherMissionIsNone) {
   Audit audit = open(&other);
   add(audit, "hold all");
   close(audit);
-  EXPECT_TRUE(verify_audit(text_of(lines()), &other.authority()).good());
-  EXPECT_FALSE(verify_audit(text_of(lines()), &ground.authority()).good());
+  EXPECT_EQ(verify_audit(text_of(lines()), &other.authority()).good_signatures, 1U);
+  const auto findings = verify_audit(text_of(lines()), &ground.authority());
+  EXPECT_TRUE(findings.good()) << "nobody has changed it";
+  EXPECT_EQ(findings.good_signatures, 0U);
+  EXPECT_EQ(findings.after_signature, 1U);
+  EXPECT_THAT(findings.remarks, Contains(HasSubstr("line 2 was signed in another mission")));
+}
+
+TEST_F(AuditTest, WithoutTheSignaturesNothingIsProven) {
+  const auto ground = mission("ridge");
+  {
+    Audit audit = open(&ground);
+    add(audit, "hold all");
+    close(audit);
+  }
+  // Who can write the file makes a chain of his own.
+  std::vector<std::string> forged{lines().front()};
+  forged[0].replace(forged[0].find("hold"), 4, "HOLD");
+  const auto findings = verify_audit(text_of(forged), &ground.authority());
+  EXPECT_TRUE(findings.good());
+  EXPECT_EQ(findings.good_signatures, 0U);
+  EXPECT_THAT(findings.remarks, ElementsAre(HasSubstr("no signature follows the last 1")));
+}
+
+TEST_F(AuditTest, WhatARunLeftUnsignedTheNextSigns) {
+  const auto ground = mission("ridge");
+  {
+    Audit audit = open(&ground);
+    add(audit, "hold all");  // and is killed
+  }
+  Audit audit = open(&ground);
+  close(audit);
+  const auto findings = verify_audit(text_of(lines()), &ground.authority());
+  EXPECT_TRUE(findings.good());
+  EXPECT_EQ(findings.after_signature, 0U);
+}
+
+TEST_F(AuditTest, ADateThatIsNoneIsNoSignature) {
+  const auto ground = mission("ridge");
+  Audit audit = open(&ground);
+  add(audit, "hold all");
+  EXPECT_TRUE(audit.close(at_seconds(9.0), std::numeric_limits<std::int64_t>::max()).ok());
+  EXPECT_TRUE(verify_audit(text_of(lines()), &ground.authority()).good()) << "of a clock so wrong";
+}
+
+TEST_F(AuditTest, WhatCouldNotBeWrittenIsWrittenLater) {
+  const auto ground = mission("ridge");
+  Audit audit = open(&ground);
+  add(audit, "hold all");
+  const auto size = fs::file_size(folder_ / "audit.jsonl");
+  ::rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto ignore = std::signal(SIGXFSZ, SIG_IGN);
+  const ::rlimit full{.rlim_cur = size + 10, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  EXPECT_FALSE(audit.add({at_seconds(4.0), "ada", "console", "resume all", true, "sent"}).ok());
+  EXPECT_FALSE(audit.add({at_seconds(5.0), "ada", "console", "return 1", true, "sent"}).ok());
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  (void)std::signal(SIGXFSZ, ignore);
+  add(audit, "return 2");
+  close(audit);
+  const auto findings = verify_audit(text_of(lines()), &ground.authority());
+  EXPECT_THAT(findings.faults, IsEmpty());
+  EXPECT_EQ(findings.entries, 4U);
+  EXPECT_EQ(findings.after_signature, 0U);
+  EXPECT_THAT(findings.remarks, ElementsAre(HasSubstr("line 2 was cut short")));
 }
 
 TEST_F(AuditTest, ALineThatWasCutShortIsToldAndTheRestHolds) {

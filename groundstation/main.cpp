@@ -222,6 +222,13 @@ skein::Result<skein::identity::Certificate> authority_of(const std::string& fold
   return std::move(membership->authority);
 }
 
+const char* verdict_on(const groundstation::AuditFindings& findings, bool are_checked) {
+  if (!findings.good()) return "CHANGED";
+  if (!are_checked) return "the chain holds; no signature was checked";
+  if (findings.good_signatures == 0) return "NOT PROVEN: the chain holds, but nothing signs it";
+  return findings.after_signature == 0 ? "unchanged" : "unchanged up to its last signature";
+}
+
 int verify_audit(const AuditArguments& arguments) {
   std::ifstream file{arguments.file, std::ios::binary};
   if (!file) return fail("cannot read " + arguments.file, skein::process::kExitBadInput);
@@ -235,9 +242,10 @@ int verify_audit(const AuditArguments& arguments) {
   const auto findings = groundstation::verify_audit(text, authority ? &*authority : nullptr);
   for (const std::string& fault : findings.faults) std::printf("%s\n", fault.c_str());
   for (const std::string& remark : findings.remarks) std::printf("note: %s\n", remark.c_str());
-  std::printf("%s: %s, %zu orders and decisions, %zu signatures\n", arguments.file.c_str(),
-              findings.good() ? "unchanged" : "CHANGED", findings.entries, findings.signatures);
-  return findings.good() ? 0 : kExitRefused;
+  std::printf("%s: %zu orders and decisions, %zu signatures: %s\n", arguments.file.c_str(),
+              findings.entries, findings.signatures, verdict_on(findings, authority.has_value()));
+  const bool is_proven = !authority || findings.good_signatures > 0;
+  return findings.good() && is_proven ? 0 : kExitRefused;
 }
 
 /// The command line: each command knows what to do once it was given.
@@ -425,9 +433,9 @@ class CommandLine {
     verify.add_option("--keys", auditing_.keys,
                       "Folder of the mission's keys, or of a member's: its authority is believed");
     verify.footer(
-        "Exit status 0: unchanged as far as it is signed; 1: not.\n"
+        "Exit status 0: unchanged as far as it is signed; 1: changed, or nothing signs it.\n"
         "Example:\n"
-        "  skein-ground audit verify /var/lib/skein/ground/recording/audit.jsonl "
+        "  skein-ground audit verify /var/lib/skein/ground/audit.jsonl "
         "--keys /var/lib/skein/ground/keys");
   }
 

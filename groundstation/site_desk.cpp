@@ -141,14 +141,12 @@ Result<Site> SiteDesk::completed(const NewSite& order) const {
 std::string SiteDesk::why_not_at(const Vec2& place, std::optional<SiteId> but_for) const {
   for (const Hazard& hazard : node_->hazards().known()) {
     if ((hazard.centre - place).norm() > hazard.radius_m) continue;
-    return fmt::format(
-        "the place is inside hazard {}, where nobody flies; withdraw that, or say "
-        "'anyway'",
-        hazard.id.value);
+    return fmt::format("the place is inside hazard {}, where nobody flies; withdraw that",
+                       hazard.id.value);
   }
   const auto* known = node_->sites().open_near(place, same_site_m_);
   if (known == nullptr || known->site.id == but_for) return "";
-  return fmt::format("site {} is {:.0f} m from there; change or withdraw that one, or say 'anyway'",
+  return fmt::format("site {} is {:.0f} m from there; change or withdraw that one",
                      known->site.id.value, (known->site.position - place).norm());
 }
 
@@ -163,7 +161,7 @@ std::string SiteDesk::why_no_metres(const SiteWishes& wishes) const {
   if (whole || !near) return "";
   return fmt::format(
       "{0} {1} looks like a latitude and a longitude, but without letters it is "
-      "metres; say 'site {0}N {1}E' (S and W for negative ones), or 'anyway'",
+      "metres; say 'site {0}N {1}E' (S and W for negative ones)",
       place.x(), place.y());
 }
 
@@ -195,8 +193,13 @@ std::string SiteDesk::surveyor_text(SiteId site) const {
 Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now) {
   auto site = completed(order);
   if (!site) return refusal(site.error());
-  std::string twice = order.wishes.anyway ? "" : why_no_metres(order.wishes);
-  if (twice.empty() && !order.wishes.anyway) twice = why_not_at(site->position, order.changes);
+  std::string twice;
+  if (!order.wishes.anyway) twice = why_no_metres(order.wishes);
+  const bool is_moved = !order.changes || order.wishes.place_m || order.wishes.place;
+  if (twice.empty() && is_moved && !order.wishes.anyway) {
+    twice = why_not_at(site->position, order.changes);
+  }
+  if (!twice.empty()) twice += ", or say 'anyway'";
   const std::string what =
       fmt::format("{}; {}", place_text(site->position, origin_), tasks_text(*site));
   if (order.preview) {
@@ -251,8 +254,10 @@ Answer SiteDesk::answer(const ProposalAnswer& order, const std::string& by, Inst
   const auto given = node_->answer_proposal(order.number, order.accept, by, now);
   if (!given) return refusal(given.error());
   if (!order.accept) return {true, fmt::format("proposal {} is dismissed\n", order.number)};
-  return {true, fmt::format("proposal {} is site {}, {}\n", order.number, given->value,
-                            surveyor_text(*given))};
+  const Vec2& place = node_->sites().sites().at(*given).site.position;
+  const std::string but = why_not_at(place, *given);
+  return {true, fmt::format("proposal {} is site {}, {}\n{}", order.number, given->value,
+                            surveyor_text(*given), but.empty() ? "" : "but " + but + "\n")};
 }
 
 std::string SiteDesk::proposals_text() const {

@@ -7,7 +7,7 @@
 
 #include "names.hpp"
 #include "skein/mission/may_say.hpp"
-#include "told_book.hpp"
+#include "skein/mission/told_by.hpp"
 
 namespace skein::mission {
 
@@ -29,7 +29,7 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       detections_{config.detections} {}
 
 void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
-  if (!may_say(message, sender)) return;
+  if (!may_say(message, sender) || told_by(message) != kGroundStation) return;
   agent_.recall(message, sender, at);
   sites_.recall(message, sender, at);
   hazards_.recall(message, sender, at);

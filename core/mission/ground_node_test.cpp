@@ -249,6 +249,9 @@ TEST(GroundNode, ThatStartedAnewWithoutRecollectionLetsOthersAnswerFirst) {
   EXPECT_EQ(said_of<Command>(ground).size(), 1U);
 
   GroundNode recalls{config, at_seconds(100.0)};
+  Command passed_on{kVehicle, 9, CommandKind::resume};
+  passed_on.told_by = {2};
+  recalls.recall(passed_on, {2}, at_seconds(1.0));  // which it has heard, and not said
   recalls.recall(Command{kVehicle, 5, CommandKind::hold}, kGroundStation, at_seconds(1.0));
   recalls.on_message(asks, kVehicle, at_seconds(101.0));
   const auto told = said_of<Command>(recalls);

@@ -48,7 +48,7 @@ TEST(MaySay, DecisionsAreSigned) {
   EXPECT_TRUE(is_signed(Authorisation{}));
   EXPECT_TRUE(is_signed(Route{}));
   EXPECT_TRUE(is_signed(coalition::Message{coalition::Award{}}));
-  EXPECT_FALSE(is_signed(coalition::Message{coalition::Bid{}}));
+  EXPECT_TRUE(is_signed(coalition::Message{coalition::Bid{}}));
   EXPECT_TRUE(is_signed(mission::Setup{}));
   EXPECT_FALSE(is_signed(Telemetry{}));
 }

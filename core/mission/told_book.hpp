@@ -6,20 +6,13 @@
 #include <map>
 
 #include "skein/mission/messages.hpp"
+#include "skein/mission/told_by.hpp"
 
 namespace skein::mission {
 
-/// Who passes on what the ground station or a sensor has said; none for what is said first hand.
-[[nodiscard]] inline VehicleId told_by(const Message& message) {
-  if (const auto* site = std::get_if<SiteReport>(&message)) return site->told_by;
-  if (const auto* hazard = std::get_if<HazardReport>(&message)) return hazard->told_by;
-  if (const auto* command = std::get_if<Command>(&message)) return command->told_by;
-  return kGroundStation;
-}
-
 /// Beside the orders (OrderBook), what a program that starts anew has to be told again, by vehicles
-/// where the ground station is not in reach: hazards, those that are gone, and sites that nobody is
-/// to go on with.
+/// where the ground station is not in reach: hazards that are there, and sites that nobody is to go
+/// on with. That a hazard is gone nobody passes on: who has not heard of it keeps clear of nothing.
 class ToldBook {
  public:
   static constexpr std::size_t kHazardsMax = 256;
@@ -45,6 +38,7 @@ class ToldBook {
   [[nodiscard]] std::deque<Message> all(VehicleId teller) const {
     std::deque<Message> all;
     for (auto [id, hazard] : hazards_) {
+      if (hazard.withdrawn) continue;
       hazard.told_by = teller;
       all.emplace_back(hazard);
     }
@@ -69,7 +63,8 @@ class ToldBook {
   const auto* other_hazard = std::get_if<HazardReport>(&other);
   return hazard != nullptr && other_hazard != nullptr &&
          hazard->hazard.id == other_hazard->hazard.id &&
-         hazard->withdrawn == other_hazard->withdrawn;
+         hazard->hazard.centre == other_hazard->hazard.centre &&
+         hazard->hazard.radius_m == other_hazard->hazard.radius_m;
 }
 
 }  // namespace skein::mission

@@ -20,10 +20,12 @@ constexpr Duration kDetectionAgain = std::chrono::seconds{2};
 constexpr std::size_t kDetectionsMax = 16;
 /// From the first answer about the orders on, the answers of others are heard for so long.
 constexpr Duration kAnswersFor = std::chrono::seconds{5};
+constexpr Duration kClocksDiffer = std::chrono::seconds{1};
 // Who passes on what was told begins in turn, and leaves out what others have passed on by then.
 constexpr Duration kTurn = std::chrono::milliseconds{50};
 constexpr unsigned kTurns = 16;
 constexpr int kPassedOnAtOnce = 8;
+constexpr std::size_t kPassedOnMax = ToldBook::kHazardsMax + ToldBook::kSitesMax;
 constexpr Duration kPassedOnEvery = std::chrono::milliseconds{100};
 
 struct MakeAgent {
@@ -150,10 +152,18 @@ class VehicleNode::Impl {
     if (command.vehicle == self) give_back = issued_at(command);
   }
 
+  /// Of another vehicle, that passes on the order that stands for this one.
+  [[nodiscard]] bool is_answer(const Command& command, Instant now) const {
+    // One of the future would bury all that the operator says until then.
+    const bool was_said = number_of(command) == 0 || issued_at(command) <= now + kClocksDiffer;
+    return command.vehicle == self && command.kind != CommandKind::give_back && was_said &&
+           now < answers_until;
+  }
+
   void on_command(const Command& command, VehicleId sender, Instant now) {
     const bool passed_on = sender != kGroundStation;
     // Of those who answer some have missed the newest: each is heard for a while.
-    if (passed_on && (command.vehicle != self || now > answers_until)) return;
+    if (passed_on && !is_answer(command, now)) return;
     if (!passed_on) {
       orders.note(command);
       knows_orders_first_hand = knows_orders_first_hand || command.vehicle == self;
@@ -162,7 +172,7 @@ class VehicleNode::Impl {
     if (commands.take(command, self)) obey(command, now);
     if (knows_orders || command.vehicle != self) return;
     knows_orders = true;
-    answers_until = now + kAnswersFor;
+    answers_until = passed_on ? now + kAnswersFor : now;
     report(event::OrdersKnown{sender}, now);
     update_bar(now);
   }
@@ -187,7 +197,9 @@ class VehicleNode::Impl {
     }
     std::erase_if(to_pass_on, [&](const Message& ours) { return is_same_word(ours, message); });
     const auto* site = std::get_if<SiteReport>(&message);
-    return now <= answers_until && (site == nullptr || site->withdrawn);
+    const auto* hazard = std::get_if<HazardReport>(&message);
+    const bool can_be = site != nullptr ? site->withdrawn : hazard != nullptr && !hazard->withdrawn;
+    return can_be && now < answers_until && ++taken_passed_on <= kPassedOnMax;
   }
 
   void pass_on(Instant now) {
@@ -267,6 +279,7 @@ class VehicleNode::Impl {
   OrderBook orders;
   ToldBook told_book;
   std::deque<Message> to_pass_on;
+  std::size_t taken_passed_on = 0;  ///< of others
   Instant pass_on_at = Instant::max();
   std::map<VehicleId, InstanceId> asked_before = {};  ///< who wanted to know the orders
   bool knows_orders;

@@ -325,10 +325,9 @@ TEST(VehicleNode, PassesOnHazardsAndWithdrawnSitesToWhoStartsAnew) {
   vehicle.hear(asks, {7});
   vehicle.step(1.0);  // its turn
   const auto hazards = vehicle.said_of<HazardReport>();
-  ASSERT_EQ(hazards.size(), 2U);
-  EXPECT_FALSE(hazards[0].withdrawn);
-  EXPECT_TRUE(hazards[1].withdrawn);
-  EXPECT_EQ(hazards[1].told_by, kSelf);
+  ASSERT_EQ(hazards.size(), 1U) << "one is gone";
+  EXPECT_EQ(hazards[0].hazard.id, HazardId{10'001});
+  EXPECT_EQ(hazards[0].told_by, kSelf);
   const auto sites = vehicle.said_of<SiteReport>();
   ASSERT_EQ(sites.size(), 1U);
   EXPECT_EQ(sites[0].site.id, SiteId{10'007});
@@ -339,7 +338,12 @@ TEST(VehicleNode, PassesOnHazardsAndWithdrawnSitesToWhoStartsAnew) {
   of_other.told_by = {9};
   vehicle.hear(of_other, {9});
   vehicle.step(3.0);
-  EXPECT_EQ(vehicle.said_of<HazardReport>().size(), 3U);
+  EXPECT_EQ(vehicle.said_of<HazardReport>().size(), 1U);
+  vehicle.hear(asks, {7});
+  of_other.hazard.radius_m = 1.0;  // which is another one
+  vehicle.hear(of_other, {9});
+  vehicle.step(5.0);
+  EXPECT_EQ(vehicle.said_of<HazardReport>().size(), 2U);
 }
 
 TEST(VehicleNode, TakesWhatIsPassedOnOnlyWhileItDoesNotKnowTheOrders) {
@@ -369,6 +373,26 @@ TEST(VehicleNode, TakesWhatIsPassedOnOnlyWhileItDoesNotKnowTheOrders) {
   told.told_by = {8};
   vehicle.hear(told, {9});
   EXPECT_EQ(vehicle.node.counters().refused, 1U) << "in another's name";
+}
+
+TEST(VehicleNode, WhoPassesOrdersOnCannotTakeTheVehicleOver) {
+  Vehicle vehicle{config(), at_seconds(100.0)};
+  vehicle.step(100.0);
+  Command endless{kSelf, 0, CommandKind::hold};
+  set_number(endless, ~0ULL);
+  endless.told_by = {9};
+  vehicle.hear(endless, {9});
+  Command give{kSelf, 50'001, CommandKind::give_back};
+  give.told_by = {9};
+  vehicle.hear(give, {9});
+  EXPECT_EQ(vehicle.node.bar(), Bar::orders_unknown);
+  vehicle.hear(Command{kSelf, 60'001, CommandKind::resume}, kGroundStation);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching);
+  Command hold{kSelf, 70'001, CommandKind::hold};
+  hold.told_by = {9};
+  vehicle.hear(hold, {9});
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::searching)
+      << "the ground station has answered";
 }
 
 TEST(VehicleNode, OrdersHaveNumbersAfterMoreThanFortyNineDays) {

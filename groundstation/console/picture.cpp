@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "skein/base/overloaded.hpp"
+#include "skein/mission/told_by.hpp"
 
 namespace skein::console {
 namespace {
@@ -56,7 +57,8 @@ bool Picture::is_known(VehicleId sender) const {
 }
 
 void Picture::on_message(const mission::Message& message, VehicleId sender, Instant now) {
-  if (!is_known(sender)) return;
+  // What vehicles pass on the ground station has said itself.
+  if (!is_known(sender) || mission::told_by(message) != kGroundStation) return;
   std::visit(Overloaded{[&](const mission::Telemetry& m) {
                           if (m.vehicle == sender) on(m, now);
                         },

@@ -204,6 +204,8 @@ std::string why_not(const Certificate& certificate, Trust trust, std::int64_t no
 }
 
 std::string utc_text(std::int64_t unix_s) {
+  constexpr std::int64_t kYear9999_s = 253'402'300'799;
+  unix_s = std::clamp<std::int64_t>(unix_s, 0, kYear9999_s);
   return fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(static_cast<std::time_t>(unix_s)));
 }
 

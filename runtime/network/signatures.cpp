@@ -9,6 +9,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMark{'S', 'k', 'S', 1};  // the last is the version
 constexpr std::size_t kSignatureAt = 16;
+/// What was signed longer before a node's start is not for it: nothing of value is said again so
+/// late.
+constexpr std::chrono::seconds kBeforeStart{60};
 
 std::chrono::nanoseconds since_1970() {
   return std::chrono::system_clock::now().time_since_epoch();
@@ -53,9 +56,14 @@ Signatures::Signatures(SignConfig config, VehicleId self, InstanceId instance)
 void Signatures::learn(std::span<const std::uint8_t> certificate) {
   const auto read = identity::certificate_from(certificate);
   if (!read || read->role == identity::Role::op) return;
+  const auto now = std::chrono::duration_cast<std::chrono::seconds>(since_1970());
   const std::lock_guard lock{mutex_};
-  (void)verifier_.learn(*read,
-                        std::chrono::duration_cast<std::chrono::seconds>(since_1970()).count());
+  if (verifier_.learn(*read, now.count()) != identity::Trust::good) return;
+  const auto [serial, is_new] = serials_.try_emplace(read->node, read->serial);
+  if (is_new || !(serial->second < read->serial)) return;
+  // Who has the keys of before may have used up the numbers; nothing signed with them is good now.
+  serial->second = read->serial;
+  std::erase_if(newest_, [&](const auto& newest) { return newest.first.first == read->node; });
 }
 
 void Signatures::learn(const identity::RevocationList& list) {
@@ -86,6 +94,11 @@ Signatures::Judged Signatures::judge(codec::Topic topic, VehicleId sender, Insta
   const auto time_ns = static_cast<std::int64_t>(number_at(*signature, 8));
   identity::Signature of{};
   std::ranges::copy(signature->subspan(kSignatureAt, of.size()), of.begin());
+  // By this host's clock of now: it may have been set since the start.
+  const auto start_ns = since_1970() - (std::chrono::steady_clock::now() - started_);
+  if (topic != codec::Topic::setup && time_ns < (start_ns - kBeforeStart).count()) {
+    return Judged::replayed;
+  }
   const std::lock_guard lock{mutex_};
   const auto known = newest_.find({sender, topic});
   if (known != newest_.end() &&

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -36,7 +37,8 @@ class Signatures {
 
   enum class Judged : std::uint8_t { good, missing, forged, replayed, count };
   /// A decision of that sender. It is good once: none that came later in the sender's order, or
-  /// under a later start of its program, may have been judged good before.
+  /// under a later start of its program, may have been judged good before; and nothing that was
+  /// signed well before this node was started is due now. Setups are, which tell of clocks.
   [[nodiscard]] Judged judge(codec::Topic topic, VehicleId sender, InstanceId instance,
                              std::span<const std::uint8_t> body,
                              std::optional<std::span<const std::uint8_t>> signature);
@@ -54,6 +56,8 @@ class Signatures {
   identity::Verifier verifier_;
   std::array<std::uint64_t, codec::kTopicCount> said_{};
   std::map<std::pair<VehicleId, codec::Topic>, Newest> newest_;  ///< of members: bounded by them
+  std::map<VehicleId, identity::Serial> serials_;                ///< of their certificates
+  const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
 };
 
 /// The signature at the end of a sample's bytes, which is cut off them; none where there is none.

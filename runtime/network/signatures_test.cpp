@@ -12,6 +12,7 @@
 
 #include "skein/identity/authority.hpp"
 #include "skein/identity/identity.hpp"
+#include "skein/identity/node_key.hpp"
 #include "skein/identity/team.hpp"
 
 namespace skein::network {
@@ -62,6 +63,19 @@ class SignaturesTest : public testing::Test {
   static Bytes said(Signatures& by, Bytes body, Topic topic = Topic::command) {
     by.sign(topic, body);
     return body;
+  }
+  /// With sequence 1 and an empty body.
+  [[nodiscard]] Bytes signed_at(VehicleId node, Topic topic, std::chrono::nanoseconds time) const {
+    const auto signature = config(node).signer.sign(identity::Statement{
+        codec::kTopics.at(static_cast<std::size_t>(topic)).name, node, {7}, 1, Instant{time}, {}});
+    Bytes trailer{1, 0, 0, 0, 0, 0, 0, 0};
+    trailer.reserve(kSignatureBytes);
+    for (unsigned i = 0; i < 8; ++i) {
+      trailer.push_back(static_cast<std::uint8_t>(time.count() >> (8 * i)));
+    }
+    for (const std::uint8_t byte : signature) trailer.push_back(byte);
+    for (const char c : {'S', 'k', 'S', '\1'}) trailer.push_back(static_cast<std::uint8_t>(c));
+    return trailer;
   }
   Judged judge(std::span<const std::uint8_t> bytes, VehicleId sender = kGroundStation,
                InstanceId instance = {7}, Topic topic = Topic::command) {
@@ -119,6 +133,39 @@ TEST_F(SignaturesTest, AMemberCannotSignForAnother) {
   EXPECT_EQ(judge(said(insider, {1})), Judged::forged);
   Signatures itself = of(kTwo);
   EXPECT_EQ(judge(said(itself, {1}), kTwo), Judged::good);
+}
+
+// The judge was started after it was said, and has heard nothing of its order.
+TEST_F(SignaturesTest, WhatWasSignedLongBeforeTheStartIsReplayed) {
+  const auto at = [&](Topic topic, std::chrono::seconds ago) {
+    const auto time = std::chrono::system_clock::now().time_since_epoch() - ago;
+    return signed_at(kGroundStation, topic, std::chrono::nanoseconds{time});
+  };
+  EXPECT_EQ(judge(at(Topic::command, std::chrono::minutes{5})), Judged::replayed);
+  EXPECT_EQ(judge(at(Topic::command, std::chrono::seconds{10})), Judged::good);
+  EXPECT_EQ(judge(at(Topic::setup, std::chrono::minutes{5}), kGroundStation, {7}, Topic::setup),
+            Judged::good)
+      << "a clock that is behind is told by it";
+}
+
+// Who has a lost vehicle's keys uses up the numbers; with new keys it is heard again.
+TEST_F(SignaturesTest, NewKeysBeginTheOrderAnew) {
+  Signatures captor = of(kTwo, {~0ULL});
+  EXPECT_EQ(judge(said(captor, {1}), kTwo, {~0ULL}), Judged::good);
+  Signatures itself = of(kTwo);
+  EXPECT_EQ(judge(said(itself, {1}), kTwo), Judged::replayed);
+
+  auto authority = identity::Authority::open(identity::node_folder(folder_, kGroundStation));
+  ASSERT_TRUE(authority.ok()) << authority.error().message;
+  ASSERT_TRUE(authority->revoke(identity(kTwo).own().serial).ok());
+  const auto key = identity::make_node_key(kTwo);
+  const std::vector requests{identity::request_of(key)};
+  const auto answers = authority->enrol(requests, now_unix_s());
+  ASSERT_TRUE(answers.ok()) << answers.error().message;
+  const auto& own = answers->front().own;
+  judge_->learn(identity::to_bytes(own));
+  Signatures anew{{identity::Signer{own.mission, key.sign}, own, config(kOne).verifier}, kTwo, {8}};
+  EXPECT_EQ(judge(said(anew, {1}), kTwo, {8}), Judged::good);
 }
 
 TEST_F(SignaturesTest, WhoIsUnknownOrRevokedIsNotBelieved) {

@@ -64,13 +64,17 @@ Opened Opener::judge(const Header& header, std::span<const std::uint8_t> datagra
   const EpochKey& key = epoch->second.key;
 
   const auto node = nodes_.find(header.from.sender);
-  if (node != nodes_.end()) {
+  // Under a newer key all is believed anew: who had only the old one may have claimed any start.
+  const bool is_newer_key = node != nodes_.end() && header.epoch > node->second.newest_epoch;
+  if (node != nodes_.end() && !is_newer_key) {
     if (header.from.number < node->second.number) return Opened::old_start;
     const auto known = node->second.starts.find(header.from.random);
     if (header.from.number == node->second.number && known != node->second.starts.end()) {
       return open_known(known->second, header, key, datagram, plain);
     }
+    if (header.epoch < node->second.newest_epoch) return Opened::old_start;
   }
+  if (is_newer_key) return open_under_newer_key(node->second, header, key, datagram, plain);
   // Nothing is kept before it is proven.
   Start start;
   if (const Opened opened = open_known(start, header, key, datagram, plain);
@@ -83,6 +87,22 @@ Opened Opener::judge(const Header& header, std::span<const std::uint8_t> datagra
   if (kept.starts.size() >= kTwinsMax) return Opened::no_room;
   kept.number = header.from.number;
   kept.starts.emplace(header.from.random, std::move(start));
+  return Opened::good;
+}
+
+Opened Opener::open_under_newer_key(Node& node, const Header& header, const EpochKey& key,
+                                    std::span<const std::uint8_t> datagram,
+                                    std::vector<std::uint8_t>& plain) {
+  const auto known =
+      header.from.number == node.number ? node.starts.find(header.from.random) : node.starts.end();
+  Start fresh;
+  Start& start = known != node.starts.end() ? known->second : fresh;
+  const Opened opened = open_known(start, header, key, datagram, plain);
+  if (opened != Opened::good) return opened;
+  Start kept = std::move(start);
+  node.starts.clear();
+  node.number = header.from.number;
+  node.starts.emplace(header.from.random, std::move(kept));
   return Opened::good;
 }
 

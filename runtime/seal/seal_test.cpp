@@ -126,6 +126,28 @@ TEST_F(Opening, AnEarlierStartIsNotHeardAgain) {
   EXPECT_EQ(open(sealed(after, "on")), Opened::good);
 }
 
+// Who had only the old key may have claimed the last start of all.
+TEST_F(Opening, UnderANewerKeyStartsAreBelievedAnew) {
+  opener.accept(key(1, 1));
+  opener.accept(key(2, 2));
+  Sealer node{start(3, 5), key(1, 1)};
+  EXPECT_EQ(open(sealed(node, "a")), Opened::good);
+  Sealer captor{start(3, 0xFFFF, 1), key(1, 1)};
+  const Bytes claim = sealed(captor, "I am newer");
+  EXPECT_EQ(open(claim), Opened::good);
+  const Bytes late = sealed(node, "late");
+  EXPECT_EQ(open(late), Opened::old_start);
+  node.change(key(2, 2));
+  const Bytes again = sealed(node, "b");
+  EXPECT_EQ(open(again), Opened::good);
+  EXPECT_EQ(open(again), Opened::replayed);
+  EXPECT_EQ(open(claim), Opened::old_start);
+  EXPECT_EQ(open(sealed(captor, "still")), Opened::old_start);
+  EXPECT_EQ(open(late), Opened::good) << "its own, of just before";
+  Sealer anew{start(3, 6, 2), key(2, 2)};
+  EXPECT_EQ(open(sealed(anew, "c")), Opened::good);
+}
+
 // Two programs with one id: each is heard, and neither makes a replay of the other good.
 TEST_F(Opening, TwinsDoNotHideEachOther) {
   opener.accept(key(1));

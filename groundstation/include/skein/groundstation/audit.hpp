@@ -34,7 +34,8 @@ class Audit {
   [[nodiscard]] static Result<Audit> open(const std::string& folder,
                                           std::optional<AuditKey> key = {});
 
-  /// Fails where the file cannot be written; the entry is kept all the same.
+  /// Fails where the file cannot be written; the entry is kept all the same, and written as soon as
+  /// the file can be, unless kShown have come since.
   Result<void> add(Entry entry);
   /// The run ends: it signs, where it has a key and has written anything.
   Result<void> close(Instant now, std::int64_t unix_s);
@@ -49,6 +50,8 @@ class Audit {
   void recall(std::string_view text);
   void keep(Entry entry, std::uint64_t seq);
   void show();
+  Result<void> open_file();
+  Result<void> write_kept();
   Result<void> write(const std::string& line);
 
   std::string path_;
@@ -61,7 +64,9 @@ class Audit {
   std::deque<Numbered> entries_;
   std::uint64_t next_seq_ = 0;
   std::string line_before_ = kNoLineBefore;  ///< its hash
-  bool written_ = false;                     ///< since it was opened, or signed
+  std::uint64_t written_to_ = 0;             ///< the number after the newest in the file
+  bool is_broken_ = false;                   ///< the file's end may not be what we wrote
+  bool is_unsigned_ = false;                 ///< entries follow the last signature
   std::string json_ = "[]";
 };
 

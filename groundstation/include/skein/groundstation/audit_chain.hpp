@@ -12,9 +12,10 @@
 #include "skein/identity/certificate.hpp"
 #include "skein/identity/signing.hpp"
 
-/// What makes audit.jsonl evidence: each line has the SHA-256 of the line before it ("prev"), so
-/// that none can be changed, left out or put in between unseen; and at the end of each run the
-/// ground station signs, so that no tail can be cut off or written anew without its key.
+/// What makes audit.jsonl evidence: each line has the SHA-256 of the line before it ("prev"), and
+/// at the end of each run the ground station signs. What a signature follows cannot be changed,
+/// left out or added to without its key. What none follows can be written anew by who can write the
+/// file; and who cuts it off behind an earlier signature leaves a shorter log that is good.
 namespace skein::groundstation {
 
 /// In place of the line before the first, in hexadecimal as all of them.
@@ -38,7 +39,9 @@ struct AuditKey {
 struct AuditFindings {
   std::size_t entries = 0;
   std::size_t signatures = 0;
-  std::size_t after_signature = 0;   ///< entries that no signature follows
+  std::size_t good_signatures = 0;  ///< of them, checked and good
+  std::size_t after_signature =
+      0;  ///< entries that no signature follows, good where they are checked
   std::vector<std::string> remarks;  ///< that break nothing
   std::vector<std::string> faults;   ///< what somebody has changed, by line
   [[nodiscard]] bool good() const { return faults.empty(); }

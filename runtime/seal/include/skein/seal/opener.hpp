@@ -26,7 +26,8 @@ enum class Opened : std::uint8_t {
   unknown_epoch,  ///< we have no key for it, or no longer
   forged,         ///< not made with the key, or changed on the way
   replayed,       ///< seen before, or too old to know
-  old_start,      ///< of a start before the newest that was heard of this node
+  old_start,      ///< of a start before the newest that was heard of this node, or of a new one
+                  ///< under a key before the newest
   no_room,        ///< good, but there are too many nodes, or too many programs with one node's id
   count
 };
@@ -78,6 +79,11 @@ class Opener {
     std::uint16_t number = 0;               ///< the newest start's
     std::map<std::uint32_t, Start> starts;  ///< of that number, by their random part
   };
+  /// The first that is good leaves none of the node's other starts.
+  [[nodiscard]] static Opened open_under_newer_key(Node& node, const Header& header,
+                                                   const EpochKey& key,
+                                                   std::span<const std::uint8_t> datagram,
+                                                   std::vector<std::uint8_t>& plain);
   [[nodiscard]] static Opened open_known(Start& start, const Header& header, const EpochKey& key,
                                          std::span<const std::uint8_t> datagram,
                                          std::vector<std::uint8_t>& plain);
