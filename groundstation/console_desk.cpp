@@ -90,7 +90,7 @@ std::optional<console::Section> section_of(View view) {
 ConsoleDesk::ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin)
     : origin_{origin}, picture_{picture_params(config)} {}
 
-Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
+Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, OperatorKeys& keys,
                                 std::function<void()> wake) {
   console::ServerConfig server = server_config(config.console);
   if (!config.console.passwords.empty()) {
@@ -109,6 +109,12 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
                  login.user, login.address, login.in_a_row,
                  login.wait.count() == 0 ? "at once" : fmt::format("in {} s", login.wait.count()));
   };
+  server.on_login = [&keys](const std::string& user, std::string_view password) {
+    if (!keys.are_needed()) return;
+    const auto unlocked = keys.unlock(user, password, std::chrono::steady_clock::now());
+    if (!unlocked) spdlog::warn("console: {} signs nothing: {}", user, unlocked.error().message);
+  };
+  server.on_logout = [&keys](const std::string& user) { keys.lock(user); };
   auto opened = console::Server::open(std::move(server), std::move(wake));
   if (!opened) return opened.error();
   server_ = std::move(*opened);

@@ -8,6 +8,7 @@
 #include <array>
 #include <atomic>
 #include <cstdio>
+#include <fstream>
 #include <memory>
 #include <optional>
 #include <set>
@@ -23,6 +24,7 @@
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/health_report.hpp"
 #include "skein/groundstation/line_reader.hpp"
+#include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
@@ -57,12 +59,15 @@ constexpr std::chrono::seconds kLookAgain{1};
 constexpr std::string_view kJsonPrefix = "json ";
 
 mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
-                                      InstanceId instance) {
+                                      InstanceId instance, const OperatorKeys& keys) {
   mission::GroundNodeConfig node;
   node.instance = instance;
   node.setup = configuration::setup_params(config, {version(), codec::wire_versions()});
   mission::GroundAgentConfig& agent = node.agent;
   agent.expected = config.vehicles;
+  agent.approve = [&keys](mission::Authorisation& grant) {
+    return keys.approve(grant, std::chrono::steady_clock::now());
+  };
   node.hazards = config.hazards;
   node.detections = detections_config(config);
   for (const auto& decision : config.operator_decisions) {
@@ -96,6 +101,13 @@ struct Asker {
 std::string network_text(std::optional<std::uint8_t> epoch) {
   return epoch ? fmt::format("network: sealed, epoch {}\n", *epoch)
                : "network: in clear, on this machine alone\n";
+}
+
+std::string keys_text(const OperatorKeys& keys) {
+  if (!keys.are_needed()) return "";
+  const auto signs = keys.machine_operator();
+  return signs ? fmt::format("signs here: {}\n", *signs)
+               : "signs here: nobody; 'skein-ground unlock --operator NAME' changes that\n";
 }
 
 /// Said by an operator's word: a new start of this process goes on with it.
@@ -152,8 +164,9 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& network, process::Wake& wake,
-             Recorder recorder, mission::GroundNode& node, FormationDesk formation,
-             std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
+             Recorder recorder, OperatorKeys& keys, mission::GroundNode& node,
+             FormationDesk formation, std::unique_ptr<ControlSocket> control, ConsoleDesk console,
+             Audit audit)
       : origin_{origin},
         operator_name_{std::move(operator_name)},
         clock_{clock},
@@ -162,6 +175,7 @@ class GroundLoop {
         wake_{wake},
         recorder_{std::move(recorder)},
         decisions_{config.operator_decisions},
+        keys_{keys},
         node_{node},
         formation_{std::move(formation)},
         sites_{config, origin, node},
@@ -232,6 +246,10 @@ class GroundLoop {
       print((given.done ? "" : "error: ") + given.text);
     }
     while (const auto request = control_ ? control_->next() : std::nullopt) {
+      if (const auto unlock = unlock_in(request->line)) {
+        request->reply(answer(*unlock, now));
+        continue;
+      }
       const bool wants_json = request->line.rfind(kJsonPrefix, 0) == 0;
       Answer given = answer(wants_json ? request->line.substr(kJsonPrefix.size()) : request->line,
                             {operator_name_, "command line"}, now);
@@ -249,6 +267,23 @@ class GroundLoop {
       const Answer given = answer(asked, words, asker, now);
       line->reply(given.done, given.text, given.data);
     }
+  }
+
+  /// From now on that operator decides at the prompt and the command line; or nobody signs there.
+  Answer answer(const Unlock& asked, Instant now) {
+    const bool locks = asked.name.empty();
+    const std::string line = locks ? "lock" : "unlock " + asked.name;
+    Answer given{true, "locked: nobody signs at the prompt and the command line\n"};
+    if (locks) {
+      keys_.lock_machine();
+    } else if (const auto unlocked = keys_.unlock_machine(asked.name, asked.password); !unlocked) {
+      given = refusal(unlocked.error());
+    } else {
+      operator_name_ = asked.name;
+      given.text = asked.name + " decides and signs at the prompt and the command line\n";
+    }
+    note({now, locks ? operator_name_ : asked.name, "command line", line, given.done, given.text});
+    return given;
   }
 
   Answer answer(const std::string& line, const Asker& asker, Instant now) {
@@ -351,7 +386,7 @@ class GroundLoop {
         return help_text();
       case View::status:
         return fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
-               network_text(network_.epoch());
+               network_text(network_.epoch()) + keys_text(keys_);
       case View::sites:
         return sites_text(console_.picture());
       case View::pending:
@@ -458,6 +493,7 @@ class GroundLoop {
   Recorder recorder_;
   std::vector<configuration::OperatorDecision>
       decisions_;  ///< of the scenario, in the operator's place
+  OperatorKeys& keys_;
   mission::GroundNode& node_;
   FormationDesk formation_;
   SiteDesk sites_;
@@ -491,9 +527,9 @@ std::string control_socket_of(const configuration::GroundConfig& config) {
 namespace {
 
 void serve_console(ConsoleDesk& console, const configuration::GroundConfig& config,
-                   process::Wake& wake) {
+                   OperatorKeys& keys, process::Wake& wake) {
   if (config.console.port == 0) return;
-  if (const auto served = console.serve(config, [&wake] { wake.notify(); }); !served) {
+  if (const auto served = console.serve(config, keys, [&wake] { wake.notify(); }); !served) {
     spdlog::warn("there is no console: {}", served.error().message);
   } else {
     spdlog::info("console: {}", console.url());
@@ -519,6 +555,19 @@ void recall_mission(const configuration::GroundConfig& config, std::int64_t epoc
              });
   if (messages == 0) return;
   spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
+}
+
+/// By the password that was typed, or lies in a file.
+Result<void> unlock_first(OperatorKeys& keys, const configuration::OperatorConfig& config,
+                          const Login& login) {
+  if (login.password) return keys.unlock_machine(login.name, *login.password);
+  if (config.name.empty()) return {};
+  std::ifstream file{config.password_file};
+  std::string password;
+  if (!std::getline(file, password)) {
+    return Error{"operator.password_file: cannot read " + config.password_file};
+  }
+  return keys.unlock_machine(config.name, password);
 }
 
 std::optional<AuditKey> audit_key(const process::NodeStart& start) {
@@ -572,51 +621,46 @@ Result<Recorder> open_recorder(const configuration::GroundConfig& config, Instan
   return Recorder::open(config.recording_folder, std::move(options));
 }
 
+int fail(const char* what, const Error& why, int exit_code) {
+  spdlog::critical("{}: {}", what, why.message);
+  return exit_code;
+}
+
 }  // namespace
 
-int run(const configuration::GroundConfig& config, const std::string& operator_name) {
+int run(const configuration::GroundConfig& config, const Login& login) {
+  const std::string& operator_name = login.name;
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
   process::CloseLimit close_limit;
   const auto origin = MissionOrigin::make(config.origin);
-  if (!origin) {
-    spdlog::critical("the mission origin is unusable: {}", origin.error().message);
-    return process::kExitBadInput;
-  }
+  if (!origin)
+    return fail("the mission origin is unusable", origin.error(), process::kExitBadInput);
   auto start = process::start_node(config.network, kGroundStation);
-  if (!start) {
-    spdlog::critical("cannot join the mission network: {}", start.error().message);
-    return process::kExitCannotStart;
-  }
+  if (!start)
+    return fail("cannot join the mission network", start.error(), process::kExitCannotStart);
   const InstanceId instance = start->instance;
-  mission::GroundNode ground{node_config(config, instance), clock.now()};
+  OperatorKeys keys{config.network.keys};
+  if (const auto unlocked = unlock_first(keys, config.op, login); !unlocked)
+    return fail("no operator's key", unlocked.error(), process::kExitBadInput);
+  mission::GroundNode ground{node_config(config, instance, keys), clock.now()};
   auto formation = FormationDesk::open(config.formation, config.vehicles, ground);
-  if (!formation) {
-    spdlog::critical("the formation's orders are unusable: {}", formation.error().message);
-    return process::kExitBadInput;
-  }
+  if (!formation)
+    return fail("the formation's orders are unusable", formation.error(), process::kExitBadInput);
   ConsoleDesk console{config, *origin};
   recall_mission(config, clock.epoch_unix_ns(), ground, console);
   auto recorder = open_recorder(config, instance, clock.epoch_unix_ns());
-  if (!recorder) {
-    spdlog::critical("cannot record: {}", recorder.error().message);
-    return process::kExitCannotStart;
-  }
+  if (!recorder) return fail("cannot record", recorder.error(), process::kExitCannotStart);
   process::Wake wake;
   auto node =
       network::Node::open(process::node_config(config.network, *start, [&wake] { wake.notify(); }));
-  if (!node) {
-    spdlog::critical("cannot join the mission network: {}", node.error().message);
-    return process::kExitCannotStart;
-  }
+  if (!node)
+    return fail("cannot join the mission network", node.error(), process::kExitCannotStart);
 
-  serve_console(console, config, wake);
+  serve_console(console, config, keys, wake);
   auto audit = Audit::open(config.recording_folder, audit_key(*start));
-  if (!audit) {
-    spdlog::critical("cannot record: {}", audit.error().message);
-    return process::kExitCannotStart;
-  }
+  if (!audit) return fail("cannot record", audit.error(), process::kExitCannotStart);
 
   log_start(config, *start, operator_name);
   GroundLoop loop{config,
@@ -627,12 +671,13 @@ int run(const configuration::GroundConfig& config, const std::string& operator_n
                   **node,
                   wake,
                   std::move(*recorder),
+                  keys,
                   ground,
                   std::move(*formation),
                   open_control(config, wake),
                   std::move(console),
                   std::move(*audit)};
-  const auto keys = watch_keys(*start, config.network, **node, [&loop] { loop.speak(); });
+  const auto key_watch = watch_keys(*start, config.network, **node, [&loop] { loop.speak(); });
   std::thread thread{[&loop] { loop.run(); }};
   const process::Service service;
   const char* signal = wait_watched(loop, shutdown, service);

@@ -23,10 +23,12 @@
 #include "skein/groundstation/audit_chain.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
+#include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/replay_process.hpp"
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/identity/identity.hpp"
+#include "skein/identity/operator_key.hpp"
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
 #include "skein/version/version.hpp"
@@ -85,7 +87,15 @@ int run(const Arguments& arguments) {
                 config->vehicles.size());
     return 0;
   }
-  return groundstation::run(*config, arguments.operator_name);
+  groundstation::Login login{arguments.operator_name, {}};
+  // Whoever sits before it signs what he authorises.
+  const bool has_key =
+      !config->network.keys.empty() && skein::identity::is_name(login.name) &&
+      std::filesystem::exists(skein::identity::operator_file(config->network.keys, login.name));
+  if (has_key && ::isatty(STDIN_FILENO) == 1) {
+    login.password = groundstation::typed_password(login.name);
+  }
+  return groundstation::run(*config, login);
 }
 
 /// CLI11 takes -1 for the greatest number.
@@ -117,6 +127,27 @@ int tell(const Arguments& arguments, const std::string& line) {
                                          (arguments.json ? "json " : "") + line, kAnswerWithin);
   if (!answer) return fail(answer.error().message, skein::process::kExitCannotStart);
   std::fputs(answer->text.c_str(), answer->done || arguments.json ? stdout : stderr);
+  return answer->done ? 0 : kExitRefused;
+}
+
+/// Unlocks an operator's key in a running ground station, or locks it there.
+int unlock(const Arguments& arguments, bool locks) {
+  GroundConfig config;
+  if (!arguments.config.empty()) {
+    auto loaded = load(arguments.config);
+    if (!loaded) return fail(loaded.error().message, skein::process::kExitBadInput);
+    config = *std::move(loaded);
+  }
+  if (!arguments.socket.empty()) config.control_socket = arguments.socket;
+  groundstation::Unlock asked;
+  if (!locks) {
+    asked = {arguments.operator_name, groundstation::typed_password(arguments.operator_name)};
+  }
+  const auto answer = groundstation::ask(groundstation::control_socket_of(config),
+                                         groundstation::line_of(asked), kAnswerWithin);
+  skein::identity::wipe(asked.password);
+  if (!answer) return fail(answer.error().message, skein::process::kExitCannotStart);
+  std::fputs(answer->text.c_str(), answer->done ? stdout : stderr);
   return answer->done ? 0 : kExitRefused;
 }
 
@@ -278,6 +309,7 @@ class CommandLine {
     add_orders();
     add_plan();
     add_password();
+    add_unlock();
     for (const CLI::App* group : {&missions_.mission(), &missions_.keys()}) {
       actions_[group] = [this] { return missions_.run(); };
     }
@@ -342,6 +374,30 @@ class CommandLine {
                            "record " + (folder ? std::filesystem::absolute(words[0]).string()
                                                : CLI::detail::join(words, " ")));
              });
+  }
+
+  void add_unlock() {
+    const auto add_one = [this](const char* name, const char* description,
+                                bool locks) -> CLI::App& {
+      CLI::App& command =
+          add(name, description, [this, locks] { return unlock(arguments_, locks); });
+      command.add_option("--config", arguments_.config,
+                         "The running ground station's configuration; without it, the one of the "
+                         "default port is told");
+      command.add_option("--socket", arguments_.socket, "The name of its control socket, instead");
+      return command;
+    };
+    CLI::App& opens =
+        add_one("unlock",
+                "Unlocks an operator's key in a running ground station: what is authorised at "
+                "its prompt and command line is signed with it",
+                false);
+    opens.add_option("--operator", arguments_.operator_name, "Whose")->capture_default_str();
+    opens.footer(
+        "The password is asked for, or read from standard input.\n"
+        "Example:\n"
+        "  skein-ground unlock --operator ada");
+    add_one("lock", "Ends that: nobody signs there until a key is unlocked again", true);
   }
 
   int tell_formation(const std::string& line) {

@@ -108,15 +108,23 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
   });
   if (const auto by = withdrawn_.find(request.site); by != withdrawn_.end()) {
     // Its leader has not heard of it, or is of a release that does not know that sites can be.
-    messages_.push(Message{Authorisation{request.round, request.site, false, by->second, now}});
+    messages_.push(
+        Message{Authorisation{request.round, request.site, false, by->second, now, {}, {}, {}}});
     return;
   }
   if (tell_what_is_over(request, now) || granted_to_another(request) != nullptr) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
   const Authorisation* before = granted_before(request);
-  const auto by = before == nullptr ? std::nullopt : std::optional{before->decided_by};
+  const auto again = before == nullptr ? std::nullopt : std::optional{*before};
   pending_.push_back({request, now, std::nullopt});
-  if (by && now < request.decide_by) (void)decide(pending_.back(), true, *by, now);
+  if (again && now < request.decide_by) grant_again(pending_.back(), *again, now);
+}
+
+/// The same deliveries in another round: the operator's approval is of those.
+void GroundAgent::grant_again(PendingAuthorisation& pending, Authorisation before, Instant now) {
+  if (why_not_grant(pending.request, now)) return;
+  before.round = pending.request.round;
+  say(pending, before, now);
 }
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {
@@ -310,26 +318,46 @@ Result<void> GroundAgent::decide_newest(SiteId site, bool granted, const std::st
 Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                                  Instant now) {
   const auto& request = pending.request;
+  Authorisation decision{request.round, request.site, granted, by, now, {}, {}, {}};
   if (granted) {
-    if (const Granted* const other = granted_to_another(request)) {
-      return Error{to_string(other->assignment.task) + " is granted to " +
-                   name_of(other->assignment.vehicle) + " in another coalition already; refuse " +
-                   name_of(request.site) + " to take that back, or wait until its time has passed"};
-    }
-    if (tell_what_is_over(request, now)) {
-      return Error{"a delivery of this plan is over by now; its leader will ask again"};
-    }
+    if (auto why = why_not_grant(request, now)) return Error{*why};
+    decision.deliveries = request.deliveries;
     for (const auto& delivery : request.deliveries) {
-      if (auto why = fleet_.why_not_with(delivery.assignment.vehicle)) return Error{*why};
+      decision.until = std::max(decision.until, delivery.assignment.time);
     }
-    if (auto why = fleet_.why_not_with(request.round.coalition.leader)) return Error{*why};
+    if (config_.approve) {
+      if (auto approved = config_.approve(decision); !approved) return approved;
+    }
   }
-  take(pending, Authorisation{request.round, request.site, granted, by, now});
-  report(granted ? EventBody{event::Authorised{by}} : EventBody{event::AuthorisationRefused{by}},
-         request.round, {request.site, TaskKind::deliver, 0}, now);
-  messages_.push(Message{*pending.decision});
-  next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
+  say(pending, decision, now);
   return {};
+}
+
+std::optional<std::string> GroundAgent::why_not_grant(const AuthorisationRequest& request,
+                                                      Instant now) {
+  if (const Granted* const other = granted_to_another(request)) {
+    return to_string(other->assignment.task) + " is granted to " +
+           name_of(other->assignment.vehicle) + " in another coalition already; refuse " +
+           name_of(request.site) + " to take that back, or wait until its time has passed";
+  }
+  if (tell_what_is_over(request, now)) {
+    return "a delivery of this plan is over by now; its leader will ask again";
+  }
+  for (const auto& delivery : request.deliveries) {
+    if (auto why = fleet_.why_not_with(delivery.assignment.vehicle)) return why;
+  }
+  return fleet_.why_not_with(request.round.coalition.leader);
+}
+
+void GroundAgent::say(PendingAuthorisation& pending, const Authorisation& decision, Instant now) {
+  const auto& request = pending.request;
+  take(pending, decision);
+  const std::string& by = decision.decided_by;
+  report(decision.granted ? EventBody{event::Authorised{by}}
+                          : EventBody{event::AuthorisationRefused{by}},
+         request.round, {request.site, TaskKind::deliver, 0}, now);
+  messages_.push(Message{decision});
+  next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
 }
 
 void GroundAgent::take(PendingAuthorisation& pending, const Authorisation& decision) {

@@ -302,6 +302,34 @@ TEST(GroundAgent, ASuccessorsPlanIsGrantedWithoutAskingAgain) {
   EXPECT_TRUE(other.agent.authorisations().back().decision);
 }
 
+TEST(GroundAgent, AGrantIsOfTheDeliveriesThatTheOperatorHasSigned) {
+  bool may_sign = false;
+  GroundAgentConfig config;
+  config.approve = [&may_sign](Authorisation& grant) -> Result<void> {
+    if (!may_sign) return Error{"locked"};
+    grant.approval = {static_cast<std::uint8_t>(grant.deliveries.size()), 7};
+    return {};
+  };
+  GroundAgent agent{config, Instant{}};
+  const auto first = request(1, 40.0, 50.0);
+  agent.on_message(Message{first}, at_seconds(10.0));
+  const auto refused = agent.authorise(kSite, "Ada", at_seconds(12.0));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message, "locked");
+  EXPECT_FALSE(agent.authorisations().front().decision) << "it still waits";
+  may_sign = true;
+  ASSERT_TRUE(agent.authorise(kSite, "Ada", at_seconds(13.0)).ok());
+  const Authorisation grant = agent.authorisations().front().decision.value();
+  EXPECT_EQ(grant.deliveries.size(), first.deliveries.size());
+  EXPECT_EQ(grant.until, first.deliveries.back().assignment.time);
+  EXPECT_FALSE(grant.approval.empty());
+  may_sign = false;  // the approval is of the deliveries, whoever leads
+  agent.on_message(Message{passed_on(first)}, at_seconds(30.0));
+  ASSERT_TRUE(agent.authorisations().back().decision);
+  EXPECT_EQ(agent.authorisations().back().decision->approval, grant.approval);
+  EXPECT_EQ(agent.authorisations().back().decision->decided_at, grant.decided_at);
+}
+
 TEST(GroundAgent, WhoIsLateUnderASuccessorHasGivenUpWhatWasGrantedBefore) {
   Bench bench;
   const auto first = request(1, 40.0, 50.0);

@@ -183,9 +183,22 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
   return task;
 }
 
+/// Was this very delivery put before the operator, and may it begin yet?
+bool TaskFlyer::is_granted_by(const Authorisation& message, Instant now) const {
+  if (!task_ || !task_->is_delivery() || !message.granted) return false;
+  if (task_->round != message.round || task_->site.id != message.site) return false;
+  if (message.deliveries.empty()) return true;  // of an older release
+  const TaskAssignment& ours = task_->assignment;
+  const double bearing_rad = task_->site.deliveries.at(ours.task.index).bearing_rad;
+  const auto is_ours = [&](const Delivery& granted) {
+    return granted.assignment.task == ours.task && granted.assignment.vehicle == ours.vehicle &&
+           granted.assignment.time == ours.time && granted.bearing_rad == bearing_rad;
+  };
+  return now <= message.until && std::ranges::any_of(message.deliveries, is_ours);
+}
+
 void TaskFlyer::on_authorisation(const Authorisation& message, Instant now) {
-  if (task_ && task_->is_delivery() && task_->round == message.round && message.granted &&
-      task_->site.id == message.site && task_->grant()) {
+  if (is_granted_by(message, now) && task_->grant()) {
     outbox_.report(event::Authorised{message.decided_by}, message.round, task_->assignment.task,
                    now);
   }

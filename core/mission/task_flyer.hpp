@@ -23,6 +23,7 @@ class TaskFlyer {
 
   void on_message(const coalition::Message& message, Instant now);
   void on_authorisation(const Authorisation& message, Instant now);
+  [[nodiscard]] bool is_granted_by(const Authorisation& message, Instant now) const;
   /// `may_lead`: whether it may take over from a lost leader.
   void on_timeout(bool may_lead, Instant now);
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "agent_parts_test.hpp"
 
 namespace skein::mission {
@@ -105,6 +107,28 @@ TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
   EXPECT_EQ(f.reported(EventKind::task_done), 1);
   EXPECT_FALSE(f.flyer.flying());
   EXPECT_EQ(f.ownship.loads(), 0);
+}
+
+TEST(TaskFlyer, AGrantIsOfItsVehicleTimeAndBearingUntilItsEnd) {
+  const auto granted = [](const std::function<void(Authorisation&)>& change) {
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    Authorisation grant{kRound, {1}, true, "ada", f.now, {}, at_seconds(60.0), {}};
+    grant.deliveries.push_back(
+        {{{{1}, TaskKind::deliver, 0}, f.ownship.spec().id, at_seconds(60.0)},
+         test_site(1).deliveries.at(0).bearing_rad});
+    change(grant);
+    f.flyer.on_authorisation(grant, f.now);
+    return f.reported(EventKind::authorised) == 1;
+  };
+  using A = Authorisation;
+  EXPECT_TRUE(granted([](A&) {}));
+  EXPECT_FALSE(granted([](A& g) { g.deliveries[0].assignment.vehicle = {77}; }));
+  EXPECT_FALSE(granted([](A& g) { g.deliveries[0].assignment.time += std::chrono::seconds{1}; }));
+  EXPECT_FALSE(granted([](A& g) { g.deliveries[0].assignment.task.index = 1; }));
+  EXPECT_FALSE(granted([](A& g) { g.deliveries[0].bearing_rad += 0.1; }));
+  EXPECT_FALSE(granted([](A& g) { g.until = Instant{} - std::chrono::seconds{1}; }));
 }
 
 TEST(TaskFlyer, HoldsAtTheGateWithoutAGrantOrALease) {

@@ -59,6 +59,11 @@ std::string Gate::dismiss(std::string_view cookies) {
   return cookie("", 0);
 }
 
+bool Gate::has_session(std::string_view user) const {
+  return std::ranges::any_of(
+      sessions_, [user](const auto& session) { return session.second.identity.user == user; });
+}
+
 std::string Gate::cookie(std::string_view value, long max_age_s) const {
   return fmt::format("{}={}; HttpOnly; SameSite=Strict; Path=/; Max-Age={}{}", kName, value,
                      max_age_s, secure_ ? "; Secure" : "");

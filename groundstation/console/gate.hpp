@@ -39,6 +39,8 @@ class Gate {
   /// Ends the cookie's session; gives the Set-Cookie field.
   [[nodiscard]] std::string dismiss(std::string_view cookies);
 
+  [[nodiscard]] bool has_session(std::string_view user) const;
+
   [[nodiscard]] bool asks_for_password() const { return users_.has_value(); }
   /// Does the browser say that the request comes from a page of this very server? Other programs
   /// name no origin.

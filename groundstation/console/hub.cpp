@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <iterator>
 #include <utility>
 
@@ -124,6 +125,9 @@ Result<void> Hub::log_in(const std::string& address, std::string user, std::stri
   post_login_([this, address, user = std::move(user), password = std::move(password),
                done = std::move(done)]() mutable {
     auto identity = gate_.check(user, password);
+    if (identity && identity->role == Role::op && config_.on_login) {
+      config_.on_login(user, password);
+    }
     post([this, address, user = std::move(user), identity = std::move(identity),
           done = std::move(done)] {
       logins_.erase(address);
@@ -148,7 +152,9 @@ void Hub::refused_login(const std::string& address, const std::string& user) {
 }
 
 std::string Hub::log_out(std::string_view cookies) {
+  const auto who = gate_.identify(cookies, std::chrono::steady_clock::now());
   std::string field = gate_.dismiss(cookies);
+  if (who && config_.on_logout && !gate_.has_session(who->user)) config_.on_logout(who->user);
   for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) {
     client->on_log_out();
   }

@@ -28,6 +28,7 @@ namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using beast::error_code;
 using Json = nlohmann::json;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// A server, and a ground station that answers every line with itself.
@@ -317,7 +318,18 @@ TEST(Server, TakesNoMoreThanItsConnections) {
 }
 
 TEST(Server, LetsInWhoKnowsThePassword) {
-  const Station station{with_users()};
+  ServerConfig config = with_users();
+  std::mutex mutex;
+  std::vector<std::string> keys;
+  config.on_login = [&](const std::string& user, std::string_view password) {
+    const std::lock_guard lock{mutex};
+    keys.push_back(user + " unlocks by " + std::string{password});
+  };
+  config.on_logout = [&](const std::string& user) {
+    const std::lock_guard lock{mutex};
+    keys.push_back(user + " locks");
+  };
+  const Station station{std::move(config)};
   EXPECT_EQ(ask(station, get("/")).result(), http::status::ok);  // the page, which asks for it
   EXPECT_EQ(ask(station, get("/session")).result(), http::status::unauthorized);
   EXPECT_FALSE(Page{station}.open());
@@ -344,6 +356,8 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   while (!open.read().empty()) {
   }
   EXPECT_FALSE(open.open()) << "what is open by a session ends with it";
+  const std::lock_guard lock{mutex};
+  EXPECT_THAT(keys, ElementsAre("ada unlocks by difference", "ada locks"));
 }
 
 TEST(Server, WhoGuessesPasswordsWaitsAndIsTold) {

@@ -253,6 +253,8 @@ class Bench {
     for (const VehicleId node : all_nodes()) {
       deployment.keys[node] = identity::node_folder(keys, node).string();
     }
+    deployment.op = {identity::kBenchOperator,
+                     deployment.keys.at(kGroundStation) + "/" + identity::kBenchPasswordFile};
     return deployment;
   }
 

@@ -47,7 +47,7 @@ function start_value(types, f, within) {
   if (f.kind === 'string') return f.value === undefined ? '{}' : ` = ${JSON.stringify(f.value)}`
   if (f.kind === 'union') return '{}'
   if (f.notes.cpp && !f.notes.cpp.type.startsWith('std::')) {
-    return `{${f.value ?? ''}}`
+    return `{${f.value || ''}}`
   }
   if (f.type === 'bool') return ` = ${f.value ?? false}`
   return ` = ${number(f.value ?? 0, f.type)}`

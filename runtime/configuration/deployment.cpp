@@ -116,6 +116,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
     if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
   }
   config.console.port = deployment.console_port;
+  config.op = deployment.op;
   config.formation = scenario.formation;
   if (scenario.formation.planes) {
     for (const ScenarioVehicle& vehicle : scenario.vehicles) config.planes.push_back(vehicle.spec);

@@ -442,6 +442,14 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
             "a certificate needs its key, and a key its certificate; give both or neither");
 }
 
+void operator_fields(FieldVisitor& v, OperatorConfig& config) {
+  v.text({"name", "as `skein-ground mission operator NAME` made it"}, config.name);
+  v.text({"password_file", "its first line is the password"}, config.password_file);
+  v.require(config.name.empty() == config.password_file.empty(), "password_file",
+            "an operator needs the file of the password, and a password its operator; give both or "
+            "neither");
+}
+
 void coalition_sections(FieldVisitor& v, coalition::ProtocolParams& protocol,
                         planning::AllocationParams& planning) {
   v.section({"protocol", "the contract net; the same for the whole fleet"},
@@ -508,6 +516,10 @@ void fields(FieldVisitor& v, GroundConfig& config) {
          unique_groups_of(config.planes, kListMax, spec_fields, "vehicle",
                           [](const VehicleSpec& spec) { return spec.id.value; }));
   console_section(v, config.console);
+  v.section({"operator",
+             "whose key signs what is authorised here, from the start on; else "
+             "`skein-ground unlock` or a login at the console unlocks one"},
+            [&config](FieldVisitor& inner) { operator_fields(inner, config.op); });
   v.text({"control_socket",
           "name of the Unix socket where `skein-ground tell` reaches it; empty: "
           "skein-ground-PORT"},

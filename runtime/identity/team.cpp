@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <string>
 #include <vector>
 
+#include "crypto.hpp"
 #include "files.hpp"
 #include "key_text.hpp"
 #include "skein/identity/authority.hpp"
@@ -14,6 +17,18 @@ namespace skein::identity {
 namespace {
 
 constexpr int kDays = 30;
+
+Result<void> make_operator(Authority& authority, const std::filesystem::path& folder,
+                           std::int64_t now_unix_s) {
+  std::array<std::uint8_t, 16> random{};
+  fill_random(random);
+  std::string password;
+  for (const std::uint8_t byte : random) password += fmt::format("{:02x}", byte);
+  const auto made = authority.enrol_operator(kBenchOperator, password, now_unix_s);
+  if (!made) return made.error();
+  return write_file(node_folder(folder, kGroundStation) / kBenchPasswordFile, password + "\n",
+                    Durable::no);
+}
 
 }  // namespace
 
@@ -31,6 +46,7 @@ Result<void> make_team(const std::filesystem::path& folder, std::span<const Vehi
   auto authority = Authority::create(node_folder(folder, kGroundStation), "bench", kDays,
                                      now_unix_s, Durable::no);
   if (!authority) return authority.error();
+  if (auto made = make_operator(*authority, folder, now_unix_s); !made) return made;
   std::vector<Request> requests;
   for (const VehicleId vehicle : vehicles) {
     const NodeKey key = make_node_key(vehicle);

@@ -536,7 +536,8 @@ void Node::Impl::accept(Topic topic, const ByteSample& sample, const rtps::GuidP
   }
   auto& message = *std::get_if<mission::Message>(&decoded);
   if (signatures_ && mission::is_signed(message)) {
-    const auto judged = signatures_->judge(topic, *sender, instance_of(from), body, signature);
+    auto judged = signatures_->judge(topic, *sender, instance_of(from), body, signature);
+    if (judged == Signatures::Judged::good) judged = signatures_->judge_approval(message);
     if (judged != Signatures::Judged::good) return refuse(judged);
   }
   bool room = false;

@@ -90,6 +90,8 @@ std::vector<std::string> some_of_every_kind(Role writer, std::uint64_t seed,
     if (!info(topic).reliable && i >= kMessageKinds) {
       continue;
     }
+    // A grant needs an operator's approval.
+    if (auto* decision = std::get_if<mission::Authorisation>(&message)) decision->granted = false;
     encoded.push_back(bytes_of(message));
     messages.push_back(std::move(message));
   }
@@ -382,6 +384,12 @@ TEST_F(SigningNodes, ExchangeAsAnyOther) {
   ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
   expect_exchange(*ground, *vehicle, 6);
   EXPECT_EQ(vehicle->counters().at("signature_missing"), 0U);
+  mission::Authorisation grant;
+  grant.granted = true;
+  EXPECT_TRUE(ground->publish(grant));
+  EXPECT_TRUE(eventually([&] { return vehicle->counters().at("signature_missing") == 1; }))
+      << "which no operator has approved";
+  EXPECT_FALSE(vehicle->poll());
 }
 
 TEST_F(SigningNodes, WhoHasCapturedAVehicleDecidesForNobodyElse) {

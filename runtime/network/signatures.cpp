@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "skein/network/approval.hpp"
+
 namespace skein::network {
 namespace {
 
@@ -109,6 +111,20 @@ Signatures::Judged Signatures::judge(codec::Topic topic, VehicleId sender, Insta
   if (verifier_.verify(statement, of) != identity::Trust::good) return Judged::forged;
   newest_[{sender, topic}] = {instance, sequence};
   return Judged::good;
+}
+
+Signatures::Judged Signatures::judge_approval(const mission::Message& message) {
+  const auto* grant = std::get_if<mission::Authorisation>(&message);
+  if (grant == nullptr || !grant->granted) return Judged::good;
+  const auto approval = approval_of(*grant);
+  const auto carried = carried_approval(*grant);
+  if (!approval || !carried) return Judged::missing;
+  const auto now = std::chrono::duration_cast<std::chrono::seconds>(since_1970());
+  const std::lock_guard lock{mutex_};
+  const bool is_good =
+      verifier_.learn(carried->by, now.count()) == identity::Trust::good &&
+      verifier_.verify(carried->by.name, *approval, carried->signature) == identity::Trust::good;
+  return is_good ? Judged::good : Judged::forged;
 }
 
 }  // namespace skein::network

@@ -14,6 +14,7 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/idl/topics.hpp"
+#include "skein/mission/messages.hpp"
 #include "skein/network/sign_config.hpp"
 
 namespace skein::network {
@@ -42,6 +43,8 @@ class Signatures {
   [[nodiscard]] Judged judge(codec::Topic topic, VehicleId sender, InstanceId instance,
                              std::span<const std::uint8_t> body,
                              std::optional<std::span<const std::uint8_t>> signature);
+  /// A grant carries the approval of an operator of this mission; all else needs none.
+  [[nodiscard]] Judged judge_approval(const mission::Message& message);
 
  private:
   struct Newest {

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,7 +15,9 @@
 #include "skein/identity/authority.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/identity/node_key.hpp"
+#include "skein/identity/operator_key.hpp"
 #include "skein/identity/team.hpp"
+#include "skein/network/approval.hpp"
 
 namespace skein::network {
 namespace {
@@ -166,6 +170,59 @@ TEST_F(SignaturesTest, NewKeysBeginTheOrderAnew) {
   judge_->learn(identity::to_bytes(own));
   Signatures anew{{identity::Signer{own.mission, key.sign}, own, config(kOne).verifier}, kTwo, {8}};
   EXPECT_EQ(judge(said(anew, {1}), kTwo, {8}), Judged::good);
+}
+
+// The ground station's signature is not the operator's.
+TEST_F(SignaturesTest, AGrantNeedsAnOperatorsApproval) {
+  const auto ground_folder = identity::node_folder(folder_, kGroundStation);
+  std::string password;
+  std::getline(std::ifstream{ground_folder / identity::kBenchPasswordFile} >> std::ws, password);
+  const auto locked = identity::read_operator_key(ground_folder, identity::kBenchOperator);
+  ASSERT_TRUE(locked.ok()) << locked.error().message;
+  const auto op = identity::unlock(*locked, password);
+  ASSERT_TRUE(op.ok()) << op.error().message;
+
+  mission::Authorisation grant{{}, SiteId{4}, true, "ada", at_seconds(10.0), {}, {}, {}};
+  const auto judged = [&] { return judge_->judge_approval(mission::Message{grant}); };
+  EXPECT_FALSE(approve(grant, *op, locked->certificate)) << "of nothing";
+  EXPECT_EQ(judged(), Judged::missing);
+  grant.deliveries.push_back({{{SiteId{4}, TaskKind::deliver, 0}, kTwo, at_seconds(60.0)}, 0.5});
+  grant.until = at_seconds(60.0);
+  EXPECT_EQ(judged(), Judged::missing);
+  ASSERT_TRUE(approve(grant, *op, locked->certificate));
+  EXPECT_EQ(judged(), Judged::good);
+  grant.round.number = 7;  // the same deliveries under a successor
+  EXPECT_EQ(judged(), Judged::good);
+
+  const auto good = grant;
+  const auto changed = [&](const std::function<void(mission::Authorisation&)>& change) {
+    grant = good;
+    change(grant);
+    return judged();
+  };
+  using A = mission::Authorisation;
+  EXPECT_EQ(changed([](A& g) { g.site = SiteId{5}; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.until += std::chrono::hours{1}; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.deliveries[0].assignment.vehicle = kOne; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.deliveries[0].bearing_rad += 1e-9; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.decided_by = "eve"; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.approval.back() ^= 1U; }), Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.approval.pop_back(); }), Judged::missing);
+  EXPECT_EQ(changed([&](A& g) {
+              (void)approve(g, config(kGroundStation).signer, config(kGroundStation).own);
+            }),
+            Judged::missing)
+      << "a ground station is no operator";
+  EXPECT_EQ(changed([&](A& g) { (void)approve(g, config(kTwo).signer, locked->certificate); }),
+            Judged::forged);
+  EXPECT_EQ(changed([](A& g) { g.granted = false; }), Judged::good) << "a refusal needs none";
+
+  auto authority = identity::Authority::open(ground_folder);
+  ASSERT_TRUE(authority.ok());
+  ASSERT_TRUE(authority->revoke(locked->certificate.serial).ok());
+  judge_->learn(authority->revoked());
+  grant = good;
+  EXPECT_EQ(judged(), Judged::forged) << "that operator is out";
 }
 
 TEST_F(SignaturesTest, WhoIsUnknownOrRevokedIsNotBelieved) {

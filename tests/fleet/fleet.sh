@@ -44,6 +44,7 @@ has 'mission create' "$refused" || fail "$refused"
 echo "- the team is enrolled"
 keys() { echo "$folder/$1/var/$2/keys"; }
 "$programs/skein-ground" mission create team --keys "$(keys 0 ground)" || fail "create"
+"$programs/skein-ground" mission operator ada --keys "$(keys 0 ground)" <<<"correct horse" >"$folder/passwords" || fail "operator"
 for id in 1 2 3; do
   "$programs/skein-onboard" enrol --id $id --keys "$(keys $id onboard-$id)" |
     "$programs/skein-ground" mission enrol - --yes --keys "$(keys 0 ground)" |
@@ -62,7 +63,13 @@ echo "- the mission: a site is told, surveyed, authorised and delivered to"
 told=$(tell site 0 0 survey 5 deliver 0,120 simultaneous) || fail "$told"
 site=$(grep -oE 'site [0-9]+' <<<"$told" | head -n 1 | cut -d ' ' -f 2)
 authorised() { tell authorise "$site" >/dev/null 2>&1; }
+unsigned_refused() { has 'skein-ground unlock' "$(tell authorise "$site" 2>&1)"; }
+unlock() { ip netns exec skein0 "$programs/skein-ground" unlock --operator ada <<<"$1"; }
 delivered() { has '2 delivered' "$(tell sites)"; }
+until_holds 30 "nothing is authorised that no operator signs" unsigned_refused
+refused=$(unlock "another horse" 2>&1) && fail "another password unlocks the key"
+has 'does not open' "$refused" || fail "$refused"
+unlock "correct horse" || fail "unlock"
 until_holds 30 "an authorisation is asked for" authorised
 until_holds 40 "both deliveries are flown" delivered
 

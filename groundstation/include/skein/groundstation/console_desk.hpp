@@ -14,6 +14,7 @@
 #include "skein/console/picture.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/console/server.hpp"
+#include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
 
 namespace skein::groundstation {
@@ -27,9 +28,11 @@ class ConsoleDesk {
 
   ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin);
 
-  /// Serves the page. `wake` is called on another thread when a line can be taken. Fails where it
-  /// cannot be served; the picture is kept all the same.
-  Result<void> serve(const configuration::GroundConfig& config, std::function<void()> wake);
+  /// Serves the page; who logs in as an operator unlocks his key. `wake` is called on another
+  /// thread when a line can be taken. Fails where it cannot be served; the picture is kept all the
+  /// same.
+  Result<void> serve(const configuration::GroundConfig& config, OperatorKeys& keys,
+                     std::function<void()> wake);
 
   /// What an earlier process of this ground station heard or said: it is shown as it was then.
   void recall(const mission::Message& message, VehicleId sender, Instant at);

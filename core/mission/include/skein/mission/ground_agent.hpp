@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -30,6 +31,9 @@ struct GroundAgentConfig {
   std::vector<VehicleId> expected;          ///< the fleet
   std::vector<ScriptedDecision> decisions;  ///< empty: a person decides
   Duration silence = std::chrono::seconds{5};
+  /// Fills in a grant's `approval`; fails where the operator may not sign, and nothing is decided.
+  /// Empty: grants need none.
+  std::function<Result<void>(Authorisation&)> approve = {};
 };
 
 /// One request for authorisation, and what became of it.
@@ -135,6 +139,10 @@ class GroundAgent {
   Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
   Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
                       Instant now);
+  [[nodiscard]] std::optional<std::string> why_not_grant(const AuthorisationRequest& request,
+                                                         Instant now);
+  void grant_again(PendingAuthorisation& pending, Authorisation before, Instant now);
+  void say(PendingAuthorisation& pending, const Authorisation& decision, Instant now);
   [[nodiscard]] LedSite* led_site(SiteId site);
   void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
 

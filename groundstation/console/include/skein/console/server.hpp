@@ -42,6 +42,10 @@ struct ServerConfig {
   std::string hello = "{}";
   /// On the server's thread; must be short. Empty: none.
   std::function<void(const RefusedLogin&)> on_refused_login;
+  /// An operator has logged in; on a thread where it may take a while. Empty: none.
+  std::function<void(const std::string& user, std::string_view password)> on_login;
+  /// The last session of that user has ended by a logout; on the server's thread. Empty: none.
+  std::function<void(const std::string& user)> on_logout;
 };
 
 /// The page and its socket (docs/console-socket.md) on one address, in a thread of its own from

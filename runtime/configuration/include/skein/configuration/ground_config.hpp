@@ -35,6 +35,12 @@ struct ConsoleConfig {
 };
 
 /// Everything that skein-ground needs to know (docs/configuration.md).
+/// Whose key signs what is authorised on this machine (docs/keys.md), from the start on.
+struct OperatorConfig {
+  std::string name;           ///< empty: whoever unlocks his later
+  std::string password_file;  ///< its first line
+};
+
 struct GroundConfig {
   Wgs84 origin;
   NetworkConfig network;
@@ -50,6 +56,7 @@ struct GroundConfig {
   FormationConfig formation;
   std::vector<VehicleSpec> planes;  ///< of a formation of planes: what each can do
   ConsoleConfig console;
+  OperatorConfig op;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded
   std::uint32_t recording_limit_mb = 1000;
