@@ -11,6 +11,7 @@
 
 #include "skein/codec/json_text.hpp"
 #include "skein/groundstation/orders.hpp"
+#include "skein/process/token.hpp"
 #include "skein/recording/published.hpp"
 #include "skein/version/version.hpp"
 
@@ -82,9 +83,26 @@ std::optional<console::Section> section_of(View view) {
     case View::help:
     case View::audit:
     case View::routes:
+    case View::console:
       break;
   }
   return std::nullopt;
+}
+
+namespace {
+
+/// The same at every start where there is a folder to keep it in: a page goes on with it.
+Result<std::string> token_of(const std::filesystem::path& recording_folder) {
+  if (recording_folder.empty()) return process::make_token();
+  return process::read_or_make_token(recording_folder / process::kConsoleTokenFile);
+}
+
+}  // namespace
+
+std::string ConsoleDesk::address_text() const {
+  if (!server_) return "there is no console\n";
+  return token_.empty() ? server_->url() + " asks for name and password\n"
+                        : fmt::format("{}#{}\n", server_->url(), token_);
 }
 
 ConsoleDesk::ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin)
@@ -97,6 +115,10 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, Opera
     auto users = console::Users::load(config.console.passwords);
     if (!users) return users.error();
     server.users = std::move(*users);
+  } else {
+    auto token = token_of(config.recording_folder);
+    if (!token) return token.error();
+    server.token = token_ = *std::move(token);
   }
   std::vector<std::string> shapes = shape_names();
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);

@@ -399,6 +399,8 @@ class GroundLoop {
         return hazards_text(console_.picture());
       case View::audit:
         return audit_.text();
+      case View::console:
+        return console_.address_text();
       case View::proposals:
         return sites_.proposals_text();
       case View::routes:
@@ -532,7 +534,9 @@ void serve_console(ConsoleDesk& console, const configuration::GroundConfig& conf
   if (const auto served = console.serve(config, keys, [&wake] { wake.notify(); }); !served) {
     spdlog::warn("there is no console: {}", served.error().message);
   } else {
-    spdlog::info("console: {}", console.url());
+    spdlog::info(
+        "console: {} (`console` at the prompt, or 'skein-ground tell console': what opens it)",
+        console.url());
   }
 }
 

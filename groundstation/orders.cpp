@@ -14,9 +14,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 10> kWords{
-      "help",       "status",  "sites", "pending",   "places",
-      "coalitions", "hazards", "audit", "proposals", "routes"};
+  static constexpr std::array<std::string_view, 11> kWords{
+      "help",    "status", "sites",     "pending", "places", "coalitions",
+      "hazards", "audit",  "proposals", "routes",  "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 

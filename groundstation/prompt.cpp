@@ -252,6 +252,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "coalitions") return view(View::coalitions, words);
   if (verb == "hazards") return view(View::hazards, words);
   if (verb == "audit") return view(View::audit, words);
+  if (verb == "console") return view(View::console, words);
   if (verb == "hazard") return hazard(words);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
@@ -310,6 +311,7 @@ std::string help_text() {
          "proposals         what detectors have seen and you have not answered\n"
          "accept N          take proposal N as a site; dismiss N: it is none\n"
          "audit             who gave which order, from where, and what came of it\n"
+         "console           the address of its page, with the token that opens it\n"
          "hold ID|all       fly a holding pattern until told otherwise\n"
          "resume ID|all     go on with the mission\n"
          "return ID|all     fly back to the start and hold there\n"

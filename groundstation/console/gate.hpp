@@ -18,17 +18,19 @@ struct Identity {
   Role role = Role::observer;
 };
 
-/// Who is let in: by the cookie of a session, or everybody where there are no users. And from
-/// where: a page of another origin is not, so that no site in the operator's browser commands a
-/// fleet.
+/// Who is let in: by the cookie of a session, which a password or the token opens, or everybody
+/// where there is neither. And from where: a page of another origin is not, so that no site in the
+/// operator's browser commands a fleet.
 class Gate {
  public:
   using Time = std::chrono::steady_clock::time_point;
   static constexpr auto kSessionLasts = std::chrono::hours{12};
   static constexpr std::size_t kSessionsMax = 1000;
 
-  /// `users` empty: whoever reaches the port is the operator, on loopback.
-  Gate(std::optional<Users> users, bool secure) : users_{std::move(users)}, secure_{secure} {}
+  /// `users` none: whoever has the token is the operator; `token` empty, too: whoever reaches the
+  /// port.
+  Gate(std::optional<Users> users, std::string token, bool secure)
+      : users_{std::move(users)}, token_{std::move(token)}, secure_{secure} {}
 
   [[nodiscard]] std::optional<Identity> identify(std::string_view cookies, Time now) const;
   /// The password is checked here, which takes a while; on any thread.
@@ -42,6 +44,7 @@ class Gate {
   [[nodiscard]] bool has_session(std::string_view user) const;
 
   [[nodiscard]] bool asks_for_password() const { return users_.has_value(); }
+  [[nodiscard]] bool asks_for_token() const { return !users_ && !token_.empty(); }
   /// Does the browser say that the request comes from a page of this very server? Other programs
   /// name no origin.
   [[nodiscard]] bool is_own_origin(std::string_view origin, std::string_view host) const;
@@ -57,6 +60,7 @@ class Gate {
   [[nodiscard]] std::string cookie(std::string_view value, long max_age_s) const;
 
   std::optional<Users> users_;
+  std::string token_;
   bool secure_;
   std::map<std::string, Session, std::less<>> sessions_;
 };

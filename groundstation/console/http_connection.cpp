@@ -8,6 +8,13 @@
 namespace skein::console {
 namespace {
 
+/// "/?token=TOKEN"; empty where there is none.
+std::string_view token_in(std::string_view target) {
+  constexpr std::string_view kToken = "?token=";
+  const auto at = target.find(kToken);
+  return at == std::string_view::npos ? std::string_view{} : target.substr(at + kToken.size());
+}
+
 bool offers(const HttpRequest& request, std::string_view protocol) {
   const auto& offered = request.subprotocols;
   return std::find(offered.begin(), offered.end(), protocol) != offered.end();
@@ -62,12 +69,19 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     if (!gate.is_own_host(request.host) || !gate.is_own_origin(request.origin, request.host)) {
       return refuse(HttpStatus::forbidden, "the socket is for this server's own page");
     }
-    const auto identity = gate.identify(request.cookie, std::chrono::steady_clock::now());
+    const auto now = std::chrono::steady_clock::now();
+    std::string cookie = request.cookie;
+    auto identity = gate.identify(cookie, now);
+    if (!identity && gate.asks_for_token()) {
+      // Of programs that keep no cookies: ws://127.0.0.1:7460/?token=...
+      identity = gate.check("", token_in(request.target));
+      if (identity) cookie = hub_.gate().admit(*identity, now);
+    }
     if (!identity) return refuse(HttpStatus::unauthorized, "log in first");
     place_->has_session();
     for (const std::string_view protocol : kFoxgloveProtocols) {
       if (!offers(request, protocol)) continue;
-      return serve_foxglove(hub_, stream_->upgrade(), protocol, request.cookie, place_);
+      return serve_foxglove(hub_, stream_->upgrade(), protocol, cookie, place_);
     }
     if (request.target != "/socket" || !offers(request, kPageProtocol)) {
       return refuse(HttpStatus::bad_request, "the socket is at /socket and speaks skein.console.1");
@@ -79,7 +93,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     if (!hub_.gate().is_own_origin(request.origin, request.host)) {
       return send(refusal(HttpStatus::forbidden, "the login is for this server's own page"));
     }
-    if (!hub_.gate().asks_for_password()) {
+    if (!hub_.gate().asks_for_password() && !hub_.gate().asks_for_token()) {
       return send(refusal(HttpStatus::bad_request, "nobody needs to log in here"));
     }
     const auto json = codec::parse_json(request.body);

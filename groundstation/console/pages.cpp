@@ -68,7 +68,9 @@ HttpResponse Pages::respond(const HttpRequest& request) const {
   }
   const auto identity = gate_->identify(request.cookie, Gate::Time::clock::now());
   if (!identity) {
-    return {HttpStatus::unauthorized, media::kJson, R"({"error":"log in first"})"};
+    return {HttpStatus::unauthorized, media::kJson,
+            gate_->asks_for_token() ? R"({"error":"log in first","asks":"token"})"
+                                    : R"({"error":"log in first","asks":"password"})"};
   }
   if (path == "/session") {
     return {HttpStatus::ok, media::kJson,

@@ -360,6 +360,27 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   EXPECT_THAT(keys, ElementsAre("ada unlocks by difference", "ada locks"));
 }
 
+TEST(Server, WithATokenLetsInWhoHasIt) {
+  ServerConfig config;
+  config.token = "0123456789abcdef0123456789abcdef";
+  const Station station{std::move(config)};
+  const auto refused = ask(station, get("/session"));
+  EXPECT_EQ(refused.result(), http::status::unauthorized);
+  EXPECT_EQ(Json::parse(refused.body())["asks"], "token");
+  EXPECT_FALSE(Page{station}.open());
+  for (int i = 0; i < 20; ++i) {  // nobody on this machine makes the operator wait
+    EXPECT_EQ(ask(station, login("", "0123456789abcdef0123456789abcdee")).result(),
+              http::status::unauthorized);
+  }
+  for (const char* wrong : {"", "0123", "0123456789abcdef0123456789abcdef0"}) {
+    EXPECT_EQ(ask(station, login("operator", wrong)).result(), http::status::unauthorized) << wrong;
+  }
+  const auto let_in = ask(station, login("", "0123456789abcdef0123456789abcdef"));
+  ASSERT_EQ(let_in.result(), http::status::ok);
+  const std::string field{let_in[http::field::set_cookie]};
+  EXPECT_TRUE((Page{station, {.cookie = field.substr(0, field.find(';'))}}.open()));
+}
+
 TEST(Server, WhoGuessesPasswordsWaitsAndIsTold) {
   ServerConfig config = with_users();
   std::mutex mutex;
@@ -474,7 +495,7 @@ TEST(Server, TellsMachinesHowItIs) {
 }
 
 TEST(MachinePages, AreForThisMachineAndForWhoHasLoggedIn) {
-  const Gate gate{Users{}, true};
+  const Gate gate{Users{}, "", true};
   MachinePages pages{gate};
   const MachinePages::Time now{};
   pages.report({true, "{}", "m"}, now);

@@ -34,6 +34,7 @@
 #include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
 #include "skein/process/mission_network.hpp"
+#include "skein/process/token.hpp"
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
@@ -163,6 +164,7 @@ class Bench {
     if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
     const auto ground = configuration::ground_config(scenario_, deployment);
+    if (auto kept = keep_console_token(ground.recording_folder); !kept) return kept;
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
         !up)
       return up;
@@ -274,6 +276,13 @@ class Bench {
     std::filesystem::remove_all(options_.run_folder / kKeysFolder, ignored);  // of a run that died
     return identity::make_team(options_.run_folder / kKeysFolder, std::span{nodes}.subspan(1),
                                now.count());
+  }
+
+  [[nodiscard]] Result<void> keep_console_token(const std::filesystem::path& folder) const {
+    if (options_.console_port == 0) return {};
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    return process::keep_token(folder / process::kConsoleTokenFile, options_.console_token);
   }
 
   Result<void> launch_vehicle(const configuration::VehicleConfig& config) {

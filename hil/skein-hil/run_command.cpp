@@ -15,6 +15,7 @@
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/process/token.hpp"
 #include "skein/recording/merge.hpp"
 #include "skein/recording/recording.hpp"
 #include "skein/report/report.hpp"
@@ -99,6 +100,7 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.prompt = arguments.prompt;
   options.sealed = !arguments.clear;
   options.console_port = arguments.console_port;
+  if (options.console_port != 0) options.console_token = process::make_token();
   options.run_folder =
       !arguments.folder.empty()
           ? arguments.folder
@@ -156,6 +158,10 @@ int run(const RunArguments& arguments) {
   fmt::print("{}: {} vehicles, {} sites, seed {}; into {}\n", scenario->title,
              scenario->vehicles.size(), scenario->sites.size(), scenario->seed,
              options.run_folder.string());
+  if (options.console_port != 0) {
+    fmt::print("console: http://127.0.0.1:{}/#{}\n", options.console_port, options.console_token);
+    std::fflush(stdout);
+  }
   if (wants_an_operator(*scenario) && !arguments.prompt && arguments.console_port == 0) {
     fmt::print(
         "nobody is there to authorise deliveries, so none is flown: the scenario has no "

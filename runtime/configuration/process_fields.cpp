@@ -422,7 +422,7 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
             "is no address; write one such as 127.0.0.1, 192.168.1.7 or ::1");
   v.text({"passwords",
           "file of who may use it, with lines as 'skein-ground password NAME' makes "
-          "them; empty: whoever is on this machine is the operator"},
+          "them; empty: who knows the token that 'skein-ground tell console' prints"},
          config.passwords);
   v.text({"certificate", "PEM file; with it the page is served by HTTPS"}, config.certificate);
   v.text({"key", "PEM file of the certificate's key"}, config.key);

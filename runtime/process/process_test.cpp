@@ -15,6 +15,7 @@
 #include "skein/process/mission_network.hpp"
 #include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
+#include "skein/process/token.hpp"
 
 namespace skein::process {
 namespace {
@@ -144,6 +145,28 @@ TEST(CloseLimit, IsNotWaitedForWhereAllIsClosed) {
 }
 
 TEST(Log, WritesAnInstantForPeople) { EXPECT_EQ(text_of(at_seconds(12.3456)), "12.346 s"); }
+
+TEST(Token, IsKeptForThisUserAlone) {
+  std::string name = testing::TempDir() + "skein-token-XXXXXX";
+  ASSERT_NE(::mkdtemp(name.data()), nullptr);
+  const std::filesystem::path file = std::filesystem::path{name} / kConsoleTokenFile;
+  const auto made = read_or_make_token(file);
+  ASSERT_TRUE(made.ok()) << made.error().message;
+  EXPECT_EQ(made->size(), 32U);
+  EXPECT_NE(*made, make_token());
+  EXPECT_EQ(read_or_make_token(file).value(), *made) << "at the next start, too";
+  EXPECT_FALSE(keep_token(file, make_token())) << "it is there";
+  std::filesystem::permissions(file, std::filesystem::perms::group_read,
+                               std::filesystem::perm_options::add);
+  EXPECT_FALSE(read_or_make_token(file)) << "others can read it";
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read,
+                               std::filesystem::perm_options::replace);
+  std::filesystem::remove(file);
+  std::ofstream{file} << "none\n";
+  std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+  EXPECT_FALSE(read_or_make_token(file));
+  std::filesystem::remove_all(name);
+}
 
 }  // namespace
 }  // namespace skein::process

@@ -45,15 +45,18 @@ export async function fly(scenario, name, more = []) {
   child.stdout.on("data", (data) => (text += data));
   child.stderr.on("data", (data) => (text += data));
   const exited = once(child, "exit").then(([status]) => status);
-  const url = `http://127.0.0.1:${port}/`;
   let running = true;
   void exited.then(() => (running = false));
-  await until(`the console at ${url}\n${text}`, async () => {
+  let url;
+  await until(`the console\n${text}`, async () => {
     assert(running, `the bench has ended:\n${text}`);
-    return fetch(url).then((answer) => answer.ok, () => false);
+    url = /^console: (\S+)$/m.exec(text)?.[1];
+    return url && fetch(url).then((answer) => answer.ok, () => false);
   });
   return {
     url,
+    /** For programs that keep no cookies. */
+    socket: url.replace("http", "ws").replace("#", "?token="),
     folder,
     port,
     /** Its exit status, when the mission is over. */

@@ -29,7 +29,7 @@ after(async () => {
 
 /** What a client that speaks as Foxglove does hears of a topic. */
 async function hear(url, topic, wanted) {
-  const socket = new WebSocket(url.replace("http", "ws"), [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
+  const socket = new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]);
   const client = new FoxgloveClient({ ws: socket });
   const heard = [];
   const readers = new Map();
@@ -51,14 +51,14 @@ before(async () => {
 });
 
 test("Foxglove's own client hears telemetry live", async () => {
-  const heard = await hear(mission.url, "/vehicle_03/telemetry", 5);
+  const heard = await hear(mission.socket, "/vehicle_03/telemetry", 5);
   for (const telemetry of heard) assert.equal(telemetry.vehicle, 3);
   assert.ok(heard.at(-1).state.time_ns > heard[0].state.time_ns);
 });
 
 // The client above knows the older name only; what is said is the same.
 test("the newer subprotocol is spoken too", async () => {
-  const socket = new WebSocket(mission.url.replace("http", "ws"), ["foxglove.sdk.v1"]);
+  const socket = new WebSocket(mission.socket, ["foxglove.sdk.v1"]);
   let records = 0;
   const said = [];
   socket.on("message", (data, binary) => {

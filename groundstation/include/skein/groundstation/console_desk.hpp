@@ -52,10 +52,13 @@ class ConsoleDesk {
   [[nodiscard]] const console::Picture& picture() const { return picture_; }
   /// Empty where none is served.
   [[nodiscard]] std::string url() const { return server_ ? server_->url() : ""; }
+  /// What opens the page: for who may give orders on this machine.
+  [[nodiscard]] std::string address_text() const;
 
  private:
   MissionOrigin origin_;
   console::Picture picture_;
+  std::string token_;  ///< empty where there are passwords
   std::unique_ptr<console::Server> server_;
   std::vector<std::string> events_;  ///< to be shown
   std::uint64_t next_seq_ = 0;

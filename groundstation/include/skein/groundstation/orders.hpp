@@ -50,7 +50,8 @@ enum class View {
   hazards,
   audit,
   proposals,
-  routes
+  routes,
+  console  ///< its address
 };
 /// The operator's decision on the deliveries at a site.
 struct Decision {

@@ -30,7 +30,7 @@ const panel_of = {
 
 export function App() {
   useEffect(() => listen_to_keys(() => current().vehicles.map((vehicle) => vehicle.id)), []);
-  if (session.value === "needed") return <Login />;
+  if (session.value === "needed" || session.value === "token_needed") return <Login by_token={session.value === "token_needed"} />;
   const Panel = panel_of[panel.value];
   return (
     <div class="console">

@@ -26,7 +26,7 @@ let tracks_shown_ms = 0;
 export const link = signal<LinkState>("connecting");
 /** When the picture stopped, in ms of performance.now(); null while the link is open. */
 export const lost_at_ms = signal<number | null>(null);
-export const session = signal<Session | "unknown" | "needed">("unknown");
+export const session = signal<Session | "unknown" | "needed" | "token_needed">("unknown");
 
 export const hello = computed(() => shown.value.hello);
 export const vehicles = computed(() => shown.value.vehicles);
@@ -123,18 +123,48 @@ export function send(what: Order | string): Promise<Answer> {
   return socket.ask(what);
 }
 
+const kToken = "skein_token";
+
+/** What the address has behind its #, kept for as long as the tab: a ground station that starts anew has it, too. */
+function take_token(): void {
+  const token = /^#([0-9a-f]{32})$/.exec(location.hash)?.[1];
+  if (!token) return;
+  sessionStorage.setItem(kToken, token);
+  history.replaceState(null, "", location.pathname + location.search);
+}
+
+/** Whether it has let us in. */
+async function try_token(): Promise<boolean> {
+  const token = sessionStorage.getItem(kToken);
+  if (token === null) return false;
+  if ((await post_login("", token)) === 200) return true;
+  sessionStorage.removeItem(kToken);
+  return false;
+}
+
+async function post_login(user: string, password: string): Promise<number> {
+  const response = await fetch("/session", {
+    method: "POST",
+    headers: { "content-type": "application/json" },
+    body: JSON.stringify({ user, password }),
+  });
+  return response.status;
+}
+
 let asked = 0;
 
 /** Asks who we are. */
-export async function ask_session(): Promise<void> {
+export async function ask_session(may_try_token = true): Promise<void> {
   const mine = ++asked;
   try {
     const response = await fetch("/session", { headers: { accept: "application/json" } });
     // An answer to an earlier question may come after a login.
     if (mine !== asked) return;
     if (response.status === 401) {
+      const { asks } = (await response.json()) as { asks?: string };
+      if (asks === "token" && may_try_token && (await try_token()) && mine === asked) return ask_session(false);
       socket.stop();
-      session.value = "needed";
+      session.value = asks === "token" ? "token_needed" : "needed";
       return;
     }
     if (response.ok) session.value = (await response.json()) as Session;
@@ -145,12 +175,10 @@ export async function ask_session(): Promise<void> {
 
 export async function log_in(user: string, password: string): Promise<string | null> {
   try {
-    const response = await fetch("/session", {
-      method: "POST",
-      headers: { "content-type": "application/json" },
-      body: JSON.stringify({ user, password }),
-    });
-    if (!response.ok) return response.status === 401 ? "Name or password is wrong" : `Refused (${response.status})`;
+    const status = await post_login(user, password);
+    if (status === 401) return user ? "Name or password is wrong" : "That token is wrong";
+    if (status !== 200) return `Refused (${status})`;
+    if (!user) sessionStorage.setItem(kToken, password);
   } catch {
     return "The ground station does not answer";
   }
@@ -160,12 +188,15 @@ export async function log_in(user: string, password: string): Promise<string | n
 
 export async function log_out(): Promise<void> {
   await fetch("/session", { method: "DELETE" }).catch(() => undefined);
+  sessionStorage.removeItem(kToken);
   socket.stop();
   session.value = "needed";
+  await ask_session();
 }
 
 export async function start(): Promise<void> {
+  take_token();
   await ask_session();
-  if (session.value !== "needed") socket.start();
+  if (session.value !== "needed" && session.value !== "token_needed") socket.start();
 }
 

@@ -33,7 +33,8 @@ struct RefusedLogin {
 struct ServerConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 7460;   ///< 0: any that is free
-  std::optional<Users> users;  ///< none: whoever reaches it is the operator; on loopback only
+  std::optional<Users> users;  ///< none: whoever has the token is the operator; on loopback only
+  std::string token;           ///< empty: whoever reaches it, as of a recording
   std::string certificate;     ///< PEM files; both: HTTPS, which any other address needs
   std::string key;
   std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none

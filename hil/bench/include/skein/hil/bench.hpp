@@ -31,6 +31,7 @@ struct BenchOptions {
   std::string can;
   bool sealed = true;              ///< with keys that are made for the run
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
+  std::string console_token;       ///< that opens it
   bool prompt =
       false;  ///< leave the decisions to skein-ground's prompt (its input is the terminal's)
 };
