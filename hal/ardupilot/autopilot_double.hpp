@@ -53,7 +53,12 @@ class AutopilotDouble {
   };
   std::map<std::uint16_t, Refusal> refuses;  ///< by command
   std::map<std::uint16_t, int> deaf_to;      ///< by command: so many of them get lost
-  std::set<std::uint32_t> stopped;           ///< streams
+  std::map<std::string, float> parameters{{"FS_GCS_ENABL", 1.0F},
+                                          {"FS_GCS_ENABLE", 1.0F},
+                                          {"FS_LONG_ACTN", 1.0F},
+                                          {"SYSID_MYGCS", 1.0F}};
+  int deaf_to_parameters = 0;       ///< so many questions get lost
+  std::set<std::uint32_t> stopped;  ///< streams
 
   std::vector<mavlink::CommandLong> commands;
   std::vector<mavlink::SetAttitudeTarget> attitudes;
@@ -83,6 +88,11 @@ class AutopilotDouble {
     return said;
   }
 
+  /// As one that somebody sets: all who listen are told.
+  void set_parameter(const std::string& name, float value) {
+    parameters[name] = value;
+    tell_parameter(name);
+  }
   void say(const std::string& text, mavlink::Severity severity) {
     mavlink::Statustext message;
     message.severity = static_cast<std::uint8_t>(severity);
@@ -191,6 +201,25 @@ class AutopilotDouble {
       target_times.push_back(now);
     }
     if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);
+    if (const auto asked = mavlink::decode<mavlink::ParamRequestRead>(packet)) {
+      if (deaf_to_parameters > 0) {
+        --deaf_to_parameters;
+      } else {
+        tell_parameter(mavlink::text_of(asked->param_id));
+      }
+    }
+  }
+  /// Of one that it does not know it says nothing.
+  void tell_parameter(const std::string& name) {
+    const auto known = parameters.find(name);
+    if (known == parameters.end()) return;
+    mavlink::ParamValue value;
+    value.param_value = known->second;
+    value.param_count = static_cast<std::uint16_t>(parameters.size());
+    value.param_index = 0xFFFF;
+    value.param_id = mavlink::field_of<16>(name);
+    value.param_type = 2;  // of 8 bits
+    send(value);
   }
   void obey(const mavlink::CommandLong& command, Instant /*now*/) {
     if (auto& lost = deaf_to[command.command]; lost > 0) {

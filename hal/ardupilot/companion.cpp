@@ -127,6 +127,7 @@ void Companion::Impl::step(Instant now) {
       break;
   }
   if (system_ == 0) return;
+  check_parameters(now);
   keep_clock(now);
   if (now >= heartbeat_at_) {
     heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
@@ -163,8 +164,23 @@ void Companion::Impl::prepare(Instant now) {
           false);
     }
   }
+  for (const std::string_view name : parameters_.due(now)) {
+    send(mavlink::ParamRequestRead{.param_index = -1,
+                                   .target_system = system_,
+                                   .target_component = mavlink::kComponentAutopilot,
+                                   .param_id = mavlink::field_of<16>(name)});
+  }
   const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
-  if (desk_.idle() && clock_known && sensors_ && motion_.sample()) fire(Event::ready, now);
+  const bool is_known = desk_.idle() && clock_known && sensors_ && motion_.sample();
+  if (is_known && parameters_.good()) fire(Event::ready, now);
+}
+
+void Companion::Impl::check_parameters(Instant now) {
+  while (auto finding = parameters_.poll_finding(now)) {
+    const auto news = machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
+                                                    : AutopilotNews::parameter_changed;
+    say(true, {.news = news, .detail = *std::move(finding)}, now);
+  }
 }
 
 void Companion::Impl::ask_streams() {

@@ -64,6 +64,8 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
     on_version(*version, now);
   } else if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
     on_text(*text, now);
+  } else if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
+    parameters_.on_value(mavlink::text_of(parameter->param_id), parameter->param_value);
   } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
   }

@@ -10,6 +10,7 @@
 #include "command_desk.hpp"
 #include "custody.hpp"
 #include "flight_modes.hpp"
+#include "parameter_check.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
 
@@ -38,6 +39,7 @@ class Companion::Impl {
       : params_{params},
         origin_{origin},
         motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
+        parameters_{params.airframe, params.system_id},
         frame_heard_{now},
         packet_heard_{now},
         heartbeat_at_{now},
@@ -92,6 +94,7 @@ class Companion::Impl {
   void watch_silence(Instant now);
   void prepare(Instant now);
   void ask_streams();
+  void check_parameters(Instant now);
   void stand_by(Instant now);
   void arm(Instant now);
   void ask_for_mode(std::uint32_t mode, Instant now);
@@ -138,6 +141,7 @@ class Companion::Impl {
   CommandDesk desk_;
   BootClock clock_;
   Motion motion_;
+  ParameterCheck parameters_;
   BoundedQueue<mavlink::WireBytes> packets_{64};
   BoundedQueue<Notice> notices_{64};
 

@@ -69,7 +69,7 @@ std::vector<std::string> flight_controller_command(const std::filesystem::path& 
           "--airframe", spec.is_copter() ? "copter" : "plane",
           "--origin", number(vehicle.origin.latitude_deg), number(vehicle.origin.longitude_deg),
           number(vehicle.origin.height_m - fc.geoid_height_m),
-          "--airborne", "--mode", "LOITER",
+          "--failsafe", "--airborne", "--mode", "LOITER",
           "--start", number(vehicle.start.x_m), number(vehicle.start.y_m), number(spec.height_m),
           "--heading", number(compass_deg_from_heading(vehicle.start.heading_rad)),
           "--hold-until", std::to_string(vehicle.time.epoch_unix_ns),

@@ -122,6 +122,10 @@ void MavlinkEndpoint::on_packet(const mavlink::Packet& packet, Instant now) {
     on_command(*command, packet, now);
   } else if (const auto floats = mavlink::decode<mavlink::CommandLong>(packet)) {
     on_command(as_int(*floats), packet, now);
+  } else if (const auto asked = mavlink::decode<mavlink::ParamRequestRead>(packet)) {
+    if (for_us(asked->target_system, asked->target_component)) {
+      tell_parameter(mavlink::text_of(asked->param_id));
+    }
   } else if (const auto question = mavlink::decode<mavlink::Timesync>(packet)) {
     on_timesync(*question, packet, now);
   } else if (const auto attitude = mavlink::decode<mavlink::SetAttitudeTarget>(packet)) {
@@ -250,6 +254,28 @@ CommandResult MavlinkEndpoint::restart(const mavlink::CommandInt& command, Insta
   if (vehicle_.report().armed && command.y != kForceRestart) return CommandResult::failed;
   restart_at_ = now + kRestartDelay;
   return CommandResult::accepted;
+}
+
+/// Those that it keeps to; of others it says nothing, as ArduPilot of those that it does not know.
+void MavlinkEndpoint::tell_parameter(std::string_view name) {
+  const bool is_plane = config_.airframe == Airframe::plane;
+  const float failsafe = config_.companion_failsafe ? 1.0F : 0.0F;
+  const std::array<std::pair<std::string_view, float>, 4> parameters{{
+      {"SYSID_THISMAV", config_.system_id},
+      {"SYSID_MYGCS", config_.companion_system},
+      {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
+      {is_plane ? "FS_LONG_ACTN" : "", failsafe},  // RTL, or none
+  }};
+  for (const auto& [known, value] : parameters) {
+    if (name.empty() || name != known) continue;
+    mavlink::ParamValue answer;
+    answer.param_value = value;
+    answer.param_count = static_cast<std::uint16_t>(parameters.size());
+    answer.param_index = 0xFFFF;  // it was asked for by its name
+    answer.param_id = mavlink::field_of<16>(name);
+    answer.param_type = 2;  // MAV_PARAM_TYPE_INT8
+    send(encoder_.encode(answer));
+  }
 }
 
 void MavlinkEndpoint::on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet,

@@ -50,6 +50,7 @@ class MavlinkEndpoint {
   mavlink::CommandResult tell_interval(const mavlink::CommandInt& command);
   mavlink::CommandResult send_once(std::uint32_t id, Instant now);
   mavlink::CommandResult restart(const mavlink::CommandInt& command, Instant now);
+  void tell_parameter(std::string_view name);
   void on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet, Instant now);
   [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const;
   [[nodiscard]] Situation situation(Instant now) const;

@@ -224,6 +224,8 @@ constexpr std::array kAutopilotNews{
     std::string_view{"the autopilot runs ArduPilot {detail}"},
     std::string_view{"autopilot: {detail}"},
     std::string_view{"the autopilot refuses {detail}"},
+    std::string_view{"the aircraft is not flown with the autopilot's parameters: {detail}"},
+    std::string_view{"a parameter of the autopilot was changed: {detail}"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 

@@ -89,7 +89,7 @@ class CanFaults : public ::testing::Test {
     // A shell, so that it reads what the pilot types from a pipe with a name.
     const std::string command =
         "exec '" SKEIN_FC "' --bus " + bus_ +
-        " --airborne --mode LOITER --start 0 0 300 --origin 31.5 105 480 <'" + fifo() + "'";
+        " --failsafe --airborne --mode LOITER --start 0 0 300 --origin 31.5 105 480 <'" + fifo() + "'";
     auto started = hil::ChildProcess::start({"/bin/sh", "-c", command}, folder_ / "fc", {});
     ASSERT_TRUE(started.ok());
     flight_controller_ = std::make_unique<hil::ChildProcess>(std::move(started).value());

@@ -80,6 +80,7 @@ struct Wind {
 
 hil::EmulatorConfig emulator(const VehicleSpec& spec, const Wind& wind) {
   hil::EmulatorConfig c;
+  c.companion_failsafe = true;
   c.origin = kOrigin;
   c.airborne = true;
   c.mode = "LOITER";
@@ -297,6 +298,7 @@ struct CopterFlight : Flight {
   static hil::EmulatorConfig config(std::uint64_t seed) {
     hil::EmulatorConfig c;
     c.airframe = hil::Airframe::copter;
+    c.companion_failsafe = true;
     c.origin = kOrigin;
     c.start = kPad;
     c.airspeed_mps = 10.0;

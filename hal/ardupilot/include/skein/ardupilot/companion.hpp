@@ -62,7 +62,7 @@ class Companion {
   enum class State : std::uint8_t {
     searching,    ///< for the HEARTBEAT of an autopilot
     refused,      ///< there is one, and it is not what was configured
-    preparing,    ///< asks for firmware, streams and the autopilot's clock
+    preparing,    ///< asks for firmware, streams, clock and the parameters that safety rests on
     standing_by,  ///< connected; the aircraft is not the companion's
     arming,       ///< has asked for take-off mode and arming
     climbing,     ///< armed by the companion; the autopilot takes off
@@ -79,7 +79,7 @@ class Companion {
   enum class Event : std::uint8_t {
     autopilot_found,
     wrong_autopilot,
-    ready,       ///< the streams flow
+    ready,       ///< the streams flow, and the parameters are good
     may_launch,  ///< on the ground, ready to arm, and that was asked for
     armed,
     climbed,     ///< high enough to be taken

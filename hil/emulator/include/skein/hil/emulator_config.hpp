@@ -26,7 +26,7 @@ struct EmulatorConfig {
   bool fd = false;                    ///< sends CAN FD frames
   std::uint8_t system_id = 1;         ///< MAVLink
   std::uint8_t companion_system = 1;  ///< SYSID_MYGCS: whose heartbeat the failsafe waits for
-  bool companion_failsafe = false;    ///< FS_GCS_ENABL
+  bool companion_failsafe = false;    ///< FS_GCS_ENABL and FS_LONG_ACTN; a companion needs them
 
   Wgs84 origin;                 ///< of the frame in which `start` is given
   Pose2 start;                  ///< mission frame

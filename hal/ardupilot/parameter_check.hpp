@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/base/time.hpp"
+#include "skein/domain/vehicle.hpp"
+
+namespace skein::ardupilot {
+
+/// A parameter of the autopilot that the safety of a flight rests on.
+struct SafetyParameter {
+  std::string_view name;        ///< of 4.5 and 4.6
+  std::string_view later_name;  ///< of later releases, where they have another; else empty
+  std::span<const int> good;    ///< what it may be; empty: the autopilot's own system
+  std::string_view why;         ///< what is lost without
+};
+/// Those of an airframe; docs/ardupilot.md is printed from it.
+[[nodiscard]] std::span<const SafetyParameter> safety_parameters(Airframe airframe);
+
+/// Asks an autopilot for them, and judges its answers. Whoever may fly waits until all are good;
+/// what is wrong is asked for again, so that setting it is enough.
+class ParameterCheck {
+ public:
+  ParameterCheck(Airframe airframe, std::uint8_t system_id);
+
+  /// Nothing is known any more: the autopilot is another, or has started anew.
+  void begin();
+  /// Names to be asked for now.
+  [[nodiscard]] std::vector<std::string_view> due(Instant now);
+  /// What a PARAM_VALUE says; any name and value.
+  void on_value(std::string_view name, float value);
+  [[nodiscard]] bool good() const;
+  /// What is wrong and was not told yet, or not for long, as a sentence with its remedy.
+  [[nodiscard]] std::optional<std::string> poll_finding(Instant now);
+
+ private:
+  struct Entry {
+    const SafetyParameter* parameter = nullptr;
+    std::string_view name;  ///< by which it has answered; at first its own
+    std::optional<float> value = {};
+    int asked = 0;  ///< since the last answer
+    std::optional<Instant> asked_at = {};
+    std::optional<Instant> told_at = {};
+  };
+  [[nodiscard]] bool is_good(const Entry& entry) const;
+  [[nodiscard]] bool is_found_wrong(const Entry& entry) const;
+  [[nodiscard]] std::string finding(const Entry& entry) const;
+
+  std::uint8_t system_id_;
+  std::vector<Entry> entries_;
+};
+
+}  // namespace skein::ardupilot
