@@ -112,7 +112,7 @@ AgentLink link_to(network::Node& node, HealthBoard& health) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
-              process::log_misfits(node);
+              process::log_troubles(node);
               return std::nullopt;
             }
             return AgentLink::Received{std::move(received->message), received->sender};
@@ -237,11 +237,12 @@ class Threads {
     spdlog::info(
         "ended: {} control periods, {} overruns, {} without a state; messages sent {}, received "
         "{}, dropped {}, refused of their senders {}; datagrams of strangers {}, decisions "
-        "unproven {}; "
+        "unproven {}; network restarted {} times, messages not sent meanwhile {}; "
         "protocol errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
-        traffic.of_strangers, traffic.unproven, counters.protocol_errors + counters.bad_messages,
+        traffic.of_strangers, traffic.unproven, traffic.restarts, traffic.unconnected,
+        counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;
@@ -395,6 +396,13 @@ class HostDesk {
   std::chrono::steady_clock::time_point next_look_{};
 };
 
+Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
+                                            const process::NodeStart& start, process::Wake& wake) {
+  auto node = process::node_config(config, start, [&wake] { wake.notify(); });
+  node.isolated = true;
+  return network::Node::open(node);
+}
+
 }  // namespace
 
 int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
@@ -428,8 +436,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     writer = std::move(*opened);
   }
   process::Wake wake_agent;
-  auto node = network::Node::open(
-      process::node_config(config.network, *start, [&wake_agent] { wake_agent.notify(); }));
+  auto node = join(config.network, *start, wake_agent);
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;
