@@ -85,14 +85,14 @@ class Reader {
   }
   codec::Role role() {
     const auto value = number<std::uint8_t>();
-    require(value == static_cast<std::uint8_t>(codec::Role::vehicle) ||
-            value == static_cast<std::uint8_t>(codec::Role::ground));
-    return static_cast<codec::Role>(value);
+    if (value == static_cast<std::uint8_t>(codec::Role::ground)) return codec::Role::ground;
+    require(value == static_cast<std::uint8_t>(codec::Role::vehicle));
+    return codec::Role::vehicle;
   }
   codec::Topic topic() {
     const auto value = number<std::uint8_t>();
     require(value < codec::kTopicCount);
-    return static_cast<codec::Topic>(value);
+    return whole_ ? static_cast<codec::Topic>(value) : codec::Topic{};
   }
   void require(bool held) { whole_ = whole_ && held; }
   [[nodiscard]] bool is_whole() const { return whole_ && left_.empty(); }

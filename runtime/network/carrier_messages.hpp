@@ -19,7 +19,7 @@ namespace skein::network {
 
 /// No datagram is longer: a configuration of all peers that there may be, and not the longest
 /// message of the mission.
-inline constexpr std::size_t kCarrierMessageBytesMax = 128 * 1024;
+inline constexpr std::size_t kCarrierMessageBytesMax = std::size_t{128} * 1024;
 inline constexpr std::size_t kCarrierPeersMax = 4096;
 inline constexpr std::size_t kCarrierTextMax = 1000;
 /// Certificates and key changes, whose own readers judge them.

@@ -29,11 +29,14 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds kPingPeriod{100};
-/// A ping that is later than this tells of a busy machine, not of the child.
-constexpr milliseconds kOnTime{50};
 /// So long without an answer, and it is ended. Twice as long after it was once, up to the last.
+/// Only what tells of the child counts: not where the machine is too busy for a ping to be in time,
+/// nor while the child is seen to compute, until the last; a new child costs a busy machine more
+/// than patience.
 constexpr milliseconds kSilentFor{300};
 constexpr milliseconds kSilentForMax{2400};
+constexpr milliseconds kOnTime{50};
+constexpr milliseconds kComputes{1};  ///< of kPingPeriod
 constexpr seconds kJoinsWithin{10};
 /// Who lives so long is started again at once; the others wait, twice as long each time.
 constexpr seconds kLongLife{10};
@@ -42,7 +45,7 @@ constexpr milliseconds kAgainAfter{50};
 constexpr milliseconds kAgainAfterMax{1000};
 /// What comes within this after something was read is read in one go: a wake-up costs more than a
 /// message, and the agent looks 50 times a second.
-constexpr milliseconds kReadSpacing{5};
+constexpr milliseconds kReadSpacing{20};
 constexpr int kReadAtOnce = 256;  ///< then it is seen to pings
 constexpr int kLeavesWithinMs = 1000;
 /// How many counters a child may seal with before it is heard of again: a second's and more. What
@@ -101,7 +104,9 @@ class CarrierProcess final : public Carrier {
     Clock::time_point next_read = born;
     std::uint32_t pings = 0;
     std::uint32_t answered = 0;
-    milliseconds silent{0};
+    milliseconds silent{0};      ///< so far as it counts
+    milliseconds unanswered{0};  ///< all of it
+    std::chrono::nanoseconds computed{0};
     bool joined = false;
     bool over = false;
     std::string why;  ///< it is over; empty: as its process says
@@ -297,10 +302,10 @@ std::string CarrierProcess::live() {
   }
   const std::string how = life.child.end();
   if (life.why.empty()) life.why = how;
-  if (life.silent >= silent_for_) silent_for_ = std::min(2 * silent_for_, kSilentForMax);
+  if (life.unanswered >= silent_for_) silent_for_ = std::min(2 * silent_for_, kSilentForMax);
   again_after_ = life.age() > kLongLife ? milliseconds{0}
                                         : std::clamp(2 * again_after_, kAgainAfter, kAgainAfterMax);
-  mourn(life.why, life.joined, Clock::now() - life.silent);
+  mourn(life.why, life.joined, Clock::now() - life.unanswered);
   return life.why;
 }
 
@@ -428,12 +433,16 @@ void CarrierProcess::watch(Life& life) {
     return;
   }
   if (life.age() > kCalmLife) silent_for_ = kSilentFor;
+  const auto before = std::exchange(life.computed, life.child.computed());
   if (life.answered == life.pings) {
-    life.silent = milliseconds{0};
-  } else if (!is_late) {
-    life.silent += kPingPeriod;
+    life.silent = life.unanswered = milliseconds{0};
+  } else {
+    life.unanswered += kPingPeriod;
+    if (!is_late && life.computed - before < kComputes) life.silent += kPingPeriod;
   }
-  if (life.silent >= silent_for_) return life.end("it was silent for " + seconds_text(life.silent));
+  if (life.silent >= silent_for_ || life.unanswered >= kSilentForMax) {
+    return life.end("it was silent for " + seconds_text(life.unanswered));
+  }
   ping(life);
 }
 

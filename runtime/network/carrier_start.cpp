@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <ctime>
 #include <system_error>
 
 #include "confinement.hpp"
@@ -96,17 +97,24 @@ Result<CarrierChild> CarrierChild::start(VehicleId self) {
   return CarrierChild{pid, std::move(ours), std::move(ended)};
 }
 
+std::chrono::nanoseconds CarrierChild::computed() const {
+  clockid_t clock{};
+  timespec time{};
+  if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
+  return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+}
+
 CarrierChild::~CarrierChild() { (void)end(); }
 
 std::string CarrierChild::end() {
-  if (pid_.value < 0) return {};
+  if (pid_ < 0) return {};
   siginfo_t how{};
-  const auto id = static_cast<id_t>(pid_.value);
+  const auto id = static_cast<id_t>(pid_);
   if (waitid(P_PID, id, &how, WEXITED | WNOHANG) == 0 && how.si_pid == 0) {
-    kill(pid_.value, SIGKILL);
+    kill(pid_, SIGKILL);
     while (waitid(P_PID, id, &how, WEXITED) != 0 && errno == EINTR) continue;
   }
-  pid_.value = -1;
+  pid_ = -1;
   return text_of(how);
 }
 

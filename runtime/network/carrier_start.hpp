@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <chrono>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,8 @@ inline constexpr int kCarrierDescriptor = 3;
 class Descriptor {
  public:
   explicit Descriptor(int number = -1) : number_{number} {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
   Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
   Descriptor& operator=(Descriptor&& other) noexcept {
     std::swap(number_, other.number_);
@@ -38,12 +41,19 @@ class CarrierChild {
  public:
   /// This program again, with nothing of this process but the environment and its end of a socket.
   [[nodiscard]] static Result<CarrierChild> start(VehicleId self);
-  CarrierChild(CarrierChild&&) = default;
+  CarrierChild(CarrierChild&& other) noexcept
+      : pid_{std::exchange(other.pid_, -1)},
+        socket_{std::move(other.socket_)},
+        ended_{std::move(other.ended_)} {}
   CarrierChild& operator=(CarrierChild&&) = delete;
+  CarrierChild(const CarrierChild&) = delete;
+  CarrierChild& operator=(const CarrierChild&) = delete;
   ~CarrierChild();
 
   [[nodiscard]] int socket() const { return socket_.get(); }
   [[nodiscard]] int ended() const { return ended_.get(); }  ///< becomes readable when it has
+  /// Processor time that it has taken.
+  [[nodiscard]] std::chrono::nanoseconds computed() const;
   /// Ends it, if it has not, and gives how it ended: "signal 11 (Segmentation fault)".
   std::string end();
   /// Lets it take its leave of the network, at most so long.
@@ -52,12 +62,7 @@ class CarrierChild {
  private:
   CarrierChild(pid_t pid, Descriptor socket, Descriptor ended)
       : pid_{pid}, socket_{std::move(socket)}, ended_{std::move(ended)} {}
-  struct Pid {
-    explicit Pid(pid_t number) : value{number} {}
-    Pid(Pid&& other) noexcept : value{std::exchange(other.value, -1)} {}
-    pid_t value;
-  };
-  Pid pid_;
+  pid_t pid_;
   Descriptor socket_;
   Descriptor ended_;
 };

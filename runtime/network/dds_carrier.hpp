@@ -25,6 +25,8 @@ namespace skein::network {
 class DdsCarrier final : public Carrier, private eprosima::fastdds::dds::DomainParticipantListener {
  public:
   DdsCarrier(CarrierConfig config, CarrierSink& sink);
+  DdsCarrier(const DdsCarrier&) = delete;
+  DdsCarrier& operator=(const DdsCarrier&) = delete;
   ~DdsCarrier() override;
 
   /// Everything that needs files: the checks, the transport plugin. To be called once, before

@@ -239,6 +239,7 @@ TEST_F(Isolation, WhoTakesTheCarrierOverGetsNoFurther) {
     const auto folder = folder_.string();
     // Left to the programs that this one starts, as by a library that forgets O_CLOEXEC.
     const int inherited = ::open((folder + "/there").c_str(), O_RDWR | O_CREAT, 0600);
+    EXPECT_EQ(ftruncate(inherited, kInheritedBytes), 0);
     const auto node = open(config);
     order(std::string{kEscape} + " " + std::to_string(getpid()) + " " + folder);
     std::istringstream report{socket_.receive()};
