@@ -1,16 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 //
 // The process that carries a node's network: Fast DDS, and a socket to its node.
-#include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <memory>
 #include <string_view>
@@ -21,6 +18,7 @@
 #include "carrier_start.hpp"
 #include "confinement.hpp"
 #include "dds_carrier.hpp"
+#include "processor_wait.hpp"
 #include "skein/network/carrier_process.hpp"
 
 namespace skein::network {
@@ -31,39 +29,38 @@ using Clock = std::chrono::steady_clock;
 /// A thread of Fast DDS that is at one datagram for so long hangs; longer where this thread itself
 /// had to wait for a processor for so much of the time between two pings.
 constexpr Duration kGetsOnWithin = std::chrono::milliseconds{400};
-constexpr Duration kGetsOnWithinMax = std::chrono::milliseconds{2400};
+constexpr Duration kGetsOnWithinMax = std::chrono::milliseconds{5000};
 constexpr Duration kBusy = std::chrono::milliseconds{5};
 /// When the predecessor's end is told again, since the join: datagrams are lost.
 constexpr std::array kBuryAgain{std::chrono::milliseconds{300}, std::chrono::milliseconds{1000}};
 
 class CarrierMain : private CarrierSink {
  public:
-  explicit CarrierMain(int socket) : socket_{socket}, buffer_(kCarrierMessageBytesMax) {}
+  explicit CarrierMain(int socket)
+      : socket_{socket}, unconfined_{give_up_rights(socket)}, buffer_(kCarrierMessageBytesMax) {}
   CarrierMain(const CarrierMain&) = delete;
   CarrierMain& operator=(const CarrierMain&) = delete;
   virtual ~CarrierMain() = default;
 
   int run() {
-    std::string unconfined = give_up_rights(socket_);
-    schedule_ = open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC);
     const auto first = receive(0);
     const auto* config = first ? std::get_if<CarrierConfig>(&*first) : nullptr;
     if (config == nullptr) return 1;
     CarrierSink& sink = *this;
     carrier_ = std::make_unique<DdsCarrier>(*config, sink);
-    if (const auto joined = join(unconfined); !joined) {
+    if (const auto joined = join(); !joined) {
       send(Refused{joined.error().message});
       return 0;
     }
-    send(Joined{unconfined.substr(0, kCarrierTextMax)});
+    send(Joined{unconfined_.substr(0, kCarrierTextMax)});
     serve();
     return 0;
   }
 
  private:
-  Result<void> join(std::string& unconfined) {
+  Result<void> join() {
     if (auto r = carrier_->prepare(); !r) return r;
-    const auto note = [&unconfined](const std::string& failed) {
+    const auto note = [&unconfined = unconfined_](const std::string& failed) {
       if (!failed.empty() && unconfined.find(failed) == std::string::npos) {
         unconfined.append(unconfined.empty() ? "" : "; ").append(failed);
       }
@@ -114,8 +111,7 @@ class CarrierMain : private CarrierSink {
     if (written != Written::yes) ++lost_;
   }
   void take(const Ping& ping) {
-    const Duration waited = waited_for_processor();
-    const bool is_busy = waited - std::exchange(waited_, waited) > kBusy;
+    const bool is_busy = waited_.since_last() > kBusy;
     if (!carrier_->gets_on(is_busy ? kGetsOnWithinMax : kGetsOnWithin)) {
       send(Stuck{});
       _exit(1);  // its destructors might wait for that thread
@@ -128,17 +124,6 @@ class CarrierMain : private CarrierSink {
     auto peers = carrier_->peers();
     if (peers.size() > kCarrierPeersMax) peers.resize(kCarrierPeersMax);
     if (peers != peers_ && send(PeersNow{peers})) peers_ = std::move(peers);
-  }
-  /// This thread, since it began; zero where the kernel does not say.
-  [[nodiscard]] Duration waited_for_processor() const {
-    std::array<char, 96> text{};  // "computed waited slices", in ns
-    const ssize_t size = pread(schedule_, text.data(), text.size() - 1, 0);
-    if (size <= 0) return {};
-    const std::string_view all{text.data(), static_cast<std::size_t>(size)};
-    const auto space = std::min(all.find(' '), all.size() - 1);
-    std::int64_t waited = 0;
-    (void)std::from_chars(all.data() + space + 1, all.data() + all.size(), waited);
-    return Duration{waited};
   }
   void take(const ChangeKey& change) { carrier_->change_key(change.key, change.old_for); }
   void take(const ForgetNews&) {
@@ -165,8 +150,8 @@ class CarrierMain : private CarrierSink {
   }
 
   const int socket_;
-  int schedule_ = -1;
-  Duration waited_{};
+  std::string unconfined_;  ///< what it could not give up
+  ProcessorWait waited_;
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::uint64_t> lost_{0};
   std::vector<Peer> peers_;  ///< as told

@@ -19,6 +19,7 @@
 #include "carrier_messages.hpp"
 #include "carrier_start.hpp"
 #include "key_news_desk.hpp"
+#include "processor_wait.hpp"
 #include "skein/base/assert.hpp"
 
 namespace skein::network {
@@ -29,13 +30,14 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds kPingPeriod{100};
-/// So long without an answer, and it is ended. Twice as long after it was once, up to the last.
-/// Only what tells of the child counts: not where the machine is too busy for a ping to be in time,
-/// nor while the child is seen to compute, until the last; a new child costs a busy machine more
-/// than patience.
+/// So long without an answer, and it is ended. Twice as long after it was once, up to the third.
+/// Only what tells of the child counts: not where this thread had to wait for a processor, nor
+/// while the child is seen to compute, until the last; a new child costs a busy machine more than
+/// patience.
 constexpr milliseconds kSilentFor{300};
-constexpr milliseconds kSilentForMax{2400};
-constexpr milliseconds kOnTime{50};
+constexpr milliseconds kSilentForMax{1200};
+constexpr milliseconds kSilentOnBusyMax{5000};
+constexpr milliseconds kBusy{5};      ///< of kPingPeriod without a processor
 constexpr milliseconds kComputes{1};  ///< of kPingPeriod
 constexpr seconds kJoinsWithin{10};
 /// Who lives so long is started again at once; the others wait, twice as long each time.
@@ -179,6 +181,7 @@ class CarrierProcess final : public Carrier {
 
   // The thread's own.
   std::vector<std::uint8_t> buffer_;
+  std::optional<ProcessorWait> waited_;
   std::uint8_t next_run_ = 0;
   std::uint64_t counters_end_ = 0;  ///< of those that any child was given
   std::string lost_by_;             ///< why the one before is gone; empty: there was none
@@ -255,6 +258,7 @@ void CarrierProcess::wake() const {
 // --- one child after the other ------------------------------------------------------------------
 
 void CarrierProcess::run() {
+  waited_.emplace();
   while (!ending_) {
     const std::string why = live();
     if (ending_) break;
@@ -302,7 +306,7 @@ std::string CarrierProcess::live() {
   }
   const std::string how = life.child.end();
   if (life.why.empty()) life.why = how;
-  if (life.unanswered >= silent_for_) silent_for_ = std::min(2 * silent_for_, kSilentForMax);
+  if (life.silent >= silent_for_) silent_for_ = std::min(2 * silent_for_, kSilentForMax);
   again_after_ = life.age() > kLongLife ? milliseconds{0}
                                         : std::clamp(2 * again_after_, kAgainAfter, kAgainAfterMax);
   mourn(life.why, life.joined, Clock::now() - life.unanswered);
@@ -426,7 +430,7 @@ void CarrierProcess::flush(Life& life) {
 void CarrierProcess::watch(Life& life) {
   const auto now = Clock::now();
   if (now < life.next_ping) return;
-  const bool is_late = now - life.next_ping > kOnTime;
+  const bool is_busy = waited_->since_last() > kBusy;
   life.next_ping = now + kPingPeriod;
   if (!life.joined) {
     if (life.age() > kJoinsWithin) life.end("it did not join within 10 s");
@@ -438,9 +442,9 @@ void CarrierProcess::watch(Life& life) {
     life.silent = life.unanswered = milliseconds{0};
   } else {
     life.unanswered += kPingPeriod;
-    if (!is_late && life.computed - before < kComputes) life.silent += kPingPeriod;
+    if (!is_busy && life.computed - before < kComputes) life.silent += kPingPeriod;
   }
-  if (life.silent >= silent_for_ || life.unanswered >= kSilentForMax) {
+  if (life.silent >= silent_for_ || life.unanswered >= kSilentOnBusyMax) {
     return life.end("it was silent for " + seconds_text(life.unanswered));
   }
   ping(life);
