@@ -45,9 +45,9 @@ constexpr seconds kLongLife{10};
 constexpr seconds kCalmLife{60};  ///< after which silence is judged as at first
 constexpr milliseconds kAgainAfter{50};
 constexpr milliseconds kAgainAfterMax{1000};
-/// What comes within this after something was read is read in one go: a wake-up costs more than a
-/// message, and the agent looks 50 times a second.
-constexpr milliseconds kReadSpacing{20};
+/// What comes within this after something was read is read in one go: a wake-up costs ten times as
+/// much as a message. Less than the agent's period.
+constexpr milliseconds kReadSpacing{30};
 constexpr int kReadAtOnce = 256;  ///< then it is seen to pings
 constexpr int kLeavesWithinMs = 1000;
 /// How many counters a child may seal with before it is heard of again: a second's and more. What
