@@ -15,6 +15,10 @@ namespace {
 
 /// A place in the configuration is short: so many fit into a text of a message.
 constexpr std::size_t kKeysTextMax = 160;
+/// Of two programs with one number; goes on like a key: "another ...".
+constexpr const char* kTwin = "program under its number";
+constexpr std::size_t kEarlierMax = 4;
+constexpr Duration kTwinLasts = 3 * SetupBook::kPeriod;
 
 /// But for how far the clock is out, which every message measures anew.
 bool same(const std::optional<SetupDifference>& a, const std::optional<SetupDifference>& b) {
@@ -59,16 +63,25 @@ SetupBook::SetupBook(const SetupParams& params, VehicleId self, InstanceId insta
 }
 
 void SetupBook::on_setup(const Setup& setup, Instant now) {
-  if (setup.node == own_.node) return;
+  if (setup.node == own_.node && setup.instance == own_.instance) return;
   if (!nodes_.contains(setup.node) && nodes_.size() >= kNodesMax) return;
   Node& node = nodes_[setup.node];
   if (node.instance != setup.instance) {
     // Whoever is new has not heard of this node either.
     next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
-    auto before = std::move(node.difference);
-    node = {};
+    const Node before = std::exchange(node, {});
     node.instance = setup.instance;
-    node.difference = std::move(before);
+    node.difference = before.difference;
+    node.earlier = before.earlier;
+    node.twin_at = before.twin_at;
+    // A program that has ended does not speak again: there are two.
+    if (contains(node.earlier, setup.instance)) node.twin_at = now;
+    if (before.instance != InstanceId{}) node.earlier.push_back(before.instance);
+    if (node.earlier.size() > kEarlierMax) node.earlier.erase(node.earlier.begin());
+  }
+  if (setup.node == own_.node) {
+    node.twin_at = now;
+    return compare(setup.node, node, now);
   }
   node.keys = differing_keys(setup);
   watch_clock(node, setup, now);
@@ -86,16 +99,16 @@ void SetupBook::on_ahead(VehicleId id, Duration ahead, Instant now) {
 
 /// What is news is told the others at once: they may not know it of themselves.
 void SetupBook::compare(VehicleId id, Node& node, Instant now) {
+  std::string keys = node.keys;
+  if (node.twin_at) keys.append(keys.empty() ? "" : ", ").append(kTwin);
   std::optional<SetupDifference> difference;
-  if (!node.keys.empty() || node.ahead_s != 0.0) {
-    difference = SetupDifference{node.keys, node.ahead_s};
-  }
+  if (!keys.empty() || node.ahead_s != 0.0) difference = SetupDifference{keys, node.ahead_s};
   const bool is_news = !same(difference, node.difference);
   node.difference = std::move(difference);
   if (!is_news) return;
   next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
   if (node.difference) {
-    news_.push(event::SetupDiffers{id, node.keys, node.ahead_s});
+    news_.push(event::SetupDiffers{id, keys, node.ahead_s});
   } else {
     news_.push(event::SetupAgrees{id});
   }
@@ -134,6 +147,11 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
 
 std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
   if (now < next_) return std::nullopt;
+  for (auto& [id, node] : nodes_) {
+    if (!node.twin_at || now - *node.twin_at <= kTwinLasts) continue;
+    node.twin_at.reset();
+    compare(id, node, now);
+  }
   said_at_ = now;
   next_ = now + (orders.known ? kPeriod : kPeriodWhileNew);
   Setup setup = own_;

@@ -107,6 +107,39 @@ TEST(SetupBook, WhoDoesNotKnowTheOrdersAsksEverySecond) {
   EXPECT_EQ(book.next_timeout(), at(101));
 }
 
+TEST(SetupBook, TwoProgramsUnderOneNumberAreFoundByWhoHearsBoth) {
+  SetupBook book{params(), {3}, InstanceId{30}, at(0)};
+  book.on_setup(of_seven(params(), at(0), InstanceId{70}), at(0.1));
+  book.on_setup(of_seven(params(), at(2), InstanceId{71}), at(2.1));
+  EXPECT_EQ(book.difference(kSeven), nullptr) << "one that was started anew";
+  book.on_setup(of_seven(params(), at(5), InstanceId{70}), at(5.1));
+  ASSERT_NE(book.difference(kSeven), nullptr);
+  EXPECT_EQ(text_of(*book.difference(kSeven)), "another program under its number");
+  EXPECT_EQ(book.poll_news(),
+            EventBody{(event::SetupDiffers{kSeven, "program under its number", 0.0})});
+  for (double t = 7.0; t < 15.0; t += 5.0) {
+    book.on_setup(of_seven(params(), at(t), InstanceId{71}), at(t + 0.1));
+    book.on_setup(of_seven(params(), at(t + 3.0), InstanceId{70}), at(t + 3.1));
+    (void)book.poll_setup({}, at(t + 3.2));
+  }
+  EXPECT_FALSE(book.poll_news()) << "it is news once";
+  book.on_setup(of_seven(params(), at(33), InstanceId{70}), at(33.1));
+  (void)book.poll_setup({}, at(40));
+  EXPECT_EQ(book.difference(kSeven), nullptr) << "the other has ended";
+  EXPECT_EQ(book.poll_news(), EventBody{event::SetupAgrees{kSeven}});
+}
+
+TEST(SetupBook, AnotherProgramUnderTheOwnNumberIsFound) {
+  SetupBook book{params(), kSeven, kFirst, at(0)};
+  book.on_setup(of_seven(params(), at(0)), at(0.1));
+  EXPECT_EQ(book.difference(kSeven), nullptr) << "itself";
+  book.on_setup(of_seven(params(), at(1), InstanceId{71}), at(1.1));
+  ASSERT_NE(book.difference(kSeven), nullptr);
+  EXPECT_TRUE(book.poll_news());
+  (void)book.poll_setup({}, at(17));
+  EXPECT_EQ(book.difference(kSeven), nullptr);
+}
+
 TEST(SetupBook, ManyKeysAreCounted) {
   SetupParams ours;
   SetupParams theirs;

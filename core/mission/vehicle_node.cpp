@@ -98,9 +98,11 @@ class VehicleNode::Impl {
   }
 
   void update_bar(Instant now) {
-    const Bar now_barred = setup.difference(kGroundStation) != nullptr ? Bar::setup_differs
-                           : knows_orders                              ? Bar::none
-                                                                       : Bar::orders_unknown;
+    const bool differs =
+        setup.difference(kGroundStation) != nullptr || setup.difference(self) != nullptr;
+    const Bar now_barred = differs        ? Bar::setup_differs
+                           : knows_orders ? Bar::none
+                                          : Bar::orders_unknown;
     if (now_barred == std::exchange(bar, now_barred)) return;
     agent->on_bar(bar, now);
   }

@@ -395,6 +395,26 @@ TEST(VehicleNode, WhoPassesOrdersOnCannotTakeTheVehicleOver) {
       << "the ground station has answered";
 }
 
+TEST(VehicleNode, OfTwoGroundStationsItTakesNothingButHoldAndReturn) {
+  Vehicle vehicle{config(), at_seconds(0.0)};
+  const auto setup_of_ground = [](std::uint64_t instance, double seconds) {
+    mission::Setup setup;
+    setup.node = kGroundStation;
+    setup.instance = {instance};
+    setup.time = at_seconds(seconds);
+    setup.clock_guard = std::chrono::milliseconds{500};
+    setup.knows_orders = true;
+    return setup;
+  };
+  for (const auto& [instance, seconds] :
+       {std::pair{1ULL, 1.0}, std::pair{2ULL, 2.0}, std::pair{1ULL, 6.0}}) {
+    vehicle.hear(setup_of_ground(instance, seconds), kGroundStation);
+    vehicle.step(seconds);
+  }
+  EXPECT_EQ(vehicle.node.bar(), Bar::setup_differs);
+  EXPECT_EQ(vehicle.node.agent().telemetry().activity, Activity::holding);
+}
+
 TEST(VehicleNode, OrdersHaveNumbersAfterMoreThanFortyNineDays) {
   const Instant late = at_seconds(60.0 * 86'400.0);
   Command before{kSelf, 0, CommandKind::hold};

@@ -39,7 +39,8 @@ struct SetupParams {
   Duration clock_guard = std::chrono::milliseconds{500};
 };
 
-/// In what another node differs from this one.
+/// In what another node differs from this one; or that two programs speak under its number, which
+/// may be this node's own.
 struct SetupDifference {
   std::string keys;          ///< with commas; empty: the clock alone
   double clock_ahead_s = 0;  ///< of the other; 0: within the guard
@@ -86,11 +87,13 @@ class SetupBook {
   /// A clock counts as within the guard again after so many setups in which it was.
   static constexpr int kClean = 3;
   struct Node {
-    InstanceId instance;
-    std::string keys;
+    InstanceId instance = {};
+    std::string keys = {};
     double ahead_s = 0;
     int clean = 0;
-    std::optional<SetupDifference> difference;
+    std::vector<InstanceId> earlier = {};  ///< that were heard before, the newest last
+    std::optional<Instant> twin_at = {};   ///< an earlier one was heard again
+    std::optional<SetupDifference> difference = {};
   };
 
   [[nodiscard]] std::string differing_keys(const Setup& setup) const;
