@@ -3,6 +3,7 @@
 // The process that carries a node's network: Fast DDS, and a socket to its node.
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -18,7 +19,6 @@
 #include "carrier_start.hpp"
 #include "confinement.hpp"
 #include "dds_carrier.hpp"
-#include "processor_wait.hpp"
 #include "skein/network/carrier_process.hpp"
 
 namespace skein::network {
@@ -26,11 +26,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A thread of Fast DDS that is at one datagram for so long hangs; longer where this thread itself
-/// had to wait for a processor for so much of the time between two pings.
+/// A thread of Fast DDS that is at one datagram for so long hangs; longer where there is no
+/// processor for all who are ready, which is seen by how often threads here lost theirs between two
+/// pings.
 constexpr Duration kGetsOnWithin = std::chrono::milliseconds{400};
 constexpr Duration kGetsOnWithinMax = std::chrono::milliseconds{5000};
-constexpr Duration kBusy = std::chrono::milliseconds{5};
+constexpr long kLostProcessors = 10;
+
 /// When the predecessor's end is told again, since the join: datagrams are lost.
 constexpr std::array kBuryAgain{std::chrono::milliseconds{300}, std::chrono::milliseconds{1000}};
 
@@ -111,7 +113,10 @@ class CarrierMain : private CarrierSink {
     if (written != Written::yes) ++lost_;
   }
   void take(const Ping& ping) {
-    const bool is_busy = waited_.since_last() > kBusy;
+    rusage used{};
+    (void)getrusage(RUSAGE_SELF, &used);
+    const bool is_busy =
+        used.ru_nivcsw - std::exchange(lost_processors_, used.ru_nivcsw) > kLostProcessors;
     if (!carrier_->gets_on(is_busy ? kGetsOnWithinMax : kGetsOnWithin)) {
       send(Stuck{});
       _exit(1);  // its destructors might wait for that thread
@@ -151,7 +156,7 @@ class CarrierMain : private CarrierSink {
 
   const int socket_;
   std::string unconfined_;  ///< what it could not give up
-  ProcessorWait waited_;
+  long lost_processors_ = 0;
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::uint64_t> lost_{0};
   std::vector<Peer> peers_;  ///< as told

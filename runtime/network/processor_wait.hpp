@@ -9,8 +9,7 @@ namespace skein::network {
 /// a machine too busy for others' silence to mean anything.
 class ProcessorWait {
  public:
-  /// Of the thread that makes it; it may be asked by that thread, also when it can open no file any
-  /// more.
+  /// Of the thread that makes it.
   ProcessorWait();
   ~ProcessorWait();
   ProcessorWait(const ProcessorWait&) = delete;
