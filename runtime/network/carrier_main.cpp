@@ -19,6 +19,7 @@
 #include "carrier_start.hpp"
 #include "confinement.hpp"
 #include "dds_carrier.hpp"
+#include "processor_wait.hpp"
 #include "skein/network/carrier_process.hpp"
 
 namespace skein::network {
@@ -30,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 /// processor for all who are ready, which is seen by how often threads here lost theirs between two
 /// pings.
 constexpr Duration kGetsOnWithin = std::chrono::milliseconds{400};
-constexpr Duration kGetsOnWithinMax = std::chrono::milliseconds{5000};
+constexpr Duration kGetsOnWithinMax = std::chrono::seconds{10};
 constexpr long kLostProcessors = 10;
 
 /// When the predecessor's end is told again, since the join: datagrams are lost.
@@ -116,7 +117,8 @@ class CarrierMain : private CarrierSink {
     rusage used{};
     (void)getrusage(RUSAGE_SELF, &used);
     const bool is_busy =
-        used.ru_nivcsw - std::exchange(lost_processors_, used.ru_nivcsw) > kLostProcessors;
+        used.ru_nivcsw - std::exchange(lost_processors_, used.ru_nivcsw) > kLostProcessors ||
+        is_machine_overloaded();
     if (!carrier_->gets_on(is_busy ? kGetsOnWithinMax : kGetsOnWithin)) {
       send(Stuck{});
       _exit(1);  // its destructors might wait for that thread

@@ -5,6 +5,9 @@
 
 namespace skein::network {
 
+/// Whether more are ready than there are processors for, twice as many of the last minute.
+[[nodiscard]] bool is_machine_overloaded();
+
 /// How long a thread was ready and had no processor, by the kernel's account: who has to wait is on
 /// a machine too busy for others' silence to mean anything.
 class ProcessorWait {
