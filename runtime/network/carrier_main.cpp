@@ -3,6 +3,7 @@
 // The process that carries a node's network: Fast DDS, and a socket to its node.
 #include <poll.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -26,11 +27,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A thread of Fast DDS that is at one datagram for so long hangs; longer where this thread itself
-/// had to wait for a processor for so much of the time between two pings.
+/// A thread of Fast DDS that is at one datagram for so long hangs; longer where there is no
+/// processor for all who are ready, which is seen by how often threads here lost theirs between two
+/// pings.
 constexpr Duration kGetsOnWithin = std::chrono::milliseconds{400};
-constexpr Duration kGetsOnWithinMax = std::chrono::milliseconds{5000};
-constexpr Duration kBusy = std::chrono::milliseconds{5};
+constexpr Duration kGetsOnWithinMax = std::chrono::seconds{10};
+constexpr long kLostProcessors = 10;
+
 /// When the predecessor's end is told again, since the join: datagrams are lost.
 constexpr std::array kBuryAgain{std::chrono::milliseconds{300}, std::chrono::milliseconds{1000}};
 
@@ -111,7 +114,11 @@ class CarrierMain : private CarrierSink {
     if (written != Written::yes) ++lost_;
   }
   void take(const Ping& ping) {
-    const bool is_busy = waited_.since_last() > kBusy;
+    rusage used{};
+    (void)getrusage(RUSAGE_SELF, &used);
+    const bool is_busy =
+        used.ru_nivcsw - std::exchange(lost_processors_, used.ru_nivcsw) > kLostProcessors ||
+        is_machine_overloaded();
     if (!carrier_->gets_on(is_busy ? kGetsOnWithinMax : kGetsOnWithin)) {
       send(Stuck{});
       _exit(1);  // its destructors might wait for that thread
@@ -151,7 +158,7 @@ class CarrierMain : private CarrierSink {
 
   const int socket_;
   std::string unconfined_;  ///< what it could not give up
-  ProcessorWait waited_;
+  long lost_processors_ = 0;
   std::vector<std::uint8_t> buffer_;
   std::atomic<std::uint64_t> lost_{0};
   std::vector<Peer> peers_;  ///< as told

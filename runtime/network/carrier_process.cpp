@@ -36,10 +36,12 @@ constexpr milliseconds kPingPeriod{100};
 /// patience.
 constexpr milliseconds kSilentFor{300};
 constexpr milliseconds kSilentForMax{1200};
-constexpr milliseconds kSilentOnBusyMax{5000};
+constexpr milliseconds kSilentOnBusyMax{10'000};
 constexpr milliseconds kBusy{5};      ///< of kPingPeriod without a processor
 constexpr milliseconds kComputes{1};  ///< of kPingPeriod
+/// Of time in which it neither computes nor waits for a processor.
 constexpr seconds kJoinsWithin{10};
+constexpr seconds kJoinsOnBusyMax{120};
 /// Who lives so long is started again at once; the others wait, twice as long each time.
 constexpr seconds kLongLife{10};
 constexpr seconds kCalmLife{60};  ///< after which silence is judged as at first
@@ -430,19 +432,23 @@ void CarrierProcess::flush(Life& life) {
 void CarrierProcess::watch(Life& life) {
   const auto now = Clock::now();
   if (now < life.next_ping) return;
-  const bool is_busy = waited_->since_last() > kBusy;
+  const bool is_busy = waited_->since_last() > kBusy || is_machine_overloaded();
   life.next_ping = now + kPingPeriod;
+  const auto before = std::exchange(life.computed, life.child.computed());
+  const bool tells = !is_busy && life.computed - before < kComputes;
   if (!life.joined) {
-    if (life.age() > kJoinsWithin) life.end("it did not join within 10 s");
+    if (tells) life.silent += kPingPeriod;
+    if (life.silent > kJoinsWithin || life.age() > kJoinsOnBusyMax) {
+      life.end("it did not join within " + seconds_text(life.age()));
+    }
     return;
   }
   if (life.age() > kCalmLife) silent_for_ = kSilentFor;
-  const auto before = std::exchange(life.computed, life.child.computed());
   if (life.answered == life.pings) {
     life.silent = life.unanswered = milliseconds{0};
   } else {
     life.unanswered += kPingPeriod;
-    if (!is_busy && life.computed - before < kComputes) life.silent += kPingPeriod;
+    if (tells) life.silent += kPingPeriod;
   }
   if (life.silent >= silent_for_ || life.unanswered >= kSilentOnBusyMax) {
     return life.end("it was silent for " + seconds_text(life.unanswered));
@@ -457,6 +463,7 @@ void CarrierProcess::ping(Life& life) {
 
 void CarrierProcess::take(Life& life, const Joined& joined) {
   if (std::exchange(life.joined, true)) return;
+  life.silent = milliseconds{0};
   {
     const std::lock_guard lock{mutex_};
     up_ = life.child.socket();

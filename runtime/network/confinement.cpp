@@ -85,7 +85,8 @@ constexpr std::array kAlways{"read",
                              "ioctl",
                              "fcntl",
                              "fstat",
-                             "pread64",
+                             "getrusage",
+                             "sysinfo",
                              "futex",
                              "set_robust_list",
                              "rseq",
@@ -145,9 +146,8 @@ bool allow_work(const Filter& filter) {
 }
 
 bool allow_opening(const Filter& filter) {
-  for (const char* call :
-       {"seccomp", "prctl", "bind", "uname", "sysinfo", "timerfd_create", "epoll_create1",
-        "eventfd2", "prlimit64", "sched_getparam", "sched_getscheduler"}) {
+  for (const char* call : {"seccomp", "prctl", "bind", "uname", "timerfd_create", "epoll_create1",
+                           "eventfd2", "prlimit64", "sched_getparam", "sched_getscheduler"}) {
     if (!allow(filter, call)) return false;
   }
   return allow_if(filter, SCMP_SYS(socket), 0, kWhole, AF_INET) &&

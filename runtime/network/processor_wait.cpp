@@ -2,6 +2,8 @@
 #include "processor_wait.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
+#include <sys/sysinfo.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +14,13 @@
 #include <utility>
 
 namespace skein::network {
+
+bool is_machine_overloaded() {
+  struct sysinfo now {};
+  cpu_set_t processors;
+  if (sysinfo(&now) != 0 || sched_getaffinity(0, sizeof processors, &processors) != 0) return false;
+  return now.loads[0] >> SI_LOAD_SHIFT >= 2 * static_cast<unsigned long>(CPU_COUNT(&processors));
+}
 
 ProcessorWait::ProcessorWait() : file_{open("/proc/thread-self/schedstat", O_RDONLY | O_CLOEXEC)} {}
 

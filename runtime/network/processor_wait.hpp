@@ -5,12 +5,14 @@
 
 namespace skein::network {
 
+/// Whether more are ready than there are processors for, twice as many of the last minute.
+[[nodiscard]] bool is_machine_overloaded();
+
 /// How long a thread was ready and had no processor, by the kernel's account: who has to wait is on
 /// a machine too busy for others' silence to mean anything.
 class ProcessorWait {
  public:
-  /// Of the thread that makes it; it may be asked by that thread, also when it can open no file any
-  /// more.
+  /// Of the thread that makes it.
   ProcessorWait();
   ~ProcessorWait();
   ProcessorWait(const ProcessorWait&) = delete;

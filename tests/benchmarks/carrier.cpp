@@ -44,7 +44,7 @@ class Pair {
       auto node = Node::open(config);
       if (!node) {
         std::fprintf(stderr, "%s\n", node.error().message.c_str());
-        std::exit(1);
+        std::abort();
       }
       nodes_.at(id) = std::move(node).value();
     }

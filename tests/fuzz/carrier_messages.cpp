@@ -27,8 +27,8 @@ void run(std::span<const std::uint8_t> bytes, Read read) {
 }  // namespace skein::fuzz
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace skein;
-  fuzz::run<network::ToCarrier>({data, size}, network::to_carrier_from);
-  fuzz::run<network::FromCarrier>({data, size}, network::from_carrier_from);
+  namespace network = skein::network;
+  skein::fuzz::run<network::ToCarrier>({data, size}, network::to_carrier_from);
+  skein::fuzz::run<network::FromCarrier>({data, size}, network::from_carrier_from);
   return 0;
 }

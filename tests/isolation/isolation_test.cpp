@@ -189,8 +189,9 @@ class Isolation : public testing::Test {
   Socket socket_;
 };
 
-/// Alone on a quiet machine it is a third of this, or of a hang two (docs/decisions/034).
-constexpr milliseconds kBackWithin{3000};
+/// Alone on a quiet machine it is 0.1 to 0.5 s; on one without a processor to spare a hang is
+/// judged after 10 s only (docs/decisions/034).
+constexpr milliseconds kBackWithin{20'000};
 
 TEST_F(Isolation, ACrashCostsTheNetworkForAMomentAndNothingElse) {
   ASSERT_NO_FATAL_FAILURE(open_both());

@@ -16,6 +16,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "processes.hpp"
 #include "skein/hil/child_process.hpp"
@@ -60,10 +61,14 @@ class Mission : public testing::Test {
 
   void start() {
     fs::create_directories(folder_);
-    auto started = hil::ChildProcess::start(
-        {SKEIN_PROGRAMS "/skein-hil", "run", SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml",
-         "--headless", "--out", run().string()},
-        folder_ / "log", {});
+    const std::vector<std::string> words{
+        std::string{SKEIN_PROGRAMS} + "/skein-hil",
+        "run",
+        std::string{SKEIN_SOURCE_DIR} + "/scenarios/coalition-6.yaml",
+        "--headless",
+        "--out",
+        run().string()};
+    auto started = hil::ChildProcess::start(words, folder_ / "log", {});
     ASSERT_TRUE(started.ok()) << started.error().message;
     mission_.emplace(std::move(started).value());
     while (text_of(log_of(0)).find("coalition formed") == std::string::npos) {
