@@ -621,7 +621,7 @@ std::unique_ptr<process::KeyWatch> watch_keys(process::NodeStart& start,
 Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
                                             const process::NodeStart& start, process::Wake& wake) {
   auto node = process::node_config(config, start, [&wake] { wake.notify(); });
-  node.isolated = true;
+  node.isolated = config.isolated;
   return network::Node::open(node);
 }
 
