@@ -7,16 +7,21 @@
 
 #include <atomic>
 #include <csignal>
+#include <future>
+#include <thread>
 
 namespace skein::onboard {
 namespace {
 
 bool may_be_realtime() {
+  std::promise<void> looked_at;
+  std::thread thread =
+      start_thread(ThreadRole::control, [end = looked_at.get_future().share()] { end.wait(); });
   int policy = SCHED_OTHER;
-  start_thread(ThreadRole::control, [&policy] {
-    sched_param parameters{};
-    pthread_getschedparam(pthread_self(), &policy, &parameters);
-  }).join();
+  sched_param parameters{};
+  pthread_getschedparam(thread.native_handle(), &policy, &parameters);
+  looked_at.set_value();
+  thread.join();
   return policy == SCHED_FIFO;
 }
 

@@ -53,10 +53,10 @@ TEST_F(KeysShownTest, AtTheGroundStationNamesAllMembers) {
   EXPECT_EQ(json.at("mission").at("name"), "bench");
   EXPECT_EQ(json.at("epoch"), 2);
   EXPECT_EQ(json.at("own").at("role"), "ground");
-  ASSERT_EQ(json.at("members").size(), 3U);
-  EXPECT_EQ(json.at("members")[1].at("vehicle"), 3);
-  EXPECT_EQ(json.at("members")[1].at("revoked"), false);
-  EXPECT_EQ(json.at("members")[2].at("revoked"), true);
+  ASSERT_EQ(json.at("members").size(), 4U) << "the ground station, an operator, two vehicles";
+  EXPECT_EQ(json.at("members")[2].at("vehicle"), 3);
+  EXPECT_EQ(json.at("members")[2].at("revoked"), false);
+  EXPECT_EQ(json.at("members")[3].at("revoked"), true);
   EXPECT_NE(shown.text.find("vehicle 4  REVOKED"), std::string::npos) << shown.text;
   EXPECT_NE(shown.text.find("30 days left"), std::string::npos) << shown.text;
 }
