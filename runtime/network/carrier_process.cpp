@@ -31,9 +31,8 @@ using std::chrono::seconds;
 
 constexpr milliseconds kPingPeriod{100};
 /// So long without an answer, and it is ended. Twice as long after it was once, up to the third.
-/// Only what tells of the child counts: not where this thread had to wait for a processor, nor
-/// while the child is seen to compute, until the last; a new child costs a busy machine more than
-/// patience.
+/// Only what tells of the child counts: not while it computes or is ready to, until the last; a new
+/// child costs a busy machine more than patience.
 constexpr milliseconds kSilentFor{300};
 constexpr milliseconds kSilentForMax{1200};
 constexpr milliseconds kSilentOnBusyMax{10'000};
@@ -432,10 +431,12 @@ void CarrierProcess::flush(Life& life) {
 void CarrierProcess::watch(Life& life) {
   const auto now = Clock::now();
   if (now < life.next_ping) return;
-  const bool is_busy = waited_->since_last() > kBusy || is_machine_overloaded();
+  const bool had_to_wait = waited_->since_last() > kBusy;
   life.next_ping = now + kPingPeriod;
   const auto before = std::exchange(life.computed, life.child.computed());
-  const bool tells = !is_busy && life.computed - before < kComputes;
+  const bool answers = life.joined && life.answered == life.pings;
+  const bool tells = !answers && life.computed - before < kComputes &&
+                     !life.child.is_ready().value_or(had_to_wait || is_machine_overloaded());
   if (!life.joined) {
     if (tells) life.silent += kPingPeriod;
     if (life.silent > kJoinsWithin || life.age() > kJoinsOnBusyMax) {

@@ -14,6 +14,8 @@
 #include <csignal>
 #include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "confinement.hpp"
@@ -102,6 +104,23 @@ std::chrono::nanoseconds CarrierChild::computed() const {
   timespec time{};
   if (clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &time) != 0) return {};
   return std::chrono::seconds{time.tv_sec} + std::chrono::nanoseconds{time.tv_nsec};
+}
+
+std::optional<bool> CarrierChild::is_ready() const {
+  std::error_code failed;
+  bool seen = false;
+  const std::filesystem::path threads{"/proc/" + std::to_string(pid_) + "/task"};
+  for (std::filesystem::directory_iterator thread{threads, failed}, end; !failed && thread != end;
+       thread.increment(failed)) {
+    std::ifstream file{thread->path() / "stat"};
+    std::string line;
+    std::getline(file, line);
+    const auto name_ends = line.rfind(") ");  // "7 (its name) S ..."
+    if (name_ends == std::string::npos || name_ends + 2 >= line.size()) continue;
+    seen = true;
+    if (line[name_ends + 2] == 'R') return true;
+  }
+  return seen ? std::optional{false} : std::nullopt;
 }
 
 CarrierChild::~CarrierChild() { (void)end(); }

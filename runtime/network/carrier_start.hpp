@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -54,6 +55,9 @@ class CarrierChild {
   [[nodiscard]] int ended() const { return ended_.get(); }  ///< becomes readable when it has
   /// Processor time that it has taken.
   [[nodiscard]] std::chrono::nanoseconds computed() const;
+  /// Whether a thread of it computes or is ready to; nothing where processes are hidden from each
+  /// other.
+  [[nodiscard]] std::optional<bool> is_ready() const;
   /// Ends it, if it has not, and gives how it ended: "signal 11 (Segmentation fault)".
   std::string end();
   /// Lets it take its leave of the network, at most so long.
