@@ -33,8 +33,7 @@ NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes
                         nodes[node].port,
                         {},
                         keys == deployment.keys.end() ? "" : keys->second,
-                        deployment.transport_plugin,
-                        deployment.isolated};
+                        deployment.transport_plugin};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i != node) network.peers.push_back(nodes[i]);
   }
