@@ -191,7 +191,7 @@ class GroundLoop {
     while (!stopping_) {
       const bool heard_all = take_messages();
       const Instant now = clock_.now();
-      process::log_misfits(network_);
+      process::log_troubles(network_);
       take_lines(prompt, now);
       if (speak_.exchange(false)) node_.speak();
       node_.on_timeout(now);
@@ -463,6 +463,7 @@ class GroundLoop {
     facts.dropped = traffic.dropped + node_.dropped();
     facts.of_strangers = traffic.of_strangers;
     facts.unproven = traffic.unproven;
+    facts.restarts = traffic.restarts;
     facts.refused = node_.refused();
     facts.authorisations_waiting = static_cast<std::size_t>(
         std::ranges::count_if(node_.agent().authorisations(),
@@ -602,9 +603,10 @@ void log_summary(const network::Node& node, const mission::GroundNode& ground) {
   const auto traffic = process::traffic_of(node);
   spdlog::info(
       "ended: messages sent {}, received {}, dropped {}, refused of their senders {}; datagrams of "
-      "strangers {}, decisions unproven {}",
+      "strangers {}, decisions unproven {}; network restarted {} times, messages not sent "
+      "meanwhile {}",
       traffic.sent, traffic.received, traffic.dropped + ground.dropped(), ground.refused(),
-      traffic.of_strangers, traffic.unproven);
+      traffic.of_strangers, traffic.unproven, traffic.restarts, traffic.unconnected);
 }
 
 /// None without keys.
@@ -614,6 +616,13 @@ std::unique_ptr<process::KeyWatch> watch_keys(process::NodeStart& start,
   if (!start.identity) return nullptr;
   return std::make_unique<process::KeyWatch>(node, std::move(*start.identity), config.keys,
                                              std::move(on_told));
+}
+
+Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
+                                            const process::NodeStart& start, process::Wake& wake) {
+  auto node = process::node_config(config, start, [&wake] { wake.notify(); });
+  node.isolated = config.isolated;
+  return network::Node::open(node);
 }
 
 Result<Recorder> open_recorder(const configuration::GroundConfig& config, InstanceId instance,
@@ -657,8 +666,7 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   auto recorder = open_recorder(config, instance, clock.epoch_unix_ns());
   if (!recorder) return fail("cannot record", recorder.error(), process::kExitCannotStart);
   process::Wake wake;
-  auto node =
-      network::Node::open(process::node_config(config.network, *start, [&wake] { wake.notify(); }));
+  auto node = join(config.network, *start, wake);
   if (!node)
     return fail("cannot join the mission network", node.error(), process::kExitCannotStart);
 

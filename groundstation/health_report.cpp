@@ -119,6 +119,10 @@ std::string metrics_text(const HealthFacts& facts, const mission::Fleet& fleet) 
       .family("skein_decisions_unproven_total", "counter",
               "Decisions without a good signature of the member that they name")
       .value(facts.unproven);
+  metrics
+      .family("skein_network_restarts_total", "counter",
+              "Starts of the process that carries the network after it had ended")
+      .value(facts.restarts);
   metrics.family("skein_messages_refused_total", "counter", "Messages not their sender's to say")
       .value(facts.refused);
   metrics.family("skein_authorisations_waiting", "gauge", "Deliveries that wait for a decision")

@@ -29,6 +29,7 @@
 #include "skein/groundstation/route_planning.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/identity/operator_key.hpp"
+#include "skein/network/carrier_process.hpp"
 #include "skein/process/log.hpp"
 #include "skein/recording_export/recording_export.hpp"
 #include "skein/version/version.hpp"
@@ -511,4 +512,7 @@ class CommandLine {
 
 }  // namespace
 
-int main(int argc, char** argv) { return CommandLine{}.run(argc, argv); }
+int main(int argc, char** argv) {
+  if (const auto status = skein::network::run_carrier(argc, argv)) return *status;
+  return CommandLine{}.run(argc, argv);
+}

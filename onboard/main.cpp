@@ -10,6 +10,7 @@
 
 #include "key_commands.hpp"
 #include "skein/configuration/vehicle_config.hpp"
+#include "skein/network/carrier_process.hpp"
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/vehicle_process.hpp"
 #include "skein/process/log.hpp"
@@ -115,6 +116,7 @@ int show_status(const StatusArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const auto status = skein::network::run_carrier(argc, argv)) return *status;
   CLI::App app{
       "The process of one vehicle: joins the mission network, takes part in coalitions and\n"
       "flies the vehicle's flight controller."};

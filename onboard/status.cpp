@@ -55,6 +55,8 @@ std::string text_of(const codec::ParsedJson& json) {
                           watchdog.at("control_age_s").get<double>(),
                           watchdog.at("agent_age_s").get<double>(),
                           watchdog.at("watched").get<bool>() ? ", watched" : ", not watched"));
+  text.append(fmt::format("network     started again {} times\n",
+                          json.at("network_restarts").get<std::uint64_t>()));
   text.append("hears      ");
   for (const auto& other : json.at("heard")) {
     text.append(fmt::format(" {} ({:.1f} s)", other.at("vehicle").get<unsigned>(),
@@ -93,6 +95,7 @@ std::string status_json(const Status& status) {
             {"recording", nullptr},
             {"overruns", status.overruns},
             {"stale_states", status.stale_states},
+            {"network_restarts", status.network_restarts},
             {"watchdog",
              {{"watched", status.watched},
               {"control_age_s", seconds(status.control_age)},

@@ -24,6 +24,7 @@ Status status() {
   made.health.problems = {"12 control periods missed"};
   made.health.heard = {{{3}, std::chrono::milliseconds{400}}};
   made.now = at_seconds(61.5);
+  made.network_restarts = 2;
   made.clock = process::ClockState{true, std::chrono::microseconds{1500}};
   made.recording = Status::Recording{"rec", 5'000'000'000, 2'000'000, 1500.0};
   return made;
@@ -52,6 +53,7 @@ TEST(Status, IsALineForProgramsAndATextForPeople) {
             "clock       synchronised to 0.002 s\n"
             "recording   rec, 2.0 MB, 1.5 kB/s; 5000 MB free\n"
             "progress    control 0.0 s ago, agent 0.0 s ago, not watched\n"
+            "network     started again 2 times\n"
             "hears       3 (0.4 s)\n"
             "problem     12 control periods missed\n");
   EXPECT_FALSE(status_text("{}").ok());

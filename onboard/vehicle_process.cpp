@@ -112,7 +112,7 @@ AgentLink link_to(network::Node& node, HealthBoard& health) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
-              process::log_misfits(node);
+              process::log_troubles(node);
               return std::nullopt;
             }
             return AgentLink::Received{std::move(received->message), received->sender};
@@ -237,11 +237,12 @@ class Threads {
     spdlog::info(
         "ended: {} control periods, {} overruns, {} without a state; messages sent {}, received "
         "{}, dropped {}, refused of their senders {}; datagrams of strangers {}, decisions "
-        "unproven {}; "
+        "unproven {}; network restarted {} times, messages not sent meanwhile {}; "
         "protocol errors {}; records dropped {}",
         ports_.periods.load(), ports_.overruns.load(), ports_.stale_states.load(), traffic.sent,
         traffic.received, traffic.dropped + counters.messages_dropped, counters.refused,
-        traffic.of_strangers, traffic.unproven, counters.protocol_errors + counters.bad_messages,
+        traffic.of_strangers, traffic.unproven, traffic.restarts, traffic.unconnected,
+        counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
     if (flight_controllers_.on_can == nullptr) return;
@@ -307,12 +308,13 @@ class Threads {
 class HostDesk {
  public:
   HostDesk(const configuration::VehicleConfig& config, const HostOptions& options,
-           const process::MissionClock& clock, HealthBoard& health, const Threads& threads,
-           const process::Service& service)
+           const process::MissionClock& clock, const network::Node& node, HealthBoard& health,
+           const Threads& threads, const process::Service& service)
       : folder_{config.recording_folder},
         among_machines_{process::among_machines(config.network)},
         vehicle_{config.vehicle.id},
         clock_{clock},
+        node_{node},
         health_{health},
         threads_{threads},
         service_{service} {
@@ -341,6 +343,7 @@ class HostDesk {
  private:
   static constexpr std::chrono::nanoseconds kPeriod = std::chrono::milliseconds{200};
   static constexpr std::chrono::seconds kLookPeriod{5};
+  static constexpr std::chrono::seconds kTold{60};  ///< what is over, so that people see it
 
   void look(std::chrono::steady_clock::time_point now) {
     clock_state_ = process::clock_state();
@@ -358,6 +361,9 @@ class HostDesk {
     if (among_machines_ && clock_state_) {
       facts.clock = mission::HostFacts::Clock{clock_state_->synchronised, clock_state_->error_max};
     }
+    const std::uint64_t restarts = process::traffic_of(node_).restarts;
+    if (std::exchange(network_restarts_, restarts) != restarts) tell_restarts_until_ = now + kTold;
+    if (now < tell_restarts_until_) facts.network_restarts = restarts;
     health_.put(facts);
     looked_at_ = now;
     next_look_ = now + kLookPeriod;
@@ -374,7 +380,8 @@ class HostDesk {
                   .stale_states = ports.stale_states.load(std::memory_order_relaxed),
                   .control_age = progress_.age(0, now),
                   .agent_age = progress_.age(1, now),
-                  .watched = service_.watchdog_period().has_value()};
+                  .watched = service_.watchdog_period().has_value(),
+                  .network_restarts = process::traffic_of(node_).restarts};
     status.health.vehicle = vehicle_;
     return status;
   }
@@ -383,6 +390,7 @@ class HostDesk {
   bool among_machines_;  ///< else it does not matter what time it is here
   VehicleId vehicle_;
   const process::MissionClock& clock_;
+  const network::Node& node_;
   HealthBoard& health_;
   const Threads& threads_;
   const process::Service& service_;
@@ -393,7 +401,16 @@ class HostDesk {
   std::uint64_t bytes_ = 0;
   std::chrono::steady_clock::time_point looked_at_{};
   std::chrono::steady_clock::time_point next_look_{};
+  std::uint64_t network_restarts_ = 0;  ///< when it looked
+  std::chrono::steady_clock::time_point tell_restarts_until_{};
 };
+
+Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
+                                            const process::NodeStart& start, process::Wake& wake) {
+  auto node = process::node_config(config, start, [&wake] { wake.notify(); });
+  node.isolated = config.isolated;
+  return network::Node::open(node);
+}
 
 }  // namespace
 
@@ -428,8 +445,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     writer = std::move(*opened);
   }
   process::Wake wake_agent;
-  auto node = network::Node::open(
-      process::node_config(config.network, *start, [&wake_agent] { wake_agent.notify(); }));
+  auto node = join(config.network, *start, wake_agent);
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;
@@ -456,7 +472,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
       config, *route, clock, **node, wake_agent, instance, std::move(writer),
       std::move(controllers).value(), std::move(*detectors), health, clock.now());
   const process::Service service;
-  HostDesk desk{config, host, clock, health, *threads, service};
+  HostDesk desk{config, host, clock, **node, health, *threads, service};
   service.ready();
   const char* signal = nullptr;
   while ((signal = shutdown.wait_for(desk.period())) == nullptr) desk.step();

@@ -13,6 +13,11 @@ std::vector<std::string> host_problems(const HostFacts& facts) {
   if (facts.clock && (!facts.clock->synchronised || facts.clock->error_max > kClockErrorMax)) {
     all.emplace_back("its clock is not synchronised");
   }
+  if (facts.network_restarts > 0) {
+    all.emplace_back("its network was started again, so far ");
+    all.back().append(std::to_string(facts.network_restarts));
+    all.back().append(facts.network_restarts == 1 ? " time" : " times");
+  }
   return all;
 }
 

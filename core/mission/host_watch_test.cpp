@@ -21,6 +21,9 @@ TEST(HostWatch, NamesAClockThatNobodySetsAndADiskThatRunsFull) {
   EXPECT_EQ(host_problems(facts), Problems{"its clock is not synchronised"});
   facts.clock = HostFacts::Clock{false, {}};
   EXPECT_EQ(host_problems(facts), Problems{"its clock is not synchronised"});
+  facts = {};
+  facts.network_restarts = 1;
+  EXPECT_EQ(host_problems(facts), Problems{"its network was started again, so far 1 time"});
 }
 
 }  // namespace

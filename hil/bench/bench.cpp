@@ -2,6 +2,7 @@
 #include "skein/hil/bench.hpp"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -80,6 +81,9 @@ class InterruptWatch {
 };
 
 constexpr const char* kLoopback = "127.0.0.1";
+/// More of them on one machine have Fast DDS in their own processes: twice as many processes would
+/// measure the machine.
+constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
 constexpr auto kExternalSilence = std::chrono::seconds{10};
 /// What configuring and starting external hosts takes, all at once.
@@ -250,6 +254,12 @@ class Bench {
     deployment.can_buses = buses;
     deployment.elsewhere = external_.nodes();
     deployment.console_port = options_.console_port;
+    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+    deployment.isolated = all_nodes().size() <= kNodesPerProcessor * processors;
+    if (!deployment.isolated) {
+      say(fmt::format("{} nodes on {} processors: Fast DDS has no process of its own here",
+                      all_nodes().size(), processors));
+    }
     const auto keys = std::filesystem::absolute(options_.run_folder / kKeysFolder);
     if (!options_.sealed) return deployment;
     for (const VehicleId node : all_nodes()) {

@@ -138,6 +138,7 @@ Result<void> ExternalHosts::start(const std::vector<VehicleConfig>& configs) {
     config.recording_folder = recordings_of(*host, config);
     if (!keys.empty()) config.network.keys = config.recording_folder + "/keys";
     config.network.transport_plugin = host->radio_plugin;
+    config.network.isolated = true;  // as in the field
     Started& started = started_.emplace_back();
     started.host = *host;
     started.recordings = config.recording_folder;

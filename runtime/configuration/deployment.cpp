@@ -33,7 +33,8 @@ NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes
                         nodes[node].port,
                         {},
                         keys == deployment.keys.end() ? "" : keys->second,
-                        deployment.transport_plugin};
+                        deployment.transport_plugin,
+                        deployment.isolated};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i != node) network.peers.push_back(nodes[i]);
   }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rtps_datagram.hpp"
 
+#include <algorithm>
+#include <array>
+
+#include "skein/base/assert.hpp"
 #include "skein/network/rtps_guid.hpp"
 
 namespace skein::network {
@@ -41,6 +45,35 @@ std::optional<std::span<const std::uint8_t>> without_statistics(
     at += *bytes;
   }
   return message;
+}
+
+std::vector<std::uint8_t> participant_gone(std::span<const std::uint8_t> prefix) {
+  SKEIN_ASSERT(prefix.size() == kGuidPrefixBytes);
+  constexpr std::array<std::uint8_t, kRtpsGuidPrefixOffset> kHeader{'R', 'T',  'P',  'S',
+                                                                    2,   0x03, 0x01, 0x0F};
+  // DATA with inline QoS and without data, to the participants' reader (0x000100C7) of their writer
+  // (0x000100C2), with a sequence number that it has not come to: it announced itself under its
+  // first.
+  constexpr std::array<std::uint8_t, 36> kData{
+      0x15, 0x03, 52, 0,                          // little endian; bytes after this
+      0,    0,    16, 0,                          // flags; to the inline QoS
+      0,    0x01, 0,  0xC7, 0,    0x01, 0, 0xC2,  // reader, writer
+      0,    0,    0,  0,    0xFF, 0xFF, 0, 0,     // sequence
+      0x71, 0,    4,  0,    0,    0,    0, 3,     // status: disposed, unregistered
+      0x70, 0,    16, 0};                         // key: the GUID
+  constexpr std::array<std::uint8_t, 4> kParticipant{0, 0, 0x01, 0xC1};
+  constexpr std::array<std::uint8_t, 4> kEndOfQos{0x01, 0, 0, 0};
+  std::vector<std::uint8_t> bytes;
+  const auto add = [&bytes](std::span<const std::uint8_t> more) {
+    bytes.insert(bytes.end(), more.begin(), more.end());
+  };
+  add(kHeader);
+  add(prefix);
+  add(kData);
+  add(prefix);
+  add(kParticipant);
+  add(kEndOfQos);
+  return bytes;
 }
 
 bool looks_like_statistics(std::span<const std::uint8_t> datagram) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace skein::network {
 
@@ -17,5 +18,9 @@ namespace skein::network {
 /// Whether Fast DDS, when it sends these bytes, would take their end for its statistics and write
 /// over it: it looks at one byte.
 [[nodiscard]] bool looks_like_statistics(std::span<const std::uint8_t> datagram);
+
+/// What a participant of that GUID prefix says last of all (RTPS 2.3, 8.5.3: its own data, disposed
+/// of): others forget it.
+[[nodiscard]] std::vector<std::uint8_t> participant_gone(std::span<const std::uint8_t> prefix);
 
 }  // namespace skein::network

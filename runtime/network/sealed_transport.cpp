@@ -24,12 +24,6 @@ using eprosima::fastrtps::rtps::octet;
 using eprosima::fastrtps::rtps::SenderResource;
 using SteadyTime = std::chrono::steady_clock::time_point;
 
-/// Epochs end by this clock: it never jumps.
-Instant steady_now() {
-  return Instant{
-      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch())};
-}
-
 Seals::Place place_of(const Locator_t& locator) {
   std::uint32_t address = 0;
   for (std::size_t i = 12; i < 16; ++i) address = address << 8U | locator.address[i];
@@ -68,27 +62,33 @@ class SealedTransport : public rtps::ChainingTransport {
     do {  // one of 256 has to be sealed again, under the next counter
       if (!descriptor_.seals->sealer.seal(*plain, datagram)) return false;
     } while (looks_like_statistics(datagram));
+    bool sent = false;
     if (!descriptor_.seals->news.has_any()) {
-      return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), begin, end,
+      sent = sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), begin, end,
                           timeout);
+    } else {
+      LocatorList_t all;  // what is given can be gone through once
+      for (; *begin != *end; ++*begin) all.push_back(**begin);
+      for (const Locator_t& to : all) tell_news(*sender, to, timeout);
+      sent = send_to(*sender, datagram, all, timeout);
     }
-    LocatorList_t all;  // what is given can be gone through once
-    for (; *begin != *end; ++*begin) all.push_back(**begin);
-    for (const Locator_t& to : all) tell_news(*sender, to, timeout);
-    return send_to(*sender, datagram, all, timeout);
+    descriptor_.seals->progress.sent();
+    return sent;
   }
 
   void receive(rtps::TransportReceiverInterface* next, const octet* buffer, std::uint32_t size,
                const Locator_t& local, const Locator_t& remote) override {
     if (is_key_news({buffer, size})) return descriptor_.seals->news.hear({buffer, size});
     thread_local std::vector<std::uint8_t> plain;
-    const auto outcome = descriptor_.seals->opener.open({buffer, size}, plain, steady_now());
+    const Instant now = steady_now();
+    const auto outcome = descriptor_.seals->opener.open({buffer, size}, plain, now);
     if (outcome.opened != seal::Opened::good) return;
     const auto message = without_statistics(plain);
     if (!message || message->size() != plain.size() || rtps_sender(plain) != outcome.from.sender) {
       descriptor_.seals->misformed.fetch_add(1, std::memory_order_relaxed);
       return;
     }
+    const Progress::Receiving receiving{descriptor_.seals->progress, now};
     next->OnDataReceived(plain.data(), static_cast<std::uint32_t>(plain.size()), local, remote);
   }
 
@@ -123,9 +123,14 @@ rtps::TransportInterface* SealedDescriptor::create_transport() const {
 
 }  // namespace
 
-Seals::Seals(const seal::SenderStart& start, const seal::EpochKey& key,
+Instant steady_now() {
+  return Instant{
+      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch())};
+}
+
+Seals::Seals(const seal::SenderStart& start, const seal::EpochKey& key, seal::CounterRange counters,
              std::map<Place, VehicleId> nodes)
-    : sealer{start, key}, news{start.sender}, peers{std::move(nodes)}, key_{key} {
+    : sealer{start, key, counters}, news{start.sender}, peers{std::move(nodes)}, key_{key} {
   opener.accept(key);
 }
 

@@ -88,7 +88,8 @@ bool among_machines(const configuration::NetworkConfig& config) {
   });
 }
 
-void log_misfits(network::Node& node) {
+void log_troubles(network::Node& node) {
+  for (const std::string& trouble : node.take_troubles()) spdlog::warn(trouble);
   for (const network::Misfit& misfit : node.take_misfits()) {
     spdlog::warn("{}: {}; its messages of that type are dropped until one of the two is updated",
                  wording::text_of(misfit.sender), misfit.text);
@@ -102,6 +103,10 @@ Traffic traffic_of(const network::Node& node) {
       traffic.sent += count;
     } else if (name == "received") {
       traffic.received += count;
+    } else if (name == "carrier_restarts") {
+      traffic.restarts += count;
+    } else if (name == "publish_unconnected") {
+      traffic.unconnected += count;
     } else if (name.starts_with("signature_")) {
       traffic.unproven += count;
     } else if (name.starts_with("seal_")) {

@@ -107,6 +107,27 @@ TEST_F(Opening, ADatagramIsGoodOnceInAnyOrder) {
   EXPECT_EQ(open(second), Opened::replayed);
 }
 
+TEST_F(Opening, SealersOfOneStartShareItsCounters) {
+  opener.accept(key(1));
+  Sealer first{start(3), key(1), {0, 2}};
+  EXPECT_EQ(open(sealed(first, "0")), Opened::good);
+  EXPECT_EQ(open(sealed(first, "1")), Opened::good);
+  Bytes none;
+  EXPECT_FALSE(first.seal(bytes("its counters are used up"), none));
+  first.extend(3);
+  first.extend(1);  // takes nothing back
+  EXPECT_EQ(open(sealed(first, "2")), Opened::good);
+  EXPECT_FALSE(first.seal(bytes("again"), none));
+  EXPECT_EQ(first.next(), 3U);
+  Sealer second{start(3), key(1), {3, 4}};
+  EXPECT_EQ(open(sealed(second, "3")), Opened::good)
+      << "of the same start, and none was seen before";
+  Sealer last{start(3), key(1), {kCounterMax, ~std::uint64_t{0}}};
+  EXPECT_EQ(open(sealed(last, "the last")), Opened::good);
+  last.extend(~std::uint64_t{0});
+  EXPECT_FALSE(last.seal(bytes("beyond"), none));
+}
+
 TEST_F(Opening, AnotherTeamsAreForged) {
   Sealer sealer{start(3), key(1, 8)};
   opener.accept(key(1, 7));

@@ -76,9 +76,10 @@ for phase in "$work"/{alone,loaded}; do
         (($(value sleeps "$line") >= 5 * seconds)) || failed="too few periods to tell"
         ;;
       agent)  # that it is seen to do all of it shows that the counters count
-        for what in allocations locks dds; do
+        for what in allocations locks io; do
           (($(value $what "$line") > 0)) || failed="the watch does not see $what"
         done
+        (($(value dds "$line") == 0)) || failed="the agent calls DDS, which has a process of its own"
         ;;
     esac
   done <"$work/$phase/threads"

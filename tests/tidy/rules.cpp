@@ -50,14 +50,14 @@ bool is_pure(std::string_view path) {
 
 bool is_cpp_outside_dds(std::string_view path) {
   return is_cpp(path) && !is_tidy(path) && !path.starts_with("runtime/network/") &&
-         !path.starts_with("hil/radio/");
+         !path.starts_with("hil/radio/") && path != "tests/isolation/hostile_transport.cpp";
 }
 
 bool is_cpp_not_tidy(std::string_view path) { return is_cpp(path) && !is_tidy(path); }
 
-/// node.cpp turns the list of topics into QoS; nobody else has a word in it.
-bool is_cpp_outside_node(std::string_view path) {
-  return is_cpp(path) && !is_tidy(path) && path != "runtime/network/node.cpp";
+/// dds_settings.cpp turns the list of topics into QoS; nobody else has a word in it.
+bool is_cpp_outside_settings(std::string_view path) {
+  return is_cpp(path) && !is_tidy(path) && path != "runtime/network/dds_settings.cpp";
 }
 
 bool is_pure_but_assert(std::string_view path) {
@@ -123,7 +123,7 @@ constexpr std::array kLineRules{
     LineRule{"dds-outside", is_cpp_outside_dds, LineRule::View::code_and_literals,
              R"(#\s*include\s*[<"](fastdds|fastrtps|fastcdr)/|\beprosima::)",
              "DDS stays in runtime/network/ and hil/radio/: use their interfaces"},
-    LineRule{"qos-outside", is_cpp_outside_node, kCode,
+    LineRule{"qos-outside", is_cpp_outside_settings, kCode,
              R"(\b(RELIABLE_RELIABILITY|BEST_EFFORT_RELIABILITY|TRANSIENT_LOCAL_DURABILITY|)"
              R"(VOLATILE_DURABILITY|KEEP_LAST_HISTORY|KEEP_ALL_HISTORY)_QOS\b)",
              "a topic's name, type and QoS are one entry of idl/topics.json"},

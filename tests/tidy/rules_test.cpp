@@ -116,7 +116,7 @@ TEST(Rules, SentencesAreForTestsAndTheirOwnModule) {
 }
 
 TEST(Rules, QosIsSetByTheNode) {
-  EXPECT_TRUE(findings_in("runtime/network/node.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
+  EXPECT_TRUE(findings_in("runtime/network/dds_settings.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 
 TEST(Rules, SourceMustBeginWithItsLicence) {

@@ -22,6 +22,7 @@ struct HealthFacts {
   std::uint64_t dropped = 0;
   std::uint64_t of_strangers = 0;  ///< datagrams
   std::uint64_t unproven = 0;      ///< decisions
+  std::uint64_t restarts = 0;      ///< of the process that carries the network
   std::uint64_t refused = 0;       ///< messages that were not their sender's to say
   std::size_t authorisations_waiting = 0;
   std::size_t recordings = 0;                    ///< that run

@@ -36,6 +36,7 @@ struct Status {
   std::chrono::nanoseconds control_age{0};  ///< since control was seen to get on
   std::chrono::nanoseconds agent_age{0};
   bool watched = false;  ///< by the service manager
+  std::uint64_t network_restarts = 0;
 };
 
 /// One line of JSON, without its end.

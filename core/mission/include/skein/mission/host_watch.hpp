@@ -18,6 +18,8 @@ struct HostFacts {
   };
   std::optional<std::uint64_t> disk_free_bytes;  ///< where it records
   std::optional<Clock> clock;
+  /// How often the process that carries the network was started again, if it was just now.
+  std::uint64_t network_restarts = 0;
 };
 
 /// Below it a recording will end before long: several minutes are left, to land or to make room.

@@ -21,6 +21,7 @@ struct Deployment {
   std::uint16_t domain_id = 0;
   std::string transport_plugin;
   std::map<VehicleId, std::string> keys;  ///< folders; who has none speaks in clear
+  bool isolated = true;                   ///< NetworkConfig's, of all
   OperatorConfig op;                      ///< of the ground station
   TimeConfig time;
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none

@@ -27,6 +27,7 @@ struct NetworkConfig {
   std::vector<NetworkPeer> peers;
   std::string keys;              ///< folder of this node's keys; empty: in clear, on loopback only
   std::string transport_plugin;  ///< a shared library; empty: plain UDP
+  bool isolated = true;          ///< Fast DDS runs in a process of its own
   friend bool operator==(const NetworkConfig&, const NetworkConfig&) = default;
 };
 

@@ -52,6 +52,9 @@ struct NodeConfig {
   std::optional<SealConfig> seal;
   /// None: decisions are neither signed nor judged.
   std::optional<SignConfig> sign;
+  /// Whether what knows Fast DDS runs in a process of its own (carrier_process.hpp), so that its
+  /// faults are not this one's.
+  bool isolated = false;
   /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
   std::string transport_plugin;
   /// Called on a thread of the network after messages became ready for poll(). Must be short, must
@@ -69,6 +72,7 @@ struct Peer {
   VehicleId id;
   InstanceId instance;  ///< two entries with one id: two processes claim it
   codec::Role role = codec::Role::vehicle;
+  friend bool operator==(const Peer&, const Peer&) = default;
 };
 
 /// A node of another release, one of whose types we cannot read.
@@ -116,6 +120,10 @@ class Node {
 
   /// Those that were found since the last call: each sender, type and version once.
   [[nodiscard]] std::vector<Misfit> take_misfits();
+
+  /// Sentences for people about the process that carries the network, since the last call: that it
+  /// was started again, and why.
+  [[nodiscard]] std::vector<std::string> take_troubles();
 
   /// What happened since open(): received, published, and by name whatever was dropped.
   [[nodiscard]] std::map<std::string, std::uint64_t> counters() const;

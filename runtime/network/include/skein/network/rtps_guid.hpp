@@ -13,8 +13,12 @@
 namespace skein::network {
 
 /// Nodes are told apart by the prefix of their GUID, which every RTPS message carries in its
-/// header: bytes 0-3 `kGuidMark`, 4-5 the vehicle id (big endian), 6-11 from the instance id.
+/// header: bytes 0-3 `kGuidMark`, 4-5 the vehicle id (big endian), 6-10 from the instance id, and
+/// 11 counts the node's carriers: to DDS, who is started again is somebody else, or it would not be
+/// heard before it has said as much as before.
 inline constexpr std::array<std::uint8_t, 4> kGuidMark{0x01, 0x0F, 0x53, 0x4B};
+inline constexpr std::size_t kGuidInstanceBytes = 5;
+inline constexpr std::size_t kGuidPrefixBytes = 12;
 inline constexpr std::size_t kRtpsGuidPrefixOffset = 8;  ///< in an RTPS message
 inline constexpr std::size_t kRtpsHeaderSize = 20;
 

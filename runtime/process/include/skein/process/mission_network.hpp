@@ -46,10 +46,13 @@ struct Traffic {
   std::uint64_t dropped = 0;       ///< of the team's, for whatever reason, in both directions
   std::uint64_t of_strangers = 0;  ///< datagrams that nobody sealed with the team's key
   std::uint64_t unproven = 0;      ///< decisions without a good signature of who they name
+  std::uint64_t restarts = 0;      ///< of the process that carries the network
+  std::uint64_t unconnected = 0;   ///< not sent, while it was gone
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 
-/// Tells the log of nodes whose messages cannot be read for their version, each type once.
-void log_misfits(network::Node& node);
+/// Tells the log of nodes whose messages cannot be read for their version, each type once, and of the
+/// process that carries the network, where it was started again.
+void log_troubles(network::Node& node);
 
 }  // namespace skein::process
