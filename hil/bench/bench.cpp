@@ -81,7 +81,7 @@ class InterruptWatch {
 };
 
 constexpr const char* kLoopback = "127.0.0.1";
-/// More of them on one machine have Fast DDS in their own processes: twice as many processes would
+/// Where there are more, Fast DDS stays in the agents' processes: twice as many processes would
 /// measure the machine.
 constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
