@@ -46,6 +46,7 @@ class AutopilotDouble {
   std::uint32_t firmware = 0x04060300;
   std::uint32_t enabled = 0xFFFFFFFF;  ///< sensors
   std::uint32_t health = 0xFFFFFFFF;
+  std::function<bool(std::uint32_t)> armable_in;  ///< by mode; none: as `health` says
   bool mute = false;
   struct Refusal {
     std::uint8_t result = 0;
@@ -177,6 +178,9 @@ class AutopilotDouble {
     mavlink::SysStatus s;
     s.onboard_control_sensors_enabled = enabled;
     s.onboard_control_sensors_health = health;
+    if (armable_in && !armable_in(mode)) {
+      s.onboard_control_sensors_health &= ~mavlink::sensor_prearm_check;
+    }
     return s;
   }
 

@@ -230,14 +230,26 @@ void Companion::Impl::stand_by(Instant now) {
                            (sensors_->enabled & mavlink::sensor_prearm_check) == 0;
       if (custody_.own_flight() && in_flight && high()) {
         fire(guided() ? Event::guided : Event::may_take, now);
-      } else if (custody_.may_launch() && !armed_ && !airborne() && may_arm) {
-        fire(Event::may_launch, now);
+      } else if (custody_.may_launch() && !armed_ && !airborne()) {
+        if (may_arm) {
+          fire(Event::may_launch, now);
+        } else {
+          leave_return_on_ground(now);
+        }
       }
       break;
     }
     case TakeOver::count:
       break;
   }
+}
+
+/// An autopilot that has waited for its companion may have begun to return home without having left
+/// it. It is not fit to be armed until it is in another mode.
+void Companion::Impl::leave_return_on_ground(Instant now) {
+  if (!is_return(params_.airframe, mode_) || now < entry_.retry_at) return;
+  entry_.retry_at = now + kRetryPeriod;
+  ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod}, true);
 }
 
 void Companion::Impl::arm(Instant now) {

@@ -96,6 +96,7 @@ class Companion::Impl {
   void ask_streams();
   void check_parameters(Instant now);
   void stand_by(Instant now);
+  void leave_return_on_ground(Instant now);
   void arm(Instant now);
   void ask_for_mode(std::uint32_t mode, Instant now);
   void fly(Instant now);

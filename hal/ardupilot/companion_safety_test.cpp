@@ -49,6 +49,22 @@ struct FromGround : Line {
   }
 };
 
+TEST(CompanionSafety, LaunchesAnAutopilotThatReturnedOnTheGroundForWantOfACompanion) {
+  FromGround line;
+  line.autopilot.mode = 11;
+  line.autopilot.armable_in = [](std::uint32_t mode) { return mode != 11; };
+  line.until(State::climbing, 12.0);
+  EXPECT_EQ(line.companion.state(), State::climbing);
+}
+
+TEST(CompanionSafety, LeavesTheModeOfOneThatIsUnfitForAnotherReason) {
+  FromGround line;
+  line.autopilot.mode = 5;
+  line.autopilot.armable_in = [](std::uint32_t) { return false; };
+  line.expect_never_armed(12.0);
+  EXPECT_EQ(line.autopilot.mode, 5U);
+}
+
 TEST(CompanionSafety, DoesNotLaunchAfterAFlightThatItHasFoundUnderWay) {
   FromGround line;
   put_in_air(line.autopilot);

@@ -57,6 +57,11 @@ std::uint32_t takeoff_mode(Airframe airframe) {
                                       : static_cast<std::uint32_t>(PlaneMode::takeoff);
 }
 
+bool is_return(Airframe airframe, std::uint32_t mode) {
+  return mode == (airframe == Airframe::copter ? static_cast<std::uint32_t>(CopterMode::rtl)
+                                               : static_cast<std::uint32_t>(PlaneMode::rtl));
+}
+
 std::uint32_t land_mode() { return static_cast<std::uint32_t>(CopterMode::land); }
 
 std::string name_of_mode(Airframe airframe, std::uint32_t mode) {

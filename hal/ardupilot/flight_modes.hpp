@@ -15,6 +15,8 @@ namespace skein::ardupilot {
 /// "GUIDED"; the number of one that has no name here.
 /// Of a copter: it comes down where it is.
 [[nodiscard]] std::uint32_t land_mode();
+/// RTL
+[[nodiscard]] bool is_return(Airframe airframe, std::uint32_t mode);
 [[nodiscard]] std::string name_of_mode(Airframe airframe, std::uint32_t mode);
 /// Whether HEARTBEAT's `type` is of the airframe.
 [[nodiscard]] bool is_of(Airframe airframe, std::uint8_t vehicle_type);

@@ -71,9 +71,8 @@ CommandResult PlaneAutopilot::select_mode(PlaneMode mode) {
 
 CommandResult PlaneAutopilot::arm() {
   if (armed_) return CommandResult::accepted;
-  const auto refusal = mode() == PlaneMode::rtl
-                           ? std::optional<std::string_view>{"Mode not armable"}
-                           : arming_refusal(health_);
+  const auto refusal =
+      mode_armable() ? arming_refusal(health_) : std::optional<std::string_view>{kRtlNotArmable};
   if (refusal) {
     say(Severity::critical, "Arm: " + std::string{*refusal});
     return CommandResult::failed;

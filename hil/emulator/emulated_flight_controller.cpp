@@ -88,6 +88,7 @@ struct EmulatedFlightController::State {
 
   [[nodiscard]] std::optional<std::string> refusal() const {
     if (const auto reason = autopilot::arming_refusal(health)) return std::string{*reason};
+    if (!vehicle->report().mode_armable) return std::string{autopilot::kRtlNotArmable};
     if (!duplicate.empty()) return duplicate;
     for (const dronecan::RemoteNode& other : link->node.others()) {
       if (other.online && (other.status.health != dronecan::Health::ok ||

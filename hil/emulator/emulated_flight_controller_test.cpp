@@ -213,6 +213,15 @@ TEST(EmulatedFlightController, ArmsOnTheGroundAndSaysWhyNot) {
   EXPECT_NE(
       c.last<mavlink::SysStatus>()->onboard_control_sensors_health & mavlink::sensor_prearm_check,
       0U);
+  // So has the mode, in which the failsafe leaves it.
+  EXPECT_EQ(c.mode(kRtl), CommandResult::accepted);
+  c.run(1.1);
+  EXPECT_EQ(
+      c.last<mavlink::SysStatus>()->onboard_control_sensors_health & mavlink::sensor_prearm_check,
+      0U);
+  EXPECT_EQ(c.command(Command::component_arm_disarm, 1.0F), CommandResult::failed);
+  EXPECT_TRUE(c.said("Arm: RTL mode not armable"));
+  EXPECT_EQ(c.mode(kManual), CommandResult::accepted);
   // The bus has a word, too.
   c.node().set_status(dronecan::Health::warning, dronecan::Mode::operational);
   c.run(1.1);

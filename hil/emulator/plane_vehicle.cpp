@@ -123,6 +123,7 @@ void PlaneVehicle::tell() {
   report_.throttle = surfaces_.throttle;
   report_.armed = autopilot_.armed();
   report_.flying = status.flying;
+  report_.mode_armable = autopilot_.mode_armable();
   report_.mode = static_cast<std::uint32_t>(mode);
   report_.base_mode =
       mode == PlaneMode::manual || mode == PlaneMode::fbwa ? kPilotBase : kGuidedBase;

@@ -19,6 +19,7 @@ struct FlightReport {
   double throttle = 0.0;  ///< [0, 1]
   bool armed = false;
   bool flying = false;
+  bool mode_armable = true;
   std::uint32_t mode = 0;          ///< custom_mode
   std::uint8_t base_mode = 0;      ///< without its bit for armed
   Vec3 home_m = Vec3::Zero();      ///< where it returns to

@@ -38,6 +38,8 @@ struct Health {
 };
 /// Why arming is refused, in the autopilot's words, or nothing.
 [[nodiscard]] std::optional<std::string_view> arming_refusal(const Health& health);
+/// And of ArduPlane in RTL.
+inline constexpr std::string_view kRtlNotArmable = "RTL mode not armable";
 
 /// Counts the silence of the companion (the ground-station failsafe of ArduPilot: on where it is
 /// enabled and the companion has been heard once). Fires once for each silence.

@@ -86,6 +86,8 @@ class PlaneAutopilot {
 
   CommandResult select_mode(PlaneMode mode);
   CommandResult arm();
+  /// Not in RTL, where the failsafe puts an aircraft on the ground, too.
+  [[nodiscard]] bool mode_armable() const { return mode() != PlaneMode::rtl; }
   CommandResult disarm(bool force);
 
   CommandResult reposition(const Reposition& target);
