@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frames.hpp"
+
+#include <type_traits>
+
+namespace skein::air {
+namespace {
+
+constexpr std::uint8_t kFormat = 0x51;
+
+/// Of a part 4: whole, 5: it begins, 6: it ends, 7: neither.
+enum Kind : std::uint8_t {
+  sample = 1,
+  part = 4,
+  hello = 8,
+  certificate = 9,
+  missing = 10,
+  want = 11
+};
+
+template <class Number>
+void put(std::vector<std::uint8_t>& out, Number number) {
+  for (std::size_t i = sizeof(Number); i-- > 0;) {
+    out.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(number) >> (8 * i)));
+  }
+}
+
+void put(std::vector<std::uint8_t>& out, const Author& author) {
+  put(out, author.node.value);
+  put(out, author.instance.value);
+}
+
+void put_bytes(std::vector<std::uint8_t>& out, std::span<const std::uint8_t> bytes) {
+  put(out, static_cast<std::uint16_t>(bytes.size()));
+  out.insert(out.end(), bytes.begin(), bytes.end());
+}
+
+/// Reads numbers until there is too little; then all is nothing.
+class Cutter {
+ public:
+  explicit Cutter(std::span<const std::uint8_t>& rest) : rest_{rest} {}
+
+  template <class Number>
+  [[nodiscard]] Number number() {
+    std::uint64_t value = 0;
+    for (const std::uint8_t byte : bytes(sizeof(Number))) value = value << 8U | byte;
+    return static_cast<Number>(value);
+  }
+  [[nodiscard]] Author author() {
+    const VehicleId node{number<std::uint16_t>()};
+    return {node, InstanceId{number<std::uint64_t>()}};
+  }
+  [[nodiscard]] std::span<const std::uint8_t> bytes(std::size_t count) {
+    if (rest_.size() < count) {
+      good_ = false;
+      rest_ = {};
+      return {};
+    }
+    const auto cut = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return cut;
+  }
+  [[nodiscard]] std::span<const std::uint8_t> counted_bytes() {
+    return bytes(number<std::uint16_t>());
+  }
+  [[nodiscard]] bool good() const { return good_; }
+
+ private:
+  std::span<const std::uint8_t>& rest_;
+  bool good_ = true;
+};
+
+PartFrame cut_part(Cutter& cut, std::uint8_t kind) {
+  PartFrame frame;
+  frame.begins = kind == part || kind == part + 1;
+  frame.ends = kind == part || kind == part + 2;
+  frame.channel = cut.number<std::uint8_t>();
+  frame.number = cut.number<std::uint16_t>();
+  frame.bytes = cut.counted_bytes();
+  return frame;
+}
+
+std::uint8_t kind_of(const PartFrame& frame) {
+  if (frame.begins) return frame.ends ? part : part + 1;
+  return frame.ends ? part + 2 : part + 3;
+}
+
+}  // namespace
+
+std::optional<Head> read_head(std::span<const std::uint8_t>& rest) {
+  Cutter cut{rest};
+  const bool ours = cut.number<std::uint8_t>() == kFormat;
+  Head head;
+  head.newest = cut.number<std::uint16_t>();
+  head.held = cut.number<std::uint8_t>();
+  return ours && cut.good() ? std::optional{head} : std::nullopt;
+}
+
+std::optional<Frame> read_frame(std::span<const std::uint8_t>& rest) {
+  Cutter cut{rest};
+  const auto kind = cut.number<std::uint8_t>();
+  Frame frame;
+  switch (kind) {
+    case sample: {
+      const auto channel = cut.number<std::uint8_t>();
+      frame = SampleFrame{channel, cut.counted_bytes()};
+      break;
+    }
+    case part:
+    case part + 1:
+    case part + 2:
+    case part + 3:
+      frame = cut_part(cut, kind);
+      break;
+    case hello: {
+      const auto role = cut.number<std::uint8_t>();
+      frame = HelloFrame{role, cut.number<std::uint32_t>()};
+      break;
+    }
+    case certificate:
+      frame = CertificateFrame{cut.counted_bytes()};
+      break;
+    case missing: {
+      const Author author = cut.author();
+      const auto first = cut.number<std::uint16_t>();
+      frame = MissingFrame{author, first, cut.number<std::uint32_t>()};
+      break;
+    }
+    case want:
+      frame = WantFrame{cut.author()};
+      break;
+    default:
+      return std::nullopt;
+  }
+  return cut.good() ? std::optional{frame} : std::nullopt;
+}
+
+void write(std::vector<std::uint8_t>& out, const Head& head) {
+  put(out, kFormat);
+  put(out, head.newest);
+  put(out, head.held);
+}
+
+void write(std::vector<std::uint8_t>& out, const Frame& any) {
+  std::visit(
+      [&out]<class T>(const T& frame) {
+        if constexpr (std::is_same_v<T, SampleFrame>) {
+          put(out, std::uint8_t{sample});
+          put(out, frame.channel);
+          put_bytes(out, frame.bytes);
+        } else if constexpr (std::is_same_v<T, PartFrame>) {
+          put(out, kind_of(frame));
+          put(out, frame.channel);
+          put(out, frame.number);
+          put_bytes(out, frame.bytes);
+        } else if constexpr (std::is_same_v<T, HelloFrame>) {
+          put(out, std::uint8_t{hello});
+          put(out, frame.role);
+          put(out, frame.certificate);
+        } else if constexpr (std::is_same_v<T, CertificateFrame>) {
+          put(out, std::uint8_t{certificate});
+          put_bytes(out, frame.bytes);
+        } else if constexpr (std::is_same_v<T, MissingFrame>) {
+          put(out, std::uint8_t{missing});
+          put(out, frame.author);
+          put(out, frame.first);
+          put(out, frame.more);
+        } else {
+          put(out, std::uint8_t{want});
+          put(out, frame.author);
+        }
+      },
+      any);
+}
+
+std::size_t size_of(const Frame& any) {
+  return std::visit(
+      []<class T>(const T& frame) -> std::size_t {
+        if constexpr (std::is_same_v<T, SampleFrame>) return 4 + frame.bytes.size();
+        if constexpr (std::is_same_v<T, PartFrame>) return kPartBytes + frame.bytes.size();
+        if constexpr (std::is_same_v<T, HelloFrame>) return 6;
+        if constexpr (std::is_same_v<T, CertificateFrame>) return 3 + frame.bytes.size();
+        if constexpr (std::is_same_v<T, MissingFrame>) return 17;
+        return 11;
+      },
+      any);
+}
+
+}  // namespace skein::air

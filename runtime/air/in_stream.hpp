@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "frames.hpp"
+#include "skein/base/random.hpp"
+#include "skein/base/time.hpp"
+
+namespace skein::air {
+
+/// The parts of another's stream: puts them in order, joins them, and knows which to ask for. It
+/// begins with the first that is said after its author was heard first.
+class InStream {
+ public:
+  using Deliver = std::function<void(std::uint8_t channel, std::span<const std::uint8_t> bytes)>;
+
+  void on_part(const PartFrame& part, const Deliver& deliver);
+  /// What the author has said, after the parts of the same datagram.
+  void on_head(const Head& head, Instant now, Random& random, const Deliver& deliver);
+  /// Somebody else has asked for it.
+  void on_asked(const MissingFrame& missing, Instant now, Random& random);
+
+  /// When to ask; none where nothing is missing.
+  [[nodiscard]] std::optional<Instant> ask_at() const { return ask_at_; }
+  /// What to ask for, if it is still missing. Precondition: it is time.
+  [[nodiscard]] std::optional<MissingFrame> ask(const Author& author, Instant now, Random& random);
+  /// Parts that could not be had.
+  [[nodiscard]] std::uint64_t lost() const { return lost_; }
+
+ private:
+  struct Held {
+    std::uint8_t channel = 0;
+    bool begins = false;
+    bool ends = false;
+    std::vector<std::uint8_t> bytes;
+  };
+  [[nodiscard]] std::uint64_t extended(std::uint16_t number) const;
+  void take(const Held& part, const Deliver& deliver);
+  void take_ready(const Deliver& deliver);
+  void skip_to(std::uint64_t number, const Deliver& deliver);
+
+  /// Numbers are counted on from 2^16, so that those before the first are above 0.
+  std::optional<std::uint64_t> next_;  ///< the first that is missing or was not said yet
+  std::uint64_t newest_ = 0;           ///< of which is known
+  std::map<std::uint64_t, Held> early_;
+  std::optional<Held> joined_;  ///< the beginning of a sample
+  std::optional<Instant> ask_at_;
+  int asked_ = 0;  ///< since the last part came
+  std::uint64_t lost_ = 0;
+};
+
+}  // namespace skein::air
