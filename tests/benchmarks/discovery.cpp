@@ -84,11 +84,11 @@ double seconds_to_find(bool sealed) {
   return took;
 }
 
-void compare(int rounds) {
+void compare(long rounds) {
   std::array<std::vector<double>, 2> took;
   std::printf("%zu processes until each has found all\n%8s %8s %8s\n", kNodes, "clear s",
               "sealed s", "ratio");
-  for (int round = 0; round < rounds; ++round) {
+  for (long round = 0; round < rounds; ++round) {
     for (const bool sealed : {false, true})
       took.at(sealed ? 1 : 0).push_back(seconds_to_find(sealed));
     std::printf("%8.2f %8.2f %8.2f\n", took[0].back(), took[1].back(),
@@ -105,7 +105,7 @@ void compare(int rounds) {
 }  // namespace skein::network
 
 int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::atoi(argv[1]) : 5;
+  const long rounds = argc > 1 ? std::strtol(argv[1], nullptr, 10) : 5;
   if (rounds < 1) {
     std::fprintf(stderr, "usage: %s [ROUNDS]\n", argv[0]);
     return 2;
