@@ -272,7 +272,7 @@ export function topics_header(model, topics) {
     const type = model.types.get(t.type) ?? fail(`idl/topics.json: there is no ${t.type}`)
     if (!type.notes.version) fail(`${t.type} is a topic's type: it needs a @version`)
     return `    {"skein/${t.name}", "skein::wire::${type.tool_name}", ${type.notes.version}, ${sets[t.writers]}, ${sets[t.readers]}, ` +
-      `${t.reliable}, ${t.writer_history}, ${t.reader_history}, ${size_max(model.types, t.type)}},\n`
+      `${t.reliable}, air::Urgency::${t.urgency}, ${t.writer_history}, ${t.reader_history}, ${size_max(model.types, t.type)}},\n`
   })
   return `${made_from('idl/topics.json')}#pragma once\n\n#include <array>\n#include <cstddef>\n#include <cstdint>\n\n#include "skein/codec/topic_info.hpp"\n\nnamespace skein::codec {\n\n` +
     `/// What crosses the mission network; the order of mission::Message.\nenum class Topic : std::uint8_t {\n${topics.map(t => `  ${t.name},\n`).join('')}  count\n};\n` +
@@ -322,7 +322,7 @@ export function topics_document(model, topics) {
     const said = of_union ? 'see below' : sayers(type).text
     const proof = of_union ? 'see below' : protection(type)
     return `| \`skein/${t.name}\` | \`${t.type}\` | ${type.notes.version} | ${reached[t.writers]} | ${reached[t.readers]} | ${said} | ${proof} | ` +
-      `${t.reliable ? 'reliable' : 'best effort'} | ${t.writer_history} | ${t.reader_history} | ${size_max(model.types, t.type)} |\n`
+      `${t.reliable ? 'reliable' : 'best effort'} | ${t.urgency} | ${t.writer_history} | ${t.reader_history} | ${size_max(model.types, t.type)} |\n`
   })
   const parts = topics.filter(t => model.types.get(t.type).kind === 'union').map(t =>
     `\n\`${t.type}\` is one of:\n\n| message | who may say it | where there are keys |\n|---|---|---|\n` +
@@ -332,6 +332,6 @@ export function topics_document(model, topics) {
     'A reliable topic keeps the order of each sender; a loss is repaired at the next heartbeat, after 100 ms.\n' +
     'Who may say it: `mission::may_say()` compares the sender with that field of the message; what is not the sender\'s to say is dropped.\n' +
     'Where a team has keys every datagram is sealed, and decisions are signed by who takes them (security.md).\n\n' +
-    '| topic | type | version | written by | read by | who may say it | where there are keys | delivery | kept by writer | kept by reader | bytes at most |\n' +
-    `|---|---|---|---|---|---|---|---|---|---|---|\n${rows.join('')}${parts.join('')}`
+    '| topic | type | version | written by | read by | who may say it | where there are keys | delivery | urgency | kept by writer | kept by reader | bytes at most |\n' +
+    `|---|---|---|---|---|---|---|---|---|---|---|---|\n${rows.join('')}${parts.join('')}`
 }

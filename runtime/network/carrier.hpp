@@ -26,6 +26,7 @@ struct CarrierConfig {
   codec::Role role = codec::Role::vehicle;
   Endpoint endpoint;
   std::vector<PeerConfig> peers;
+  std::optional<AirConfig> air;
   struct Seal {
     seal::SenderStart start;
     seal::EpochKey key;
@@ -93,7 +94,10 @@ class Carrier {
 /// Fast DDS in this process.
 [[nodiscard]] Result<std::unique_ptr<Carrier>> open_dds_carrier(CarrierConfig config,
                                                                 CarrierSink& sink);
-/// The same in a process of its own (skein/network/carrier_process.hpp), which is watched and
+/// Everything once, for all who hear it (skein/air), in this process; `air` must be given.
+[[nodiscard]] Result<std::unique_ptr<Carrier>> open_air_carrier(CarrierConfig config,
+                                                                CarrierSink& sink);
+/// Fast DDS in a process of its own (skein/network/carrier_process.hpp), which is watched and
 /// started again. Returns when it has joined the network, or with why it cannot.
 [[nodiscard]] Result<std::unique_ptr<Carrier>> open_carrier_process(CarrierConfig config,
                                                                     CarrierSink& sink);

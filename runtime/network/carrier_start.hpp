@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "descriptor.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
 
@@ -17,24 +18,6 @@ namespace skein::network {
 inline constexpr const char* kCarrierArgument = "--carry-network";
 /// Where a carrier's process has its end of the socket.
 inline constexpr int kCarrierDescriptor = 3;
-
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_{number} {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  ~Descriptor() { reset(); }
-  void reset();
-  [[nodiscard]] int get() const { return number_; }
-
- private:
-  int number_;
-};
 
 /// A carrier's process as its parent has it. Whoever starts it must go on: the process ends with
 /// the thread.

@@ -112,8 +112,10 @@ class Node::Impl : private CarrierSink {
 };
 
 Result<void> Node::Impl::open() {
-  auto opened = config_.isolated ? open_carrier_process(carrier_config(config_), *this)
-                                 : open_dds_carrier(carrier_config(config_), *this);
+  const auto open = config_.air        ? &open_air_carrier
+                    : config_.isolated ? &open_carrier_process
+                                       : &open_dds_carrier;
+  auto opened = open(carrier_config(config_), *this);
   if (!opened) return opened.error();
   carrier_ = std::move(opened).value();
   return {};

@@ -76,7 +76,7 @@ edit(join(after, 'idl/coalition.idl'), '  Instant time_ns;  // when it came into
 edit(join(after, 'idl/mission.idl'), '// How a vehicle\'s program is,',
   '// "I am here."\n@version(1) @said_by("vehicle")\nstruct Beacon {\n  VehicleId vehicle;\n  Point3 position_m;\n};\n\n// How a vehicle\'s program is,')
 edit(join(after, 'idl/topics.json'), '\n]',
-  ',\n  {"name": "beacon", "type": "skein::mission::Beacon", "writers": "vehicles", "readers": "all", "reliable": false, "writer_history": 1, "reader_history": 8}\n]')
+  ',\n  {"name": "beacon", "type": "skein::mission::Beacon", "writers": "vehicles", "readers": "all", "reliable": false, "urgency": "state", "writer_history": 1, "reader_history": 8}\n]')
 edit(join(after, 'user/user.cpp'), '  // the user\'s change\n',
   '  if (what == "beacon") {\n    const mission::Beacon beacon{VehicleId{3}, {1.0, 2.0, 3.0}};\n' +
   '    if (mission::may_say(beacon, VehicleId{3}) && !mission::may_say(beacon, VehicleId{4})) print(beacon);\n  }\n')

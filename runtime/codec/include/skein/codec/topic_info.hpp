@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "skein/air/link.hpp"
 #include "skein/base/time.hpp"
 
 namespace skein::codec {
@@ -33,6 +34,7 @@ struct TopicInfo {
   Roles writers;
   Roles readers;
   bool reliable;                ///< resent until acknowledged, and in the sender's order
+  air::Urgency urgency;
   std::int32_t writer_history;  ///< samples kept for resending; the oldest gives way, never blocks
   std::int32_t reader_history;  ///< samples kept while an earlier one is missing
   std::size_t size_max;         ///< of a message of this release, in bytes

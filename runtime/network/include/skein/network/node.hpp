@@ -38,6 +38,13 @@ struct SealConfig {
   seal::EpochKey key;
 };
 
+/// A network on which everything is said once, for all who hear it. There is no list of members.
+struct AirConfig {
+  Endpoint group;  ///< where all listen: a multicast address, or that of a broadcast
+  /// Of the air, headers included, that this node may take; none: no limit.
+  std::optional<double> bytes_per_s;
+};
+
 struct NodeConfig {
   std::uint32_t domain = 0;  ///< nodes of other domains are not heard; 0 to 232
   VehicleId self;
@@ -52,6 +59,8 @@ struct NodeConfig {
   std::optional<SealConfig> seal;
   /// None: decisions are neither signed nor judged.
   std::optional<SignConfig> sign;
+  /// None: Fast DDS, from everybody to everybody.
+  std::optional<AirConfig> air;
   /// Whether what knows Fast DDS runs in a process of its own (carrier_process.hpp), so that its
   /// faults are not this one's.
   bool isolated = false;

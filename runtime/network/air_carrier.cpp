@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "air_carrier.hpp"
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <string>
+#include <utility>
+
+#include "skein/identity/identity.hpp"
+#include "skein/seal/header.hpp"
+
+namespace skein::network {
+namespace {
+
+using codec::Topic;
+
+/// Of a datagram in clear: a mark, the domain (4 bytes), the node (2), the instance (8), big
+/// endian.
+constexpr std::uint8_t kClearMark = 0xA0;
+constexpr std::size_t kClearBytes = 15;
+constexpr std::size_t kIpUdpBytes = 28;
+constexpr std::size_t kReceivedAtOnce = 64;
+constexpr std::size_t kOnTheirWayMax = 8192;  ///< more are lost, as on the air
+
+void put(std::vector<std::uint8_t>& out, std::uint64_t number, unsigned bytes) {
+  while (bytes-- > 0) out.push_back(static_cast<std::uint8_t>(number >> (8U * bytes)));
+}
+
+std::uint64_t number_in(std::span<const std::uint8_t> bytes) {
+  std::uint64_t number = 0;
+  for (const std::uint8_t byte : bytes) number = number << 8U | byte;
+  return number;
+}
+
+bool is_clear(std::span<const std::uint8_t> datagram) {
+  return datagram.size() >= kClearBytes && datagram[0] == kClearMark;
+}
+
+/// Who sends it, as it says.
+std::optional<VehicleId> sender_of(std::span<const std::uint8_t> datagram) {
+  if (const auto header = seal::read_header(datagram)) return header->from.sender;
+  if (const auto sender = key_news_sender(datagram)) return sender;
+  if (!is_clear(datagram)) return std::nullopt;
+  return VehicleId{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))};
+}
+
+air::LinkConfig link_config(const CarrierConfig& config) {
+  air::LinkConfig link;
+  link.self = {config.self,
+               config.seal ? identity::instance_of(config.seal->start) : config.instance};
+  link.role = static_cast<std::uint8_t>(config.role);
+  for (const codec::TopicInfo& topic : codec::kTopics) {
+    link.channels.push_back(
+        {topic.reliable, topic.urgency, static_cast<std::size_t>(topic.writer_history)});
+  }
+  link.certificate = config.certificate;
+  link.overhead_bytes = kIpUdpBytes + (config.seal ? seal::kOverheadBytes : kClearBytes);
+  link.bytes_per_s = config.air->bytes_per_s;
+  link.seed = config.instance.value;
+  return link;
+}
+
+Result<std::unique_ptr<AirRadio>> open_radio(const CarrierConfig& config) {
+  if (config.transport_plugin.empty()) return std::unique_ptr<AirRadio>{};
+  // Never closed: what it has made may outlive the node.
+  void* library = dlopen(config.transport_plugin.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) {
+    // glibc keeps it per thread. NOLINTNEXTLINE(concurrency-mt-unsafe)
+    return Error{std::string{"cannot load the transport: "} + dlerror()};
+  }
+  const auto open = reinterpret_cast<OpenAirRadio>(dlsym(library, kOpenAirRadioSymbol));
+  if (open == nullptr) {
+    return Error{"the transport " + config.transport_plugin + " does not export " +
+                 kOpenAirRadioSymbol};
+  }
+  const char* reason = nullptr;
+  std::unique_ptr<AirRadio> radio{open(config.self.value, &reason)};
+  if (!radio) return Error{"the transport " + config.transport_plugin + " refuses: " + reason};
+  return radio;
+}
+
+}  // namespace
+
+AirCarrier::AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, Descriptor wake,
+                       std::unique_ptr<AirRadio> radio)
+    : config_{std::move(config)},
+      sink_{sink},
+      socket_{std::move(socket)},
+      wake_{std::move(wake)},
+      radio_{std::move(radio)},
+      link_{link_config(config_), *this, steady_now()} {
+  if (config_.seal) {
+    const auto& seal = *config_.seal;
+    seals_ = std::make_unique<Seals>(seal.start, seal.key, seal.counters,
+                                     std::map<Seals::Place, VehicleId>{});
+  }
+  thread_ = std::thread{[this] { run(); }};
+}
+
+AirCarrier::~AirCarrier() {
+  stopping_ = true;
+  (void)eventfd_write(wake_.get(), 1);
+  thread_.join();
+}
+
+// --- for the node --------------------------------------------------------------------------------
+
+Written AirCarrier::write(Topic topic, std::vector<std::uint8_t> bytes) {
+  bool wake = false;
+  {
+    const std::lock_guard lock{mutex_};
+    const Instant now = steady_now();
+    if (!link_.send(static_cast<std::uint8_t>(topic), std::move(bytes), now)) {
+      return Written::no_room;
+    }
+    wake = link_.due() < sleeps_until_;
+    if (wake) sleeps_until_ = Instant{};  // it knows
+  }
+  if (wake) (void)eventfd_write(wake_.get(), 1);
+  return Written::yes;
+}
+
+std::vector<Peer> AirCarrier::peers() const {
+  std::vector<Peer> peers;
+  const std::lock_guard lock{mutex_};
+  for (const air::LinkPeer& peer : link_.peers(steady_now())) {
+    const auto role = static_cast<codec::Role>(peer.role);
+    if (role != codec::Role::vehicle && role != codec::Role::ground) continue;
+    peers.push_back({peer.author.node, peer.author.instance, role});
+  }
+  return peers;
+}
+
+void AirCarrier::change_key(const seal::EpochKey& key, Duration old_for) {
+  seals_->change_key(key, old_for);
+}
+
+void AirCarrier::tell(const std::vector<KeyNews>& news) { seals_->news.tell(news); }
+
+std::optional<std::vector<std::uint8_t>> AirCarrier::take_key_news() { return seals_->news.take(); }
+
+CarrierCounts AirCarrier::counts() const {
+  CarrierCounts counts{};
+  const auto set = [&counts](CarrierCount of, std::uint64_t value, std::size_t offset = 0) {
+    counts.at(static_cast<std::size_t>(of) + offset) = value;
+  };
+  {
+    const std::lock_guard lock{mutex_};
+    set(CarrierCount::unknown_sender, link_.counts().too_many);
+    set(CarrierCount::misformed, misformed_ + link_.counts().malformed);
+  }
+  if (seals_) {
+    const auto opened = seals_->opener.counts();
+    for (std::size_t i = 0; i < opened.size(); ++i) set(CarrierCount::opened, opened.at(i), i);
+  }
+  return counts;
+}
+
+// --- its thread ----------------------------------------------------------------------------------
+
+void AirCarrier::run() {
+  while (!stopping_) {
+    wait();
+    socket_.receive(kReceivedAtOnce, [this](auto datagram) { receive(datagram); });
+    while (!on_their_way_.empty() && on_their_way_.begin()->first <= steady_now()) {
+      open(on_their_way_.begin()->second);
+      on_their_way_.erase(on_their_way_.begin());
+    }
+    for (const Heard& heard : std::exchange(heard_, {})) {
+      if (!heard.topic) {
+        sink_.on_certificate(heard.bytes);
+      } else if (codec::info(*heard.topic).readers.has(config_.role)) {
+        sink_.on_sample(*heard.topic, heard.author.node, heard.author.instance, heard.bytes);
+      }
+    }
+    speak();
+  }
+}
+
+void AirCarrier::wait() {
+  Duration wait{};
+  {
+    const std::lock_guard lock{mutex_};
+    sleeps_until_ = link_.due();
+    if (!on_their_way_.empty()) {
+      sleeps_until_ = std::min(sleeps_until_, on_their_way_.begin()->first);
+    }
+    wait = std::max(Duration{}, sleeps_until_ - steady_now());
+  }
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(wait);
+  const timespec timeout{seconds.count(), (wait - seconds).count()};
+  std::array<pollfd, 2> ready{pollfd{socket_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
+  (void)ppoll(ready.data(), ready.size(), &timeout, nullptr);
+  eventfd_t ignored = 0;
+  if ((ready[1].revents & POLLIN) != 0) (void)eventfd_read(wake_.get(), &ignored);
+}
+
+void AirCarrier::receive(std::span<const std::uint8_t> datagram) {
+  const auto sender = sender_of(datagram);
+  if (sender == config_.self && !radio_) return open(datagram);  // perhaps another of our number
+  if (!radio_ || !sender) return open(datagram);
+  const Instant now = steady_now();
+  for (const Duration delay : radio_->arrivals(*sender, datagram.size())) {
+    if (delay == Duration{}) {
+      open(datagram);
+    } else if (on_their_way_.size() < kOnTheirWayMax) {
+      on_their_way_.emplace(now + delay,
+                            std::vector<std::uint8_t>{datagram.begin(), datagram.end()});
+    }
+  }
+}
+
+void AirCarrier::open(std::span<const std::uint8_t> datagram) {
+  if (seals_) {
+    if (is_key_news(datagram)) return seals_->news.hear(datagram);
+    if (const auto header = seal::read_header(datagram)) {
+      if (header->from == config_.seal->start) return;  // our own voice
+      if (seals_->news.has_any()) tell_news(*header);
+    }
+    const auto outcome = seals_->opener.open(datagram, plain_, steady_now());
+    if (outcome.opened != seal::Opened::good) return;
+    return hear({outcome.from.sender, identity::instance_of(outcome.from)}, plain_);
+  }
+  if (!is_clear(datagram)) {
+    ++misformed_;
+  } else if (number_in(datagram.subspan(1, 4)) == config_.domain) {
+    const VehicleId node{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))};
+    hear({node, InstanceId{number_in(datagram.subspan(7, 8))}}, datagram.subspan(kClearBytes));
+  }
+}
+
+void AirCarrier::hear(const air::Author& from, std::span<const std::uint8_t> content) {
+  const std::lock_guard lock{mutex_};
+  link_.hear(from, content, steady_now());
+}
+
+void AirCarrier::on_sample(std::uint8_t channel, const air::Author& author,
+                           std::span<const std::uint8_t> bytes) {
+  heard_.push_back({static_cast<Topic>(channel), author, {bytes.begin(), bytes.end()}});
+}
+
+void AirCarrier::on_certificate(const air::Author& author, std::span<const std::uint8_t> bytes) {
+  heard_.push_back({std::nullopt, author, {bytes.begin(), bytes.end()}});
+}
+
+/// Who speaks under an older key is told of the newer.
+void AirCarrier::tell_news(const seal::Header& header) {
+  const auto known = seals_->opener.newest_epoch_of(header.from.sender);
+  const auto news =
+      seals_->news.due(header.from.sender, std::max(header.epoch, known), steady_now());
+  if (news) (void)socket_.send(*news);
+}
+
+void AirCarrier::speak() {
+  for (;;) {
+    std::optional<std::vector<std::uint8_t>> content;
+    {
+      const std::lock_guard lock{mutex_};
+      content = link_.poll(steady_now());
+    }
+    if (!content) return;
+    if (seals_) {
+      if (!seals_->sealer.seal(*content, out_)) return;
+    } else {
+      out_.clear();
+      put(out_, kClearMark, 1);
+      put(out_, config_.domain, 4);
+      put(out_, config_.self.value, 2);
+      put(out_, config_.instance.value, 8);
+      out_.insert(out_.end(), content->begin(), content->end());
+    }
+    (void)socket_.send(out_);
+  }
+}
+
+Result<std::unique_ptr<Carrier>> open_air_carrier(CarrierConfig config, CarrierSink& sink) {
+  auto radio = open_radio(config);
+  if (!radio) return radio.error();
+  auto socket = AirSocket::open(config.air->group, config.endpoint.address);
+  if (!socket) return socket.error();
+  Descriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  if (wake.get() < 0) return Error{"there is no event to wake the network's thread with"};
+  return std::unique_ptr<Carrier>{
+      std::make_unique<AirCarrier>(std::move(config), sink, std::move(socket).value(),
+                                   std::move(wake), std::move(radio).value())};
+}
+
+}  // namespace skein::network

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "air_socket.hpp"
+#include "carrier.hpp"
+#include "descriptor.hpp"
+#include "seals.hpp"
+#include "skein/air/link.hpp"
+#include "skein/network/air_radio.hpp"
+
+namespace skein::network {
+
+/// An air::Link on a socket, with a thread of its own that listens and speaks.
+class AirCarrier final : public Carrier, private air::LinkSink {
+ public:
+  AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, Descriptor wake,
+             std::unique_ptr<AirRadio> radio);
+  AirCarrier(const AirCarrier&) = delete;
+  AirCarrier& operator=(const AirCarrier&) = delete;
+  ~AirCarrier() override;
+
+  [[nodiscard]] Written write(codec::Topic topic, std::vector<std::uint8_t> bytes) override;
+  [[nodiscard]] std::vector<Peer> peers() const override;
+  void change_key(const seal::EpochKey& key, Duration old_for) override;
+  void tell(const std::vector<KeyNews>& news) override;
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news() override;
+  [[nodiscard]] CarrierCounts counts() const override;
+
+ private:
+  /// What a link has heard, until its lock is open again.
+  struct Heard {
+    std::optional<codec::Topic> topic;  ///< none: a certificate
+    air::Author author;
+    std::vector<std::uint8_t> bytes;
+  };
+
+  void on_sample(std::uint8_t channel, const air::Author& author,
+                 std::span<const std::uint8_t> bytes) override;
+  void on_certificate(const air::Author& author, std::span<const std::uint8_t> bytes) override;
+
+  void run();
+  void wait();
+  void receive(std::span<const std::uint8_t> datagram);
+  void open(std::span<const std::uint8_t> datagram);
+  void hear(const air::Author& from, std::span<const std::uint8_t> content);
+  void tell_news(const seal::Header& header);
+  void speak();
+
+  const CarrierConfig config_;
+  CarrierSink& sink_;
+  AirSocket socket_;
+  const Descriptor wake_;
+  const std::unique_ptr<AirRadio> radio_;  ///< none: what is received is there
+  std::unique_ptr<Seals> seals_;           ///< none: in clear
+  std::atomic<bool> stopping_{false};
+  std::atomic<std::uint64_t> misformed_{0};
+
+  mutable std::mutex mutex_;  ///< of the two below
+  air::Link link_;
+  Instant sleeps_until_{};
+
+  // Of the thread alone.
+  std::multimap<Instant, std::vector<std::uint8_t>> on_their_way_;  ///< through the radio
+  std::vector<Heard> heard_;
+  std::vector<std::uint8_t> plain_;
+  std::vector<std::uint8_t> out_;
+  std::thread thread_;  ///< last: it uses all of the above
+};
+
+}  // namespace skein::network
