@@ -110,7 +110,7 @@ class Air {
       heard.push_back({channel, author, {bytes.begin(), bytes.end()}, air.now});
     }
     void on_certificate(const Author& author, std::span<const std::uint8_t> bytes) override {
-      if (author.node != VehicleId{9}) EXPECT_EQ(bytes.size(), 200U);  // 9 says anything
+      EXPECT_TRUE(bytes.size() == 200U || author.node == VehicleId{9});  // 9 says anything
       certified.insert(author);
     }
   };
@@ -166,7 +166,7 @@ std::vector<std::string> numbered(int first, int end) {
 }
 
 TEST(Link, ATeamFindsItself) {
-  for (const std::uint16_t count : {2, 33, 128}) {
+  for (const std::uint16_t count : std::vector<std::uint16_t>{2, 33, 128}) {
     Air air{count};
     air.loss = 0.1;
     for (std::uint16_t id = 0; id < count; ++id) air.add(id);

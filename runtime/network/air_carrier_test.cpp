@@ -129,7 +129,7 @@ TEST(AirCarrier, WhatIsNotForAVehicleIsNotHeardByIt) {
   one->publish(coalition::Message{coalition::Cancel{}});
   std::vector<codec::Topic> heard;
   ASSERT_TRUE(eventually([&] {
-    while (const auto received = other->poll()) heard.push_back(topic_of(received->message));
+    while (const auto received = other->poll()) heard.push_back(codec::topic_of(received->message));
     return !heard.empty();
   }));
   EXPECT_THAT(heard, ElementsAre(codec::Topic::coalition));
