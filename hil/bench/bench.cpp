@@ -81,6 +81,7 @@ class InterruptWatch {
 };
 
 constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kGroup = "239.255.83.1";  ///< of the organisation alone (RFC 2365)
 /// Where there are more, Fast DDS stays in the agents' processes: twice as many processes would
 /// measure the machine.
 constexpr std::size_t kNodesPerProcessor = 4;
@@ -178,9 +179,11 @@ class Bench {
       if (auto up = launch_vehicle(config); !up) return up;
     }
     configuration::NetworkConfig own = ground.network;
-    own.port = static_cast<std::uint16_t>(*base + 2 * (nodes - 1));
+    if (own.group.empty()) {
+      own.port = static_cast<std::uint16_t>(*base + 2 * (nodes - 1));
+      own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
+    }
     own.keys = options_.sealed ? deployment.keys.at(kBench) : "";
-    own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
     own.transport_plugin.clear();  // it hears all
     return listen(own, deployment);
   }
@@ -244,6 +247,7 @@ class Bench {
     configuration::Deployment deployment;
     deployment.address = options_.address;
     deployment.port_base = port_base;
+    if (options_.air) deployment.group = kGroup;
     deployment.domain_id = static_cast<std::uint16_t>(port_base % 200);
     deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
     deployment.time.rate = options_.rate;

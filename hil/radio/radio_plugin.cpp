@@ -28,6 +28,7 @@
 #include "skein/base/random.hpp"
 #include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/network/air_radio.hpp"
 #include "skein/network/key_news.hpp"
 #include "skein/network/rtps_guid.hpp"
 #include "skein/network/transport_plugin.hpp"
@@ -197,6 +198,32 @@ struct RadioDescriptor : rtps::ChainingTransportDescriptor {
   std::uint64_t seed;
 };
 
+/// The same for a node of the air, which keeps what is on its way itself.
+class AirRadio : public network::AirRadio {
+ public:
+  AirRadio(VehicleId self, std::shared_ptr<const LinkTable> table, std::uint64_t seed)
+      : self_{self}, table_{std::move(table)}, random_{seed + self.value} {}
+
+  std::vector<Duration> arrivals(VehicleId sender, std::size_t /*bytes*/) override {
+    const Link link = sender != self_ ? table_->get(sender, self_) : Link{};
+    if (!link.up) return {};
+    const auto arrivals = radio::carry(link, random_);
+    return {arrivals.begin(), arrivals.end()};
+  }
+
+ private:
+  VehicleId self_;
+  std::shared_ptr<const LinkTable> table_;
+  Random random_;
+};
+
+std::uint64_t seed_of_environment() {
+  // Nobody changes the environment while a node opens.
+  // NOLINTNEXTLINE(concurrency-mt-unsafe)
+  const char* seed = std::getenv("SKEIN_RADIO_SEED");
+  return seed != nullptr ? std::strtoull(seed, nullptr, 10) : 1;
+}
+
 /// The table of this process's links, whoever keeps it.
 Result<std::shared_ptr<const LinkTable>> links_of(VehicleId self) {
   // Nobody changes the environment while a node opens.
@@ -224,11 +251,23 @@ extern "C" __attribute__((visibility("default"))) const char* skein_wrap_transpo
     reason = links.error().message;
     return reason.c_str();
   }
-  // NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const char* seed = std::getenv("SKEIN_RADIO_SEED");
   transport = std::make_shared<skein::hil::radio::RadioDescriptor>(
       transport, skein::VehicleId{self}, std::move(links).value(),
-      seed != nullptr ? std::strtoull(seed, nullptr, 10) : 1);
+      skein::hil::radio::seed_of_environment());
   return nullptr;
 }
 static_assert(std::is_same_v<decltype(&skein_wrap_transport), skein::network::WrapTransport>);
+
+extern "C" __attribute__((visibility("default"))) skein::network::AirRadio* skein_open_air_radio(
+    std::uint16_t self, const char** reason) {
+  auto links = skein::hil::radio::links_of(skein::VehicleId{self});
+  if (!links) {
+    static std::string text;
+    text = links.error().message;
+    *reason = text.c_str();
+    return nullptr;
+  }
+  return new skein::hil::radio::AirRadio{skein::VehicleId{self}, std::move(links).value(),
+                                         skein::hil::radio::seed_of_environment()};
+}
+static_assert(std::is_same_v<decltype(&skein_open_air_radio), skein::network::OpenAirRadio>);

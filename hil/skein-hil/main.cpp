@@ -97,6 +97,10 @@ void add_run(CLI::App& app, int& status) {
       ->add_flag("--clear", arguments->clear,
                  "Fly without keys, in clear, on loopback: to compare with a sealed run")
       ->excludes("--external");
+  command
+      ->add_flag("--air", arguments->air,
+                 "Say everything once, for all, by multicast, in place of Fast DDS")
+      ->excludes("--external");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"

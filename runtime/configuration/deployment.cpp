@@ -28,13 +28,18 @@ std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& de
 NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes,
                          const Deployment& deployment) {
   const auto keys = deployment.keys.find(nodes[node].id);
-  NetworkConfig network{deployment.domain_id,
-                        nodes[node].address,
-                        nodes[node].port,
-                        {},
-                        keys == deployment.keys.end() ? "" : keys->second,
-                        deployment.transport_plugin,
-                        deployment.isolated};
+  NetworkConfig network;
+  network.domain_id = deployment.domain_id;
+  network.address = nodes[node].address;
+  network.port = nodes[node].port;
+  network.keys = keys == deployment.keys.end() ? "" : keys->second;
+  network.transport_plugin = deployment.transport_plugin;
+  network.isolated = deployment.isolated;
+  if (!deployment.group.empty()) {
+    network.group = deployment.group;
+    network.port = deployment.port_base;
+    return network;
+  }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (i != node) network.peers.push_back(nodes[i]);
   }

@@ -383,6 +383,19 @@ void network_fields(FieldVisitor& v, NetworkConfig& network) {
                whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
              },
              "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
+  v.text({"group",
+          "IPv4 address where all listen, at `port`: of a multicast, such as 239.255.83.1, or of a "
+          "broadcast; everything is said once, for all who hear it, and `peers` is not needed. "
+          "Empty: with Fast DDS, to each of `peers`"},
+         network.group);
+  in_addr group{};
+  v.require(network.group.empty() || inet_pton(AF_INET, network.group.c_str(), &group) == 1,
+            "group", "is no IPv4 address; write one such as 239.255.83.1");
+  v.number({"limit_bytes_per_s",
+            "of the air that this node may take, headers included, where there is a group; 0: no "
+            "limit. Where it is too little reports give way first, then what people look at, then "
+            "telemetry"},
+           {0.0, 1e9, "bytes/s"}, network.limit_bytes_per_s);
   v.text({"keys", "folder of this node's keys; empty: it speaks in clear, on loopback only"},
          network.keys);
   v.text({"transport_plugin", "shared library that carries the messages; empty: plain UDP"},

@@ -77,13 +77,18 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
   }
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
+  if (!config.group.empty()) {
+    node.air.emplace(network::Endpoint{config.group, config.port}, std::nullopt);
+    if (config.limit_bytes_per_s > 0.0) node.air->bytes_per_s = config.limit_bytes_per_s;
+  }
   node.transport_plugin = config.transport_plugin;
   node.on_received = std::move(on_received);
   return node;
 }
 
 bool among_machines(const configuration::NetworkConfig& config) {
-  return std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
+  return (!config.group.empty() && !is_loopback(config.address)) ||
+         std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
     return peer.address != config.address;
   });
 }

@@ -19,6 +19,7 @@ struct Deployment {
   std::string address = "127.0.0.1";
   std::uint16_t port_base = 17400;
   std::uint16_t domain_id = 0;
+  std::string group;  ///< NetworkConfig's, of all, at `port_base`
   std::string transport_plugin;
   std::map<VehicleId, std::string> keys;  ///< folders; who has none speaks in clear
   bool isolated = true;                   ///< NetworkConfig's, of all

@@ -25,6 +25,9 @@ struct NetworkConfig {
   std::string address = "127.0.0.1";
   std::uint16_t port = 7400;  ///< UDP, for discovery; port + 1 is for data
   std::vector<NetworkPeer> peers;
+  /// Where all listen, at `port`: everything is said once, for all. Empty: to each of `peers`.
+  std::string group;
+  double limit_bytes_per_s = 0.0;  ///< of the air, where there is a group; 0: none
   std::string keys;              ///< folder of this node's keys; empty: in clear, on loopback only
   std::string transport_plugin;  ///< a shared library; empty: plain UDP
   bool isolated = true;          ///< Fast DDS runs in a process of its own
