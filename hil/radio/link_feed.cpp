@@ -52,9 +52,8 @@ bool can_be(const Link& link) {
   const auto share = [](double of) { return of >= 0.0 && of <= 1.0; };
   const auto bounded = [=](Duration of) { return of >= Duration{} && of <= kLongest; };
   if (!share(link.loss) || !bounded(link.delay) || !bounded(link.jitter)) return false;
-  return !link.disorder ||
-         (share(link.disorder->duplicates) && share(link.disorder->held_back) &&
-          bounded(link.disorder->held_back_max));
+  return !link.disorder || (share(link.disorder->duplicates) && share(link.disorder->held_back) &&
+                            bounded(link.disorder->held_back_max));
 }
 
 /// Into the node's row.

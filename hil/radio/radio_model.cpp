@@ -2,6 +2,7 @@
 #include "skein/hil/radio/radio_model.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "skein/base/contains.hpp"
@@ -84,6 +85,15 @@ Link link_between(const RadioParams& params, const Interference& interference, c
   Link link = link_when_up(params, interference);
   link.up = is_up(params, interference, from, to);
   return link;
+}
+
+Link over_hops(const Link& link, int hops) {
+  Link way = link;
+  way.up = link.up && hops > 0;
+  way.loss = 1.0 - std::pow(1.0 - link.loss, hops);
+  way.delay = hops * link.delay;
+  way.jitter = hops * link.jitter;
+  return way;
 }
 
 Link in_real_time(const Link& link, double rate) {

@@ -112,8 +112,12 @@ models::WindParams wind_params(const configuration::WindConfig& wind, std::uint6
 }
 
 radio::RadioParams radio_params(const configuration::RadioConfig& radio) {
-  return {radio.range_m, radio.ground_range_m, radio.delay_mean, radio.delay_jitter,
-          radio.loss_ratio};
+  radio::RadioParams params{radio.range_m, radio.ground_range_m, radio.delay_mean,
+                            radio.delay_jitter, radio.loss_ratio};
+  if (radio.mesh == configuration::MeshKind::none) return params;
+  params.mesh.emplace();
+  params.mesh->ground_relays = radio.mesh == configuration::MeshKind::all;
+  return params;
 }
 
 TeamMission team_mission(const configuration::Scenario& scenario) {

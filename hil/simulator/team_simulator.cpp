@@ -20,6 +20,7 @@
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/hil/fault_timeline.hpp"
+#include "skein/hil/radio/mesh.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -85,6 +86,7 @@ class Team {
         observer_{observer},
         air_{kControlPeriod},
         radio_{mission.radio, mission.seed},
+        mesh_{mission.radio.mesh ? std::optional<radio::Mesh>{*mission.radio.mesh} : std::nullopt},
         timeline_{mission.faults},
         healing_{healing_of(mission.faults)},
         awaits_routes_{std::ranges::any_of(
@@ -117,6 +119,7 @@ class Team {
       deliver(now);
       control(now);
       if (due(now, kSensorPeriod)) sense(now);
+      if (mesh_ && due(now, kNodePeriod)) move_mesh(now);
       step_nodes(now);
       if (due(now, kNodePeriod)) step_ground(now);
       if (mission_.formation) watch_formation(now);
@@ -281,10 +284,17 @@ class Team {
     }
   }
 
+  int hops_between(std::size_t from, std::size_t to) const {
+    if (mesh_) return mesh_->hops(from, to);
+    return radio_.hears(nodes_[from].node, nodes_[to].node) ? 1 : 0;
+  }
+
   void post(std::size_t from, std::size_t to, const std::shared_ptr<const Content>& what,
             Instant now) {
     if (!nodes_[to].on) return;
-    for (const Duration delay : radio_.carry(nodes_[from].node, nodes_[to].node)) {
+    const int hops = hops_between(from, to);
+    if (hops == 0) return;
+    for (const Duration delay : radio_.carry(hops)) {
       air_.post({now + delay, 0, to, nodes_[from].node.id, 0, what});
     }
   }
@@ -308,6 +318,15 @@ class Team {
       }
       drain(parcel->to, now);
     }
+  }
+
+  void move_mesh(Instant now) {
+    places_.clear();
+    for (const Station& station : nodes_) {
+      places_.push_back(station.node);
+      places_.back().on = station.on;
+    }
+    mesh_->move(radio_.params(), radio_.interference(), places_, now);
   }
 
   void control(Instant now) {
@@ -487,6 +506,8 @@ class Team {
   const TeamObserver& observer_;
   InFlight air_;
   radio::SimulatedRadio radio_;
+  std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
+  std::vector<radio::Node> places_;  ///< for it
   FaultTimeline timeline_;
   std::optional<Instant> healing_;
   bool awaits_routes_;

@@ -28,11 +28,21 @@ void allocation_field(FieldVisitor& v, std::optional<planning::AllocationMethod>
                       : std::nullopt;
 }
 
+void mesh_field(FieldVisitor& v, std::optional<MeshKind>& mesh) {
+  std::array<std::string_view, kMeshKinds.size() + 1> names{"scenario"};
+  std::ranges::copy(kMeshKinds, names.begin() + 1);
+  std::size_t chosen = mesh ? static_cast<std::size_t>(*mesh) + 1 : 0;
+  v.choice({"mesh", "who passes on what others say; nobody is out of the protocol's reach then"},
+           names, chosen);
+  mesh = chosen > 0 ? std::optional{static_cast<MeshKind>(chosen - 1)} : std::nullopt;
+}
+
 void settings_fields(FieldVisitor& v, ExperimentSettings& s) {
   const Range short_time{0.001, 60.0, "s"};
   const Range long_time{0.1, 600.0, "s"};
   whole(v, {"vehicles", "how many a random team has"}, {1.0, kVehiclesMax}, s.vehicles);
   allocation_field(v, s.allocation);
+  mesh_field(v, s.mesh);
   v.number({"radio_range_m", "r_n, of the radio and of the protocol"}, {10.0, 1e6, "m"},
            s.radio_range_m);
   v.number({"message_delay_s", "dt_d; the radio's own delays are spread evenly from 0 to it"},

@@ -21,6 +21,9 @@ void radio_fields(FieldVisitor& v, RadioConfig& radio) {
   v.require(radio.delay_jitter <= radio.delay_mean, "delay_ms_jitter",
             "must not exceed delay_ms_mean; mend one of them");
   v.number({"loss_ratio", "share of the messages that are lost"}, {0.0, 1.0}, radio.loss_ratio);
+  auto mesh = static_cast<std::size_t>(radio.mesh);
+  v.choice({"mesh", "who passes on what others say"}, kMeshKinds, mesh);
+  radio.mesh = static_cast<MeshKind>(mesh);
 }
 
 void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {

@@ -25,6 +25,8 @@ constexpr std::size_t kSearchPointsMax = 100;
 /// Heights of a drawn team differ by this many times what the judges ask for.
 constexpr double kHeightMargin = 1.8;
 
+constexpr double kEverywhere_m = 1e6;
+
 template <class T>
 void put(const std::optional<T>& over, std::optional<T>& value) {
   if (over) value = over;
@@ -36,6 +38,7 @@ ExperimentSettings settings_of(const Experiment& experiment, const Cell& cell) {
     const ExperimentSettings& own = experiment.axes.at(axis).points.at(cell.points[axis]).settings;
     put(own.vehicles, all.vehicles);
     put(own.allocation, all.allocation);
+    put(own.mesh, all.mesh);
     put(own.radio_range_m, all.radio_range_m);
     put(own.message_delay_s, all.message_delay_s);
     put(own.radio_delay_s, all.radio_delay_s);
@@ -58,6 +61,10 @@ void apply(const ExperimentSettings& settings, Scenario& scenario) {
   if (settings.radio_range_m) {
     scenario.radio.range_m = *settings.radio_range_m;
     protocol.radio_range_m = *settings.radio_range_m;
+  }
+  if (settings.mesh) {
+    scenario.radio.mesh = *settings.mesh;
+    if (*settings.mesh != configuration::MeshKind::none) protocol.radio_range_m = kEverywhere_m;
   }
   if (settings.message_delay_s) {
     put_duration(settings.message_delay_s, protocol.message_delay);

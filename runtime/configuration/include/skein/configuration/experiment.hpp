@@ -12,6 +12,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/configuration/scenario.hpp"
 #include "skein/planning/allocation.hpp"
 
 namespace skein::configuration {
@@ -20,6 +21,7 @@ namespace skein::configuration {
 struct ExperimentSettings {
   std::optional<std::uint16_t> vehicles;  ///< of a random team
   std::optional<planning::AllocationMethod> allocation;
+  std::optional<MeshKind> mesh;         ///< with it nobody is out of the protocol's reach
   std::optional<double> radio_range_m;  ///< r_n, of the radio and of the protocol
   /// dt_d of the protocol; the radio's own delays are spread evenly from 0 to it.
   std::optional<double> message_delay_s;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -28,12 +29,17 @@
 namespace skein::configuration {
 
 /// The radio between the nodes.
+/// Who passes on what others say.
+enum class MeshKind : std::uint8_t { none, vehicles, all };
+inline constexpr std::array<std::string_view, 3> kMeshKinds{"none", "vehicles", "all"};
+
 struct RadioConfig {
   double range_m = 1500.0;          ///< vehicle to vehicle; beyond it nothing arrives
   double ground_range_m = 20000.0;  ///< ground station to vehicle
   Duration delay_mean = std::chrono::milliseconds{60};
   Duration delay_jitter = std::chrono::milliseconds{30};  ///< delays lie within mean +- jitter
   double loss_ratio = 0.0;                                ///< of messages, independently
+  MeshKind mesh = MeshKind::none;
 };
 
 /// One vehicle of the fleet, the three levels of the file already merged.

@@ -16,6 +16,13 @@
 /// what is random is drawn from the generator that is handed in.
 namespace skein::hil::radio {
 
+/// That nodes pass on what others say, hop by hop.
+struct MeshParams {
+  int hops_max = 8;
+  Duration mend = std::chrono::seconds{1};  ///< until a route that broke is found anew
+  bool ground_relays = true;                ///< the ground station passes on, too
+};
+
 /// What a radio is when nothing goes wrong.
 struct RadioParams {
   double range_m = 1500.0;          ///< vehicle to vehicle (Wang 2022: r_n)
@@ -23,6 +30,7 @@ struct RadioParams {
   Duration delay = std::chrono::milliseconds{60};
   Duration jitter = std::chrono::milliseconds{30};  ///< the delay varies by up to this, either way
   double loss = 0.0;                                ///< probability, of each message by itself
+  std::optional<MeshParams> mesh{};                 ///< none: only who is in range is heard
 };
 
 /// Messages that arrive twice, or after those that were sent later.
@@ -72,6 +80,7 @@ struct Interference {
 struct Node {
   VehicleId id;
   std::optional<Vec2> position;  ///< mission frame; nothing: not known yet. Not of the ground.
+  bool on = true;                ///< it hears, and is heard
 };
 
 /// How one node hears another at this moment.
@@ -93,6 +102,9 @@ struct Link {
 [[nodiscard]] Link link_between(const RadioParams& params, const Interference& interference,
                                 const Node& from, const Node& to);
 
+/// What is as good as that many such links, one after the other; 0: none.
+[[nodiscard]] Link over_hops(const Link& link, int hops);
+
 /// The link where `rate` mission seconds pass in a real one.
 [[nodiscard]] Link in_real_time(const Link& link, double rate);
 
@@ -113,9 +125,18 @@ class SimulatedRadio {
     link_ = link_when_up(params_, interference_);
   }
   [[nodiscard]] Arrivals carry(const Node& from, const Node& to) {
-    if (!is_up(params_, interference_, from, to)) return {};
-    return radio::carry(link_, random_);
+    return carry(hears(from, to) ? 1 : 0);
   }
+  /// Over so many hops; 0: there is no way.
+  [[nodiscard]] Arrivals carry(int hops) {
+    if (hops == 0) return {};
+    return radio::carry(hops == 1 ? link_ : over_hops(link_, hops), random_);
+  }
+  [[nodiscard]] bool hears(const Node& from, const Node& to) const {
+    return is_up(params_, interference_, from, to);
+  }
+  [[nodiscard]] const RadioParams& params() const { return params_; }
+  [[nodiscard]] const Interference& interference() const { return interference_; }
 
  private:
   RadioParams params_;
