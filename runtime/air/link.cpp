@@ -55,10 +55,9 @@ class Link::Impl {
         random_{config_.seed},
         certificate_{hash_of(config_.certificate)},
         hello_at_{now + from_seconds(random_.uniform(0.0, kGreet_s))},
+        greet_with_certificate_{certificate_ != 0},
         tokens_{kBurst_s * config_.bytes_per_s.value_or(0.0)},
-        filled_at_{now} {
-    greet_with_certificate_ = certificate_ != 0;
-  }
+        filled_at_{now} {}
 
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
   void hear(const Author& from, std::span<const std::uint8_t> datagram, Instant now);
@@ -120,7 +119,7 @@ class Link::Impl {
 
   Instant hello_at_;
   std::optional<Instant> greeted_at_;
-  bool greet_with_certificate_ = false;
+  bool greet_with_certificate_;
   int greetings_ = kGreetings;  ///< that are to follow soon
 
   double tokens_;

@@ -98,7 +98,7 @@ class Air {
   }
 
  private:
-  struct Node : LinkSink {
+  struct Node final : LinkSink {
     explicit Node(Air& in) : air{in} {}
     Air& air;
     Author self;

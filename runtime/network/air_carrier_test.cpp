@@ -48,10 +48,10 @@ seal::EpochKey key(std::uint8_t epoch) {
 std::vector<NodeConfig> team(std::size_t vehicles, bool sealed) {
   std::vector<NodeConfig> all(vehicles + 1);
   const std::uint16_t port = free_port_pairs(1).front();
-  for (std::uint16_t i = 0; i < all.size(); ++i) {
+  for (std::size_t i = 0; i < all.size(); ++i) {
     NodeConfig& config = all[i];
-    config.self = VehicleId{i};
-    config.instance = InstanceId{100U + i};
+    config.self = VehicleId{static_cast<std::uint16_t>(i)};
+    config.instance = InstanceId{100 + i};
     config.role = i == 0 ? Role::ground : Role::vehicle;
     config.endpoint = {"127.0.0.1", 0};
     config.air = AirConfig{{"239.255.83.1", port}, {}};

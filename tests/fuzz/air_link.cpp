@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kDatagramBytes = 300;
 
-class Heard : public air::LinkSink {
+class Heard final : public air::LinkSink {
  public:
   void on_sample(std::uint8_t channel, const air::Author&,
                  std::span<const std::uint8_t> bytes) override {
