@@ -87,6 +87,10 @@ constexpr const char* kGroup = "239.255.83.1";  ///< of the organisation alone (
 constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
 constexpr auto kExternalSilence = std::chrono::seconds{10};
+/// What starting a vehicle takes on a machine that is busy with other things, and where Fast DDS
+/// has a process of its own.
+constexpr double kLead_s = 0.3;
+constexpr double kIsolatedLead_s = 0.8;
 /// What configuring and starting external hosts takes, all at once.
 constexpr double kExternalLead_s = 6.0;
 
@@ -237,9 +241,12 @@ class Bench {
 
   /// Where everybody is, and when mission time 0 is: all have started and found each other before.
   configuration::Deployment deploy(std::uint16_t port_base, const std::vector<std::string>& buses) {
+    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+    const bool isolated = all_nodes().size() <= kNodesPerProcessor * processors;
+    const double each_s = isolated ? kIsolatedLead_s : kLead_s;
     const double lead_s = options_.lead_s > 0.0
                               ? options_.lead_s
-                              : 3.0 + 0.3 * static_cast<double>(scenario_.vehicles.size()) +
+                              : 3.0 + each_s * static_cast<double>(scenario_.vehicles.size()) +
                                     (external_.empty() ? 0.0 : kExternalLead_s);
     const auto lead = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>{lead_s});
@@ -258,8 +265,7 @@ class Bench {
     deployment.can_buses = buses;
     deployment.elsewhere = external_.nodes();
     deployment.console_port = options_.console_port;
-    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    deployment.isolated = all_nodes().size() <= kNodesPerProcessor * processors;
+    deployment.isolated = isolated;
     if (!deployment.isolated) {
       say(fmt::format("{} nodes on {} processors: Fast DDS has no process of its own here",
                       all_nodes().size(), processors));
