@@ -25,7 +25,8 @@ using codec::Topic;
 constexpr std::uint8_t kClearMark = 0xA0;
 constexpr std::size_t kClearBytes = 15;
 constexpr std::size_t kIpUdpBytes = 28;
-constexpr std::size_t kReceivedAtOnce = 64;
+/// What comes within this is read together: to wake up costs more than to read.
+constexpr Duration kGather = std::chrono::milliseconds{5};
 constexpr std::size_t kOnTheirWayMax = 8192;  ///< more are lost, as on the air
 
 void put(std::vector<std::uint8_t>& out, std::uint64_t number, unsigned bytes) {
@@ -48,6 +49,12 @@ std::optional<VehicleId> sender_of(std::span<const std::uint8_t> datagram) {
   if (const auto sender = key_news_sender(datagram)) return sender;
   if (!is_clear(datagram)) return std::nullopt;
   return VehicleId{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))};
+}
+
+bool wait_for(std::span<pollfd> any, Duration at_most) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(at_most);
+  const timespec timeout{seconds.count(), (at_most - seconds).count()};
+  return ppoll(any.data(), any.size(), &timeout, nullptr) > 0;
 }
 
 air::LinkConfig link_config(const CarrierConfig& config) {
@@ -167,7 +174,7 @@ CarrierCounts AirCarrier::counts() const {
 void AirCarrier::run() {
   while (!stopping_) {
     wait();
-    socket_.receive(kReceivedAtOnce, [this](auto datagram) { receive(datagram); });
+    socket_.receive([this](auto datagram) { receive(datagram); });
     while (!on_their_way_.empty() && on_their_way_.begin()->first <= steady_now()) {
       open(on_their_way_.begin()->second);
       on_their_way_.erase(on_their_way_.begin());
@@ -193,18 +200,17 @@ void AirCarrier::wait() {
     }
     wait = std::max(Duration{}, sleeps_until_ - steady_now());
   }
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(wait);
-  const timespec timeout{seconds.count(), (wait - seconds).count()};
-  std::array<pollfd, 2> ready{pollfd{socket_.descriptor(), POLLIN, 0}, {wake_.get(), POLLIN, 0}};
-  (void)ppoll(ready.data(), ready.size(), &timeout, nullptr);
+  const Duration gather = std::min(wait, kGather);
+  std::array<pollfd, 2> ready{pollfd{wake_.get(), POLLIN, 0}, {socket_.descriptor(), POLLIN, 0}};
+  const std::span all{ready};
+  if (!wait_for(all.first(1), gather)) (void)wait_for(all, wait - gather);
   eventfd_t ignored = 0;
-  if ((ready[1].revents & POLLIN) != 0) (void)eventfd_read(wake_.get(), &ignored);
+  if ((ready[0].revents & POLLIN) != 0) (void)eventfd_read(wake_.get(), &ignored);
 }
 
 void AirCarrier::receive(std::span<const std::uint8_t> datagram) {
-  const auto sender = sender_of(datagram);
-  if (sender == config_.self && !radio_) return open(datagram);  // perhaps another of our number
-  if (!radio_ || !sender) return open(datagram);
+  const auto sender = radio_ ? sender_of(datagram) : std::nullopt;
+  if (!sender) return open(datagram);
   const Instant now = steady_now();
   for (const Duration delay : radio_->arrivals(*sender, datagram.size())) {
     if (delay == Duration{}) {

@@ -5,6 +5,7 @@
 #include <netinet/in.h>
 #include <sys/socket.h>
 
+#include <array>
 #include <cerrno>
 #include <string>
 #include <system_error>
@@ -71,12 +72,18 @@ bool AirSocket::send(std::span<const std::uint8_t> datagram) {
                 sizeof to) == static_cast<ssize_t>(datagram.size());
 }
 
-void AirSocket::receive(std::size_t limit,
-                        const std::function<void(std::span<const std::uint8_t>)>& take) {
-  for (std::size_t i = 0; i < limit; ++i) {
-    const ssize_t size = recv(socket_.get(), buffer_.data(), buffer_.size(), 0);
-    if (size < 0) return;
-    take({buffer_.data(), static_cast<std::size_t>(size)});
+void AirSocket::receive(const std::function<void(std::span<const std::uint8_t>)>& take) {
+  std::array<mmsghdr, kAtOnce> messages{};
+  std::array<iovec, kAtOnce> places{};
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    places.at(i) = {buffer_.data() + i * kDatagramMax, kDatagramMax};
+    messages.at(i).msg_hdr.msg_iov = &places.at(i);
+    messages.at(i).msg_hdr.msg_iovlen = 1;
+  }
+  const int count = recvmmsg(socket_.get(), messages.data(), kAtOnce, MSG_DONTWAIT, nullptr);
+  for (std::size_t i = 0; static_cast<int>(i) < count; ++i) {
+    if ((messages.at(i).msg_hdr.msg_flags & MSG_TRUNC) != 0) continue;  // none of ours
+    take({buffer_.data() + i * kDatagramMax, messages.at(i).msg_len});
   }
 }
 

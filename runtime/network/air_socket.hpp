@@ -23,8 +23,10 @@ class AirSocket {
   [[nodiscard]] int descriptor() const { return socket_.get(); }
   /// False where it could not be sent; nobody is waited for.
   bool send(std::span<const std::uint8_t> datagram);
-  /// All that has come, at most so many.
-  void receive(std::size_t limit, const std::function<void(std::span<const std::uint8_t>)>& take);
+  /// What has come, at most kAtOnce. What is longer than kDatagramMax is dropped.
+  void receive(const std::function<void(std::span<const std::uint8_t>)>& take);
+  static constexpr std::size_t kAtOnce = 32;
+  static constexpr std::size_t kDatagramMax = 2048;
 
  private:
   AirSocket(Descriptor socket, std::uint32_t group, std::uint16_t port)
@@ -32,7 +34,7 @@ class AirSocket {
   Descriptor socket_;
   std::uint32_t group_;  ///< in network order
   std::uint16_t port_;
-  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(65'536);
+  std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kAtOnce * kDatagramMax);
 };
 
 }  // namespace skein::network
