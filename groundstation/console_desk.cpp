@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "skein/codec/json_text.hpp"
+#include "skein/groundstation/logins.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/process/token.hpp"
 #include "skein/recording/published.hpp"
@@ -112,9 +113,12 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, Opera
                                 std::function<void()> wake) {
   console::ServerConfig server = server_config(config.console);
   if (!config.console.passwords.empty()) {
-    auto users = console::Users::load(config.console.passwords);
-    if (!users) return users.error();
-    server.users = std::move(*users);
+    auto logins = Logins::open(config.console.passwords, keys);
+    if (!logins) return logins.error();
+    server.log_in = [logins = std::make_shared<Logins>(*std::move(logins))](
+                        const std::string& user, std::string_view password) {
+      return logins->check(user, password, std::chrono::steady_clock::now());
+    };
   } else {
     auto token = token_of(config.recording_folder);
     if (!token) return token.error();
@@ -130,11 +134,6 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, Opera
     spdlog::warn("console: login of '{}' from {} refused, {} in a row; the next of that address {}",
                  login.user, login.address, login.in_a_row,
                  login.wait.count() == 0 ? "at once" : fmt::format("in {} s", login.wait.count()));
-  };
-  server.on_login = [&keys](const std::string& user, std::string_view password) {
-    if (!keys.are_needed()) return;
-    const auto unlocked = keys.unlock(user, password, std::chrono::steady_clock::now());
-    if (!unlocked) spdlog::warn("console: {} signs nothing: {}", user, unlocked.error().message);
   };
   server.on_logout = [&keys](const std::string& user) { keys.lock(user); };
   auto opened = console::Server::open(std::move(server), std::move(wake));

@@ -8,7 +8,6 @@
 #include <array>
 #include <atomic>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <set>
@@ -28,9 +27,12 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
+#include "skein/groundstation/revocations.hpp"
 #include "skein/groundstation/route_desk.hpp"
 #include "skein/groundstation/site_desk.hpp"
 #include "skein/groundstation/views.hpp"
+#include "skein/identity/operator_key.hpp"
+#include "skein/identity_desk/given.hpp"
 #include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
 #include "skein/process/close_limit.hpp"
@@ -164,11 +166,12 @@ class GroundLoop {
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
              const process::Shutdown& shutdown, network::Node& network, process::Wake& wake,
-             Recorder recorder, OperatorKeys& keys, mission::GroundNode& node,
-             FormationDesk formation, std::unique_ptr<ControlSocket> control, ConsoleDesk console,
-             Audit audit)
+             Recorder recorder, OperatorKeys& keys, Revocations& revocations,
+             mission::GroundNode& node, FormationDesk formation,
+             std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
       : origin_{origin},
-        operator_name_{std::move(operator_name)},
+        operator_name_{operator_name},
+        own_operator_{std::move(operator_name)},
         clock_{clock},
         shutdown_{shutdown},
         network_{network},
@@ -176,6 +179,7 @@ class GroundLoop {
         recorder_{std::move(recorder)},
         decisions_{config.operator_decisions},
         keys_{keys},
+        revocations_{revocations},
         node_{node},
         formation_{std::move(formation)},
         sites_{config, origin, node},
@@ -188,12 +192,16 @@ class GroundLoop {
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
+    node_.set_revoked(revocations_.vehicles());
     while (!stopping_) {
       const bool heard_all = take_messages();
       const Instant now = clock_.now();
       process::log_troubles(network_);
       take_lines(prompt, now);
-      if (speak_.exchange(false)) node_.speak();
+      if (speak_.exchange(false)) {
+        node_.speak();
+        take_revocations(now);
+      }
       node_.on_timeout(now);
       formation_.on_timeout(now);
       hand_out(now);
@@ -213,8 +221,11 @@ class GroundLoop {
         audit_.close(now, std::chrono::floor<std::chrono::seconds>(since_1970).count());
     if (!closed) spdlog::error("the audit log: {}", closed.error().message);
   }
-  /// From another thread: has something sent to everybody.
-  void speak() {
+  /// From another thread: who is in that list is out, and everybody is spoken to, so that the
+  /// others hear of it.
+  void on_revoked(const identity::RevocationList& revoked) {
+    keys_.learn(revoked);
+    revocations_.look();
     speak_ = true;
     wake_.notify();
   }
@@ -274,16 +285,31 @@ class GroundLoop {
     const bool locks = asked.name.empty();
     const std::string line = locks ? "lock" : "unlock " + asked.name;
     Answer given{true, "locked: nobody signs at the prompt and the command line\n"};
+    const std::string who = locks ? operator_name_ : asked.name;
     if (locks) {
       keys_.lock_machine();
+      operator_name_ = own_operator_;
     } else if (const auto unlocked = keys_.unlock_machine(asked.name, asked.password); !unlocked) {
       given = refusal(unlocked.error());
     } else {
       operator_name_ = asked.name;
       given.text = asked.name + " decides and signs at the prompt and the command line\n";
     }
-    note({now, locks ? operator_name_ : asked.name, "command line", line, given.done, given.text});
+    note({now, who, "command line", line, given.done, given.text});
     return given;
+  }
+
+  /// What was decided beside this process, by who has the mission's authority.
+  void take_revocations(Instant now) {
+    node_.set_revoked(revocations_.vehicles());
+    for (const identity::Certificate& one : revocations_.take_new()) {
+      if (one.role == identity::Role::op) {
+        console_.expel(one.name);
+        if (operator_name_ == one.name) operator_name_ = own_operator_;
+      }
+      note({now, "the mission's authority", "keys", "revoke " + holder_of(one), true,
+            fmt::format("certificate {} is out\n", one.serial.value)});
+    }
   }
 
   Answer answer(const std::string& line, const Asker& asker, Instant now) {
@@ -374,7 +400,11 @@ class GroundLoop {
   void note(Audit::Entry entry) {
     const auto noted = audit_.add(std::move(entry));
     const Audit::Entry& newest = audit_.newest();
-    spdlog::info("{} ({}): {}", newest.who, newest.from, newest.line);
+    if (newest.done) {
+      spdlog::info("{} ({}): {}", newest.who, newest.from, newest.line);
+    } else {
+      spdlog::warn("{} ({}): {}: refused: {}", newest.who, newest.from, newest.line, newest.text);
+    }
     if (!noted) {
       spdlog::error("the audit log: {}", noted.error().message);
     }
@@ -386,7 +416,7 @@ class GroundLoop {
         return help_text();
       case View::status:
         return fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
-               network_text(network_.epoch()) + keys_text(keys_);
+               network_text(network_.epoch()) + keys_text(keys_) + revocations_.text();
       case View::sites:
         return sites_text(console_.picture());
       case View::pending:
@@ -488,7 +518,8 @@ class GroundLoop {
   }
 
   MissionOrigin origin_;
-  std::string operator_name_;
+  std::string operator_name_;       ///< who decides at the prompt and the command line
+  const std::string own_operator_;  ///< that, where no key is unlocked
   const process::MissionClock& clock_;
   const process::Shutdown& shutdown_;
   network::Node& network_;
@@ -497,6 +528,7 @@ class GroundLoop {
   std::vector<configuration::OperatorDecision>
       decisions_;  ///< of the scenario, in the operator's place
   OperatorKeys& keys_;
+  Revocations& revocations_;
   mission::GroundNode& node_;
   FormationDesk formation_;
   SiteDesk sites_;
@@ -567,12 +599,11 @@ Result<void> unlock_first(OperatorKeys& keys, const configuration::OperatorConfi
                           const Login& login) {
   if (login.password) return keys.unlock_machine(login.name, *login.password);
   if (config.name.empty()) return {};
-  std::ifstream file{config.password_file};
-  std::string password;
-  if (!std::getline(file, password)) {
-    return Error{"operator.password_file: cannot read " + config.password_file};
-  }
-  return keys.unlock_machine(config.name, password);
+  auto password = identity::read_password(config.password_file);
+  if (!password) return Error{"operator.password_file: " + password.error().message};
+  const auto unlocked = keys.unlock_machine(config.name, *password);
+  identity::wipe(*password);
+  return unlocked;
 }
 
 std::optional<AuditKey> audit_key(const process::NodeStart& start) {
@@ -612,7 +643,8 @@ void log_summary(const network::Node& node, const mission::GroundNode& ground) {
 /// None without keys.
 std::unique_ptr<process::KeyWatch> watch_keys(process::NodeStart& start,
                                               const configuration::NetworkConfig& config,
-                                              network::Node& node, std::function<void()> on_told) {
+                                              network::Node& node,
+                                              process::KeyWatch::OnTold on_told) {
   if (!start.identity) return nullptr;
   return std::make_unique<process::KeyWatch>(node, std::move(*start.identity), config.keys,
                                              std::move(on_told));
@@ -654,7 +686,11 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   if (!start)
     return fail("cannot join the mission network", start.error(), process::kExitCannotStart);
   const InstanceId instance = start->instance;
-  OperatorKeys keys{config.network.keys};
+  const std::filesystem::path folder = config.network.keys;
+  OperatorKeys keys = start->identity ? OperatorKeys{folder, start->identity->verifier(),
+                                                     &identity_desk::now_unix_s}
+                                      : OperatorKeys{};
+  Revocations revocations = start->identity ? Revocations{folder} : Revocations{};
   if (const auto unlocked = unlock_first(keys, config.op, login); !unlocked)
     return fail("no operator's key", unlocked.error(), process::kExitBadInput);
   mission::GroundNode ground{node_config(config, instance, keys), clock.now()};
@@ -675,6 +711,7 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   if (!audit) return fail("cannot record", audit.error(), process::kExitCannotStart);
 
   log_start(config, *start, operator_name);
+  process::log_unused_keys(config.network, config.recording_folder);
   GroundLoop loop{config,
                   *origin,
                   operator_name,
@@ -684,12 +721,14 @@ int run(const configuration::GroundConfig& config, const Login& login) {
                   wake,
                   std::move(*recorder),
                   keys,
+                  revocations,
                   ground,
                   std::move(*formation),
                   open_control(config, wake),
                   std::move(console),
                   std::move(*audit)};
-  const auto key_watch = watch_keys(*start, config.network, **node, [&loop] { loop.speak(); });
+  const auto key_watch = watch_keys(*start, config.network, **node,
+                                    [&loop](const auto& revoked) { loop.on_revoked(revoked); });
   std::thread thread{[&loop] { loop.run(); }};
   const process::Service service;
   const char* signal = wait_watched(loop, shutdown, service);

@@ -31,6 +31,7 @@
 #include "skein/identity/operator_key.hpp"
 #include "skein/network/carrier_process.hpp"
 #include "skein/process/log.hpp"
+#include "skein/process/mission_network.hpp"
 #include "skein/recording_export/recording_export.hpp"
 #include "skein/version/version.hpp"
 #include "typed_password.hpp"
@@ -86,6 +87,9 @@ int run(const Arguments& arguments) {
   if (arguments.check_only) {
     std::printf("%s: good, a fleet of %zu vehicles\n", arguments.config.c_str(),
                 config->vehicles.size());
+    const auto starts = skein::process::check_start(config->network, skein::kGroundStation);
+    if (!starts)
+      std::fprintf(stderr, "it would not start here: %s\n", starts.error().message.c_str());
     return 0;
   }
   groundstation::Login login{arguments.operator_name, {}};
@@ -433,7 +437,7 @@ class CommandLine {
     command.footer(
         "The password is asked for, or read from standard input.\n"
         "Example:\n"
-        "  skein-ground password ada >> passwords");
+        "  skein-ground password ada >> passwords    # a file of mode 600");
   }
 
   void add_recordings() {

@@ -147,7 +147,7 @@ void MissionCommands::add_operator() {
       "The password is asked for, or read from standard input. Printed is his line for the\n"
       "console's password file, as skein-ground password prints it.\n"
       "Example:\n"
-      "  skein-ground mission operator ada >> passwords");
+      "  skein-ground mission operator ada >> passwords    # a file of mode 600");
 }
 
 void MissionCommands::add_revoke() {

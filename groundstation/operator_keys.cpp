@@ -24,9 +24,35 @@ Result<OperatorKeys::Unlocked> OperatorKeys::unlocked(const std::string& name,
   if (!identity::is_name(name)) return Error{"that is no operator's name"};
   const auto locked = identity::read_operator_key(folder_, name);
   if (!locked) return locked.error();
+  if (const auto trust = trust_in(locked->certificate); trust != identity::Trust::good) {
+    return Error{fmt::format("the key of operator {}: {}", name,
+                             why_not(locked->certificate, trust, unix_s_()))};
+  }
   auto signer = identity::unlock(*locked, password);
   if (!signer) return signer.error();
   return Unlocked{name, *signer, locked->certificate, until};
+}
+
+identity::Trust OperatorKeys::trust_in(const identity::Certificate& certificate) const {
+  const std::lock_guard lock{mutex_};
+  return verifier_->learn(certificate, unix_s_());
+}
+
+bool OperatorKeys::is_revoked(const std::string& name) const {
+  if (!are_needed()) return false;
+  const auto locked = identity::read_operator_key(folder_, name);
+  return locked && trust_in(locked->certificate) == identity::Trust::revoked;
+}
+
+void OperatorKeys::learn(const identity::RevocationList& revoked) {
+  if (!are_needed()) return;
+  const std::lock_guard lock{mutex_};
+  static_cast<void>(verifier_->learn(revoked));
+  const auto is_out = [&revoked](const Unlocked& key) {
+    return revoked.contains(key.certificate.serial);
+  };
+  std::erase_if(unlocked_, [&is_out](const auto& entry) { return is_out(entry.second); });
+  if (machine_ && is_out(*machine_)) machine_.reset();
 }
 
 Result<void> OperatorKeys::unlock(const std::string& name, std::string_view password, Time now) {

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "skein/identity/authority.hpp"
+#include "skein/identity/register.hpp"
 #include "skein/network/approval.hpp"
 
 namespace skein::groundstation {
@@ -51,11 +52,26 @@ class OperatorKeysTest : public ::testing::Test {
     return carried ? carried->by.name : "nobody that can be read";
   }
 
+  [[nodiscard]] OperatorKeys keys(std::int64_t now_unix_s = kNow_unix_s) const {
+    const auto mission = identity::read_register(identity::register_file(folder_ / "mission"));
+    EXPECT_TRUE(mission);
+    identity::Verifier verifier{mission->authority};
+    EXPECT_EQ(verifier.learn(mission->revoked), identity::Trust::good);
+    return {folder_ / "mission", std::move(verifier), [now_unix_s] { return now_unix_s; }};
+  }
+  /// The list that says so.
+  [[nodiscard]] identity::RevocationList revoke(const char* op) const {
+    auto authority = identity::Authority::open(folder_ / "mission");
+    EXPECT_TRUE(authority);
+    EXPECT_TRUE(authority->revoke(*authority->serial_of(op)));
+    return authority->revoked();
+  }
+
   fs::path folder_;
 };
 
 TEST_F(OperatorKeysTest, OnlyWhatAPasswordUnlockedSigns) {
-  OperatorKeys keys{folder_ / "mission"};
+  OperatorKeys keys = this->keys();
   EXPECT_EQ(signer_of(keys, "ada"), "");
   auto decided = grant("ada");
   EXPECT_THAT(keys.approve(decided, kNow).error().message, HasSubstr("skein-ground unlock"));
@@ -71,7 +87,7 @@ TEST_F(OperatorKeysTest, OnlyWhatAPasswordUnlockedSigns) {
 }
 
 TEST_F(OperatorKeysTest, TheMachinesOperatorSignsForWhoHasNone) {
-  OperatorKeys keys{folder_ / "mission"};
+  OperatorKeys keys = this->keys();
   ASSERT_TRUE(keys.unlock_machine("bob", "bob has a horse"));
   EXPECT_EQ(keys.machine_operator(), "bob");
   ASSERT_TRUE(keys.unlock("ada", "ada has a horse", kNow));
@@ -81,8 +97,37 @@ TEST_F(OperatorKeysTest, TheMachinesOperatorSignsForWhoHasNone) {
   EXPECT_EQ(signer_of(keys, "scenario"), "");
 }
 
+TEST_F(OperatorKeysTest, WhoIsRevokedSignsNoMoreAndIsNotUnlocked) {
+  OperatorKeys keys = this->keys();
+  ASSERT_TRUE(keys.unlock("ada", "ada has a horse", kNow));
+  ASSERT_TRUE(keys.unlock("bob", "bob has a horse", kNow));
+  ASSERT_TRUE(keys.unlock_machine("ada", "ada has a horse"));
+  EXPECT_FALSE(keys.is_revoked("ada"));
+  keys.learn(revoke("ada"));
+  EXPECT_TRUE(keys.is_revoked("ada"));
+  EXPECT_EQ(keys.machine_operator(), std::nullopt);
+  EXPECT_EQ(signer_of(keys, "ada"), "");
+  EXPECT_EQ(signer_of(keys, "bob"), "bob");
+  const auto again = keys.unlock_machine("ada", "ada has a horse");
+  ASSERT_FALSE(again);
+  EXPECT_THAT(again.error().message, HasSubstr("revoked"));
+  EXPECT_FALSE(this->keys().unlock("ada", "ada has a horse", kNow)) << "after a new start, too";
+
+  auto authority = identity::Authority::open(folder_ / "mission");
+  ASSERT_TRUE(authority && authority->enrol_operator("ada", "another horse", kNow_unix_s));
+  EXPECT_FALSE(keys.is_revoked("ada")) << "who has a key that holds";
+  EXPECT_TRUE(keys.unlock("ada", "another horse", kNow));
+}
+
+TEST_F(OperatorKeysTest, WhatVehiclesDoNotBelieveIsNotUnlocked) {
+  OperatorKeys keys = this->keys(kNow_unix_s + 31 * 86'400L);
+  const auto late = keys.unlock("ada", "ada has a horse", kNow);
+  ASSERT_FALSE(late);
+  EXPECT_THAT(late.error().message, HasSubstr("valid until"));
+}
+
 TEST_F(OperatorKeysTest, WithoutKeysNothingIsSigned) {
-  OperatorKeys keys{{}};
+  OperatorKeys keys;
   auto decided = grant("ada");
   EXPECT_TRUE(keys.approve(decided, kNow));
   EXPECT_TRUE(decided.approval.empty());

@@ -15,6 +15,7 @@ namespace {
 
 std::string health_of(const mission::FleetEntry& entry) {
   if (entry.duplicate) return "TWO VEHICLES WITH THIS ID";
+  if (entry.revoked) return "REVOKED, is not heard any more";
   if (!entry.telemetry) return "never heard";
   std::string health;
   const auto add = [&health](const std::string& text) {

@@ -81,7 +81,12 @@ int KeyCommands::store() const {
                 process::kExitBadInput);
   }
   const auto membership = identity::membership_from_text(lines->front());
-  if (!membership) return fail(membership.error().message, process::kExitBadInput);
+  if (!membership) {
+    return fail(
+        identity_desk::name_of_given(membership_, "SKEIN-") + ": " + membership.error().message +
+            "; wanted is what 'skein-ground mission enrol' answered to this vehicle's request",
+        process::kExitBadInput);
+  }
   const auto& [authority, own, keys] = *membership;
   const auto kept = identity::store_membership(folder_of(folder_, own.node.value), *membership,
                                                now_unix_s(), replace_);

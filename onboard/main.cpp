@@ -14,6 +14,7 @@
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/vehicle_process.hpp"
 #include "skein/process/log.hpp"
+#include "skein/process/mission_network.hpp"
 #include "skein/version/version.hpp"
 
 namespace {
@@ -56,6 +57,9 @@ int fly(const Arguments& arguments) {
   if (arguments.check_only) {
     std::printf("%s: good, vehicle %u\n", arguments.config.c_str(),
                 static_cast<unsigned>(config->vehicle.id.value));
+    const auto starts = skein::process::check_start(config->network, config->vehicle.id);
+    if (!starts)
+      std::fprintf(stderr, "it would not start here: %s\n", starts.error().message.c_str());
     return 0;
   }
   return onboard::fly(*config, arguments.host);

@@ -465,6 +465,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
 
   spdlog::info("vehicle {} joins the mission network {}, instance {:016x}", config.vehicle.id.value,
                process::how_it_speaks(*start), instance.value);
+  process::log_unused_keys(config.network, config.recording_folder);
   std::optional<process::KeyWatch> keys;
   if (start->identity) keys.emplace(**node, std::move(*start->identity), config.network.keys);
   HealthBoard health;

@@ -92,6 +92,10 @@ bool Fleet::duplicate(VehicleId vehicle) const {
   return found != vehicles_.end() && found->second.duplicate;
 }
 
+void Fleet::set_revoked(const std::set<VehicleId>& revoked) {
+  for (auto& [vehicle, entry] : vehicles_) entry.revoked = revoked.contains(vehicle);
+}
+
 void Fleet::set_difference(VehicleId vehicle, const SetupDifference* difference) {
   const auto found = vehicles_.find(vehicle);
   if (found == vehicles_.end()) return;
@@ -102,6 +106,9 @@ void Fleet::set_difference(VehicleId vehicle, const SetupDifference* difference)
 std::optional<std::string> Fleet::why_not_with(VehicleId vehicle) const {
   const auto found = vehicles_.find(vehicle);
   if (found == vehicles_.end()) return std::nullopt;
+  if (found->second.revoked) {
+    return name_of(vehicle) + " was put out of the mission; enrol it with new keys";
+  }
   if (found->second.duplicate) {
     return "two vehicles answer to the id of " + name_of(vehicle) +
            "; stop or renumber one of them first";

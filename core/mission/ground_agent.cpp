@@ -422,7 +422,8 @@ Result<void> GroundAgent::command(VehicleId vehicle, CommandKind kind, Instant n
     const bool concerned = all ? kind != CommandKind::hold : id == vehicle;
     const bool takes_part =
         id == vehicle && (kind == CommandKind::resume || kind == CommandKind::give_back);
-    if ((concerned && entry.duplicate) || (takes_part && entry.differs)) {
+    const bool gone = id == vehicle && entry.revoked;
+    if (gone || (concerned && entry.duplicate) || (takes_part && entry.differs)) {
       return Error{*fleet_.why_not_with(id)};
     }
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/ground_node.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -151,6 +152,21 @@ TEST(GroundNode, TwoThatAnswerToOneIdAreFoundInTheOneFleetPicture) {
   EXPECT_FALSE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.3)).ok());
   ground.on_timeout(at_seconds(7.0));
   EXPECT_FALSE(ground.fleet().duplicate(kVehicle));
+}
+
+TEST(GroundNode, ARevokedVehicleIsNotWorkedWithUntilItIsEnrolledAnew) {
+  GroundNode ground = node();
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  telemetry.instance = {1};
+  ground.on_message(telemetry, kVehicle, at_seconds(1.0));
+  EXPECT_TRUE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.1)).ok());
+  ground.set_revoked({kVehicle});
+  const auto refused = ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.2));
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("enrol it with new keys"));
+  ground.set_revoked({});
+  EXPECT_TRUE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.3)).ok());
 }
 
 template <class T>

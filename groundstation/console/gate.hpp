@@ -27,24 +27,26 @@ class Gate {
   static constexpr auto kSessionLasts = std::chrono::hours{12};
   static constexpr std::size_t kSessionsMax = 1000;
 
-  /// `users` none: whoever has the token is the operator; `token` empty, too: whoever reaches the
-  /// port.
-  Gate(std::optional<Users> users, std::string token, bool secure)
-      : users_{std::move(users)}, token_{std::move(token)}, secure_{secure} {}
+  /// Without passwords: whoever has the token is the operator; `token` empty, too: whoever reaches
+  /// the port.
+  Gate(bool with_passwords, std::string token, bool secure)
+      : with_passwords_{with_passwords}, token_{std::move(token)}, secure_{secure} {}
 
   [[nodiscard]] std::optional<Identity> identify(std::string_view cookies, Time now) const;
-  /// The password is checked here, which takes a while; on any thread.
-  [[nodiscard]] std::optional<Identity> check(const std::string& user,
-                                              std::string_view password) const;
+  /// Who has that token. Precondition: it asks for one.
+  [[nodiscard]] std::optional<Identity> check(std::string_view token) const;
   /// Makes a session; gives the Set-Cookie field.
   [[nodiscard]] std::string admit(const Identity& identity, Time now);
   /// Ends the cookie's session; gives the Set-Cookie field.
   [[nodiscard]] std::string dismiss(std::string_view cookies);
 
+  /// Ends every session of that user.
+  void dismiss_all(std::string_view user);
+
   [[nodiscard]] bool has_session(std::string_view user) const;
 
-  [[nodiscard]] bool asks_for_password() const { return users_.has_value(); }
-  [[nodiscard]] bool asks_for_token() const { return !users_ && !token_.empty(); }
+  [[nodiscard]] bool asks_for_password() const { return with_passwords_; }
+  [[nodiscard]] bool asks_for_token() const { return !with_passwords_ && !token_.empty(); }
   /// Does the browser say that the request comes from a page of this very server? Other programs
   /// name no origin.
   [[nodiscard]] bool is_own_origin(std::string_view origin, std::string_view host) const;
@@ -59,7 +61,7 @@ class Gate {
   };
   [[nodiscard]] std::string cookie(std::string_view value, long max_age_s) const;
 
-  std::optional<Users> users_;
+  bool with_passwords_;
   std::string token_;
   bool secure_;
   std::map<std::string, Session, std::less<>> sessions_;

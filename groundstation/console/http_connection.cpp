@@ -74,7 +74,7 @@ class HttpConnection final : public std::enable_shared_from_this<HttpConnection>
     auto identity = gate.identify(cookie, now);
     if (!identity && gate.asks_for_token()) {
       // Of programs that keep no cookies: ws://127.0.0.1:7460/?token=...
-      identity = gate.check("", token_in(request.target));
+      identity = gate.check(token_in(request.target));
       if (identity) cookie = hub_.gate().admit(*identity, now);
     }
     if (!identity) return refuse(HttpStatus::unauthorized, "log in first");

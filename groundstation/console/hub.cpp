@@ -28,7 +28,7 @@ Hub::Hub(const ServerConfig& config, std::function<void()> on_request, Post post
       on_request_{std::move(on_request)},
       post_{std::move(post)},
       post_login_{std::move(post_login)},
-      gate_{config.users, config.token, !config.certificate.empty()},
+      gate_{config.log_in != nullptr, config.token, !config.certificate.empty()},
       run_{random_hex(8)},
       requests_{kRequestsMax} {}
 
@@ -117,7 +117,7 @@ Result<void> Hub::log_in(const std::string& address, std::string user, std::stri
                          std::function<void(std::optional<Identity>)> done) {
   if (gate_.asks_for_token()) {
     // It is not guessed; who tries to, from this machine, must not make the operator wait.
-    done(gate_.check(user, password));
+    done(gate_.check(password));
     return {};
   }
   const auto wait = login_waits_.wait(address, std::chrono::steady_clock::now());
@@ -129,10 +129,8 @@ Result<void> Hub::log_in(const std::string& address, std::string user, std::stri
   }
   post_login_([this, address, user = std::move(user), password = std::move(password),
                done = std::move(done)]() mutable {
-    auto identity = gate_.check(user, password);
-    if (identity && identity->role == Role::op && config_.on_login) {
-      config_.on_login(user, password);
-    }
+    std::optional<Identity> identity;
+    if (const auto role = config_.log_in(user, password)) identity = Identity{user, *role};
     post([this, address, user = std::move(user), identity = std::move(identity),
           done = std::move(done)] {
       logins_.erase(address);
@@ -160,13 +158,22 @@ std::string Hub::log_out(std::string_view cookies) {
   const auto who = gate_.identify(cookies, std::chrono::steady_clock::now());
   std::string field = gate_.dismiss(cookies);
   if (who && config_.on_logout && !gate_.has_session(who->user)) config_.on_logout(who->user);
+  tell_of_log_out();
+  return field;
+}
+
+void Hub::expel(const std::string& user) {
+  gate_.dismiss_all(user);
+  tell_of_log_out();
+}
+
+void Hub::tell_of_log_out() {
   for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) {
     client->on_log_out();
   }
   for (LiveClient* client : std::vector<LiveClient*>{live_clients_.begin(), live_clients_.end()}) {
     client->on_log_out();
   }
-  return field;
 }
 
 std::string Hub::hello(const Identity& identity) const {

@@ -85,6 +85,8 @@ class Hub {
                       std::function<void(std::optional<Identity>)> done);
   /// Ends the session and what is open by it.
   [[nodiscard]] std::string log_out(std::string_view cookies);
+  /// As of Server.
+  void expel(const std::string& user);
 
   [[nodiscard]] std::string hello(const Identity& identity) const;
   [[nodiscard]] Gate& gate() { return gate_; }
@@ -98,6 +100,8 @@ class Hub {
 
  private:
   void tell_all();
+  /// Whoever has no session any more goes.
+  void tell_of_log_out();
   void refused_login(const std::string& address, const std::string& user);
 
   const ServerConfig& config_;

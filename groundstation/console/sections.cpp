@@ -100,6 +100,9 @@ Json problems_of(VehicleId id, const mission::FleetEntry& entry,
     all.push_back(problem("alarm", fmt::format("it has {}: it is not worked with",
                                                mission::text_of(*entry.differs))));
   }
+  if (entry.revoked) {
+    all.push_back(problem("alarm", "it was revoked: nobody hears it, and it hears nobody"));
+  }
   if (entry.silent) {
     all.push_back(
         problem("alarm", fmt::format("not heard for {:.0f} s", to_seconds(now - entry.heard_at))));
@@ -140,7 +143,8 @@ Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const st
     Json v{{"id", id.value},
            {"expected", entry.expected},
            {"silent", entry.silent},
-           {"duplicate", entry.duplicate}};
+           {"duplicate", entry.duplicate},
+           {"revoked", entry.revoked}};
     const auto& t = entry.telemetry;
     const auto set = [&](const char* name, auto value) { v[name] = t ? value() : Json(nullptr); };
     set("x", [&] { return metres(t->state.x_m); });

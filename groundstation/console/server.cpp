@@ -70,7 +70,7 @@ class Server::Impl {
 
 Result<void> Server::Impl::open() {
   if (!is_loopback(config_.address)) {
-    if (!config_.users || config_.certificate.empty() || config_.key.empty()) {
+    if (!config_.log_in || config_.certificate.empty() || config_.key.empty()) {
       return Error{"a console on " + config_.address +
                    " needs passwords, a certificate and its key; without them it is served on "
                    "127.0.0.1 only"};
@@ -174,6 +174,10 @@ void Server::append(std::vector<std::string> events) {
 void Server::report(MachineReport report) {
   Hub& hub = impl_->hub();
   hub.post([&hub, report = std::move(report)]() mutable { hub.report(std::move(report)); });
+}
+void Server::expel(const std::string& user) {
+  Hub& hub = impl_->hub();
+  hub.post([&hub, user] { hub.expel(user); });
 }
 void Server::restart(std::uint64_t next_seq, const std::string& series) {
   Hub& hub = impl_->hub();

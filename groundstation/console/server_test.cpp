@@ -156,10 +156,12 @@ class Page {
 
 ServerConfig with_users() {
   ServerConfig config;
-  config.users =
-      *Users::parse("ada:operator:" + hash_password("difference", "5a17", 1000) +
-                        "\nbob:observer:" + hash_password("lookonly", "5a18", 1000) + "\n",
-                    "passwords");
+  config.log_in =
+      [users = *Users::parse("ada:operator:" + hash_password("difference", "5a17", 1000) +
+                                 "\nbob:observer:" + hash_password("lookonly", "5a18", 1000) + "\n",
+                             "passwords")](const std::string& user, std::string_view password) {
+        return users.check(user, password);
+      };
   return config;
 }
 
@@ -321,10 +323,6 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   ServerConfig config = with_users();
   std::mutex mutex;
   std::vector<std::string> keys;
-  config.on_login = [&](const std::string& user, std::string_view password) {
-    const std::lock_guard lock{mutex};
-    keys.push_back(user + " unlocks by " + std::string{password});
-  };
   config.on_logout = [&](const std::string& user) {
     const std::lock_guard lock{mutex};
     keys.push_back(user + " locks");
@@ -357,7 +355,26 @@ TEST(Server, LetsInWhoKnowsThePassword) {
   }
   EXPECT_FALSE(open.open()) << "what is open by a session ends with it";
   const std::lock_guard lock{mutex};
-  EXPECT_THAT(keys, ElementsAre("ada unlocks by difference", "ada locks"));
+  EXPECT_THAT(keys, ElementsAre("ada locks"));
+}
+
+TEST(Server, WhoIsExpelledIsOutAtOnce) {
+  Station station{with_users()};
+  const auto cookie_of = [&station](const char* user, const char* password) {
+    const std::string field{ask(station, login(user, password))[http::field::set_cookie]};
+    return field.substr(0, field.find(';'));
+  };
+  const std::string ada = cookie_of("ada", "difference");
+  const std::string ada_elsewhere = cookie_of("ada", "difference");
+  const std::string bob = cookie_of("bob", "lookonly");
+  Page open{station, {.cookie = ada}};
+  ASSERT_TRUE(open.open());
+  station.server().expel("ada");
+  while (!open.read().empty()) {
+  }
+  EXPECT_FALSE(open.open());
+  EXPECT_FALSE((Page{station, {.cookie = ada_elsewhere}}.open()));
+  EXPECT_TRUE((Page{station, {.cookie = bob}}.open()));
 }
 
 TEST(Server, WithATokenLetsInWhoHasIt) {
@@ -431,7 +448,7 @@ TEST(Server, WithoutPasswordsIsForLoopbackOnly) {
   config.address = "0.0.0.0";
   const auto open = [&] { return Server::open(config, [] {}); };
   EXPECT_FALSE(open().ok());
-  config.users = with_users().users;
+  config.log_in = with_users().log_in;
   const auto no_certificate = open();
   ASSERT_FALSE(no_certificate.ok());
   EXPECT_THAT(no_certificate.error().message, HasSubstr("certificate"));
@@ -495,7 +512,7 @@ TEST(Server, TellsMachinesHowItIs) {
 }
 
 TEST(MachinePages, AreForThisMachineAndForWhoHasLoggedIn) {
-  const Gate gate{Users{}, "", true};
+  const Gate gate{true, "", true};
   MachinePages pages{gate};
   const MachinePages::Time now{};
   pages.report({true, "{}", "m"}, now);
@@ -557,6 +574,16 @@ TEST(Users, AFileThatIsWrongSaysWhere) {
     ASSERT_FALSE(users.ok()) << wrong;
     EXPECT_THAT(users.error().message, HasSubstr("f:2:")) << wrong;
   }
+}
+
+TEST(Users, OfALineTwiceTheLastCounts) {
+  const auto users = Users::parse("ada:operator:" + hash_password("the first", "5a17", 1000) +
+                                      "\nada:observer:" + hash_password("the last", "5a18", 1000),
+                                  "f");
+  ASSERT_TRUE(users.ok());
+  EXPECT_THAT(users->repeated(), ElementsAre("ada"));
+  EXPECT_FALSE(users->check("ada", "the first"));
+  EXPECT_EQ(users->check("ada", "the last"), Role::observer);
 }
 
 /// RFC 7914, section 11.

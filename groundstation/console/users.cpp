@@ -9,6 +9,7 @@
 #include <charconv>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <vector>
 
 namespace skein::console {
@@ -19,6 +20,8 @@ constexpr unsigned kIterations = 200'000;
 constexpr unsigned kIterationsMax = 10'000'000;
 constexpr std::size_t kKeySize = 32;
 constexpr std::size_t kSaltSize = 16;
+constexpr auto kNotForOthers =
+    std::filesystem::perms::group_write | std::filesystem::perms::others_all;
 
 using Bytes = std::vector<std::uint8_t>;
 
@@ -99,6 +102,14 @@ Result<Users> Users::load(const std::filesystem::path& file) {
     return Error{"cannot read the password file " + file.string() +
                  "; 'skein-ground password NAME' makes its lines"};
   }
+  std::error_code failed;
+  const auto mode = std::filesystem::status(file, failed).permissions();
+  if (!failed && (mode & kNotForOthers) != std::filesystem::perms::none) {
+    return Error{fmt::format(
+        "{0}: others may read or write it, too (mode {1:04o}), and guess passwords from it; "
+        "chmod 600 {0}, or 640 with the group of the ground station's service",
+        file.string(), static_cast<unsigned>(mode))};
+  }
   return parse(std::string{std::istreambuf_iterator<char>{stream}, {}}, file.string());
 }
 
@@ -116,8 +127,10 @@ Result<Users> Users::parse(std::string_view text, const std::string& name) {
           "makes such a line",
           name, number)};
     }
-    users.users_[std::string{parts[0]}] = {parts[1] == "operator" ? Role::op : Role::observer,
-                                           std::string{parts[2]}};
+    const std::string user{parts[0]};
+    if (users.users_.contains(user)) users.repeated_.insert(user);
+    users.users_[user] = {parts[1] == "operator" ? Role::op : Role::observer,
+                          std::string{parts[2]}};
   }
   if (users.users_.empty()) return Error{name + ": names nobody; nobody could log in"};
   return users;

@@ -444,7 +444,8 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
             "is no address; write one such as 127.0.0.1, 192.168.1.7 or ::1");
   v.text({"passwords",
           "file of who may use it, with lines as 'skein-ground password NAME' makes "
-          "them; empty: who knows the token that 'skein-ground tell console' prints"},
+          "them, its mode 600 or 640; empty: who knows the token that 'skein-ground tell console' "
+          "prints"},
          config.passwords);
   v.text({"certificate", "PEM file; with it the page is served by HTTPS"}, config.certificate);
   v.text({"key", "PEM file of the certificate's key"}, config.key);
@@ -466,7 +467,8 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
 
 void operator_fields(FieldVisitor& v, OperatorConfig& config) {
   v.text({"name", "as `skein-ground mission operator NAME` made it"}, config.name);
-  v.text({"password_file", "its first line is the password"}, config.password_file);
+  v.text({"password_file", "its first line is the password; its mode is 600"},
+         config.password_file);
   v.require(config.name.empty() == config.password_file.empty(), "password_file",
             "an operator needs the file of the password, and a password its operator; give both or "
             "neither");

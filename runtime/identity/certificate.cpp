@@ -177,6 +177,20 @@ Trust check(const Certificate& certificate, const Certificate& authority, std::i
   return check_dates(certificate, now_unix_s);
 }
 
+std::string holder_of(const Certificate& certificate) {
+  switch (certificate.role) {
+    case Role::vehicle:
+      return fmt::format("vehicle {}", certificate.node.value);
+    case Role::op:
+      return fmt::format("operator {}", certificate.name);
+    case Role::ground:
+      return "ground station";
+    case Role::authority:
+      break;
+  }
+  return "authority";
+}
+
 std::string why_not(const Certificate& certificate, Trust trust, std::int64_t now_unix_s) {
   switch (trust) {
     case Trust::forged:
@@ -194,7 +208,9 @@ std::string why_not(const Certificate& certificate, Trust trust, std::int64_t no
     case Trust::wrong_role:
       return fmt::format("its role is {}, which may not do this", to_text(certificate.role));
     case Trust::revoked:
-      return "it was revoked; make new keys (skein-onboard enrol --new-keys) and enrol anew";
+      return certificate.role == Role::op
+                 ? "it was revoked; 'skein-ground mission operator NAME' makes another"
+                 : "it was revoked; make new keys (skein-onboard enrol --new-keys) and enrol anew";
     case Trust::good:
     case Trust::unknown:
     case Trust::count:

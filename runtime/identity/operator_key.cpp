@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "bytes.hpp"
 #include "crypto.hpp"
 #include "files.hpp"
@@ -64,6 +66,12 @@ Result<Signer> unlock(const LockedKey& key, std::string_view password) {
                     key.certificate.name)};
   }
   return Signer{key.certificate.mission, *inside};
+}
+
+Result<std::string> read_password(const std::filesystem::path& file) {
+  auto text = read_file(file, kFileMax, Readers::owner);
+  if (text) text->resize(std::min(text->find('\n'), text->size()));
+  return text;
 }
 
 std::filesystem::path operator_file(const std::filesystem::path& folder, std::string_view name) {

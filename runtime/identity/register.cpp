@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -84,6 +85,22 @@ Result<Register> read_register(const std::filesystem::path& file) {
                                "; put the folder back from a copy, or create a new mission"});
   }
   return mission;
+}
+
+std::vector<Certificate> who_is_out(const Register& mission) {
+  std::map<std::string, Certificate> newest;
+  for (const Certificate& member : mission.members) {
+    const std::string holder = holder_of(member);
+    const auto known = newest.find(holder);
+    const bool holds = known != newest.end() && !mission.revoked.contains(known->second.serial);
+    if (!holds) newest.insert_or_assign(holder, member);
+  }
+  std::vector<Certificate> out;
+  for (const auto& [holder, member] : newest) {
+    if (mission.revoked.contains(member.serial)) out.push_back(member);
+  }
+  std::ranges::sort(out, {}, &Certificate::serial);
+  return out;
 }
 
 std::filesystem::path register_file(const std::filesystem::path& folder) {

@@ -38,6 +38,7 @@ enum class Counter : std::uint8_t {
   signature_missing,
   signature_forged,
   signature_replayed,
+  key_news_forged,
   count
 };
 constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCounterNames{
@@ -54,7 +55,8 @@ constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCou
     "unknown_kind",
     "signature_missing",
     "signature_forged",
-    "signature_replayed"};
+    "signature_replayed",
+    "key_news_forged"};
 
 }  // namespace
 
@@ -84,6 +86,7 @@ class Node::Impl : private CarrierSink {
   void learn(const identity::RevocationList& revoked) {
     if (signatures_) signatures_->learn(revoked);
   }
+  void count_forged_key_news() { count(Counter::key_news_forged); }
   [[nodiscard]] bool seals() const { return config_.seal.has_value(); }
   [[nodiscard]] Carrier& carrier() { return *carrier_; }
 
@@ -258,6 +261,7 @@ void Node::tell(const std::vector<KeyNews>& news) {
 std::optional<std::vector<std::uint8_t>> Node::take_key_news() {
   return impl_->seals() ? impl_->carrier().take_key_news() : std::nullopt;
 }
+void Node::count_forged_key_news() { impl_->count_forged_key_news(); }
 std::vector<Misfit> Node::take_misfits() { return impl_->take_misfits(); }
 std::vector<std::string> Node::take_troubles() { return impl_->carrier().take_troubles(); }
 std::map<std::string, std::uint64_t> Node::counters() const { return impl_->counters(); }

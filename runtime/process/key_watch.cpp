@@ -21,7 +21,7 @@ constexpr Duration kOldKeyFor = std::chrono::seconds{3};
 }  // namespace
 
 KeyWatch::KeyWatch(network::Node& node, identity::Identity identity, std::filesystem::path folder,
-                   std::function<void()> on_told)
+                   OnTold on_told)
     : node_{node},
       identity_{std::move(identity)},
       folder_{std::move(folder)},
@@ -59,8 +59,14 @@ void KeyWatch::begin_epoch() {
 void KeyWatch::take_news() {
   while (const auto bytes = node_.take_key_news()) {
     const auto change = identity::key_change_from(*bytes);
-    if (!change) continue;  // anybody may send it
+    if (!change) {  // anybody may send it
+      node_.count_forged_key_news();
+      continue;
+    }
     switch (identity_.take(*change)) {
+      case identity::Changed::forged:
+        node_.count_forged_key_news();
+        break;
       case identity::Changed::taken:
         begin_epoch();
         if (const auto stored = identity_.store(); !stored) {
@@ -101,7 +107,7 @@ void KeyWatch::look_at_changes() {
   identity_ = std::move(*again);
   node_.tell(news);
   if (is_new) begin_epoch();
-  on_told_();
+  on_told_(identity_.revoked());
 }
 
 }  // namespace skein::process

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <random>
+#include <system_error>
 #include <utility>
 
 #include "skein/identity_desk/given.hpp"
@@ -29,32 +31,56 @@ bool is_this_machine_alone(const configuration::NetworkConfig& config) {
          });
 }
 
-}  // namespace
-
-Result<NodeStart> start_node(const configuration::NetworkConfig& config, VehicleId self) {
-  NodeStart start;
-  start.self = self;
+/// By its keys; none where it needs none.
+Result<std::optional<identity::Identity>> identity_of(const configuration::NetworkConfig& config,
+                                                      VehicleId self) {
   if (config.keys.empty()) {
-    if (!is_this_machine_alone(config)) {
-      return Error{
-          "network.keys is not given, and other machines are in the network: whoever reaches it "
-          "could fly the team; enrol the nodes (docs/keys.md)"};
-    }
-    start.instance = random_instance();
-    return start;
+    if (is_this_machine_alone(config)) return std::optional<identity::Identity>{};
+    return Error{
+        "network.keys is not given, and other machines are in the network: whoever reaches it "
+        "could fly the team; enrol the nodes (docs/keys.md)"};
   }
-  const auto keys = identity::KeyFolder::of(config.keys);
-  auto known = identity::Identity::open(keys, identity_desk::now_unix_s());
+  auto known =
+      identity::Identity::open(identity::KeyFolder::of(config.keys), identity_desk::now_unix_s());
   if (!known) return known.error();
   if (known->own().node != self) {
     return Error{config.keys + ": has the keys of " + wording::text_of(known->own().node) +
                  ", and this is " + wording::text_of(self) + "; give it a folder of its own"};
   }
-  const auto counted = identity::count_start(keys, self);
+  return std::optional{std::move(known).value()};
+}
+
+}  // namespace
+
+Result<void> check_start(const configuration::NetworkConfig& config, VehicleId self) {
+  const auto identity = identity_of(config, self);
+  if (!identity) return identity.error();
+  return {};
+}
+
+void log_unused_keys(const configuration::NetworkConfig& config, const std::string& own_folder) {
+  if (!config.keys.empty() || own_folder.empty()) return;
+  const std::string keys = own_folder + "/keys";
+  std::error_code failed;
+  if (!std::filesystem::exists(keys + "/node.key", failed)) return;
+  spdlog::warn("there are keys in {}, and this node speaks in clear; 'network: {{keys: {}}}' seals",
+               keys, keys);
+}
+
+Result<NodeStart> start_node(const configuration::NetworkConfig& config, VehicleId self) {
+  auto identity = identity_of(config, self);
+  if (!identity) return identity.error();
+  NodeStart start;
+  start.self = self;
+  start.identity = std::move(identity).value();
+  if (!start.identity) {
+    start.instance = random_instance();
+    return start;
+  }
+  const auto counted = identity::count_start(identity::KeyFolder::of(config.keys), self);
   if (!counted) return counted.error();
   start.instance = identity::instance_of(*counted);
-  start.seal = network::SealConfig{*counted, known->epoch_key()};
-  start.identity = std::move(*known);
+  start.seal = network::SealConfig{*counted, start.identity->epoch_key()};
   return start;
 }
 
@@ -89,8 +115,8 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
 bool among_machines(const configuration::NetworkConfig& config) {
   return (!config.group.empty() && !is_loopback(config.address)) ||
          std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
-    return peer.address != config.address;
-  });
+           return peer.address != config.address;
+         });
 }
 
 void log_troubles(network::Node& node) {
@@ -114,6 +140,8 @@ Traffic traffic_of(const network::Node& node) {
       traffic.unconnected += count;
     } else if (name.starts_with("signature_")) {
       traffic.unproven += count;
+    } else if (name == "key_news_forged") {
+      traffic.of_strangers += count;
     } else if (name.starts_with("seal_")) {
       if (name != "seal_opened") traffic.of_strangers += count;
     } else {

@@ -36,7 +36,7 @@ before(async () => {
     stdio: "ignore",
   });
   const user = (...who) => execFileSync(ground, ["password", ...who], { input: `word of ${who[0]}\n` });
-  writeFileSync(join(folder, "passwords"), Buffer.concat([user("ada"), user("bob", "--observer")]));
+  writeFileSync(join(folder, "passwords"), Buffer.concat([user("ada"), user("bob", "--observer")]), { mode: 0o600 });
   port = await free_port();
   const network = await free_port();
   writeFileSync(

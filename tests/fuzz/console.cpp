@@ -53,7 +53,7 @@ void run(std::string_view text) {
       }
       return;
     case 'c': {
-      const console::Gate gate{std::optional<console::Users>{}, "", false};
+      const console::Gate gate{false, "", false};
       const auto half = text.size() / 2;
       if (gate.is_own_origin(text.substr(0, half), text.substr(half)) && half > 0) {
         SKEIN_ASSERT(text.substr(0, 7) == "http://");

@@ -38,7 +38,7 @@ Result<std::vector<std::string>> lines_of(std::istream& stream, const std::strin
 
 Result<std::vector<std::string>> given_lines(const std::string& argument, std::string_view prefix) {
   if (argument.starts_with(prefix)) return std::vector{argument};
-  if (argument == "-") return lines_of(std::cin, "standard input");
+  if (argument == "-") return lines_of(std::cin, name_of_given(argument, prefix));
   std::ifstream file{argument};
   if (!file) {
     return Error{std::string{"'"}
@@ -47,6 +47,11 @@ Result<std::vector<std::string>> given_lines(const std::string& argument, std::s
                      .append(prefix)};
   }
   return lines_of(file, argument);
+}
+
+std::string name_of_given(const std::string& argument, std::string_view prefix) {
+  if (argument.starts_with(prefix)) return "the line given";
+  return argument == "-" ? "standard input" : argument;
 }
 
 std::int64_t now_unix_s() {

@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -39,6 +41,31 @@ void take(Found& found, std::optional<T>& into, Result<T> read) {
   }
 }
 
+/// What is private in a node's folder and an authority's; none of it is for others.
+void look_at_modes(Found& found, const std::filesystem::path& folder) {
+  constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+  std::vector<std::filesystem::path> files;
+  std::error_code failed;
+  for (const auto& where : {folder, folder / "operators"}) {
+    for (const auto& entry : std::filesystem::directory_iterator{where, failed}) {
+      if (entry.is_regular_file(failed)) files.push_back(entry.path());
+    }
+  }
+  std::ranges::sort(files);
+  for (const auto& file : files) {
+    const auto mode = std::filesystem::status(file, failed).permissions();
+    if (failed || (mode & kOthers) == std::filesystem::perms::none) continue;
+    if (std::ranges::any_of(found.problems, [&file](const std::string& problem) {
+          return problem.starts_with(file.string() + ":");
+        })) {
+      continue;
+    }
+    found.problems.push_back(
+        fmt::format("{0}: others may read it, too (mode {1:04o}); chmod 600 {0}", file.string(),
+                    static_cast<unsigned>(mode)));
+  }
+}
+
 Found find(const identity::KeyFolder& keys, std::int64_t now_unix_s) {
   Found found;
   take(found, found.key, identity::read_node_key(keys));
@@ -58,13 +85,8 @@ Found find(const identity::KeyFolder& keys, std::int64_t now_unix_s) {
         "{}: a command was cut off; any 'skein-ground mission' command there completes it",
         keys.folder.string()));
   }
+  look_at_modes(found, keys.folder);
   return found;
-}
-
-std::string who(const Certificate& c) {
-  if (c.role == Role::vehicle) return fmt::format("vehicle {}", c.node.value);
-  if (c.role == Role::op) return fmt::format("operator {}", c.name);
-  return "ground station";  // the authority is no member
 }
 
 bool is_revoked(const identity::Register& mission, const Certificate& member) {
@@ -87,7 +109,7 @@ std::string text_of(const identity::KeyFolder& keys, const Found& found, std::in
                             remaining(authority, now_unix_s)));
     text.append(fmt::format("             {}\n", to_text(authority.mission)));
     text.append(fmt::format("authority    {}\n", fingerprint(authority)));
-    text.append(fmt::format("this node    {}, certificate {}\n", who(own), own.serial.value));
+    text.append(fmt::format("this node    {}, certificate {}\n", holder_of(own), own.serial.value));
     text.append(fmt::format("epoch        {}, {} revoked\n", change.grant.epoch,
                             change.revoked.serials.size()));
   } else if (found.key) {
@@ -99,7 +121,7 @@ std::string text_of(const identity::KeyFolder& keys, const Found& found, std::in
     text.append("members      certificate  fingerprint\n");
     for (const Certificate& member : found.mission->members) {
       text.append(fmt::format("             {:>11}  {}  {}{}\n", member.serial.value,
-                              fingerprint(member), who(member),
+                              fingerprint(member), holder_of(member),
                               is_revoked(*found.mission, member) ? "  REVOKED" : ""));
     }
   }

@@ -102,5 +102,19 @@ TEST(Given, IsALineOrAFilesLines) {
   EXPECT_FALSE(given_lines("no-such-file", "SKEIN-"));
 }
 
+TEST_F(KeysShownTest, NamesWhatOthersMayRead) {
+  for (const char* file : {"authority.key", "operators/rehearsal.key"}) {
+    const auto path = of(0).folder / file;
+    ASSERT_TRUE(std::filesystem::exists(path)) << path;
+    std::filesystem::permissions(path, std::filesystem::perms{0640});
+    const auto shown = show_keys(of(0), kNow_unix_s);
+    EXPECT_FALSE(shown.good);
+    EXPECT_NE(shown.text.find(path.string() + ": others may read it"), std::string::npos)
+        << shown.text;
+    std::filesystem::permissions(path, std::filesystem::perms{0600});
+  }
+  EXPECT_TRUE(show_keys(of(0), kNow_unix_s).good);
+}
+
 }  // namespace
 }  // namespace skein::identity_desk

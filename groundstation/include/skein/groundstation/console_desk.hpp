@@ -41,6 +41,10 @@ class ConsoleDesk {
   /// `audit` is its section.
   void on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now);
 
+  /// Ends what that user has open.
+  void expel(const std::string& user) {
+    if (server_) server_->expel(user);
+  }
   /// For /health and /metrics.
   void report(console::Server::MachineReport report) {
     if (server_) server_->report(std::move(report));

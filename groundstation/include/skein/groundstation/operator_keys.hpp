@@ -2,12 +2,15 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "skein/base/result.hpp"
 #include "skein/identity/certificate.hpp"
@@ -24,12 +27,22 @@ class OperatorKeys {
   /// As long as a session of the console.
   static constexpr auto kUnlockedFor = std::chrono::hours{12};
 
-  /// `folder`: the mission's keys (identity::Authority). Empty: nothing is signed in this mission.
-  explicit OperatorKeys(std::filesystem::path folder) : folder_{std::move(folder)} {}
+  using UnixClock = std::function<std::int64_t()>;
+
+  /// Nothing is signed in this mission.
+  OperatorKeys() = default;
+  /// `folder`: the mission's keys (identity::Authority), `verifier`: what vehicles believe of them.
+  OperatorKeys(std::filesystem::path folder, identity::Verifier verifier, UnixClock unix_s)
+      : folder_{std::move(folder)}, unix_s_{std::move(unix_s)}, verifier_{std::move(verifier)} {}
 
   [[nodiscard]] bool are_needed() const { return !folder_.empty(); }
+  /// Who is in that list signs nothing more, from now on.
+  void learn(const identity::RevocationList& revoked);
+  /// Is that operator's key, as it lies there, one that was revoked?
+  [[nodiscard]] bool is_revoked(const std::string& name) const;
+
   /// For what that user of the console decides. Takes some 0.1 s. Fails where there is no such key,
-  /// or the password is another.
+  /// vehicles do not believe it, or the password is another.
   Result<void> unlock(const std::string& name, std::string_view password, Time now);
   void lock(const std::string& name);
   /// The same for all who give orders on this machine, until lock_machine().
@@ -48,10 +61,13 @@ class OperatorKeys {
     identity::Certificate certificate;
     Time until;
   };
+  [[nodiscard]] identity::Trust trust_in(const identity::Certificate& certificate) const;
   Result<Unlocked> unlocked(const std::string& name, std::string_view password, Time until) const;
 
   const std::filesystem::path folder_;
+  const UnixClock unix_s_;
   mutable std::mutex mutex_;  ///< of what follows
+  mutable std::optional<identity::Verifier> verifier_;
   std::map<std::string, Unlocked> unlocked_;
   std::optional<Unlocked> machine_;
 };

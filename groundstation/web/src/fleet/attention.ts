@@ -9,6 +9,7 @@ export type Health = "alarm" | "silent" | "warning" | "unheard" | "well";
 /** What is wrong with it, worst first; the server's words, and ours where it has none. */
 export function problems_of(vehicle: Vehicle): Problem[] {
   if (vehicle.problems.length > 0) return vehicle.problems;
+  if (vehicle.revoked) return [{ level: "alarm", text: "revoked" }];
   if (vehicle.duplicate) return [{ level: "alarm", text: "two vehicles with this id" }];
   if (vehicle.heard_age_s === null) return vehicle.expected ? [{ level: "warning", text: "never heard" }] : [];
   if (vehicle.silent) return [{ level: "alarm", text: "silent" }];

@@ -88,6 +88,8 @@ export interface Vehicle {
   expected: boolean;
   silent: boolean;
   duplicate: boolean;
+  /** Put out of the mission: nobody hears it any more. */
+  revoked: boolean;
   x: number | null;
   y: number | null;
   z: number | null;

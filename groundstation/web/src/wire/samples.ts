@@ -38,6 +38,7 @@ export function a_vehicle(id: number, other: Partial<Vehicle> = {}): Vehicle {
     expected: true,
     silent: false,
     duplicate: false,
+    revoked: false,
     x: 0,
     y: 0,
     z: 100,

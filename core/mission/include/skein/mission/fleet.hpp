@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
@@ -22,6 +23,7 @@ struct FleetEntry {
   bool silent = false;                           ///< was heard, and not since FleetParams::silence
   std::optional<SetupDifference> differs;        ///< from the ground station
   bool duplicate = false;                        ///< two instances speak with this id
+  bool revoked = false;                          ///< put out of the mission: nobody hears it
   std::map<InstanceId, Instant> instances = {};  ///< who spoke with it lately, and when
 };
 
@@ -53,6 +55,8 @@ class Fleet {
   [[nodiscard]] bool expects(VehicleId vehicle) const;
   [[nodiscard]] bool duplicate(VehicleId vehicle) const;
 
+  /// These are out of the mission, and no others.
+  void set_revoked(const std::set<VehicleId>& revoked);
   /// What that vehicle has in common with the ground station has changed.
   void set_difference(VehicleId vehicle, const SetupDifference* difference);
   /// Why that vehicle is not worked with, as a sentence: its setup, or its id; none where it is.

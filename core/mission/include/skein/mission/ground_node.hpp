@@ -93,6 +93,8 @@ class GroundNode {
   [[nodiscard]] const TrackGround& tracks() const { return tracks_; }
 
   [[nodiscard]] const Fleet& fleet() const { return agent_.fleet(); }
+  /// As of Fleet: by the mission's authority, whom no message asks.
+  void set_revoked(const std::set<VehicleId>& revoked) { agent_.fleet().set_revoked(revoked); }
   [[nodiscard]] std::uint64_t refused() const { return refused_; }
   /// What queues had no room for.
   [[nodiscard]] std::uint64_t dropped() const {

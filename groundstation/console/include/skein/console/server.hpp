@@ -32,10 +32,13 @@ struct RefusedLogin {
 
 struct ServerConfig {
   std::string address = "127.0.0.1";
-  std::uint16_t port = 7460;   ///< 0: any that is free
-  std::optional<Users> users;  ///< none: whoever has the token is the operator; on loopback only
-  std::string token;           ///< empty: whoever reaches it, as of a recording
-  std::string certificate;     ///< PEM files; both: HTTPS, which any other address needs
+  std::uint16_t port = 7460;  ///< 0: any that is free
+  /// What somebody may do who gives this name and password; none: nothing. On a thread where it may
+  /// take a while; as long for a name that is not known. Empty: whoever has the token is the
+  /// operator; on loopback only.
+  std::function<std::optional<Role>(const std::string& user, std::string_view password)> log_in;
+  std::string token;        ///< empty: whoever reaches it, as of a recording
+  std::string certificate;  ///< PEM files; both: HTTPS, which any other address needs
   std::string key;
   std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none
   std::vector<Overlay> overlays;
@@ -43,8 +46,6 @@ struct ServerConfig {
   std::string hello = "{}";
   /// On the server's thread; must be short. Empty: none.
   std::function<void(const RefusedLogin&)> on_refused_login;
-  /// An operator has logged in; on a thread where it may take a while. Empty: none.
-  std::function<void(const std::string& user, std::string_view password)> on_login;
   /// The last session of that user has ended by a logout; on the server's thread. Empty: none.
   std::function<void(const std::string& user)> on_logout;
 };
@@ -72,8 +73,8 @@ class Server {
   using Request = std::variant<Line, Join>;
 
   /// `on_request` is called on the server's thread when next() has something. Fails where the
-  /// address is taken, or is not loopback and has no users or no certificate, or a file cannot be
-  /// read.
+  /// address is taken, or is not loopback and has no passwords or no certificate, or a file cannot
+  /// be read.
   [[nodiscard]] static Result<std::unique_ptr<Server>> open(ServerConfig config,
                                                             std::function<void()> on_request);
   ~Server();
@@ -97,6 +98,9 @@ class Server {
     std::string metrics;  ///< Prometheus's text
   };
   void report(MachineReport report);
+
+  /// Ends all that this user has open here.
+  void expel(const std::string& user);
 
   /// A record for clients that speak as Foxglove does, CDR by a ros2msg schema. A topic is told to
   /// them with its first record.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -26,12 +27,15 @@ enum class Role : std::uint8_t { observer, op };
 
 class Users {
  public:
-  /// Fails with "file:line: what is wrong".
+  /// Fails with "file:line: what is wrong"; also where others than its owner and group may read
+  /// it, or others than its owner write it: passwords are guessed from it.
   [[nodiscard]] static Result<Users> load(const std::filesystem::path& file);
   [[nodiscard]] static Result<Users> parse(std::string_view text, const std::string& name);
 
   /// None where the name is unknown or the password wrong; takes as long for both.
   [[nodiscard]] std::optional<Role> check(const std::string& name, std::string_view password) const;
+  /// Of whom there are several lines: the last counts.
+  [[nodiscard]] const std::set<std::string>& repeated() const { return repeated_; }
 
  private:
   struct User {
@@ -39,6 +43,7 @@ class Users {
     std::string hash;
   };
   std::map<std::string, User> users_;
+  std::set<std::string> repeated_;
 };
 
 /// Random bytes of the system, in hexadecimal.

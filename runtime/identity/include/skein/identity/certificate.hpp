@@ -46,6 +46,8 @@ inline constexpr std::size_t kCertificateBytesMax = 201;
 [[nodiscard]] Result<Certificate> certificate_from_text(std::string_view text);
 
 [[nodiscard]] std::string fingerprint(const Certificate& certificate);
+/// Whose it is: "vehicle 3", "operator ada", "ground station" or "authority".
+[[nodiscard]] std::string holder_of(const Certificate& certificate);
 
 /// Signs all but the signature, under a purpose of its own.
 void sign(Certificate& certificate, const Secret& authority_key);

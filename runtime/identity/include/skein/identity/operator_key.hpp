@@ -35,6 +35,9 @@ inline constexpr std::size_t kLockedKeyBytesMax = 1 + 16 + 48 + 1 + kCertificate
 /// Fails where the password is another, or the file was changed.
 [[nodiscard]] Result<Signer> unlock(const LockedKey& key, std::string_view password);
 
+/// The first line of a file that nobody else may read.
+[[nodiscard]] Result<std::string> read_password(const std::filesystem::path& file);
+
 /// Of the operator with that name, in a mission's folder.
 [[nodiscard]] std::filesystem::path operator_file(const std::filesystem::path& folder,
                                                   std::string_view name);

@@ -24,6 +24,8 @@ struct Register {
 [[nodiscard]] Result<Register> read_register(const std::filesystem::path& file);
 [[nodiscard]] Result<void> write_register(const std::filesystem::path& file,
                                           const Register& mission, Durable durable);
+/// Who was revoked and has no other certificate that holds, by their serials: the last of each.
+[[nodiscard]] std::vector<Certificate> who_is_out(const Register& mission);
 /// In a mission's folder; none in a vehicle's.
 [[nodiscard]] std::filesystem::path register_file(const std::filesystem::path& folder);
 

@@ -126,6 +126,8 @@ class Node {
   void tell(const std::vector<KeyNews>& news);
   /// A key change that was heard, as bytes from anybody; nothing where none waits.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news();
+  /// What was taken there was not the authority's.
+  void count_forged_key_news();
 
   /// Those that were found since the last call: each sender, type and version once.
   [[nodiscard]] std::vector<Misfit> take_misfits();

@@ -19,11 +19,13 @@ namespace skein::process {
 /// decided since, and tells it to those whom it concerns.
 class KeyWatch {
  public:
+  using OnTold = std::function<void(const identity::RevocationList& revoked)>;
+
   /// `folder` is the node's own (network.keys). `on_told` is called, on its thread, where there are
   /// new news for the others: they go before whatever each is sent next. The node must outlive it.
   KeyWatch(
       network::Node& node, identity::Identity identity, std::filesystem::path folder,
-      std::function<void()> on_told = [] {});
+      OnTold on_told = [](const identity::RevocationList&) {});
   ~KeyWatch();
   KeyWatch(const KeyWatch&) = delete;
   KeyWatch& operator=(const KeyWatch&) = delete;
@@ -37,7 +39,7 @@ class KeyWatch {
   network::Node& node_;
   identity::Identity identity_;
   const std::filesystem::path folder_;
-  const std::function<void()> on_told_;
+  const OnTold on_told_;
   std::optional<std::filesystem::file_time_type> changes_of_;
   std::string said_;  ///< the last trouble, told once
   std::mutex mutex_;

@@ -27,6 +27,11 @@ struct NodeStart {
 [[nodiscard]] Result<NodeStart> start_node(const configuration::NetworkConfig& config,
                                            VehicleId self);
 
+/// Would start_node() refuse here, now? Counts no start.
+[[nodiscard]] Result<void> check_start(const configuration::NetworkConfig& config, VehicleId self);
+/// Tells the log where a node speaks in clear, and has keys in its folder.
+void log_unused_keys(const configuration::NetworkConfig& config, const std::string& own_folder);
+
 /// "sealed, epoch 1" or "in clear, on this machine alone".
 [[nodiscard]] std::string how_it_speaks(const NodeStart& start);
 
@@ -51,8 +56,8 @@ struct Traffic {
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 
-/// Tells the log of nodes whose messages cannot be read for their version, each type once, and of the
-/// process that carries the network, where it was started again.
+/// Tells the log of nodes whose messages cannot be read for their version, each type once, and of
+/// the process that carries the network, where it was started again.
 void log_troubles(network::Node& node);
 
 }  // namespace skein::process

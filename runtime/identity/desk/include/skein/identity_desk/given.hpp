@@ -15,6 +15,9 @@ namespace skein::identity_desk {
 [[nodiscard]] Result<std::vector<std::string>> given_lines(const std::string& argument,
                                                            std::string_view prefix);
 
+/// What such an argument is, for an error: the file's name, or what stands in its place.
+[[nodiscard]] std::string name_of_given(const std::string& argument, std::string_view prefix);
+
 /// By this machine's clock.
 [[nodiscard]] std::int64_t now_unix_s();
 
