@@ -158,8 +158,12 @@ void DdsCarrier::TopicListener::on_subscription_matched(
 
 void DdsCarrier::TopicListener::on_publication_matched(
     dds::DataWriter*, const dds::PublicationMatchedStatus& status) {
-  readers.store(status.current_count, std::memory_order_relaxed);
-  carrier->matched(status.last_subscription_handle, status.current_count_change);
+  const auto& reader = status.last_subscription_handle;
+  // To its own reader nothing goes out.
+  if (rtps::iHandle2GUID(reader).guidPrefix != carrier->prefix_) {
+    readers.fetch_add(status.current_count_change, std::memory_order_relaxed);
+  }
+  carrier->matched(reader, status.current_count_change);
 }
 
 void DdsCarrier::receive(Topic topic, dds::DataReader& reader) {

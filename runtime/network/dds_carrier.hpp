@@ -58,7 +58,7 @@ class DdsCarrier final : public Carrier, private eprosima::fastdds::dds::DomainP
                          eprosima::fastdds::dds::DataWriterListener {
     DdsCarrier* carrier = nullptr;
     codec::Topic topic = codec::Topic::count;
-    std::atomic<std::int32_t> readers{0};
+    std::atomic<std::int32_t> readers{0};  ///< of other nodes
     void on_data_available(eprosima::fastdds::dds::DataReader* reader) override;
     void on_subscription_matched(
         eprosima::fastdds::dds::DataReader* reader,
