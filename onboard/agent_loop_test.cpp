@@ -104,8 +104,8 @@ TEST(AgentLoop, AsksForTheConditionOnlyWhenItIsTold) {
   const auto told = cabin.sent_of<mission::Health>();
   ASSERT_EQ(told.size(), 2U);
   EXPECT_EQ(told[0].mode, "GUIDED 1");
-  EXPECT_EQ(told[1].mode, "GUIDED 11");  // telemetry: 10 times a second
-  EXPECT_EQ(asked, 20);
+  EXPECT_EQ(told[1].mode, "GUIDED 3");  // telemetry: twice a second
+  EXPECT_EQ(asked, 4);
 }
 
 TEST(AgentLoop, NextStepIsSoonButNeverAtOnce) {

@@ -72,7 +72,7 @@ class VehicleNode::Impl {
       : agent{std::visit(MakeAgent{now}, config.agent)},
         self{agent->telemetry().vehicle},
         flies_routes{std::holds_alternative<VehicleAgentConfig>(config.agent)},
-        telemetry_period{config.telemetry_period},
+        telemetry_pace{config.telemetry},
         self_report{unchanging(config, agent->telemetry()), now},
         setup{config.setup, self, agent->telemetry().instance, now},
         knows_orders{!starts_anew(now)},
@@ -239,7 +239,7 @@ class VehicleNode::Impl {
     say_detections(now);
     pass_on(now);
     if (now >= next_telemetry && state) {
-      next_telemetry = next_multiple(now, telemetry_period);
+      next_telemetry = next_multiple(now, telemetry_pace.period(*state, now));
       Telemetry telemetry = agent->telemetry();
       telemetry.state = *state;
       telemetry.control_overruns = static_cast<std::uint32_t>(condition.overruns);
@@ -275,7 +275,7 @@ class VehicleNode::Impl {
   std::unique_ptr<OnboardAgent> agent;
   VehicleId self;
   bool flies_routes;
-  Duration telemetry_period;
+  TelemetryPace telemetry_pace;
   SelfReport self_report;
   SetupBook setup;
   OrderBook orders;
@@ -346,6 +346,7 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
   } else if (impl_->is_of_use(message, sender) && impl_->take_lasting(message, now)) {
     if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
       impl_->setup.on_time(sender, telemetry->state.time, now);
+      impl_->telemetry_pace.hear(sender, telemetry->state, now);
       impl_->take_news(now);
     }
     impl_->agent->on_message(message, sender, now);

@@ -11,6 +11,7 @@
 #include "skein/mission/formation_agent.hpp"
 #include "skein/mission/onboard_agent.hpp"
 #include "skein/mission/setup_book.hpp"
+#include "skein/mission/telemetry_pace.hpp"
 #include "skein/mission/track_agent.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 
@@ -20,7 +21,7 @@ struct VehicleNodeConfig {
   std::variant<VehicleAgentConfig, FormationAgentConfig, TrackAgentConfig> agent;
   std::string program;            ///< name and version, for whoever watches
   std::string flight_controller;  ///< its kind
-  Duration telemetry_period = std::chrono::milliseconds{100};
+  TelemetryPeriods telemetry{};
   SetupParams setup{};
 };
 
