@@ -38,7 +38,8 @@ Duration TelemetryPace::period(const VehicleState& own, Instant now) {
     if (kPart * distance_m < period_s * closing_mps) period_s = kPart * distance_m / closing_mps;
   }
   const auto parts = std::max(1.0, std::ceil(to_seconds(periods_.longest) / period_s - 1e-9));
-  if (!(parts < static_cast<double>(periods_.longest / periods_.shortest))) {
+  if (parts >=
+      static_cast<double>(periods_.longest / periods_.shortest)) {  // infinite, where both meet
     return periods_.shortest;
   }
   return periods_.longest / static_cast<std::int64_t>(parts);

@@ -17,7 +17,8 @@ struct TelemetryPeriods {
 };
 
 /// How often a vehicle tells where it is: rarely where nobody is near, and often enough that the
-/// distance to another changes by a tenth at most between two times, whichever way both turn.
+/// distance to another changes by a tenth at most between two times, whichever way both turn, as
+/// far as the shortest period allows and the others have been heard.
 class TelemetryPace {
  public:
   /// Others beyond it are not looked at.
@@ -29,8 +30,9 @@ class TelemetryPace {
   explicit TelemetryPace(TelemetryPeriods periods);
 
   void hear(VehicleId of, const VehicleState& state, Instant now);
-  /// From one telemetry of the vehicle, in this state, to its next: a whole part of the longest, so
-  /// that the multiples of a period are met again by every shorter one.
+  /// From one telemetry of the vehicle, in this state, to its next: the shortest, or a whole part
+  /// of the longest, whose multiples are then multiples of it, too (but for rounding to
+  /// nanoseconds).
   [[nodiscard]] Duration period(const VehicleState& own, Instant now);
 
  private:
