@@ -16,6 +16,7 @@
 #include "skein/detectors/detector_socket.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
+#include "skein/mission/concerns.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
@@ -409,6 +410,9 @@ Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& 
                                             const process::NodeStart& start, process::Wake& wake) {
   auto node = process::node_config(config, start, [&wake] { wake.notify(); });
   node.isolated = config.isolated;
+  node.heeds = [self = start.self](const mission::Message& message) {
+    return mission::concerns(message, self);
+  };
   return network::Node::open(node);
 }
 

@@ -18,7 +18,7 @@ constexpr std::size_t kKeysTextMax = 160;
 /// Of two programs with one number; goes on like a key: "another ...".
 constexpr const char* kTwin = "program under its number";
 constexpr std::size_t kEarlierMax = 4;
-constexpr Duration kTwinLasts = 3 * SetupBook::kPeriod;
+constexpr int kTwinLasts = 3;  ///< periods
 
 /// But for how far the clock is out, which every message measures anew.
 bool same(const std::optional<SetupDifference>& a, const std::optional<SetupDifference>& b) {
@@ -68,7 +68,7 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   Node& node = nodes_[setup.node];
   if (node.instance != setup.instance) {
     // Whoever is new has not heard of this node either.
-    next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
+    say_soon(now);
     const Node before = std::exchange(node, {});
     node.instance = setup.instance;
     node.difference = before.difference;
@@ -106,12 +106,20 @@ void SetupBook::compare(VehicleId id, Node& node, Instant now) {
   const bool is_news = !same(difference, node.difference);
   node.difference = std::move(difference);
   if (!is_news) return;
-  next_ = std::min(next_, std::max(now, said_at_ + kPeriodWhileNew));
+  say_soon(now);
   if (node.difference) {
     news_.push(event::SetupDiffers{id, keys, node.ahead_s});
   } else {
     news_.push(event::SetupAgrees{id});
   }
+}
+
+void SetupBook::say_soon(Instant now) {
+  next_ = std::min(next_, std::max(now, said_at_ + in_this_team(kPeriodWhileNew)));
+}
+
+Duration SetupBook::in_this_team(Duration period) const {
+  return period * static_cast<std::int64_t>(std::max<std::size_t>(1, nodes_.size() / kTeam));
 }
 
 /// Keys that only one of the two knows of are of another release, which is a key of its own.
@@ -148,12 +156,12 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
 std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
   if (now < next_) return std::nullopt;
   for (auto& [id, node] : nodes_) {
-    if (!node.twin_at || now - *node.twin_at <= kTwinLasts) continue;
+    if (!node.twin_at || now - *node.twin_at <= kTwinLasts * in_this_team(kPeriod)) continue;
     node.twin_at.reset();
     compare(id, node, now);
   }
   said_at_ = now;
-  next_ = now + (orders.known ? kPeriod : kPeriodWhileNew);
+  next_ = now + (orders.known ? in_this_team(kPeriod) : kPeriodWhileNew);
   Setup setup = own_;
   setup.time = now;
   setup.knows_orders = orders.known;

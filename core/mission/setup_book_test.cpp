@@ -98,6 +98,23 @@ TEST(SetupBook, WhoIsNewIsToldAtOnce) {
   EXPECT_EQ(book.next_timeout(), at(7));
 }
 
+TEST(SetupBook, InALargeTeamEachHasNoMoreToJudge) {
+  SetupBook book{params(), kGroundStation, {}, at(0)};
+  constexpr std::uint16_t kNodes = 4 * SetupBook::kTeam;
+  for (std::uint16_t id = 1; id <= kNodes; ++id) {
+    mission::Setup other = of_seven(params(), at(0));
+    other.node = VehicleId{id};
+    book.on_setup(other, at(0.1));
+  }
+  ASSERT_TRUE(book.poll_setup({}, at(1)));
+  EXPECT_FALSE(book.poll_setup({}, at(20.9)));
+  EXPECT_TRUE(book.poll_setup({}, at(21))) << "four times the nodes, four times the period";
+  mission::Setup anew = of_seven(params(), at(22), InstanceId{71});
+  book.on_setup(anew, at(22));
+  EXPECT_FALSE(book.poll_setup({}, at(24.9)));
+  EXPECT_TRUE(book.poll_setup({}, at(25))) << "sooner where somebody is new";
+}
+
 TEST(SetupBook, WhoDoesNotKnowTheOrdersAsksEverySecond) {
   SetupBook book{params(), kSeven, kFirst, at(100)};
   const auto setup = book.poll_setup({.known = false, .newest = 9}, at(100));

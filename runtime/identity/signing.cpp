@@ -61,8 +61,13 @@ Trust Verifier::learn(const Certificate& certificate, std::int64_t now_unix_s) {
   if (certificate.mission == authority_.mission && revoked_.contains(certificate.serial)) {
     return Trust::revoked;
   }
-  const auto known = nodes_.find(certificate.node);
-  if (!is_op && known != nodes_.end() && known->second == certificate) return Trust::good;
+  const auto node = nodes_.find(certificate.node);
+  if (!is_op && node != nodes_.end() && node->second == certificate) return Trust::good;
+  const auto op = operators_.find(certificate.name);
+  if (is_op && op != operators_.end() && op->second == certificate &&
+      now_unix_s <= certificate.not_after_unix_s) {
+    return Trust::good;
+  }
   if (const Trust trust = check(certificate, authority_, now_unix_s); trust != Trust::good) {
     return trust;
   }

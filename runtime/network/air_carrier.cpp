@@ -3,6 +3,7 @@
 
 #include <dlfcn.h>
 #include <poll.h>
+#include <pthread.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -25,8 +26,10 @@ using codec::Topic;
 constexpr std::uint8_t kClearMark = 0xA0;
 constexpr std::size_t kClearBytes = 15;
 constexpr std::size_t kIpUdpBytes = 28;
-/// What comes within this is read together: to wake up costs more than to read.
+/// What comes within this is read together: to wake up costs more than to read. The longer where
+/// many speak.
 constexpr Duration kGather = std::chrono::milliseconds{5};
+constexpr Duration kGatherOfMany = std::chrono::milliseconds{20};
 constexpr std::size_t kOnTheirWayMax = 8192;  ///< more are lost, as on the air
 
 void put(std::vector<std::uint8_t>& out, std::uint64_t number, unsigned bytes) {
@@ -172,9 +175,15 @@ CarrierCounts AirCarrier::counts() const {
 // --- its thread ----------------------------------------------------------------------------------
 
 void AirCarrier::run() {
+  (void)pthread_setname_np(pthread_self(), "carrier");
   while (!stopping_) {
     wait();
-    socket_.receive([this](auto datagram) { receive(datagram); });
+    unsigned received = 0;
+    socket_.receive([&](auto datagram) {
+      ++received;
+      receive(datagram);
+    });
+    gather_ = received > 1 ? kGatherOfMany : kGather;
     while (!on_their_way_.empty() && on_their_way_.begin()->first <= steady_now()) {
       open(on_their_way_.begin()->second);
       on_their_way_.erase(on_their_way_.begin());
@@ -200,7 +209,7 @@ void AirCarrier::wait() {
     }
     wait = std::max(Duration{}, sleeps_until_ - steady_now());
   }
-  const Duration gather = std::min(wait, kGather);
+  const Duration gather = std::min(wait, gather_);
   std::array<pollfd, 2> ready{pollfd{wake_.get(), POLLIN, 0}, {socket_.descriptor(), POLLIN, 0}};
   const std::span all{ready};
   if (!wait_for(all.first(1), gather)) (void)wait_for(all, wait - gather);

@@ -70,6 +70,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   Instant sleeps_until_{};
 
   // Of the thread alone.
+  Duration gather_{};
   std::multimap<Instant, std::vector<std::uint8_t>> on_their_way_;  ///< through the radio
   std::vector<Heard> heard_;
   std::vector<std::uint8_t> plain_;

@@ -35,6 +35,7 @@ enum class Counter : std::uint8_t {
   bad_version,
   bad_value,
   unknown_kind,
+  unheeded,
   signature_missing,
   signature_forged,
   signature_replayed,
@@ -53,6 +54,7 @@ constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCou
     "bad_version",
     "bad_value",
     "unknown_kind",
+    "unheeded",
     "signature_missing",
     "signature_forged",
     "signature_replayed",
@@ -157,6 +159,7 @@ void Node::Impl::on_sample(Topic topic, VehicleId sender, InstanceId instance,
     return refuse(topic, *refusal, sender);
   }
   auto& message = *std::get_if<mission::Message>(&decoded);
+  if (config_.heeds && !config_.heeds(message)) return count(Counter::unheeded);
   if (signatures_ && mission::is_signed(message)) {
     auto judged = signatures_->judge(topic, sender, instance, body, signature);
     if (judged == Signatures::Judged::good) judged = signatures_->judge_approval(message);

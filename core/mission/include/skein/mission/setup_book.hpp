@@ -49,13 +49,15 @@ struct SetupDifference {
 /// "another origin.latitude_deg", "a clock that is 3.0 s ahead": what a sentence goes on with.
 [[nodiscard]] std::string text_of(const SetupDifference& difference);
 
-/// What this node runs with, told to all every kPeriod and at once where somebody new is heard; and
-/// what of that others run with too. `now` is of this node's clock and never decreases.
+/// What this node runs with, told to all every kPeriod and at once where somebody new is heard (of
+/// more than kTeam nodes the more rarely, so that each has no more to judge); and what of that
+/// others run with too. `now` is of this node's clock and never decreases.
 class SetupBook {
  public:
   static constexpr Duration kPeriod = std::chrono::seconds{5};
   static constexpr Duration kPeriodWhileNew = std::chrono::seconds{1};
-  static constexpr std::size_t kNodesMax = 512;
+  static constexpr std::size_t kTeam = 32;
+  static constexpr std::size_t kNodesMax = 1024;
 
   SetupBook(const SetupParams& params, VehicleId self, InstanceId instance, Instant now);
 
@@ -100,6 +102,8 @@ class SetupBook {
   void watch_clock(Node& node, const Setup& setup, Instant now) const;
   void on_ahead(VehicleId id, Duration ahead, Instant now);
   void compare(VehicleId id, Node& node, Instant now);
+  void say_soon(Instant now);
+  [[nodiscard]] Duration in_this_team(Duration period) const;
 
   SetupParams params_;
   Setup own_;

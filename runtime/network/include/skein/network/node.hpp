@@ -66,6 +66,9 @@ struct NodeConfig {
   bool isolated = false;
   /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
   std::string transport_plugin;
+  /// Whether this node does anything by that message: what it does not heed is not judged either,
+  /// which costs more than all else that is heard. Called on a thread of the network. Empty: all.
+  std::function<bool(const mission::Message&)> heeds;
   /// Called on a thread of the network after messages became ready for poll(). Must be short, must
   /// not call the node. Empty: none.
   std::function<void()> on_received;
