@@ -28,6 +28,7 @@
 #include "skein/hil/child_process.hpp"
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/hil/radio/mesh.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_mission.hpp"
@@ -81,7 +82,6 @@ class InterruptWatch {
 };
 
 constexpr const char* kLoopback = "127.0.0.1";
-constexpr const char* kGroup = "239.255.83.1";  ///< of the organisation alone (RFC 2365)
 /// Where there are more, Fast DDS stays in the agents' processes: twice as many processes would
 /// measure the machine.
 constexpr std::size_t kNodesPerProcessor = 4;
@@ -147,6 +147,8 @@ class Bench {
         on_progress_{on_progress},
         external_{std::move(external)},
         sensors_{scenario.sites, specs(scenario)},
+        radio_{radio_params(scenario.radio)},
+        mesh_{radio_.mesh ? std::optional<radio::Mesh>{*radio_.mesh} : std::nullopt},
         timeline_{faults_of(scenario)} {
     progress_.now = Instant{Duration::min()};
   }
@@ -154,7 +156,8 @@ class Bench {
   Result<void> start() {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
     if (const auto possible = check_options(); !possible) return possible;
-    const auto base = port_block(options_.address, options_.port_base, 2 * nodes);
+    const auto base = options_.dds ? port_block(options_.address, options_.port_base, 2 * nodes)
+                                   : port_block(scenario_.air.group, options_.port_base, 1);
     if (!base) return base.error();
     const auto buses = can_buses(*base);
     if (!buses) return buses.error();
@@ -183,7 +186,7 @@ class Bench {
       if (auto up = launch_vehicle(config); !up) return up;
     }
     configuration::NetworkConfig own = ground.network;
-    if (own.group.empty()) {
+    if (options_.dds) {
       own.port = static_cast<std::uint16_t>(*base + 2 * (nodes - 1));
       own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
     }
@@ -200,7 +203,7 @@ class Bench {
       watch(now);
       if (now >= Instant{}) {
         play_faults(now);
-        move_radio();
+        move_radio(now);
         sense(now);
       }
       progress_.now = now;
@@ -242,8 +245,8 @@ class Bench {
   /// Where everybody is, and when mission time 0 is: all have started and found each other before.
   configuration::Deployment deploy(std::uint16_t port_base, const std::vector<std::string>& buses) {
     const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    const bool isolated = all_nodes().size() <= kNodesPerProcessor * processors;
-    const double each_s = isolated ? kIsolatedLead_s : kLead_s;
+    const bool few = all_nodes().size() <= kNodesPerProcessor * processors;
+    const double each_s = options_.dds && few ? kIsolatedLead_s : kLead_s;
     const double lead_s = options_.lead_s > 0.0
                               ? options_.lead_s
                               : 3.0 + each_s * static_cast<double>(scenario_.vehicles.size()) +
@@ -254,7 +257,7 @@ class Bench {
     configuration::Deployment deployment;
     deployment.address = options_.address;
     deployment.port_base = port_base;
-    if (options_.air) deployment.group = kGroup;
+    deployment.dds = options_.dds;
     deployment.domain_id = static_cast<std::uint16_t>(port_base % 200);
     deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
     deployment.time.rate = options_.rate;
@@ -263,10 +266,10 @@ class Bench {
                                         .count();
     deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
     deployment.can_buses = buses;
-    deployment.elsewhere = external_.nodes();
+    deployment.elsewhere = external_.addresses();
     deployment.console_port = options_.console_port;
-    deployment.isolated = isolated;
-    if (!deployment.isolated) {
+    deployment.isolated = few;
+    if (options_.dds && !few) {
       say(fmt::format("{} nodes on {} processors: Fast DDS has no process of its own here",
                       all_nodes().size(), processors));
     }
@@ -514,22 +517,26 @@ class Bench {
     say("fault: " + name_of(id) + " is killed");
   }
 
-  void move_radio() {
+  void move_radio(Instant now) {
     const auto at = positions();
-    const auto node = [&](VehicleId id) {
+    places_.clear();
+    for (const VehicleId id : nodes_) {
       const auto found = at.find(id);
-      return radio::Node{id, found == at.end() ? std::nullopt : std::optional{found->second}};
-    };
-    const auto params = radio_params(scenario_.radio);
+      places_.push_back({id, found == at.end() ? std::nullopt : std::optional{found->second},
+                         !killed_.contains(id)});
+    }
     const auto& interference = timeline_.interference();
-    for (const VehicleId to : nodes_) {
-      radio::Hearing hearing{
-          to, radio::in_real_time(radio::link_when_up(params, interference), options_.rate), {}};
-      for (const VehicleId from : nodes_) {
+    if (mesh_) mesh_->move(radio_, interference, places_, now);
+    const auto hop = radio::in_real_time(radio::link_when_up(radio_, interference), options_.rate);
+    table_->set(hop);
+    for (std::size_t to = 0; to < places_.size(); ++to) {
+      radio::Hearing hearing{places_[to].id, hop, {}};
+      for (std::size_t from = 0; from < places_.size(); ++from) {
         if (from == to) continue;
-        const auto link = radio::link_between(params, interference, node(from), node(to));
-        table_->set(from, to, radio::in_real_time(link, options_.rate));
-        hearing.hears.set(from.value, link.up);
+        const int hops = mesh_ ? mesh_->hops(from, to)
+                               : int{is_up(radio_, interference, places_[from], places_[to])};
+        table_->set_hops(places_[from].id, places_[to].id, hops);
+        hearing.hops.at(places_[from].id.value) = static_cast<std::uint8_t>(hops);
       }
       external_.tell(hearing);
     }
@@ -599,7 +606,7 @@ class Bench {
       if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
       outcome_.deaths.push_back(name_of(id) + " did not end cleanly when asked: " + *how);
     }
-    outcome_.external = external_.nodes().size();
+    outcome_.external = external_.addresses().size();
     for (const auto& missing : external_.collect(options_.run_folder)) {
       outcome_.not_collected.push_back(missing.why);
     }
@@ -671,6 +678,9 @@ class Bench {
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;
   std::set<VehicleId> fc_reported_;
+  radio::RadioParams radio_;
+  std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
+  std::vector<radio::Node> places_;  ///< of nodes_
   FaultTimeline timeline_;
   std::optional<Instant> stop_at_;
   BenchProgress progress_;

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
@@ -17,10 +18,12 @@
 namespace skein::hil::radio {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMark{'S', 'K', 'R', 1};  // the last is the version
-constexpr std::size_t kNumbers = 6;
-constexpr std::size_t kBitmapBytes = (LinkTable::kNodes + 7) / 8;
-constexpr std::size_t kSize = kMark.size() + 3 + 8 * kNumbers + kBitmapBytes;
+constexpr std::array<std::uint8_t, 4> kMark{'S', 'K', 'R', 2};  // the last is the version
+constexpr std::size_t kNumbers = 7;
+/// Two nodes share a byte.
+constexpr std::size_t kHopsBytes = LinkTable::kNodes / 2;
+constexpr std::uint8_t kHopsMax = 15;
+constexpr std::size_t kSize = kMark.size() + 3 + 8 * kNumbers + kHopsBytes;
 constexpr auto kSilence = std::chrono::seconds{3};
 constexpr int kLook_ms = 200;  ///< how often a silent receiver looks whether it is to end
 
@@ -52,22 +55,22 @@ bool can_be(const Link& link) {
   const auto share = [](double of) { return of >= 0.0 && of <= 1.0; };
   const auto bounded = [=](Duration of) { return of >= Duration{} && of <= kLongest; };
   if (!share(link.loss) || !bounded(link.delay) || !bounded(link.jitter)) return false;
+  if (link.bytes_per_s && !(*link.bytes_per_s > 0.0)) return false;
   return !link.disorder || (share(link.disorder->duplicates) && share(link.disorder->held_back) &&
                             bounded(link.disorder->held_back_max));
 }
 
 /// Into the node's row.
 void put(LinkTable& table, const Hearing& hearing) {
+  table.set(hearing.hop);
   for (std::size_t id = 0; id < LinkTable::kNodes; ++id) {
-    Link link = hearing.link;
-    link.up = hearing.hears.test(id);
-    table.set(VehicleId{static_cast<std::uint16_t>(id)}, hearing.self, link);
+    table.set_hops(VehicleId{static_cast<std::uint16_t>(id)}, hearing.self, hearing.hops.at(id));
   }
 }
 
 Hearing perfect(VehicleId self) {
   Hearing hearing{self, {}, {}};
-  hearing.hears.set();
+  hearing.hops.fill(1);
   return hearing;
 }
 
@@ -78,21 +81,21 @@ std::vector<std::uint8_t> encode(const Hearing& hearing) {
   bytes.reserve(kSize);
   bytes.push_back(static_cast<std::uint8_t>(hearing.self.value >> 8U));
   bytes.push_back(static_cast<std::uint8_t>(hearing.self.value & 0xFFU));
-  bytes.push_back(hearing.link.disorder ? 1 : 0);
-  const Disorder disorder = hearing.link.disorder.value_or(Disorder{});
+  bytes.push_back(hearing.hop.disorder ? 1 : 0);
+  const Disorder disorder = hearing.hop.disorder.value_or(Disorder{});
   for (const std::uint64_t number :
-       {bits_of(hearing.link.loss), bits_of(hearing.link.delay), bits_of(hearing.link.jitter),
-        bits_of(disorder.duplicates), bits_of(disorder.held_back),
-        bits_of(disorder.held_back_max)}) {
+       {bits_of(hearing.hop.loss), bits_of(hearing.hop.delay), bits_of(hearing.hop.jitter),
+        bits_of(disorder.duplicates), bits_of(disorder.held_back), bits_of(disorder.held_back_max),
+        bits_of(hearing.hop.bytes_per_s.value_or(0.0))}) {
     for (unsigned i = 0; i < 8; ++i) {
       bytes.push_back(static_cast<std::uint8_t>((number >> (8U * i)) & 0xFFU));
     }
   }
-  std::array<std::uint8_t, kBitmapBytes> bitmap{};
-  for (std::size_t id = 0; id < LinkTable::kNodes; ++id) {
-    if (hearing.hears.test(id)) bitmap.at(id / 8) |= static_cast<std::uint8_t>(1U << (id % 8));
+  for (std::size_t id = 0; id < LinkTable::kNodes; id += 2) {
+    const unsigned high = std::min(hearing.hops.at(id), kHopsMax);
+    const unsigned low = std::min(hearing.hops.at(id + 1), kHopsMax);
+    bytes.push_back(static_cast<std::uint8_t>(high << 4U | low));
   }
-  bytes.insert(bytes.end(), bitmap.begin(), bitmap.end());
   return bytes;
 }
 
@@ -110,13 +113,15 @@ std::optional<Hearing> decode(std::span<const std::uint8_t> bytes) {
     for (unsigned i = 0; i < 8; ++i) number |= std::uint64_t{bytes[i]} << (8U * i);
     bytes = bytes.subspan(8);
   }
-  hearing.link = {true, number_of(numbers[0]), duration_of(numbers[1]), duration_of(numbers[2])};
+  hearing.hop = {true, number_of(numbers[0]), duration_of(numbers[1]), duration_of(numbers[2])};
   if (disordered) {
-    hearing.link.disorder = {number_of(numbers[3]), number_of(numbers[4]), duration_of(numbers[5])};
+    hearing.hop.disorder = {number_of(numbers[3]), number_of(numbers[4]), duration_of(numbers[5])};
   }
-  if (!can_be(hearing.link)) return std::nullopt;
-  for (std::size_t id = 0; id < LinkTable::kNodes; ++id) {
-    hearing.hears.set(id, ((bytes[id / 8] >> (id % 8)) & 1U) != 0);
+  if (numbers[6] != 0) hearing.hop.bytes_per_s = number_of(numbers[6]);
+  if (!can_be(hearing.hop)) return std::nullopt;
+  for (std::size_t id = 0; id < LinkTable::kNodes; id += 2) {
+    hearing.hops.at(id) = static_cast<std::uint8_t>(bytes[id / 2] >> 4U);
+    hearing.hops.at(id + 1) = static_cast<std::uint8_t>(bytes[id / 2] & 0xFU);
   }
   return hearing;
 }

@@ -16,10 +16,12 @@ constexpr VehicleId kSelf{203};
 
 Hearing hearing() {
   Hearing h{kSelf, {true, 0.25, milliseconds{60}, milliseconds{30}}, {}};
-  h.link.disorder = {0.1, 0.2, milliseconds{500}};
-  h.hears.set(0);
-  h.hears.set(7);
-  h.hears.set(254);
+  h.hop.disorder = {0.1, 0.2, milliseconds{500}};
+  h.hop.bytes_per_s = 20'000.0;
+  h.hops[0] = 1;
+  h.hops[7] = 1;
+  h.hops[254] = 2;
+  h.hops[1023] = 8;
   return h;
 }
 
@@ -37,13 +39,14 @@ TEST(LinkFeed, IsReadAsItIsWritten) {
   const auto read = decode(bytes);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->self, kSelf);
-  EXPECT_EQ(read->hears, hearing().hears);
-  EXPECT_EQ(read->link.loss, 0.25);
-  EXPECT_EQ(read->link.delay, milliseconds{60});
-  EXPECT_EQ(read->link.jitter, milliseconds{30});
-  ASSERT_TRUE(read->link.disorder);
-  EXPECT_EQ(read->link.disorder->held_back, 0.2);
-  EXPECT_EQ(read->link.disorder->held_back_max, milliseconds{500});
+  EXPECT_EQ(read->hops, hearing().hops);
+  EXPECT_EQ(read->hop.loss, 0.25);
+  EXPECT_EQ(read->hop.delay, milliseconds{60});
+  EXPECT_EQ(read->hop.jitter, milliseconds{30});
+  EXPECT_EQ(read->hop.bytes_per_s, 20'000.0);
+  ASSERT_TRUE(read->hop.disorder);
+  EXPECT_EQ(read->hop.disorder->held_back, 0.2);
+  EXPECT_EQ(read->hop.disorder->held_back_max, milliseconds{500});
 }
 
 TEST(LinkFeed, OtherBytesAreNone) {
@@ -52,7 +55,7 @@ TEST(LinkFeed, OtherBytesAreNone) {
   bytes.pop_back();
   EXPECT_FALSE(decode(bytes));
   bytes = good;
-  bytes[3] = 2;
+  bytes[3] = 1;
   EXPECT_FALSE(decode(bytes)) << "another version";
   EXPECT_FALSE(decode({}));
 }
@@ -64,11 +67,12 @@ TEST(LinkFeed, WhatNoRadioCanBeIsNone) {
     return decode(encode(h)).has_value();
   };
   EXPECT_TRUE(with([](Hearing&) {}));
-  EXPECT_FALSE(with([](Hearing& h) { h.link.loss = 1.5; }));
-  EXPECT_FALSE(with([](Hearing& h) { h.link.loss = std::nan(""); }));
-  EXPECT_FALSE(with([](Hearing& h) { h.link.delay = std::chrono::hours{1}; }));
-  EXPECT_FALSE(with([](Hearing& h) { h.link.jitter = Duration{-1}; }));
-  EXPECT_FALSE(with([](Hearing& h) { h.link.disorder->held_back_max = Duration::max(); }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.loss = 1.5; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.loss = std::nan(""); }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.delay = std::chrono::hours{1}; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.bytes_per_s = -1.0; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.jitter = Duration{-1}; }));
+  EXPECT_FALSE(with([](Hearing& h) { h.hop.disorder->held_back_max = Duration::max(); }));
 }
 
 TEST(LinkFeed, AReceiverHearsWhomItIsToldAndEverybodyBefore) {
@@ -89,6 +93,7 @@ TEST(LinkFeed, AReceiverHearsWhomItIsToldAndEverybodyBefore) {
   EXPECT_TRUE(table.get(VehicleId{7}, kSelf).up);
   EXPECT_TRUE(table.get(VehicleId{254}, kSelf).up);
   EXPECT_EQ(table.get(VehicleId{7}, kSelf).delay, milliseconds{60});
+  EXPECT_EQ(table.get(VehicleId{254}, kSelf).delay, milliseconds{120}) << "over two hops";
   // Without a bench nobody is parted.
   EXPECT_TRUE(eventually([&] { return table.get(VehicleId{1}, kSelf).up; }));
   EXPECT_EQ(table.get(VehicleId{7}, kSelf).delay, Duration{});

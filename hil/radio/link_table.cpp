@@ -36,7 +36,7 @@ Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
     return Error{"radio table " + name + ": " + std::generic_category().message(reason)};
   }
   LinkTable table{name, static_cast<Table*>(memory), create};
-  if (create) table.all_up();
+  if (create) table.all_hear_all();
   return table;
 }
 
@@ -47,14 +47,14 @@ Result<LinkTable> LinkTable::create_private() {
     return Error{"no memory for a radio table: " + std::generic_category().message(errno)};
   }
   LinkTable table{"", static_cast<Table*>(memory), false};
-  table.all_up();
+  table.all_hear_all();
   return table;
 }
 
-/// Fresh pages are zero: every link down.
-void LinkTable::all_up() {
-  for (auto& row : table_->cells) {
-    for (auto& cell : row) cell.up = true;
+/// Fresh pages are zero: nobody hears anybody.
+void LinkTable::all_hear_all() {
+  for (auto& row : table_->hops) {
+    for (auto& hops : row) hops = 1;
   }
 }
 
@@ -69,32 +69,37 @@ LinkTable::LinkTable(LinkTable&& other) noexcept
       table_{std::exchange(other.table_, nullptr)},
       owner_{other.owner_} {}
 
-void LinkTable::set(VehicleId from, VehicleId to, const Link& link) {
-  if (from.value >= kNodes || to.value >= kNodes) return;
-  auto& cell = table_->cells[from.value][to.value];
+void LinkTable::set(const Link& hop) {
   const auto put = [](auto& place, auto value) { place.store(value, std::memory_order_relaxed); };
-  put(cell.up, link.up);
-  put(cell.loss, link.loss);
-  put(cell.delay_ns, link.delay.count());
-  put(cell.jitter_ns, link.jitter.count());
-  put(cell.disordered, link.disorder.has_value());
-  const Disorder disorder = link.disorder.value_or(Disorder{});
-  put(cell.duplicates, disorder.duplicates);
-  put(cell.held_back, disorder.held_back);
-  put(cell.held_back_max_ns, disorder.held_back_max.count());
+  put(table_->hop.loss, hop.loss);
+  put(table_->hop.delay_ns, hop.delay.count());
+  put(table_->hop.jitter_ns, hop.jitter.count());
+  put(table_->hop.disordered, hop.disorder.has_value());
+  const Disorder disorder = hop.disorder.value_or(Disorder{});
+  put(table_->hop.duplicates, disorder.duplicates);
+  put(table_->hop.held_back, disorder.held_back);
+  put(table_->hop.held_back_max_ns, disorder.held_back_max.count());
+  put(table_->hop.bytes_per_s, hop.bytes_per_s.value_or(0.0));
+}
+
+void LinkTable::set_hops(VehicleId from, VehicleId to, int hops) {
+  if (from.value >= kNodes || to.value >= kNodes) return;
+  table_->hops[from.value][to.value].store(static_cast<std::uint8_t>(hops),
+                                           std::memory_order_relaxed);
 }
 
 Link LinkTable::get(VehicleId from, VehicleId to) const {
   if (from.value >= kNodes || to.value >= kNodes) return {};
-  const auto& cell = table_->cells[from.value][to.value];
   const auto got = [](const auto& place) { return place.load(std::memory_order_relaxed); };
-  Link link{got(cell.up), got(cell.loss), Duration{got(cell.delay_ns)},
-            Duration{got(cell.jitter_ns)}};
-  if (got(cell.disordered)) {
-    link.disorder = {got(cell.duplicates), got(cell.held_back),
-                     Duration{got(cell.held_back_max_ns)}};
+  const Hop& at = table_->hop;
+  Link hop{true, got(at.loss), Duration{got(at.delay_ns)}, Duration{got(at.jitter_ns)}};
+  if (got(at.disordered)) {
+    hop.disorder = {got(at.duplicates), got(at.held_back), Duration{got(at.held_back_max_ns)}};
   }
-  return link;
+  if (const double bytes_per_s = got(at.bytes_per_s); bytes_per_s > 0.0) {
+    hop.bytes_per_s = bytes_per_s;
+  }
+  return over_hops(hop, got(table_->hops[from.value][to.value]));
 }
 
 }  // namespace skein::hil::radio

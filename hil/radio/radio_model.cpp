@@ -77,22 +77,19 @@ Link link_when_up(const RadioParams& params, const Interference& interference) {
   link.delay = params.delay + worse.delay;
   link.jitter = params.jitter + worse.jitter;
   link.disorder = worse.disorder;
-  return link;
-}
-
-Link link_between(const RadioParams& params, const Interference& interference, const Node& from,
-                  const Node& to) {
-  Link link = link_when_up(params, interference);
-  link.up = is_up(params, interference, from, to);
+  link.bytes_per_s = params.bytes_per_s;
   return link;
 }
 
 Link over_hops(const Link& link, int hops) {
   Link way = link;
+  if (hops == 1) return way;
   way.up = link.up && hops > 0;
+  if (!way.up) return way;
   way.loss = 1.0 - std::pow(1.0 - link.loss, hops);
   way.delay = hops * link.delay;
   way.jitter = hops * link.jitter;
+  if (link.bytes_per_s) way.bytes_per_s = *link.bytes_per_s / hops;
   return way;
 }
 
@@ -101,6 +98,7 @@ Link in_real_time(const Link& link, double rate) {
   Link slowed = link;
   slowed.delay = real(link.delay);
   slowed.jitter = real(link.jitter);
+  if (slowed.bytes_per_s) slowed.bytes_per_s = *link.bytes_per_s * rate;
   if (slowed.disorder) slowed.disorder->held_back_max = real(link.disorder->held_back_max);
   return slowed;
 }
@@ -118,6 +116,18 @@ Arrivals carry(const Link& link, Random& random) {
     arrivals.back() += from_seconds(random.uniform(0.0, to_seconds(link.disorder->held_back_max)));
   }
   if (random.chance(link.disorder->duplicates)) arrivals.push_back(delay());
+  return arrivals;
+}
+
+Arrivals Channel::carry(const Link& link, std::size_t bytes, Instant now, Random& random) {
+  Arrivals arrivals = radio::carry(link, random);
+  if (!link.bytes_per_s || !link.up) return arrivals;
+  // What is lost has taken its time of the channel, too.
+  const Instant free_at =
+      std::max(free_at_, now) + from_seconds(static_cast<double>(bytes) / *link.bytes_per_s);
+  if (free_at - now > kWaitMax) return {};
+  free_at_ = free_at;
+  for (Duration& delay : arrivals) delay += free_at - now;
   return arrivals;
 }
 

@@ -44,6 +44,11 @@ using SteadyTime = std::chrono::steady_clock::time_point;
 
 constexpr std::size_t kWaitingMax = 8192;  ///< packets on their way; more are lost, as on the air
 
+Instant steady_now() {
+  return Instant{
+      std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch())};
+}
+
 /// Who sends this, sealed or in clear, where it is a node of ours.
 std::optional<VehicleId> sender_of(std::span<const octet> datagram) {
   if (const auto header = seal::read_header(datagram)) return header->from.sender;
@@ -89,9 +94,10 @@ class RadioTransport : public rtps::ChainingTransport {
     bool now = false;
     {
       const std::lock_guard lock{mutex_};
-      const auto arrivals = radio::carry(link, random_);
+      const auto arrivals = channel_.carry(link, size, steady_now(), random_);
       // Without any delay it goes on at once, on the channel's own thread, as without us.
-      now = !arrivals.empty() && link.delay + link.jitter == Duration{} && !link.disorder;
+      now = !arrivals.empty() && link.delay + link.jitter == Duration{} && !link.disorder &&
+            !link.bytes_per_s;
       for (const Duration delay : arrivals) {
         if (now || waiting_.size() >= kWaitingMax) break;
         waiting_.push({std::chrono::steady_clock::now() + delay, order_++, next,
@@ -173,6 +179,7 @@ class RadioTransport : public rtps::ChainingTransport {
   std::shared_ptr<const LinkTable> table_;
   std::mutex mutex_;  ///< of everything below
   Random random_;
+  Channel channel_;
   std::priority_queue<Packet> waiting_;
   std::uint64_t order_ = 0;
   bool stopping_ = false;
@@ -204,10 +211,10 @@ class AirRadio : public network::AirRadio {
   AirRadio(VehicleId self, std::shared_ptr<const LinkTable> table, std::uint64_t seed)
       : self_{self}, table_{std::move(table)}, random_{seed + self.value} {}
 
-  std::vector<Duration> arrivals(VehicleId sender, std::size_t /*bytes*/) override {
+  std::vector<Duration> arrivals(VehicleId sender, std::size_t bytes) override {
     const Link link = sender != self_ ? table_->get(sender, self_) : Link{};
     if (!link.up) return {};
-    const auto arrivals = radio::carry(link, random_);
+    const auto arrivals = channel_.carry(link, bytes, steady_now(), random_);
     return {arrivals.begin(), arrivals.end()};
   }
 
@@ -215,6 +222,7 @@ class AirRadio : public network::AirRadio {
   VehicleId self_;
   std::shared_ptr<const LinkTable> table_;
   Random random_;
+  Channel channel_;
 };
 
 std::uint64_t seed_of_environment() {

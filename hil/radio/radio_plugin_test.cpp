@@ -105,8 +105,9 @@ class Radio : public testing::TestWithParam<Air> {
   }
 
   void both_ways(const Link& link) {
-    table_->set(kAnna, kBert, link);
-    table_->set(kBert, kAnna, link);
+    table_->set(link);
+    table_->set_hops(kAnna, kBert, link.up ? 1 : 0);
+    table_->set_hops(kBert, kAnna, link.up ? 1 : 0);
   }
   [[nodiscard]] bool matched() const {
     return anna_->peers().size() == 1 && bert_->peers().size() == 1;
@@ -170,7 +171,7 @@ TEST_P(Radio, TheDelayIsThatOfTheLink) {
 
 TEST_P(Radio, BestEffortMessagesAreLostInTheGivenShare) {
   ASSERT_TRUE(eventually([&] { return matched(); }));
-  table_->set(kAnna, kBert, {true, 0.5, Duration{}, Duration{}});
+  table_->set({true, 0.5, Duration{}, Duration{}});
   int received = 0;
   constexpr int kSent = 300;
   for (std::uint32_t i = 0; i < kSent; ++i) {
@@ -214,7 +215,7 @@ class ToldRadio : public Radio {
   /// Bert hears everybody, or nobody.
   void tell(bool hears) {
     Hearing hearing{kBert, {}, {}};
-    if (hears) hearing.hears.set();
+    if (hears) hearing.hops.fill(1);
     feed_->send(hearing, "127.0.0.1");
   }
   /// Anna speaks and the bench tells, until so many of her words in a row were (not) heard.

@@ -19,13 +19,15 @@ TEST(LinkTable, IsSharedByNameAndGoneWithItsMaker) {
     const auto opened = LinkTable::open(name);
     ASSERT_TRUE(opened);
     EXPECT_TRUE(opened->get(VehicleId{3}, VehicleId{4}).up) << "perfect at first";
-    made->set(VehicleId{3}, VehicleId{4}, {false, 0.25, from_seconds(0.1), from_seconds(0.02)});
+    made->set({true, 0.25, from_seconds(0.1), from_seconds(0.02)});
+    made->set_hops(VehicleId{3}, VehicleId{4}, 2);
+    made->set_hops(VehicleId{3}, VehicleId{5}, 0);
     const Link link = opened->get(VehicleId{3}, VehicleId{4});
-    EXPECT_FALSE(link.up);
-    EXPECT_DOUBLE_EQ(link.loss, 0.25);
-    EXPECT_EQ(link.delay, from_seconds(0.1));
-    EXPECT_TRUE(opened->get(VehicleId{4}, VehicleId{3}).up)
-        << "each direction is a link of its own";
+    EXPECT_DOUBLE_EQ(link.loss, 1.0 - 0.75 * 0.75);
+    EXPECT_EQ(link.delay, from_seconds(0.2));
+    EXPECT_FALSE(opened->get(VehicleId{3}, VehicleId{5}).up);
+    EXPECT_EQ(opened->get(VehicleId{4}, VehicleId{3}).delay, from_seconds(0.1))
+        << "each direction is a way of its own";
     EXPECT_TRUE(opened->get(VehicleId{4000}, VehicleId{3}).up) << "who is not in the table passes";
   }
   const auto gone = LinkTable::open(name);
@@ -36,17 +38,18 @@ TEST(LinkTable, IsSharedByNameAndGoneWithItsMaker) {
 TEST(LinkTable, KeepsALinkToTheLastBit) {
   auto table = LinkTable::create();
   ASSERT_TRUE(table) << table.error().message;
-  const Link link{true, 0.1, from_seconds(0.06), from_seconds(0.03),
-                  Disorder{0.3, 0.2, from_seconds(2.0)}};
-  table->set(VehicleId{1}, VehicleId{2}, link);
+  table->set({true, 0.1, from_seconds(0.06), from_seconds(0.03),
+              Disorder{0.3, 0.2, from_seconds(2.0)}, 20'000.0});
   const Link back = table->get(VehicleId{1}, VehicleId{2});
   EXPECT_EQ(back.loss, 0.1);
   ASSERT_TRUE(back.disorder.has_value());
   EXPECT_EQ(back.disorder->duplicates, 0.3);
   EXPECT_EQ(back.disorder->held_back, 0.2);
   EXPECT_EQ(back.disorder->held_back_max, from_seconds(2.0));
-  table->set(VehicleId{1}, VehicleId{2}, {});
+  EXPECT_EQ(back.bytes_per_s, 20'000.0);
+  table->set({});
   EXPECT_FALSE(table->get(VehicleId{1}, VehicleId{2}).disorder.has_value());
+  EXPECT_FALSE(table->get(VehicleId{1}, VehicleId{2}).bytes_per_s.has_value());
 }
 
 constexpr RadioParams kParams{1500.0, 5000.0, std::chrono::milliseconds{60},
@@ -65,8 +68,11 @@ Node node(std::uint16_t id) {
   }
 }
 
+Link between(const Node& a, const Node& b, const Interference& interference = {}) {
+  return over_hops(link_when_up(kParams, interference), is_up(kParams, interference, a, b) ? 1 : 0);
+}
 Link between(std::uint16_t a, std::uint16_t b, const Interference& interference = {}) {
-  return link_between(kParams, interference, node(a), node(b));
+  return between(node(a), node(b), interference);
 }
 
 Interference cut(Cut cut) {
@@ -93,8 +99,8 @@ TEST(RadioModel, RangeAndPartitionsDecide) {
 }
 
 TEST(RadioModel, TheGroundStationHasARangeToo) {
-  EXPECT_FALSE(link_between(kParams, {}, node(0), {VehicleId{4}, Vec2{0, 5001}}).up);
-  EXPECT_FALSE(link_between(kParams, {}, {VehicleId{4}, Vec2{0, 5001}}, node(0)).up);
+  EXPECT_FALSE(between(node(0), {VehicleId{4}, Vec2{0, 5001}}).up);
+  EXPECT_FALSE(between({VehicleId{4}, Vec2{0, 5001}}, node(0)).up);
 }
 
 TEST(RadioModel, OneWayIsHeardInOneDirectionOnly) {
@@ -159,6 +165,22 @@ TEST(RadioModel, MessagesAreLostDoubledAndHeldBackInTheGivenShares) {
   EXPECT_NEAR(doubled, 3750, 150);
   EXPECT_NEAR(late, 750, 100);
   EXPECT_TRUE(carry({false}, random).empty());
+}
+
+TEST(RadioModel, WhatIsHeardSharesTheChannel) {
+  Random random{1};
+  Link link{true, 0.0, from_seconds(0.06), Duration{}};
+  link.bytes_per_s = 1000.0;
+  Channel channel;
+  const Instant start = at_seconds(5.0);
+  const auto takes = [&](const Link& way, std::size_t bytes, Instant now) {
+    return channel.carry(way, bytes, now, random);
+  };
+  EXPECT_EQ(takes(link, 100, start)[0], from_seconds(0.16));
+  EXPECT_EQ(takes(link, 200, start)[0], from_seconds(0.36)) << "one after the other";
+  EXPECT_EQ(takes(over_hops(link, 2), 100, start)[0], from_seconds(0.62)) << "each hop takes it";
+  EXPECT_TRUE(takes(link, 600, start).empty()) << "it would wait for more than a second";
+  EXPECT_EQ(takes(link, 100, at_seconds(6.0))[0], from_seconds(0.16));
 }
 
 }  // namespace

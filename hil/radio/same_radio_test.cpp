@@ -129,8 +129,9 @@ TEST(SameRadio, ThePluginDoesWithEveryPacketWhatTheSimulatorDoes) {
   std::uint32_t number = 0;
   for (const Interference& interference : situations()) {
     simulated.interfere(interference);
+    table->set(link_when_up(params, interference));
     for (const Node& sender : senders) {
-      table->set(sender.id, kSelf, link_between(params, interference, sender, self));
+      table->set_hops(sender.id, kSelf, is_up(params, interference, sender, self) ? 1 : 0);
     }
     std::vector<Arrivals> expected;
     std::vector<steady_clock::time_point> sent;

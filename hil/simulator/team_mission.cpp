@@ -114,6 +114,7 @@ models::WindParams wind_params(const configuration::WindConfig& wind, std::uint6
 radio::RadioParams radio_params(const configuration::RadioConfig& radio) {
   radio::RadioParams params{radio.range_m, radio.ground_range_m, radio.delay_mean,
                             radio.delay_jitter, radio.loss_ratio};
+  if (radio.bytes_per_s > 0.0) params.bytes_per_s = radio.bytes_per_s;
   if (radio.mesh == configuration::MeshKind::none) return params;
   params.mesh.emplace();
   params.mesh->ground_relays = radio.mesh == configuration::MeshKind::all;

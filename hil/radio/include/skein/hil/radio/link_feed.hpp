@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <atomic>
-#include <bitset>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -23,8 +23,8 @@ namespace skein::hil::radio {
 /// How one node hears all others.
 struct Hearing {
   VehicleId self;
-  Link link;                             ///< of all that it hears; its `up` says nothing
-  std::bitset<LinkTable::kNodes> hears;  ///< by id
+  Link hop;                                            ///< every one; its `up` says nothing
+  std::array<std::uint8_t, LinkTable::kNodes> hops{};  ///< from whom over how many, by id; 0: not
 };
 
 [[nodiscard]] std::vector<std::uint8_t> encode(const Hearing& hearing);
@@ -56,7 +56,7 @@ class FeedSender {
 };
 
 /// Keeps a table of its own as it is told, on a thread. Before it is told anything, and after three
-/// seconds of silence, all links are up and perfect: it is not the radio's end that parts a team.
+/// seconds of silence, all hear all: it is not the radio's end that parts a team.
 class FeedReceiver {
  public:
   /// Fails where the port is taken.

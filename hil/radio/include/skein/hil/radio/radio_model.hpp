@@ -31,6 +31,7 @@ struct RadioParams {
   Duration jitter = std::chrono::milliseconds{30};  ///< the delay varies by up to this, either way
   double loss = 0.0;                                ///< probability, of each message by itself
   std::optional<MeshParams> mesh{};                 ///< none: only who is in range is heard
+  std::optional<double> bytes_per_s{};              ///< Link's
 };
 
 /// Messages that arrive twice, or after those that were sent later.
@@ -90,6 +91,8 @@ struct Link {
   Duration delay{};
   Duration jitter{};  ///< the delay varies by up to this, either way
   std::optional<Disorder> disorder = std::nullopt;
+  /// Of the channel that all share whom a node hears; none: there is always room.
+  std::optional<double> bytes_per_s = std::nullopt;
 };
 
 /// Whether one node hears another at all. A vehicle whose position is not known is out of range of
@@ -98,11 +101,8 @@ struct Link {
                          const Node& from, const Node& to);
 /// How every link is that is up.
 [[nodiscard]] Link link_when_up(const RadioParams& params, const Interference& interference);
-/// Both of these.
-[[nodiscard]] Link link_between(const RadioParams& params, const Interference& interference,
-                                const Node& from, const Node& to);
-
-/// What is as good as that many such links, one after the other; 0: none.
+/// What is as good as that many such links, one after the other; 0: none. Each takes its time of
+/// the channel.
 [[nodiscard]] Link over_hops(const Link& link, int hops);
 
 /// The link where `rate` mission seconds pass in a real one.
@@ -112,6 +112,18 @@ struct Link {
 /// drawn depends on the link alone: from one that is down, nothing.
 using Arrivals = StaticVector<Duration, 2>;
 [[nodiscard]] Arrivals carry(const Link& link, Random& random);
+
+/// What a node hears, one after the other, as far as its channel has room.
+class Channel {
+ public:
+  /// As above, of a message of that many bytes, headers included. It is lost where it would wait
+  /// for longer than kWaitMax.
+  [[nodiscard]] Arrivals carry(const Link& link, std::size_t bytes, Instant now, Random& random);
+  static constexpr Duration kWaitMax = std::chrono::seconds{1};
+
+ private:
+  Instant free_at_{};
+};
 
 /// The radio as a simulator has it; the bench has a LinkTable and, in every process, the plugin.
 class SimulatedRadio {
@@ -131,6 +143,11 @@ class SimulatedRadio {
   [[nodiscard]] Arrivals carry(int hops) {
     if (hops == 0) return {};
     return radio::carry(hops == 1 ? link_ : over_hops(link_, hops), random_);
+  }
+  /// The same, where the receiver's channel has to have room.
+  [[nodiscard]] Arrivals carry(int hops, Channel& channel, std::size_t bytes, Instant now) {
+    if (hops == 0) return {};
+    return channel.carry(over_hops(link_, hops), bytes, now, random_);
   }
   [[nodiscard]] bool hears(const Node& from, const Node& to) const {
     return is_up(params_, interference_, from, to);
