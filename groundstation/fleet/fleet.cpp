@@ -104,7 +104,6 @@ class Check {
     }
     check_members();
     check_addresses();
-    check_ports();
     for (const Host& host : s_.hosts) check_ways(host);
     check_buses();
     check_console();
@@ -154,20 +153,6 @@ class Check {
       if (!is_new && machine_of(*other->second) != machine_of(host)) {
         problem("the hosts of {} and {} are two machines with one address, {}; mend one",
                 name_of(other->second->node), name_of(host.node), host.address);
-      }
-    }
-  }
-
-  void check_ports() {
-    for (std::size_t i = 0; i < s_.hosts.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        const Host& a = s_.hosts[j];
-        const Host& b = s_.hosts[i];
-        if (a.address != b.address || std::abs(int{a.port} - int{b.port}) > 1) continue;
-        problem(
-            "{} and {} share a port of {}: each needs two, {} and {} have their own and the next; "
-            "give one another port",
-            name_of(a.node), name_of(b.node), a.address, a.port, b.port);
       }
     }
   }
@@ -248,9 +233,10 @@ class Check {
 
 configuration::Deployment deployment_of(const Scenario& scenario, std::int64_t epoch_unix_ns) {
   configuration::Deployment deployment;
+  deployment.port_base = scenario.air_port;
   deployment.time.epoch_unix_ns = epoch_unix_ns;
   for (const Host& host : scenario.hosts) {
-    deployment.elsewhere.push_back({host.node, host.address, host.port});
+    deployment.elsewhere.emplace(host.node, host.address);
   }
   return deployment;
 }

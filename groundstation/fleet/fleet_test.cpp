@@ -69,9 +69,8 @@ TEST(Fleet, EveryHostIsGivenItsConfiguration) {
   EXPECT_EQ(config->network.keys, "/var/lib/skein/onboard-2/keys");
   EXPECT_EQ(config->detections_socket, "/run/skein/detections-2.sock");
   EXPECT_EQ(config->network.address, "10.0.0.2");
-  EXPECT_THAT(config->network.peers,
-              ElementsAre(configuration::NetworkPeer{VehicleId{0}, "10.0.0.9", 7400},
-                          configuration::NetworkPeer{VehicleId{1}, "10.0.0.1", 7400}));
+  EXPECT_THAT(config->network.peers, IsEmpty()) << "who is heard is there";
+  EXPECT_EQ(config->network.port, ground_config->network.port);
 }
 
 TEST(Fleet, AMissingAnUnknownAndNoHostAreTold) {
@@ -84,27 +83,25 @@ TEST(Fleet, AMissingAnUnknownAndNoHostAreTold) {
               ElementsAre(HasSubstr("vehicle 7, which is not in the fleet")));
 }
 
-TEST(Fleet, AddressesAndPortsThatCannotBeAreTold) {
+TEST(Fleet, AddressesThatCannotBeAreTold) {
   const auto with_second = [](const std::string& address, const std::string& more) {
     return problems_of("hosts:\n" + kGround + kFirst + "}\n  - {vehicle: 2, address: " + address +
                        more + "}\n");
   };
   EXPECT_THAT(with_second("127.0.0.1", ", ssh: pi@two"),
               ElementsAre(HasSubstr("where other machines do not reach it")));
-  EXPECT_THAT(with_second("10.0.0.1", ", port: 7500, ssh: pi@two"),
+  EXPECT_THAT(with_second("10.0.0.1", ", ssh: pi@two"),
               ElementsAre(HasSubstr("two machines with one address")));
-  EXPECT_THAT(with_second("10.0.0.1", ", port: 7401, ssh: pi@one"),
-              ElementsAre(HasSubstr("share a port of 10.0.0.1")));
-  EXPECT_THAT(with_second("10.0.0.1", ", port: 7402, ssh: pi@one"), IsEmpty());
+  EXPECT_THAT(with_second("10.0.0.1", ", ssh: pi@one"), IsEmpty());
   EXPECT_THAT(with_second("10.0.0.2", ", ssh: -oProxyCommand=x"),
               ElementsAre(HasSubstr("which is no user@name")));
 }
 
 TEST(Fleet, AllOnThisMachineMayBeOnLoopback) {
   EXPECT_THAT(problems_of("hosts:\n"
-                          "  - {vehicle: 0, address: 127.0.0.1, port: 7400}\n"
-                          "  - {vehicle: 1, address: 127.0.0.1, port: 7402}\n"
-                          "  - {vehicle: 2, address: 127.0.0.1, port: 7404}\n"),
+                          "  - {vehicle: 0, address: 127.0.0.1}\n"
+                          "  - {vehicle: 1, address: 127.0.0.1}\n"
+                          "  - {vehicle: 2, address: 127.0.0.1}\n"),
               IsEmpty());
 }
 
@@ -120,7 +117,7 @@ TEST(Fleet, BusesAndTheirNodesAreCheckedByMachine) {
   EXPECT_THAT((*programs)[1].configuration, HasSubstr("can: \"can0\""));
   const std::string together = "hosts:\n" + kGround + kFirst +
                                ", can: can0}\n"
-                               "  - {vehicle: 2, address: 10.0.0.1, port: 7500, ssh: pi@one, can: "
+                               "  - {vehicle: 2, address: 10.0.0.1, ssh: pi@one, can: "
                                "can0}\n";
   EXPECT_THAT(problems_of(together, kOnCan),
               ElementsAre(HasSubstr("have node 10 on one bus, can0"), HasSubstr("have node 42")));
@@ -146,7 +143,6 @@ TEST(Fleet, ShapesGoToTheGroundStation) {
     configuration::Host host;
     host.node = VehicleId{id};
     host.address = "127.0.0.1";
-    host.port = static_cast<std::uint16_t>(7400 + 2 * id);
     scenario->hosts.push_back(host);
   }
   const auto programs = render(*scenario, kEpoch);

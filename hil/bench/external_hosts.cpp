@@ -122,10 +122,9 @@ const Host* ExternalHosts::host_of(VehicleId vehicle) const {
   return found == hosts_.end() ? nullptr : &*found;
 }
 
-std::vector<configuration::NetworkPeer> ExternalHosts::nodes() const {
-  std::vector<configuration::NetworkPeer> all;
-  all.reserve(hosts_.size());
-  for (const Host& host : hosts_) all.push_back({host.node, host.address, host.port});
+std::map<VehicleId, std::string> ExternalHosts::addresses() const {
+  std::map<VehicleId, std::string> all;
+  for (const Host& host : hosts_) all.emplace(host.node, host.address);
   return all;
 }
 
@@ -138,7 +137,6 @@ Result<void> ExternalHosts::start(const std::vector<VehicleConfig>& configs) {
     config.recording_folder = recordings_of(*host, config);
     if (!keys.empty()) config.network.keys = config.recording_folder + "/keys";
     config.network.transport_plugin = host->radio_plugin;
-    config.network.isolated = true;  // as in the field
     Started& started = started_.emplace_back();
     started.host = *host;
     started.recordings = config.recording_folder;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,7 @@ class ExternalHosts {
   [[nodiscard]] bool has(VehicleId vehicle) const { return host_of(vehicle) != nullptr; }
   /// Null for a vehicle of the bench.
   [[nodiscard]] const configuration::Host* host_of(VehicleId vehicle) const;
-  [[nodiscard]] std::vector<configuration::NetworkPeer> nodes() const;
+  [[nodiscard]] std::map<VehicleId, std::string> addresses() const;
 
   /// Of these configurations those of external vehicles, each as its host needs it: pushed, and
   /// started with an emulated flight controller where it has none. All hosts at once. Fails where

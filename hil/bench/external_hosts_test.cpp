@@ -65,9 +65,8 @@ TEST(ExternalHosts, HaveTheAddressesAndBusesOfTheirHosts) {
   ASSERT_TRUE(hosts.ok()) << hosts.error().message;
   EXPECT_TRUE(hosts->has(VehicleId{1}));
   EXPECT_FALSE(hosts->has(VehicleId{3}));
-  EXPECT_THAT(hosts->nodes(),
-              testing::ElementsAre(configuration::NetworkPeer{VehicleId{1}, "10.0.0.1", 7400},
-                                   configuration::NetworkPeer{VehicleId{2}, "10.0.0.2", 7400}));
+  EXPECT_THAT(hosts->addresses(), testing::ElementsAre(testing::Pair(VehicleId{1}, "10.0.0.1"),
+                                                       testing::Pair(VehicleId{2}, "10.0.0.2")));
   give_buses(s, *hosts);
   EXPECT_EQ(s.vehicles[0].flight_controller.ardupilot.can, "can0") << "its own flight controller";
   EXPECT_EQ(s.vehicles[1].flight_controller.ardupilot.can, "") << "as the bench's own";

@@ -28,7 +28,7 @@ struct RunArguments {
   std::string can;               ///< bus of the flight controllers; empty: one each is looked for
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
-  bool air = false;
+  bool dds = false;
   bool clear = false;
   bool prompt = false;
   std::uint16_t console_port = 0;  ///< 0: no console

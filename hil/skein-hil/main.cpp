@@ -98,8 +98,8 @@ void add_run(CLI::App& app, int& status) {
                  "Fly without keys, in clear, on loopback: to compare with a sealed run")
       ->excludes("--external");
   command
-      ->add_flag("--air", arguments->air,
-                 "Say everything once, for all, by multicast, in place of Fast DDS")
+      ->add_flag("--dds", arguments->dds,
+                 "Speak to each node by itself, with Fast DDS: to compare with the air")
       ->excludes("--external");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"

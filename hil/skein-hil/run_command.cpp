@@ -99,7 +99,7 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.can = arguments.can;
   options.prompt = arguments.prompt;
   options.sealed = !arguments.clear;
-  options.air = arguments.air;
+  options.dds = arguments.dds;
   options.console_port = arguments.console_port;
   if (options.console_port != 0) options.console_token = process::make_token();
   options.run_folder =

@@ -531,6 +531,7 @@ TEST(Deployment, GivesEveryNodeItsPortItsPeersAndItsSeed) {
   Deployment deployment;
   deployment.time = {1'700'000'000'123'456'789, 2.5};
   deployment.recording_folder = "/tmp/run \"1\"";
+  deployment.dds = true;
   const auto vehicles = vehicle_configs(s, deployment);
   const GroundConfig ground = ground_config(s, deployment);
   ASSERT_EQ(vehicles.size(), 3U);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/configuration/deployment.hpp"
 
-#include <algorithm>
-
 #include "skein/base/assert.hpp"
 #include "skein/base/random.hpp"
 
@@ -15,10 +13,9 @@ std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& de
   std::vector<NetworkPeer> nodes;
   const auto add = [&](VehicleId id) {
     const auto port = static_cast<std::uint16_t>(deployment.port_base + 2 * nodes.size());
-    const auto other = std::find_if(deployment.elsewhere.begin(), deployment.elsewhere.end(),
-                                    [id](const NetworkPeer& node) { return node.id == id; });
+    const auto other = deployment.elsewhere.find(id);
     nodes.push_back(
-        other != deployment.elsewhere.end() ? *other : NetworkPeer{id, deployment.address, port});
+        {id, other != deployment.elsewhere.end() ? other->second : deployment.address, port});
   };
   add(kGroundStation);
   for (const ScenarioVehicle& vehicle : scenario.vehicles) add(vehicle.spec.id);
@@ -26,7 +23,7 @@ std::vector<NetworkPeer> nodes_of(const Scenario& scenario, const Deployment& de
 }
 
 NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes,
-                         const Deployment& deployment) {
+                         const AirConfig& air, const Deployment& deployment) {
   const auto keys = deployment.keys.find(nodes[node].id);
   NetworkConfig network;
   network.domain_id = deployment.domain_id;
@@ -35,8 +32,8 @@ NetworkConfig network_of(std::size_t node, const std::vector<NetworkPeer>& nodes
   network.keys = keys == deployment.keys.end() ? "" : keys->second;
   network.transport_plugin = deployment.transport_plugin;
   network.isolated = deployment.isolated;
-  if (!deployment.group.empty()) {
-    network.group = deployment.group;
+  network.air = air;
+  if (!deployment.dds) {
     network.port = deployment.port_base;
     return network;
   }
@@ -90,7 +87,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     if (config.flight_controller.kind == FlightControllerKind::ardupilot && ardupilot.can.empty()) {
       ardupilot = on_bus(ardupilot, deployment, on_buses++);
     }
-    config.network = network_of(configs.size() + 1, nodes, deployment);
+    config.network = network_of(configs.size() + 1, nodes, scenario.air, deployment);
     config.protocol = scenario.protocol;
     config.planning = scenario.planning;
     for (const ScenarioHazard& hazard : scenario.hazards) {
@@ -109,7 +106,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
 GroundConfig ground_config(const Scenario& scenario, const Deployment& deployment) {
   GroundConfig config;
   config.origin = scenario.origin;
-  config.network = network_of(0, nodes_of(scenario, deployment), deployment);
+  config.network = network_of(0, nodes_of(scenario, deployment), scenario.air, deployment);
   config.time = deployment.time;
   config.protocol = scenario.protocol;
   config.planning = scenario.planning;

@@ -42,7 +42,7 @@ TEST(FleetKeys, HostsEpochAndConsoleAreReadAndWritten) {
       "console: {port: 7461}\n"
       "hosts:\n"
       "  - {vehicle: 0, address: 10.0.0.9}\n"
-      "  - {vehicle: 2, address: 10.0.0.2, port: 7500, ssh: pi@two, run: sudo -n, can: vcan0,\n"
+      "  - {vehicle: 2, address: 10.0.0.2, ssh: pi@two, run: sudo -n, can: vcan0,\n"
       "     programs: /opt/skein/bin, flight_controller: emulated}\n");
   EXPECT_EQ(s.epoch_unix_ns, 1'795'420'800'000'000'000);
   EXPECT_EQ(s.console.port, 7461);
@@ -69,8 +69,7 @@ TEST(FleetKeys, MistakesAreToldWithTheirLine) {
               HasSubstr("hosts[1].programs: is no absolute path"));
   EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, flight_controller: emulated}]\n"),
               HasSubstr("name its bus in `can`"));
-  EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0.1, port: 80}]\n"),
-              HasSubstr("outside 1024 to 65534"));
+  EXPECT_THAT(mistakes("air: {port: 80}\n"), HasSubstr("outside 1024 to 65535"));
 }
 
 TEST(Utc, IsReadAsItIsWritten) {
@@ -93,7 +92,9 @@ TEST(Utc, AnythingElseIsNoTime) {
 }
 
 TEST(Differences, NameTheKeysAndTheirValues) {
-  const auto configs = vehicle_configs(mission(""), {});
+  Deployment deployment;
+  deployment.dds = true;
+  const auto configs = vehicle_configs(mission(""), deployment);
   VehicleConfig other = configs[0];
   EXPECT_TRUE(differences(configs[0], other).empty());
   other.origin.latitude_deg = 31.6;
@@ -109,14 +110,28 @@ TEST(Differences, NameTheKeysAndTheirValues) {
 TEST(Deployment, NodesElsewhereAreWhereTheyAre) {
   Deployment deployment;
   deployment.address = "10.0.0.9";
-  deployment.elsewhere = {{VehicleId{1}, "10.0.0.1", 7400}};
+  deployment.elsewhere = {{VehicleId{1}, "10.0.0.1"}};
+  deployment.dds = true;
   const auto configs = vehicle_configs(mission(""), deployment);
   EXPECT_EQ(configs[0].network.address, "10.0.0.1");
-  EXPECT_EQ(configs[0].network.port, 7400);
   EXPECT_THAT(configs[0].network.peers,
               testing::ElementsAre(NetworkPeer{VehicleId{0}, "10.0.0.9", 17400},
                                    NetworkPeer{VehicleId{2}, "10.0.0.9", 17404}));
-  EXPECT_EQ(configs[1].network.peers[1], (NetworkPeer{VehicleId{1}, "10.0.0.1", 7400}));
+  EXPECT_EQ(configs[1].network.peers[1], (NetworkPeer{VehicleId{1}, "10.0.0.1", 17402}));
+}
+
+TEST(Deployment, OnTheAirNobodyIsListed) {
+  Deployment deployment;
+  deployment.address = "10.0.0.9";
+  deployment.elsewhere = {{VehicleId{1}, "10.0.0.1"}};
+  const auto configs =
+      vehicle_configs(mission("air: {group: 239.255.83.7, limit_bytes_per_s: 5000}\n"), deployment);
+  EXPECT_EQ(configs[0].network.address, "10.0.0.1");
+  for (const VehicleConfig& config : configs) {
+    EXPECT_EQ(config.network.air, (AirConfig{"239.255.83.7", 5000.0}));
+    EXPECT_EQ(config.network.port, 17400);
+    EXPECT_TRUE(config.network.peers.empty());
+  }
 }
 
 }  // namespace

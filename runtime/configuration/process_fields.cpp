@@ -367,35 +367,48 @@ bool is_address(const std::string& text) {
          inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
 }
 
+}  // namespace
+
+void air_fields(FieldVisitor& v, AirConfig& air) {
+  v.text({"group",
+          "IPv4 address where all listen: of a multicast or a broadcast; everything is said once, "
+          "for all who hear it"},
+         air.group);
+  in_addr group{};
+  v.require(inet_pton(AF_INET, air.group.c_str(), &group) == 1, "group",
+            "is no IPv4 address; write one such as 239.255.83.1");
+  v.number({"limit_bytes_per_s",
+            "of the air that a node may take, headers included; 0: no limit. Where it is too "
+            "little reports give way first, then what people look at, then telemetry"},
+           {0.0, 1e9, "bytes/s"}, air.limit_bytes_per_s);
+}
+
+namespace {
+
 constexpr std::array<std::string_view, 2> kNetworkProcesses{"own", "same"};
 
 void network_fields(FieldVisitor& v, NetworkConfig& network) {
-  whole(v, {"domain_id", "DDS domain"}, {0.0, 230.0}, network.domain_id);
+  whole(v, {"domain_id", "tells teams apart that share a network"}, {0.0, 230.0},
+        network.domain_id);
   ipv4(v, {"address", "IPv4 address of this node"}, network.address);
-  whole(v, {"port", "UDP port of this node; the next one is used too", kRequired}, kPort,
-        network.port);
-  v.list({"peers", "the nodes that this one may hear"},
-         unique_groups_of(
-             network.peers, kListMax,
-             [](FieldVisitor& inner, NetworkPeer& peer) {
-               id(inner, {"id", "of the vehicle; 0 is the ground station", kRequired}, peer.id, 0);
-               ipv4(inner, {"address", "IPv4 address"}, peer.address);
-               whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
-             },
-             "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
-  v.text({"group",
-          "IPv4 address where all listen, at `port`: of a multicast, such as 239.255.83.1, or of a "
-          "broadcast; everything is said once, for all who hear it, and `peers` is not needed. "
-          "Empty: with Fast DDS, to each of `peers`"},
-         network.group);
-  in_addr group{};
-  v.require(network.group.empty() || inet_pton(AF_INET, network.group.c_str(), &group) == 1,
-            "group", "is no IPv4 address; write one such as 239.255.83.1");
-  v.number({"limit_bytes_per_s",
-            "of the air that this node may take, headers included, where there is a group; 0: no "
-            "limit. Where it is too little reports give way first, then what people look at, then "
-            "telemetry"},
-           {0.0, 1e9, "bytes/s"}, network.limit_bytes_per_s);
+  whole(
+      v,
+      {"port", "UDP: of all nodes the same one, or, with `peers`, of this node, with the next one",
+       kRequired},
+      kPort, network.port);
+  v.list(
+      {"peers",
+       "the nodes that this one may hear, by Fast DDS, which speaks to each by itself; none: all "
+       "that are heard, by the air"},
+      unique_groups_of(
+          network.peers, kListMax,
+          [](FieldVisitor& inner, NetworkPeer& peer) {
+            id(inner, {"id", "of the vehicle; 0 is the ground station", kRequired}, peer.id, 0);
+            ipv4(inner, {"address", "IPv4 address"}, peer.address);
+            whole(inner, {"port", "UDP port", kRequired}, kPort, peer.port);
+          },
+          "peer", [](const NetworkPeer& peer) { return peer.id.value; }));
+  air_fields(v, network.air);
   v.text({"keys", "folder of this node's keys; empty: it speaks in clear, on loopback only"},
          network.keys);
   v.text({"transport_plugin", "shared library that carries the messages; empty: plain UDP"},

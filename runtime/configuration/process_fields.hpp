@@ -42,6 +42,7 @@ void flight_route_section(FieldVisitor& v, FlightRoute& route);
 void routes_section(FieldVisitor& v, RoutesConfig& config);
 void formation_section(FieldVisitor& v, FormationConfig& formation);
 void ipv4(FieldVisitor& v, const Field& field, std::string& address);
+void air_fields(FieldVisitor& v, AirConfig& air);
 void console_section(FieldVisitor& v, ConsoleConfig& config);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 

@@ -24,6 +24,10 @@ void radio_fields(FieldVisitor& v, RadioConfig& radio) {
   auto mesh = static_cast<std::size_t>(radio.mesh);
   v.choice({"mesh", "who passes on what others say"}, kMeshKinds, mesh);
   radio.mesh = static_cast<MeshKind>(mesh);
+  v.number({"bytes_per_s",
+            "of the channel that a node shares with all whom it hears, each hop by itself; what "
+            "would wait for more than a second is lost; 0: there is always room"},
+           {0.0, 1e9, "bytes/s"}, radio.bytes_per_s);
 }
 
 void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {
@@ -127,7 +131,6 @@ void host_path(FieldVisitor& v, const Field& field, std::string& path) {
 void host_fields(FieldVisitor& v, Host& host) {
   id(v, {"vehicle", "whose program runs there; 0: the ground station's", kRequired}, host.node, 0);
   ipv4(v, {"address", "IPv4 address in the mission network", kRequired}, host.address);
-  whole(v, {"port", "UDP port; the next one is used too"}, {1024.0, 65534.0}, host.port);
   v.text({"ssh", "how the host is reached: user@name; empty: it is this machine"}, host.ssh);
   v.text({"run", "words before every command there: `sudo -n`, `ip netns exec v1`"}, host.run);
   host_path(v,
@@ -161,6 +164,10 @@ void world_fields(FieldVisitor& v, Scenario& s) {
           {1.0, 86400.0, "s"}, s.duration_max);
   v.section({"radio", "what lies between the nodes"},
             [&s](FieldVisitor& inner) { radio_fields(inner, s.radio); });
+  v.section({"air", "how the nodes share it"}, [&s](FieldVisitor& inner) {
+    whole(inner, {"port", "UDP, of a fleet in the field"}, {1024.0, 65535.0}, s.air_port);
+    air_fields(inner, s.air);
+  });
   v.section({"wind", "in the whole area"},
             [&s](FieldVisitor& inner) { wind_fields(inner, s.wind, ""); });
   v.section({"protocol", "the contract net"},

@@ -103,9 +103,10 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
   }
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
-  if (!config.group.empty()) {
-    node.air.emplace(network::Endpoint{config.group, config.port}, std::nullopt);
-    if (config.limit_bytes_per_s > 0.0) node.air->bytes_per_s = config.limit_bytes_per_s;
+  if (config.peers.empty()) {
+    node.air.emplace(network::Endpoint{config.air.group, config.port}, std::nullopt);
+    const double limit = config.air.limit_bytes_per_s;
+    if (limit > 0.0) node.air->bytes_per_s = limit;
   }
   node.transport_plugin = config.transport_plugin;
   node.on_received = std::move(on_received);
@@ -113,7 +114,7 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
 }
 
 bool among_machines(const configuration::NetworkConfig& config) {
-  return (!config.group.empty() && !is_loopback(config.address)) ||
+  return (config.peers.empty() && !is_loopback(config.address)) ||
          std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
            return peer.address != config.address;
          });
@@ -132,7 +133,7 @@ Traffic traffic_of(const network::Node& node) {
   for (const auto& [name, count] : node.counters()) {
     if (name == "published") {
       traffic.sent += count;
-    } else if (name == "received") {
+    } else if (name == "received" || name == "unheeded") {
       traffic.received += count;
     } else if (name == "carrier_restarts") {
       traffic.restarts += count;

@@ -333,7 +333,7 @@ struct News {
     std::string who = text_of(e.vehicle);
     switch (e.news) {
       case event::FleetNews::stranger:
-        return who + " speaks, but is not in the fleet; check its id";
+        return who + " takes part, though no list of this ground station has it";
       case event::FleetNews::duplicate:
         return "two vehicles answer to the id of " + who +
                "; nothing is commanded to it until one of them is stopped or renumbered";

@@ -6,7 +6,7 @@
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-if [[ ${2-} != --inside ]]; then exec "$here/namespaces.sh" 4 "$0" "$1" --inside; fi
+if [[ ${2-} != --inside ]]; then exec "$here/namespaces.sh" 5 "$0" "$1" --inside; fi
 
 readonly programs=$1
 folder=$(mktemp -d)
@@ -72,6 +72,26 @@ has 'does not open' "$refused" || fail "$refused"
 unlock "correct horse" || fail "unlock"
 until_holds 30 "an authorisation is asked for" authorised
 until_holds 40 "both deliveries are flown" delivered
+
+echo "- a vehicle with the team's certificate that stands in nobody's file takes part"
+mkdir -p "$folder/4/etc" "$folder/4/var/onboard-4"
+sed "s|id: 2$|id: 4|; s|address: 10.53.0.2$|address: 10.53.0.4|; s|$folder/2/|$folder/4/|; s|onboard-2|onboard-4|;
+     s|detections-2|detections-4|; s|height_m: 110$|height_m: 130|" "$folder/2/etc/onboard-2.yaml" >"$folder/4/etc/onboard-4.yaml"
+"$programs/skein-onboard" enrol --id 4 --keys "$(keys 4 onboard-4)" |
+  "$programs/skein-ground" mission enrol - --yes --keys "$(keys 0 ground)" |
+  "$programs/skein-onboard" enrol --membership - --keys "$(keys 4 onboard-4)" || fail "enrol 4"
+ip netns exec skein4 "$programs/skein-onboard" --config "$folder/4/etc/onboard-4.yaml" >"$folder/4/var/onboard-4.log" 2>&1 &
+joined=$!
+began=$(date +%s%3N)
+four_heard() { [[ $(tell status 2>/dev/null | grep -c '"silent": false') == 4 ]]; }
+until_holds 20 "the ground station hears vehicle 4" four_heard
+echo "  heard $(($(date +%s%3N) - began)) ms after its program began"
+told=$(tell site 150 -150 survey 3 deliver 60 simultaneous) || fail "$told"  # the others have no loads left
+site=$(grep -oE 'site [0-9]+' <<<"$told" | head -n 1 | cut -d ' ' -f 2)
+delivered() { has '1 delivered' "$(tell sites)"; }
+until_holds 60 "an authorisation is asked for" authorised
+until_holds 60 "vehicle 4 has delivered" delivered
+kill "$joined" && wait "$joined" || fail "vehicle 4 did not end cleanly"
 
 echo "- who is revoked is heard no more; the others have another key at once, and fly on"
 "$programs/skein-ground" mission revoke vehicle 3 --keys "$(keys 0 ground)" || fail "revoke"

@@ -30,14 +30,18 @@ void fill(Bytes& bytes, std::size_t from, Random& random) {
 
 }  // namespace
 
-Socket::Socket() : descriptor_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {}
+Socket::Socket() : descriptor_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)} {
+  in_addr loopback{};
+  loopback.s_addr = htonl(INADDR_LOOPBACK);
+  (void)::setsockopt(descriptor_, IPPROTO_IP, IP_MULTICAST_IF, &loopback, sizeof loopback);
+}
 Socket::~Socket() { ::close(descriptor_); }
 
-void Socket::send(std::span<const std::uint8_t> datagram, std::uint16_t port) const {
+void Socket::send(std::span<const std::uint8_t> datagram, const network::Endpoint& endpoint) const {
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(port);
-  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  to.sin_port = htons(endpoint.port);
+  if (::inet_pton(AF_INET, endpoint.address.c_str(), &to.sin_addr) != 1) return;
   // A full queue of the receiver is what an intruder would not mind either.
   (void)::sendto(descriptor_, datagram.data(), datagram.size(), MSG_DONTWAIT,
                  reinterpret_cast<const sockaddr*>(&to), sizeof to);

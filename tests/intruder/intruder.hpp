@@ -8,6 +8,7 @@
 
 #include "skein/base/ids.hpp"
 #include "skein/base/random.hpp"
+#include "skein/network/node.hpp"
 
 /// What somebody sends who reaches the mission network and has no keys.
 namespace skein::intruder {
@@ -21,7 +22,8 @@ class Socket {
   ~Socket();
   Socket(const Socket&) = delete;
   Socket& operator=(const Socket&) = delete;
-  void send(std::span<const std::uint8_t> datagram, std::uint16_t port) const;
+  /// One of loopback, or a group that is listened to there.
+  void send(std::span<const std::uint8_t> datagram, const network::Endpoint& to) const;
 
  private:
   int descriptor_ = -1;

@@ -60,7 +60,10 @@ std::vector<mission::Message> forged_orders(Random& random) {
   return all;
 }
 
-class Intruder : public testing::Test {
+/// How the team speaks.
+enum class By : std::uint8_t { air, dds };
+
+class Intruder : public testing::TestWithParam<By> {
  protected:
   void SetUp() override { fs::remove_all(folder_); }
   void TearDown() override {
@@ -70,10 +73,14 @@ class Intruder : public testing::Test {
 
   void start_mission() {
     fs::create_directories(folder_);
-    auto started = hil::ChildProcess::start(
-        {SKEIN_PROGRAMS "/skein-hil", "run", SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml",
-         "--headless", "--out", run().string()},
-        folder_ / "log", {});
+    std::vector<std::string> words{SKEIN_PROGRAMS "/skein-hil",
+                                   "run",
+                                   SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml",
+                                   "--headless",
+                                   "--out",
+                                   run().string()};
+    if (GetParam() == By::dds) words.emplace_back("--dds");
+    auto started = hil::ChildProcess::start(words, folder_ / "log", {});
     ASSERT_TRUE(started.ok()) << started.error().message;
     mission_.emplace(std::move(started).value());
     const auto last = run() / ("vehicle-" + std::to_string(kVehicles) + ".yaml");
@@ -91,19 +98,29 @@ class Intruder : public testing::Test {
     const auto ground = configuration::load_ground_config((run() / "ground.yaml").string());
     ASSERT_TRUE(ground.ok()) << ground.error().message;
     nodes_.push_back({kGroundStation, {ground->network.address, ground->network.port}});
+    group_ = {ground->network.air.group, ground->network.port};
+  }
+
+  /// Where a node of that id meets the team.
+  void meet(network::NodeConfig& config, std::uint16_t port) const {
+    config.domain = domain_;
+    config.endpoint = {"127.0.0.1", port};
+    if (GetParam() == By::air) {
+      config.air.emplace(network::AirConfig{group_, {}});
+      return;
+    }
+    for (const auto& node : nodes_) {
+      if (node.id != config.self) config.peers.push_back(node);
+    }
   }
 
   /// A node that says it is `as`, as any program of ours without keys would be.
   [[nodiscard]] std::unique_ptr<network::Node> join(VehicleId as, std::uint16_t port) const {
     network::NodeConfig config;
-    config.domain = domain_;
     config.self = as;
     config.instance = InstanceId{as.value + 1U};
     config.role = as == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
-    config.endpoint = {"127.0.0.1", port};
-    for (const auto& node : nodes_) {
-      if (node.id != as) config.peers.push_back(node);
-    }
+    meet(config, port);
     auto opened = network::Node::open(config);
     EXPECT_TRUE(opened.ok()) << opened.error().message;
     return opened ? std::move(opened).value() : nullptr;
@@ -119,14 +136,10 @@ class Intruder : public testing::Test {
     EXPECT_TRUE(who.ok()) << who.error().message;
     constexpr std::uint32_t kRandom = 0x77;
     network::NodeConfig config;
-    config.domain = domain_;
     config.self = kGroundStation;
     config.instance = InstanceId{(1ULL << 24U) | kRandom};  // its first start, too
     config.role = codec::Role::ground;
-    config.endpoint = {"127.0.0.1", kIntrudersPort};
-    for (const auto& node : nodes_) {
-      if (node.id != kGroundStation) config.peers.push_back(node);
-    }
+    meet(config, kIntrudersPort);
     config.seal = network::SealConfig{{kGroundStation, 1, kRandom}, who->epoch_key()};
     config.sign = network::SignConfig{who->signer(), who->own(), who->verifier()};
     auto opened = network::Node::open(config);
@@ -134,12 +147,17 @@ class Intruder : public testing::Test {
     return opened ? std::move(opened).value() : nullptr;
   }
 
-  /// To both ports of every node.
+  /// Twice to every node: to both of its ports, or to all at once.
   void send_to_all(const std::function<Bytes(VehicleId)>& make) const {
+    if (GetParam() == By::air) {
+      for (const VehicleId as : {kGroundStation, VehicleId{1}}) socket_.send(make(as), group_);
+      return;
+    }
     for (const auto& node : nodes_) {
       for (const int port : {0, 1}) {
         const VehicleId as = node.id == kGroundStation ? VehicleId{1} : kGroundStation;
-        socket_.send(make(as), static_cast<std::uint16_t>(node.endpoint.port + port));
+        socket_.send(make(as), {node.endpoint.address,
+                                static_cast<std::uint16_t>(node.endpoint.port + port)});
       }
     }
   }
@@ -148,8 +166,12 @@ class Intruder : public testing::Test {
   std::optional<hil::ChildProcess> mission_;
   std::uint32_t domain_ = 0;
   std::vector<network::PeerConfig> nodes_;
+  network::Endpoint group_;
   Socket socket_;
 };
+
+INSTANTIATE_TEST_SUITE_P(By, Intruder, testing::Values(By::air, By::dds),
+                         [](const auto& by) { return by.param == By::air ? "Air" : "Dds"; });
 
 /// The number after these words in that log.
 std::uint64_t number_in(const fs::path& log, const std::string& words) {
@@ -158,7 +180,7 @@ std::uint64_t number_in(const fs::path& log, const std::string& words) {
   return at == std::string::npos ? 0 : std::stoull(text.substr(at + words.size()));
 }
 
-TEST_F(Intruder, WithoutKeysChangesNothingAndIsCounted) {
+TEST_P(Intruder, WithoutKeysChangesNothingAndIsCounted) {
   ASSERT_NO_FATAL_FAILURE(start_mission());
   const auto ground = join(kGroundStation, kNobodysPorts[0]);
   const auto vehicle = join({2}, kNobodysPorts[1]);
@@ -188,7 +210,7 @@ TEST_F(Intruder, WithoutKeysChangesNothingAndIsCounted) {
   }
 }
 
-TEST_F(Intruder, WithAVehiclesKeysDecidesNothingForTheGroundStation) {
+TEST_P(Intruder, WithAVehiclesKeysDecidesNothingForTheGroundStation) {
   ASSERT_NO_FATAL_FAILURE(start_mission());
   const auto insider = join_as_ground_with_keys_of({kVehicles});
   Random random{20261124};

@@ -66,6 +66,7 @@ class Mission : public testing::Test {
         "run",
         std::string{SKEIN_SOURCE_DIR} + "/scenarios/coalition-6.yaml",
         "--headless",
+        "--dds",
         "--out",
         run().string()};
     auto started = hil::ChildProcess::start(words, folder_ / "log", {});

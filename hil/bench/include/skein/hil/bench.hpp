@@ -29,7 +29,7 @@ struct BenchOptions {
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
   /// one for each.
   std::string can;
-  bool air = false;                ///< everything once, for all, by multicast; else Fast DDS
+  bool dds = false;                ///< Fast DDS, to each node by itself; else by the air
   bool sealed = true;              ///< with keys that are made for the run
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
   std::string console_token;       ///< that opens it

@@ -13,13 +13,13 @@
 namespace skein::configuration {
 
 /// How one run of a scenario is spread over processes. Node i (the ground station is node 0, the
-/// vehicles follow in the order of the file) has port port_base + 2 i of this machine's `address`,
-/// unless it is one of `elsewhere`.
+/// vehicles follow in the order of the file) has port port_base + 2 i, on the air port_base, of
+/// this machine's `address`, unless it is one of `elsewhere`.
 struct Deployment {
   std::string address = "127.0.0.1";
   std::uint16_t port_base = 17400;
   std::uint16_t domain_id = 0;
-  std::string group;  ///< NetworkConfig's, of all, at `port_base`
+  bool dds = false;  ///< everybody speaks to each by itself, with Fast DDS; else by the air
   std::string transport_plugin;
   std::map<VehicleId, std::string> keys;  ///< folders; who has none speaks in clear
   bool isolated = true;                   ///< NetworkConfig's, of all
@@ -30,10 +30,10 @@ struct Deployment {
   /// For the vehicles whose flight controller is on a CAN bus that the scenario does not name: one
   /// for each, or one for all. They get node ids of their own on it, and are taken over in flight.
   std::vector<std::string> can_buses;
-  std::vector<NetworkPeer> elsewhere;
+  std::map<VehicleId, std::string> elsewhere;  ///< addresses
 };
 
-/// The configuration of every vehicle process. Every node is a peer of every other. Vehicles know
+/// The configuration of every vehicle process. Vehicles know
 /// the hazards whose known_from is the epoch; the later ones must be reported to them. Each
 /// vehicle's seed is drawn from the scenario's. Preconditions: the ports fit in 16 bits, and there
 /// is one CAN bus, or as many as are needed.

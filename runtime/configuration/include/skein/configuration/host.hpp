@@ -14,9 +14,8 @@ enum class HostFlightController : std::uint8_t { own, emulated, count };
 
 /// Where one program of a fleet runs, and how the machine is reached (docs/fleet.md).
 struct Host {
-  VehicleId node;       ///< 0: the ground station
-  std::string address;  ///< IPv4, of the mission network
-  std::uint16_t port = 7400;
+  VehicleId node;        ///< 0: the ground station
+  std::string address;   ///< IPv4, of the mission network
   std::string ssh;       ///< as ssh takes it; empty: this machine
   std::string run;       ///< words before every command there, such as "sudo -n"
   std::string programs;  ///< folder, to start them directly; empty: they are units of systemd

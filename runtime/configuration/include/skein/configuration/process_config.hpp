@@ -20,14 +20,19 @@ struct NetworkPeer {
   friend bool operator==(const NetworkPeer&, const NetworkPeer&) = default;
 };
 
+/// How a team shares the air: everything is said once, for all who hear it.
+struct AirConfig {
+  std::string group = "239.255.83.1";  ///< where all listen; of the organisation alone (RFC 2365)
+  double limit_bytes_per_s = 0.0;      ///< that a node may take; 0: none
+  friend bool operator==(const AirConfig&, const AirConfig&) = default;
+};
+
 struct NetworkConfig {
-  std::uint16_t domain_id = 0;  ///< DDS domain
+  std::uint16_t domain_id = 0;
   std::string address = "127.0.0.1";
-  std::uint16_t port = 7400;  ///< UDP, for discovery; port + 1 is for data
-  std::vector<NetworkPeer> peers;
-  /// Where all listen, at `port`: everything is said once, for all. Empty: to each of `peers`.
-  std::string group;
-  double limit_bytes_per_s = 0.0;  ///< of the air, where there is a group; 0: none
+  std::uint16_t port = 7400;  ///< UDP; of all on the air. With Fast DDS the next one is used, too
+  std::vector<NetworkPeer> peers;  ///< to each by itself, with Fast DDS; none: by the air
+  AirConfig air;
   std::string keys;              ///< folder of this node's keys; empty: in clear, on loopback only
   std::string transport_plugin;  ///< a shared library; empty: plain UDP
   bool isolated = true;          ///< Fast DDS runs in a process of its own

@@ -28,11 +28,11 @@
 
 namespace skein::configuration {
 
-/// The radio between the nodes.
 /// Who passes on what others say.
 enum class MeshKind : std::uint8_t { none, vehicles, all };
 inline constexpr std::array<std::string_view, 3> kMeshKinds{"none", "vehicles", "all"};
 
+/// The radio between the nodes.
 struct RadioConfig {
   double range_m = 1500.0;          ///< vehicle to vehicle; beyond it nothing arrives
   double ground_range_m = 20000.0;  ///< ground station to vehicle
@@ -40,6 +40,7 @@ struct RadioConfig {
   Duration delay_jitter = std::chrono::milliseconds{30};  ///< delays lie within mean +- jitter
   double loss_ratio = 0.0;                                ///< of messages, independently
   MeshKind mesh = MeshKind::none;
+  double bytes_per_s = 0.0;  ///< of the channel around each node; 0: there is always room
 };
 
 /// One vehicle of the fleet, the three levels of the file already merged.
@@ -106,6 +107,8 @@ struct Scenario {
   Wgs84 origin;
   Duration duration_max = std::chrono::seconds{300};
   RadioConfig radio;
+  AirConfig air;
+  std::uint16_t air_port = 7400;  ///< of a fleet in the field; a bench looks for a free one
   WindConfig wind;
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
