@@ -75,7 +75,7 @@ until_holds 40 "both deliveries are flown" delivered
 
 echo "- a vehicle with the team's certificate that stands in nobody's file takes part"
 mkdir -p "$folder/4/etc" "$folder/4/var/onboard-4"
-sed "s|id: 2$|id: 4|; s|address: 10.53.0.2$|address: 10.53.0.4|; s|$folder/2/|$folder/4/|; s|onboard-2|onboard-4|;
+sed "s|id: 2$|id: 4|; s|"10.53.0.2"|"10.53.0.4"|; s|$folder/2/|$folder/4/|; s|onboard-2|onboard-4|;
      s|detections-2|detections-4|; s|height_m: 110$|height_m: 130|" "$folder/2/etc/onboard-2.yaml" >"$folder/4/etc/onboard-4.yaml"
 "$programs/skein-onboard" enrol --id 4 --keys "$(keys 4 onboard-4)" |
   "$programs/skein-ground" mission enrol - --yes --keys "$(keys 0 ground)" |
