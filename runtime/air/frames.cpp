@@ -7,15 +7,20 @@ namespace skein::air {
 namespace {
 
 constexpr std::uint8_t kFormat = 0x51;
+constexpr std::uint8_t kFar = 0x80;
 
-/// Of a part 4: whole, 5: it begins, 6: it ends, 7: neither.
+/// Of a part 4: whole, 5: it begins, 6: it ends, 7: neither. Of a hearing 14: it goes on.
 enum Kind : std::uint8_t {
   sample = 1,
   part = 4,
   hello = 8,
   certificate = 9,
   missing = 10,
-  want = 11
+  want = 11,
+  passed_on = 12,
+  hearing = 13,
+  introduction = 15,
+  newest = 16
 };
 
 template <class Number>
@@ -80,6 +85,40 @@ PartFrame cut_part(Cutter& cut, std::uint8_t kind) {
   return frame;
 }
 
+/// None where the kind is unknown; of no meaning where the bytes did not suffice.
+std::optional<Frame> cut_frame(Cutter& cut) {
+  const auto kind = cut.number<std::uint8_t>();
+  switch (kind) {  // what is between braces is cut from left to right
+    case sample:
+      return SampleFrame{cut.number<std::uint8_t>(), cut.counted_bytes()};
+    case part:
+    case part + 1:
+    case part + 2:
+    case part + 3:
+      return cut_part(cut, kind);
+    case hello:
+      return HelloFrame{cut.number<std::uint8_t>(), cut.number<std::uint32_t>()};
+    case certificate:
+      return CertificateFrame{cut.counted_bytes()};
+    case missing:
+      return MissingFrame{cut.author(), cut.number<std::uint16_t>(), cut.number<std::uint32_t>()};
+    case want:
+      return WantFrame{cut.author()};
+    case passed_on:
+      return PassedOnFrame{cut.number<std::uint8_t>(), cut.counted_bytes()};
+    case hearing:
+    case hearing + 1:
+      return HearingFrame{kind != hearing, VehicleId{cut.number<std::uint16_t>()},
+                          cut.bytes(cut.number<std::uint8_t>())};
+    case introduction:
+      return IntroductionFrame{cut.author(), cut.number<std::uint8_t>(), cut.counted_bytes()};
+    case newest:
+      return NewestFrame{cut.author(), cut.number<std::uint16_t>()};
+    default:
+      return std::nullopt;
+  }
+}
+
 std::uint8_t kind_of(const PartFrame& frame) {
   if (frame.begins) return frame.ends ? part : part + 1;
   return frame.ends ? part + 2 : part + 3;
@@ -89,8 +128,10 @@ std::uint8_t kind_of(const PartFrame& frame) {
 
 std::optional<Head> read_head(std::span<const std::uint8_t>& rest) {
   Cutter cut{rest};
-  const bool ours = cut.number<std::uint8_t>() == kFormat;
+  const auto format = cut.number<std::uint8_t>();
+  const bool ours = (format & ~unsigned{kFar}) == kFormat;
   Head head;
+  head.far = (format & kFar) != 0;
   head.newest = cut.number<std::uint16_t>();
   head.held = cut.number<std::uint8_t>();
   return ours && cut.good() ? std::optional{head} : std::nullopt;
@@ -98,45 +139,12 @@ std::optional<Head> read_head(std::span<const std::uint8_t>& rest) {
 
 std::optional<Frame> read_frame(std::span<const std::uint8_t>& rest) {
   Cutter cut{rest};
-  const auto kind = cut.number<std::uint8_t>();
-  Frame frame;
-  switch (kind) {
-    case sample: {
-      const auto channel = cut.number<std::uint8_t>();
-      frame = SampleFrame{channel, cut.counted_bytes()};
-      break;
-    }
-    case part:
-    case part + 1:
-    case part + 2:
-    case part + 3:
-      frame = cut_part(cut, kind);
-      break;
-    case hello: {
-      const auto role = cut.number<std::uint8_t>();
-      frame = HelloFrame{role, cut.number<std::uint32_t>()};
-      break;
-    }
-    case certificate:
-      frame = CertificateFrame{cut.counted_bytes()};
-      break;
-    case missing: {
-      const Author author = cut.author();
-      const auto first = cut.number<std::uint16_t>();
-      frame = MissingFrame{author, first, cut.number<std::uint32_t>()};
-      break;
-    }
-    case want:
-      frame = WantFrame{cut.author()};
-      break;
-    default:
-      return std::nullopt;
-  }
-  return cut.good() ? std::optional{frame} : std::nullopt;
+  const auto frame = cut_frame(cut);
+  return cut.good() ? frame : std::nullopt;
 }
 
 void write(std::vector<std::uint8_t>& out, const Head& head) {
-  put(out, kFormat);
+  put(out, static_cast<std::uint8_t>(head.far ? kFormat | kFar : kFormat));
   put(out, head.newest);
   put(out, head.held);
 }
@@ -165,9 +173,27 @@ void write(std::vector<std::uint8_t>& out, const Frame& any) {
           put(out, frame.author);
           put(out, frame.first);
           put(out, frame.more);
-        } else {
+        } else if constexpr (std::is_same_v<T, WantFrame>) {
           put(out, std::uint8_t{want});
           put(out, frame.author);
+        } else if constexpr (std::is_same_v<T, PassedOnFrame>) {
+          put(out, std::uint8_t{passed_on});
+          put(out, frame.hops);
+          put_bytes(out, frame.bytes);
+        } else if constexpr (std::is_same_v<T, HearingFrame>) {
+          put(out, static_cast<std::uint8_t>(frame.goes_on ? hearing + 1 : hearing));
+          put(out, frame.first.value);
+          put(out, static_cast<std::uint8_t>(frame.bits.size()));
+          out.insert(out.end(), frame.bits.begin(), frame.bits.end());
+        } else if constexpr (std::is_same_v<T, IntroductionFrame>) {
+          put(out, std::uint8_t{introduction});
+          put(out, frame.author);
+          put(out, frame.role);
+          put_bytes(out, frame.certificate);
+        } else {
+          put(out, std::uint8_t{newest});
+          put(out, frame.author);
+          put(out, frame.newest);
         }
       },
       any);
@@ -181,6 +207,10 @@ std::size_t size_of(const Frame& any) {
         if constexpr (std::is_same_v<T, HelloFrame>) return 6;
         if constexpr (std::is_same_v<T, CertificateFrame>) return 3 + frame.bytes.size();
         if constexpr (std::is_same_v<T, MissingFrame>) return 17;
+        if constexpr (std::is_same_v<T, PassedOnFrame>) return kPassedOnBytes + frame.bytes.size();
+        if constexpr (std::is_same_v<T, HearingFrame>) return 4 + frame.bits.size();
+        if constexpr (std::is_same_v<T, IntroductionFrame>) return 14 + frame.certificate.size();
+        if constexpr (std::is_same_v<T, NewestFrame>) return 13;
         return 11;
       },
       any);

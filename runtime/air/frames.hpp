@@ -12,12 +12,14 @@
 
 namespace skein::air {
 
-/// How a datagram of the air begins: the format (1 byte), and what its author's stream of parts
-/// holds: the number of the newest part (2), and how many up to it can be had again (1). All
-/// numbers are big endian. Frames follow until it ends, each with its kind first (1).
+/// How a datagram of the air begins: the format, and whether it is for those who do not hear its
+/// author, too (1 byte), and what its author's stream of parts holds: the number of the newest part
+/// (2), and how many up to it can be had again (1). All numbers are big endian. Frames follow until
+/// it ends, each with its kind first (1).
 struct Head {
   std::uint16_t newest = 0;
   std::uint8_t held = 0;
+  bool far = false;
   friend bool operator==(const Head&, const Head&) = default;
 };
 inline constexpr std::size_t kHeadBytes = 4;
@@ -41,6 +43,7 @@ inline constexpr std::size_t kPartBytes = 6;  ///< more than its content
 struct HelloFrame {
   std::uint8_t role = 0;
   std::uint32_t certificate = 0;
+  friend bool operator==(const HelloFrame&, const HelloFrame&) = default;
 };
 /// Length (2), bytes.
 struct CertificateFrame {
@@ -57,8 +60,33 @@ struct MissingFrame {
 struct WantFrame {
   Author author;
 };
-using Frame =
-    std::variant<SampleFrame, PartFrame, HelloFrame, CertificateFrame, MissingFrame, WantFrame>;
+/// A datagram of another's, as it was on the air: how often it may be passed on yet (1), length
+/// (2), bytes. This and what follows, like questions, is for those who hear its sender alone.
+struct PassedOnFrame {
+  std::uint8_t hops = 0;
+  std::span<const std::uint8_t> bytes;
+};
+inline constexpr std::size_t kPassedOnBytes = 4;  ///< more than its content
+/// Whom its sender hears itself: the first node (2), length (1), and a bit for it and each node
+/// after it, of each byte the lowest first. The kind says whether it goes on with the frame before.
+struct HearingFrame {
+  bool goes_on = false;
+  VehicleId first;
+  std::span<const std::uint8_t> bits;
+};
+/// Who another is: the author (10), role (1), length of its certificate (2), bytes.
+struct IntroductionFrame {
+  Author author;
+  std::uint8_t role = 0;
+  std::span<const std::uint8_t> certificate;
+};
+/// How far another's stream is: the author (10), the number of the newest part (2).
+struct NewestFrame {
+  Author author;
+  std::uint16_t newest = 0;
+};
+using Frame = std::variant<SampleFrame, PartFrame, HelloFrame, CertificateFrame, MissingFrame,
+                           WantFrame, PassedOnFrame, HearingFrame, IntroductionFrame, NewestFrame>;
 
 /// Cuts the head off; none where it is not of this format.
 [[nodiscard]] std::optional<Head> read_head(std::span<const std::uint8_t>& rest);

@@ -2,6 +2,7 @@
 #include "in_stream.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "skein/air/link.hpp"
@@ -10,13 +11,12 @@ namespace skein::air {
 namespace {
 
 constexpr std::uint64_t kEarlyMax = 512;  ///< parts ahead of the first missing one
-/// Others may be about to ask for the same, or it comes in another order.
-constexpr double kAskAfter_s = 0.01;
-constexpr double kAskAgain_s = 0.06;
+constexpr Duration kAskAgain = std::chrono::milliseconds{60};
 constexpr int kAskSlower = 2;  ///< so often the wait for an answer doubles
 
-Duration spread(double seconds, Random& random) {
-  return from_seconds(random.uniform(seconds, 2.0 * seconds));
+/// Others may be about to ask for the same.
+Duration spread(Duration wait, Random& random) {
+  return from_seconds(to_seconds(wait) * random.uniform(1.0, 2.0));
 }
 
 }  // namespace
@@ -26,18 +26,23 @@ std::uint64_t InStream::extended(std::uint16_t number) const {
   return *next_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(ahead));
 }
 
-void InStream::on_part(const PartFrame& part, const Deliver& deliver) {
+bool InStream::on_part(const PartFrame& part, const Deliver& deliver) {
   if (!next_) {
-    if (!part.begins) return;
+    if (!part.begins) return false;
     next_ = 0x10000U + part.number;
     newest_ = *next_ - 1;
   }
   const std::uint64_t number = extended(part.number);
-  if (number < *next_ || number - *next_ > kEarlyMax) return;
+  if (number < *next_ || number - *next_ > kEarlyMax) return false;
   newest_ = std::max(newest_, number);
-  early_.try_emplace(
-      number, Held{part.channel, part.begins, part.ends, {part.bytes.begin(), part.bytes.end()}});
+  const bool is_new =
+      early_
+          .try_emplace(
+              number,
+              Held{part.channel, part.begins, part.ends, {part.bytes.begin(), part.bytes.end()}})
+          .second;
   take_ready(deliver);
+  return is_new;
 }
 
 void InStream::take_ready(const Deliver& deliver) {
@@ -91,12 +96,20 @@ void InStream::on_head(const Head& head, Instant now, Random& random, const Deli
   const std::uint64_t oldest = newest + 1 - head.held;
   if (oldest > *next_) skip_to(oldest, deliver);
   if (*next_ > newest_ || ask_at_) return;
-  ask_at_ = now + spread(kAskAfter_s, random);
+  ask_at_ = now + spread(patience_, random);
+}
+
+void InStream::on_newest(std::uint16_t newest, Instant now, Random& random) {
+  if (!next_) return;
+  const std::uint64_t number = extended(newest);
+  if (number <= newest_ || number - *next_ > kEarlyMax) return;
+  newest_ = number;
+  if (!ask_at_) ask_at_ = now + spread(patience_, random);
 }
 
 void InStream::on_asked(const MissingFrame& missing, Instant now, Random& random) {
   if (!ask_at_ || extended(missing.first) > *next_) return;
-  ask_at_ = std::max(*ask_at_, now + spread(kAskAgain_s, random));
+  ask_at_ = std::max(*ask_at_, now + spread(kAskAgain, random));
 }
 
 std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Random& random) {
@@ -105,8 +118,7 @@ std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Ran
   for (std::uint32_t i = 0; i < 32 && *next_ + 1 + i <= newest_; ++i) {
     if (!early_.contains(*next_ + 1 + i)) missing.more |= 1U << i;
   }
-  const double wait_s = kAskAgain_s * static_cast<double>(1U << std::min(asked_++, kAskSlower));
-  ask_at_ = now + spread(wait_s, random);
+  ask_at_ = now + spread(kAskAgain * (1U << std::min(asked_++, kAskSlower)), random);
   return missing;
 }
 

@@ -20,9 +20,15 @@ class InStream {
  public:
   using Deliver = std::function<void(std::uint8_t channel, std::span<const std::uint8_t> bytes)>;
 
-  void on_part(const PartFrame& part, const Deliver& deliver);
+  /// `patience`: how long what is missing may still come by itself.
+  explicit InStream(Duration patience) : patience_{patience} {}
+
+  /// Whether it was heard for the first time.
+  bool on_part(const PartFrame& part, const Deliver& deliver);
   /// What the author has said, after the parts of the same datagram.
   void on_head(const Head& head, Instant now, Random& random, const Deliver& deliver);
+  /// How far the author is, as another says.
+  void on_newest(std::uint16_t newest, Instant now, Random& random);
   /// Somebody else has asked for it.
   void on_asked(const MissingFrame& missing, Instant now, Random& random);
 
@@ -30,6 +36,10 @@ class InStream {
   [[nodiscard]] std::optional<Instant> ask_at() const { return ask_at_; }
   /// What to ask for, if it is still missing. Precondition: it is time.
   [[nodiscard]] std::optional<MissingFrame> ask(const Author& author, Instant now, Random& random);
+  /// How far the author is known to be; none where it was not heard yet.
+  [[nodiscard]] std::optional<std::uint16_t> newest() const {
+    return next_ ? std::optional{static_cast<std::uint16_t>(newest_)} : std::nullopt;
+  }
   /// Parts that could not be had.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
 
@@ -45,6 +55,7 @@ class InStream {
   void take_ready(const Deliver& deliver);
   void skip_to(std::uint64_t number, const Deliver& deliver);
 
+  Duration patience_;
   /// Numbers are counted on from 2^16, so that those before the first are above 0.
   std::optional<std::uint64_t> next_;  ///< the first that is missing or was not said yet
   std::uint64_t newest_ = 0;           ///< of which is known

@@ -11,7 +11,9 @@
 
 #include "frames.hpp"
 #include "in_stream.hpp"
+#include "introductions.hpp"
 #include "out_stream.hpp"
+#include "relay.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/random.hpp"
 
@@ -34,6 +36,16 @@ constexpr int kGreetings = 3;  ///< after somebody new was heard, for the case t
 constexpr double kAgain_s = 0.3;
 constexpr double kWant_s = 0.3;
 constexpr Duration kForgetAfter = 60s;
+/// What is missing may come by itself: in another order, and over others later than directly.
+constexpr Duration kMissingFor = 10ms;
+constexpr Duration kMissingForOverHops = 50ms;
+/// How often what is not asked for again is for those, too, who do not hear it themselves.
+constexpr Duration kFarEvery = 900ms;
+/// How far others' streams are is told so often, as long as it changed within kNewestFor.
+constexpr double kNewest_s = 1.0;
+constexpr Duration kNewestFor = 4s;
+/// Who is heard over others is asked for this soon.
+constexpr double kWantFar_s = 0.05;
 /// A long sample is begun in what is left of a datagram only if that is worth it.
 constexpr std::size_t kPieceMin = 200;
 
@@ -56,15 +68,19 @@ class Link::Impl {
         certificate_{hash_of(config_.certificate)},
         hello_at_{now + from_seconds(random_.uniform(0.0, kGreet_s))},
         greet_with_certificate_{certificate_ != 0},
+        far_at_(config_.channels.size() + 1),
+        relay_{config_.self.node, config_.hops_max,
+               config_.mtu_bytes - config_.overhead_bytes - kHeadBytes},
         tokens_{kBurst_s * config_.bytes_per_s.value_or(0.0)},
         filled_at_{now} {}
 
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
-  void hear(const Author& from, std::span<const std::uint8_t> datagram, Instant now);
-  [[nodiscard]] Instant due() const;
+  void hear(const Author& from, std::span<const std::uint8_t> content,
+            std::span<const std::uint8_t> datagram, Instant now);
+  [[nodiscard]] Instant due() const { return std::min(due_to_say(), due_to_pass_on()); }
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> poll(Instant now);
   [[nodiscard]] std::vector<LinkPeer> peers(Instant now) const;
-  [[nodiscard]] const LinkCounts& counts() const { return counts_; }
+  [[nodiscard]] LinkCounts counts() const;
 
  private:
   struct Waiting {
@@ -74,11 +90,24 @@ class Link::Impl {
     std::size_t said = 0;  ///< of its bytes
   };
   struct Remote {
+    explicit Remote(Duration missing_for) : stream{missing_for} {}
     InStream stream;
     Instant heard_at;
+    Instant newest_at;                 ///< when its stream was known to go on last
+    std::optional<Instant> spread_at;  ///< when something of it was to be passed on
     std::optional<HelloFrame> hello;
     std::uint32_t certificate = 0;  ///< that was heard
+    std::vector<std::uint8_t> certificate_bytes;
     std::optional<Instant> want_at;
+    [[nodiscard]] bool is_known() const {
+      return hello && (hello->certificate == 0 || hello->certificate == certificate);
+    }
+  };
+  /// What a datagram held that was not known.
+  struct News {
+    std::vector<std::uint16_t> parts;
+    bool who = false;
+    Urgency urgency = Urgency::report;
   };
 
   [[nodiscard]] InStream::Deliver deliver_from(const Author& author) {
@@ -86,17 +115,31 @@ class Link::Impl {
       if (channel < config_.channels.size()) sink_.on_sample(channel, author, bytes);
     };
   }
-  Remote* remote_of(const Author& author, Instant now);
+  Remote* remote_of(const Passage& passage, Instant now);
   void forget_silent(Instant now);
   void greet(Instant now);
-  void on_frame(const Author& from, Remote& remote, const Frame& frame, Instant now);
-  void on_hello(Remote& remote, const HelloFrame& hello, Instant now);
-  void on_missing(const MissingFrame& missing, Instant now);
+  void on_datagram(const Passage& passage, std::span<const std::uint8_t> content, Instant now);
+  void on_frame(const Author& from, Remote& remote, const Frame& frame, News& news, Instant now);
+  void on_hello(const Author& from, Remote& remote, const HelloFrame& hello, Instant now);
+  void on_certificate(const Author& from, Remote& remote, std::span<const std::uint8_t> bytes,
+                      Instant now);
+  void on_neighbours_frame(const Author& from, const Frame& frame, Instant now);
+  void on_missing(VehicleId asker, const MissingFrame& missing, Instant now);
+  void on_want(VehicleId asker, const WantFrame& want, Instant now);
+  void on_passed_on(VehicleId transmitter, const PassedOnFrame& passed_on, Instant now);
+  void on_introduction(VehicleId teller, const IntroductionFrame& frame, Instant now);
 
   [[nodiscard]] Instant when_affordable(Urgency urgency, Instant from) const;
   void refill(Instant now);
 
-  [[nodiscard]] std::size_t room() const { return config_.datagram_bytes - out_.size(); }
+  [[nodiscard]] Instant due_to_say() const;
+  [[nodiscard]] Instant due_to_pass_on() const;
+  void say(Instant now);
+  void pass_on(Instant now);
+
+  [[nodiscard]] std::size_t room() const { return out_max_ - out_.size(); }
+  void begin(std::size_t bytes_max);
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> finished(bool far);
   bool put(const Frame& frame);
   void put_greeting(Instant now);
   void put_questions(Instant now);
@@ -104,6 +147,9 @@ class Link::Impl {
   void put_repairs(Instant now);
   void put_waiting(Urgency urgency, Instant now);
   bool put_part(Waiting& waiting, Instant now);
+  void put_introductions(Instant now);
+  void put_newest(Instant now);
+  [[nodiscard]] bool is_far(Instant now);
 
   const LinkConfig config_;
   LinkSink& sink_;
@@ -122,9 +168,20 @@ class Link::Impl {
   bool greet_with_certificate_;
   int greetings_ = kGreetings;  ///< that are to follow soon
 
+  /// When each channel's samples, and at last a hello, were said to those who do not hear us.
+  std::vector<std::optional<Instant>> far_at_;
+  Relay relay_;
+  Introductions introductions_;
+  Instant listener_at_;               ///< when somebody new heard us
+  std::optional<Instant> newest_at_;  ///< how far others are is to be told
+
   double tokens_;
   Instant filled_at_;
-  std::vector<std::uint8_t> out_;  ///< the datagram that is being made
+  // The datagram that is being made.
+  std::vector<std::uint8_t> out_;
+  std::size_t out_max_ = 0;
+  std::vector<std::size_t> out_samples_;  ///< places in far_at_
+  bool out_has_parts_ = false;            ///< said for the first time
   LinkCounts counts_;
 };
 
@@ -159,7 +216,7 @@ void Link::Impl::refill(Instant now) {
   filled_at_ = now;
 }
 
-Instant Link::Impl::due() const {
+Instant Link::Impl::due_to_say() const {
   Instant due = when_affordable(Urgency::state, hello_at_);
   const auto sooner = [&](Urgency urgency, Instant at) {
     due = std::min(due, when_affordable(urgency, at));
@@ -174,32 +231,92 @@ Instant Link::Impl::due() const {
   return due;
 }
 
+Instant Link::Impl::due_to_pass_on() const {
+  Instant due = Instant::max();
+  const auto sooner = [&](Urgency urgency, const std::optional<Instant>& at) {
+    if (at) due = std::min(due, when_affordable(urgency, *at));
+  };
+  sooner(Urgency::decision, introductions_.due());
+  sooner(Urgency::state, newest_at_);
+  for (std::size_t u = 0; u < kUrgencies; ++u) {
+    sooner(static_cast<Urgency>(u), relay_.due(static_cast<Urgency>(u)));
+  }
+  return due;
+}
+
 std::optional<std::vector<std::uint8_t>> Link::Impl::poll(Instant now) {
-  if (now < due()) return std::nullopt;
   refill(now);
+  if (now >= due_to_say()) {
+    say(now);
+    if (auto said = finished(is_far(now))) return said;
+  }
+  if (now < due_to_pass_on()) return std::nullopt;
+  pass_on(now);
+  return finished(false);
+}
+
+void Link::Impl::say(Instant now) {
+  begin(config_.datagram_bytes);
   stream_.forget(now);
-  out_.clear();
-  write(out_, Head{});  // what it says is known at the end
   put_greeting(now);
   if (begun_ && put_part(*begun_, now)) begun_.reset();
   if (questions_at_ && now >= *questions_at_) put_questions(now);
-  if (!begun_) {
-    put_repairs(now);
-    for (std::size_t u = 0; u < kUrgencies; ++u) {
-      const auto urgency = static_cast<Urgency>(u);
-      if (when_affordable(urgency, now) > now) break;
-      put_waiting(urgency, now);
+  if (begun_) return;
+  put_repairs(now);
+  for (std::size_t u = 0; u < kUrgencies; ++u) {
+    const auto urgency = static_cast<Urgency>(u);
+    if (when_affordable(urgency, now) > now) break;
+    put_waiting(urgency, now);
+  }
+}
+
+/// What only neighbours are to hear goes with it.
+void Link::Impl::pass_on(Instant now) {
+  begin(config_.mtu_bytes - config_.overhead_bytes);
+  put_introductions(now);
+  if (newest_at_ && now >= *newest_at_) put_newest(now);
+  for (std::size_t u = 0; u < kUrgencies; ++u) {
+    const auto urgency = static_cast<Urgency>(u);
+    if (when_affordable(urgency, now) > now) break;
+    while (const auto frame = relay_.take(urgency, now, room())) {
+      (void)put(*frame);
+      ++counts_.passed_on;
     }
   }
+}
+
+void Link::Impl::begin(std::size_t bytes_max) {
+  out_.clear();
+  out_max_ = bytes_max;
+  out_samples_.clear();
+  out_has_parts_ = false;
+  write(out_, Head{});  // what it says is known at the end
+}
+
+std::optional<std::vector<std::uint8_t>> Link::Impl::finished(bool far) {
   if (out_.size() == kHeadBytes) return std::nullopt;
-  std::vector<std::uint8_t> head;
-  write(head, stream_.head());
-  std::ranges::copy(head, out_.begin());
+  Head head = stream_.head();
+  head.far = far;
+  std::vector<std::uint8_t> bytes;
+  write(bytes, head);
+  std::ranges::copy(bytes, out_.begin());
   const std::size_t size = out_.size() + config_.overhead_bytes;
   tokens_ -= static_cast<double>(size);
   ++counts_.datagrams;
   counts_.bytes += size;
   return out_;
+}
+
+/// Parts are passed on to who misses them, and with them what else their datagram says.
+bool Link::Impl::is_far(Instant now) {
+  const bool far = std::ranges::any_of(out_samples_, [&](std::size_t of) {
+    return !far_at_[of] || now - *far_at_[of] >= kFarEvery;
+  });
+  if (far || out_has_parts_) {
+    for (const std::size_t of : out_samples_) far_at_[of] = now;
+    far_at_.back() = now;  // that we are there is said by anything
+  }
+  return far;
 }
 
 bool Link::Impl::put(const Frame& frame) {
@@ -210,7 +327,10 @@ bool Link::Impl::put(const Frame& frame) {
 
 void Link::Impl::put_greeting(Instant now) {
   if (now < hello_at_ - kHelloEarly) return;
-  (void)put(HelloFrame{config_.role, certificate_});
+  if (put(HelloFrame{config_.role, certificate_})) out_samples_.push_back(far_at_.size() - 1);
+  if (relay_.passes()) {
+    relay_.neighbours.tell_hearing([this](const HearingFrame& hearing) { (void)put(hearing); });
+  }
   if (greet_with_certificate_)
     greet_with_certificate_ = !put(CertificateFrame{config_.certificate});
   forget_silent(now);
@@ -262,7 +382,9 @@ void Link::Impl::put_waiting(Urgency urgency, Instant now) {
         queue.erase(waiting);
         return;
       }
-    } else if (!put(SampleFrame{waiting->channel, waiting->bytes})) {
+    } else if (put(SampleFrame{waiting->channel, waiting->bytes})) {
+      out_samples_.push_back(waiting->channel);
+    } else {
       ++waiting;
       continue;
     }
@@ -279,23 +401,53 @@ bool Link::Impl::put_part(Waiting& waiting, Instant now) {
   const PartFrame part = stream_.add(waiting.channel, waiting.said == 0, size == left,
                                      {from, from + static_cast<std::ptrdiff_t>(size)}, now);
   (void)put(part);
+  out_has_parts_ = true;
   waiting.said += size;
   return size == left;
 }
 
+void Link::Impl::put_introductions(Instant now) {
+  while (const auto author = introductions_.next(now)) {
+    const auto known = remotes_.find(*author);
+    if (known != remotes_.end() && known->second.hello &&
+        !put(IntroductionFrame{*author, known->second.hello->role,
+                               known->second.certificate_bytes}) &&
+        out_.size() > kHeadBytes) {
+      return;  // in the next datagram
+    }
+    introductions_.done(*author);
+  }
+}
+
+void Link::Impl::put_newest(Instant now) {
+  newest_at_.reset();
+  for (const auto& [author, remote] : remotes_) {
+    const auto newest = remote.stream.newest();
+    if (!newest || now - remote.newest_at > kNewestFor) continue;
+    newest_at_ = now + from_seconds(kNewest_s * random_.uniform(0.9, 1.1));
+    if (!relay_.neighbours.without(author.node).empty()) (void)put(NewestFrame{author, *newest});
+  }
+}
+
 // --- what is heard -------------------------------------------------------------------------------
 
-Link::Impl::Remote* Link::Impl::remote_of(const Author& author, Instant now) {
-  const auto known = remotes_.find(author);
+Link::Impl::Remote* Link::Impl::remote_of(const Passage& passage, Instant now) {
+  const auto known = remotes_.find(passage.author);
   if (known != remotes_.end()) return &known->second;
   if (remotes_.size() >= kAuthorsMax) {
     ++counts_.too_many;
     return nullptr;
   }
-  greet_with_certificate_ = certificate_ != 0;
-  greetings_ = kGreetings;
-  greet(now);
-  return &remotes_[author];
+  const Duration missing_for = relay_.passes() ? kMissingForOverHops : kMissingFor;
+  Remote& remote = remotes_.try_emplace(passage.author, missing_for).first->second;
+  if (passage.transmitter == passage.author.node) {
+    greet_with_certificate_ = certificate_ != 0;
+    greetings_ = kGreetings;
+    greet(now);
+  } else {  // it does not hear us
+    remote.want_at = now + from_seconds(random_.uniform(kWantFar_s, 2.0 * kWantFar_s));
+  }
+  return &remote;
 }
 
 /// Somebody should hear of us soon.
@@ -306,6 +458,8 @@ void Link::Impl::greet(Instant now) {
 }
 
 void Link::Impl::forget_silent(Instant now) {
+  relay_.forget(now);
+  introductions_.forget(now);
   std::erase_if(remotes_, [&](const auto& entry) {
     if (now - entry.second.heard_at <= kForgetAfter) return false;
     counts_.lost += entry.second.stream.lost();
@@ -313,56 +467,114 @@ void Link::Impl::forget_silent(Instant now) {
   });
 }
 
-void Link::Impl::hear(const Author& from, std::span<const std::uint8_t> datagram, Instant now) {
+void Link::Impl::hear(const Author& from, std::span<const std::uint8_t> content,
+                      std::span<const std::uint8_t> datagram, Instant now) {
   if (from == config_.self) return;
-  auto rest = datagram;
+  if (relay_.passes() && relay_.neighbours.heard(from.node, now)) greet(now);
+  on_datagram({from, from.node, relay_.hops(), datagram}, content, now);
+}
+
+void Link::Impl::on_datagram(const Passage& passage, std::span<const std::uint8_t> content,
+                             Instant now) {
+  auto rest = content;
   const auto head = read_head(rest);
   if (!head) {
     ++counts_.malformed;
     return;
   }
-  Remote* const remote = remote_of(from, now);
+  const Author& from = passage.author;
+  Remote* const remote = remote_of(passage, now);
   if (remote == nullptr) return;
   remote->heard_at = now;
+  const auto newest = remote->stream.newest();
+  News news;
   while (!rest.empty()) {
     const auto frame = read_frame(rest);
     if (!frame) {
       ++counts_.malformed;
       return;
     }
-    on_frame(from, *remote, *frame, now);
+    if (passage.transmitter == from.node) on_neighbours_frame(from, *frame, now);
+    on_frame(from, *remote, *frame, news, now);
   }
   remote->stream.on_head(*head, now, random_, deliver_from(from));
+  if (relay_.passes() && remote->stream.newest() != newest) {
+    remote->newest_at = now;
+    if (!newest_at_) newest_at_ = now + from_seconds(kNewest_s * random_.uniform(0.9, 1.1));
+  }
   note_questions(*remote);
+  const bool spreads = head->far || news.who || !news.parts.empty() || !remote->spread_at ||
+                       *remote->spread_at <= listener_at_;
+  if (spreads) remote->spread_at = now;
+  relay_.on_first(passage, std::move(news.parts), spreads, news.urgency, now, random_);
 }
 
-void Link::Impl::on_frame(const Author& from, Remote& remote, const Frame& any, Instant now) {
+void Link::Impl::on_frame(const Author& from, Remote& remote, const Frame& any, News& news,
+                          Instant now) {
+  const auto note_urgency = [&](std::uint8_t channel) {
+    if (channel < config_.channels.size()) {
+      news.urgency = std::min(news.urgency, config_.channels[channel].urgency);
+    }
+  };
   if (const auto* sample = std::get_if<SampleFrame>(&any)) {
+    note_urgency(sample->channel);
     deliver_from(from)(sample->channel, sample->bytes);
   } else if (const auto* part = std::get_if<PartFrame>(&any)) {
-    remote.stream.on_part(*part, deliver_from(from));
+    note_urgency(part->channel);
+    if (remote.stream.on_part(*part, deliver_from(from))) news.parts.push_back(part->number);
   } else if (const auto* hello = std::get_if<HelloFrame>(&any)) {
-    on_hello(remote, *hello, now);
+    news.who = news.who || remote.hello != *hello;
+    on_hello(from, remote, *hello, now);
   } else if (const auto* certificate = std::get_if<CertificateFrame>(&any)) {
-    remote.certificate = hash_of(certificate->bytes);
-    remote.want_at.reset();
-    sink_.on_certificate(from, certificate->bytes);
-  } else if (const auto* missing = std::get_if<MissingFrame>(&any)) {
-    on_missing(*missing, now);
-  } else if (std::get<WantFrame>(any).author == config_.self && certificate_ != 0) {
-    greet_with_certificate_ = true;
-    greet(now);
+    news.who = news.who || remote.certificate != hash_of(certificate->bytes);
+    on_certificate(from, remote, certificate->bytes, now);
   }
+  if (news.who) news.urgency = Urgency::decision;
 }
 
-void Link::Impl::on_hello(Remote& remote, const HelloFrame& hello, Instant now) {
+void Link::Impl::on_hello(const Author& from, Remote& remote, const HelloFrame& hello,
+                          Instant now) {
   remote.hello = hello;
-  if (hello.certificate != 0 && hello.certificate != remote.certificate && !remote.want_at) {
+  if (remote.is_known()) {
+    remote.want_at.reset();
+    introductions_.known(from, now, random_);
+  } else if (!remote.want_at) {
     remote.want_at = now + from_seconds(random_.uniform(kWant_s, 2.0 * kWant_s));
   }
 }
 
-void Link::Impl::on_missing(const MissingFrame& missing, Instant now) {
+void Link::Impl::on_certificate(const Author& from, Remote& remote,
+                                std::span<const std::uint8_t> bytes, Instant now) {
+  remote.certificate = hash_of(bytes);
+  if (relay_.passes()) remote.certificate_bytes.assign(bytes.begin(), bytes.end());
+  if (remote.is_known()) {
+    remote.want_at.reset();
+    introductions_.known(from, now, random_);
+  }
+  sink_.on_certificate(from, bytes);
+}
+
+/// What is not for those who do not hear its author.
+void Link::Impl::on_neighbours_frame(const Author& from, const Frame& any, Instant now) {
+  if (const auto* missing = std::get_if<MissingFrame>(&any)) {
+    on_missing(from.node, *missing, now);
+  } else if (const auto* want = std::get_if<WantFrame>(&any)) {
+    on_want(from.node, *want, now);
+  } else if (const auto* passed_on = std::get_if<PassedOnFrame>(&any)) {
+    on_passed_on(from.node, *passed_on, now);
+  } else if (const auto* hearing = std::get_if<HearingFrame>(&any)) {
+    if (relay_.neighbours.on_hearing(from.node, *hearing)) listener_at_ = now;
+  } else if (const auto* introduction = std::get_if<IntroductionFrame>(&any)) {
+    on_introduction(from.node, *introduction, now);
+  } else if (const auto* newest = std::get_if<NewestFrame>(&any)) {
+    const auto known = remotes_.find(newest->author);
+    if (known == remotes_.end()) return;
+    known->second.stream.on_newest(newest->newest, now, random_);
+    note_questions(known->second);
+  }
+}
+
+void Link::Impl::on_missing(VehicleId asker, const MissingFrame& missing, Instant now) {
   if (missing.author == config_.self) {
     if (!stream_.wants()) repairs_since_ = now;
     stream_.asked(missing, now);
@@ -370,6 +582,43 @@ void Link::Impl::on_missing(const MissingFrame& missing, Instant now) {
   }
   const auto known = remotes_.find(missing.author);
   if (known != remotes_.end()) known->second.stream.on_asked(missing, now, random_);
+  relay_.on_missing(asker, missing, now, random_);
+}
+
+/// Its author is left to answer whom it is heard by.
+void Link::Impl::on_want(VehicleId asker, const WantFrame& want, Instant now) {
+  const Neighbours& neighbours = relay_.neighbours;
+  if (want.author == config_.self) {
+    greet_with_certificate_ = certificate_ != 0;
+    greet(now);
+  } else if (neighbours.hears(asker, config_.self.node) &&
+             !neighbours.hears(asker, want.author.node)) {
+    const auto known = remotes_.find(want.author);
+    const bool is_known = known != remotes_.end() && known->second.is_known();
+    introductions_.asked(want.author, asker, is_known, now, random_);
+  }
+}
+
+void Link::Impl::on_passed_on(VehicleId transmitter, const PassedOnFrame& passed_on, Instant now) {
+  const auto opened = sink_.open(passed_on.bytes);
+  if (!opened || opened->author == config_.self || opened->author.node == transmitter) return;
+  const Passage passage{opened->author, transmitter, std::min(passed_on.hops, relay_.hops()),
+                        passed_on.bytes};
+  if (opened->content) {
+    on_datagram(passage, *opened->content, now);
+  } else {
+    relay_.on_copy(passage);
+  }
+}
+
+/// What its author says itself counts more.
+void Link::Impl::on_introduction(VehicleId teller, const IntroductionFrame& frame, Instant now) {
+  introductions_.told(frame.author, teller, relay_.neighbours);
+  const auto known = remotes_.find(frame.author);
+  if (known == remotes_.end() || known->second.is_known()) return;
+  Remote& remote = known->second;
+  if (!frame.certificate.empty()) on_certificate(frame.author, remote, frame.certificate, now);
+  if (!remote.hello) on_hello(frame.author, remote, {frame.role, remote.certificate}, now);
 }
 
 std::vector<LinkPeer> Link::Impl::peers(Instant now) const {
@@ -382,6 +631,12 @@ std::vector<LinkPeer> Link::Impl::peers(Instant now) const {
   return peers;
 }
 
+LinkCounts Link::Impl::counts() const {
+  LinkCounts counts = counts_;
+  counts.gave_way += relay_.gave_way();
+  return counts;
+}
+
 // --- Link ----------------------------------------------------------------------------------------
 
 Link::Link(LinkConfig config, LinkSink& sink, Instant now)
@@ -390,12 +645,13 @@ Link::~Link() = default;
 bool Link::send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now) {
   return impl_->send(channel, std::move(bytes), now);
 }
-void Link::hear(const Author& from, std::span<const std::uint8_t> datagram, Instant now) {
-  impl_->hear(from, datagram, now);
+void Link::hear(const Author& from, std::span<const std::uint8_t> content,
+                std::span<const std::uint8_t> datagram, Instant now) {
+  impl_->hear(from, content, datagram, now);
 }
 Instant Link::due() const { return impl_->due(); }
 std::optional<std::vector<std::uint8_t>> Link::poll(Instant now) { return impl_->poll(now); }
 std::vector<LinkPeer> Link::peers(Instant now) const { return impl_->peers(now); }
-const LinkCounts& Link::counts() const { return impl_->counts(); }
+LinkCounts Link::counts() const { return impl_->counts(); }
 
 }  // namespace skein::air

@@ -3,6 +3,7 @@
 // Any bytes as what a member of the team says on the air, between a link's own business.
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,13 @@ constexpr std::size_t kDatagramBytes = 300;
 
 class Heard final : public air::LinkSink {
  public:
+  /// The first byte says who said it, the next whether it is heard for the first time.
+  std::optional<air::Opened> open(std::span<const std::uint8_t> datagram) override {
+    if (datagram.size() < 2) return std::nullopt;
+    const air::Author author{VehicleId{datagram[0]}, InstanceId{2}};
+    if (datagram[1] % 4 == 0) return air::Opened{author, std::nullopt};
+    return air::Opened{author, datagram.subspan(2)};
+  }
   void on_sample(std::uint8_t channel, const air::Author&,
                  std::span<const std::uint8_t> bytes) override {
     SKEIN_ASSERT(channel < 2 && bytes.size() <= air::Link::kSampleMax);
@@ -34,6 +42,8 @@ void run(std::span<const std::uint8_t> bytes) {
                      {.reliable = false, .urgency = air::Urgency::motion, .kept = 1}};
   config.certificate = {1, 2, 3};
   config.datagram_bytes = kDatagramBytes;
+  config.mtu_bytes = kDatagramBytes + config.overhead_bytes;
+  config.hops_max = 3;
   Instant now{};
   air::Link link{config, heard, now};
   while (!bytes.empty()) {
@@ -42,7 +52,7 @@ void run(std::span<const std::uint8_t> bytes) {
     bytes = bytes.subspan(1 + piece.size());
     now += how % 7U * 10ms;
     SKEIN_ASSERT(link.send(how % 2U, {piece.begin(), piece.end()}, now));
-    link.hear({VehicleId{how}, InstanceId{2}}, piece, now);
+    link.hear({VehicleId{how}, InstanceId{2}}, piece, piece, now);
     for (int said = 0; const auto datagram = link.poll(now); ++said) {
       SKEIN_ASSERT(datagram->size() <= kDatagramBytes && said < 100);
     }

@@ -39,9 +39,18 @@ struct Channel {
   std::size_t kept = 1;  ///< how many may wait, or be asked for again; the oldest gives way
 };
 
+/// What a datagram was found to be.
+struct Opened {
+  Author author;
+  std::optional<std::span<const std::uint8_t>> content;  ///< none: it was opened before
+};
+
 /// What a link tells of others. Must not call the link.
 class LinkSink {
  public:
+  /// A datagram that was passed on, as it was on the air. None where it is not good, which is for
+  /// the sink to count, or this node's own. The content must stay valid until the next call.
+  virtual std::optional<Opened> open(std::span<const std::uint8_t> datagram) = 0;
   virtual void on_sample(std::uint8_t channel, const Author& author,
                          std::span<const std::uint8_t> bytes) = 0;
   virtual void on_certificate(const Author& author, std::span<const std::uint8_t> bytes) = 0;
@@ -56,7 +65,11 @@ struct LinkConfig {
   std::vector<Channel> channels;          ///< by their numbers; the same for all
   std::vector<std::uint8_t> certificate;  ///< told to all; may be empty
   std::size_t datagram_bytes = 1200;      ///< at most, without `overhead_bytes`
-  std::size_t overhead_bytes = 58;    ///< what each datagram has more on the air: IPv4, UDP, seal
+  std::size_t overhead_bytes = 58;  ///< what each datagram has more on the air: IPv4, UDP, seal
+  std::size_t mtu_bytes = 1500;     ///< of the air: of datagrams that pass on others, with overhead
+  /// How many nodes may say a datagram until it arrives, its author included; 1: what others say is
+  /// not passed on.
+  std::uint8_t hops_max = 1;
   std::optional<double> bytes_per_s;  ///< of the air that this node may take; none: no limit
   std::uint64_t seed = 0;
 };
@@ -71,7 +84,9 @@ struct LinkCounts {
   std::uint64_t datagrams = 0;  ///< sent
   std::uint64_t bytes = 0;      ///< sent, with their overhead
   std::uint64_t repairs = 0;    ///< parts that were sent again
-  std::uint64_t gave_way = 0;   ///< samples that waited until newer ones took their place
+  std::uint64_t passed_on = 0;  ///< datagrams of others
+  std::uint64_t gave_way = 0;   ///< samples that waited until newer ones took their place, and
+                                ///< datagrams to be passed on
   std::uint64_t lost = 0;       ///< parts that could not be had again
   std::uint64_t malformed = 0;  ///< datagrams
   std::uint64_t too_many = 0;   ///< authors beyond kAuthorsMax
@@ -80,7 +95,9 @@ struct LinkCounts {
 /// One node of the air: everything is said once, for all who hear it (broadcast or multicast), with
 /// as much as is ready in one datagram. Every author numbers what must not be lost; who misses a
 /// part asks for it, and it is said again, once for all who miss it. There is no list of members:
-/// who is heard is there. Without I/O, clock or threads; nothing depends on anything but its calls.
+/// who is heard is there. Where not everybody hears everybody, nodes pass on what others say, as it
+/// was on the air, so that all seals and signatures stay their authors'. Without I/O, clock or
+/// threads; nothing depends on anything but its calls.
 class Link {
  public:
   static constexpr std::size_t kAuthorsMax = 4096;
@@ -94,18 +111,19 @@ class Link {
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
   static constexpr std::size_t kSampleMax = 64'000;
 
-  /// A datagram of that author's. Any bytes.
-  void hear(const Author& from, std::span<const std::uint8_t> datagram, Instant now);
+  /// What that author's datagram says, and the datagram as it was on the air. Any bytes.
+  void hear(const Author& from, std::span<const std::uint8_t> content,
+            std::span<const std::uint8_t> datagram, Instant now);
 
   /// When poll() is to be called next.
   [[nodiscard]] Instant due() const;
-  /// A datagram to be sent to all; to be called until there is none.
+  /// What a datagram to all is to say; to be called until there is none.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> poll(Instant now);
 
-  /// Whom it has heard in the last kPeerFor.
+  /// Whom it has heard in the last kPeerFor, itself or over others.
   [[nodiscard]] std::vector<LinkPeer> peers(Instant now) const;
   static constexpr Duration kPeerFor = std::chrono::seconds{10};
-  [[nodiscard]] const LinkCounts& counts() const;
+  [[nodiscard]] LinkCounts counts() const;
 
  private:
   class Impl;
