@@ -21,10 +21,10 @@ namespace {
 
 using codec::Topic;
 
-/// Of a datagram in clear: a mark, the domain (4 bytes), the node (2), the instance (8), big
-/// endian.
+/// Of a datagram in clear: a mark, the domain (4 bytes), the node (2), the instance (8), the
+/// counter (5), big endian.
 constexpr std::uint8_t kClearMark = 0xA0;
-constexpr std::size_t kClearBytes = 15;
+constexpr std::size_t kClearBytes = 20;
 constexpr std::size_t kIpUdpBytes = 28;
 /// What comes within this is read together: to wake up costs more than to read. The longer where
 /// many speak.
@@ -72,6 +72,7 @@ air::LinkConfig link_config(const CarrierConfig& config) {
   link.certificate = config.certificate;
   link.overhead_bytes = kIpUdpBytes + (config.seal ? seal::kOverheadBytes : kClearBytes);
   link.bytes_per_s = config.air->bytes_per_s;
+  link.hops_max = config.air->hops_max;
   link.seed = config.instance.value;
   return link;
 }
@@ -185,7 +186,7 @@ void AirCarrier::run() {
     });
     gather_ = received > 1 ? kGatherOfMany : kGather;
     while (!on_their_way_.empty() && on_their_way_.begin()->first <= steady_now()) {
-      open(on_their_way_.begin()->second);
+      arrive(on_their_way_.begin()->second);
       on_their_way_.erase(on_their_way_.begin());
     }
     for (const Heard& heard : std::exchange(heard_, {})) {
@@ -219,11 +220,11 @@ void AirCarrier::wait() {
 
 void AirCarrier::receive(std::span<const std::uint8_t> datagram) {
   const auto sender = radio_ ? sender_of(datagram) : std::nullopt;
-  if (!sender) return open(datagram);
+  if (!sender) return arrive(datagram);
   const Instant now = steady_now();
   for (const Duration delay : radio_->arrivals(*sender, datagram.size())) {
     if (delay == Duration{}) {
-      open(datagram);
+      arrive(datagram);
     } else if (on_their_way_.size() < kOnTheirWayMax) {
       on_their_way_.emplace(now + delay,
                             std::vector<std::uint8_t>{datagram.begin(), datagram.end()});
@@ -231,28 +232,53 @@ void AirCarrier::receive(std::span<const std::uint8_t> datagram) {
   }
 }
 
-void AirCarrier::open(std::span<const std::uint8_t> datagram) {
+void AirCarrier::arrive(std::span<const std::uint8_t> datagram) {
   if (seals_) {
     if (is_key_news(datagram)) return seals_->news.hear(datagram);
-    if (const auto header = seal::read_header(datagram)) {
-      if (header->from == config_.seal->start) return;  // our own voice
-      if (seals_->news.has_any()) tell_news(*header);
-    }
-    const auto outcome = seals_->opener.open(datagram, plain_, steady_now());
-    if (outcome.opened != seal::Opened::good) return;
-    return hear({outcome.from.sender, identity::instance_of(outcome.from)}, plain_);
+    const auto header = seal::read_header(datagram);
+    if (header && header->from == config_.seal->start) return;  // our own voice
+    if (header && seals_->news.has_any()) tell_news(*header);
   }
-  if (!is_clear(datagram)) {
-    ++misformed_;
-  } else if (number_in(datagram.subspan(1, 4)) == config_.domain) {
-    const VehicleId node{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))};
-    hear({node, InstanceId{number_in(datagram.subspan(7, 8))}}, datagram.subspan(kClearBytes));
-  }
+  const auto opened = seals_ ? unseal(datagram, plain_) : read_clear(datagram);
+  if (!opened || !opened->content) return;
+  const std::lock_guard lock{mutex_};
+  link_.hear(opened->author, *opened->content, datagram, steady_now());
 }
 
-void AirCarrier::hear(const air::Author& from, std::span<const std::uint8_t> content) {
-  const std::lock_guard lock{mutex_};
-  link_.hear(from, content, steady_now());
+/// Copies over several nodes are no replays, and not counted as such.
+std::optional<air::Opened> AirCarrier::open(std::span<const std::uint8_t> datagram) {
+  if (!seals_) return read_clear(datagram);
+  const auto header = seal::read_header(datagram);
+  if (header && header->from == config_.seal->start) return std::nullopt;
+  if (header && seals_->opener.has_opened(*header)) {
+    return air::Opened{{header->from.sender, identity::instance_of(header->from)}, std::nullopt};
+  }
+  return unseal(datagram, inner_);
+}
+
+std::optional<air::Opened> AirCarrier::unseal(std::span<const std::uint8_t> datagram,
+                                              std::vector<std::uint8_t>& plain) {
+  const auto outcome = seals_->opener.open(datagram, plain, steady_now());
+  if (outcome.opened != seal::Opened::good) return std::nullopt;
+  return air::Opened{{outcome.from.sender, identity::instance_of(outcome.from)}, plain};
+}
+
+std::optional<air::Opened> AirCarrier::read_clear(std::span<const std::uint8_t> datagram) {
+  if (!is_clear(datagram)) {
+    ++misformed_;
+    return std::nullopt;
+  }
+  if (number_in(datagram.subspan(1, 4)) != config_.domain) return std::nullopt;
+  const air::Author author{VehicleId{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))},
+                           InstanceId{number_in(datagram.subspan(7, 8))}};
+  const std::uint64_t counter = number_in(datagram.subspan(15, 5));
+  if (!heard_clear_.contains(author) && heard_clear_.size() >= air::Link::kAuthorsMax) {
+    return std::nullopt;
+  }
+  seal::ReplayWindow& heard = heard_clear_[author];
+  if (!heard.is_new(counter)) return air::Opened{author, std::nullopt};
+  heard.note(counter);
+  return air::Opened{author, datagram.subspan(kClearBytes)};
 }
 
 void AirCarrier::on_sample(std::uint8_t channel, const air::Author& author,
@@ -288,6 +314,7 @@ void AirCarrier::speak() {
       put(out_, config_.domain, 4);
       put(out_, config_.self.value, 2);
       put(out_, config_.instance.value, 8);
+      put(out_, said_clear_++, 5);
       out_.insert(out_.end(), content->begin(), content->end());
     }
     (void)socket_.send(out_);

@@ -17,6 +17,7 @@
 #include "seals.hpp"
 #include "skein/air/link.hpp"
 #include "skein/network/air_radio.hpp"
+#include "skein/seal/replay_window.hpp"
 
 namespace skein::network {
 
@@ -44,6 +45,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
     std::vector<std::uint8_t> bytes;
   };
 
+  std::optional<air::Opened> open(std::span<const std::uint8_t> datagram) override;
   void on_sample(std::uint8_t channel, const air::Author& author,
                  std::span<const std::uint8_t> bytes) override;
   void on_certificate(const air::Author& author, std::span<const std::uint8_t> bytes) override;
@@ -51,8 +53,10 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   void run();
   void wait();
   void receive(std::span<const std::uint8_t> datagram);
-  void open(std::span<const std::uint8_t> datagram);
-  void hear(const air::Author& from, std::span<const std::uint8_t> content);
+  void arrive(std::span<const std::uint8_t> datagram);
+  [[nodiscard]] std::optional<air::Opened> unseal(std::span<const std::uint8_t> datagram,
+                                                  std::vector<std::uint8_t>& plain);
+  [[nodiscard]] std::optional<air::Opened> read_clear(std::span<const std::uint8_t> datagram);
   void tell_news(const seal::Header& header);
   void speak();
 
@@ -74,6 +78,9 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   std::multimap<Instant, std::vector<std::uint8_t>> on_their_way_;  ///< through the radio
   std::vector<Heard> heard_;
   std::vector<std::uint8_t> plain_;
+  std::vector<std::uint8_t> inner_;  ///< of a datagram that was passed on
+  std::map<air::Author, seal::ReplayWindow> heard_clear_;
+  std::uint64_t said_clear_ = 0;
   std::vector<std::uint8_t> out_;
   std::thread thread_;  ///< last: it uses all of the above
 };

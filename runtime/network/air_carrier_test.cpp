@@ -25,6 +25,7 @@ namespace {
 
 using namespace std::chrono_literals;
 using codec::Role;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::UnorderedElementsAreArray;
@@ -173,6 +174,29 @@ TEST(AirCarrier, TheKeyChangesInFlight) {
   EXPECT_THAT(*news, ElementsAre(identity::kChangeMark, 1, 2, 3));
   ground->change_key(key(2), 60s);
   expect_exchange(*vehicle, *ground, Role::vehicle);
+}
+
+TEST(AirCarrier, WhoIsBetweenPassesOnWhatTheOthersSay) {
+  for (const bool sealed : {false, true}) {
+    auto configs = team(2, sealed);
+    for (NodeConfig& config : configs) {
+      config.air->hops_max = 8;
+      config.transport_plugin = SKEIN_CHAIN_RADIO;
+    }
+    const auto ground = open(configs[0]);
+    const auto between = open(configs[1]);
+    const auto far = open(configs[2]);
+    ASSERT_TRUE(eventually([&] {
+      return ground->peers().size() == 2 && between->peers().size() == 2 &&
+             far->peers().size() == 2;
+    })) << sealed;
+    EXPECT_THAT(far->peers(), Contains(Peer{kGroundStation, configs[0].instance, Role::ground}));
+    expect_exchange(*ground, *far, Role::ground);
+    expect_exchange(*far, *ground, Role::vehicle);
+    if (!sealed) continue;
+    EXPECT_EQ(far->counters().at("seal_replayed"), 0U);
+    EXPECT_EQ(far->counters().at("seal_forged"), 0U);
+  }
 }
 
 TEST(AirCarrier, SaysWhatIsWrong) {

@@ -43,6 +43,9 @@ struct AirConfig {
   Endpoint group;  ///< where all listen: a multicast address, or that of a broadcast
   /// Of the air, headers included, that this node may take; none: no limit.
   std::optional<double> bytes_per_s;
+  /// How many nodes may say a message until it arrives, its author included; 1: nobody passes on
+  /// what others say.
+  std::uint8_t hops_max = 1;
 };
 
 struct NodeConfig {
