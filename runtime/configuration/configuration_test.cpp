@@ -129,7 +129,7 @@ constexpr auto kMistakes = std::to_array<Mistake>({
      "cruise_speed_mps?"},
     {"  port: 17402", "  port: 17402\n  colour: red",
      "v.yaml:15: network.colour: is no key of this group, which knows domain_id, address, port, "
-     "peers, group, limit_bytes_per_s, keys, transport_plugin, process"},
+     "peers, group, limit_bytes_per_s, hops_max, keys, transport_plugin, process"},
     {"  range_m: 18000\n", "",
      "v.yaml:3: vehicle.range_m: is missing; add it: a number from 100 to 10000000 m"},
     {"range_m: 18000", "range_m: far",

@@ -381,6 +381,12 @@ void air_fields(FieldVisitor& v, AirConfig& air) {
             "of the air that a node may take, headers included; 0: no limit. Where it is too "
             "little reports give way first, then what people look at, then telemetry"},
            {0.0, 1e9, "bytes/s"}, air.limit_bytes_per_s);
+  whole(v,
+        {"hops_max",
+         "how many nodes may say a message until it arrives, its author included; the same for the "
+         "whole team. 1: none passes on what others say, for radios that all reach each other, or "
+         "pass on themselves"},
+        {1.0, 32.0}, air.hops_max);
 }
 
 namespace {

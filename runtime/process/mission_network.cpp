@@ -107,6 +107,7 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
     node.air.emplace(network::Endpoint{config.air.group, config.port}, std::nullopt);
     const double limit = config.air.limit_bytes_per_s;
     if (limit > 0.0) node.air->bytes_per_s = limit;
+    node.air->hops_max = config.air.hops_max;
   }
   node.transport_plugin = config.transport_plugin;
   node.on_received = std::move(on_received);

@@ -24,6 +24,7 @@ struct NetworkPeer {
 struct AirConfig {
   std::string group = "239.255.83.1";  ///< where all listen; of the organisation alone (RFC 2365)
   double limit_bytes_per_s = 0.0;      ///< that a node may take; 0: none
+  std::uint8_t hops_max = 1;  ///< how many nodes may say a message; 1: nobody passes on others'
   friend bool operator==(const AirConfig&, const AirConfig&) = default;
 };
 
