@@ -29,6 +29,7 @@ struct RunArguments {
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
   bool dds = false;
+  bool relay = false;  ///< in place of the scenario's air.hops_max
   bool clear = false;
   bool prompt = false;
   std::uint16_t console_port = 0;  ///< 0: no console

@@ -101,6 +101,10 @@ void add_run(CLI::App& app, int& status) {
       ->add_flag("--dds", arguments->dds,
                  "Speak to each node by itself, with Fast DDS: to compare with the air")
       ->excludes("--external");
+  command
+      ->add_flag("--relay", arguments->relay,
+                 "Let the nodes pass on what others say (air.hops_max: 8), over radios that do not")
+      ->excludes("--dds");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"

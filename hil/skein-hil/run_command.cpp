@@ -23,6 +23,8 @@
 namespace skein::hil {
 namespace {
 
+constexpr std::uint8_t kRelayHops = 8;
+
 int complain(const std::string& sentence) {
   fmt::print(stderr, "{}\n", sentence);
   return kExitBadInput;
@@ -59,6 +61,7 @@ Result<configuration::Scenario> flyable_scenario(const RunArguments& arguments) 
   auto scenario = configuration::load_flyable_scenario(arguments.scenario);
   if (!scenario) return scenario;
   if (arguments.seed) scenario->seed = *arguments.seed;
+  if (arguments.relay) scenario->air.hops_max = kRelayHops;
   if (const auto given = give_routes(*scenario, arguments.routes); !given) return given.error();
   if (arguments.prompt) {
     scenario->operator_decisions.clear();
