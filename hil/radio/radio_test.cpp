@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/hil/radio/positions.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 
 namespace skein::hil::radio {
@@ -101,6 +104,22 @@ TEST(RadioModel, RangeAndPartitionsDecide) {
 TEST(RadioModel, TheGroundStationHasARangeToo) {
   EXPECT_FALSE(between(node(0), {VehicleId{4}, Vec2{0, 5001}}).up);
   EXPECT_FALSE(between({VehicleId{4}, Vec2{0, 5001}}, node(0)).up);
+}
+
+TEST(Positions, WhoIsNearIsFoundInOrder) {
+  Positions positions{4};
+  positions.set(0, {0, 0});
+  positions.set(1, {1500, 0});
+  positions.set(2, {1500.1, 0});
+  positions.set(3, {-900, 1200});
+  std::vector<std::uint32_t> near;
+  positions.find_near(0, 1500.0, near);
+  EXPECT_EQ(near, (std::vector<std::uint32_t>{0, 1, 3})) << "the range itself is near";
+  positions.set(0, {3000, 0});
+  positions.find_near(0, 1500.0, near);
+  EXPECT_EQ(near, (std::vector<std::uint32_t>{0, 1, 2}));
+  positions.find_near(0, std::numeric_limits<double>::infinity(), near);
+  EXPECT_EQ(near.size(), 4U);
 }
 
 TEST(RadioModel, OneWayIsHeardInOneDirectionOnly) {

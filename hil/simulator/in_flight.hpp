@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -36,9 +37,16 @@ struct Parcel {
 /// slots of the simulation's steps, so that only what is due in one step has to be sorted.
 class InFlight {
  public:
-  explicit InFlight(Duration step) : step_{step} {}
+  static constexpr Duration kStep = std::chrono::milliseconds{20};
 
   void post(Parcel parcel);
+  /// A message that does no more than wake its node. Of those that come to a node in one step the
+  /// first arrives, and after whatever has moved it (on_moved()) the next: one that was awake at
+  /// this moment, and did nothing, does nothing.
+  void post_wake(Instant at, std::size_t to, VehicleId from,
+                 const std::shared_ptr<const Content>& what);
+  /// What was popped last has made its node do something.
+  void on_moved(const Parcel& by);
   /// The next that is due by `now`, which never decreases. What is posted meanwhile counts.
   [[nodiscard]] std::optional<Parcel> pop_due(Instant now);
 
@@ -49,17 +57,37 @@ class InFlight {
   };
   /// The first step at or after the instant.
   [[nodiscard]] Slot slot_of(Instant at) const {
-    return (at.time_since_epoch() + step_ - Duration{1}) / step_;
+    return (at.time_since_epoch() + kStep - Duration{1}) / kStep;
   }
+  /// Where a parcel of a step comes in it: by the time from its begin, then in the order of
+  /// posting.
+  using Place = std::uint64_t;
+  /// Those of one step that wake a node.
+  struct Wakes {
+    Place next = 0;  ///< that arrives, or did so last
+    std::vector<Place> all;
+    VehicleId from;  ///< of one of them, which stands for all
+    std::shared_ptr<const Content> what;
+  };
+  /// What comes in one step.
+  struct Step {
+    std::vector<Parcel> parcels;
+    std::vector<Wakes> wakes;  ///< by node
+    Instant from{};            ///< nothing of it comes before
+    std::uint64_t order = 0;
+  };
+  [[nodiscard]] Step& step_of(Slot slot);
+  [[nodiscard]] static Place place_in(const Step& step, Instant at, std::uint64_t order);
+  [[nodiscard]] static Parcel wake_of(const Step& step, std::size_t to);
   void open_slots(Slot until);
 
-  Duration step_;
   std::uint64_t order_ = 0;
   Slot opened_ = -1;
-  std::deque<std::vector<Parcel>> slots_;   ///< those after opened_
-  std::vector<std::vector<Parcel>> spare_;  ///< the memory of slots that have been opened
-  std::vector<Parcel> due_;                 ///< of the opened slots, sorted
-  std::size_t next_ = 0;                    ///< in due_
+  std::deque<Step> slots_;   ///< those after opened_
+  std::vector<Step> spare_;  ///< the memory of slots that have been opened
+  std::vector<Parcel> due_;  ///< of the opened slots, sorted
+  Step open_;                ///< the newest opened: its wakes
+  std::size_t next_ = 0;     ///< in due_
   std::priority_queue<Parcel, std::vector<Parcel>, Later> urgent_;  ///< posted into opened slots
 };
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -21,13 +23,14 @@
 #include "skein/base/assert.hpp"
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/mesh.hpp"
+#include "skein/hil/radio/positions.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
 namespace {
 
-constexpr Duration kControlPeriod = std::chrono::milliseconds{20};
+constexpr Duration kControlPeriod = InFlight::kStep;
 constexpr Duration kNodePeriod = std::chrono::milliseconds{40};
 constexpr Duration kFormationNodePeriod = std::chrono::milliseconds{20};
 constexpr Duration kSensorPeriod = std::chrono::milliseconds{100};
@@ -41,6 +44,7 @@ constexpr Duration kAtRest = std::chrono::seconds{2};
 /// Or, where it is not: nothing comes any more. Longer than the ground station takes to know that a
 /// vehicle is lost, and to give an order again.
 constexpr Duration kIdle = std::chrono::seconds{30};
+constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 /// Slower, a reference stands still.
 constexpr double kStill_mps = 1e-3;
 constexpr std::uint64_t kGustStream = 0x666f726d67757301;
@@ -84,8 +88,11 @@ class Team {
   Team(const TeamMission& mission, const TeamObserver& observer)
       : mission_{mission},
         observer_{observer},
-        air_{kControlPeriod},
+        clocks_agree_{std::ranges::none_of(
+            mission.faults,
+            [](const Fault& f) { return std::holds_alternative<ClockOff>(f.what); })},
         radio_{mission.radio, mission.seed},
+        positions_{mission.vehicles.size() + 1},
         mesh_{mission.radio.mesh ? std::optional<radio::Mesh>{*mission.radio.mesh} : std::nullopt},
         timeline_{mission.faults},
         healing_{healing_of(mission.faults)},
@@ -100,6 +107,8 @@ class Team {
       nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
     }
     nodes_.push_back({{kGroundStation, std::nullopt}, true});
+    setups_heard_.resize(vehicles_.size());
+    settled_at_.resize(vehicles_.size(), Instant::min());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
     ground_.start(Instant{});
@@ -160,6 +169,7 @@ class Team {
         result_.ground_warning.reset();
       } else {
         vehicles_[i].start_program(hazards_, now);
+        setups_heard_[i].clear();
       }
       nodes_[i].on = true;
       tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);
@@ -269,18 +279,28 @@ class Team {
   void take_off(std::size_t i, Instant now) {
     vehicles_[i].take_off(now);
     nodes_[i].on = true;
-    nodes_[i].node.position = vehicles_[i].state().position().horizontal();
+    see_position(i);
+  }
+
+  void see_position(std::size_t i) {
+    const Vec2 position = vehicles_[i].state().position().horizontal();
+    nodes_[i].node.position = position;
+    positions_.set(i, position);
   }
 
   // --- the radio ---
 
   void broadcast(std::size_t from, mission::Message message, Instant now) {
     if (observer_.message) observer_.message(message);
+    const bool is_telemetry = std::holds_alternative<mission::Telemetry>(message);
     const auto what = std::make_shared<const Content>(std::move(message));
     // The ground station is the last node, and the first to hear.
-    if (from != ground_index()) post(from, ground_index(), what, now);
-    for (std::size_t to = 0; to < ground_index(); ++to) {
-      if (to != from) post(from, to, what, now);
+    if (from != ground_index()) post(from, ground_index(), what, false, now);
+    // What is not decided by their distance is by post().
+    const bool anywhere = mesh_ || radio_.interference().healed || from == ground_index();
+    positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
+    for (const std::size_t to : near_) {
+      if (to != from && to != ground_index()) post(from, to, what, is_telemetry, now);
     }
   }
 
@@ -290,12 +310,17 @@ class Team {
   }
 
   void post(std::size_t from, std::size_t to, const std::shared_ptr<const Content>& what,
-            Instant now) {
+            bool only_wakes, Instant now) {
     if (!nodes_[to].on) return;
     const int hops = hops_between(from, to);
     if (hops == 0) return;
+    const VehicleId sender = nodes_[from].node.id;
     for (const Duration delay : radio_.carry(hops)) {
-      air_.post({now + delay, 0, to, nodes_[from].node.id, 0, what});
+      if (only_wakes && clocks_agree_) {
+        air_.post_wake(now + delay, to, sender, what);
+      } else {
+        air_.post({now + delay, 0, to, sender, 0, what});
+      }
     }
   }
 
@@ -311,13 +336,28 @@ class Team {
       }
       Aircraft& v = vehicles_[parcel->to];
       if (!v.running()) continue;
+      Instant& settled_at = settled_at_[parcel->to];
+      if (is_known(*parcel) && settled_at == now) continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
         if (parcel->life == v.life()) v.node()->on_planning_result(*planned, v.local(now));
       } else {
         v.node()->on_message(std::get<mission::Message>(*parcel->what), parcel->from, v.local(now));
       }
-      drain(parcel->to, now);
+      const bool moved = drain(parcel->to, now);
+      settled_at = moved ? Instant::min() : now;
+      if (moved) air_.on_moved(*parcel);
     }
+  }
+
+  /// A setup that its receiver has heard before, which asks for nothing: it does no more than wake.
+  bool is_known(const Parcel& parcel) {
+    const auto* message = std::get_if<mission::Message>(parcel.what.get());
+    const auto* setup = message == nullptr ? nullptr : std::get_if<mission::Setup>(message);
+    if (setup == nullptr) return false;
+    auto& heard = setups_heard_[parcel.to];
+    if (heard.size() <= setup->node.value) heard.resize(setup->node.value + std::size_t{1});
+    const InstanceId before = std::exchange(heard[setup->node.value], setup->instance);
+    return before == setup->instance && setup->knows_orders && clocks_agree_;
   }
 
   void move_mesh(Instant now) {
@@ -335,7 +375,7 @@ class Team {
       const bool unseen = gone_at_[i] && now > *gone_at_[i] + kSeenWhenGone;
       if (!v.flying() || (unseen && !v.what().flies_formation)) continue;
       const bool follows = v.control(now);
-      nodes_[i].node.position = v.state().position().horizontal();
+      see_position(i);
       if (follows && due(now, kTrackPeriod) && observer_.track && !v.what().flies_formation) {
         observer_.track(v.spec().id, v.state(), v.plan() != nullptr ? *v.plan() : kNoPlan);
       }
@@ -382,25 +422,34 @@ class Team {
     drain_ground(now);
   }
 
-  void drain(std::size_t i, Instant now) {
+  /// True where there was anything.
+  bool drain(std::size_t i, Instant now) {
     Aircraft& v = vehicles_[i];
+    bool any = false;
     while (auto message = v.node()->poll_message()) {
+      any = true;
       if (is_for_watchers(*message, mission_)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, std::move(*message), now);
     }
-    while (const auto event = v.node()->poll_event()) on_event(v, *event);
+    while (const auto event = v.node()->poll_event()) {
+      any = true;
+      on_event(v, *event);
+    }
     while (const auto guidance = v.node()->poll_guidance()) {
+      any = true;
       v.follow(*guidance);
       tell_plan(v, now);
     }
     while (const auto request = v.node()->poll_planning_request()) {
+      any = true;
       const mission::PlanningResult planned{request->round,
                                             planning::allocate(request->params, request->problem),
                                             mission_.allocation_takes};
       air_.post({now + mission_.allocation_takes, 0, i, v.spec().id, v.life(),
                  std::make_shared<const Content>(planned)});
     }
+    return any;
   }
 
   void on_event(Aircraft& v, const mission::MissionEvent& event) {
@@ -504,8 +553,12 @@ class Team {
 
   const TeamMission& mission_;
   const TeamObserver& observer_;
+  /// Then the telemetry of others does no more than wake a vehicle. Else the time in it counts.
+  bool clocks_agree_;
   InFlight air_;
   radio::SimulatedRadio radio_;
+  radio::Positions positions_;       ///< of nodes_
+  std::vector<std::uint32_t> near_;  ///< to who sends
   std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
   std::vector<radio::Node> places_;  ///< for it
   FaultTimeline timeline_;
@@ -514,8 +567,10 @@ class Team {
   SiteFinder finder_;
   GroundStation ground_;
   std::vector<Aircraft> vehicles_;
-  std::vector<Station> nodes_;   ///< the vehicles, then the ground station
-  std::vector<Hazard> hazards_;  ///< that exist by now
+  std::vector<Station> nodes_;                         ///< the vehicles, then the ground station
+  std::vector<std::vector<InstanceId>> setups_heard_;  ///< by each vehicle, by sender
+  std::vector<Instant> settled_at_;  ///< of each vehicle: when what came last moved nothing
+  std::vector<Hazard> hazards_;      ///< that exist by now
   std::set<HazardId> told_;
   std::set<SiteId> sites_done_;
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator

@@ -170,6 +170,20 @@ TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {
 }
 
 /// Slower than the protocol's 0.5 s: the first plan comes too late, and later rounds wait for it.
+/// Where clocks may differ a vehicle takes all telemetry that comes to it.
+TEST(TeamSimulator, OfTheTelemetryOfOneStepTheFirstTellsAVehicleAll) {
+  for (const char* faults : {"none", "lossy", "partition", "crash", "hazards", "orders", "sites"}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      auto team = small_mission();
+      team.seed = seed;
+      add_faults(team, *fault_params(faults, seed));
+      const auto first = fly(team);
+      team.faults.push_back({{}, {}, ClockOff{VehicleId{1}, Duration{}}});
+      EXPECT_TRUE(fly(team).trace == first.trace) << faults << ", seed " << seed;
+    }
+  }
+}
+
 TEST(TeamSimulator, APlannerThatIsSlowerThanItsTimeIsWaitedFor) {
   for (const double takes_s : {0.56, 1.5, 3.0}) {
     TeamMission team = small_mission();
