@@ -64,8 +64,9 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   hazards_.on_message(message);
   routes_.on_message(message, now);
   // Who runs with another origin has seen it somewhere else.
-  const bool differs = setup_.difference(sender) != nullptr;
-  if (auto site = differs ? std::nullopt : detections_.on_message(message, sites_, now)) {
+  const bool saw =
+      std::holds_alternative<Detection>(message) && setup_.difference(sender) == nullptr;
+  if (auto site = saw ? detections_.on_message(message, sites_, now) : std::nullopt) {
     (void)sites_.add(*std::move(site), std::nullopt, fleet(), now);  // full: it is seen again
   }
   formation_.on_message(message, now);

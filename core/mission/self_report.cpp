@@ -31,10 +31,12 @@ Health SelfReport::health(const Facts& facts, Instant now) {
   for (std::size_t i = 0; i < senders_.size(); ++i) {
     health.heard.push_back({senders_[i], now - heard_at_[i]});
   }
-  std::sort(health.heard.begin(), health.heard.end(), [](const Heard& a, const Heard& b) {
-    return std::tie(a.age, a.vehicle) < std::tie(b.age, b.vehicle);
-  });
-  if (health.heard.size() > kHeardMax) health.heard.resize(kHeardMax);
+  const std::size_t told = std::min(health.heard.size(), kHeardMax);
+  std::partial_sort(health.heard.begin(), health.heard.begin() + static_cast<std::ptrdiff_t>(told),
+                    health.heard.end(), [](const Heard& a, const Heard& b) {
+                      return std::tie(a.age, a.vehicle) < std::tie(b.age, b.vehicle);
+                    });
+  health.heard.resize(told);
   return health;
 }
 

@@ -28,12 +28,13 @@ class SelfReport {
   SelfReport(Health base, Instant now) : base_{std::move(base)}, next_health_{now} {}
 
   void on_heard(VehicleId sender, Instant now) {
-    const auto at = std::find(senders_.begin(), senders_.end(), sender);
-    if (at != senders_.end()) {
-      heard_at_[static_cast<std::size_t>(at - senders_.begin())] = now;
+    const auto at = std::ranges::lower_bound(senders_, sender);
+    const auto i = at - senders_.begin();
+    if (at != senders_.end() && *at == sender) {
+      heard_at_[static_cast<std::size_t>(i)] = now;
     } else {
-      senders_.push_back(sender);
-      heard_at_.push_back(now);
+      senders_.insert(at, sender);
+      heard_at_.insert(heard_at_.begin() + i, now);
     }
   }
   void on_plan(const FlightPlan& plan);
@@ -58,8 +59,8 @@ class SelfReport {
 
   Health base_;
   // Looked into at every message: side by side, the senders of a large team are one cache line.
-  std::vector<VehicleId> senders_;
-  std::vector<Instant> heard_at_;  ///< when, of each
+  std::vector<VehicleId> senders_;  ///< by number
+  std::vector<Instant> heard_at_;   ///< when, of each
   std::optional<FlightPlan> plan_;
   Instant next_plan_ = Instant::max();
   Instant next_health_;

@@ -102,6 +102,7 @@ void SetupBook::compare(VehicleId id, Node& node, Instant now) {
   std::string keys = node.keys;
   if (node.twin_at) keys.append(keys.empty() ? "" : ", ").append(kTwin);
   std::optional<SetupDifference> difference;
+  suspects_ = suspects_ || node.twin_at || node.ahead_s != 0.0;
   if (!keys.empty() || node.ahead_s != 0.0) difference = SetupDifference{keys, node.ahead_s};
   const bool is_news = !same(difference, node.difference);
   node.difference = std::move(difference);
@@ -155,21 +156,26 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
 
 std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
   if (now < next_) return std::nullopt;
-  for (auto& [id, node] : nodes_) {
-    if (!node.twin_at || now - *node.twin_at <= kTwinLasts * in_this_team(kPeriod)) continue;
-    node.twin_at.reset();
-    compare(id, node, now);
-  }
+  if (suspects_) forget_twins(now);
   said_at_ = now;
   next_ = now + (orders.known ? in_this_team(kPeriod) : kPeriodWhileNew);
   Setup setup = own_;
   setup.time = now;
   setup.knows_orders = orders.known;
   setup.newest_order = orders.newest;
+  if (!suspects_) return setup;
   for (const auto& [id, node] : nodes_) {
     if (node.ahead_s > 0.0 && setup.ahead.size() < kHeardMax) setup.ahead.push_back(id);
   }
   return setup;
+}
+
+void SetupBook::forget_twins(Instant now) {
+  for (auto& [id, node] : nodes_) {
+    if (!node.twin_at || now - *node.twin_at <= kTwinLasts * in_this_team(kPeriod)) continue;
+    node.twin_at.reset();
+    compare(id, node, now);
+  }
 }
 
 const SetupDifference* SetupBook::difference(VehicleId node) const {

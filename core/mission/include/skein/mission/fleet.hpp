@@ -70,7 +70,7 @@ class Fleet {
   FleetParams params_;
   std::map<VehicleId, FleetEntry> vehicles_;
   Instant due_ = Instant::min();  ///< before that on_timeout() finds nothing
-  BoundedQueue<event::FleetWarning> news_{256};
+  BoundedQueue<event::FleetWarning> news_{1024};
 };
 
 }  // namespace skein::mission

@@ -104,11 +104,13 @@ class SetupBook {
   void compare(VehicleId id, Node& node, Instant now);
   void say_soon(Instant now);
   [[nodiscard]] Duration in_this_team(Duration period) const;
+  void forget_twins(Instant now);
 
   SetupParams params_;
   Setup own_;
   std::map<std::uint32_t, const CommonKey*> by_key_;
   std::map<VehicleId, Node> nodes_;
+  bool suspects_ = false;  ///< some node has had a twin, or another clock
   Instant said_at_ = Instant::min();
   Instant next_;
   BoundedQueue<EventBody> news_{64};
