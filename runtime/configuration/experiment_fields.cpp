@@ -11,7 +11,6 @@ namespace {
 
 constexpr std::size_t kAxesMax = 4;
 constexpr std::size_t kPointsMax = 32;
-constexpr double kVehiclesMax = 1000.0;
 constexpr std::array<std::string_view, static_cast<std::size_t>(ExperimentChart::count)> kCharts{
     "lines", "bars"};
 
@@ -40,7 +39,7 @@ void mesh_field(FieldVisitor& v, std::optional<MeshKind>& mesh) {
 void settings_fields(FieldVisitor& v, ExperimentSettings& s) {
   const Range short_time{0.001, 60.0, "s"};
   const Range long_time{0.1, 600.0, "s"};
-  whole(v, {"vehicles", "how many a random team has"}, {1.0, kVehiclesMax}, s.vehicles);
+  whole(v, {"vehicles", "how many a random team has"}, {1.0, double{kVehiclesMax}}, s.vehicles);
   allocation_field(v, s.allocation);
   mesh_field(v, s.mesh);
   v.number({"radio_range_m", "r_n, of the radio and of the protocol"}, {10.0, 1e6, "m"},

@@ -17,6 +17,8 @@ namespace skein::configuration {
 inline constexpr Range kMetres{-1e6, 1e6, "m"};
 inline constexpr Range kSeconds{0.0, 1e6, "s"};
 inline constexpr std::size_t kListMax = 256;
+inline constexpr std::size_t kVehiclesMax = 1000;           ///< of a fleet
+inline constexpr std::size_t kNodesMax = kVehiclesMax + 1;  ///< and the ground station
 
 void seconds(FieldVisitor& v, const Field& field, const Range& range, Duration& value);
 void seconds(FieldVisitor& v, const Field& field, const Range& range, Instant& value);
@@ -75,7 +77,7 @@ template <class Tag>
 void ids(FieldVisitor& v, const Field& field, std::vector<Id<Tag, std::uint16_t>>& values,
          std::string_view noun, int first = 1) {
   using Element = Id<Tag, std::uint16_t>;
-  List list = list_of(values, kListMax, [first](FieldVisitor& inner, Element& value) {
+  List list = list_of(values, kNodesMax, [first](FieldVisitor& inner, Element& value) {
     id(inner, {}, value, first);
   });
   list.noun = noun;

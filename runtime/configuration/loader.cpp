@@ -9,6 +9,7 @@
 #include <map>
 #include <sstream>
 
+#include "field_types.hpp"
 #include "number_text.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/base/text.hpp"
@@ -431,7 +432,7 @@ void Loader::fleet(std::vector<ScenarioVehicle>& vehicles) {
     }
   });
   List list;
-  list.size_max = 1000;
+  list.size_max = kVehiclesMax;
   list.noun = "vehicle";
   list.resize = [&vehicles](std::size_t n) { vehicles.resize(n); };
   list.id_of = [&vehicles](std::size_t i) { return std::uint32_t{vehicles[i].spec.id.value}; };

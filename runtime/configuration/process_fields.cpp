@@ -407,7 +407,7 @@ void network_fields(FieldVisitor& v, NetworkConfig& network) {
        "the nodes that this one may hear, by Fast DDS, which speaks to each by itself; none: all "
        "that are heard, by the air"},
       unique_groups_of(
-          network.peers, kListMax,
+          network.peers, kNodesMax,
           [](FieldVisitor& inner, NetworkPeer& peer) {
             id(inner, {"id", "of the vehicle; 0 is the ground station", kRequired}, peer.id, 0);
             ipv4(inner, {"address", "IPv4 address"}, peer.address);
@@ -556,7 +556,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
             [&config](FieldVisitor& inner) { detections_fields(inner, config.detections); });
   formation_section(v, config.formation);
   v.list({"planes", "of a formation of planes: what each can do, as in its own file"},
-         unique_groups_of(config.planes, kListMax, spec_fields, "vehicle",
+         unique_groups_of(config.planes, kVehiclesMax, spec_fields, "vehicle",
                           [](const VehicleSpec& spec) { return spec.id.value; }));
   console_section(v, config.console);
   v.section({"operator",

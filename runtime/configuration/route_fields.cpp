@@ -110,7 +110,7 @@ void routes_section(FieldVisitor& v, RoutesConfig& config) {
               inner.number({"site_north_m", "where they end"}, kMetres, config.site.y());
               inner.list({"approaches", "one for each vehicle that has a route"},
                          unique_groups_of(
-                             config.approaches, kListMax, approach_fields, "vehicle",
+                             config.approaches, kVehiclesMax, approach_fields, "vehicle",
                              [](const RouteApproach& approach) { return approach.vehicle.value; }));
               inner.list({"hazards", "known before the mission"},
                          unique_groups_of(
@@ -131,7 +131,7 @@ void fields(FieldVisitor& v, RoutePlan& plan) {
            plan.arrival_s);
   v.number({"bound_s", "no plan has an earlier one"}, kSeconds, plan.bound_s);
   v.list({"routes", "one for each vehicle", kRequired},
-         unique_groups_of(plan.routes, kListMax, vehicle_route_fields, "vehicle",
+         unique_groups_of(plan.routes, kVehiclesMax, vehicle_route_fields, "vehicle",
                           [](const VehicleRoute& route) { return route.vehicle.value; }));
 }
 

@@ -38,7 +38,7 @@ void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {
 
 void partition_list(FieldVisitor& v, std::vector<std::vector<VehicleId>>& groups) {
   v.list({"partition", "groups of ids that hear only each other; 0 is the ground station"},
-         list_of(groups, kListMax, [](FieldVisitor& inner, std::vector<VehicleId>& group) {
+         list_of(groups, kNodesMax, [](FieldVisitor& inner, std::vector<VehicleId>& group) {
            ids(inner, {}, group, "vehicle", 0);
          }));
 }
@@ -218,7 +218,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   v.list({"hosts",
           "where the programs run in the field (docs/fleet.md); a bench heeds those of external "
           "vehicles only"},
-         unique_groups_of(s.hosts, kListMax, host_fields, "vehicle",
+         unique_groups_of(s.hosts, kNodesMax, host_fields, "vehicle",
                           [](const Host& host) { return host.node.value; }));
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <map>
 #include <set>
 #include <string>
@@ -15,6 +17,7 @@
 #include "skein/experiments/plots.hpp"
 #include "skein/experiments/statistics.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/mission/may_say.hpp"
 
 namespace skein::experiments {
 namespace {
@@ -188,6 +191,41 @@ TEST(RandomTeams, OfOneSeedBeginAlike) {
     differs = differs || small[i].start.x_m != other[i].start.x_m;
   }
   EXPECT_TRUE(differs);
+}
+
+constexpr auto kThousand = R"(
+version: 1
+title: A thousand
+scenario: s.yaml
+runs: 1
+duration_max_s: 100
+random_team:
+  - {west_m: -10000, east_m: 18000, south_m: -10000, north_m: 18000, search_share: 0.4}
+settings: {vehicles: 1000}
+)";
+
+TEST(RandomTeams, OfAThousandIsAScenario) {
+  const auto drawn = scenario_of(experiment(kThousand), scenario("coalition-32"), {}, 1);
+  ASSERT_TRUE(drawn) << drawn.error().message;
+  std::set<VehicleId> ids;
+  for (const auto& v : drawn->vehicles) ids.insert(v.spec.id);
+  EXPECT_EQ(ids.size(), 1000U);
+  EXPECT_FALSE(ids.contains(mission::kSensors));
+  const auto file = std::filesystem::path{::testing::TempDir()} / "a-thousand.yaml";
+  std::ofstream{file} << to_yaml(*drawn);
+  const auto read = configuration::load_flyable_scenario(file);
+  std::filesystem::remove(file);
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->vehicles.size(), 1000U);
+}
+
+TEST(RandomTeams, OfAThousandFliesItsMissionAndBreaksNoRule) {
+  const auto base = scenario("coalition-32");
+  const auto mission = mission_of(experiment(kThousand), base, {}, 1);
+  ASSERT_TRUE(mission) << mission.error().message;
+  const Measures m = measure(*mission, hil::limits_of(base.expect));
+  EXPECT_TRUE(m.safe);
+  EXPECT_GE(m.coalitions, 2.0);
 }
 
 TEST(MeasuresOfAMission, AreWhatWasFlown) {

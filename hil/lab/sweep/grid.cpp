@@ -10,6 +10,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/mission/may_say.hpp"
 
 namespace skein::experiments {
 namespace {
@@ -123,6 +124,11 @@ ScenarioVehicle place(ScenarioVehicle vehicle, const RandomTeam& team, const Sce
   return vehicle;
 }
 
+/// From 1 on, without that of the sensors.
+VehicleId nth_id(std::size_t n) {
+  return VehicleId{static_cast<std::uint16_t>(n < mission::kSensors.value ? n : n + 1)};
+}
+
 std::string name_of(const Experiment& experiment, const Cell& cell) {
   std::string text;
   const auto words = labels(experiment, cell);
@@ -172,7 +178,7 @@ std::vector<ScenarioVehicle> draw_team(const RandomTeam& team, const Scenario& b
     drawn.push_back(place(base.vehicles[*pick], team, base, random.fork()));
     kinds.erase(pick);
     VehicleSpec& spec = drawn.back().spec;
-    spec.id = VehicleId{static_cast<std::uint16_t>(drawn.size())};
+    spec.id = nth_id(drawn.size());
     spec.height_m = lowest + kHeightMargin * base.expect.separation_vertical_m *
                                  static_cast<double>(drawn.size() - 1);
   }
