@@ -118,6 +118,14 @@ Opened Opener::open_known(Start& start, const Header& header, const EpochKey& ke
   return Opened::good;
 }
 
+bool Opener::has_opened(const Header& header) const {
+  const std::lock_guard lock{mutex_};
+  const auto node = nodes_.find(header.from.sender);
+  if (node == nodes_.end() || node->second.number != header.from.number) return false;
+  const auto start = node->second.starts.find(header.from.random);
+  return start != node->second.starts.end() && !start->second.window.is_new(header.counter);
+}
+
 std::uint8_t Opener::newest_epoch_of(VehicleId node) const {
   const std::lock_guard lock{mutex_};
   const auto known = nodes_.find(node);

@@ -101,7 +101,10 @@ TEST_F(Opening, ADatagramIsGoodOnceInAnyOrder) {
   opener.accept(key(1));
   const Bytes first = sealed(sealer, "1");
   const Bytes second = sealed(sealer, "2");
+  EXPECT_FALSE(opener.has_opened(read_header(second).value()));
   EXPECT_EQ(open(second), Opened::good);
+  EXPECT_TRUE(opener.has_opened(read_header(second).value()));
+  EXPECT_FALSE(opener.has_opened(read_header(first).value()));
   EXPECT_EQ(open(first), Opened::good);
   EXPECT_EQ(open(first), Opened::replayed);
   EXPECT_EQ(open(second), Opened::replayed);

@@ -59,6 +59,9 @@ class Opener {
   [[nodiscard]] Outcome open(std::span<const std::uint8_t> datagram,
                              std::vector<std::uint8_t>& plain, Instant now);
 
+  /// Whether it would be found replayed; it is not counted.
+  [[nodiscard]] bool has_opened(const Header& header) const;
+
   /// Of the newest key that a good datagram of that node was sealed with; 0 where there was none.
   [[nodiscard]] std::uint8_t newest_epoch_of(VehicleId node) const;
 
