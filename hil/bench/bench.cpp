@@ -191,7 +191,8 @@ class Bench {
       own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
     }
     own.keys = options_.sealed ? deployment.keys.at(kBench) : "";
-    own.transport_plugin.clear();  // it hears all
+    own.transport_plugin.clear();  // it hears all,
+    own.air.hops_max = 1;          // and is heard by all
     return listen(own, deployment);
   }
 

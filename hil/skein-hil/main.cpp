@@ -102,8 +102,9 @@ void add_run(CLI::App& app, int& status) {
                  "Speak to each node by itself, with Fast DDS: to compare with the air")
       ->excludes("--external");
   command
-      ->add_flag("--relay", arguments->relay,
-                 "Let the nodes pass on what others say (air.hops_max: 8), over radios that do not")
+      ->add_flag(
+          "--relay", arguments->relay,
+          "Let the nodes pass on what others say (air.hops_max: 16), over radios that do not")
       ->excludes("--dds");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"

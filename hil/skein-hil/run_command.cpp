@@ -23,7 +23,7 @@
 namespace skein::hil {
 namespace {
 
-constexpr std::uint8_t kRelayHops = 8;
+constexpr std::uint8_t kRelayHops = 16;
 
 int complain(const std::string& sentence) {
   fmt::print(stderr, "{}\n", sentence);

@@ -26,9 +26,8 @@ using codec::Topic;
 constexpr std::uint8_t kClearMark = 0xA0;
 constexpr std::size_t kClearBytes = 20;
 constexpr std::size_t kIpUdpBytes = 28;
-/// What comes within this is read together: to wake up costs more than to read. The longer where
-/// many speak.
-constexpr Duration kGather = std::chrono::milliseconds{5};
+/// The thread wakes up at multiples of this, since to wake up costs more than to read: the longer
+/// where many speak.
 constexpr Duration kGatherOfMany = std::chrono::milliseconds{20};
 constexpr std::size_t kOnTheirWayMax = 8192;  ///< more are lost, as on the air
 
@@ -200,20 +199,22 @@ void AirCarrier::run() {
   }
 }
 
+/// Until the next multiple of gather_ at least, but for what this node itself says; from then on
+/// for what is due or comes.
 void AirCarrier::wait() {
-  Duration wait{};
+  const Instant now = steady_now();
+  const Instant tick{(now.time_since_epoch() / gather_ + 1) * gather_};
+  Duration more{};
   {
     const std::lock_guard lock{mutex_};
-    sleeps_until_ = link_.due();
-    if (!on_their_way_.empty()) {
-      sleeps_until_ = std::min(sleeps_until_, on_their_way_.begin()->first);
-    }
-    wait = std::max(Duration{}, sleeps_until_ - steady_now());
+    Instant due = link_.due();
+    if (!on_their_way_.empty()) due = std::min(due, on_their_way_.begin()->first);
+    sleeps_until_ = std::max(due, tick);
+    more = sleeps_until_ - tick;
   }
-  const Duration gather = std::min(wait, gather_);
   std::array<pollfd, 2> ready{pollfd{wake_.get(), POLLIN, 0}, {socket_.descriptor(), POLLIN, 0}};
   const std::span all{ready};
-  if (!wait_for(all.first(1), gather)) (void)wait_for(all, wait - gather);
+  if (!wait_for(all.first(1), tick - now) && more > Duration{}) (void)wait_for(all, more);
   eventfd_t ignored = 0;
   if ((ready[0].revents & POLLIN) != 0) (void)eventfd_read(wake_.get(), &ignored);
 }
@@ -226,7 +227,9 @@ void AirCarrier::receive(std::span<const std::uint8_t> datagram) {
     if (delay == Duration{}) {
       arrive(datagram);
     } else if (on_their_way_.size() < kOnTheirWayMax) {
-      on_their_way_.emplace(now + delay,
+      // At the nearest moment when the thread is awake.
+      const auto multiples = (now + delay + gather_ / 2).time_since_epoch() / gather_;
+      on_their_way_.emplace(Instant{multiples * gather_},
                             std::vector<std::uint8_t>{datagram.begin(), datagram.end()});
     }
   }

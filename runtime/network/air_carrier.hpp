@@ -74,7 +74,8 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   Instant sleeps_until_{};
 
   // Of the thread alone.
-  Duration gather_{};
+  static constexpr Duration kGather = std::chrono::milliseconds{5};
+  Duration gather_ = kGather;
   std::multimap<Instant, std::vector<std::uint8_t>> on_their_way_;  ///< through the radio
   std::vector<Heard> heard_;
   std::vector<std::uint8_t> plain_;
