@@ -23,6 +23,7 @@
 
 #include "external_hosts.hpp"
 #include "flight_controllers.hpp"
+#include "link_listener.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
@@ -168,6 +169,11 @@ class Bench {
     for (const auto& end : configuration::route_ends(scenario_)) {
       routes_end_ = std::max(routes_end_, end.planned);
     }
+    if (!options_.links.empty()) {
+      auto listener = LinkListener::start(options_.links, options_.run_folder / "links.log");
+      if (!listener) return listener.error();
+      links_.emplace(std::move(listener).value());
+    }
     const configuration::Deployment deployment = deploy(*base, *buses);
     if (options_.sealed) {
       if (auto made = make_keys(); !made) return made;
@@ -175,7 +181,10 @@ class Bench {
     const auto configs = configuration::vehicle_configs(scenario_, deployment);
     if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
-    const auto ground = configuration::ground_config(scenario_, deployment);
+    auto ground = configuration::ground_config(scenario_, deployment);
+    if (external_.ground() != nullptr) {
+      ground.network.transport_plugin = external_.ground()->radio_plugin;
+    }
     if (auto kept = keep_console_token(ground.recording_folder); !kept) return kept;
     if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
         !up)
@@ -190,6 +199,7 @@ class Bench {
       own.port = static_cast<std::uint16_t>(*base + 2 * (nodes - 1));
       own.peers.push_back({kGroundStation, ground.network.address, ground.network.port});
     }
+    own.address = options_.address;
     own.keys = options_.sealed ? deployment.keys.at(kBench) : "";
     own.transport_plugin.clear();  // it hears all,
     own.air.hops_max = 1;          // and is heard by all
@@ -206,6 +216,8 @@ class Bench {
         play_faults(now);
         move_radio(now);
         sense(now);
+      } else if (links_ && outcome_.all_heard_s) {
+        move_radio(now);  // a real network needs a while to find its ways
       }
       progress_.now = now;
       say({});
@@ -347,9 +359,15 @@ class Bench {
     const auto file = options_.run_folder / (name + ".yaml");
     std::ofstream{file} << yaml;
     const bool terminal = options_.prompt && id == kGroundStation;
+    std::vector<std::string> command{(options_.programs / program).string(), "--config",
+                                     file.string()};
+    if (id == kGroundStation && external_.ground() != nullptr) {
+      const std::vector<std::string> before{"/bin/sh", "-c",
+                                            "exec " + external_.ground()->run + " \"$@\"", "sh"};
+      command.insert(command.begin(), before.begin(), before.end());
+    }
     auto child = ChildProcess::start(
-        {(options_.programs / program).string(), "--config", file.string()},
-        terminal ? std::filesystem::path{} : options_.run_folder / (name + ".log"),
+        command, terminal ? std::filesystem::path{} : options_.run_folder / (name + ".log"),
         {{"SKEIN_RADIO_TABLE", table_->name()},
          {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
     if (!child) return child.error();
@@ -461,6 +479,14 @@ class Bench {
           (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
       say(outcome_.deaths.back());
     }
+    if (links_ && !links_reported_) {
+      if (const auto how = links_->ended()) {
+        links_reported_ = true;
+        outcome_.deaths.push_back("the program of --links ended by itself: " + *how +
+                                  "; its log is " + (options_.run_folder / "links.log").string());
+        say(outcome_.deaths.back());
+      }
+    }
     watch_for_silence(now);
   }
 
@@ -534,13 +560,15 @@ class Bench {
       radio::Hearing hearing{places_[to].id, hop, {}};
       for (std::size_t from = 0; from < places_.size(); ++from) {
         if (from == to) continue;
-        const int hops = mesh_ ? mesh_->hops(from, to)
-                               : int{is_up(radio_, interference, places_[from], places_[to])};
+        const bool direct = is_up(radio_, interference, places_[from], places_[to]);
+        const int hops = mesh_ ? mesh_->hops(from, to) : int{direct};
         table_->set_hops(places_[from].id, places_[to].id, hops);
         hearing.hops.at(places_[from].id.value) = static_cast<std::uint8_t>(hops);
+        if (links_) links_->tell(places_[from].id, places_[to].id, radio::over_hops(hop, int{direct}));
       }
       external_.tell(hearing);
     }
+    if (links_) links_->hand_on();
   }
 
   void sense(Instant now) {
@@ -607,7 +635,10 @@ class Bench {
       if (killed_.contains(id) || reported_.contains(id) || !how || process.clean()) continue;
       outcome_.deaths.push_back(name_of(id) + " did not end cleanly when asked: " + *how);
     }
-    outcome_.external = external_.addresses().size();
+    if (links_ && !links_->stop()) {
+      outcome_.deaths.push_back("the program of --links did not end with its input; it is killed");
+    }
+    outcome_.external = external_.vehicles();
     for (const auto& missing : external_.collect(options_.run_folder)) {
       outcome_.not_collected.push_back(missing.why);
     }
@@ -660,6 +691,8 @@ class Bench {
   InterruptWatch interrupts_;
   ExternalHosts external_;
   std::optional<radio::LinkTable> table_;
+  std::optional<LinkListener> links_;
+  bool links_reported_ = false;  ///< that it has ended
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
   std::unique_ptr<network::Node> node_;

@@ -19,7 +19,8 @@ namespace skein::hil {
 
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
                                          const std::filesystem::path& log,
-                                         const std::map<std::string, std::string>& environment) {
+                                         const std::map<std::string, std::string>& environment,
+                                         int input) {
   if (argv.empty() || ::access(argv[0].c_str(), X_OK) != 0) {
     return Error{(argv.empty() ? std::string{"an empty command"} : argv[0]) +
                  ": not an executable program; build it with ./dev build"};
@@ -29,7 +30,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
       terminal ? -1 : ::open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (!terminal && output < 0)
     return Error{log.string() + ": cannot be written: " + std::generic_category().message(errno)};
-  const int input = terminal ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  const int nothing = terminal ? -1 : ::open("/dev/null", O_RDONLY | O_CLOEXEC);
 
   // Everything is made ready before the fork: the child may only call async-signal-safe functions.
   std::vector<std::string> variables;
@@ -57,7 +58,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
     if (::getppid() != parent) ::_exit(127);  // the bench died before the line above
     if (!terminal) {
       ::setpgid(0, 0);  // Ctrl-C goes to the bench, which stops them in order
-      ::dup2(input, STDIN_FILENO);
+      ::dup2(input >= 0 ? input : nothing, STDIN_FILENO);
       ::dup2(output, STDOUT_FILENO);
       ::dup2(output, STDERR_FILENO);
     }
@@ -65,7 +66,7 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
     ::_exit(127);
   }
   if (output >= 0) ::close(output);
-  if (input >= 0) ::close(input);
+  if (nothing >= 0) ::close(nothing);
   if (pid < 0)
     return Error{argv[0] + ": cannot be started: " + std::generic_category().message(errno)};
   return ChildProcess{pid};

@@ -76,18 +76,25 @@ auto at_once(std::vector<Element>& elements, Do what) {
 Result<ExternalHosts> ExternalHosts::make(const configuration::Scenario& scenario,
                                           const std::vector<VehicleId>& vehicles) {
   std::vector<Host> hosts;
+  std::optional<Host> ground;
   for (const VehicleId id : vehicles) {
     const std::string who = fleet::name_of(id);
+    const auto host = std::find_if(scenario.hosts.begin(), scenario.hosts.end(),
+                                   [id](const Host& h) { return h.node == id; });
     if (id == kGroundStation) {
-      return Error{"the ground station is the bench's; --external takes vehicles"};
+      if (host == scenario.hosts.end() || !host->ssh.empty()) {
+        return Error{
+            "the ground station runs on this machine; as external it has a host without ssh, whose "
+            "run names its network, such as `ip netns exec ground`"};
+      }
+      ground = *host;
+      continue;
     }
     const auto vehicle = std::find_if(scenario.vehicles.begin(), scenario.vehicles.end(),
                                       [id](const auto& v) { return v.spec.id == id; });
     if (vehicle == scenario.vehicles.end()) {
       return Error{"--external names " + who + ", which is not in the scenario"};
     }
-    const auto host = std::find_if(scenario.hosts.begin(), scenario.hosts.end(),
-                                   [id](const Host& h) { return h.node == id; });
     if (host == scenario.hosts.end()) {
       return Error{who +
                    " is external and has no host; add it under hosts, or name the fleet's "
@@ -104,6 +111,7 @@ Result<ExternalHosts> ExternalHosts::make(const configuration::Scenario& scenari
     hosts.push_back(*host);
   }
   ExternalHosts external{std::move(hosts)};
+  external.ground_ = std::move(ground);
   if (!external.empty()) {
     auto feed = radio::FeedSender::open();
     if (!feed) return feed.error();
@@ -124,6 +132,7 @@ const Host* ExternalHosts::host_of(VehicleId vehicle) const {
 
 std::map<VehicleId, std::string> ExternalHosts::addresses() const {
   std::map<VehicleId, std::string> all;
+  if (ground_) all.emplace(ground_->node, ground_->address);
   for (const Host& host : hosts_) all.emplace(host.node, host.address);
   return all;
 }

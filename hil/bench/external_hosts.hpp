@@ -20,11 +20,13 @@ namespace skein::hil {
 
 /// The vehicles of a run whose programs are on other machines: configured, started, told of the
 /// radio, ended, and their recordings fetched. What was started is ended with the object at the
-/// latest.
+/// latest. The ground station remains the bench's, but where it is among them it is on a network of
+/// its own.
 class ExternalHosts {
  public:
   /// Of these vehicles, with the hosts that the scenario names. Fails where one has no host, is not
-  /// of the scenario, or a fault would kill it.
+  /// of the scenario, or a fault would kill it; and where the ground station is not on this
+  /// machine.
   [[nodiscard]] static Result<ExternalHosts> make(const configuration::Scenario& scenario,
                                                   const std::vector<VehicleId>& vehicles);
   ~ExternalHosts();
@@ -37,6 +39,11 @@ class ExternalHosts {
   [[nodiscard]] bool has(VehicleId vehicle) const { return host_of(vehicle) != nullptr; }
   /// Null for a vehicle of the bench.
   [[nodiscard]] const configuration::Host* host_of(VehicleId vehicle) const;
+  [[nodiscard]] std::size_t vehicles() const { return hosts_.size(); }
+  /// The ground station's, where it is external; else null. Its program is started here, after the
+  /// words of its `run`.
+  [[nodiscard]] const configuration::Host* ground() const { return ground_ ? &*ground_ : nullptr; }
+  /// Of all of them, the ground station too.
   [[nodiscard]] std::map<VehicleId, std::string> addresses() const;
 
   /// Of these configurations those of external vehicles, each as its host needs it: pushed, and
@@ -69,7 +76,8 @@ class ExternalHosts {
   };
   [[nodiscard]] static Result<void> bring_up(Started& started);
 
-  std::vector<configuration::Host> hosts_;
+  std::vector<configuration::Host> hosts_;  ///< of vehicles
+  std::optional<configuration::Host> ground_;
   std::vector<Started> started_;
   std::optional<radio::FeedSender> feed_;
 };

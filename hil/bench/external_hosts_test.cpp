@@ -38,7 +38,7 @@ std::string refusal(const configuration::Scenario& s, std::uint16_t id) {
 }
 
 TEST(ExternalHosts, WhatCannotBeExternalIsTold) {
-  EXPECT_THAT(refusal(scenario(), 0), HasSubstr("the ground station is the bench's"));
+  EXPECT_THAT(refusal(scenario(), 0), HasSubstr("has a host without ssh"));
   EXPECT_THAT(refusal(scenario(), 7), HasSubstr("not in the scenario"));
   EXPECT_THAT(refusal(scenario(), 3), HasSubstr("has no host"));
   auto s = scenario();
@@ -50,6 +50,25 @@ TEST(ExternalHosts, WhatCannotBeExternalIsTold) {
   s.faults[0].vehicle = VehicleId{1};
   EXPECT_THAT(refusal(s, 1), HasSubstr("a fault kills vehicle 1"));
   EXPECT_EQ(refusal(s, 2), "");
+}
+
+TEST(ExternalHosts, TheGroundStationIsStartedHereOnItsOwnNetwork) {
+  auto s = scenario();
+  configuration::Host ground;
+  ground.node = kGroundStation;
+  ground.address = "10.0.0.100";
+  ground.run = "ip netns exec ground";
+  s.hosts.push_back(ground);
+  const auto hosts = ExternalHosts::make(s, {kGroundStation, VehicleId{1}});
+  ASSERT_TRUE(hosts);
+  ASSERT_NE(hosts->ground(), nullptr);
+  EXPECT_EQ(hosts->ground()->run, "ip netns exec ground");
+  EXPECT_FALSE(hosts->has(kGroundStation)) << "it is not pushed, nor told of the radio";
+  EXPECT_EQ(hosts->vehicles(), 1U);
+  ASSERT_EQ(hosts->nodes().size(), 2U);
+  EXPECT_EQ(hosts->nodes().front().address, "10.0.0.100");
+  s.hosts.back().ssh = "pi@ground";
+  EXPECT_THAT(refusal(s, 0), HasSubstr("has a host without ssh"));
 }
 
 TEST(ExternalHosts, HaveTheAddressesAndBusesOfTheirHosts) {

@@ -30,6 +30,7 @@ struct RunArguments {
   bool headless = false;
   bool dds = false;
   bool relay = false;  ///< in place of the scenario's air.hops_max
+  std::string links;   ///< a program that makes the links of a real network; empty: none
   bool clear = false;
   bool prompt = false;
   std::uint16_t console_port = 0;  ///< 0: no console

@@ -106,6 +106,9 @@ void add_run(CLI::App& app, int& status) {
           "--relay", arguments->relay,
           "Let the nodes pass on what others say (air.hops_max: 16), over radios that do not")
       ->excludes("--dds");
+  command->add_option("--links", arguments->links,
+                      "Command of a program that makes the links of a real network as the "
+                      "scenario's radio has them: docs/mesh.md");
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"

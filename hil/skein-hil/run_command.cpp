@@ -10,6 +10,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "skein/base/contains.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/fleet/fleet.hpp"
 #include "skein/hil/bench.hpp"
@@ -84,12 +85,13 @@ Result<void> give_hosts(configuration::Scenario& scenario, BenchOptions& options
   }
   options.address = arguments.address;
   for (const auto& host : scenario.hosts) {
-    if (options.address.empty() && host.node == kGroundStation) options.address = host.address;
+    if (!options.address.empty() || contains(options.external, kGroundStation)) break;
+    if (host.node == kGroundStation) options.address = host.address;
   }
   if (!options.address.empty()) return {};
   return Error{
       "the hosts need an address of this machine; name the ground station's host "
-      "(vehicle: 0), or give --address"};
+      "(vehicle: 0), or give --address, as where it is external itself"};
 }
 
 BenchOptions options_of(const RunArguments& arguments) {
@@ -103,6 +105,7 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.prompt = arguments.prompt;
   options.sealed = !arguments.clear;
   options.dds = arguments.dds;
+  options.links = arguments.links;
   options.console_port = arguments.console_port;
   if (options.console_port != 0) options.console_token = process::make_token();
   options.run_folder =

@@ -30,6 +30,9 @@ struct BenchOptions {
   /// one for each.
   std::string can;
   bool dds = false;                ///< Fast DDS, to each node by itself; else by the air
+  /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
+  /// empty: none.
+  std::string links;
   bool sealed = true;              ///< with keys that are made for the run
   std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
   std::string console_token;       ///< that opens it

@@ -19,10 +19,11 @@ namespace skein::hil {
 class ChildProcess {
  public:
   /// Starts argv[0] (a path) with `environment` added to ours, its output appended to `log`; an
-  /// empty `log` gives it our terminal, input and output.
+  /// empty `log` gives it our terminal, input and output. `input`, where it is one, is its input;
+  /// else there is nothing to read.
   [[nodiscard]] static Result<ChildProcess> start(
       const std::vector<std::string>& argv, const std::filesystem::path& log,
-      const std::map<std::string, std::string>& environment);
+      const std::map<std::string, std::string>& environment, int input = -1);
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
