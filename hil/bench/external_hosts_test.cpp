@@ -65,8 +65,8 @@ TEST(ExternalHosts, TheGroundStationIsStartedHereOnItsOwnNetwork) {
   EXPECT_EQ(hosts->ground()->run, "ip netns exec ground");
   EXPECT_FALSE(hosts->has(kGroundStation)) << "it is not pushed, nor told of the radio";
   EXPECT_EQ(hosts->vehicles(), 1U);
-  ASSERT_EQ(hosts->nodes().size(), 2U);
-  EXPECT_EQ(hosts->nodes().front().address, "10.0.0.100");
+  EXPECT_THAT(hosts->addresses(), testing::ElementsAre(testing::Pair(kGroundStation, "10.0.0.100"),
+                                                       testing::Pair(VehicleId{1}, "10.0.0.1")));
   s.hosts.back().ssh = "pi@ground";
   EXPECT_THAT(refusal(s, 0), HasSubstr("has a host without ssh"));
 }

@@ -19,8 +19,11 @@ namespace skein::hil::radio {
 /// That nodes pass on what others say, hop by hop.
 struct MeshParams {
   int hops_max = 8;
-  Duration mend = std::chrono::seconds{1};  ///< until a route that broke is found anew
-  bool ground_relays = true;                ///< the ground station passes on, too
+  /// How old routes may be. None: everything is said to all, and who hears it first passes it on,
+  /// so that it takes whatever ways there are (measured: docs/mesh.md). Where routes are looked up,
+  /// batman-adv takes 5 s to find another.
+  Duration mend{};
+  bool ground_relays = true;  ///< the ground station passes on, too
 };
 
 /// What a radio is when nothing goes wrong.
