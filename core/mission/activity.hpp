@@ -17,6 +17,7 @@ struct PartStates {
   bool scouts = false;
   bool bids = false;  ///< or is in a coalition
   bool en_route = false;
+  bool stands_by = false;  ///< in a relay orbit
 };
 
 struct ActivityRule {
@@ -39,6 +40,7 @@ inline constexpr std::array kActivityRules{
     ActivityRule{[](const PartStates& s) { return s.scouts; }, Activity::surveying},
     ActivityRule{[](const PartStates& s) { return s.bids; }, Activity::bidding},
     ActivityRule{[](const PartStates& s) { return s.en_route; }, Activity::en_route},
+    ActivityRule{[](const PartStates& s) { return s.stands_by; }, Activity::standing_by},
 };
 
 [[nodiscard]] constexpr Activity activity_of(const PartStates& states) {

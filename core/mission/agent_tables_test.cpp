@@ -87,6 +87,8 @@ TEST(AgentTables, EveryStateIsReachedAndNoEntryStandsTwice) {
 TEST(AgentTables, AnActivityIsThatOfTheFirstRuleThatHolds) {
   EXPECT_EQ(activity_of({}), Activity::searching);
   EXPECT_EQ(activity_of({.bids = true, .en_route = true}), Activity::bidding);
+  EXPECT_EQ(activity_of({.bids = true, .stands_by = true}), Activity::bidding);
+  EXPECT_EQ(activity_of({.stands_by = true}), Activity::standing_by);
   EXPECT_EQ(activity_of({.leads = true, .bids = true}), Activity::leading);
   EXPECT_EQ(activity_of({.leads = true, .monitors = true}), Activity::monitoring);
   EXPECT_EQ(activity_of({.has_task = true, .leads = true}), Activity::executing);

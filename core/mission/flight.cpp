@@ -108,6 +108,7 @@ void Flight::start_route(const TimedPath& route) {
 
 void Flight::fly(const TimedPath& timed) {
   searching_ = homing_ = en_route_ = false;
+  stands_by_.reset();
   search_marks_.clear();
   replace(timed);
 }
@@ -144,6 +145,7 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   searching_ = false;
   homing_ = false;
   en_route_ = false;
+  stands_by_.reset();
   replace(timed);
   return true;
 }
@@ -286,6 +288,17 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
   searching_ = false;
   homing_ = true;
   search_marks_.clear();
+}
+
+void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
+                      const std::vector<Hazard>& hazards, double range_m, Instant now) {
+  if (place) {
+    follow({*place}, hazards, range_m, now);
+    search_marks_.clear();
+  } else {
+    hold(hazards, now);
+  }
+  stands_by_ = site;
 }
 
 double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {

@@ -44,8 +44,14 @@ class Flight {
   /// an orbit where that ends.
   void search(const std::vector<Hazard>& hazards, double range_m, Instant now);
   void fly_home(const std::vector<Hazard>& hazards, Instant now);
+  /// An orbit at that place, where it can be reached clear of hazards and `range_m` lasts there and
+  /// home again; else, and without a place, here. The search goes on from there later.
+  void stand_by(SiteId site, const std::optional<Vec2>& place, const std::vector<Hazard>& hazards,
+            double range_m, Instant now);
   [[nodiscard]] bool searching() const { return searching_; }
   [[nodiscard]] bool homing() const { return homing_; }
+  /// The site that stand_by() was told of, while that is flown.
+  [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
   /// The length of the way from there to where the first plan began, clear of hazards where it can
   /// be; 0 where the vehicle needs not come home.
   [[nodiscard]] double way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const;
@@ -96,6 +102,7 @@ class Flight {
   FlightPlan plan_;
   bool searching_ = false;
   bool homing_ = false;
+  std::optional<SiteId> stands_by_;
   bool en_route_ = false;
   bool fresh_ = false;
 };

@@ -260,7 +260,9 @@ Result<SiteId> GroundSites::change(SiteId old, Site site, std::optional<VehicleI
 /// It does something, or has another site of the operator to survey.
 bool GroundSites::is_busy(VehicleId vehicle, const FleetEntry& known, SiteId with) const {
   const Activity activity = known.telemetry->activity;
-  if (activity != Activity::searching && activity != Activity::en_route) return true;
+  const bool free = activity == Activity::searching || activity == Activity::en_route ||
+                    activity == Activity::standing_by;
+  if (!free) return true;
   return std::ranges::any_of(sites_, [&](const auto& other) {
     return other.first != with && is_to_survey(other.second) && other.second.surveyor == vehicle;
   });

@@ -102,6 +102,10 @@ bool Ownship::on_track(const TimedPath& timed) const {
   return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;
 }
 
+bool Ownship::can(const TaskId& task) const {
+  return spec().capabilities.has(task.kind) && (task.kind != TaskKind::deliver || loads_ > 0);
+}
+
 double Ownship::range_left(Instant at) const {
   const double until_then = std::max(0.0, to_seconds(at - state_.time)) * spec().cruise_speed_mps;
   return spec().range_m - state_.distance_flown_m - until_then;

@@ -40,6 +40,9 @@ class Ownship {
 
   // Flight, around the known hazards. Precondition: flight().started().
   void search(Instant now) { flight_.search(hazards(), range_to_spend(now), now); }
+  void stand_by(SiteId site, const std::optional<Vec2>& place, Instant now) {
+    flight_.stand_by(site, place, hazards(), range_to_spend(now), now);
+  }
   void hold(Instant now) { flight_.hold(hazards(), now); }
   void fly_home(Instant now) { flight_.fly_home(hazards(), now); }
   /// Home where it is recovered there, an orbit where it is recovered anywhere.
@@ -52,6 +55,8 @@ class Ownship {
   /// Is it where that path has it? Then a task on it counts as flown.
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
 
+  /// Has it what that task takes, on board and by its kind?
+  [[nodiscard]] bool can(const TaskId& task) const;
   [[nodiscard]] bool comes_home() const { return spec().recovery == Recovery::home; }
   [[nodiscard]] double range_left(Instant at) const;
   /// Without what is kept for an orbit at home, for whoever lands it.

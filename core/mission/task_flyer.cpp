@@ -89,14 +89,9 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
     const coalition::Announcement& announcement, Instant now) const {
   if (task_ && task_->in(TaskFlight::State::begun)) return Reason::task_in_progress;
 
+  const auto can = [this](const TaskId& task) { return ownship_.can(task); };
+  if (std::ranges::none_of(announcement.tasks, can)) return Reason::incapable;
   const VehicleSpec& vehicle = ownship_.spec();
-  const auto can = [&](const TaskId& t) {
-    return vehicle.capabilities.has(t.kind) &&
-           (t.kind != TaskKind::deliver || ownship_.loads() > 0);
-  };
-  if (std::none_of(announcement.tasks.begin(), announcement.tasks.end(), can)) {
-    return Reason::incapable;
-  }
   const Flight& flight = ownship_.flight();
   const Pose2 pose = flight.pose_at(announcement.formed_at);
   const double reach_m = ownship_.config().protocol.radio_range_m;

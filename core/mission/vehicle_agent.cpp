@@ -98,6 +98,8 @@ void VehicleAgent::Impl::send(const coalition::Message& message, Instant now) {
 void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now) {
   if (!ownship_.flight().started()) return;
   scout_.on_message(message, now);
+  const auto* call = std::get_if<coalition::Announcement>(&message);
+  if (call == nullptr || !scout_.is_withdrawn(call->site.id)) relay_.on_message(message, now);
   if (const auto site = leader_.on_message(message, now)) scout_.put_off(*site);
   say_last_words(now);  // before its own member bids for the leader that it gives way to
   flyer_.on_message(message, now);
@@ -127,7 +129,10 @@ coalition::Reason VehicleAgent::Impl::otherwise_engaged(const coalition::Announc
 
 void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant now) {
   flyer_.on_authorisation(message, now);
-  if (!message.granted) scout_.close(message.site);
+  if (!message.granted) {
+    scout_.close(message.site);
+    relay_.close(message.site);
+  }
   leader_.on_authorisation(message, now);
   say_last_words(now);
 }
@@ -137,6 +142,7 @@ void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
   if (!message.withdrawn) return scout_.on_site_report(message, now);
   const SiteId site = message.site.id;
   if (!scout_.withdraw(site, now)) return;
+  relay_.close(site);
   leader_.withdraw(site, now);
   say_last_words(now);
   flyer_.leave_site(site, now);
@@ -154,7 +160,9 @@ void VehicleAgent::Impl::idle(Instant now) {
   if (failsafe_.in(Failsafe::Action::none)) {
     if (const auto site = scout_.take_up(now)) leader_.lead(*site, now);
   }
-  if (scout_.flying() || leader_.leading() || ownship_.flight().searching()) return;
+  if (scout_.flying() || leader_.leading()) return;
+  if (failsafe_.in(Failsafe::Action::none) && relay_.fly(now)) return;
+  if (ownship_.flight().searching()) return;
   ownship_.search(now);
 }
 
@@ -177,7 +185,8 @@ Activity VehicleAgent::Impl::activity() const {
                       .monitors = leader_.monitoring(),
                       .scouts = scout_.flying(),
                       .bids = !flyer_.free(),
-                      .en_route = ownship_.flight().en_route(ownship_.state().time)});
+                      .en_route = ownship_.flight().en_route(ownship_.state().time),
+                      .stands_by = ownship_.flight().stands_by().has_value()});
 }
 
 Telemetry VehicleAgent::Impl::telemetry() const {

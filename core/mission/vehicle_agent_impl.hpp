@@ -5,6 +5,7 @@
 #include "leader.hpp"
 #include "outbox.hpp"
 #include "ownship.hpp"
+#include "relay_orbit.hpp"
 #include "route_flyer.hpp"
 #include "scout.hpp"
 #include "skein/mission/vehicle_agent.hpp"
@@ -60,6 +61,7 @@ class VehicleAgent::Impl {
   Leader leader_{ownship_, outbox};
   TaskFlyer flyer_{ownship_, outbox};
   RouteFlyer routes_{ownship_, outbox};
+  RelayOrbit relay_{ownship_};
   CommandFilter commands_;
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };

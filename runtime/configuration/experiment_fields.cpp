@@ -44,6 +44,8 @@ void settings_fields(FieldVisitor& v, ExperimentSettings& s) {
   mesh_field(v, s.mesh);
   v.number({"radio_range_m", "r_n, of the radio and of the protocol"}, {10.0, 1e6, "m"},
            s.radio_range_m);
+  v.number({"relay_orbit_m", "as in the scenario's protocol; 0: none"}, {0.0, 1e6, "m"},
+           s.relay_orbit_m);
   v.number({"message_delay_s", "dt_d; the radio's own delays are spread evenly from 0 to it"},
            short_time, s.message_delay_s);
   v.number({"radio_delay_s", "of every message, in place of that spread"}, {0.0, 60.0, "s"},

@@ -198,6 +198,11 @@ void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
   const Range long_time{0.1, 600.0, "s"};
   v.number({"radio_range_m", "a bidder stays within it of the leader until the coalition stands"},
            {10.0, 1e6, "m"}, p.radio_range_m);
+  v.number(
+      {"relay_orbit_m",
+       "relay orbits: free vehicles stay this near to a site whose leader lacks vehicles; half "
+       "of a radio's range does well; 0: they search on"},
+      {0.0, 1e6, "m"}, p.relay_orbit_m);
   seconds(v, {"message_delay_s", "longest delay of a message"}, short_time, p.message_delay);
   seconds(v, {"allocation_time_s", "time to allocate the tasks"}, short_time, p.allocation_time);
   seconds(v, {"formation_margin_s", "margin in the time to form a coalition"}, {0.0, 60.0, "s"},

@@ -41,6 +41,7 @@ ExperimentSettings settings_of(const Experiment& experiment, const Cell& cell) {
     put(own.allocation, all.allocation);
     put(own.mesh, all.mesh);
     put(own.radio_range_m, all.radio_range_m);
+    put(own.relay_orbit_m, all.relay_orbit_m);
     put(own.message_delay_s, all.message_delay_s);
     put(own.radio_delay_s, all.radio_delay_s);
     put(own.allocation_time_s, all.allocation_time_s);
@@ -63,6 +64,7 @@ void apply(const ExperimentSettings& settings, Scenario& scenario) {
     scenario.radio.range_m = *settings.radio_range_m;
     protocol.radio_range_m = *settings.radio_range_m;
   }
+  if (settings.relay_orbit_m) protocol.relay_orbit_m = *settings.relay_orbit_m;
   if (settings.mesh) {
     scenario.radio.mesh = *settings.mesh;
     if (*settings.mesh != configuration::MeshKind::none) protocol.radio_range_m = kEverywhere_m;

@@ -59,6 +59,7 @@ const activities: Record<string, string> = {
   holding: "#cc79a7",
   forming: "#4a9ad4",
   en_route: "#d58a5e",
+  standing_by: "#8c7fd1",
 };
 
 export function activity_colour(activity: string | null): string {

@@ -8,6 +8,9 @@ namespace skein::coalition {
 /// The numbers of the contract net (Wang 2022, 5.1 and eq. 20-21).
 struct ProtocolParams {
   double radio_range_m = 1500.0;  ///< r_n: who leaves it before t_e does not bid
+  /// Relay orbits: who has nothing else to do stays this near to a site whose leader lacks
+  /// vehicles; 0: it searches on. Less than a radio's range by what both orbits take of it.
+  double relay_orbit_m = 0.0;
   Duration message_delay = std::chrono::milliseconds{200};    ///< dt_d, the longest
   Duration allocation_time = std::chrono::milliseconds{500};  ///< t_TA
   Duration margin = std::chrono::milliseconds{300};           ///< delta_t

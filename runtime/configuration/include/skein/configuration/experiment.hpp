@@ -23,6 +23,7 @@ struct ExperimentSettings {
   std::optional<planning::AllocationMethod> allocation;
   std::optional<MeshKind> mesh;         ///< with it nobody is out of the protocol's reach
   std::optional<double> radio_range_m;  ///< r_n, of the radio and of the protocol
+  std::optional<double> relay_orbit_m;  ///< 0: no relay orbits
   /// dt_d of the protocol; the radio's own delays are spread evenly from 0 to it.
   std::optional<double> message_delay_s;
   std::optional<double> radio_delay_s;       ///< of every message, in place of that spread
