@@ -54,7 +54,7 @@ void RelayOrbit::on_announcement(const coalition::Announcement& message, Instant
     return;
   }
   if (call_ && !same && !comes_before(message, call_->said)) return;
-  if (!same) call_.emplace();
+  if (!same) call_ = Call{};
   call_->said = message;
   call_->failed = call_->failed || message.round.number > 1;
   call_->heard_at = now;
