@@ -23,6 +23,7 @@
 
 #include "external_hosts.hpp"
 #include "flight_controllers.hpp"
+#include "flooder.hpp"
 #include "link_listener.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
@@ -165,6 +166,7 @@ class Bench {
     auto table = radio::LinkTable::create();
     if (!table) return table.error();
     table_.emplace(std::move(table).value());
+    if (auto ready = prepare_floods(*base); !ready) return ready;
 
     for (const auto& end : configuration::route_ends(scenario_)) {
       routes_end_ = std::max(routes_end_, end.planned);
@@ -215,6 +217,7 @@ class Bench {
       if (now >= Instant{}) {
         play_faults(now);
         move_radio(now);
+        flood();
         sense(now);
       } else if (links_ && outcome_.all_heard_s) {
         move_radio(now);  // a real network needs a while to find its ways
@@ -372,6 +375,18 @@ class Bench {
          {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
     if (!child) return child.error();
     processes_.emplace(id, std::move(child).value());
+    return {};
+  }
+
+  Result<void> prepare_floods(std::uint16_t port) {
+    const auto floods = [](const configuration::Fault& fault) {
+      return fault.kind == configuration::FaultKind::flood;
+    };
+    if (!std::ranges::any_of(scenario_.faults, floods)) return {};
+    if (options_.dds) return Error{"a flood_vehicle floods the air; leave --dds out"};
+    auto flooder = Flooder::open(scenario_.air.group, port, options_.address);
+    if (!flooder) return flooder.error();
+    flooder_.emplace(std::move(flooder).value());
     return {};
   }
 
@@ -571,6 +586,14 @@ class Bench {
     if (links_) links_->hand_on();
   }
 
+  void flood() {
+    constexpr auto kDatagrams = static_cast<std::size_t>(
+        radio::Flood::kDatagrams_per_s * std::chrono::duration<double>{kPeriod}.count());
+    for (const radio::Flood& by : timeline_.interference().floods) {
+      flooder_->say(by.vehicle, kDatagrams, radio::Flood::kBytes);
+    }
+  }
+
   void sense(Instant now) {
     for (const auto& report : sensors_.update(positions())) {
       publish(report);
@@ -715,6 +738,7 @@ class Bench {
   radio::RadioParams radio_;
   std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
   std::vector<radio::Node> places_;  ///< of nodes_
+  std::optional<Flooder> flooder_;   ///< where the scenario has floods
   FaultTimeline timeline_;
   std::optional<Instant> stop_at_;
   BenchProgress progress_;

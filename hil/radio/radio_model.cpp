@@ -119,13 +119,16 @@ Arrivals carry(const Link& link, Random& random) {
   return arrivals;
 }
 
-Arrivals Channel::carry(const Link& link, std::size_t bytes, Instant now, Random& random) {
+Arrivals Channel::carry(const Link& link, VehicleId from, std::size_t bytes, Instant now,
+                        Random& random) {
   Arrivals arrivals = radio::carry(link, random);
   if (!link.bytes_per_s || !link.up) return arrivals;
   // What is lost has taken its time of the channel, too.
-  const Instant free_at =
-      std::max(free_at_, now) + from_seconds(static_cast<double>(bytes) / *link.bytes_per_s);
-  if (free_at - now > kWaitMax) return {};
+  const Duration takes = from_seconds(static_cast<double>(bytes) / *link.bytes_per_s);
+  Instant& half_free_at = half_free_at_[from];
+  const Instant free_at = std::max(free_at_, now) + takes;
+  if (half_free_at - now > 2 * kBurst || free_at - now > kWaitMax) return {};
+  half_free_at = std::max(half_free_at, now) + 2 * takes;
   free_at_ = free_at;
   for (Duration& delay : arrivals) delay += free_at - now;
   return arrivals;

@@ -94,7 +94,8 @@ class RadioTransport : public rtps::ChainingTransport {
     bool now = false;
     {
       const std::lock_guard lock{mutex_};
-      const auto arrivals = channel_.carry(link, size, steady_now(), random_);
+      const auto arrivals =
+          channel_.carry(link, sender.value_or(self_), size, steady_now(), random_);
       // Without any delay it goes on at once, on the channel's own thread, as without us.
       now = !arrivals.empty() && link.delay + link.jitter == Duration{} && !link.disorder &&
             !link.bytes_per_s;
@@ -214,7 +215,7 @@ class AirRadio : public network::AirRadio {
   std::vector<Duration> arrivals(VehicleId sender, std::size_t bytes) override {
     const Link link = sender != self_ ? table_->get(sender, self_) : Link{};
     if (!link.up) return {};
-    const auto arrivals = channel_.carry(link, bytes, steady_now(), random_);
+    const auto arrivals = channel_.carry(link, sender, bytes, steady_now(), random_);
     return {arrivals.begin(), arrivals.end()};
   }
 

@@ -192,14 +192,37 @@ TEST(RadioModel, WhatIsHeardSharesTheChannel) {
   link.bytes_per_s = 1000.0;
   Channel channel;
   const Instant start = at_seconds(5.0);
+  std::uint16_t from = 0;
   const auto takes = [&](const Link& way, std::size_t bytes, Instant now) {
-    return channel.carry(way, bytes, now, random);
+    return channel.carry(way, VehicleId{++from}, bytes, now, random);
   };
   EXPECT_EQ(takes(link, 100, start)[0], from_seconds(0.16));
   EXPECT_EQ(takes(link, 200, start)[0], from_seconds(0.36)) << "one after the other";
   EXPECT_EQ(takes(over_hops(link, 2), 100, start)[0], from_seconds(0.62)) << "each hop takes it";
   EXPECT_TRUE(takes(link, 600, start).empty()) << "it would wait for more than a second";
   EXPECT_EQ(takes(link, 100, at_seconds(6.0))[0], from_seconds(0.16));
+}
+
+TEST(RadioModel, WhoFloodsHasHalfOfTheChannelAtMost) {
+  Random random{1};
+  Link link{true, 0.0, Duration{}, Duration{}};
+  link.bytes_per_s = 10'000.0;
+  Channel channel;
+  std::size_t noise = 0;
+  int heard = 0;
+  constexpr int kSeconds = 20;
+  for (int i = 0; i < kSeconds * 100; ++i) {
+    const Instant now = at_seconds(i / 100.0);
+    for (int k = 0; k < 5; ++k) {
+      noise += channel.carry(link, VehicleId{1}, 1000, now, random).size() * 1000;
+    }
+    if (i % 10 != 0) continue;
+    const auto arrivals = channel.carry(link, VehicleId{2}, 100, now, random);
+    heard += static_cast<int>(arrivals.size());
+    for (const Duration wait : arrivals) EXPECT_LT(wait, from_seconds(0.5));
+  }
+  EXPECT_EQ(heard, kSeconds * 10) << "nothing of the other is lost";
+  EXPECT_NEAR(static_cast<double>(noise) / kSeconds, 5'000.0, 500.0);
 }
 
 }  // namespace

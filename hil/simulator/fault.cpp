@@ -53,6 +53,9 @@ struct Sentence {
         what.loss, to_seconds(what.delay), to_seconds(what.jitter), disorder.duplicates,
         disorder.held_back);
   }
+  std::string operator()(const radio::Flood& what) const {
+    return names_of({what.vehicle}) + " floods the air";
+  }
   std::string operator()(const LateStart& what) const {
     return names_of({what.vehicle}) + " takes off";
   }
@@ -97,6 +100,9 @@ std::vector<Fault> faults_of(const configuration::Scenario& scenario) {
         break;
       case configuration::FaultKind::loss:
         faults.push_back({when, fault.duration, radio::Disturbance{fault.loss_ratio, {}, {}, {}}});
+        break;
+      case configuration::FaultKind::flood:
+        faults.push_back({when, fault.duration, radio::Flood{fault.vehicle}});
         break;
     }
   }

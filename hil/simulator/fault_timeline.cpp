@@ -10,6 +10,7 @@ namespace {
 bool of_radio(const Fault& fault) {
   return std::holds_alternative<radio::Cut>(fault.what) ||
          std::holds_alternative<radio::Disturbance>(fault.what) ||
+         std::holds_alternative<radio::Flood>(fault.what) ||
          std::holds_alternative<Healing>(fault.what);
 }
 
@@ -70,6 +71,8 @@ void FaultTimeline::update_radio(Instant now) {
       interference_.cuts.push_back(*cut);
     } else if (const auto* worse = std::get_if<radio::Disturbance>(&active.fault.what)) {
       interference_.disturbance.add(*worse);
+    } else if (const auto* flood = std::get_if<radio::Flood>(&active.fault.what)) {
+      interference_.floods.push_back(*flood);
     } else {
       interference_.healed = true;
     }

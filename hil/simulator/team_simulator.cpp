@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -21,6 +22,7 @@
 #include "multirotor_body.hpp"
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/codec/codec.hpp"
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/mesh.hpp"
 #include "skein/hil/radio/positions.hpp"
@@ -62,6 +64,12 @@ bool is_for_watchers(const mission::Message& message, const TeamMission& mission
   const bool plans_are_read = mission.formation && mission.formation->planes;
   return (std::holds_alternative<mission::PlanReport>(message) && !plans_are_read) ||
          std::holds_alternative<mission::Health>(message);
+}
+
+/// As sent alone on the air, with the headers of IP, UDP and seal.
+std::size_t bytes_of(const mission::Message& message) {
+  constexpr std::size_t kHeaders = 60;
+  return codec::encode(message).value_or(codec::Bytes{}).size() + kHeaders;
 }
 
 bool has_role(mission::Activity activity, Role role) {
@@ -109,6 +117,7 @@ class Team {
     nodes_.push_back({{kGroundStation, std::nullopt}, true});
     setups_heard_.resize(vehicles_.size());
     settled_at_.resize(vehicles_.size(), Instant::min());
+    channels_.resize(nodes_.size());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
     ground_.start(Instant{});
@@ -125,6 +134,7 @@ class Team {
     std::optional<Instant> stop_at;
     for (Instant now{}; now <= stop_at.value_or(last); now += kControlPeriod) {
       if (!mission_.faults.empty()) play_faults(now);
+      for (const radio::Flood& by : radio_.interference().floods) flood(by, now);
       deliver(now);
       control(now);
       if (due(now, kSensorPeriod)) sense(now);
@@ -293,14 +303,15 @@ class Team {
   void broadcast(std::size_t from, mission::Message message, Instant now) {
     if (observer_.message) observer_.message(message);
     const bool is_telemetry = std::holds_alternative<mission::Telemetry>(message);
+    const std::size_t bytes = radio_.params().bytes_per_s ? bytes_of(message) : 0;
     const auto what = std::make_shared<const Content>(std::move(message));
     // The ground station is the last node, and the first to hear.
-    if (from != ground_index()) post(from, ground_index(), what, false, now);
+    if (from != ground_index()) post(from, ground_index(), what, bytes, false, now);
     // What is not decided by their distance is by post().
     const bool anywhere = mesh_ || radio_.interference().healed || from == ground_index();
     positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
     for (const std::size_t to : near_) {
-      if (to != from && to != ground_index()) post(from, to, what, is_telemetry, now);
+      if (to != from && to != ground_index()) post(from, to, what, bytes, is_telemetry, now);
     }
   }
 
@@ -309,13 +320,28 @@ class Team {
     return radio_.hears(nodes_[from].node, nodes_[to].node) ? 1 : 0;
   }
 
+  /// What a vehicle that floods says in a step takes its part of every channel in reach.
+  void flood(const radio::Flood& by, Instant now) {
+    if (!radio_.params().bytes_per_s) return;
+    const std::size_t from = index_of(by.vehicle);
+    const auto datagrams =
+        static_cast<int>(std::lround(radio::Flood::kDatagrams_per_s * to_seconds(kControlPeriod)));
+    for (std::size_t to = 0; to < nodes_.size(); ++to) {
+      if (to == from || !nodes_[from].on || !nodes_[to].on) continue;
+      for (int i = 0; i < datagrams; ++i) {
+        (void)radio_.carry(hops_between(from, to), channels_[to], by.vehicle, radio::Flood::kBytes,
+                           now);
+      }
+    }
+  }
+
   void post(std::size_t from, std::size_t to, const std::shared_ptr<const Content>& what,
-            bool only_wakes, Instant now) {
+            std::size_t bytes, bool only_wakes, Instant now) {
     if (!nodes_[to].on) return;
     const int hops = hops_between(from, to);
     if (hops == 0) return;
     const VehicleId sender = nodes_[from].node.id;
-    for (const Duration delay : radio_.carry(hops)) {
+    for (const Duration delay : radio_.carry(hops, channels_[to], sender, bytes, now)) {
       if (only_wakes && clocks_agree_) {
         air_.post_wake(now + delay, to, sender, what);
       } else {
@@ -557,10 +583,11 @@ class Team {
   bool clocks_agree_;
   InFlight air_;
   radio::SimulatedRadio radio_;
-  radio::Positions positions_;       ///< of nodes_
-  std::vector<std::uint32_t> near_;  ///< to who sends
-  std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
-  std::vector<radio::Node> places_;  ///< for it
+  std::vector<radio::Channel> channels_;  ///< around each node
+  radio::Positions positions_;            ///< of nodes_
+  std::vector<std::uint32_t> near_;       ///< to who sends
+  std::optional<radio::Mesh> mesh_;       ///< none: only who is in range is heard
+  std::vector<radio::Node> places_;       ///< for it
   FaultTimeline timeline_;
   std::optional<Instant> healing_;
   bool awaits_routes_;

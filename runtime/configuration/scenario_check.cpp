@@ -333,7 +333,9 @@ class Check {
       if (to_seconds(fault.at) >= to_seconds(s_.duration_max)) {
         problem(at + " comes after duration_max_s; move one of them");
       }
-      if (fault.kind == FaultKind::kill_vehicle && fault.vehicle != kGroundStation) {
+      const bool names_one =
+          fault.kind == FaultKind::kill_vehicle || fault.kind == FaultKind::flood;
+      if (names_one && fault.vehicle != kGroundStation) {
         need_vehicle(fault.vehicle, at);
       }
       std::set<VehicleId> seen;

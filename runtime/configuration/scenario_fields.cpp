@@ -46,23 +46,31 @@ void partition_list(FieldVisitor& v, std::vector<std::vector<VehicleId>>& groups
 void fault_fields(FieldVisitor& v, Fault& fault) {
   std::optional<std::uint16_t> killed;
   std::optional<double> loss;
+  std::optional<std::uint16_t> floods;
   if (fault.kind == FaultKind::kill_vehicle) killed = fault.vehicle.value;
+  if (fault.kind == FaultKind::flood) floods = fault.vehicle.value;
   if (fault.kind == FaultKind::loss) loss = fault.loss_ratio;
   seconds(v, {"at_s", "mission time", kRequired}, kSeconds, fault.at);
-  seconds(v, {"for_s", "how long a partition or loss lasts"}, kSeconds, fault.duration);
+  seconds(v, {"for_s", "how long a partition, a loss or a flood lasts"}, kSeconds, fault.duration);
   whole(v, {"kill_vehicle", "id of the vehicle whose process is killed; 0: the ground station's"},
         {0.0, 65535.0}, killed);
   partition_list(v, fault.groups);
   v.number({"loss_ratio", "share of the messages that are lost meanwhile"}, {0.0, 1.0}, loss);
-  const int kinds = (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0);
-  v.require(
-      kinds == 1, "at_s",
-      "a fault has exactly one of kill_vehicle, partition and loss_ratio; split it or add one");
+  whole(v, {"flood_vehicle", "id of the vehicle that says 500 kB/s of noise meanwhile"},
+        {1.0, 65535.0}, floods);
+  const int kinds =
+      (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0) + (floods ? 1 : 0);
+  v.require(kinds == 1, "at_s",
+            "a fault has exactly one of kill_vehicle, partition, loss_ratio and flood_vehicle; "
+            "split it or add one");
   v.require(killed.has_value() || fault.duration > Duration{}, "for_s",
-            "a partition or loss lasts for some time; add for_s above 0 s");
-  if (killed) fault.vehicle = VehicleId{*killed};
+            "a partition, loss or flood lasts for some time; add for_s above 0 s");
+  fault.kind = FaultKind::partition;
+  if (killed) fault.kind = FaultKind::kill_vehicle;
+  if (loss) fault.kind = FaultKind::loss;
+  if (floods) fault.kind = FaultKind::flood;
+  if (killed || floods) fault.vehicle = VehicleId{killed ? *killed : *floods};
   if (loss) fault.loss_ratio = *loss;
-  fault.kind = killed ? FaultKind::kill_vehicle : (loss ? FaultKind::loss : FaultKind::partition);
 }
 
 void reference_fields(FieldVisitor& v, ReferenceSite& site) {

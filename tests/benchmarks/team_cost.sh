@@ -21,7 +21,6 @@ trap 'rm -rf "$folder"' EXIT
 
 # Bytes and packets that loopback has sent.
 sent() { awk '$1 == "lo:" {print $10, $11}' /proc/net/dev; }
-nodes=$(($(grep -cE '^ *- \{id: [0-9]+, (type|capabilities)' "$scenario") + 1))
 
 began=$(date +%s%N)
 "$programs/skein-hil" run "$scenario" --headless --out "$folder/run" "$@" >"$folder/log" 2>&1 &
@@ -30,6 +29,8 @@ until grep -qs 'vehicles heard' "$folder/log"; do
   kill -0 "$mission" 2>/dev/null || { cat "$folder/log" >&2; exit 1; }
   sleep 0.1
 done
+vehicles=("$folder"/run/vehicle-*.yaml)
+nodes=$((${#vehicles[@]} + 1))
 read -r bytes packets < <(sent)
 from=$(date +%s%N)
 status=0

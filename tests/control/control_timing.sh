@@ -75,8 +75,11 @@ for phase in "$work"/{alone,loaded}; do
           failed="the control thread waits for more than its period"
         (($(value sleeps "$line") >= 5 * seconds)) || failed="too few periods to tell"
         ;;
-      agent)  # that it is seen to do all of it shows that the counters count
-        for what in allocations locks io; do
+      can)  # that others are seen to do all of it shows that the counters count
+        (($(value io "$line") > 0)) || failed="the watch does not see io"
+        ;;
+      agent)
+        for what in allocations locks; do
           (($(value $what "$line") > 0)) || failed="the watch does not see $what"
         done
         (($(value dds "$line") == 0)) || failed="the agent calls DDS, which has a process of its own"

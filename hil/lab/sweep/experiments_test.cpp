@@ -202,6 +202,7 @@ duration_max_s: 100
 random_team:
   - {west_m: -10000, east_m: 18000, south_m: -10000, north_m: 18000, search_share: 0.4}
 settings: {vehicles: 1000}
+axes: [{name: team, points: [{label: all}]}]
 )";
 
 TEST(RandomTeams, OfAThousandIsAScenario) {

@@ -80,7 +80,7 @@ struct Healing {};
 struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
-  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, LateStart, ClockOff, Ordered,
+  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff, Ordered,
                SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, Healing>
       what;
 };

@@ -58,14 +58,14 @@ struct ScenarioHazard {
   Instant known_from{};  ///< at the epoch: known before the mission
 };
 
-enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss };
+enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss, flood };
 
 /// Something that goes wrong.
 struct Fault {
   Instant at{};
   FaultKind kind = FaultKind::partition;
-  Duration duration{};                         ///< of a partition or of loss
-  VehicleId vehicle;                           ///< that is killed; 0 = ground station
+  Duration duration{};                         ///< of a partition, of loss, of a flood
+  VehicleId vehicle;                           ///< that is killed, or floods; 0 = ground station
   std::vector<std::vector<VehicleId>> groups;  ///< that hear themselves only; 0 = ground station
   double loss_ratio = 0.0;                     ///< in place of the radio's
 };

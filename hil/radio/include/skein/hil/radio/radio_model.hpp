@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -74,10 +75,18 @@ struct Cut {
 [[nodiscard]] Cut silence(const std::vector<VehicleId>& nodes,
                           Cut::Kind kind = Cut::Kind::both_ways);
 
+/// A vehicle that says noise without end.
+struct Flood {
+  VehicleId vehicle;
+  static constexpr double kDatagrams_per_s = 500.0;
+  static constexpr std::size_t kBytes = 1000;  ///< each
+};
+
 /// All that is wrong with the radio at a moment.
 struct Interference {
   Disturbance disturbance;
   std::vector<Cut> cuts;
+  std::vector<Flood> floods;
   bool healed = false;  ///< nobody is out of range, and the radio itself loses nothing
 };
 
@@ -120,12 +129,17 @@ using Arrivals = StaticVector<Duration, 2>;
 class Channel {
  public:
   /// As above, of a message of that many bytes, headers included. It is lost where it would wait
-  /// for longer than kWaitMax.
-  [[nodiscard]] Arrivals carry(const Link& link, std::size_t bytes, Instant now, Random& random);
+  /// for longer than kWaitMax, or where its sender has more than half of the channel, as radios
+  /// that listen before they speak share it.
+  [[nodiscard]] Arrivals carry(const Link& link, VehicleId from, std::size_t bytes, Instant now,
+                               Random& random);
   static constexpr Duration kWaitMax = std::chrono::seconds{1};
+  /// So much of the channel's time a sender may have at once.
+  static constexpr Duration kBurst = std::chrono::milliseconds{100};
 
  private:
   Instant free_at_{};
+  std::map<VehicleId, Instant> half_free_at_;  ///< by sender, had it half of the channel
 };
 
 /// The radio as a simulator has it; the bench has a LinkTable and, in every process, the plugin.
@@ -148,9 +162,10 @@ class SimulatedRadio {
     return radio::carry(hops == 1 ? link_ : over_hops(link_, hops), random_);
   }
   /// The same, where the receiver's channel has to have room.
-  [[nodiscard]] Arrivals carry(int hops, Channel& channel, std::size_t bytes, Instant now) {
-    if (hops == 0) return {};
-    return channel.carry(over_hops(link_, hops), bytes, now, random_);
+  [[nodiscard]] Arrivals carry(int hops, Channel& channel, VehicleId from, std::size_t bytes,
+                               Instant now) {
+    if (hops == 0 || !link_.bytes_per_s) return carry(hops);
+    return channel.carry(over_hops(link_, hops), from, bytes, now, random_);
   }
   [[nodiscard]] bool hears(const Node& from, const Node& to) const {
     return is_up(params_, interference_, from, to);
