@@ -82,8 +82,8 @@ bool Ownship::keeps_clear(Instant now) {
   if (flight_.keeps_clear(hazards(), now)) return true;
   if (flight_.homing()) {
     fly_home(now);
-  } else if (flight_.searching()) {
-    search(now);
+  } else if (flight_.searching() || flight_.stands_by()) {
+    search(now);  // RelayOrbit finds another place
   } else {
     return false;
   }

@@ -69,6 +69,7 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   if (node.instance != setup.instance) {
     // Whoever is new has not heard of this node either.
     say_soon(now);
+    if (node.instance == InstanceId{}) ++told_;
     const Node before = std::exchange(node, {});
     node.instance = setup.instance;
     node.difference = before.difference;
@@ -120,7 +121,7 @@ void SetupBook::say_soon(Instant now) {
 }
 
 Duration SetupBook::in_this_team(Duration period) const {
-  return period * static_cast<std::int64_t>(std::max<std::size_t>(1, nodes_.size() / kTeam));
+  return period * static_cast<std::int64_t>(std::max<std::size_t>(1, told_ / kTeam));
 }
 
 /// Keys that only one of the two knows of are of another release, which is a key of its own.

@@ -28,6 +28,7 @@
 #include "skein/base/random.hpp"
 #include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
+#include "skein/mission/may_say.hpp"
 #include "skein/network/air_radio.hpp"
 #include "skein/network/key_news.hpp"
 #include "skein/network/rtps_guid.hpp"
@@ -54,6 +55,11 @@ std::optional<VehicleId> sender_of(std::span<const octet> datagram) {
   if (const auto header = seal::read_header(datagram)) return header->from.sender;
   if (const auto sender = network::key_news_sender(datagram)) return sender;
   return network::rtps_sender(datagram);
+}
+
+/// Perfect from itself, and from the bench, which stands for sensors on board.
+Link link_from(const LinkTable& table, VehicleId sender, VehicleId self) {
+  return sender == self || sender == mission::kSensors ? Link{} : table.get(sender, self);
 }
 
 class RadioTransport : public rtps::ChainingTransport {
@@ -89,7 +95,7 @@ class RadioTransport : public rtps::ChainingTransport {
   void receive(rtps::TransportReceiverInterface* next, const octet* buffer, std::uint32_t size,
                const Locator_t& local, const Locator_t& remote) override {
     const auto sender = sender_of({buffer, size});
-    const Link link = sender && *sender != self_ ? table_->get(*sender, self_) : Link{};
+    const Link link = sender ? link_from(*table_, *sender, self_) : Link{};
     if (!link.up) return;
     bool now = false;
     {
@@ -213,7 +219,7 @@ class AirRadio : public network::AirRadio {
       : self_{self}, table_{std::move(table)}, random_{seed + self.value} {}
 
   std::vector<Duration> arrivals(VehicleId sender, std::size_t bytes) override {
-    const Link link = sender != self_ ? table_->get(sender, self_) : Link{};
+    const Link link = link_from(*table_, sender, self_);
     if (!link.up) return {};
     const auto arrivals = channel_.carry(link, sender, bytes, steady_now(), random_);
     return {arrivals.begin(), arrivals.end()};

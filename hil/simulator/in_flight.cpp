@@ -9,12 +9,13 @@
 namespace skein::hil {
 
 void InFlight::post(Parcel parcel) {
-  parcel.order = order_++;
   const Slot slot = slot_of(parcel.at);
-  if (slot <= opened_) {
+  Step* const step = slot > opened_ ? &step_of(slot) : nullptr;  // before: its order begins here
+  parcel.order = order_++;
+  if (step == nullptr) {
     urgent_.push(std::move(parcel));
   } else {
-    step_of(slot).parcels.push_back(std::move(parcel));
+    step->parcels.push_back(std::move(parcel));
   }
 }
 

@@ -26,6 +26,7 @@
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/mesh.hpp"
 #include "skein/hil/radio/positions.hpp"
+#include "skein/mission/concerns.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -367,7 +368,9 @@ class Team {
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
         if (parcel->life == v.life()) v.node()->on_planning_result(*planned, v.local(now));
       } else {
-        v.node()->on_message(std::get<mission::Message>(*parcel->what), parcel->from, v.local(now));
+        const auto& message = std::get<mission::Message>(*parcel->what);
+        if (!mission::concerns(message, v.spec().id)) continue;
+        v.node()->on_message(message, parcel->from, v.local(now));
       }
       const bool moved = drain(parcel->to, now);
       settled_at = moved ? Instant::min() : now;

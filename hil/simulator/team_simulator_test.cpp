@@ -169,7 +169,6 @@ TEST(TeamSimulator, TheSameSeedGivesTheSameMissionByteForByte) {
   EXPECT_NE(once.trace, fly(team).trace);
 }
 
-/// Slower than the protocol's 0.5 s: the first plan comes too late, and later rounds wait for it.
 /// Where clocks may differ a vehicle takes all telemetry that comes to it.
 TEST(TeamSimulator, OfTheTelemetryOfOneStepTheFirstTellsAVehicleAll) {
   for (const char* faults : {"none", "lossy", "partition", "crash", "hazards", "orders", "sites"}) {
@@ -184,6 +183,7 @@ TEST(TeamSimulator, OfTheTelemetryOfOneStepTheFirstTellsAVehicleAll) {
   }
 }
 
+/// Slower than the protocol's 0.5 s: the first plan comes too late, and later rounds wait for it.
 TEST(TeamSimulator, APlannerThatIsSlowerThanItsTimeIsWaitedFor) {
   for (const double takes_s : {0.56, 1.5, 3.0}) {
     TeamMission team = small_mission();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/process/mission_network.hpp"
 
+#include <arpa/inet.h>
+#include <netinet/in.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -24,8 +26,17 @@ InstanceId random_instance() {
 
 bool is_loopback(const std::string& address) { return address.starts_with("127."); }
 
+/// What is said to a multicast group goes out where `address` is; to a broadcast address, where
+/// that is.
+bool is_multicast(const std::string& address) {
+  in_addr parsed{};
+  return inet_pton(AF_INET, address.c_str(), &parsed) == 1 && IN_MULTICAST(ntohl(parsed.s_addr));
+}
+
 bool is_this_machine_alone(const configuration::NetworkConfig& config) {
+  const std::string& group = config.air.group;
   return is_loopback(config.address) &&
+         (!config.peers.empty() || is_multicast(group) || is_loopback(group)) &&
          std::ranges::all_of(config.peers, [](const configuration::NetworkPeer& peer) {
            return is_loopback(peer.address);
          });
@@ -115,7 +126,7 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
 }
 
 bool among_machines(const configuration::NetworkConfig& config) {
-  return (config.peers.empty() && !is_loopback(config.address)) ||
+  return (config.peers.empty() && !is_this_machine_alone(config)) ||
          std::ranges::any_of(config.peers, [&config](const configuration::NetworkPeer& peer) {
            return peer.address != config.address;
          });

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/configuration/process_config.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/recording/reader.hpp"
 
@@ -279,7 +280,7 @@ TEST_F(EndToEnd, APortInUseIsNamedWithItsRemedy) {
   const int s = ::socket(AF_INET, SOCK_DGRAM, 0);
   sockaddr_in address{};
   address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(::inet_pton(AF_INET, configuration::AirConfig{}.group.c_str(), &address.sin_addr), 1);
   socklen_t size = sizeof address;
   ASSERT_EQ(::bind(s, reinterpret_cast<const sockaddr*>(&address), size), 0);
   ASSERT_EQ(::getsockname(s, reinterpret_cast<sockaddr*>(&address), &size), 0);

@@ -110,6 +110,7 @@ class SetupBook {
   Setup own_;
   std::map<std::uint32_t, const CommonKey*> by_key_;
   std::map<VehicleId, Node> nodes_;
+  std::size_t told_ = 0;   ///< nodes that have told their setup, which is signed
   bool suspects_ = false;  ///< some node has had a twin, or another clock
   Instant said_at_ = Instant::min();
   Instant next_;
