@@ -117,7 +117,8 @@ void SetupBook::compare(VehicleId id, Node& node, Instant now) {
 }
 
 void SetupBook::say_soon(Instant now) {
-  next_ = std::min(next_, std::max(now, said_at_ + in_this_team(kPeriodWhileNew)));
+  next_ = std::min(next_, std::max(now, said_at_ + in_this_team(soon_)));
+  hurried_ = true;
 }
 
 Duration SetupBook::in_this_team(Duration period) const {
@@ -159,6 +160,8 @@ std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
   if (now < next_) return std::nullopt;
   if (suspects_) forget_twins(now);
   said_at_ = now;
+  soon_ = hurried_ ? std::min(2 * soon_, kPeriod) : kPeriodWhileNew;
+  hurried_ = false;
   next_ = now + (orders.known ? in_this_team(kPeriod) : kPeriodWhileNew);
   Setup setup = own_;
   setup.time = now;

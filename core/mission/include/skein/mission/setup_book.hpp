@@ -49,9 +49,10 @@ struct SetupDifference {
 /// "another origin.latitude_deg", "a clock that is 3.0 s ahead": what a sentence goes on with.
 [[nodiscard]] std::string text_of(const SetupDifference& difference);
 
-/// What this node runs with, told to all every kPeriod and at once where somebody new is heard (of
-/// more than kTeam nodes the more rarely, so that each has no more to judge); and what of that
-/// others run with too. `now` is of this node's clock and never decreases.
+/// What this node runs with, told to all every kPeriod, and at once where somebody new is heard: the
+/// more rarely the more are new, and the more nodes there are beyond kTeam, so that each has no more
+/// to judge; and what of that others run with too. `now` is of this node's clock and never
+/// decreases.
 class SetupBook {
  public:
   static constexpr Duration kPeriod = std::chrono::seconds{5};
@@ -113,6 +114,8 @@ class SetupBook {
   std::size_t told_ = 0;   ///< nodes that have told their setup, which is signed
   bool suspects_ = false;  ///< some node has had a twin, or another clock
   Instant said_at_ = Instant::min();
+  Duration soon_ = kPeriodWhileNew;  ///< doubled while somebody new comes again and again
+  bool hurried_ = false;             ///< the next is said sooner than its period asks for
   Instant next_;
   BoundedQueue<EventBody> news_{64};
 };
