@@ -114,7 +114,8 @@ class SetupBook {
   std::size_t told_ = 0;   ///< nodes that have told their setup, which is signed
   bool suspects_ = false;  ///< some node has had a twin, or another clock
   Instant said_at_ = Instant::min();
-  Duration soon_ = kPeriodWhileNew;  ///< doubled while somebody new comes again and again
+  /// After the last: doubled while somebody new comes again and again, as where all start at once.
+  Duration soon_ = kPeriod;
   bool hurried_ = false;             ///< the next is said sooner than its period asks for
   Instant next_;
   BoundedQueue<EventBody> news_{64};
