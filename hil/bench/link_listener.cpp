@@ -48,20 +48,26 @@ LinkListener::LinkListener(LinkListener&& other) noexcept
     : program_{std::move(other.program_)},
       socket_{std::exchange(other.socket_, -1)},
       told_{std::move(other.told_)},
-      waiting_{std::move(other.waiting_)} {}
+      waiting_{std::move(other.waiting_)},
+      handing_{std::move(other.handing_)} {}
 
 void LinkListener::tell(VehicleId from, VehicleId to, const radio::Link& link) {
   std::string state = state_of(link);
   std::string& told = told_[{from, to}];
   if (told == state) return;
   told = std::move(state);
-  waiting_ += fmt::format("{} {} {}\n", from.value, to.value, told);
+  waiting_.insert({from, to});
 }
 
 void LinkListener::hand_on() {
-  if (waiting_.empty()) return;
-  const auto sent = ::send(socket_, waiting_.data(), waiting_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
-  if (sent > 0) waiting_.erase(0, static_cast<std::size_t>(sent));
+  if (handing_.empty()) {
+    for (const Ends& ends : std::exchange(waiting_, {})) {
+      handing_ += fmt::format("{} {} {}\n", ends.first.value, ends.second.value, told_.at(ends));
+    }
+  }
+  if (handing_.empty()) return;
+  const auto sent = ::send(socket_, handing_.data(), handing_.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  if (sent > 0) handing_.erase(0, static_cast<std::size_t>(sent));
 }
 
 bool LinkListener::stop() {

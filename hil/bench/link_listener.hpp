@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -30,7 +31,8 @@ class LinkListener {
   LinkListener& operator=(const LinkListener&) = delete;
 
   void tell(VehicleId from, VehicleId to, const radio::Link& link);
-  /// Hands on what was told, without waiting: the rest goes with the next call.
+  /// Hands on what was told, without waiting: the rest goes with the next call, of a link that has
+  /// changed again meanwhile only what it is by then.
   void hand_on();
   /// How it ended, while it should not have.
   [[nodiscard]] std::optional<std::string> ended() { return program_.ended(); }
@@ -43,8 +45,10 @@ class LinkListener {
 
   ChildProcess program_;
   int socket_;
-  std::map<std::pair<VehicleId, VehicleId>, std::string> told_;
-  std::string waiting_;
+  using Ends = std::pair<VehicleId, VehicleId>;
+  std::map<Ends, std::string> told_;
+  std::set<Ends> waiting_;  ///< have changed
+  std::string handing_;     ///< lines; a part of them was handed on
 };
 
 }  // namespace skein::hil

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -55,6 +56,31 @@ TEST_F(LinkListenerTest, WhoDoesNotReadStopsNobody) {
     if (i % 100 == 0) listener->hand_on();
   }
   EXPECT_FALSE(listener->ended());
+}
+
+TEST_F(LinkListenerTest, WhoReadsLateIsToldWhatEachLinkIsByThen) {
+  const std::filesystem::path go = log_.string() + ".go";
+  auto listener =
+      LinkListener::start("while [ ! -e " + go.string() + " ]; do sleep 0.01; done; cat", log_);
+  ASSERT_TRUE(listener);
+  constexpr int kChanges = 100'000;  // far more than a socket holds
+  for (int i = 0; i < kChanges; ++i) {
+    listener->tell(kOne, kTwo, i % 2 == 0 ? kUp : kDown);
+    if (i % 100 == 99) listener->tell(kTwo, kOne, i % 200 == 99 ? kUp : kDown);
+    listener->hand_on();
+  }
+  std::ofstream{go} << "go";
+  const auto end = std::chrono::steady_clock::now() + 60s;
+  const std::string newest = "1 2 down\n2 1 down\n";
+  while (!output().ends_with(newest) && std::chrono::steady_clock::now() < end) {
+    listener->hand_on();
+    ::usleep(1000);
+  }
+  std::filesystem::remove(go);
+  const std::string told = output();
+  EXPECT_TRUE(told.ends_with(newest));
+  EXPECT_LT(std::ranges::count(told, '\n'), kChanges / 2);
+  EXPECT_TRUE(listener->stop());
 }
 
 TEST_F(LinkListenerTest, ItsEndIsTold) {
