@@ -239,7 +239,7 @@ void AirCarrier::arrive(std::span<const std::uint8_t> datagram) {
   if (seals_) {
     if (is_key_news(datagram)) return seals_->news.hear(datagram);
     const auto header = seal::read_header(datagram);
-    if (header && header->from == config_.seal->start) return;  // our own voice
+    if (header && is_own_voice(*header)) return;
     if (header && seals_->news.has_any()) tell_news(*header);
   }
   const auto opened = seals_ ? unseal(datagram, plain_) : read_clear(datagram);
@@ -252,7 +252,7 @@ void AirCarrier::arrive(std::span<const std::uint8_t> datagram) {
 std::optional<air::Opened> AirCarrier::open(std::span<const std::uint8_t> datagram) {
   if (!seals_) return read_clear(datagram);
   const auto header = seal::read_header(datagram);
-  if (header && header->from == config_.seal->start) return std::nullopt;
+  if (header && is_own_voice(*header)) return std::nullopt;
   if (header && seals_->opener.has_opened(*header)) {
     return air::Opened{{header->from.sender, identity::instance_of(header->from)}, std::nullopt};
   }
@@ -291,6 +291,13 @@ void AirCarrier::on_sample(std::uint8_t channel, const air::Author& author,
 
 void AirCarrier::on_certificate(const air::Author& author, std::span<const std::uint8_t> bytes) {
   heard_.push_back({std::nullopt, author, {bytes.begin(), bytes.end()}});
+}
+
+/// Of this start, or of one before it: who recorded that and says it again is no twin of ours.
+bool AirCarrier::is_own_voice(const seal::Header& header) const {
+  const seal::SenderStart& own = config_.seal->start;
+  return header.from == own ||
+         (header.from.sender == own.sender && header.from.number < own.number);
 }
 
 /// Who speaks under an older key is told of the newer.

@@ -57,6 +57,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   [[nodiscard]] std::optional<air::Opened> unseal(std::span<const std::uint8_t> datagram,
                                                   std::vector<std::uint8_t>& plain);
   [[nodiscard]] std::optional<air::Opened> read_clear(std::span<const std::uint8_t> datagram);
+  [[nodiscard]] bool is_own_voice(const seal::Header& header) const;
   void tell_news(const seal::Header& header);
   void speak();
 

@@ -9,16 +9,19 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "air_socket.hpp"
 #include "free_ports.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/network/node.hpp"
 #include "skein/random_messages/random_messages.hpp"
+#include "skein/seal/header.hpp"
 
 namespace skein::network {
 namespace {
@@ -197,6 +200,59 @@ TEST(AirCarrier, WhoIsBetweenPassesOnWhatTheOthersSay) {
     EXPECT_EQ(far->counters().at("seal_replayed"), 0U);
     EXPECT_EQ(far->counters().at("seal_forged"), 0U);
   }
+}
+
+/// Who hears a group, and says again what it has heard.
+class Recorder {
+ public:
+  explicit Recorder(const NodeConfig& like)
+      : socket_{AirSocket::open(like.air->group, like.endpoint.address).value()} {}
+  /// The next so many datagrams that `node` says.
+  std::vector<std::vector<std::uint8_t>> record(VehicleId node, std::size_t count) {
+    std::vector<std::vector<std::uint8_t>> heard;
+    EXPECT_TRUE(eventually([&] {
+      socket_.receive([&](std::span<const std::uint8_t> datagram) {
+        const auto header = seal::read_header(datagram);
+        if (header && header->from.sender == node && heard.size() < count) {
+          heard.emplace_back(datagram.begin(), datagram.end());
+        }
+      });
+      return heard.size() == count;
+    }));
+    return heard;
+  }
+  void say(const std::vector<std::vector<std::uint8_t>>& datagrams) {
+    for (const auto& datagram : datagrams) EXPECT_TRUE(socket_.send(datagram));
+  }
+
+ private:
+  AirSocket socket_;
+};
+
+TEST(AirCarrier, WhatItSaidBeforeItsRestartIsNoTwinAndATwinIsHeard) {
+  auto configs = team(1, true);
+  NodeConfig& config = configs[1];
+  Recorder recorder{config};
+  std::vector<std::vector<std::uint8_t>> former;
+  {
+    const auto before = open(config);
+    former = recorder.record(config.self, 3);
+  }
+  ++config.seal->start.number;
+  config.instance = identity::instance_of(config.seal->start);
+  const auto anew = open(config);
+  NodeConfig copy = config;
+  ++copy.seal->start.random;
+  copy.instance = identity::instance_of(copy.seal->start);
+  std::vector<Peer> peers;
+  recorder.say(former);
+  const auto twin = open(copy);
+  ASSERT_TRUE(eventually([&] {
+    peers = anew->peers();
+    return std::ranges::count(peers, copy.instance, &Peer::instance) == 1;
+  }));
+  EXPECT_THAT(peers, ElementsAre(Peer{config.self, copy.instance, Role::vehicle}));
+  EXPECT_EQ(anew->counters().at("seal_old_start"), 0U);
 }
 
 TEST(AirCarrier, SaysWhatIsWrong) {
