@@ -470,7 +470,7 @@ void Link::Impl::forget_silent(Instant now) {
 void Link::Impl::hear(const Author& from, std::span<const std::uint8_t> content,
                       std::span<const std::uint8_t> datagram, Instant now) {
   if (from == config_.self) return;
-  if (relay_.passes() && relay_.neighbours.heard(from.node, now)) greet(now);
+  if (relay_.passes() && relay_.neighbours.heard(from, now)) greet(now);
   on_datagram({from, from.node, relay_.hops(), datagram}, content, now);
 }
 

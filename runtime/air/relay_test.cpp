@@ -332,12 +332,106 @@ TEST(Relay, WhatIsForgedOrMangledOnTheWayDoesNoHarm) {
   EXPECT_THAT(team.texts(2, kOrders, 0), ElementsAre("still"));
 }
 
+TEST(Relay, WhoIsStartedAgainSoonHearsTheOthersAsSoon) {
+  Team team{chain(3), 3};
+  ASSERT_TRUE(team.run_until(at_seconds(4.0), [&] { return team.found({0, 1, 2}); }));
+  team.apart = [](std::size_t a, std::size_t b) {
+    const auto place = [](std::size_t node) { return node > 2 ? 0 : static_cast<int>(node); };
+    return std::abs(place(a) - place(b)) != 1;
+  };
+  std::size_t end = 0;
+  for (std::uint64_t start = 8; start < 20; ++start) {
+    for (int i = 0; i < 10 + static_cast<int>(start % 7); ++i) {
+      team.say(2, kMotion, "here");
+      team.run(100ms);
+    }
+    team.remove(end);
+    end = team.add(0, start);
+    const Instant since = team.now;
+    while (team.texts(end, kMotion, 2).empty()) {
+      ASSERT_LT(team.now - since, 700ms) << start;
+      team.say(2, kMotion, "here");
+      team.run(100ms);
+    }
+  }
+}
+
+Author of(std::uint16_t node, std::uint64_t instance = 1) {
+  return {VehicleId{node}, InstanceId{instance}};
+}
+
+/// That node says that it hears these.
+void say_hears(Neighbours& to, std::uint16_t node, const std::vector<std::uint16_t>& others) {
+  Neighbours its{VehicleId{node}};
+  for (const std::uint16_t other : others) (void)its.heard(of(other), Instant{});
+  its.tell_hearing([&](const HearingFrame& frame) { (void)to.on_hearing(VehicleId{node}, frame); });
+}
+
+TEST(Neighbours, AnotherStartOfANodeHasYetToSayWhomItHears) {
+  Neighbours ours{VehicleId{1}};
+  EXPECT_TRUE(ours.heard(of(2, 7), Instant{}));
+  say_hears(ours, 2, {1, 3});
+  EXPECT_FALSE(ours.heard(of(2, 7), at_seconds(1.0)));
+  EXPECT_TRUE(ours.hears(VehicleId{2}, VehicleId{3}));
+  EXPECT_FALSE(ours.heard(of(2, 8), at_seconds(2.0)));
+  EXPECT_FALSE(ours.hears(VehicleId{2}, VehicleId{3}));
+  EXPECT_EQ(ours.listeners(), 0U);
+  const std::vector<std::uint8_t> bits{1};
+  EXPECT_TRUE(ours.on_hearing(VehicleId{2}, {false, VehicleId{1}, bits})) << "it hears us anew";
+}
+
+// As who has captured one may claim: half of them heard the datagram as we did, but for one that
+// it is for; the others are reached by nobody.
+TEST(Neighbours, HoweverManyIdsAreClaimedADatagramCostsLittle) {
+  constexpr std::uint16_t kTransmitter = 1;
+  constexpr std::uint16_t kSelf = 2;
+  Neighbours ours{VehicleId{kSelf}};
+  (void)ours.heard(of(kTransmitter), Instant{});
+  std::vector<std::uint16_t> rivals;
+  for (std::uint16_t id = 1000; id < 5000; ++id) {
+    if (!ours.heard(of(id), Instant{})) break;
+    if (id % 2 == 0) rivals.push_back(id);
+  }
+  EXPECT_EQ(rivals.size(), (Neighbours::kMax - 1) / 2 + 1);
+  std::vector<std::uint16_t> scattered{kSelf};  // in as many windows as it may have
+  for (std::uint16_t id = 10'000; id < 50'000; id += 500) scattered.push_back(id);
+  const std::vector<std::uint16_t> audience{1001, 1003, 1005};
+  auto all_rivals = rivals;
+  all_rivals.insert(all_rivals.begin(), kSelf);
+  for (const std::uint16_t id : audience) say_hears(ours, id, all_rivals);
+  for (const std::uint16_t id : rivals) say_hears(ours, id, {kTransmitter});
+  const auto uncovered = ours.without(VehicleId{kTransmitter});
+  ASSERT_EQ(uncovered.size(), audience.size());
+  const std::size_t before = ours.looks();
+  EXPECT_FALSE(ours.has_better(VehicleId{kTransmitter}, uncovered));
+  EXPECT_LE(ours.looks() - before, Neighbours::kLooksMax + 3 * Neighbours::kMax);
+  // Of more windows than it may have only the first are taken.
+  say_hears(ours, 1007, scattered);
+  EXPECT_TRUE(ours.hears(VehicleId{1007}, VehicleId{10'000}));
+  EXPECT_FALSE(ours.hears(VehicleId{1007}, VehicleId{49'500}));
+}
+
+TEST(Neighbours, WhoReachesMoreOrHasTheSmallerIdGoesFirst) {
+  Neighbours ours{VehicleId{5}};
+  for (std::uint16_t id = 1; id < 9; ++id) (void)ours.heard(of(id), Instant{});
+  say_hears(ours, 7, {4, 5});
+  const std::vector<VehicleId> audience{VehicleId{7}};
+  EXPECT_FALSE(ours.has_better(VehicleId{1}, audience)) << "4 did not hear it";
+  say_hears(ours, 4, {1});
+  EXPECT_TRUE(ours.has_better(VehicleId{1}, audience)) << "4 has the smaller id";
+  say_hears(ours, 7, {5, 6});
+  say_hears(ours, 6, {1});
+  EXPECT_FALSE(ours.has_better(VehicleId{1}, audience)) << "6 has the greater id";
+  say_hears(ours, 8, {6});
+  EXPECT_TRUE(ours.has_better(VehicleId{1}, audience)) << "6 reaches 8, too";
+}
+
 TEST(Neighbours, SayWhomTheyHearInABitEach) {
   Neighbours many{VehicleId{5000}};
   Neighbours reader{VehicleId{1}};
-  (void)reader.heard(VehicleId{5000}, Instant{});
-  for (std::uint16_t id = 10; id < 1010; ++id) (void)many.heard(VehicleId{id}, Instant{});
-  (void)many.heard(VehicleId{65'535}, Instant{});
+  (void)reader.heard(of(5000), Instant{});
+  for (std::uint16_t id = 10; id < 1010; ++id) (void)many.heard(of(id), Instant{});
+  (void)many.heard(of(65'535), Instant{});
   std::size_t bytes = 0;
   many.tell_hearing([&](const HearingFrame& frame) {
     bytes += size_of(frame);
