@@ -20,7 +20,8 @@ enum Kind : std::uint8_t {
   passed_on = 12,
   hearing = 13,
   introduction = 15,
-  newest = 16
+  newest = 16,
+  passed_on_late = 17
 };
 
 template <class Number>
@@ -105,7 +106,8 @@ std::optional<Frame> cut_frame(Cutter& cut) {
     case want:
       return WantFrame{cut.author()};
     case passed_on:
-      return PassedOnFrame{cut.number<std::uint8_t>(), cut.counted_bytes()};
+    case passed_on_late:
+      return PassedOnFrame{kind != passed_on, cut.number<std::uint8_t>(), cut.counted_bytes()};
     case hearing:
     case hearing + 1:
       return HearingFrame{kind != hearing, VehicleId{cut.number<std::uint16_t>()},
@@ -177,7 +179,7 @@ void write(std::vector<std::uint8_t>& out, const Frame& any) {
           put(out, std::uint8_t{want});
           put(out, frame.author);
         } else if constexpr (std::is_same_v<T, PassedOnFrame>) {
-          put(out, std::uint8_t{passed_on});
+          put(out, std::uint8_t{frame.late ? passed_on_late : passed_on});
           put(out, frame.hops);
           put_bytes(out, frame.bytes);
         } else if constexpr (std::is_same_v<T, HearingFrame>) {

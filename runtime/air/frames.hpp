@@ -61,8 +61,10 @@ struct WantFrame {
   Author author;
 };
 /// A datagram of another's, as it was on the air: how often it may be passed on yet (1), length
-/// (2), bytes. This and what follows, like questions, is for those who hear its sender alone.
+/// (2), bytes. The kind says whether it is late: said again for its parts, of which alone it is to
+/// be taken. This and what follows, like questions, is for those who hear its sender alone.
 struct PassedOnFrame {
+  bool late = false;
   std::uint8_t hops = 0;
   std::span<const std::uint8_t> bytes;
 };

@@ -75,8 +75,7 @@ class Link::Impl {
         filled_at_{now} {}
 
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
-  void hear(const Author& from, std::span<const std::uint8_t> content,
-            std::span<const std::uint8_t> datagram, Instant now);
+  void hear(const Opened& opened, std::span<const std::uint8_t> datagram, Instant now);
   [[nodiscard]] Instant due() const { return std::min(due_to_say(), due_to_pass_on()); }
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> poll(Instant now);
   [[nodiscard]] std::vector<LinkPeer> peers(Instant now) const;
@@ -90,8 +89,9 @@ class Link::Impl {
     std::size_t said = 0;  ///< of its bytes
   };
   struct Remote {
-    explicit Remote(Duration missing_for) : stream{missing_for} {}
+    Remote(Duration missing_for, std::size_t channels) : stream{missing_for}, sampled(channels) {}
     InStream stream;
+    std::vector<std::uint64_t> sampled;  ///< by channel, the newest datagram with a sample of it
     Instant heard_at;
     Instant newest_at;                 ///< when its stream was known to go on last
     std::optional<Instant> spread_at;  ///< when something of it was to be passed on
@@ -118,8 +118,9 @@ class Link::Impl {
   Remote* remote_of(const Passage& passage, Instant now);
   void forget_silent(Instant now);
   void greet(Instant now);
-  void on_datagram(const Passage& passage, std::span<const std::uint8_t> content, Instant now);
-  void on_frame(const Author& from, Remote& remote, const Frame& frame, News& news, Instant now);
+  void on_datagram(const Passage& passage, const Opened& opened, Instant now);
+  void on_frame(const Opened& opened, Remote& remote, const Frame& frame, News& news, Instant now);
+  void on_sample(const Opened& opened, Remote& remote, const SampleFrame& sample);
   void on_hello(const Author& from, Remote& remote, const HelloFrame& hello, Instant now);
   void on_certificate(const Author& from, Remote& remote, std::span<const std::uint8_t> bytes,
                       Instant now);
@@ -434,12 +435,14 @@ void Link::Impl::put_newest(Instant now) {
 Link::Impl::Remote* Link::Impl::remote_of(const Passage& passage, Instant now) {
   const auto known = remotes_.find(passage.author);
   if (known != remotes_.end()) return &known->second;
+  if (passage.late) return nullptr;  // it may be gone
   if (remotes_.size() >= kAuthorsMax) {
     ++counts_.too_many;
     return nullptr;
   }
   const Duration missing_for = relay_.passes() ? kMissingForOverHops : kMissingFor;
-  Remote& remote = remotes_.try_emplace(passage.author, missing_for).first->second;
+  Remote& remote =
+      remotes_.try_emplace(passage.author, missing_for, config_.channels.size()).first->second;
   if (passage.transmitter == passage.author.node) {
     greet_with_certificate_ = certificate_ != 0;
     greetings_ = kGreetings;
@@ -467,16 +470,15 @@ void Link::Impl::forget_silent(Instant now) {
   });
 }
 
-void Link::Impl::hear(const Author& from, std::span<const std::uint8_t> content,
-                      std::span<const std::uint8_t> datagram, Instant now) {
+void Link::Impl::hear(const Opened& opened, std::span<const std::uint8_t> datagram, Instant now) {
+  const Author& from = opened.author;
   if (from == config_.self) return;
   if (relay_.passes() && relay_.neighbours.heard(from, now)) greet(now);
-  on_datagram({from, from.node, relay_.hops(), datagram}, content, now);
+  on_datagram({from, from.node, relay_.hops(), false, datagram}, opened, now);
 }
 
-void Link::Impl::on_datagram(const Passage& passage, std::span<const std::uint8_t> content,
-                             Instant now) {
-  auto rest = content;
+void Link::Impl::on_datagram(const Passage& passage, const Opened& opened, Instant now) {
+  auto rest = *opened.content;
   const auto head = read_head(rest);
   if (!head) {
     ++counts_.malformed;
@@ -485,7 +487,7 @@ void Link::Impl::on_datagram(const Passage& passage, std::span<const std::uint8_
   const Author& from = passage.author;
   Remote* const remote = remote_of(passage, now);
   if (remote == nullptr) return;
-  remote->heard_at = now;
+  if (!passage.late) remote->heard_at = now;
   const auto newest = remote->stream.newest();
   News news;
   while (!rest.empty()) {
@@ -494,8 +496,9 @@ void Link::Impl::on_datagram(const Passage& passage, std::span<const std::uint8_
       ++counts_.malformed;
       return;
     }
+    if (passage.late && !std::holds_alternative<PartFrame>(*frame)) continue;
     if (passage.transmitter == from.node) on_neighbours_frame(from, *frame, now);
-    on_frame(from, *remote, *frame, news, now);
+    on_frame(opened, *remote, *frame, news, now);
   }
   remote->stream.on_head(*head, now, random_, deliver_from(from));
   if (relay_.passes() && remote->stream.newest() != newest) {
@@ -503,14 +506,16 @@ void Link::Impl::on_datagram(const Passage& passage, std::span<const std::uint8_
     if (!newest_at_) newest_at_ = now + from_seconds(kNewest_s * random_.uniform(0.9, 1.1));
   }
   note_questions(*remote);
-  const bool spreads = head->far || news.who || !news.parts.empty() || !remote->spread_at ||
-                       *remote->spread_at <= listener_at_;
-  if (spreads) remote->spread_at = now;
+  const bool is_for_all = !passage.late && (head->far || news.who || !remote->spread_at ||
+                                            *remote->spread_at <= listener_at_);
+  const bool spreads = is_for_all || !news.parts.empty();
+  if (spreads && !passage.late) remote->spread_at = now;
   relay_.on_first(passage, std::move(news.parts), spreads, news.urgency, now, random_);
 }
 
-void Link::Impl::on_frame(const Author& from, Remote& remote, const Frame& any, News& news,
+void Link::Impl::on_frame(const Opened& opened, Remote& remote, const Frame& any, News& news,
                           Instant now) {
+  const Author& from = opened.author;
   const auto note_urgency = [&](std::uint8_t channel) {
     if (channel < config_.channels.size()) {
       news.urgency = std::min(news.urgency, config_.channels[channel].urgency);
@@ -518,7 +523,7 @@ void Link::Impl::on_frame(const Author& from, Remote& remote, const Frame& any, 
   };
   if (const auto* sample = std::get_if<SampleFrame>(&any)) {
     note_urgency(sample->channel);
-    deliver_from(from)(sample->channel, sample->bytes);
+    on_sample(opened, remote, *sample);
   } else if (const auto* part = std::get_if<PartFrame>(&any)) {
     note_urgency(part->channel);
     if (remote.stream.on_part(*part, deliver_from(from))) news.parts.push_back(part->number);
@@ -530,6 +535,15 @@ void Link::Impl::on_frame(const Author& from, Remote& remote, const Frame& any, 
     on_certificate(from, remote, certificate->bytes, now);
   }
   if (news.who) news.urgency = Urgency::decision;
+}
+
+/// What was overtaken on its way is not told as if it were of now.
+void Link::Impl::on_sample(const Opened& opened, Remote& remote, const SampleFrame& sample) {
+  if (sample.channel >= remote.sampled.size()) return;
+  std::uint64_t& newest = remote.sampled[sample.channel];
+  if (opened.counter < newest) return;
+  newest = opened.counter;
+  sink_.on_sample(sample.channel, opened.author, sample.bytes);
 }
 
 void Link::Impl::on_hello(const Author& from, Remote& remote, const HelloFrame& hello,
@@ -603,9 +617,9 @@ void Link::Impl::on_passed_on(VehicleId transmitter, const PassedOnFrame& passed
   const auto opened = sink_.open(passed_on.bytes);
   if (!opened || opened->author == config_.self || opened->author.node == transmitter) return;
   const Passage passage{opened->author, transmitter, std::min(passed_on.hops, relay_.hops()),
-                        passed_on.bytes};
+                        passed_on.late, passed_on.bytes};
   if (opened->content) {
-    on_datagram(passage, *opened->content, now);
+    on_datagram(passage, *opened, now);
   } else {
     relay_.on_copy(passage);
   }
@@ -645,9 +659,8 @@ Link::~Link() = default;
 bool Link::send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now) {
   return impl_->send(channel, std::move(bytes), now);
 }
-void Link::hear(const Author& from, std::span<const std::uint8_t> content,
-                std::span<const std::uint8_t> datagram, Instant now) {
-  impl_->hear(from, content, datagram, now);
+void Link::hear(const Opened& opened, std::span<const std::uint8_t> datagram, Instant now) {
+  impl_->hear(opened, datagram, now);
 }
 Instant Link::due() const { return impl_->due(); }
 std::optional<std::vector<std::uint8_t>> Link::poll(Instant now) { return impl_->poll(now); }

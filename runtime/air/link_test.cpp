@@ -87,6 +87,25 @@ TEST(Link, ALongSampleIsCutAndJoined) {
   EXPECT_FALSE(air.link(0).send(kOrders, std::vector<std::uint8_t>(64'001), air.now));
 }
 
+TEST(Link, WhatWasOvertakenIsNotToldAfterTheNewer) {
+  Air air;
+  air.add(1);
+  const Author other{VehicleId{2}, InstanceId{7}};
+  const auto hear = [&](std::uint64_t counter, std::uint16_t newest, const std::string& text) {
+    const std::vector<std::uint8_t> said{text.begin(), text.end()};
+    std::vector<std::uint8_t> content;
+    write(content, Head{newest, 3, false});
+    write(content, SampleFrame{kMotion, said});
+    write(content, PartFrame{kOrders, newest, true, true, said});
+    air.link(0).hear({other, counter, content}, content, air.now);
+  };
+  hear(5, 10, "first");
+  hear(8, 12, "third");
+  hear(6, 11, "second");
+  EXPECT_THAT(air.texts(0, kMotion, 2), ElementsAre("first", "third"));
+  EXPECT_THAT(air.texts(0, kOrders, 2), ElementsAre("first", "second", "third"));
+}
+
 TEST(Link, WhatIsReadyTogetherGoesTogether) {
   Air air;
   air.add(1);
@@ -218,7 +237,7 @@ TEST(Link, AnyBytesAreHeardWithoutHarm) {
       bytes[random.index(bytes.size())] = static_cast<std::uint8_t>(random.index(256));
     }
     bytes.resize(random.index(bytes.size() + 1));
-    air.link(1).hear(stranger, bytes, bytes, air.now);
+    air.link(1).hear({stranger, 0, bytes}, bytes, air.now);
     if (i % 100 == 0) air.run(10ms);
   }
   EXPECT_GT(air.link(1).counts().malformed, 0U);

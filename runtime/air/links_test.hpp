@@ -155,12 +155,13 @@ class Air {
       }
       const Author author{VehicleId{static_cast<std::uint16_t>(number(0, 2))},
                           InstanceId{number(2, 8)}};
-      if (!opened[author].insert(number(10, 4)).second) return Opened{author, std::nullopt};
-      return Opened{author, datagram.subspan(14)};
+      const std::uint64_t count = number(10, 4);
+      if (!opened[author].insert(count).second) return Opened{author, count, std::nullopt};
+      return Opened{author, count, datagram.subspan(14)};
     }
     void hear(std::span<const std::uint8_t> datagram) {
       const auto got = open(datagram);
-      if (got && got->content) link->hear(got->author, *got->content, datagram, air.now);
+      if (got && got->content) link->hear(*got, datagram, air.now);
     }
     void on_sample(std::uint8_t channel, const Author& author,
                    std::span<const std::uint8_t> bytes) override {

@@ -59,6 +59,7 @@ void Relay::wait_until(Instant at, const Passage& passage, Urgency urgency,
   }
   waiting_.push_back({{passage.bytes.begin(), passage.bytes.end()},
                       static_cast<std::uint8_t>(passage.hops - 1),
+                      passage.late,
                       urgency,
                       at,
                       std::move(uncovered)});
@@ -112,8 +113,8 @@ void Relay::on_missing(VehicleId asker, const MissingFrame& missing, Instant now
       same->uncovered.push_back(asker);
       continue;
     }
-    wait_until(when({asker}, now, random), {kept.author, self_, hops(), kept.bytes}, kept.urgency,
-               {asker});
+    wait_until(when({asker}, now, random), {kept.author, self_, hops(), true, kept.bytes},
+               kept.urgency, {asker});
   }
 }
 
@@ -132,7 +133,7 @@ std::optional<PassedOnFrame> Relay::take(Urgency urgency, Instant now, std::size
   });
   if (next == waiting_.end()) return std::nullopt;
   taken_ = std::move(next->bytes);
-  const PassedOnFrame frame{next->hops, taken_};
+  const PassedOnFrame frame{next->late, next->hops, taken_};
   waiting_.erase(next);
   return frame;
 }

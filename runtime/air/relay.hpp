@@ -21,6 +21,7 @@ struct Passage {
   Author author;
   VehicleId transmitter;  ///< from whom it was heard: its author, or who passed it on
   std::uint8_t hops = 0;  ///< how often it may be passed on yet
+  bool late = false;      ///< said again for its parts
   std::span<const std::uint8_t> bytes;
 };
 
@@ -62,6 +63,7 @@ class Relay {
   struct Waiting {
     std::vector<std::uint8_t> bytes;
     std::uint8_t hops = 0;
+    bool late = false;
     Urgency urgency = Urgency::decision;
     Instant at;
     std::vector<VehicleId> uncovered;  ///< did not hear it, as far as is known

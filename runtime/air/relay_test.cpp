@@ -207,6 +207,34 @@ TEST(Relay, WhoJoinsIsKnownToAllAndKnowsThem) {
   EXPECT_EQ(team.certified(7).size(), 7U);
 }
 
+TEST(Relay, WhatIsSaidAgainForItsPartsBringsNobodyBackWhoIsGone) {
+  const Graph graph = chain(4);
+  Team team{graph, 4};
+  ASSERT_TRUE(team.run_until(at_seconds(4.0), [&] { return team.found({0, 1, 2, 3}); }));
+  team.run(10s);
+  const auto hear_0 = [&](std::size_t node) {
+    const auto peers = team.link(node).peers(team.now);
+    return std::ranges::any_of(peers, [](const LinkPeer& p) { return p.author.node.value == 0; });
+  };
+  // What 0 says last is lost between 1 and 2.
+  const Instant split = team.now;
+  team.apart = [graph](std::size_t a, std::size_t b) { return !graph.joined(a, b) || a + b == 3; };
+  team.say(0, kMotion, "here");
+  team.say(0, kOrders, "last");
+  team.run(100ms);
+  ASSERT_THAT(team.texts(1, kMotion, 0), ElementsAre("here"));
+  team.remove(0);
+  team.run(2s);
+  team.over(graph);
+  ASSERT_TRUE(team.run_until(team.now + 3s, [&] { return !team.texts(3, kOrders, 0).empty(); }));
+  for (const std::size_t node : {2U, 3U}) {
+    EXPECT_THAT(team.texts(node, kOrders, 0), ElementsAre("last"));
+    EXPECT_THAT(team.texts(node, kMotion, 0), IsEmpty());
+  }
+  team.run(split + Link::kPeerFor + 500ms - team.now);
+  EXPECT_FALSE(hear_0(2) || hear_0(3));
+}
+
 TEST(Relay, MotionIsPassedOnOnceASecond) {
   const Graph graph = chain(3);
   Team team{graph, 3};
@@ -302,25 +330,26 @@ TEST(Relay, WhatIsForgedOrMangledOnTheWayDoesNoHarm) {
   };
   // One that no author has sealed, one cut short, and one in one.
   std::vector<std::uint8_t> forged(100, 0xFF);
-  team.forge(1, stranger, write_to_one(PassedOnFrame{3, forged}));
+  team.forge(1, stranger, write_to_one(PassedOnFrame{false, 3, forged}));
   team.run(10ms);
   EXPECT_EQ(team.refused(1), 1U);
-  auto cut = write_to_one(PassedOnFrame{3, forged});
+  auto cut = write_to_one(PassedOnFrame{false, 3, forged});
   cut.pop_back();
   team.forge(1, stranger, cut);
   team.run(10ms);
   EXPECT_EQ(team.link(1).counts().malformed, 1U);
   auto within = sealed(stranger, 99, write_to_one(SampleFrame{kMotion, forged}));
   for (std::uint32_t i = 0; i < 50; ++i) {
-    within = sealed(stranger, 100 + i, write_to_one(PassedOnFrame{3, within}));
+    within = sealed(stranger, 100 + i, write_to_one(PassedOnFrame{false, 3, within}));
   }
-  team.forge(1, stranger, write_to_one(PassedOnFrame{3, within}));
+  team.forge(1, stranger, write_to_one(PassedOnFrame{false, 3, within}));
   team.run(100ms);
   EXPECT_THAT(team.texts(1, kMotion, 9), IsEmpty());
   for (int i = 0; i < 20'000; ++i) {
-    auto content = write_to_one(PassedOnFrame{
-        3, sealed({VehicleId{8}, InstanceId{1}}, 1000U + static_cast<std::uint32_t>(i),
-                  write_to_one(HearingFrame{false, VehicleId{3}, forged}))});
+    auto content = write_to_one(
+        PassedOnFrame{false, 3,
+                      sealed({VehicleId{8}, InstanceId{1}}, 1000U + static_cast<std::uint32_t>(i),
+                             write_to_one(HearingFrame{false, VehicleId{3}, forged}))});
     for (int k = 0; k < 3; ++k) {
       content[random.index(content.size())] = static_cast<std::uint8_t>(random.index(256));
     }

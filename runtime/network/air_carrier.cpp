@@ -53,6 +53,10 @@ std::optional<VehicleId> sender_of(std::span<const std::uint8_t> datagram) {
   return VehicleId{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))};
 }
 
+air::Author author_of(const seal::SenderStart& start) {
+  return {start.sender, identity::instance_of(start)};
+}
+
 bool wait_for(std::span<pollfd> any, Duration at_most) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(at_most);
   const timespec timeout{seconds.count(), (at_most - seconds).count()};
@@ -245,7 +249,7 @@ void AirCarrier::arrive(std::span<const std::uint8_t> datagram) {
   const auto opened = seals_ ? unseal(datagram, plain_) : read_clear(datagram);
   if (!opened || !opened->content) return;
   const std::lock_guard lock{mutex_};
-  link_.hear(opened->author, *opened->content, datagram, steady_now());
+  link_.hear(*opened, datagram, steady_now());
 }
 
 /// Copies over several nodes are no replays, and not counted as such.
@@ -254,7 +258,7 @@ std::optional<air::Opened> AirCarrier::open(std::span<const std::uint8_t> datagr
   const auto header = seal::read_header(datagram);
   if (header && is_own_voice(*header)) return std::nullopt;
   if (header && seals_->opener.has_opened(*header)) {
-    return air::Opened{{header->from.sender, identity::instance_of(header->from)}, std::nullopt};
+    return air::Opened{author_of(header->from), header->counter, std::nullopt};
   }
   return unseal(datagram, inner_);
 }
@@ -263,7 +267,7 @@ std::optional<air::Opened> AirCarrier::unseal(std::span<const std::uint8_t> data
                                               std::vector<std::uint8_t>& plain) {
   const auto outcome = seals_->opener.open(datagram, plain, steady_now());
   if (outcome.opened != seal::Opened::good) return std::nullopt;
-  return air::Opened{{outcome.from.sender, identity::instance_of(outcome.from)}, plain};
+  return air::Opened{author_of(outcome.from), seal::read_header(datagram)->counter, plain};
 }
 
 std::optional<air::Opened> AirCarrier::read_clear(std::span<const std::uint8_t> datagram) {
@@ -279,9 +283,9 @@ std::optional<air::Opened> AirCarrier::read_clear(std::span<const std::uint8_t> 
     return std::nullopt;
   }
   seal::ReplayWindow& heard = heard_clear_[author];
-  if (!heard.is_new(counter)) return air::Opened{author, std::nullopt};
+  if (!heard.is_new(counter)) return air::Opened{author, counter, std::nullopt};
   heard.note(counter);
-  return air::Opened{author, datagram.subspan(kClearBytes)};
+  return air::Opened{author, counter, datagram.subspan(kClearBytes)};
 }
 
 void AirCarrier::on_sample(std::uint8_t channel, const air::Author& author,

@@ -19,12 +19,12 @@ constexpr std::size_t kDatagramBytes = 300;
 
 class Heard final : public air::LinkSink {
  public:
-  /// The first byte says who said it, the next whether it is heard for the first time.
+  /// The first byte says who said it, the next which it is, and whether it is heard first.
   std::optional<air::Opened> open(std::span<const std::uint8_t> datagram) override {
     if (datagram.size() < 2) return std::nullopt;
     const air::Author author{VehicleId{datagram[0]}, InstanceId{2}};
-    if (datagram[1] % 4 == 0) return air::Opened{author, std::nullopt};
-    return air::Opened{author, datagram.subspan(2)};
+    if (datagram[1] % 4 == 0) return air::Opened{author, datagram[1], std::nullopt};
+    return air::Opened{author, datagram[1], datagram.subspan(2)};
   }
   void on_sample(std::uint8_t channel, const air::Author&,
                  std::span<const std::uint8_t> bytes) override {
@@ -52,7 +52,7 @@ void run(std::span<const std::uint8_t> bytes) {
     bytes = bytes.subspan(1 + piece.size());
     now += how % 7U * 10ms;
     SKEIN_ASSERT(link.send(how % 2U, {piece.begin(), piece.end()}, now));
-    link.hear({VehicleId{how}, InstanceId{2}}, piece, piece, now);
+    link.hear({{VehicleId{how}, InstanceId{2}}, piece.size(), piece}, piece, now);
     for (int said = 0; const auto datagram = link.poll(now); ++said) {
       SKEIN_ASSERT(datagram->size() <= kDatagramBytes && said < 100);
     }

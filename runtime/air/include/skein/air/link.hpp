@@ -42,6 +42,7 @@ struct Channel {
 /// What a datagram was found to be.
 struct Opened {
   Author author;
+  std::uint64_t counter = 0;  ///< of its author's datagrams: each has a greater one than before
   std::optional<std::span<const std::uint8_t>> content;  ///< none: it was opened before
 };
 
@@ -111,9 +112,9 @@ class Link {
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
   static constexpr std::size_t kSampleMax = 64'000;
 
-  /// What that author's datagram says, and the datagram as it was on the air. Any bytes.
-  void hear(const Author& from, std::span<const std::uint8_t> content,
-            std::span<const std::uint8_t> datagram, Instant now);
+  /// What a datagram of its transmitter's own was found to be, and as it was on the air. Any bytes.
+  /// Precondition: it has a content.
+  void hear(const Opened& opened, std::span<const std::uint8_t> datagram, Instant now);
 
   /// When poll() is to be called next.
   [[nodiscard]] Instant due() const;
