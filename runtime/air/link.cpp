@@ -175,6 +175,7 @@ class Link::Impl {
   Introductions introductions_;
   Instant listener_at_;               ///< when somebody new heard us
   std::optional<Instant> newest_at_;  ///< how far others are is to be told
+  Author newest_told_{};              ///< of whom it was told last
 
   double tokens_;
   Instant filled_at_;
@@ -422,11 +423,16 @@ void Link::Impl::put_introductions(Instant now) {
 
 void Link::Impl::put_newest(Instant now) {
   newest_at_.reset();
-  for (const auto& [author, remote] : remotes_) {
+  auto next = remotes_.upper_bound(newest_told_);
+  for (std::size_t left = remotes_.size(); left > 0; --left, ++next) {
+    if (next == remotes_.end()) next = remotes_.begin();
+    const auto& [author, remote] = *next;
     const auto newest = remote.stream.newest();
     if (!newest || now - remote.newest_at > kNewestFor) continue;
-    newest_at_ = now + from_seconds(kNewest_s * random_.uniform(0.9, 1.1));
-    if (!relay_.neighbours.without(author.node).empty()) (void)put(NewestFrame{author, *newest});
+    if (!newest_at_) newest_at_ = now + from_seconds(kNewest_s * random_.uniform(0.9, 1.1));
+    if (relay_.neighbours.without(author.node).empty()) continue;
+    if (!put(NewestFrame{author, *newest})) return;  // next time
+    newest_told_ = author;
   }
 }
 
@@ -648,6 +654,7 @@ std::vector<LinkPeer> Link::Impl::peers(Instant now) const {
 LinkCounts Link::Impl::counts() const {
   LinkCounts counts = counts_;
   counts.gave_way += relay_.gave_way();
+  for (const auto& [author, remote] : remotes_) counts.lost += remote.stream.lost();
   return counts;
 }
 

@@ -9,8 +9,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "frames.hpp"
@@ -27,6 +31,10 @@ using testing::IsEmpty;
 
 constexpr std::uint8_t kHops = 8;
 constexpr std::uint8_t kHopsInTheField = 16;  ///< the widest of the teams below has 10
+
+Author of(std::uint16_t node, std::uint64_t instance = 1) {
+  return {VehicleId{node}, InstanceId{instance}};
+}
 
 /// Who hears whom, and who is reached at all.
 class Graph {
@@ -385,8 +393,61 @@ TEST(Relay, WhoIsStartedAgainSoonHearsTheOthersAsSoon) {
   }
 }
 
-Author of(std::uint16_t node, std::uint64_t instance = 1) {
-  return {VehicleId{node}, InstanceId{instance}};
+TEST(Relay, HowFarOthersAreIsToldOfAllThoughADatagramDoesNotHoldThem) {
+  constexpr std::uint16_t kAuthors = 200;
+  struct Deaf final : LinkSink {
+    std::optional<Opened> open(std::span<const std::uint8_t> /*datagram*/) override { return {}; }
+    void on_sample(std::uint8_t /*channel*/, const Author& /*author*/,
+                   std::span<const std::uint8_t> /*bytes*/) override {}
+    void on_certificate(const Author& /*author*/,
+                        std::span<const std::uint8_t> /*bytes*/) override {}
+  } sink;
+  LinkConfig config;
+  config.self = of(1);
+  config.channels = kChannels;
+  config.hops_max = kHops;
+  Instant now{};
+  Link link{config, sink, now};
+  std::uint16_t said = 0;
+  const auto hear = [&](const Author& author, const std::optional<Frame>& frame) {
+    std::vector<std::uint8_t> content;
+    write(content, Head{++said, 0, false});
+    if (frame) write(content, *frame);
+    link.hear({author, said, content}, content, now);
+  };
+  const std::vector<std::uint8_t> us{1};
+  std::set<Author> told;
+  while (now < at_seconds(4.0)) {
+    hear(of(2), HearingFrame{false, VehicleId{1}, us});
+    for (std::uint16_t id = 10; id < 10 + kAuthors; ++id) hear(of(id), std::nullopt);
+    const Instant end = now + 500ms;
+    for (; link.due() <= end; now = std::max(now, link.due())) {
+      while (const auto datagram = link.poll(now)) {
+        std::span<const std::uint8_t> rest{*datagram};
+        ASSERT_TRUE(read_head(rest));
+        while (const auto frame = read_frame(rest)) {
+          if (const auto* newest = std::get_if<NewestFrame>(&*frame)) told.insert(newest->author);
+          if (rest.empty()) break;
+        }
+      }
+    }
+    now = end;
+  }
+  EXPECT_EQ(told.size(), kAuthors);
+}
+
+TEST(Relay, WhatCouldNotBeHadIsCounted) {
+  Team team{chain(2), 2};
+  team.run(3s);
+  team.apart = [](auto, auto) { return true; };
+  for (int i = 0; i < 30; ++i) {
+    team.say(0, kOrders, "m" + std::to_string(i));
+    team.run(1s);
+  }
+  team.over(chain(2));
+  team.run(2s);
+  EXPECT_EQ(team.link(1).counts().lost, 30 - team.texts(1, kOrders, 0).size());
+  EXPECT_GT(team.link(1).counts().lost, 0U);
 }
 
 /// That node says that it hears these.
