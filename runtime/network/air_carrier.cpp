@@ -101,6 +101,18 @@ Result<std::unique_ptr<AirRadio>> open_radio(const CarrierConfig& config) {
 
 }  // namespace
 
+bool HeardClear::is_first(const air::Author& author, std::uint64_t counter) {
+  if (authors_.size() >= air::Link::kAuthorsMax && !authors_.contains(author)) {
+    authors_.erase(
+        std::ranges::min_element(authors_, {}, [](const auto& entry) { return entry.second.at; }));
+  }
+  Heard& heard = authors_[author];
+  heard.at = ++calls_;
+  if (!heard.window.is_new(counter)) return false;
+  heard.window.note(counter);
+  return true;
+}
+
 AirCarrier::AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, Descriptor wake,
                        std::unique_ptr<AirRadio> radio)
     : config_{std::move(config)},
@@ -279,12 +291,7 @@ std::optional<air::Opened> AirCarrier::read_clear(std::span<const std::uint8_t> 
   const air::Author author{VehicleId{static_cast<std::uint16_t>(number_in(datagram.subspan(5, 2)))},
                            InstanceId{number_in(datagram.subspan(7, 8))}};
   const std::uint64_t counter = number_in(datagram.subspan(15, 5));
-  if (!heard_clear_.contains(author) && heard_clear_.size() >= air::Link::kAuthorsMax) {
-    return std::nullopt;
-  }
-  seal::ReplayWindow& heard = heard_clear_[author];
-  if (!heard.is_new(counter)) return air::Opened{author, counter, std::nullopt};
-  heard.note(counter);
+  if (!heard_clear_.is_first(author, counter)) return air::Opened{author, counter, std::nullopt};
   return air::Opened{author, counter, datagram.subspan(kClearBytes)};
 }
 

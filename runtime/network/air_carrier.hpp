@@ -21,6 +21,22 @@
 
 namespace skein::network {
 
+/// Which datagrams in clear were heard, of at most air::Link::kAuthorsMax authors: who was silent
+/// longest gives way.
+class HeardClear {
+ public:
+  /// Whether that datagram was not heard yet; now it is.
+  bool is_first(const air::Author& author, std::uint64_t counter);
+
+ private:
+  struct Heard {
+    seal::ReplayWindow window;
+    std::uint64_t at = 0;  ///< by how many calls there were
+  };
+  std::map<air::Author, Heard> authors_;
+  std::uint64_t calls_ = 0;
+};
+
 /// An air::Link on a socket, with a thread of its own that listens and speaks.
 class AirCarrier final : public Carrier, private air::LinkSink {
  public:
@@ -81,7 +97,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   std::vector<Heard> heard_;
   std::vector<std::uint8_t> plain_;
   std::vector<std::uint8_t> inner_;  ///< of a datagram that was passed on
-  std::map<air::Author, seal::ReplayWindow> heard_clear_;
+  HeardClear heard_clear_;
   std::uint64_t said_clear_ = 0;
   std::vector<std::uint8_t> out_;
   std::thread thread_;  ///< last: it uses all of the above

@@ -202,6 +202,61 @@ TEST(AirCarrier, WhoIsBetweenPassesOnWhatTheOthersSay) {
   }
 }
 
+TEST(HeardClear, WhoWasSilentLongestGivesWay) {
+  constexpr std::uint64_t kMax = air::Link::kAuthorsMax;
+  HeardClear heard;
+  const auto author = [](std::uint64_t start) {
+    return air::Author{VehicleId{1}, InstanceId{start}};
+  };
+  for (std::uint64_t start = 0; start < kMax; ++start) {
+    EXPECT_TRUE(heard.is_first(author(start), 5));
+  }
+  EXPECT_FALSE(heard.is_first(author(0), 5)) << "and is no longer the one";
+  EXPECT_TRUE(heard.is_first(author(kMax), 5)) << "one more";
+  EXPECT_FALSE(heard.is_first(author(kMax), 5));
+  EXPECT_FALSE(heard.is_first(author(0), 5));
+  EXPECT_FALSE(heard.is_first(author(2), 5));
+  EXPECT_TRUE(heard.is_first(author(1), 5)) << "is forgotten";
+}
+
+TEST(AirCarrier, TheKeyChangesOverTwoHops) {
+  auto configs = team(2, true);
+  for (NodeConfig& config : configs) {
+    config.air->hops_max = 8;
+    config.transport_plugin = SKEIN_CHAIN_RADIO;
+  }
+  const auto ground = open(configs[0]);
+  const auto between = open(configs[1]);
+  const auto far = open(configs[2]);
+  const auto all_found = [&] {
+    return ground->peers().size() == 2 && between->peers().size() == 2 && far->peers().size() == 2;
+  };
+  ASSERT_TRUE(eventually(all_found));
+  const std::vector<std::uint8_t> change{identity::kChangeMark, 1, 2, 3};
+  const auto tell_others = [&](Node& from, VehicleId self) {
+    std::vector<KeyNews> news;
+    for (const NodeConfig& other : configs) {
+      if (other.self != self) news.push_back({other.self, 2, change});
+    }
+    from.change_key(key(2), 60s);
+    from.tell(news);
+  };
+  const auto is_told = [&](Node& node) {
+    return eventually([&] { return node.take_key_news() == change; });
+  };
+  tell_others(*ground, configs[0].self);
+  ASSERT_TRUE(is_told(*between));
+  EXPECT_FALSE(far->take_key_news()) << "out of the ground station's reach";
+  expect_exchange(*far, *ground, Role::vehicle);  // under the old key, for its time
+  tell_others(*between, configs[1].self);
+  ASSERT_TRUE(is_told(*far)) << "by who is between";
+  far->change_key(key(2), 0s);
+  // The old key is gone for it: what arrives was sealed with the new one.
+  expect_exchange(*ground, *far, Role::ground);
+  expect_exchange(*far, *ground, Role::vehicle);
+  EXPECT_EQ(far->counters().at("seal_forged") + far->counters().at("seal_replayed"), 0U);
+}
+
 /// Who hears a group, and says again what it has heard.
 class Recorder {
  public:
