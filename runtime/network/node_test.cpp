@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +16,7 @@
 #include <limits>
 #include <random>
 #include <thread>
+#include <variant>
 
 #include "free_ports.hpp"
 #include "skein/codec/codec.hpp"
@@ -423,6 +425,51 @@ TEST_F(SigningNodes, WhoHasCapturedAVehicleDecidesForNobodyElse) {
     return counted("signature_missing") > 10;
   }));
   EXPECT_FALSE(vehicle->poll()) << "nothing of it is heard";
+}
+
+TEST_F(SigningNodes, WhatIsNotHeededIsCountedAndNotJudged) {
+  std::atomic<bool> heeds{false};
+  configs_[1].heeds = [&heeds](const mission::Message& message) {
+    return heeds || !std::holds_alternative<mission::Command>(message);
+  };
+  const auto vehicle = open(configs_[1]);
+  const auto counted = [&vehicle](const char* name) { return vehicle->counters().at(name); };
+  const mission::Command hold{{1}, 77, mission::CommandKind::hold};
+  constexpr std::uint64_t kUnheeded = 5;
+  {
+    const auto ground = open(configs_[0]);
+    ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+    for (std::uint64_t i = 0; i < kUnheeded; ++i) EXPECT_TRUE(ground->publish(hold));
+    ASSERT_TRUE(eventually([&] { return counted("unheeded") == kUnheeded; }));
+  }
+  EXPECT_EQ(counted("received"), 0U);
+  ASSERT_TRUE(eventually([&] { return vehicle->peers().empty(); }));
+  // The first that the same instance signs would be a replay, had its window gone on.
+  heeds = true;
+  configs_[0].seal->start.number = 2;
+  {
+    const auto again = open(configs_[0]);
+    ASSERT_TRUE(eventually([&] { return know_each_other(*again, *vehicle); }));
+    EXPECT_TRUE(again->publish(hold));
+    ASSERT_TRUE(eventually([&] { return counted("received") == 1; }));
+    EXPECT_EQ(vehicle->poll().value().sender, kGroundStation);
+  }
+  ASSERT_TRUE(eventually([&] { return vehicle->peers().empty(); }));
+  // And one in the ground station's name is forged for who heeds it, and nothing for who does not.
+  NodeConfig captured = configs_[0];
+  captured.instance = InstanceId{(3ULL << 24U) + 5U};
+  captured.seal->start.number = 3;
+  captured.sign = keys_of({2});
+  const auto insider = open(captured);
+  ASSERT_TRUE(eventually([&] { return know_each_other(*insider, *vehicle); }));
+  heeds = false;
+  EXPECT_TRUE(insider->publish(hold));
+  ASSERT_TRUE(eventually([&] { return counted("unheeded") == kUnheeded + 1; }));
+  EXPECT_EQ(counted("signature_forged"), 0U);
+  heeds = true;
+  EXPECT_TRUE(insider->publish(hold));
+  EXPECT_TRUE(eventually([&] { return counted("signature_forged") == 1; }));
+  EXPECT_EQ(counted("signature_replayed") + counted("signature_missing"), 0U);
 }
 
 TEST(SealedNode, HearsNobodyInClearOrOfAnotherTeam) {
