@@ -638,6 +638,7 @@ void log_summary(const network::Node& node, const mission::GroundNode& ground) {
       "meanwhile {}",
       traffic.sent, traffic.received, traffic.dropped + ground.dropped(), ground.refused(),
       traffic.of_strangers, traffic.unproven, traffic.restarts, traffic.unconnected);
+  process::log_air(node);
 }
 
 /// None without keys.

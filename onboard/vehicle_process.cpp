@@ -246,6 +246,7 @@ class Threads {
         counters.protocol_errors + counters.bad_messages,
         counters.events_dropped + ports_.track.dropped() + ports_.plans.dropped() +
             events_.dropped() + records_.dropped());
+    process::log_air(node);
     if (flight_controllers_.on_can == nullptr) return;
     const auto& link = flight_controllers_.on_can->link();
     const auto& bus = link.bus().statistics();

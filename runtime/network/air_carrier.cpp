@@ -178,8 +178,13 @@ CarrierCounts AirCarrier::counts() const {
   };
   {
     const std::lock_guard lock{mutex_};
-    set(CarrierCount::unknown_sender, link_.counts().too_many);
-    set(CarrierCount::misformed, misformed_ + link_.counts().malformed);
+    const air::LinkCounts link = link_.counts();
+    set(CarrierCount::unknown_sender, link.too_many);
+    set(CarrierCount::misformed, misformed_ + link.malformed);
+    set(CarrierCount::air_passed_on, link.passed_on);
+    set(CarrierCount::air_repairs, link.repairs);
+    set(CarrierCount::air_gave_way, link.gave_way);
+    set(CarrierCount::air_lost, link.lost);
   }
   if (seals_) {
     const auto opened = seals_->opener.counts();

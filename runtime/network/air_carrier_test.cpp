@@ -196,6 +196,8 @@ TEST(AirCarrier, WhoIsBetweenPassesOnWhatTheOthersSay) {
     EXPECT_THAT(far->peers(), Contains(Peer{kGroundStation, configs[0].instance, Role::ground}));
     expect_exchange(*ground, *far, Role::ground);
     expect_exchange(*far, *ground, Role::vehicle);
+    EXPECT_GT(between->counters().at("air_passed_on"), 0U);
+    EXPECT_EQ(far->counters().at("air_passed_on"), 0U);
     if (!sealed) continue;
     EXPECT_EQ(far->counters().at("seal_replayed"), 0U);
     EXPECT_EQ(far->counters().at("seal_forged"), 0U);

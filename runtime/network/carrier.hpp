@@ -44,6 +44,10 @@ enum class CarrierCount : std::uint8_t {
   unknown_sender,
   lost,  ///< by a carrier of its own process: its node was slower than it, or DDS had no room
   misformed,
+  air_passed_on,  ///< this and the next three: air::LinkCounts
+  air_repairs,
+  air_gave_way,
+  air_lost,
   opened,  ///< this and the rest: seal::Opened
   count = opened + static_cast<std::uint8_t>(seal::Opened::count)
 };

@@ -227,6 +227,12 @@ std::map<std::string, std::uint64_t> Node::Impl::counters() const {
     return carried.at(static_cast<std::size_t>(count) + offset);
   };
   all.emplace("unknown_sender", of(CarrierCount::unknown_sender));
+  if (config_.air) {
+    all.emplace("air_passed_on", of(CarrierCount::air_passed_on));
+    all.emplace("air_repairs", of(CarrierCount::air_repairs));
+    all.emplace("air_gave_way", of(CarrierCount::air_gave_way));
+    all.emplace("air_lost", of(CarrierCount::air_lost));
+  }
   if (config_.isolated) {
     all.emplace("carrier_lost", of(CarrierCount::lost));
     all.emplace("carrier_restarts", carrier_->restarts());

@@ -140,6 +140,16 @@ void log_troubles(network::Node& node) {
   }
 }
 
+void log_air(const network::Node& node) {
+  const auto counts = node.counters();
+  if (!counts.contains("air_lost")) return;
+  spdlog::info(
+      "the air: datagrams of others passed on {}; parts said again {}, lost for good {}; given way "
+      "to newer {}",
+      counts.at("air_passed_on"), counts.at("air_repairs"), counts.at("air_lost"),
+      counts.at("air_gave_way"));
+}
+
 Traffic traffic_of(const network::Node& node) {
   Traffic traffic;
   for (const auto& [name, count] : node.counters()) {
@@ -157,7 +167,7 @@ Traffic traffic_of(const network::Node& node) {
       traffic.of_strangers += count;
     } else if (name.starts_with("seal_")) {
       if (name != "seal_opened") traffic.of_strangers += count;
-    } else {
+    } else if (!name.starts_with("air_")) {
       traffic.dropped += count;
     }
   }

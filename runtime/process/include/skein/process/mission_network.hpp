@@ -56,6 +56,9 @@ struct Traffic {
 };
 [[nodiscard]] Traffic traffic_of(const network::Node& node);
 
+/// Tells the log at the end what became of datagrams on the air, where the node speaks on one.
+void log_air(const network::Node& node);
+
 /// Tells the log of nodes whose messages cannot be read for their version, each type once, and of
 /// the process that carries the network, where it was started again.
 void log_troubles(network::Node& node);
