@@ -97,7 +97,7 @@ class Air {
     return sum;
   }
   /// To `node`, as if it were that author's.
-  void forge(std::size_t node, const Author& author, std::vector<std::uint8_t> content) {
+  void forge(std::size_t node, const Author& author, const std::vector<std::uint8_t>& content) {
     flying_.emplace(now, Flying{node, sealed(author, ++forged_, content)});
   }
   [[nodiscard]] std::uint64_t refused(std::size_t node) const { return nodes_[node]->refused; }

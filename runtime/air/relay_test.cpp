@@ -26,7 +26,6 @@ namespace skein::air {
 namespace {
 
 using testing::ElementsAre;
-using testing::ElementsAreArray;
 using testing::IsEmpty;
 
 constexpr std::uint8_t kHops = 8;
