@@ -32,6 +32,7 @@ constexpr double kHello_s = 1.0;
 constexpr Duration kHelloEarly = 200ms;  ///< before it is due, where a datagram goes anyway
 constexpr double kGreet_s = 0.05;        ///< who is new is greeted within twice that
 constexpr Duration kGreetEvery = 200ms;
+constexpr Duration kGreetShare = 10ms;  ///< or so long for each who is heard, where that is more
 constexpr int kGreetings = 3;  ///< after somebody new was heard, for the case that one is lost
 constexpr double kAgain_s = 0.3;
 constexpr double kWant_s = 0.3;
@@ -118,6 +119,7 @@ class Link::Impl {
   Remote* remote_of(const Passage& passage, Instant now);
   void forget_silent(Instant now);
   void greet(Instant now);
+  [[nodiscard]] Duration greet_every() const;
   void on_datagram(const Passage& passage, const Opened& opened, Instant now);
   void on_frame(const Opened& opened, Remote& remote, const Frame& frame, News& news, Instant now);
   void on_sample(const Opened& opened, Remote& remote, const SampleFrame& sample);
@@ -337,7 +339,8 @@ void Link::Impl::put_greeting(Instant now) {
     greet_with_certificate_ = !put(CertificateFrame{config_.certificate});
   forget_silent(now);
   greeted_at_ = now;
-  const double next_s = greetings_ > 0 ? kAgain_s : kHello_s;
+  const double next_s =
+      greetings_ > 0 ? std::max(kAgain_s, to_seconds(greet_every())) : kHello_s;
   greetings_ = std::max(greetings_ - 1, 0);
   hello_at_ = now + from_seconds(next_s * random_.uniform(0.9, 1.1));
 }
@@ -459,9 +462,14 @@ Link::Impl::Remote* Link::Impl::remote_of(const Passage& passage, Instant now) {
   return &remote;
 }
 
+/// All greet whoever is new; together they take no more of the air the more they are.
+Duration Link::Impl::greet_every() const {
+  return std::max(kGreetEvery, kGreetShare * static_cast<std::int64_t>(remotes_.size()));
+}
+
 /// Somebody should hear of us soon.
 void Link::Impl::greet(Instant now) {
-  const Instant earliest = greeted_at_ ? std::max(now, *greeted_at_ + kGreetEvery) : now;
+  const Instant earliest = greeted_at_ ? std::max(now, *greeted_at_ + greet_every()) : now;
   hello_at_ =
       std::min(hello_at_, earliest + from_seconds(random_.uniform(kGreet_s / 5, 2 * kGreet_s)));
 }
