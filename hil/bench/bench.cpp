@@ -188,9 +188,13 @@ class Bench {
       ground.network.transport_plugin = external_.ground()->radio_plugin;
     }
     if (auto kept = keep_console_token(ground.recording_folder); !kept) return kept;
-    if (auto up = launch(kGroundStation, "skein-ground", "ground", configuration::to_yaml(ground));
-        !up)
-      return up;
+    // All of it before the first program runs, and wants the processor, too.
+    std::ofstream{configuration_of(kGroundStation)} << configuration::to_yaml(ground);
+    for (const auto& config : configs) {
+      if (external_.has(config.vehicle.id)) continue;
+      std::ofstream{configuration_of(config.vehicle.id)} << configuration::to_yaml(config);
+    }
+    if (auto up = launch(kGroundStation, "skein-ground"); !up) return up;
     nodes_.push_back(kGroundStation);
     for (const auto& config : configs) {
       nodes_.push_back(config.vehicle.id);
@@ -327,9 +331,7 @@ class Bench {
   Result<void> launch_vehicle(const configuration::VehicleConfig& config) {
     if (external_.has(config.vehicle.id)) return {};
     if (auto up = launch_flight_controller(config); !up) return up;
-    return launch(config.vehicle.id, "skein-onboard",
-                  "vehicle-" + std::to_string(config.vehicle.id.value),
-                  configuration::to_yaml(config));
+    return launch(config.vehicle.id, "skein-onboard");
   }
 
   /// Opens the bench's own node and recording.
@@ -357,10 +359,12 @@ class Bench {
     return at_seconds(since * options_.rate);
   }
 
-  Result<void> launch(VehicleId id, const std::string& program, const std::string& name,
-                      const std::string& yaml) {
-    const auto file = options_.run_folder / (name + ".yaml");
-    std::ofstream{file} << yaml;
+  [[nodiscard]] std::filesystem::path configuration_of(VehicleId id) const {
+    return options_.run_folder / (log_name(id) + ".yaml");
+  }
+
+  Result<void> launch(VehicleId id, const std::string& program) {
+    const auto file = configuration_of(id);
     const bool terminal = options_.prompt && id == kGroundStation;
     std::vector<std::string> command{(options_.programs / program).string(), "--config",
                                      file.string()};
@@ -370,7 +374,7 @@ class Bench {
       command.insert(command.begin(), before.begin(), before.end());
     }
     auto child = ChildProcess::start(
-        command, terminal ? std::filesystem::path{} : options_.run_folder / (name + ".log"),
+        command, terminal ? std::filesystem::path{} : options_.run_folder / (log_name(id) + ".log"),
         {{"SKEIN_RADIO_TABLE", table_->name()},
          {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
     if (!child) return child.error();
@@ -579,7 +583,8 @@ class Bench {
         const int hops = mesh_ ? mesh_->hops(from, to) : int{direct};
         table_->set_hops(places_[from].id, places_[to].id, hops);
         hearing.hops.at(places_[from].id.value) = static_cast<std::uint8_t>(hops);
-        if (links_) links_->tell(places_[from].id, places_[to].id, radio::over_hops(hop, int{direct}));
+        if (links_)
+          links_->tell(places_[from].id, places_[to].id, radio::over_hops(hop, int{direct}));
       }
       external_.tell(hearing);
     }
