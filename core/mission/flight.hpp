@@ -47,7 +47,7 @@ class Flight {
   /// An orbit at that place, where it can be reached clear of hazards and `range_m` lasts there and
   /// home again; else, and without a place, here. The search goes on from there later.
   void stand_by(SiteId site, const std::optional<Vec2>& place, const std::vector<Hazard>& hazards,
-            double range_m, Instant now);
+                double range_m, Instant now);
   [[nodiscard]] bool searching() const { return searching_; }
   [[nodiscard]] bool homing() const { return homing_; }
   /// The site that stand_by() was told of, while that is flown.

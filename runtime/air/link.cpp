@@ -339,8 +339,7 @@ void Link::Impl::put_greeting(Instant now) {
     greet_with_certificate_ = !put(CertificateFrame{config_.certificate});
   forget_silent(now);
   greeted_at_ = now;
-  const double next_s =
-      greetings_ > 0 ? std::max(kAgain_s, to_seconds(greet_every())) : kHello_s;
+  const double next_s = greetings_ > 0 ? std::max(kAgain_s, to_seconds(greet_every())) : kHello_s;
   greetings_ = std::max(greetings_ - 1, 0);
   hello_at_ = now + from_seconds(next_s * random_.uniform(0.9, 1.1));
 }

@@ -75,7 +75,7 @@ until_holds 40 "both deliveries are flown" delivered
 
 echo "- a vehicle with the team's certificate that stands in nobody's file takes part"
 mkdir -p "$folder/4/etc" "$folder/4/var/onboard-4"
-sed "s|id: 2$|id: 4|; s|"10.53.0.2"|"10.53.0.4"|; s|$folder/2/|$folder/4/|; s|onboard-2|onboard-4|;
+sed "s|id: 2$|id: 4|; s|10\.53\.0\.2|10.53.0.4|; s|$folder/2/|$folder/4/|; s|onboard-2|onboard-4|;
      s|detections-2|detections-4|; s|height_m: 110$|height_m: 130|" "$folder/2/etc/onboard-2.yaml" >"$folder/4/etc/onboard-4.yaml"
 "$programs/skein-onboard" enrol --id 4 --keys "$(keys 4 onboard-4)" |
   "$programs/skein-ground" mission enrol - --yes --keys "$(keys 0 ground)" |
@@ -88,10 +88,11 @@ until_holds 20 "the ground station hears vehicle 4" four_heard
 echo "  heard $(($(date +%s%3N) - began)) ms after its program began"
 told=$(tell site 150 -150 survey 3 deliver 60 simultaneous) || fail "$told"  # the others have no loads left
 site=$(grep -oE 'site [0-9]+' <<<"$told" | head -n 1 | cut -d ' ' -f 2)
-delivered() { has '1 delivered' "$(tell sites)"; }
+fourth_delivered() { has '1 delivered' "$(tell sites)"; }
 until_holds 60 "an authorisation is asked for" authorised
-until_holds 60 "vehicle 4 has delivered" delivered
-kill "$joined" && wait "$joined" || fail "vehicle 4 did not end cleanly"
+until_holds 60 "vehicle 4 has delivered" fourth_delivered
+kill "$joined"
+wait "$joined" || fail "vehicle 4 did not end cleanly"
 
 echo "- who is revoked is heard no more; the others have another key at once, and fly on"
 "$programs/skein-ground" mission revoke vehicle 3 --keys "$(keys 0 ground)" || fail "revoke"

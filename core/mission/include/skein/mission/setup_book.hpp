@@ -49,9 +49,9 @@ struct SetupDifference {
 /// "another origin.latitude_deg", "a clock that is 3.0 s ahead": what a sentence goes on with.
 [[nodiscard]] std::string text_of(const SetupDifference& difference);
 
-/// What this node runs with, told to all every kPeriod, and at once where somebody new is heard: the
-/// more rarely the more are new, and the more nodes there are beyond kTeam, so that each has no more
-/// to judge; and what of that others run with too. `now` is of this node's clock and never
+/// What this node runs with, told to all every kPeriod, and at once where somebody new is heard:
+/// the more rarely the more are new, and the more nodes there are beyond kTeam, so that each has no
+/// more to judge; and what of that others run with too. `now` is of this node's clock and never
 /// decreases.
 class SetupBook {
  public:
@@ -116,7 +116,7 @@ class SetupBook {
   Instant said_at_ = Instant::min();
   /// After the last: doubled while somebody new comes again and again, as where all start at once.
   Duration soon_ = kPeriod;
-  bool hurried_ = false;             ///< the next is said sooner than its period asks for
+  bool hurried_ = false;  ///< the next is said sooner than its period asks for
   Instant next_;
   BoundedQueue<EventBody> news_{64};
 };

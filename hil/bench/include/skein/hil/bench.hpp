@@ -29,7 +29,7 @@ struct BenchOptions {
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
   /// one for each.
   std::string can;
-  bool dds = false;                ///< Fast DDS, to each node by itself; else by the air
+  bool dds = false;  ///< Fast DDS, to each node by itself; else by the air
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.
   std::string links;

@@ -80,8 +80,8 @@ struct Healing {};
 struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
-  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff, Ordered,
-               SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, Healing>
+  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff,
+               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, Healing>
       what;
 };
 
