@@ -24,7 +24,7 @@ Result<Flooder> Flooder::open(const std::string& group, std::uint16_t port,
   to.sin_port = htons(port);
   in_addr from{};
   const int yes = 1;
-  if (::inet_pton(AF_INET, group.c_str(), &to.sin_addr) != 1 ||
+  if (flooder.socket_ < 0 || ::inet_pton(AF_INET, group.c_str(), &to.sin_addr) != 1 ||
       ::inet_pton(AF_INET, address.c_str(), &from) != 1 ||
       ::setsockopt(flooder.socket_, IPPROTO_IP, IP_MULTICAST_IF, &from, sizeof from) != 0 ||
       ::setsockopt(flooder.socket_, SOL_SOCKET, SO_BROADCAST, &yes, sizeof yes) != 0 ||

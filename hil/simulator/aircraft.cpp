@@ -76,7 +76,8 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   if (what_.flies_formation) config.formation = *mission_.formation;
   auto node = onboard::node_config(config, std::nullopt, instance(what_.spec.id, life_),
                                    "skein-hil simulate");
-  node.telemetry = {kTelemetryPeriod, kTelemetryPeriod};
+  // As a node in the field paces it where the air has its price; else as ever.
+  if (!mission_.radio.bytes_per_s) node.telemetry = {kTelemetryPeriod, kTelemetryPeriod};
   node.setup.common.clear();  // of one configuration: only clocks can differ
   return node;
 }

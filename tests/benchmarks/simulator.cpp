@@ -65,7 +65,8 @@ void thousand(benchmark::State& state, double range_m, Duration duration) {
   for (std::uint16_t i = 0; i < 16; ++i) {
     skein::Site site = kinds[i % kinds.size()];
     site.id = skein::SiteId{static_cast<std::uint16_t>(i + 1)};
-    site.position = {kStep_m * (i % 4 - 1.5), kStep_m * (static_cast<double>(i / 4) - 1.5)};
+    const int row = i / 4;
+    site.position = {kStep_m * (i % 4 - 1.5), kStep_m * (row - 1.5)};
     base->sites.push_back(site);
     base->operator_decisions.push_back({.site = site.id, .reaction = std::chrono::seconds{3}});
   }

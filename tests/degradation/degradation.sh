@@ -9,24 +9,28 @@ set -euo pipefail
 
 readonly programs=$1 scenario=$2
 shift 2
-(($#)) || set -- undisturbed loss-50 loss-90 loss-90-for-60s 5-kB/s half-cut-for-120s flood
+(($#)) || set -- undisturbed loss-50 loss-90 loss-90-for-60s 5-kB/s-each 5-kB/s-for-all half-cut-for-120s flood
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 # The scenario with what is wrong in that case.
 spoilt() {
-  local radio='' more=''
+  local radio='' delay=0.2 more=''
   case $1 in
     undisturbed) ;;
     loss-50) more='faults: [{at_s: 0, for_s: 290, loss_ratio: 0.5}]' ;;
     loss-90) more='faults: [{at_s: 0, for_s: 290, loss_ratio: 0.9}]' ;;
     loss-90-for-60s) more='faults: [{at_s: 0, for_s: 60, loss_ratio: 0.9}]' ;;
-    5-kB/s) radio='bytes_per_s: 5000, ' more='air: {limit_bytes_per_s: 700}' ;;  # of the channel, by seven
+    5-kB/s-each) more='air: {limit_bytes_per_s: 5000}' ;;
+    # Of the channel, by seven; what all bid takes 0.6 s of it.
+    5-kB/s-for-all) radio='bytes_per_s: 5000, ' delay=2 more='air: {limit_bytes_per_s: 700}' ;;
     half-cut-for-120s) more='faults: [{at_s: 5, for_s: 120, partition: [[1, 2, 3], [4, 5, 6]]}]' ;;
     flood) radio='bytes_per_s: 100000, ' more='faults: [{at_s: 5, for_s: 280, flood_vehicle: 6}]' ;;
     *) echo "degradation: there is no case '$1'" >&2 && exit 2 ;;
   esac
-  sed "s/^radio: {/radio: {$radio/; s/^duration_max_s: .*/duration_max_s: 300/" "$scenario"
+  # Range enough to wait for the radio.
+  sed "s/^radio: {/radio: {$radio/; s/^duration_max_s: .*/duration_max_s: 300/; s/^  range_m: .*/  range_m: 20000/
+       s/message_delay_s: 0.2/message_delay_s: $delay/; s/authorisation_lead_s: 4/authorisation_lead_s: 6/" "$scenario"
   printf '%s\n' "$more"
 }
 

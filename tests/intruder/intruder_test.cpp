@@ -73,9 +73,9 @@ class Intruder : public testing::TestWithParam<By> {
 
   void start_mission() {
     fs::create_directories(folder_);
-    std::vector<std::string> words{SKEIN_PROGRAMS "/skein-hil",
+    std::vector<std::string> words{std::string{SKEIN_PROGRAMS} + "/skein-hil",
                                    "run",
-                                   SKEIN_SOURCE_DIR "/scenarios/coalition-6.yaml",
+                                   std::string{SKEIN_SOURCE_DIR} + "/scenarios/coalition-6.yaml",
                                    "--headless",
                                    "--out",
                                    run().string()};
