@@ -60,11 +60,11 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft
       return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
     };
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
+      if (!vehicles[i].in_coalitions()) continue;
       const auto activity = vehicles[i].activity();
       const bool free =
           activity == mission::Activity::searching || activity == mission::Activity::standing_by;
-      const bool can = vehicles[i].in_coalitions() &&
-                       specs_[i].capabilities.has(TaskKind::survey) && free && !told.contains(i);
+      const bool can = free && specs_[i].capabilities.has(TaskKind::survey) && !told.contains(i);
       if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
     }
     if (!nearest) return false;
