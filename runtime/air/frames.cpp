@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint8_t kFormat = 0x51;
 constexpr std::uint8_t kFar = 0x80;
 
-/// Of a part 4: whole, 5: it begins, 6: it ends, 7: neither. Of a hearing 14: it goes on.
+/// Of a part 4: whole, 5: it begins, 6: it ends, 7: neither; the same of one that is said again. Of
+/// a hearing 14: it goes on.
 enum Kind : std::uint8_t {
   sample = 1,
   part = 4,
@@ -21,7 +22,8 @@ enum Kind : std::uint8_t {
   hearing = 13,
   introduction = 15,
   newest = 16,
-  passed_on_late = 17
+  passed_on_late = 17,
+  part_again = 18
 };
 
 template <class Number>
@@ -78,8 +80,10 @@ class Cutter {
 
 PartFrame cut_part(Cutter& cut, std::uint8_t kind) {
   PartFrame frame;
-  frame.begins = kind == part || kind == part + 1;
-  frame.ends = kind == part || kind == part + 2;
+  frame.again = kind >= part_again;
+  const int form = kind - (frame.again ? part_again : part);
+  frame.begins = form == 0 || form == 1;
+  frame.ends = form == 0 || form == 2;
   frame.channel = cut.number<std::uint8_t>();
   frame.number = cut.number<std::uint16_t>();
   frame.bytes = cut.counted_bytes();
@@ -96,6 +100,10 @@ std::optional<Frame> cut_frame(Cutter& cut) {
     case part + 1:
     case part + 2:
     case part + 3:
+    case part_again:
+    case part_again + 1:
+    case part_again + 2:
+    case part_again + 3:
       return cut_part(cut, kind);
     case hello:
       return HelloFrame{cut.number<std::uint8_t>(), cut.number<std::uint32_t>()};
@@ -122,11 +130,16 @@ std::optional<Frame> cut_frame(Cutter& cut) {
 }
 
 std::uint8_t kind_of(const PartFrame& frame) {
-  if (frame.begins) return frame.ends ? part : part + 1;
-  return frame.ends ? part + 2 : part + 3;
+  const int form = frame.begins ? (frame.ends ? 0 : 1) : (frame.ends ? 2 : 3);
+  return static_cast<std::uint8_t>((frame.again ? part_again : part) + form);
 }
 
 }  // namespace
+
+bool is_asked_for(const MissingFrame& missing, std::uint16_t part) {
+  const auto after = static_cast<std::uint16_t>(part - missing.first);
+  return after == 0 || (after <= kMoreMissing && (missing.more >> (after - 1U) & 1U) != 0);
+}
 
 std::optional<Head> read_head(std::span<const std::uint8_t>& rest) {
   Cutter cut{rest};

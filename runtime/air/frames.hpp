@@ -30,12 +30,13 @@ struct SampleFrame {
   std::span<const std::uint8_t> bytes;
 };
 /// A piece of what is asked for again where it was lost: channel (1), number (2), length (2),
-/// bytes. The kind says whether it begins or ends a sample.
+/// bytes. The kind says whether it begins or ends a sample, and whether it is said again.
 struct PartFrame {
   std::uint8_t channel = 0;
   std::uint16_t number = 0;
   bool begins = false;
   bool ends = false;
+  bool again = false;
   std::span<const std::uint8_t> bytes;
 };
 inline constexpr std::size_t kPartBytes = 6;  ///< more than its content
@@ -56,6 +57,8 @@ struct MissingFrame {
   std::uint16_t first = 0;
   std::uint32_t more = 0;
 };
+inline constexpr std::uint64_t kMoreMissing = 32;
+[[nodiscard]] bool is_asked_for(const MissingFrame& missing, std::uint16_t part);
 /// That author's certificate is asked for (10).
 struct WantFrame {
   Author author;

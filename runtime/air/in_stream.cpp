@@ -11,8 +11,9 @@ namespace skein::air {
 namespace {
 
 constexpr std::uint64_t kEarlyMax = 512;  ///< parts ahead of the first missing one
-constexpr Duration kAskAgain = std::chrono::milliseconds{60};
-constexpr int kAskSlower = 2;  ///< so often the wait for an answer doubles
+constexpr int kAskSlower = 2;             ///< so often the wait for an answer doubles
+/// What is due so soon after another is asked for with it.
+constexpr Duration kTogether = std::chrono::milliseconds{5};
 
 /// Others may be about to ask for the same.
 Duration spread(Duration wait, Random& random) {
@@ -26,7 +27,15 @@ std::uint64_t InStream::extended(std::uint16_t number) const {
   return *next_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(ahead));
 }
 
-bool InStream::on_part(const PartFrame& part, const Deliver& deliver) {
+/// What lies between what was known and this is missing from now on.
+void InStream::know_of(std::uint64_t newest, Instant now, Random& random) {
+  while (newest_ < newest) {
+    missing_.emplace(++newest_, Missing{now, now + spread(pace_->patience(now), random)});
+  }
+}
+
+bool InStream::on_part(const PartFrame& part, bool late, Instant now, Random& random,
+                       const Deliver& deliver) {
   if (!next_) {
     if (!part.begins) return false;
     next_ = 0x10000U + part.number;
@@ -34,15 +43,24 @@ bool InStream::on_part(const PartFrame& part, const Deliver& deliver) {
   }
   const std::uint64_t number = extended(part.number);
   if (number < *next_ || number - *next_ > kEarlyMax) return false;
-  newest_ = std::max(newest_, number);
-  const bool is_new =
-      early_
-          .try_emplace(
-              number,
-              Held{part.channel, part.begins, part.ends, {part.bytes.begin(), part.bytes.end()}})
-          .second;
+  if (number > newest_) {
+    know_of(number, now, random);
+    missing_.erase(number);
+  } else {
+    const auto missing = missing_.find(number);
+    if (missing == missing_.end()) return false;
+    const auto& [since, ask_at, asked_at, asked] = missing->second;
+    if (!late && !part.again) {
+      pace_->on_late(now - since, now);
+    } else if (asked_at) {
+      pace_->on_answer(now - *asked_at);
+    }
+    missing_.erase(missing);
+  }
+  early_.emplace(
+      number, Held{part.channel, part.begins, part.ends, {part.bytes.begin(), part.bytes.end()}});
   take_ready(deliver);
-  return is_new;
+  return true;
 }
 
 void InStream::take_ready(const Deliver& deliver) {
@@ -50,9 +68,7 @@ void InStream::take_ready(const Deliver& deliver) {
     take(early_.begin()->second, deliver);
     early_.erase(early_.begin());
     ++*next_;
-    asked_ = 0;
   }
-  if (*next_ > newest_) ask_at_.reset();
 }
 
 void InStream::take(const Held& part, const Deliver& deliver) {
@@ -71,6 +87,7 @@ void InStream::take(const Held& part, const Deliver& deliver) {
 
 void InStream::skip_to(std::uint64_t number, const Deliver& deliver) {
   joined_.reset();
+  missing_.erase(missing_.begin(), missing_.lower_bound(number));
   while (*next_ < number) {
     const auto held = early_.find(*next_);
     if (held == early_.end()) {
@@ -82,6 +99,7 @@ void InStream::skip_to(std::uint64_t number, const Deliver& deliver) {
     }
     ++*next_;
   }
+  newest_ = std::max(newest_, number - 1);
   take_ready(deliver);
 }
 
@@ -92,34 +110,51 @@ void InStream::on_head(const Head& head, Instant now, Random& random, const Deli
   }
   const std::uint64_t newest = extended(head.newest);
   if (newest + 1 < *next_ || newest < newest_) return;  // overtaken by a later one
-  newest_ = newest;
   const std::uint64_t oldest = newest + 1 - head.held;
   if (oldest > *next_) skip_to(oldest, deliver);
-  if (*next_ > newest_ || ask_at_) return;
-  ask_at_ = now + spread(patience_, random);
+  know_of(newest, now, random);
 }
 
 void InStream::on_newest(std::uint16_t newest, Instant now, Random& random) {
   if (!next_) return;
   const std::uint64_t number = extended(newest);
-  if (number <= newest_ || number - *next_ > kEarlyMax) return;
-  newest_ = number;
-  if (!ask_at_) ask_at_ = now + spread(patience_, random);
+  if (number > newest_ && number - *next_ <= kEarlyMax) know_of(number, now, random);
 }
 
-void InStream::on_asked(const MissingFrame& missing, Instant now, Random& random) {
-  if (!ask_at_ || extended(missing.first) > *next_) return;
-  ask_at_ = std::max(*ask_at_, now + spread(kAskAgain, random));
+void InStream::on_asked(const MissingFrame& asked, Instant now, Random& random) {
+  const Instant answered = now + spread(pace_->ask_again(), random);
+  for (auto& [number, missing] : missing_) {
+    if (is_asked_for(asked, static_cast<std::uint16_t>(number))) {
+      missing.ask_at = std::max(missing.ask_at, answered);
+    }
+  }
+}
+
+std::optional<Instant> InStream::ask_at() const {
+  std::optional<Instant> at;
+  for (const auto& [number, missing] : missing_)
+    at = std::min(at.value_or(missing.ask_at), missing.ask_at);
+  return at;
 }
 
 std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Random& random) {
-  if (*next_ > newest_) return std::nullopt;
-  MissingFrame missing{author, static_cast<std::uint16_t>(*next_), 0};
-  for (std::uint32_t i = 0; i < 32 && *next_ + 1 + i <= newest_; ++i) {
-    if (!early_.contains(*next_ + 1 + i)) missing.more |= 1U << i;
+  std::optional<MissingFrame> question;
+  std::uint64_t first = 0;
+  for (auto& [number, missing] : missing_) {
+    if (missing.ask_at > now + kTogether) continue;
+    if (!question) {
+      first = number;
+      question = MissingFrame{author, static_cast<std::uint16_t>(number), 0};
+    } else if (number - first <= kMoreMissing) {
+      question->more |= 1U << (number - first - 1);
+    } else {
+      break;
+    }
+    missing.asked_at = now;
+    missing.ask_at =
+        now + spread(pace_->ask_again() * (1U << std::min(missing.asked++, kAskSlower)), random);
   }
-  ask_at_ = now + spread(kAskAgain * (1U << std::min(asked_++, kAskSlower)), random);
-  return missing;
+  return question;
 }
 
 }  // namespace skein::air

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "frames.hpp"
+#include "repair_pace.hpp"
 #include "skein/base/random.hpp"
 #include "skein/base/time.hpp"
 
@@ -20,11 +21,12 @@ class InStream {
  public:
   using Deliver = std::function<void(std::uint8_t channel, std::span<const std::uint8_t> bytes)>;
 
-  /// `patience`: how long what is missing may still come by itself.
-  explicit InStream(Duration patience) : patience_{patience} {}
+  /// Learns from what is missing for a time, and waits as was learned. It must outlive this.
+  explicit InStream(RepairPace& pace) : pace_{&pace} {}
 
-  /// Whether it was heard for the first time.
-  bool on_part(const PartFrame& part, const Deliver& deliver);
+  /// Whether it was heard for the first time. `late`: whoever passed it on says it again.
+  bool on_part(const PartFrame& part, bool late, Instant now, Random& random,
+               const Deliver& deliver);
   /// What the author has said, after the parts of the same datagram.
   void on_head(const Head& head, Instant now, Random& random, const Deliver& deliver);
   /// How far the author is, as another says.
@@ -33,8 +35,8 @@ class InStream {
   void on_asked(const MissingFrame& missing, Instant now, Random& random);
 
   /// When to ask; none where nothing is missing.
-  [[nodiscard]] std::optional<Instant> ask_at() const { return ask_at_; }
-  /// What to ask for, if it is still missing. Precondition: it is time.
+  [[nodiscard]] std::optional<Instant> ask_at() const;
+  /// What to ask for now; none where nothing is due.
   [[nodiscard]] std::optional<MissingFrame> ask(const Author& author, Instant now, Random& random);
   /// How far the author is known to be; none where it was not heard yet.
   [[nodiscard]] std::optional<std::uint16_t> newest() const {
@@ -50,19 +52,25 @@ class InStream {
     bool ends = false;
     std::vector<std::uint8_t> bytes;
   };
+  struct Missing {
+    Instant since;
+    Instant ask_at;
+    std::optional<Instant> asked_at = {};  ///< last
+    int asked = 0;
+  };
   [[nodiscard]] std::uint64_t extended(std::uint16_t number) const;
+  void know_of(std::uint64_t newest, Instant now, Random& random);
   void take(const Held& part, const Deliver& deliver);
   void take_ready(const Deliver& deliver);
   void skip_to(std::uint64_t number, const Deliver& deliver);
 
-  Duration patience_;
+  RepairPace* pace_;
   /// Numbers are counted on from 2^16, so that those before the first are above 0.
   std::optional<std::uint64_t> next_;  ///< the first that is missing or was not said yet
   std::uint64_t newest_ = 0;           ///< of which is known
   std::map<std::uint64_t, Held> early_;
-  std::optional<Held> joined_;  ///< the beginning of a sample
-  std::optional<Instant> ask_at_;
-  int asked_ = 0;  ///< since the last part came
+  std::map<std::uint64_t, Missing> missing_;  ///< all from `next_` to `newest_` that are not early
+  std::optional<Held> joined_;                ///< the beginning of a sample
   std::uint64_t lost_ = 0;
 };
 

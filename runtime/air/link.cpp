@@ -14,6 +14,7 @@
 #include "introductions.hpp"
 #include "out_stream.hpp"
 #include "relay.hpp"
+#include "repair_pace.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/random.hpp"
 
@@ -37,7 +38,7 @@ constexpr int kGreetings = 3;  ///< after somebody new was heard, for the case t
 constexpr double kAgain_s = 0.3;
 constexpr double kWant_s = 0.3;
 constexpr Duration kForgetAfter = 60s;
-/// What is missing may come by itself: in another order, and over others later than directly.
+/// What is missing may come by itself, at least for so long: over others later than directly.
 constexpr Duration kMissingFor = 10ms;
 constexpr Duration kMissingForOverHops = 50ms;
 /// How often what is not asked for again is for those, too, who do not hear it themselves.
@@ -67,6 +68,7 @@ class Link::Impl {
         sink_{sink},
         random_{config_.seed},
         certificate_{hash_of(config_.certificate)},
+        repair_pace_{config_.hops_max > 1 ? kMissingForOverHops : kMissingFor},
         hello_at_{now + from_seconds(random_.uniform(0.0, kGreet_s))},
         greet_with_certificate_{certificate_ != 0},
         far_at_(config_.channels.size() + 1),
@@ -90,7 +92,7 @@ class Link::Impl {
     std::size_t said = 0;  ///< of its bytes
   };
   struct Remote {
-    Remote(Duration missing_for, std::size_t channels) : stream{missing_for}, sampled(channels) {}
+    Remote(RepairPace& pace, std::size_t channels) : stream{pace}, sampled(channels) {}
     InStream stream;
     std::vector<std::uint64_t> sampled;  ///< by channel, the newest datagram with a sample of it
     Instant heard_at;
@@ -121,7 +123,8 @@ class Link::Impl {
   void greet(Instant now);
   [[nodiscard]] Duration greet_every() const;
   void on_datagram(const Passage& passage, const Opened& opened, Instant now);
-  void on_frame(const Opened& opened, Remote& remote, const Frame& frame, News& news, Instant now);
+  void on_frame(const Opened& opened, bool late, Remote& remote, const Frame& frame, News& news,
+                Instant now);
   void on_sample(const Opened& opened, Remote& remote, const SampleFrame& sample);
   void on_hello(const Author& from, Remote& remote, const HelloFrame& hello, Instant now);
   void on_certificate(const Author& from, Remote& remote, std::span<const std::uint8_t> bytes,
@@ -163,6 +166,7 @@ class Link::Impl {
   std::optional<Waiting> begun_;  ///< some parts of it were said; the others must follow
   OutStream stream_;
   Instant repairs_since_;
+  RepairPace repair_pace_;  ///< before what learns from it
   std::map<Author, Remote> remotes_;
   std::optional<Instant> questions_at_;  ///< no question of any remote is due before
 
@@ -351,9 +355,12 @@ void Link::Impl::put_questions(Instant now) {
       remote.want_at = now + from_seconds(random_.uniform(kWant_s, 4.0 * kWant_s));
     }
     const auto at = remote.stream.ask_at();
-    if (at && now >= *at && room() >= size_of(MissingFrame{})) {
-      const auto missing = remote.stream.ask(author, now, random_);
-      if (missing) (void)put(*missing);
+    if (at && now >= *at) {
+      while (room() >= size_of(MissingFrame{})) {
+        const auto missing = remote.stream.ask(author, now, random_);
+        if (!missing) break;
+        (void)put(*missing);
+      }
     }
     note_questions(remote);
   }
@@ -448,9 +455,8 @@ Link::Impl::Remote* Link::Impl::remote_of(const Passage& passage, Instant now) {
     ++counts_.too_many;
     return nullptr;
   }
-  const Duration missing_for = relay_.passes() ? kMissingForOverHops : kMissingFor;
   Remote& remote =
-      remotes_.try_emplace(passage.author, missing_for, config_.channels.size()).first->second;
+      remotes_.try_emplace(passage.author, repair_pace_, config_.channels.size()).first->second;
   if (passage.transmitter == passage.author.node) {
     greet_with_certificate_ = certificate_ != 0;
     greetings_ = kGreetings;
@@ -511,7 +517,7 @@ void Link::Impl::on_datagram(const Passage& passage, const Opened& opened, Insta
     }
     if (passage.late && !std::holds_alternative<PartFrame>(*frame)) continue;
     if (passage.transmitter == from.node) on_neighbours_frame(from, *frame, now);
-    on_frame(opened, *remote, *frame, news, now);
+    on_frame(opened, passage.late, *remote, *frame, news, now);
   }
   remote->stream.on_head(*head, now, random_, deliver_from(from));
   if (relay_.passes() && remote->stream.newest() != newest) {
@@ -526,8 +532,8 @@ void Link::Impl::on_datagram(const Passage& passage, const Opened& opened, Insta
   relay_.on_first(passage, std::move(news.parts), spreads, news.urgency, now, random_);
 }
 
-void Link::Impl::on_frame(const Opened& opened, Remote& remote, const Frame& any, News& news,
-                          Instant now) {
+void Link::Impl::on_frame(const Opened& opened, bool late, Remote& remote, const Frame& any,
+                          News& news, Instant now) {
   const Author& from = opened.author;
   const auto note_urgency = [&](std::uint8_t channel) {
     if (channel < config_.channels.size()) {
@@ -539,7 +545,9 @@ void Link::Impl::on_frame(const Opened& opened, Remote& remote, const Frame& any
     on_sample(opened, remote, *sample);
   } else if (const auto* part = std::get_if<PartFrame>(&any)) {
     note_urgency(part->channel);
-    if (remote.stream.on_part(*part, deliver_from(from))) news.parts.push_back(part->number);
+    if (remote.stream.on_part(*part, late, now, random_, deliver_from(from))) {
+      news.parts.push_back(part->number);
+    }
   } else if (const auto* hello = std::get_if<HelloFrame>(&any)) {
     news.who = news.who || remote.hello != *hello;
     on_hello(from, remote, *hello, now);
@@ -604,7 +612,7 @@ void Link::Impl::on_neighbours_frame(const Author& from, const Frame& any, Insta
 void Link::Impl::on_missing(VehicleId asker, const MissingFrame& missing, Instant now) {
   if (missing.author == config_.self) {
     if (!stream_.wants()) repairs_since_ = now;
-    stream_.asked(missing, now);
+    stream_.asked(missing, repair_pace_.round_trip(), now);
     return;
   }
   const auto known = remotes_.find(missing.author);

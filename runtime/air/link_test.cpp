@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -70,6 +71,33 @@ TEST(Link, TheLastOneIsRepairedThoughNothingFollows) {
   EXPECT_THAT(air.texts(1, kOrders, 1), ElementsAre("last"));
 }
 
+/// Where the way takes now longer and now less, what is overtaken is not what is lost.
+TEST(Link, WhatOnlyComesLateIsHardlyAskedFor) {
+  for (const double loss : {0.0, 0.02}) {
+    Air air;
+    air.loss = loss;
+    air.delay_max = 100ms;
+    constexpr std::uint16_t kNodes = 20;
+    constexpr int kSaid = 600;
+    for (std::uint16_t id = 0; id < kNodes; ++id) air.add(id);
+    air.run(5s);
+    Random random{1};
+    for (int i = 0; i < kSaid; ++i) {
+      for (std::uint16_t node = 0; node < kNodes; ++node) {
+        if (random.chance(0.5)) air.say(node, kOrders, std::string(200, 'x'));
+      }
+      air.run(50ms);
+    }
+    air.run(5s);
+    const double said = 0.5 * kSaid * kNodes;
+    // Of a part that somebody has missed.
+    const double needed = said * (1.0 - std::pow(1.0 - loss, kNodes - 1));
+    EXPECT_LT(static_cast<double>(air.sum(&LinkCounts::repairs)), 1.3 * needed + 0.05 * said)
+        << loss;
+    EXPECT_EQ(air.sum(&LinkCounts::lost), 0U);
+  }
+}
+
 TEST(Link, ALongSampleIsCutAndJoined) {
   Air air;
   air.loss = 0.3;
@@ -96,7 +124,7 @@ TEST(Link, WhatWasOvertakenIsNotToldAfterTheNewer) {
     std::vector<std::uint8_t> content;
     write(content, Head{newest, 3, false});
     write(content, SampleFrame{kMotion, said});
-    write(content, PartFrame{kOrders, newest, true, true, said});
+    write(content, PartFrame{kOrders, newest, true, true, false, said});
     air.link(0).hear({other, counter, content}, content, air.now);
   };
   hear(5, 10, "first");

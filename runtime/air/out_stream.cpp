@@ -11,9 +11,6 @@ using namespace std::chrono_literals;
 
 constexpr std::size_t kHeldMax = 255;  ///< as the head can say
 constexpr Duration kHeldFor = 15s;     ///< the longest gap after which nothing is lost
-/// Who asks before it could have heard the last answer is answered by that one.
-constexpr Duration kAnswered = 20ms;
-constexpr std::size_t kAskedAtOnce = 33;
 
 }  // namespace
 
@@ -25,19 +22,19 @@ PartFrame OutStream::add(std::uint8_t channel, bool begins, bool ends,
   }
   Part& part = parts_.emplace_back();
   part.bytes = std::move(bytes);
-  part.frame = {channel, ++newest_, begins, ends, part.bytes};
+  part.frame = {channel, ++newest_, begins, ends, false, part.bytes};
   part.said_at = part.heard_of_at = now;
   return part.frame;
 }
 
-void OutStream::asked(const MissingFrame& missing, Instant now) {
-  for (std::size_t i = 0; i < kAskedAtOnce; ++i) {
+void OutStream::asked(const MissingFrame& missing, Duration answered, Instant now) {
+  for (std::size_t i = 0; i <= kMoreMissing; ++i) {
     if (i > 0 && (missing.more >> (i - 1) & 1U) == 0) continue;
     // How many parts it is behind the newest; one of the future is many.
     const auto behind = static_cast<std::uint16_t>(newest_ - missing.first - i);
     if (behind >= parts_.size()) continue;
     Part& part = parts_[parts_.size() - 1 - behind];
-    if (part.wanted || now - part.heard_of_at < kAnswered) continue;
+    if (part.wanted || now - part.heard_of_at < answered) continue;
     part.wanted = true;
     ++wanted_;
   }
@@ -45,7 +42,10 @@ void OutStream::asked(const MissingFrame& missing, Instant now) {
 
 std::optional<PartFrame> OutStream::wanted(std::size_t& from) const {
   for (; wanted_ > 0 && from < parts_.size(); ++from) {
-    if (parts_[from].wanted) return parts_[from].frame;
+    if (!parts_[from].wanted) continue;
+    PartFrame frame = parts_[from].frame;
+    frame.again = true;
+    return frame;
   }
   return std::nullopt;
 }

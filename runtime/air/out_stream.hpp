@@ -19,7 +19,8 @@ class OutStream {
   /// Numbers a part that is being said now. The parts of a sample follow each other.
   PartFrame add(std::uint8_t channel, bool begins, bool ends, std::vector<std::uint8_t> bytes,
                 Instant now);
-  void asked(const MissingFrame& missing, Instant now);
+  /// Who asks sooner than `answered` after it was said cannot have heard it yet.
+  void asked(const MissingFrame& missing, Duration answered, Instant now);
   /// The oldest part that is to be said again and that no call has marked since; its bytes are
   /// valid until the next change. `from` is where to look from, and becomes where it was found.
   [[nodiscard]] std::optional<PartFrame> wanted(std::size_t& from) const;

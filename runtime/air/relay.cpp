@@ -23,11 +23,6 @@ constexpr std::size_t kKeptMax = 512;
 constexpr Duration kKeptFor = 15s;    ///< as its author holds it
 constexpr Duration kAnswered = 50ms;  ///< who asks before could not have heard the last answer
 
-bool is_asked_for(const MissingFrame& missing, std::uint16_t part) {
-  const auto after = static_cast<std::uint16_t>(part - missing.first);
-  return after == 0 || (after <= 32 && (missing.more >> (after - 1) & 1U) != 0);
-}
-
 }  // namespace
 
 Relay::Relay(VehicleId self, std::uint8_t hops_max, std::size_t bytes_max)

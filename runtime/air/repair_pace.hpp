@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "skein/base/time.hpp"
+
+namespace skein::air {
+
+/// How long to wait before what is missing is asked for, and for the answer: learned from what
+/// came, for the network is as it is, over however many hops. Who asks for what only comes late
+/// makes the more traffic the busier the air is.
+class RepairPace {
+ public:
+  /// Nothing is asked for sooner than `least`.
+  explicit RepairPace(Duration least) : least_{least} {}
+
+  /// A missing part came as it was said first, so long after something that was said later.
+  void on_late(Duration by, Instant now);
+  /// What was asked for came, so long after the question.
+  void on_answer(Duration after);
+
+  /// How long what is missing may still come by itself.
+  [[nodiscard]] Duration patience(Instant now) const;
+  /// From a question to its answer, as a rule.
+  [[nodiscard]] Duration round_trip() const { return round_trip_; }
+  /// How long after a question to ask again.
+  [[nodiscard]] Duration ask_again() const { return 2 * round_trip_; }
+
+ private:
+  Duration least_;
+  Duration latest_{};  ///< the most by which something came late, not long ago
+  Instant latest_at_;
+  Duration round_trip_ = std::chrono::milliseconds{30};
+};
+
+}  // namespace skein::air
