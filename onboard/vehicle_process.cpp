@@ -8,16 +8,20 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "skein/can/bus.hpp"
+#include "skein/codec/codec.hpp"
+#include "skein/configuration/setup_params.hpp"
 #include "skein/detectors/detector_socket.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
 #include "skein/mission/concerns.hpp"
 #include "skein/mission/may_say.hpp"
+#include "skein/mission/setup_filter.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
@@ -407,12 +411,33 @@ class HostDesk {
   std::chrono::steady_clock::time_point tell_restarts_until_{};
 };
 
-Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
-                                            const process::NodeStart& start, process::Wake& wake) {
-  auto node = process::node_config(config, start, [&wake] { wake.notify(); });
-  node.isolated = config.isolated;
-  node.heeds = [self = start.self](const mission::Message& message) {
-    return mission::concerns(message, self);
+/// What the vehicle acts on, asked before it is verified; DDS asks from several threads.
+class Ear {
+ public:
+  Ear(const mission::SetupParams& setup, VehicleId self) : self_{self}, filter_{setup, self} {}
+  bool heeds(const mission::Message& message, Instant now) {
+    if (!mission::concerns(message, self_)) return false;
+    const std::lock_guard lock{mutex_};
+    return filter_.heeds(message, now);
+  }
+
+ private:
+  VehicleId self_;
+  std::mutex mutex_;
+  mission::SetupFilter filter_;
+};
+
+/// The clock must outlive the node.
+Result<std::unique_ptr<network::Node>> join(const configuration::VehicleConfig& config,
+                                            const process::NodeStart& start,
+                                            const process::MissionClock& clock,
+                                            process::Wake& wake) {
+  auto node = process::node_config(config.network, start, [&wake] { wake.notify(); });
+  node.isolated = config.network.isolated;
+  const auto setup = configuration::setup_params(config, {version(), codec::wire_versions()});
+  const auto ear = std::make_shared<Ear>(setup, start.self);
+  node.heeds = [ear, &clock](const mission::Message& message) {
+    return ear->heeds(message, clock.now());
   };
   return network::Node::open(node);
 }
@@ -450,7 +475,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     writer = std::move(*opened);
   }
   process::Wake wake_agent;
-  auto node = join(config.network, *start, wake_agent);
+  auto node = join(config, *start, clock, wake_agent);
   if (!node) {
     spdlog::critical("cannot join the mission network: {}", node.error().message);
     return process::kExitCannotStart;

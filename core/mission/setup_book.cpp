@@ -49,16 +49,23 @@ std::string text_of(const SetupDifference& difference) {
   return text;
 }
 
+std::vector<SetupItem> items_of(const SetupParams& params) {
+  std::vector<SetupItem> items;
+  for (const CommonKey& common : params.common) {
+    items.push_back({setup_hash(common.name), common.value});
+  }
+  return items;
+}
+
 SetupBook::SetupBook(const SetupParams& params, VehicleId self, InstanceId instance, Instant now)
     : params_{params}, next_{now} {
   SKEIN_ASSERT(params_.common.size() <= kSetupItemsMax);
   own_.node = self;
   own_.instance = instance;
   own_.clock_guard = params_.clock_guard;
+  own_.items = items_of(params_);
   for (const CommonKey& common : params_.common) {
-    const std::uint32_t key = setup_hash(common.name);
-    own_.items.push_back({key, common.value});
-    by_key_.emplace(key, &common);
+    by_key_.emplace(setup_hash(common.name), &common);
   }
 }
 
@@ -69,7 +76,6 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   if (node.instance != setup.instance) {
     // Whoever is new has not heard of this node either.
     say_soon(now);
-    if (node.instance == InstanceId{}) ++told_;
     const Node before = std::exchange(node, {});
     node.instance = setup.instance;
     node.difference = before.difference;
@@ -122,7 +128,8 @@ void SetupBook::say_soon(Instant now) {
 }
 
 Duration SetupBook::in_this_team(Duration period) const {
-  return period * static_cast<std::int64_t>(std::max<std::size_t>(1, told_ / kTeam));
+  return period *
+         static_cast<std::int64_t>(std::clamp<std::size_t>(heard_ / kTeam, 1, kNodesMax / kTeam));
 }
 
 /// Keys that only one of the two knows of are of another release, which is a key of its own.
@@ -156,17 +163,18 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
   }
 }
 
-std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
+std::optional<Setup> SetupBook::poll_setup(const Facts& facts, Instant now) {
   if (now < next_) return std::nullopt;
+  heard_ = facts.heard;
   if (suspects_) forget_twins(now);
   said_at_ = now;
   soon_ = hurried_ ? std::min(2 * soon_, kPeriod) : kPeriodWhileNew;
   hurried_ = false;
-  next_ = now + (orders.known ? in_this_team(kPeriod) : kPeriodWhileNew);
+  next_ = now + (facts.knows_orders ? in_this_team(kPeriod) : kPeriodWhileNew);
   Setup setup = own_;
   setup.time = now;
-  setup.knows_orders = orders.known;
-  setup.newest_order = orders.newest;
+  setup.knows_orders = facts.knows_orders;
+  setup.newest_order = facts.newest_order;
   if (!suspects_) return setup;
   for (const auto& [id, node] : nodes_) {
     if (node.ahead_s > 0.0 && setup.ahead.size() < kHeardMax) setup.ahead.push_back(id);

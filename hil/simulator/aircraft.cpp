@@ -84,7 +84,9 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
 
 void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   numbers_before_ = recorded_.number;
-  node_.emplace(config(hazards), local(now));
+  const auto of_node = config(hazards);
+  node_.emplace(of_node, local(now));
+  setup_filter_.emplace(of_node.setup, what_.spec.id);
 }
 
 bool Aircraft::in_place() const {

@@ -9,6 +9,8 @@
 #include "skein/base/random.hpp"
 #include "skein/hal/flight_controller.hpp"
 #include "skein/hil/team_simulator.hpp"
+#include "skein/mission/concerns.hpp"
+#include "skein/mission/setup_filter.hpp"
 #include "skein/mission/vehicle_node.hpp"
 
 namespace skein::hil {
@@ -35,6 +37,11 @@ class Aircraft {
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;
+  }
+
+  /// Is that message anything to it? Precondition: running().
+  [[nodiscard]] bool heeds(const mission::Message& message, Instant now) {
+    return mission::concerns(message, what_.spec.id) && setup_filter_->heeds(message, local(now));
   }
 
   /// Null while no program runs. Its times are of this vehicle's clock.
@@ -93,6 +100,7 @@ class Aircraft {
   const SimulatedVehicle& what_;
   Duration clock_{};
   std::optional<mission::VehicleNode> node_;
+  std::optional<mission::SetupFilter> setup_filter_;  ///< of the node
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;

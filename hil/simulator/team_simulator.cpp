@@ -26,7 +26,6 @@
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/mesh.hpp"
 #include "skein/hil/radio/positions.hpp"
-#include "skein/mission/concerns.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -116,8 +115,6 @@ class Team {
       nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
     }
     nodes_.push_back({{kGroundStation, std::nullopt}, true});
-    setups_heard_.resize(vehicles_.size());
-    settled_at_.resize(vehicles_.size(), Instant::min());
     channels_.resize(nodes_.size());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
@@ -180,7 +177,6 @@ class Team {
         result_.ground_warning.reset();
       } else {
         vehicles_[i].start_program(hazards_, now);
-        setups_heard_[i].clear();
       }
       nodes_[i].on = true;
       tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);
@@ -363,30 +359,15 @@ class Team {
       }
       Aircraft& v = vehicles_[parcel->to];
       if (!v.running()) continue;
-      Instant& settled_at = settled_at_[parcel->to];
-      if (is_known(*parcel) && settled_at == now) continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
         if (parcel->life == v.life()) v.node()->on_planning_result(*planned, v.local(now));
       } else {
         const auto& message = std::get<mission::Message>(*parcel->what);
-        if (!mission::concerns(message, v.spec().id)) continue;
+        if (!v.heeds(message, now)) continue;
         v.node()->on_message(message, parcel->from, v.local(now));
       }
-      const bool moved = drain(parcel->to, now);
-      settled_at = moved ? Instant::min() : now;
-      if (moved) air_.on_moved(*parcel);
+      if (drain(parcel->to, now)) air_.on_moved(*parcel);
     }
-  }
-
-  /// A setup that its receiver has heard before, which asks for nothing: it does no more than wake.
-  bool is_known(const Parcel& parcel) {
-    const auto* message = std::get_if<mission::Message>(parcel.what.get());
-    const auto* setup = message == nullptr ? nullptr : std::get_if<mission::Setup>(message);
-    if (setup == nullptr) return false;
-    auto& heard = setups_heard_[parcel.to];
-    if (heard.size() <= setup->node.value) heard.resize(setup->node.value + std::size_t{1});
-    const InstanceId before = std::exchange(heard[setup->node.value], setup->instance);
-    return before == setup->instance && setup->knows_orders && clocks_agree_;
   }
 
   void move_mesh(Instant now) {
@@ -597,10 +578,8 @@ class Team {
   SiteFinder finder_;
   GroundStation ground_;
   std::vector<Aircraft> vehicles_;
-  std::vector<Station> nodes_;                         ///< the vehicles, then the ground station
-  std::vector<std::vector<InstanceId>> setups_heard_;  ///< by each vehicle, by sender
-  std::vector<Instant> settled_at_;  ///< of each vehicle: when what came last moved nothing
-  std::vector<Hazard> hazards_;      ///< that exist by now
+  std::vector<Station> nodes_;   ///< the vehicles, then the ground station
+  std::vector<Hazard> hazards_;  ///< that exist by now
   std::set<HazardId> told_;
   std::set<SiteId> sites_done_;
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator

@@ -58,14 +58,28 @@ Signatures::Signatures(SignConfig config, VehicleId self, InstanceId instance)
 void Signatures::learn(std::span<const std::uint8_t> certificate) {
   const auto read = identity::certificate_from(certificate);
   if (!read || read->role == identity::Role::op) return;
-  const auto now = std::chrono::duration_cast<std::chrono::seconds>(since_1970());
   const std::lock_guard lock{mutex_};
-  if (verifier_.learn(*read, now.count()) != identity::Trust::good) return;
-  const auto [serial, is_new] = serials_.try_emplace(read->node, read->serial);
-  if (is_new || !(serial->second < read->serial)) return;
+  if (unverified_.size() >= kUnverifiedMax) return verify(*read);
+  const auto [from, to] = unverified_.equal_range(read->node);
+  const bool is_known = std::any_of(from, to, [&](const auto& one) { return one.second == *read; });
+  if (!is_known) unverified_.emplace(read->node, *read);
+}
+
+void Signatures::verify_certificates(VehicleId of) {
+  const auto [from, to] = unverified_.equal_range(of);
+  for (auto one = from; one != to; ++one) verify(one->second);
+  unverified_.erase(from, to);
+}
+
+void Signatures::verify(const identity::Certificate& certificate) {
+  const auto now = std::chrono::duration_cast<std::chrono::seconds>(since_1970());
+  if (verifier_.learn(certificate, now.count()) != identity::Trust::good) return;
+  const auto [serial, is_new] = serials_.try_emplace(certificate.node, certificate.serial);
+  if (is_new || !(serial->second < certificate.serial)) return;
   // Who has the keys of before may have used up the numbers; nothing signed with them is good now.
-  serial->second = read->serial;
-  std::erase_if(newest_, [&](const auto& newest) { return newest.first.first == read->node; });
+  serial->second = certificate.serial;
+  std::erase_if(newest_,
+                [&](const auto& newest) { return newest.first.first == certificate.node; });
 }
 
 void Signatures::learn(const identity::RevocationList& list) {
@@ -102,6 +116,7 @@ Signatures::Judged Signatures::judge(codec::Topic topic, VehicleId sender, Insta
     return Judged::replayed;
   }
   const std::lock_guard lock{mutex_};
+  verify_certificates(sender);
   const auto known = newest_.find({sender, topic});
   if (known != newest_.end() &&
       std::pair{instance, sequence} <= std::pair{known->second.instance, known->second.sequence}) {

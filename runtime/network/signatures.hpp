@@ -30,7 +30,8 @@ class Signatures {
   Signatures(SignConfig config, VehicleId self, InstanceId instance);
 
   /// A certificate as its node told it (identity::to_bytes), which may be anybody's. Nothing comes
-  /// of one that is no good.
+  /// of one that is no good: it is verified when something that its node has signed is to be
+  /// judged, which of most nodes of a large team is never.
   void learn(std::span<const std::uint8_t> certificate);
   void learn(const identity::RevocationList& list);
   /// Behind a message of that topic, of those bytes.
@@ -52,11 +53,18 @@ class Signatures {
     std::uint64_t sequence = 0;
   };
 
+  /// More of them are verified as they come: whoever floods takes time, not memory.
+  static constexpr std::size_t kUnverifiedMax = 2048;
+
+  void verify_certificates(VehicleId of);
+  void verify(const identity::Certificate& certificate);
+
   const SignConfig config_;
   const VehicleId self_;
   const InstanceId instance_;
   std::mutex mutex_;
   identity::Verifier verifier_;
+  std::multimap<VehicleId, identity::Certificate> unverified_;  ///< of each as they came
   std::array<std::uint64_t, codec::kTopicCount> said_{};
   std::map<std::pair<VehicleId, codec::Topic>, Newest> newest_;  ///< of members: bounded by them
   std::map<VehicleId, identity::Serial> serials_;                ///< of their certificates
