@@ -38,7 +38,9 @@ bool SetupFilter::heeds(const Setup& setup, Instant now) {
     before.to_heed = kToHeed;
     return true;
   }
-  return before.to_heed > 0 && before.to_heed-- > 0;
+  if (before.to_heed == 0) return false;
+  --before.to_heed;
+  return true;
 }
 
 bool SetupFilter::is_usual(const Setup& setup, Instant now) const {
