@@ -100,8 +100,7 @@ void GroundNode::on_setup(const Setup& setup, Instant now) {
 }
 
 void GroundNode::on_timeout(Instant now) {
-  const SetupBook::Facts facts{.heard = fleet().vehicles().size()};
-  if (auto ours = setup_.poll_setup(facts, now)) messages_.push(Message{*std::move(ours)});
+  if (auto ours = setup_.poll_setup({}, now)) messages_.push(Message{*std::move(ours)});
   agent_.on_timeout(now);
   sites_.on_timeout(fleet(), now);
   hazards_.on_timeout(now);

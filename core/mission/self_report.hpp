@@ -37,8 +37,6 @@ class SelfReport {
       heard_at_.insert(heard_at_.begin() + i, now);
     }
   }
-  /// How many others there are, of those that are not silent for kHeardFor.
-  [[nodiscard]] std::size_t heard() const { return senders_.size(); }
   void on_plan(const FlightPlan& plan);
 
   /// What can be wrong, counted since the start.

@@ -76,6 +76,7 @@ void SetupBook::on_setup(const Setup& setup, Instant now) {
   if (node.instance != setup.instance) {
     // Whoever is new has not heard of this node either.
     say_soon(now);
+    if (node.instance == InstanceId{}) ++told_;
     const Node before = std::exchange(node, {});
     node.instance = setup.instance;
     node.difference = before.difference;
@@ -128,8 +129,7 @@ void SetupBook::say_soon(Instant now) {
 }
 
 Duration SetupBook::in_this_team(Duration period) const {
-  return period *
-         static_cast<std::int64_t>(std::clamp<std::size_t>(heard_ / kTeam, 1, kNodesMax / kTeam));
+  return period * static_cast<std::int64_t>(std::max<std::size_t>(1, told_ / kTeam));
 }
 
 /// Keys that only one of the two knows of are of another release, which is a key of its own.
@@ -163,18 +163,17 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
   }
 }
 
-std::optional<Setup> SetupBook::poll_setup(const Facts& facts, Instant now) {
+std::optional<Setup> SetupBook::poll_setup(const Orders& orders, Instant now) {
   if (now < next_) return std::nullopt;
-  heard_ = facts.heard;
   if (suspects_) forget_twins(now);
   said_at_ = now;
   soon_ = hurried_ ? std::min(2 * soon_, kPeriod) : kPeriodWhileNew;
   hurried_ = false;
-  next_ = now + (facts.knows_orders ? in_this_team(kPeriod) : kPeriodWhileNew);
+  next_ = now + (orders.known ? in_this_team(kPeriod) : kPeriodWhileNew);
   Setup setup = own_;
   setup.time = now;
-  setup.knows_orders = facts.knows_orders;
-  setup.newest_order = facts.newest_order;
+  setup.knows_orders = orders.known;
+  setup.newest_order = orders.newest;
   if (!suspects_) return setup;
   for (const auto& [id, node] : nodes_) {
     if (node.ahead_s > 0.0 && setup.ahead.size() < kHeardMax) setup.ahead.push_back(id);

@@ -100,20 +100,24 @@ TEST(SetupBook, WhoIsNewIsToldAtOnce) {
 
 TEST(SetupBook, InALargeTeamEachHasNoMoreToJudge) {
   SetupBook book{params(), kGroundStation, {}, at(0)};
-  const SetupBook::Facts facts{.heard = 4 * SetupBook::kTeam};
-  book.on_setup(of_seven(params(), at(0)), at(0.1));
-  ASSERT_TRUE(book.poll_setup(facts, at(1)));
-  EXPECT_FALSE(book.poll_setup(facts, at(20.9)));
-  EXPECT_TRUE(book.poll_setup(facts, at(21))) << "four times the nodes, four times the period";
+  constexpr std::uint16_t kNodes = 4 * SetupBook::kTeam;
+  for (std::uint16_t id = 1; id <= kNodes; ++id) {
+    mission::Setup other = of_seven(params(), at(0));
+    other.node = VehicleId{id};
+    book.on_setup(other, at(0.1));
+  }
+  ASSERT_TRUE(book.poll_setup({}, at(1)));
+  EXPECT_FALSE(book.poll_setup({}, at(20.9)));
+  EXPECT_TRUE(book.poll_setup({}, at(21))) << "four times the nodes, four times the period";
   mission::Setup anew = of_seven(params(), at(22), InstanceId{71});
   book.on_setup(anew, at(22));
-  EXPECT_FALSE(book.poll_setup(facts, at(24.9)));
-  EXPECT_TRUE(book.poll_setup(facts, at(25))) << "sooner where somebody is new";
+  EXPECT_FALSE(book.poll_setup({}, at(24.9)));
+  EXPECT_TRUE(book.poll_setup({}, at(25))) << "sooner where somebody is new";
 }
 
 TEST(SetupBook, WhoDoesNotKnowTheOrdersAsksEverySecond) {
   SetupBook book{params(), kSeven, kFirst, at(100)};
-  const auto setup = book.poll_setup({.knows_orders = false, .newest_order = 9}, at(100));
+  const auto setup = book.poll_setup({.known = false, .newest = 9}, at(100));
   ASSERT_TRUE(setup);
   EXPECT_FALSE(setup->knows_orders);
   EXPECT_EQ(setup->newest_order, 9U);

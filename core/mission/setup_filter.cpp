@@ -2,7 +2,9 @@
 #include "skein/mission/setup_filter.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <variant>
 
@@ -11,8 +13,11 @@
 namespace skein::mission {
 namespace {
 
-/// Twice as many as the book waits for: some may be lost behind this filter.
-constexpr int kToHeed = 2 * SetupBook::kClean;
+/// Those of a team that starts together are proven at different times: by whom, of whom.
+Duration turn(VehicleId self, VehicleId node) {
+  constexpr std::uint32_t kTurns = 50;
+  return std::chrono::seconds{10 + (7U * self.value + 11U * node.value) % kTurns};
+}
 
 }  // namespace
 
@@ -24,23 +29,21 @@ bool SetupFilter::heeds(const Message& message, Instant now) {
   // The book finds clocks that are ahead by telemetry, too, and waits for setups then.
   const auto* telemetry = std::get_if<Telemetry>(&message);
   if (telemetry != nullptr && telemetry->state.time > now + clock_guard_) {
-    heard(telemetry->vehicle).to_heed = kToHeed;
+    heard(telemetry->vehicle).heeded_until = now + kHeeded;
   }
   return true;
 }
 
 bool SetupFilter::heeds(const Setup& setup, Instant now) {
   if (setup.node == kGroundStation || setup.node == self_) return true;
-  Heard& before = heard(setup.node);
-  const InstanceId instance = std::exchange(before.instance, setup.instance);
-  const bool same_start = instance == setup.instance || instance == InstanceId{};
-  if (!same_start || !is_usual(setup, now)) {
-    before.to_heed = kToHeed;
-    return true;
-  }
-  if (before.to_heed == 0) return false;
-  --before.to_heed;
-  return true;
+  Heard& of = heard(setup.node);
+  if (of.proven_at == Instant::max()) of.proven_at = now + turn(self_, setup.node);
+  const InstanceId before = std::exchange(of.instance, setup.instance);
+  const bool same_start = before == setup.instance || before == InstanceId{};
+  if (!same_start || !is_usual(setup, now)) of.heeded_until = now + kHeeded;
+  const bool heeded = now < of.heeded_until || now >= of.proven_at;
+  if (now >= of.proven_at) of.proven_at = now + kProven;
+  return heeded;
 }
 
 bool SetupFilter::is_usual(const Setup& setup, Instant now) const {

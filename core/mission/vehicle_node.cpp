@@ -247,8 +247,7 @@ class VehicleNode::Impl {
       messages.push(Message{telemetry});
     }
     if (const auto plan = self_report.plan_due(now)) messages.push(Message{*plan});
-    if (const auto ours =
-            setup.poll_setup({knows_orders, commands.newest(), self_report.heard()}, now)) {
+    if (const auto ours = setup.poll_setup({knows_orders, commands.newest()}, now)) {
       messages.push(Message{*ours});
     }
     if (!self_report.health_due(now)) return;

@@ -11,7 +11,8 @@ namespace skein::air {
 namespace {
 
 constexpr std::uint64_t kEarlyMax = 512;  ///< parts ahead of the first missing one
-constexpr int kAskSlower = 2;             ///< so often the wait for an answer doubles
+/// What one other says that there is, is no more than a head can say.
+constexpr std::uint64_t kHearsayMax = 255;
 /// What is due so soon after another is asked for with it.
 constexpr Duration kTogether = std::chrono::milliseconds{5};
 
@@ -27,11 +28,11 @@ std::uint64_t InStream::extended(std::uint16_t number) const {
   return *next_ + static_cast<std::uint64_t>(static_cast<std::int64_t>(ahead));
 }
 
-/// What lies between what was known and this is missing from now on.
-void InStream::know_of(std::uint64_t newest, Instant now, Random& random) {
-  while (newest_ < newest) {
-    missing_.emplace(++newest_, Missing{now, now + spread(pace_->patience(now), random)});
-  }
+/// What lies between what was known and this is missing from now on, and is asked for together.
+void InStream::know_of(std::uint64_t newest, bool hearsay, Instant now, Random& random) {
+  if (newest <= newest_) return;
+  const Instant ask_at = now + spread(pace_->patience(now), random);
+  while (newest_ < newest) missing_.emplace(++newest_, Missing{now, ask_at, hearsay});
 }
 
 bool InStream::on_part(const PartFrame& part, bool late, Instant now, Random& random,
@@ -44,23 +45,29 @@ bool InStream::on_part(const PartFrame& part, bool late, Instant now, Random& ra
   const std::uint64_t number = extended(part.number);
   if (number < *next_ || number - *next_ > kEarlyMax) return false;
   if (number > newest_) {
-    know_of(number, now, random);
+    know_of(number, false, now, random);
     missing_.erase(number);
   } else {
     const auto missing = missing_.find(number);
     if (missing == missing_.end()) return false;
-    const auto& [since, ask_at, asked_at, asked] = missing->second;
-    if (!late && !part.again) {
-      pace_->on_late(now - since, now);
-    } else if (asked_at) {
-      pace_->on_answer(now - *asked_at);
-    }
+    learn_from(missing->second, late || part.again, now);
     missing_.erase(missing);
   }
   early_.emplace(
       number, Held{part.channel, part.begins, part.ends, {part.bytes.begin(), part.bytes.end()}});
   take_ready(deliver);
   return true;
+}
+
+void InStream::learn_from(const Missing& missing, bool again, Instant now) {
+  if (missing.hearsay) return;
+  if (!again) {
+    pace_->on_late(now - missing.since, now);
+  } else if (missing.asked == 1 && !missing.others_asked) {
+    pace_->on_answer(now - missing.asked_at);
+  } else if (missing.asked > 1) {
+    pace_->on_late_answer();
+  }
 }
 
 void InStream::take_ready(const Deliver& deliver) {
@@ -109,24 +116,37 @@ void InStream::on_head(const Head& head, Instant now, Random& random, const Deli
     newest_ = *next_ - 1;
   }
   const std::uint64_t newest = extended(head.newest);
-  if (newest + 1 < *next_ || newest < newest_) return;  // overtaken by a later one
+  if (newest + 1 < *next_ || (newest < newest_ && !forget_hearsay_after(newest))) {
+    return;  // overtaken by a later one
+  }
   const std::uint64_t oldest = newest + 1 - head.held;
   if (oldest > *next_) skip_to(oldest, deliver);
-  know_of(newest, now, random);
+  know_of(newest, false, now, random);
+}
+
+/// Who passed on that there is more was wrong, or this comes late: then it is known of again.
+bool InStream::forget_hearsay_after(std::uint64_t newest) {
+  const auto from = missing_.upper_bound(newest);
+  const auto is_said = [](const auto& entry) { return !entry.second.hearsay; };
+  const auto known = early_.empty() ? 0 : early_.rbegin()->first;
+  if (known > newest || std::any_of(from, missing_.end(), is_said)) return false;
+  missing_.erase(from, missing_.end());
+  newest_ = newest;
+  return true;
 }
 
 void InStream::on_newest(std::uint16_t newest, Instant now, Random& random) {
   if (!next_) return;
   const std::uint64_t number = extended(newest);
-  if (number > newest_ && number - *next_ <= kEarlyMax) know_of(number, now, random);
+  if (number > newest_ && number - newest_ <= kHearsayMax) know_of(number, true, now, random);
 }
 
 void InStream::on_asked(const MissingFrame& asked, Instant now, Random& random) {
-  const Instant answered = now + spread(pace_->ask_again(), random);
+  const Instant answered = now + spread(pace_->ask_again(0), random);
   for (auto& [number, missing] : missing_) {
-    if (is_asked_for(asked, static_cast<std::uint16_t>(number))) {
-      missing.ask_at = std::max(missing.ask_at, answered);
-    }
+    if (!is_asked_for(asked, static_cast<std::uint16_t>(number))) continue;
+    missing.others_asked = true;
+    missing.ask_at = std::max(missing.ask_at, answered);
   }
 }
 
@@ -140,6 +160,7 @@ std::optional<Instant> InStream::ask_at() const {
 std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Random& random) {
   std::optional<MissingFrame> question;
   std::uint64_t first = 0;
+  const double later = random.uniform(1.0, 2.0);
   for (auto& [number, missing] : missing_) {
     if (missing.ask_at > now + kTogether) continue;
     if (!question) {
@@ -151,8 +172,7 @@ std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Ran
       break;
     }
     missing.asked_at = now;
-    missing.ask_at =
-        now + spread(pace_->ask_again() * (1U << std::min(missing.asked++, kAskSlower)), random);
+    missing.ask_at = now + from_seconds(later * to_seconds(pace_->ask_again(missing.asked++)));
   }
   return question;
 }

@@ -55,11 +55,15 @@ class InStream {
   struct Missing {
     Instant since;
     Instant ask_at;
-    std::optional<Instant> asked_at = {};  ///< last
+    bool hearsay = false;  ///< another says that there is such a part
+    Instant asked_at = {};
     int asked = 0;
+    bool others_asked = false;
   };
   [[nodiscard]] std::uint64_t extended(std::uint16_t number) const;
-  void know_of(std::uint64_t newest, Instant now, Random& random);
+  void know_of(std::uint64_t newest, bool hearsay, Instant now, Random& random);
+  [[nodiscard]] bool forget_hearsay_after(std::uint64_t newest);
+  void learn_from(const Missing& missing, bool again, Instant now);
   void take(const Held& part, const Deliver& deliver);
   void take_ready(const Deliver& deliver);
   void skip_to(std::uint64_t number, const Deliver& deliver);

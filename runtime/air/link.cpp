@@ -41,6 +41,9 @@ constexpr Duration kForgetAfter = 60s;
 /// What is missing may come by itself, at least for so long: over others later than directly.
 constexpr Duration kMissingFor = 10ms;
 constexpr Duration kMissingForOverHops = 50ms;
+/// Who asks before it could have heard the last answer is answered by that one; how long its way
+/// is, is not known here.
+constexpr Duration kAnsweredMax = 60ms;
 /// How often what is not asked for again is for those, too, who do not hear it themselves.
 constexpr Duration kFarEvery = 900ms;
 /// How far others' streams are is told so often, as long as it changed within kNewestFor.
@@ -603,7 +606,7 @@ void Link::Impl::on_neighbours_frame(const Author& from, const Frame& any, Insta
     on_introduction(from.node, *introduction, now);
   } else if (const auto* newest = std::get_if<NewestFrame>(&any)) {
     const auto known = remotes_.find(newest->author);
-    if (known == remotes_.end()) return;
+    if (known == remotes_.end() || !relay_.passes()) return;
     known->second.stream.on_newest(newest->newest, now, random_);
     note_questions(known->second);
   }
@@ -612,7 +615,7 @@ void Link::Impl::on_neighbours_frame(const Author& from, const Frame& any, Insta
 void Link::Impl::on_missing(VehicleId asker, const MissingFrame& missing, Instant now) {
   if (missing.author == config_.self) {
     if (!stream_.wants()) repairs_since_ = now;
-    stream_.asked(missing, repair_pace_.round_trip(), now);
+    stream_.asked(missing, std::min(repair_pace_.round_trip(), kAnsweredMax), now);
     return;
   }
   const auto known = remotes_.find(missing.author);

@@ -71,6 +71,31 @@ TEST(Link, TheLastOneIsRepairedThoughNothingFollows) {
   EXPECT_THAT(air.texts(1, kOrders, 1), ElementsAre("last"));
 }
 
+TEST(Link, ATeamOfWhichHalfIsLostLosesNothingForGood) {
+  for (const Duration delay : {Duration{2ms}, Duration{100ms}}) {
+    Air air;
+    air.delay_max = delay;
+    constexpr std::uint16_t kNodes = 16;
+    for (std::uint16_t id = 0; id < kNodes; ++id) air.add(id);
+    air.run(3s);
+    air.loss = 0.5;
+    for (int i = 0; i < 20; ++i) {
+      for (std::uint16_t node = 0; node < kNodes; ++node) {
+        air.say(node, kOrders, "m" + std::to_string(i));
+      }
+      air.run(1s);
+    }
+    air.run(16s);
+    EXPECT_EQ(air.sum(&LinkCounts::lost), 0U);
+    for (std::size_t to = 0; to < kNodes; ++to) {
+      for (std::uint16_t of = 0; of < kNodes; ++of) {
+        if (of == to) continue;
+        EXPECT_EQ(air.texts(to, kOrders, of), numbered(0, 20)) << to << " of " << of;
+      }
+    }
+  }
+}
+
 /// Where the way takes now longer and now less, what is overtaken is not what is lost.
 TEST(Link, WhatOnlyComesLateIsHardlyAskedFor) {
   for (const double loss : {0.0, 0.02}) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 
 #include "skein/network/approval.hpp"
 
@@ -58,11 +59,17 @@ Signatures::Signatures(SignConfig config, VehicleId self, InstanceId instance)
 void Signatures::learn(std::span<const std::uint8_t> certificate) {
   const auto read = identity::certificate_from(certificate);
   if (!read || read->role == identity::Role::op) return;
+  const Unverified heard{*read, std::chrono::duration_cast<std::chrono::seconds>(since_1970())};
   const std::lock_guard lock{mutex_};
-  if (unverified_.size() >= kUnverifiedMax) return verify(*read);
   const auto [from, to] = unverified_.equal_range(read->node);
-  const bool is_known = std::any_of(from, to, [&](const auto& one) { return one.second == *read; });
-  if (!is_known) unverified_.emplace(read->node, *read);
+  if (std::any_of(from, to, [&](const auto& one) { return one.second.certificate == *read; })) {
+    return;
+  }
+  const bool full = unverified_.size() >= kUnverifiedMax;
+  if (full || static_cast<std::size_t>(std::distance(from, to)) >= kUnverifiedOfNode) {
+    return verify(heard);
+  }
+  unverified_.emplace(read->node, heard);
 }
 
 void Signatures::verify_certificates(VehicleId of) {
@@ -71,9 +78,9 @@ void Signatures::verify_certificates(VehicleId of) {
   unverified_.erase(from, to);
 }
 
-void Signatures::verify(const identity::Certificate& certificate) {
-  const auto now = std::chrono::duration_cast<std::chrono::seconds>(since_1970());
-  if (verifier_.learn(certificate, now.count()) != identity::Trust::good) return;
+void Signatures::verify(const Unverified& unverified) {
+  const identity::Certificate& certificate = unverified.certificate;
+  if (verifier_.learn(certificate, unverified.heard_at.count()) != identity::Trust::good) return;
   const auto [serial, is_new] = serials_.try_emplace(certificate.node, certificate.serial);
   if (is_new || !(serial->second < certificate.serial)) return;
   // Who has the keys of before may have used up the numbers; nothing signed with them is good now.

@@ -53,18 +53,24 @@ class Signatures {
     std::uint64_t sequence = 0;
   };
 
-  /// More of them are verified as they come: whoever floods takes time, not memory.
+  /// More of them are verified as they come: whoever floods takes time, not memory, and no more of
+  /// it at once than a few take.
   static constexpr std::size_t kUnverifiedMax = 2048;
+  static constexpr std::size_t kUnverifiedOfNode = 4;
+  struct Unverified {
+    identity::Certificate certificate;
+    std::chrono::seconds heard_at;  ///< since 1970: it must be valid then
+  };
 
   void verify_certificates(VehicleId of);
-  void verify(const identity::Certificate& certificate);
+  void verify(const Unverified& unverified);
 
   const SignConfig config_;
   const VehicleId self_;
   const InstanceId instance_;
   std::mutex mutex_;
   identity::Verifier verifier_;
-  std::multimap<VehicleId, identity::Certificate> unverified_;  ///< of each as they came
+  std::multimap<VehicleId, Unverified> unverified_;  ///< of each as they came
   std::array<std::uint64_t, codec::kTopicCount> said_{};
   std::map<std::pair<VehicleId, codec::Topic>, Newest> newest_;  ///< of members: bounded by them
   std::map<VehicleId, identity::Serial> serials_;                ///< of their certificates

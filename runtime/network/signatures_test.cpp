@@ -104,6 +104,24 @@ TEST_F(SignaturesTest, ADecisionIsGoodOnceAndInItsOrder) {
   EXPECT_EQ(judge(second), Judged::replayed);
 }
 
+TEST_F(SignaturesTest, WhoseCertificatesAreOfAnotherMissionKeepsNobodysOut) {
+  Signatures judge{config(kOne), kOne, InstanceId{7}};
+  for (int i = 0; i < 6; ++i) {
+    const auto other = folder_ / ("other-" + std::to_string(i));
+    ASSERT_TRUE(identity::make_team(other, std::vector{kTwo}, now_unix_s()).ok());
+    auto stranger =
+        identity::Identity::open({identity::node_folder(other, kTwo), {}}, now_unix_s());
+    ASSERT_TRUE(stranger.ok());
+    judge.learn(identity::to_bytes(stranger.value().own()));
+  }
+  judge.learn(identity::to_bytes(config(kTwo).own));
+  Signatures two = of(kTwo);
+  const Bytes bytes = said(two, {1, 2});
+  std::span<const std::uint8_t> body{bytes};
+  const auto signature = cut_signature(body);
+  EXPECT_EQ(judge.judge(Topic::command, kTwo, {7}, body, signature), Judged::good);
+}
+
 TEST_F(SignaturesTest, ANewStartTakesThePlaceOfTheOld) {
   Signatures before = of(kGroundStation, {7});
   Signatures after = of(kGroundStation, {8});

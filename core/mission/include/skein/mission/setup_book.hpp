@@ -62,8 +62,6 @@ class SetupBook {
   static constexpr Duration kPeriodWhileNew = std::chrono::seconds{1};
   static constexpr std::size_t kTeam = 32;
   static constexpr std::size_t kNodesMax = 1024;
-  /// Clocks count as within the guard again after so many setups in which they were.
-  static constexpr int kClean = 3;
 
   SetupBook(const SetupParams& params, VehicleId self, InstanceId instance, Instant now);
 
@@ -74,12 +72,12 @@ class SetupBook {
     if (then > now + params_.clock_guard) on_ahead(node, then - now, now);
   }
 
-  struct Facts {
-    bool knows_orders = true;
-    std::uint64_t newest_order = 0;
-    std::size_t heard = 0;  ///< other nodes
+  /// Told in it: the orders that this node knows of.
+  struct Orders {
+    bool known = true;
+    std::uint64_t newest = 0;
   };
-  [[nodiscard]] std::optional<Setup> poll_setup(const Facts& facts, Instant now);
+  [[nodiscard]] std::optional<Setup> poll_setup(const Orders& orders, Instant now);
   /// Says it at the next poll_setup(), whenever it was said before.
   void say_at_once() { next_ = Instant::min(); }
   /// What has changed in what others have in common with this one.
@@ -92,6 +90,8 @@ class SetupBook {
   [[nodiscard]] const SetupDifference* difference(VehicleId node) const;
 
  private:
+  /// A clock counts as within the guard again after so many setups in which it was.
+  static constexpr int kClean = 3;
   struct Node {
     InstanceId instance = {};
     std::string keys = {};
@@ -114,7 +114,7 @@ class SetupBook {
   Setup own_;
   std::map<std::uint32_t, const CommonKey*> by_key_;
   std::map<VehicleId, Node> nodes_;
-  std::size_t heard_ = 0;  ///< nodes, when it told last
+  std::size_t told_ = 0;   ///< nodes that have told their setup, which is proven
   bool suspects_ = false;  ///< some node has had a twin, or another clock
   Instant said_at_ = Instant::min();
   /// After the last: doubled while somebody new comes again and again, as where all start at once.
