@@ -42,6 +42,7 @@
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
+#include "user_autopilots.hpp"
 
 namespace skein::hil {
 namespace {
@@ -55,6 +56,7 @@ constexpr const char* kKeysFolder = "keys";  ///< of the run
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};
+constexpr auto kAutopilotBoot = std::chrono::seconds{60};
 /// Node ids for them and their companions on one bus.
 constexpr std::size_t kCanVehiclesMax = 50;
 
@@ -143,9 +145,11 @@ Result<std::uint16_t> port_block(const std::string& of, std::uint16_t wanted, st
 class Bench {
  public:
   Bench(const configuration::Scenario& scenario, const BenchOptions& options,
-        ExternalHosts external, const std::function<void(const BenchProgress&)>& on_progress)
+        ExternalHosts external, UserAutopilots autopilots,
+        const std::function<void(const BenchProgress&)>& on_progress)
       : scenario_{scenario},
         options_{options},
+        autopilots_{std::move(autopilots)},
         on_progress_{on_progress},
         external_{std::move(external)},
         sensors_{scenario.sites, specs(scenario)},
@@ -176,11 +180,13 @@ class Bench {
       if (!listener) return listener.error();
       links_.emplace(std::move(listener).value());
     }
-    const configuration::Deployment deployment = deploy(*base, *buses);
+    configuration::Deployment deployment = deploy(*base, *buses);
     if (options_.sealed) {
       if (auto made = make_keys(); !made) return made;
     }
-    const auto configs = configuration::vehicle_configs(scenario_, deployment);
+    if (auto up = boot_autopilots(vehicle_configs(deployment)); !up) return up;
+    begin_in(lead_s(deployment), deployment);
+    const auto configs = vehicle_configs(deployment);
     if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
     auto ground = configuration::ground_config(scenario_, deployment);
@@ -253,6 +259,9 @@ class Bench {
                    " of loopback is in use; name another for --console, or stop who uses it "
                    "(ss -tlpn shows who)"};
     }
+    if (!options_.autopilots.empty()) {
+      if (auto possible = check_autopilots(); !possible) return possible;
+    }
     for (const auto& vehicle : scenario_.vehicles) {
       if (vehicle.spec.id.value < radio::LinkTable::kNodes) continue;
       return Error{"vehicle " + std::to_string(vehicle.spec.id.value) +
@@ -262,18 +271,98 @@ class Bench {
     return {};
   }
 
-  /// Where everybody is, and when mission time 0 is: all have started and found each other before.
-  configuration::Deployment deploy(std::uint16_t port_base, const std::vector<std::string>& buses) {
-    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
-    const bool few = all_nodes().size() <= kNodesPerProcessor * processors;
-    const double each_s = options_.dds && few ? kIsolatedLead_s : kLead_s;
-    const double lead_s = options_.lead_s > 0.0
-                              ? options_.lead_s
-                              : 3.0 + each_s * static_cast<double>(scenario_.vehicles.size()) +
-                                    (external_.empty() ? 0.0 : kExternalLead_s);
+  [[nodiscard]] Result<void> check_autopilots() const {
+    if (std::ranges::none_of(scenario_.vehicles, [this](const auto& vehicle) {
+          return user_flown(vehicle.spec, vehicle.flight_controller);
+        })) {
+      return Error{
+          "--autopilot: no vehicle of the scenario has a flight controller of that kind; give one "
+          "flight_controller: {kind: ardupilot}"};
+    }
+    const auto spoken = speaks_on_bus(kAutopilotBus, 0, std::chrono::seconds{1});
+    if (!spoken) return spoken.error();
+    if (!*spoken) return {};
+    return Error{std::string{"somebody speaks on "} + kAutopilotBus +
+                 " already; stop other autopilots on this machine"};
+  }
+
+  /// From the start of the programs: all have started and found each other before.
+  [[nodiscard]] double lead_s(const configuration::Deployment& deployment) const {
+    if (options_.lead_s > 0.0) return options_.lead_s;
+    const double each_s = options_.dds && deployment.isolated ? kIsolatedLead_s : kLead_s;
+    double lead_s = 3.0 + each_s * static_cast<double>(scenario_.vehicles.size());
+    if (!external_.empty()) lead_s += kExternalLead_s;
+    double height_max_m = 0.0;
+    for (const auto& vehicle : scenario_.vehicles) {
+      if (!user_flown(vehicle.spec, vehicle.flight_controller)) continue;
+      height_max_m = std::max(height_max_m, vehicle.spec.height_m);
+    }
+    return height_max_m > 0.0 ? lead_s + autopilot_lead_s(height_max_m) : lead_s;
+  }
+
+  void begin_in(double lead_s, configuration::Deployment& deployment) {
     const auto lead = std::chrono::duration_cast<std::chrono::milliseconds>(
         std::chrono::duration<double>{lead_s});
     epoch_ = steady_clock::now() + lead;
+    deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                                        (system_clock::now() + lead).time_since_epoch())
+                                        .count();
+  }
+
+  [[nodiscard]] bool user_flown(const VehicleSpec& spec,
+                                const configuration::FlightControllerConfig& controller) const {
+    return controller.kind == configuration::FlightControllerKind::ardupilot &&
+           autopilots_.of(spec) != nullptr && external_.host_of(spec.id) == nullptr;
+  }
+
+  /// A user's autopilot flies from the ground, and when the mission begins it waits near its start,
+  /// over which it goes first.
+  [[nodiscard]] std::vector<configuration::VehicleConfig> vehicle_configs(
+      const configuration::Deployment& deployment) const {
+    auto configs = configuration::vehicle_configs(scenario_, deployment);
+    for (auto& config : configs) {
+      if (!user_flown(config.vehicle, config.flight_controller)) continue;
+      config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
+      config.flight_controller.ardupilot.takeoff_height_m = config.vehicle.height_m;
+      if (!config.search.empty()) {
+        config.search.insert(config.search.begin(), config.start.position());
+      }
+    }
+    return configs;
+  }
+
+  /// One after another: a simulator that boots takes a processor.
+  Result<void> boot_autopilots(const std::vector<configuration::VehicleConfig>& configs) {
+    int instance = 0;
+    for (const auto& config : configs) {
+      if (!user_flown(config.vehicle, config.flight_controller)) continue;
+      const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
+      const auto command =
+          autopilot_command(autopilots_, config, instance++, options_.run_folder / name);
+      if (!command) return command.error();
+      const auto log = options_.run_folder / (name + ".log");
+      auto child = ChildProcess::start(*command, log, {});
+      if (!child) return child.error();
+      auto& started =
+          user_autopilots_.emplace(config.vehicle.id, std::move(child).value()).first->second;
+      const auto& fc = config.flight_controller.ardupilot;
+      const auto speaks = speaks_on_bus(fc.can, fc.node_id, kAutopilotBoot);
+      if (!speaks) return speaks.error();
+      if (!*speaks) {
+        const auto how = started.ended();
+        return Error{"the autopilot of " + name_of(config.vehicle.id) + " is not heard on " +
+                     fc.can + " as node " + std::to_string(fc.node_id) +
+                     (how ? "; it ended: " + *how : "") + "; its log is " + log.string()};
+      }
+      say("the autopilot of " + name_of(config.vehicle.id) + " has booted");
+    }
+    return {};
+  }
+
+  /// Where everybody is.
+  configuration::Deployment deploy(std::uint16_t port_base, const std::vector<std::string>& buses) {
+    const std::size_t processors = std::max(1U, std::thread::hardware_concurrency());
+    const bool few = all_nodes().size() <= kNodesPerProcessor * processors;
     configuration::Deployment deployment;
     deployment.address = options_.address;
     deployment.port_base = port_base;
@@ -281,9 +370,6 @@ class Bench {
     deployment.domain_id = static_cast<std::uint16_t>(port_base % 200);
     deployment.transport_plugin = std::filesystem::absolute(options_.radio_plugin).string();
     deployment.time.rate = options_.rate;
-    deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
-                                        (system_clock::now() + lead).time_since_epoch())
-                                        .count();
     deployment.recording_folder = std::filesystem::absolute(options_.run_folder).string();
     deployment.can_buses = buses;
     deployment.elsewhere = external_.addresses();
@@ -405,7 +491,7 @@ class Bench {
       ++on_can;
       if (!fc.ardupilot.can.empty()) continue;
       const configuration::Host* const host = external_.host_of(vehicle.spec.id);
-      buses.push_back(host != nullptr ? host->can : options_.can);
+      buses.push_back(host != nullptr ? host->can : bus_of(vehicle));
       if (buses.back().empty()) ++ours;
     }
     if (on_can > 0 && options_.rate != 1.0) {
@@ -428,6 +514,7 @@ class Bench {
 
   Result<void> launch_flight_controller(const configuration::VehicleConfig& config) {
     if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) return {};
+    if (user_autopilots_.contains(config.vehicle.id)) return {};
     const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
     auto child = ChildProcess::start(flight_controller_command(options_.programs, config),
                                      options_.run_folder / (name + ".log"), {});
@@ -435,6 +522,11 @@ class Bench {
     child->make_realtime();
     flight_controllers_.emplace(config.vehicle.id, std::move(child).value());
     return {};
+  }
+
+  /// Empty: to be looked for.
+  [[nodiscard]] std::string bus_of(const configuration::ScenarioVehicle& vehicle) const {
+    return user_flown(vehicle.spec, vehicle.flight_controller) ? kAutopilotBus : options_.can;
   }
 
   void hear() {
@@ -487,16 +579,18 @@ class Bench {
                                 (options_.run_folder / (log_name(id) + ".log")).string());
       say(outcome_.deaths.back());
     }
-    for (auto& [id, process] : flight_controllers_) {
-      if (killed_.contains(id) || fc_reported_.contains(id)) continue;
-      const auto how = process.ended();
-      if (!how) continue;
-      fc_reported_.insert(id);
-      outcome_.deaths.push_back(
-          "the flight controller of " + name_of(id) + " ended by itself: " + *how +
-          "; its log is " +
-          (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
-      say(outcome_.deaths.back());
+    for (auto* controllers : {&flight_controllers_, &user_autopilots_}) {
+      for (auto& [id, process] : *controllers) {
+        if (killed_.contains(id) || fc_reported_.contains(id)) continue;
+        const auto how = process.ended();
+        if (!how) continue;
+        fc_reported_.insert(id);
+        outcome_.deaths.push_back(
+            "the flight controller of " + name_of(id) + " ended by itself: " + *how +
+            "; its log is " +
+            (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
+        say(outcome_.deaths.back());
+      }
     }
     if (links_ && !links_reported_) {
       if (const auto how = links_->ended()) {
@@ -557,8 +651,11 @@ class Bench {
     const auto process = processes_.find(id);
     if (process == processes_.end() || !killed_.insert(id).second) return;
     process->second.signal(SIGKILL);
-    const auto fc = flight_controllers_.find(id);
-    if (fc != flight_controllers_.end()) fc->second.signal(SIGKILL);
+    for (auto* controllers : {&flight_controllers_, &user_autopilots_}) {
+      if (const auto fc = controllers->find(id); fc != controllers->end()) {
+        fc->second.signal(SIGKILL);
+      }
+    }
     outcome_.killed.push_back(id);
     say("fault: " + name_of(id) + " is killed");
   }
@@ -655,6 +752,9 @@ class Bench {
       if (!killed_.contains(id)) controllers.push_back(&process);
     }
     const bool controllers_clean = stop_all(controllers, kStopWithin);
+    std::vector<ChildProcess*> autopilots;
+    for (auto& [id, process] : user_autopilots_) autopilots.push_back(&process);
+    (void)stop_all(autopilots, kStopWithin);  // how they end is theirs
     std::vector<ChildProcess*> ground;
     if (!killed_.contains(kGroundStation)) ground.push_back(&processes_.at(kGroundStation));
     outcome_.stopped_cleanly = stop_all(ground, kStopWithin) && clean && controllers_clean;
@@ -715,6 +815,7 @@ class Bench {
 
   const configuration::Scenario& scenario_;
   const BenchOptions& options_;
+  UserAutopilots autopilots_;
   const std::function<void(const BenchProgress&)>& on_progress_;
   InterruptWatch interrupts_;
   ExternalHosts external_;
@@ -723,6 +824,7 @@ class Bench {
   bool links_reported_ = false;  ///< that it has ended
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
+  std::map<VehicleId, ChildProcess> user_autopilots_;
   std::unique_ptr<network::Node> node_;
   std::optional<recording::Writer> writer_;  ///< of what the bench itself says
   SurveySensors sensors_;
@@ -767,7 +869,10 @@ Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOpt
   if (!external) return external.error();
   configuration::Scenario here = scenario;
   give_buses(here, *external);
-  Bench bench{here, options, std::move(external).value(), on_progress};
+  auto autopilots = user_autopilots(options.autopilots, options.autopilot_parameters);
+  if (!autopilots) return autopilots.error();
+  Bench bench{here, options, std::move(external).value(), std::move(autopilots).value(),
+              on_progress};
   if (const auto started = bench.start(); !started) return started.error();
   return bench.run();
 }

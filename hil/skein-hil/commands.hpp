@@ -24,8 +24,10 @@ struct RunArguments {
   double rate = 1.0;
   std::optional<std::uint64_t> seed;
   std::uint16_t port_base = 0;
-  double lead_s = 0.0;           ///< 0: by the number of vehicles
-  std::string can;               ///< bus of the flight controllers; empty: one each is looked for
+  double lead_s = 0.0;  ///< 0: by the number of vehicles
+  std::string can;      ///< bus of the flight controllers; empty: one each is looked for
+  std::vector<std::string> autopilots;            ///< in place of skein-fc
+  std::vector<std::string> autopilot_parameters;  ///< files
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
   bool dds = false;

@@ -102,6 +102,8 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.port_base = arguments.port_base;
   options.lead_s = arguments.lead_s;
   options.can = arguments.can;
+  options.autopilots = arguments.autopilots;
+  options.autopilot_parameters = arguments.autopilot_parameters;
   options.prompt = arguments.prompt;
   options.sealed = !arguments.clear;
   options.dds = arguments.dds;
@@ -152,6 +154,11 @@ bool wants_an_operator(const configuration::Scenario& scenario) {
 }
 
 int run(const RunArguments& arguments) {
+  if (!arguments.autopilots.empty()) {
+    if (const auto kept = keep_autopilots_on_loopback(arguments.console_port != 0); !kept) {
+      return complain(kept.error().message);
+    }
+  }
   auto scenario = flyable_scenario(arguments);
   if (!scenario) return complain(scenario.error().message);
   BenchOptions options = options_of(arguments);

@@ -29,6 +29,10 @@ struct BenchOptions {
   /// For all flight controllers whose bus the scenario does not name; empty: quiet multicast buses,
   /// one for each.
   std::string can;
+  /// A user's own builds of ArduPilot for software in the loop, for the vehicles of their airframe
+  /// in place of skein-fc; and files of parameters for them.
+  std::vector<std::string> autopilots;
+  std::vector<std::string> autopilot_parameters;
   bool dds = false;  ///< Fast DDS, to each node by itself; else by the air
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.
@@ -65,13 +69,19 @@ struct BenchOutcome {
   std::uint64_t messages_dropped = 0;      ///< by full queues or as damaged, all vehicles together
 };
 
-/// Starts one skein-onboard for each vehicle, one skein-fc for each whose flight controller is an
-/// ardupilot, one skein-ground and the radio between them, plays the sensors and the faults, and
-/// stops everything when all sites are done, at the scenario's duration_max, when a process dies
-/// unasked, when the operator at the prompt quits, or on SIGINT or SIGTERM. Nothing is left running
-/// or in /dev/shm, whatever happens. External vehicles are configured and started on their hosts,
-/// told of the radio, ended with the rest, and what they recorded is fetched into the run folder.
-/// Fails, with what to do, when it cannot start, and where the run folder has something in it.
+/// User's own autopilots speak on a multicast bus, whose frames are to stay on this machine: unless
+/// the way to it is loopback already, this process and what it starts get a network of their own.
+/// Before any thread is started. `reached`: from outside of it, so that it may not be.
+[[nodiscard]] Result<void> keep_autopilots_on_loopback(bool reached);
+
+/// Starts one skein-onboard for each vehicle, one skein-fc (or a user's own autopilot, which takes
+/// off before the mission begins) for each whose flight controller is an ardupilot, one
+/// skein-ground and the radio between them, plays the sensors and the faults, and stops everything
+/// when all sites are done, at the scenario's duration_max, when a process dies unasked, when the
+/// operator at the prompt quits, or on SIGINT or SIGTERM. Nothing is left running or in /dev/shm,
+/// whatever happens. External vehicles are configured and started on their hosts, told of the
+/// radio, ended with the rest, and what they recorded is fetched into the run folder. Fails, with
+/// what to do, when it cannot start, and where the run folder has something in it.
 [[nodiscard]] Result<BenchOutcome> fly(
     const configuration::Scenario& scenario, const BenchOptions& options,
     const std::function<void(const BenchProgress&)>& on_progress);

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/result.hpp"
+#include "skein/configuration/vehicle_config.hpp"
+
+namespace skein::hil {
+
+/// A user's own ArduPilot, built for software in the loop, in place of skein-fc: flies an aircraft
+/// of its own simulator, from power-up on the ground, on the multicast bus `kAutopilotBus`, which
+/// is where its builds speak.
+inline constexpr const char* kAutopilotBus = "mcast:0";
+
+/// By airframe; none: skein-fc flies it.
+struct UserAutopilots {
+  std::optional<std::filesystem::path> plane;
+  std::optional<std::filesystem::path> copter;
+  std::vector<std::filesystem::path> parameters;  ///< files of its own, before those of the vehicle
+
+  [[nodiscard]] const std::filesystem::path* of(const VehicleSpec& vehicle) const {
+    const auto& program = vehicle.is_copter() ? copter : plane;
+    return program ? &*program : nullptr;
+  }
+};
+/// Which of the two a program is, its name says: "arduplane", "arducopter". A file plane.parm or
+/// copter.parm beside it has the parameters of the simulated airframe.
+[[nodiscard]] Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
+                                                     const std::vector<std::string>& parameters);
+
+/// What the vehicle asks of an ArduPilot's parameters, a line each ("NAME VALUE"): the bus, the
+/// serial port on it, what safety rests on, the speeds, the bank that its turn radius needs, the
+/// wind of the simulator.
+[[nodiscard]] std::string autopilot_parameters(const configuration::VehicleConfig& vehicle);
+
+/// The command line that starts it in `folder`, which is made: on the ground, so that its take-off
+/// ends where the vehicle starts. `instance` tells those of one machine apart.
+[[nodiscard]] Result<std::vector<std::string>> autopilot_command(
+    const UserAutopilots& autopilots, const configuration::VehicleConfig& vehicle, int instance,
+    const std::filesystem::path& folder);
+
+/// Waits until that node of the bus speaks; false where it does not within `at_most`.
+[[nodiscard]] Result<bool> speaks_on_bus(const std::string& bus, std::uint8_t node_id,
+                                         std::chrono::seconds at_most);
+
+/// From when the last has booted until all are in the air at their heights.
+[[nodiscard]] double autopilot_lead_s(double height_max_m);
+
+}  // namespace skein::hil
