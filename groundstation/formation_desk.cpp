@@ -205,11 +205,12 @@ void FormationDesk::work_off_script(Instant now) {
   if (next_line_ == 0 && !given_ && heard() < vehicles_.size()) {
     if (!team_by_) team_by_ = now + kTeamWait;
     if (now < *team_by_ || std::exchange(told_awaited_, true)) return;
-    mission::event::FormationWarning awaited{mission::event::FormationNews::awaited};
+    std::vector<VehicleId> awaited;
     for (const VehicleId vehicle : vehicles_) {
-      if (!is_heard(vehicle)) awaited.vehicles.push_back(vehicle);
+      if (!is_heard(vehicle)) awaited.push_back(vehicle);
     }
-    report(std::move(awaited), now);
+    report(mission::formation_warning(mission::event::FormationNews::awaited, std::move(awaited)),
+           now);
     return;
   }
   if (given_) {

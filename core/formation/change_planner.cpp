@@ -263,6 +263,11 @@ Error Planner::too_near(const Nearness& nearness) const {
 
 Result<PlannedChange> Planner::plan() {
   if (count_ == 0) return Error{"there is no vehicle to move"};
+  if (count_ > kMoversMax) {
+    return Error{std::to_string(count_) + " vehicles are to move, and " +
+                 std::to_string(kMoversMax) +
+                 " are the most that a change can tell; fly them as several teams"};
+  }
   Change change = straight();
   if (!valid(change)) return why_not_valid(request_);
   const Nearness direct = nearness(change, true);

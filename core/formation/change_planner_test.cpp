@@ -148,6 +148,25 @@ TEST(PlanChange, SaysWhatIsWrongWithARequest) {
             "speed, acceleration, jerk and separation are to be numbers above 0");
 }
 
+TEST(PlanChange, MovesAsManyAsAChangeCanTellAndSaysWhereThereAreMore) {
+  ChangeRequest request;
+  request.limits = kLimits;
+  for (std::uint16_t i = 0; i < kMoversMax; ++i) {
+    const Vec3 from{10.0 * (i % 32), 10.0 * (i / 32), 10.0};
+    request.transfers.push_back({{static_cast<std::uint16_t>(i + 1)}, from, from + Vec3{0, 50, 0}});
+  }
+  const auto planned = plan_change(request);
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_EQ(planned->change.movers.size(), kMoversMax);
+  EXPECT_NEAR(planned->least_separation_m, 10.0, 1e-6);
+  request.transfers.push_back({{2000}, {-50, 0, 10}, {-50, 50, 10}});
+  const auto more = plan_change(request);
+  ASSERT_FALSE(more.ok());
+  EXPECT_EQ(more.error().message,
+            "1025 vehicles are to move, and 1024 are the most that a change can tell; fly them as "
+            "several teams");
+}
+
 TEST(PlanChange, RefusesWhatWouldTakeTooMuchHeight) {
   // Nobody can turn: the starts lie in each other's way within any disc.
   ChangeRequest request;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/events.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <utility>
 #include <variant>
 
 #include "skein/base/assert.hpp"
@@ -31,6 +34,14 @@ bool is_warning(EventKind kind) { return kWarnings.at(static_cast<std::size_t>(k
 EventBody body_of(EventKind kind) {
   SKEIN_ASSERT(kind < EventKind::count);
   return body_at(static_cast<std::size_t>(kind));
+}
+
+event::FormationWarning formation_warning(event::FormationNews news,
+                                          std::vector<VehicleId> vehicles) {
+  const std::size_t named = std::min(vehicles.size(), event::kNamedMax);
+  const auto more = static_cast<std::uint16_t>(vehicles.size() - named);
+  vehicles.resize(named);
+  return {news, std::move(vehicles), more};
 }
 
 }  // namespace skein::mission

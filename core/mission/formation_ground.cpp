@@ -39,6 +39,12 @@ constexpr double kTrimMax_m = 1.0;
 /// A shape is made so much larger at most where places of it cannot be taken.
 constexpr std::size_t kSparePlaces = 8;
 
+/// A change of so many vehicles is as many datagrams.
+Duration repeat_after(const Change& change) {
+  constexpr std::size_t kOfOneRepeat = 128;
+  return static_cast<std::int64_t>(1 + change.movers.size() / kOfOneRepeat) * kRepeat;
+}
+
 std::string metres_of(double m) {
   std::array<char, 32> text{};
   static_cast<void>(std::snprintf(text.data(), text.size(), "%.1f m", m));
@@ -267,14 +273,14 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   held_since_.reset();
   rest_since_.reset();
   messages_.push(*change_);
-  send_next_ = now + kRepeat;
+  send_next_ = now + repeat_after(*change_);
   event::ChangeBegun begun;
   begun.number = number_;
   begun.order = preview.order.kind;
   begun.shape = preview.order.shape.kind;
   begun.correction = correcting_;
   begun.way = preview.planned.way;
-  begun.vehicles = static_cast<std::uint8_t>(change_->movers.size());
+  begun.vehicles = static_cast<std::uint16_t>(change_->movers.size());
   begun.takes = preview.planned.duration;
   begun.separation_m = preview.planned.least_separation_m;
   report(begun, now);
@@ -348,7 +354,7 @@ void FormationGround::on_timeout(Instant now) {
                                     });
   find_stuck(now);
   if (!all_know && !give_again_ && now >= send_next_) {
-    send_next_ = now + kRepeat;
+    send_next_ = now + repeat_after(*change_);
     messages_.push(*change_);
   }
   judge_places(now);
@@ -472,7 +478,7 @@ void FormationGround::report(EventBody body, Instant now) {
 }
 
 void FormationGround::warn(FormationNews news, std::vector<VehicleId> vehicles, Instant now) {
-  report(event::FormationWarning{news, std::move(vehicles)}, now);
+  report(formation_warning(news, std::move(vehicles)), now);
 }
 
 }  // namespace skein::mission

@@ -14,6 +14,10 @@ namespace skein::mission {
 namespace {
 
 constexpr Duration kTellAgain = std::chrono::seconds{1};
+/// So many are told at once: of more, the first would give way before they are on the air (64 are
+/// kept there, topics.json).
+constexpr std::size_t kToldAtOnce = 32;
+constexpr Duration kToldEvery = std::chrono::milliseconds{100};
 /// Who flies is asked now and then how far it is.
 constexpr Duration kAskAgain = std::chrono::seconds{5};
 /// All must have taken theirs so long before the plan begins, or there is no time to tell them.
@@ -25,6 +29,11 @@ constexpr Duration kOverAfter = std::chrono::seconds{60};  ///< the last route's
 constexpr double kAtStart_m = 50.0;
 /// A vehicle may hurry to where its route begins, by so much at most.
 constexpr double kHurry = 1.5;
+
+/// What it takes to tell so many, beyond a moment.
+Duration telling_takes(std::size_t vehicles) {
+  return static_cast<std::int64_t>(vehicles / (kToldAtOnce + 1)) * kToldEvery;
+}
 
 bool has_ended(const GivenRoute& route) {
   return route.answer && *route.answer != RouteState::taken && *route.answer != RouteState::flies;
@@ -136,9 +145,12 @@ void GroundRoutes::on_status(const RouteStatus& status, Instant now) {
 Result<void> GroundRoutes::check(const Routes& routes, const std::vector<Hazard>& hazards,
                                  const Fleet& fleet, Instant now) const {
   if (routes.empty()) return Error{"the plan has no routes"};
-  if (routes.size() > kVehiclesMax) return Error{"the plan is of too many vehicles"};
+  if (routes.size() > kVehiclesMax) {
+    return Error{"the plan is of " + std::to_string(routes.size()) + " vehicles, and " +
+                 std::to_string(kVehiclesMax) + " are the most of one; give it in several"};
+  }
   const Instant begins = routes.begin()->second.start_time;
-  if (begins < now + kNotice) {
+  if (begins < now + kNotice + 2 * telling_takes(routes.size())) {
     return Error{"the plan begins too soon for all to answer; begin it later, as in 'in 60'"};
   }
   if (stands()) {
@@ -164,7 +176,7 @@ Result<std::uint32_t> GroundRoutes::give(const Routes& routes, const std::vector
   given_->begins = routes.begin()->second.start_time;
   given_->step_at = now;
   for (const auto& [id, timed] : routes) given_->routes[id].timed = timed;
-  report(event::RoutesGiven{given_->plan, static_cast<std::uint8_t>(routes.size()), given_->begins,
+  report(event::RoutesGiven{given_->plan, static_cast<std::uint16_t>(routes.size()), given_->begins,
                             false},
          now);
   next_ = now;
@@ -206,11 +218,11 @@ void GroundRoutes::decide_offer(Instant now) {
     if (!route.answer && silent == nullptr) silent = &id;
   }
   if (silent != nullptr) {
-    if (now < plan.begins - kAllTakenBefore) return;
+    if (now < plan.begins - kAllTakenBefore - telling_takes(plan.routes.size())) return;
     return call_off({plan.plan, RoutesEnd::not_answered, *silent, RouteObstacle::nothing}, now);
   }
   take_step(RouteStep::fly, now);
-  report(event::RoutesGiven{plan.plan, static_cast<std::uint8_t>(plan.routes.size()), plan.begins,
+  report(event::RoutesGiven{plan.plan, static_cast<std::uint16_t>(plan.routes.size()), plan.begins,
                             true},
          now);
 }
@@ -242,9 +254,14 @@ void GroundRoutes::decide(Instant now) {
               (plan.step != RouteStep::offer && all_ended) || now >= end + kOverAfter;
 }
 
-void GroundRoutes::tell(const Fleet& fleet, Instant now) {
+bool GroundRoutes::tell(const Fleet& fleet, Instant now) {
   GivenRoutes& plan = *given_;
-  for (auto& [id, route] : plan.routes) {
+  std::size_t told = 0;
+  // On from whom was told last, or the first would be told again before the last are told once.
+  auto next = plan.routes.upper_bound(told_last_);
+  for (std::size_t i = 0; i < plan.routes.size(); ++i, ++next) {
+    if (next == plan.routes.end()) next = plan.routes.begin();
+    auto& [id, route] = *next;
     const auto known = fleet.vehicles().find(id);
     const bool anew = route.instance && known != fleet.vehicles().end() &&
                       known->second.telemetry &&
@@ -258,11 +275,15 @@ void GroundRoutes::tell(const Fleet& fleet, Instant now) {
     if (route.told_since && has_ended(route)) {
       route.next = Instant::max();
     } else if (now >= route.next) {
+      if (told == kToldAtOnce) return false;
+      ++told;
+      told_last_ = id;
       messages_.push(Message{Route{id, plan.plan, plan.step, route.timed}});
       const bool flies = route.told_since && plan.step == RouteStep::fly;
       route.next = now + (flies ? kAskAgain : kTellAgain);
     }
   }
+  return true;
 }
 
 void GroundRoutes::on_timeout(const Fleet& fleet, Instant now) {
@@ -272,8 +293,13 @@ void GroundRoutes::on_timeout(const Fleet& fleet, Instant now) {
     next_ = Instant::max();
     return;
   }
-  tell(fleet, now);
-  next_ = now + kTellAgain;
+  if (now < tell_at_) {  // an answer came
+    next_ = tell_at_;
+    return;
+  }
+  const bool all = tell(fleet, now);
+  if (!all) tell_at_ = now + kToldEvery;
+  next_ = all ? now + kTellAgain : tell_at_;
 }
 
 void GroundRoutes::report(EventBody body, Instant now) {

@@ -231,5 +231,80 @@ TEST_F(GroundRoutesTest, RefusesWhatItKnowsToBeWrong) {
   EXPECT_THAT(refusal({{kTwo, north(300.0, 130.0)}}), HasSubstr("withdraw routes"));
 }
 
+TEST(GroundRoutes, AsManyAsThereMayBeAreToldInTurnAndAllFly) {
+  GroundRoutes routes;
+  std::set<VehicleId> ids;
+  for (std::uint16_t id = 1; id <= GroundRoutes::kVehiclesMax + 1; ++id) ids.insert(VehicleId{id});
+  Fleet fleet{{.expected = {ids.begin(), ids.end()}}};
+  Instant now = at_seconds(100.0);
+  GroundRoutes::Routes plan;
+  const auto place_m = [](VehicleId id) { return 50.0 * id.value; };
+  const auto hear_all = [&] {
+    for (const VehicleId id : ids) {
+      Telemetry t;
+      t.vehicle = id;
+      t.instance = {id.value};
+      t.state.time = now;
+      t.state.x_m = place_m(id);
+      t.range_left_m = 20'000.0;
+      fleet.on_message(Message{t}, now);
+    }
+  };
+  hear_all();
+  const TimedPath ahead = north(0.0, 120.0);
+  const auto add = [&](VehicleId id) {
+    plan[id] = ahead;
+    plan[id].path.start.x_m = place_m(id);
+  };
+  for (const VehicleId id : ids) add(id);
+  const auto refused = routes.give(plan, {}, fleet, now);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().message,
+            "the plan is of 1025 vehicles, and 1024 are the most of one; give it in several");
+  plan.erase(*ids.rbegin());
+  const auto early = routes.give(plan, {}, fleet, now + std::chrono::seconds{14});
+  ASSERT_FALSE(early.ok());
+  EXPECT_THAT(early.error().message, HasSubstr("begins too soon"));
+  ASSERT_TRUE(routes.give(plan, {}, fleet, now).ok());
+
+  std::vector<std::uint16_t> given;
+  std::map<VehicleId, std::size_t> offers;
+  for (int step = 0; step < 2400; ++step) {
+    now += std::chrono::milliseconds{10};
+    if (step % 100 == 0) hear_all();
+    if (routes.next_timeout() > now) continue;
+    routes.on_timeout(fleet, now);
+    std::size_t told = 0;
+    while (const auto message = routes.poll_message()) {
+      const auto& route = std::get<Route>(*message);
+      ++told;
+      const bool offer = route.step == RouteStep::offer;
+      if (offer) ++offers[route.vehicle];
+      routes.on_message(Message{RouteStatus{route.vehicle,
+                                            {route.vehicle.value},
+                                            route.plan,
+                                            offer ? RouteState::taken : RouteState::flies,
+                                            RouteObstacle::nothing}},
+                        now);
+    }
+    EXPECT_LE(told, 32U) << "at once";
+    while (const auto event = routes.poll_event()) {
+      if (const auto* e = std::get_if<event::RoutesGiven>(&event->body))
+        given.push_back(e->vehicles);
+      EXPECT_NE(event->kind(), EventKind::routes_called_off);
+    }
+  }
+  EXPECT_EQ(given, (std::vector<std::uint16_t>{1024, 1024})) << "offered, and taken by all";
+  ASSERT_EQ(offers.size(), GroundRoutes::kVehiclesMax);
+  for (const auto& [id, times] : offers) {
+    EXPECT_LE(times, 4U) << id.value << ": told again only while others have not answered";
+  }
+  for (const auto& [id, route] : routes.given()->routes) {
+    EXPECT_EQ(route.answer, RouteState::flies) << id.value;
+  }
+  EXPECT_TRUE(routes.given()->begun);
+  EXPECT_EQ(routes.dropped(), 0U);
+}
+
 }  // namespace
 }  // namespace skein::mission

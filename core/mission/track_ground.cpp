@@ -15,6 +15,9 @@ using formation::PlannedTrack;
 
 constexpr Duration kPeriod = std::chrono::milliseconds{100};
 constexpr Duration kRepeat = std::chrono::milliseconds{500};
+/// So many planes are told at once, each kPeriod: of more, the first would give way before they are
+/// on the air (64 are kept there, topics.json).
+constexpr std::size_t kToldAtOnce = 32;
 /// Who has not begun so long after the start does not begin any more.
 constexpr Duration kBegunWithin = std::chrono::seconds{2};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
@@ -120,19 +123,27 @@ void TrackGround::begin(TrackPreview preview, Instant now) {
   begun.order = preview.order.kind;
   begun.shape = preview.order.shape.kind;
   begun.way = formation::Way::track;
-  begun.vehicles = static_cast<std::uint8_t>(planned.flights.size());
+  begun.vehicles = static_cast<std::uint16_t>(planned.flights.size());
   begun.takes = planned.joined - now;
   begun.separation_m = planned.least_separation_m;
   report(begun, now);
+  send_from_ = 0;
   send(now);
 }
 
 void TrackGround::send(Instant now) {
-  send_next_ = now + kRepeat;
   const PlannedTrack& planned = sent_.at(number_);
-  for (const auto& flight : planned.flights) {
+  const std::size_t begin = std::exchange(send_from_, 0);
+  std::size_t told = 0;
+  for (std::size_t i = begin; i < planned.flights.size(); ++i) {
+    const formation::TrackFlightPlan& flight = planned.flights[i];
     const auto found = members_.find(flight.plane.spec.id);
     if (found == members_.end() || !has_not_begun(found->first, found->second)) continue;
+    if (told++ == kToldAtOnce) {
+      send_from_ = i;
+      send_next_ = now + kPeriod;
+      return;
+    }
     TrackFlight message;
     message.vehicle = flight.plane.spec.id;
     message.number = number_;
@@ -142,6 +153,7 @@ void TrackGround::send(Instant now) {
     message.plan = {number_, flight.timed};
     messages_.push(Message{message});
   }
+  send_next_ = now + kRepeat;
 }
 
 // --- what is heard -------------------------------------------------------------------------------
@@ -232,7 +244,7 @@ void TrackGround::find_not_begun(Instant now) {
   }
   if (who.empty() || !on_track(now)) return;
   if (!std::exchange(told_not_begun_, true)) {
-    report(event::FormationWarning{FormationNews::not_begun, who}, now);
+    report(formation_warning(FormationNews::not_begun, who), now);
   }
   if (now < try_again_) return;
   try_again_ = now + kTryAgain;

@@ -44,7 +44,7 @@ class Team {
     config.rules.separation = {20.0, 8.0};
     config.rules.tracking_m = 5.0;
     config.rules.wind_mps = 4.0;
-    config.rules.ceiling_m = 200.0;
+    config.rules.ceiling_m = 200.0 + 10.0 * static_cast<double>(n);
     ground = std::make_unique<TrackGround>(config, Instant{});
   }
 
@@ -198,6 +198,28 @@ TEST(TrackGround, GivesTheOrderAgainToWhoHasNotHeardOfIt) {
   team.deaf.clear();
   ASSERT_TRUE(team.until([&] { return team.ground->in_place(); }));
   EXPECT_GT((team.at(1) - team.at(0)).norm(), 30.0);
+}
+
+TEST(TrackGround, ManyAreToldInTurn) {
+  Team team{40};
+  team.run(2.0);
+  for (std::size_t i = 0; i < 40; ++i) team.deaf.insert(i);
+  TrackOrder column = along();
+  column.shape.kind = formation::ShapeKind::column;
+  const auto given = team.ground->command(column, team.now);
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  std::vector<std::set<VehicleId>> told(1);
+  for (int i = 0; i < 3; ++i) {
+    while (const auto message = team.ground->poll_message()) {
+      told.back().insert(std::get<TrackFlight>(*message).vehicle);
+    }
+    told.emplace_back();
+    team.now += std::chrono::milliseconds{100};
+    team.ground->on_timeout(team.now);
+  }
+  EXPECT_EQ(told[0].size(), 32U);
+  EXPECT_EQ(told[1].size(), 8U) << "the rest";
+  EXPECT_EQ(told[2].size(), 0U) << "and again after a while";
 }
 
 TEST(TrackGround, WhoIsToldToHoldIsMissedByNobody) {

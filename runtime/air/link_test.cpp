@@ -129,7 +129,7 @@ TEST(Link, ALongSampleIsCutAndJoined) {
   air.add(1);
   air.add(2);
   air.run(2s);
-  std::string text(14'429, 'x');
+  std::string text(Link::kSampleMax, 'x');
   for (std::size_t i = 0; i < text.size(); ++i) text[i] = static_cast<char>('a' + i % 26);
   air.say(0, kOrders, text);
   air.say(0, kOrders, "short");
@@ -137,7 +137,7 @@ TEST(Link, ALongSampleIsCutAndJoined) {
   air.run(5s);
   EXPECT_THAT(air.texts(1, kOrders, 1), ElementsAre(text, "short"));
   EXPECT_THAT(air.texts(1, kMotion, 1), ElementsAre(text));
-  EXPECT_FALSE(air.link(0).send(kOrders, std::vector<std::uint8_t>(64'001), air.now));
+  EXPECT_FALSE(air.link(0).send(kOrders, std::vector<std::uint8_t>(Link::kSampleMax + 1), air.now));
 }
 
 TEST(Link, WhatWasOvertakenIsNotToldAfterTheNewer) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "signatures.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/seal/header.hpp"
 
@@ -62,6 +63,11 @@ bool wait_for(std::span<pollfd> any, Duration at_most) {
   const timespec timeout{seconds.count(), (at_most - seconds).count()};
   return ppoll(any.data(), any.size(), &timeout, nullptr) > 0;
 }
+
+/// Whatever is said can be carried.
+static_assert(std::ranges::all_of(codec::kTopics, [](const codec::TopicInfo& topic) {
+  return topic.size_max + kSignatureBytes <= air::Link::kSampleMax;
+}));
 
 air::LinkConfig link_config(const CarrierConfig& config) {
   air::LinkConfig link;

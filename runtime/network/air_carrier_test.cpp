@@ -121,6 +121,26 @@ TEST(AirCarrier, VehicleAndGroundExchangeEveryMessage) {
   }
 }
 
+TEST(AirCarrier, TheLongestMessageArrives) {
+  formation::Change change;
+  change.stages = formation::kStagesMax;
+  for (std::uint16_t id = 1; id <= formation::kMoversMax; ++id) {
+    change.movers.push_back({VehicleId{id}, {}, false});
+    change.movers.back().points.assign(formation::kMoverPointsMax, Vec3::Zero());
+  }
+  const auto configs = team(1, true);
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(eventually([&] { return know_each_other(*ground, *vehicle); }));
+  ASSERT_TRUE(ground->publish(change));
+  std::optional<mission::Message> heard;
+  ASSERT_TRUE(eventually([&] {
+    if (auto received = vehicle->poll()) heard = received->message;
+    return heard.has_value();
+  }));
+  EXPECT_EQ(bytes_of(*heard), bytes_of(change));
+}
+
 TEST(AirCarrier, WhatIsNotForAVehicleIsNotHeardByIt) {
   const auto configs = team(2, true);
   const auto ground = open(configs[0]);

@@ -137,6 +137,22 @@ TEST(Node, VehicleAndGroundExchangeEveryMessage) {
   EXPECT_EQ(ground->counters().at("received"), from_vehicle.size());
 }
 
+TEST(Node, TheLongestMessageArrives) {
+  formation::Change change;
+  change.stages = formation::kStagesMax;
+  for (std::uint16_t id = 1; id <= formation::kMoversMax; ++id) {
+    change.movers.push_back({VehicleId{id}, {}, false});
+    change.movers.back().points.assign(formation::kMoverPointsMax, Vec3::Zero());
+  }
+  const auto configs = fleet(1);
+  const auto ground = open(configs[0]);
+  const auto vehicle = open(configs[1]);
+  ASSERT_TRUE(
+      eventually([&] { return ground->peers().size() == 1 && vehicle->peers().size() == 1; }));
+  ASSERT_TRUE(ground->publish(change));
+  EXPECT_EQ(take(*vehicle, 1, VehicleId{0}), std::vector<std::string>{bytes_of(change)});
+}
+
 TEST(Node, OneSendersProtocolMessagesKeepTheirOrder) {
   const auto configs = fleet(2);
   const auto a = open(configs[1]);

@@ -368,7 +368,9 @@ struct News {
     return waits + "it is told to hold";
   }
   std::string operator()(const event::FormationWarning& e) const {
-    std::string who = (e.vehicles.size() == 1 ? "vehicle " : "vehicles ") + names_of(e.vehicles);
+    std::string names = names_of(e.vehicles);
+    if (e.more > 0) names += fmt::format(" and {} more", e.more);
+    std::string who = (e.vehicles.size() == 1 ? "vehicle " : "vehicles ") + names;
     switch (e.news) {
       case event::FormationNews::lost:
         return who + " is silent: its way is kept clear";
@@ -383,7 +385,7 @@ struct News {
       case event::FormationNews::drift_corrected:
         return "drift is corrected of " + who;
       case event::FormationNews::awaited:
-        return "the script waits for vehicles not heard yet: " + names_of(e.vehicles);
+        return "the script waits for vehicles not heard yet: " + names;
       case event::FormationNews::lost_on_track:
         return who + " is silent: its place stays empty, and the others keep to other heights";
       case event::FormationNews::astray:

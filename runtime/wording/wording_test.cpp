@@ -56,5 +56,13 @@ TEST(Wording, AChangeIsNamedByItsOrder) {
   EXPECT_EQ(text_of(change), "correction of form wedge, straight");
 }
 
+TEST(Wording, OfManyVehiclesTheFirstAreNamed) {
+  std::vector<VehicleId> all;
+  for (std::uint16_t id = 1; id <= 1000; ++id) all.push_back({id});
+  MissionEvent warning;
+  warning.body = mission::formation_warning(event::FormationNews::awaited, all);
+  EXPECT_TRUE(news_of(warning).ends_with(", 127, 128 and 872 more")) << news_of(warning);
+}
+
 }  // namespace
 }  // namespace skein::wording

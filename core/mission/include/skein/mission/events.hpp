@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <vector>
+
 #include "skein/idl/events.hpp"
 
 namespace skein::mission {
@@ -13,5 +15,9 @@ static_assert(std::variant_size_v<EventBody::variant> ==
 
 /// That alternative, with its defaults.
 [[nodiscard]] EventBody body_of(EventKind kind);
+
+/// Names as many of them as it can.
+[[nodiscard]] event::FormationWarning formation_warning(event::FormationNews news,
+                                                        std::vector<VehicleId> vehicles);
 
 }  // namespace skein::mission

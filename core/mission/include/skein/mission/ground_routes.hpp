@@ -43,10 +43,11 @@ struct GivenRoutes {
 /// One plan at a time. Calling rules as of GroundAgent.
 class GroundRoutes {
  public:
-  /// A plan must begin this much later, so that all can answer.
+  /// A plan must begin this much later, so that all can answer; of more than 32 vehicles, as much
+  /// later as it takes to tell all of them twice, 32 each 0.1 s.
   static constexpr Duration kNotice = std::chrono::seconds{5};
 
-  static constexpr std::size_t kVehiclesMax = 100;
+  static constexpr std::size_t kVehiclesMax = 1024;
 
   void recall(const Message& message, VehicleId sender, Instant at);
   void on_message(const Message& message, Instant now);
@@ -80,11 +81,14 @@ class GroundRoutes {
   void decide_flight(Instant now);
   void take_step(RouteStep step, Instant now);
   void call_off(const event::RoutesCalledOff& why, Instant now);
-  void tell(const Fleet& fleet, Instant now);
+  /// False where there is somebody to tell yet.
+  bool tell(const Fleet& fleet, Instant now);
   void report(EventBody body, Instant now);
 
   std::optional<GivenRoutes> given_;
   Instant next_ = Instant::max();
+  Instant tell_at_{};
+  VehicleId told_last_{};
   BoundedQueue<Message> messages_{128};
   BoundedQueue<MissionEvent> events_{64};
 };

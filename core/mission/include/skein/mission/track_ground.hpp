@@ -103,6 +103,7 @@ class TrackGround {
   std::map<std::uint32_t, formation::PlannedTrack> sent_;  ///< that somebody may fly yet
   std::uint32_t number_ = 0;                               ///< of the newest; 0: none
   Instant send_next_{};
+  std::size_t send_from_ = 0;  ///< of the flights: those before it were told this time
   Instant try_again_{};
   bool told_not_begun_ = false;
   bool told_refused_ = false;  ///< that the order cannot be given again

@@ -110,7 +110,8 @@ class Link {
 
   /// False where the sample is larger than kSampleMax.
   bool send(std::uint8_t channel, std::vector<std::uint8_t> bytes, Instant now);
-  static constexpr std::size_t kSampleMax = 64'000;
+  /// The longest message there is (topics.md), signed: 100 parts of the 255 that can be had again.
+  static constexpr std::size_t kSampleMax = 120'000;
 
   /// What a datagram of its transmitter's own was found to be, and as it was on the air. Any bytes.
   /// Precondition: it has a content.
