@@ -22,31 +22,25 @@ void InFlight::post(Parcel parcel) {
 void InFlight::post_wake(Instant at, std::size_t to, VehicleId from,
                          const std::shared_ptr<const Content>& what) {
   const Slot slot = slot_of(at);
-  if (slot <= opened_) return post({at, 0, to, from, 0, what});
+  if (slot <= opened_) return post({at, 0, to, from, 0, what, true});
   Step& step = step_of(slot);
-  if (step.wakes.size() <= to) step.wakes.resize(to + 1);
-  Wakes& wakes = step.wakes[to];
-  const Place place = place_in(step, at, order_++);
-  if (wakes.all.empty()) {
-    wakes.from = from;
-    wakes.what = what;
-  }
-  if (wakes.all.empty() || place < wakes.next) wakes.next = place;
-  wakes.all.push_back(place);
+  if (step.said.empty() || step.said.back().what != what) step.said.push_back({from, what});
+  step.wakes.push_back({place_in(step, at, order_++), static_cast<std::uint32_t>(to),
+                        static_cast<std::uint32_t>(step.said.size() - 1)});
 }
 
 void InFlight::on_moved(const Parcel& by) {
-  if (by.to >= open_.wakes.size() || by.at < open_.from || by.order < open_.order) return;
-  Wakes& wakes = open_.wakes[by.to];
+  if (by.to >= waking_.size() || by.at < open_.from || by.order < open_.order) return;
+  Waking& waking = waking_[by.to];
   const Place now = place_in(open_, by.at, by.order);
-  if (wakes.all.empty() || wakes.next > now) return;  // one is to come
+  if (waking.begin == waking.end || waking.next > now) return;  // one is to come
   Place next = std::numeric_limits<Place>::max();
-  for (const Place place : wakes.all) {
-    if (place > now) next = std::min(next, place);
+  for (std::uint32_t i = waking.begin; i < waking.end; ++i) {
+    if (wakes_[i].place > now) next = std::min(next, wakes_[i].place);
   }
   if (next == std::numeric_limits<Place>::max()) return;
-  wakes.next = next;
-  urgent_.push(wake_of(open_, by.to));
+  waking.next = next;
+  urgent_.push(wake_of(by.to));
 }
 
 InFlight::Place InFlight::place_in(const Step& step, Instant at, std::uint64_t order) {
@@ -54,11 +48,14 @@ InFlight::Place InFlight::place_in(const Step& step, Instant at, std::uint64_t o
   return static_cast<Place>((at - step.from).count()) << kOrderBits | (order - step.order);
 }
 
-Parcel InFlight::wake_of(const Step& step, std::size_t to) {
+/// The first that was posted stands for all.
+Parcel InFlight::wake_of(std::size_t to) const {
   constexpr Place kOrder = 0xFFFFFFFF;
-  const Wakes& wakes = step.wakes[to];
-  const Duration after{static_cast<Duration::rep>(wakes.next / (kOrder + 1))};
-  return {step.from + after, step.order + (wakes.next & kOrder), to, wakes.from, 0, wakes.what};
+  const Waking& waking = waking_[to];
+  const Said& said = open_.said[wakes_[waking.begin].said];
+  const Duration after{static_cast<Duration::rep>(waking.next / (kOrder + 1))};
+  return {
+      open_.from + after, open_.order + (waking.next & kOrder), to, said.from, 0, said.what, true};
 }
 
 InFlight::Step& InFlight::step_of(Slot slot) {
@@ -83,17 +80,40 @@ void InFlight::open_slots(Slot until) {
     Step& step = slots_.front();
     if (due_.empty()) due_.swap(step.parcels);
     std::move(step.parcels.begin(), step.parcels.end(), std::back_inserter(due_));
-    for (std::size_t to = 0; to < step.wakes.size(); ++to) {
-      if (!step.wakes[to].all.empty()) due_.push_back(wake_of(step, to));
-    }
     std::swap(open_, step);
+    open_wakes();
     step.parcels.clear();
-    for (Wakes& wakes : step.wakes) wakes.all.clear();
+    step.wakes.clear();
+    step.said.clear();
     spare_.push_back(std::move(step));
     slots_.pop_front();
   }
   opened_ = until;
   std::sort(due_.begin(), due_.end());
+}
+
+/// Sorts them by node, by counting: they are many.
+void InFlight::open_wakes() {
+  for (Waking& waking : waking_) waking = {};
+  for (const Wake& wake : open_.wakes) {
+    if (waking_.size() <= wake.to) waking_.resize(wake.to + std::size_t{1});
+    ++waking_[wake.to].end;
+  }
+  std::uint32_t begin = 0;
+  for (Waking& waking : waking_) {
+    const std::uint32_t count = waking.end;
+    waking = {begin, begin, std::numeric_limits<Place>::max()};
+    begin += count;
+  }
+  wakes_.resize(open_.wakes.size());
+  for (const Wake& wake : open_.wakes) {
+    Waking& waking = waking_[wake.to];
+    wakes_[waking.end++] = wake;
+    waking.next = std::min(waking.next, wake.place);
+  }
+  for (std::size_t to = 0; to < waking_.size(); ++to) {
+    if (waking_[to].begin != waking_[to].end) due_.push_back(wake_of(to));
+  }
 }
 
 std::optional<Parcel> InFlight::pop_due(Instant now) {

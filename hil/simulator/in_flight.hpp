@@ -28,6 +28,7 @@ struct Parcel {
   VehicleId from;
   std::uint32_t life = 0;  ///< of the receiver, where it is for that one only
   std::shared_ptr<const Content> what;
+  bool only_wakes = false;
   friend bool operator<(const Parcel& a, const Parcel& b) {
     return std::tie(a.at, a.order) < std::tie(b.at, b.order);
   }
@@ -62,32 +63,44 @@ class InFlight {
   /// Where a parcel of a step comes in it: by the time from its begin, then in the order of
   /// posting.
   using Place = std::uint64_t;
-  /// Those of one step that wake a node.
-  struct Wakes {
-    Place next = 0;  ///< that arrives, or did so last
-    std::vector<Place> all;
-    VehicleId from;  ///< of one of them, which stands for all
+  struct Wake {
+    Place place = 0;
+    std::uint32_t to = 0;
+    std::uint32_t said = 0;  ///< index of what
+  };
+  struct Said {
+    VehicleId from;
     std::shared_ptr<const Content> what;
   };
   /// What comes in one step.
   struct Step {
     std::vector<Parcel> parcels;
-    std::vector<Wakes> wakes;  ///< by node
-    Instant from{};            ///< nothing of it comes before
+    std::vector<Wake> wakes;  ///< in the order of posting: in a large team, thousands
+    std::vector<Said> said;   ///< by which they wake
+    Instant from{};           ///< nothing of it comes before
     std::uint64_t order = 0;
+  };
+  /// The wakes of the newest opened step that are one node's.
+  struct Waking {
+    std::uint32_t begin = 0;  ///< in wakes_
+    std::uint32_t end = 0;
+    Place next = 0;  ///< that arrives, or did so last
   };
   [[nodiscard]] Step& step_of(Slot slot);
   [[nodiscard]] static Place place_in(const Step& step, Instant at, std::uint64_t order);
-  [[nodiscard]] static Parcel wake_of(const Step& step, std::size_t to);
+  [[nodiscard]] Parcel wake_of(std::size_t to) const;
   void open_slots(Slot until);
+  void open_wakes();
 
   std::uint64_t order_ = 0;
   Slot opened_ = -1;
-  std::deque<Step> slots_;   ///< those after opened_
-  std::vector<Step> spare_;  ///< the memory of slots that have been opened
-  std::vector<Parcel> due_;  ///< of the opened slots, sorted
-  Step open_;                ///< the newest opened: its wakes
-  std::size_t next_ = 0;     ///< in due_
+  std::deque<Step> slots_;      ///< those after opened_
+  std::vector<Step> spare_;     ///< the memory of slots that have been opened
+  std::vector<Parcel> due_;     ///< of the opened slots, sorted
+  Step open_;                   ///< the newest opened
+  std::vector<Wake> wakes_;     ///< its wakes by node, and of each in the order of posting
+  std::vector<Waking> waking_;  ///< by node
+  std::size_t next_ = 0;        ///< in due_
   std::priority_queue<Parcel, std::vector<Parcel>, Later> urgent_;  ///< posted into opened slots
 };
 
