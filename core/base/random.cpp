@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/base/random.hpp"
 
-#include <bit>
 #include <cmath>
 
 #include "skein/base/assert.hpp"
@@ -17,22 +16,6 @@ Random::Random(std::uint64_t seed) {
     word = z ^ (z >> 31U);
   }
 }
-
-std::uint64_t Random::next() {
-  const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
-  const std::uint64_t t = state_[1] << 17U;
-  state_[2] ^= state_[0];
-  state_[3] ^= state_[1];
-  state_[1] ^= state_[2];
-  state_[0] ^= state_[3];
-  state_[2] ^= t;
-  state_[3] = std::rotl(state_[3], 45);
-  return result;
-}
-
-double Random::uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
-
-double Random::uniform(double low, double high) { return low + (high - low) * uniform(); }
 
 std::uint64_t Random::index(std::uint64_t count) {
   SKEIN_ASSERT(count > 0);

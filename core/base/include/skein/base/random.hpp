@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 namespace skein {
@@ -13,10 +14,20 @@ class Random {
  public:
   explicit Random(std::uint64_t seed);
 
-  [[nodiscard]] std::uint64_t next();
+  [[nodiscard]] std::uint64_t next() {
+    const std::uint64_t result = std::rotl(state_[0] + state_[3], 23) + state_[0];
+    const std::uint64_t t = state_[1] << 17U;
+    state_[2] ^= state_[0];
+    state_[3] ^= state_[1];
+    state_[1] ^= state_[2];
+    state_[0] ^= state_[3];
+    state_[2] ^= t;
+    state_[3] = std::rotl(state_[3], 45);
+    return result;
+  }
   /// Uniform in [0, 1), 53 bits.
-  [[nodiscard]] double uniform();
-  [[nodiscard]] double uniform(double low, double high);
+  [[nodiscard]] double uniform() { return static_cast<double>(next() >> 11U) * 0x1.0p-53; }
+  [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform in [0, count). Precondition: count > 0. Unbiased.
   [[nodiscard]] std::uint64_t index(std::uint64_t count);
   /// Normal, by Marsaglia's polar method.
