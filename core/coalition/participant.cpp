@@ -356,6 +356,16 @@ Instant Participant::next_timeout() const {
   return next;
 }
 
+Instant Participant::quiet_until(bool may_lead) const {
+  const bool waits = may_lead != elector_.may_lead() || elector_.has_output();
+  if (waits || finished_.size() > kFinishedMax) return Instant::min();
+  Instant next = next_timeout();
+  for (const Finished& f : finished_) {
+    if (f.entry.state != TaskState::done) next = std::min(next, f.report_until);
+  }
+  return next;
+}
+
 std::string_view to_string(Participant::State state) {
   static constexpr std::array<std::string_view, 6> kNames{"free",   "bidding",   "deciding",
                                                           "member", "rebidding", "orphaned"};

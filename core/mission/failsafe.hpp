@@ -105,8 +105,9 @@ class Failsafe {
   const Response* update(Instant now, const News& news);
   /// Is it time to look at the range again? Then News::spare_s is wanted. It costs a path to
   /// compute, so it is asked for as rarely as it can matter.
-  [[nodiscard]] bool wants_range(Instant now) const {
-    return !facts_.range_spent && now >= range_again_;
+  [[nodiscard]] bool wants_range(Instant now) const { return now >= wants_range_at(); }
+  [[nodiscard]] Instant wants_range_at() const {
+    return facts_.range_spent ? Instant::max() : range_again_;
   }
   /// The way home may have become longer.
   void on_hazard(Instant now) { range_again_ = now; }

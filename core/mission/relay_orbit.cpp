@@ -77,9 +77,19 @@ bool RelayOrbit::has_range(Instant now) const {
   return (here - site.position).norm() < ownship_.range_for(site, now);
 }
 
+bool RelayOrbit::wanted() const {
+  return ownship_.config().protocol.relay_orbit_m > 0.0 && call_ && call_->failed;
+}
+
+Instant RelayOrbit::flies_at() const {
+  if (!wanted()) return Instant::max();
+  const bool stands_by = ownship_.flight().stands_by() == call_->said.site.id;
+  return stands_by ? call_->heard_at + ownship_.config().protocol.cut_max : Instant::min();
+}
+
 bool RelayOrbit::fly(Instant now) {
+  if (!wanted()) return false;
   const auto& protocol = ownship_.config().protocol;
-  if (protocol.relay_orbit_m <= 0.0 || !call_ || !call_->failed) return false;
   const Site& site = call_->said.site;
   const bool stands_by = ownship_.flight().stands_by() == site.id;
   // A leader that is not heard for longer may be lost: then its site is relieved (Scout). Who has

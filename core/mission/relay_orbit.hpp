@@ -25,6 +25,8 @@ class RelayOrbit {
   void close(SiteId site);
   /// For a vehicle that has nothing else to do. False where nobody lacks it.
   [[nodiscard]] bool fly(Instant now);
+  /// When that does something next.
+  [[nodiscard]] Instant flies_at() const;
 
  private:
   /// A site whose leader lacks vehicles.
@@ -36,6 +38,8 @@ class RelayOrbit {
   };
   void on_announcement(const coalition::Announcement& message, Instant now);
   void on_cancel(const coalition::Cancel& message);
+  /// A coalition that has come to nothing waits for vehicles.
+  [[nodiscard]] bool wanted() const;
   [[nodiscard]] bool has_range(Instant now) const;
 
   Ownship& ownship_;

@@ -32,6 +32,8 @@ class RouteFlyer {
   void step(const RouteStanding& standing, Instant now);
   /// It is told to fly a route, and does or is about to.
   [[nodiscard]] bool flies() const { return state_ == RouteState::flies; }
+  /// Something is to become of the route: step() looks.
+  [[nodiscard]] bool awaits() const { return flies() || state_ == RouteState::taken; }
 
  private:
   void take(const Route& message);

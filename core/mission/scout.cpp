@@ -98,6 +98,11 @@ std::optional<SurveyedSite> Scout::take_up(Instant now) {
   return std::nullopt;
 }
 
+Instant Scout::takes_up_at() const {
+  if (!surveyed_.empty()) return Instant::min();
+  return found_.empty() ? relief_again_ : std::min(survey_again_, relief_again_);
+}
+
 void Scout::take_up_survey(Instant now) {
   if (found_.empty() || now < survey_again_) return;
   survey_again_ = now + kSurveyPeriod;

@@ -65,6 +65,8 @@ class Scout {
   /// For a vehicle that has nothing else to do: a site to lead now; or nothing, and where there is
   /// one to survey or to relieve it is on its way there.
   [[nodiscard]] std::optional<SurveyedSite> take_up(Instant now);
+  /// When that does something next. Precondition: !flying().
+  [[nodiscard]] Instant takes_up_at() const;
   /// Goes on with what it took up. A site to lead now, when that has ended with one.
   [[nodiscard]] std::optional<SurveyedSite> fly(Instant now);
   /// The vehicle has to do something else: what it was to survey waits again.

@@ -343,4 +343,16 @@ Instant TaskFlyer::next_timeout() const {
   return std::min(next, begun ? task_->end_time() : task_->begin_time());
 }
 
+Instant TaskFlyer::quiet_until(bool may_lead, Instant now) const {
+  Instant next = std::min(next_timeout(), participant_.quiet_until(may_lead));
+  if (!task_) return next;
+  const bool keeps_time = !ownship_.spec().is_copter() && !task_->in_run() &&
+                          std::max(now, time_again_) <= task_->assignment.time - kTimeLatest;
+  if (keeps_time) next = std::min(next, time_again_);
+  if (task_->accepts(TaskFlight::Event::committed)) {
+    next = std::min(next, task_->begin_time() - kCommitLead);
+  }
+  return next;
+}
+
 }  // namespace skein::mission

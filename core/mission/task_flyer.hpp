@@ -58,6 +58,8 @@ class TaskFlyer {
   /// It is in no coalition and has bid nowhere.
   [[nodiscard]] bool free() const { return participant_.free(); }
   [[nodiscard]] Instant next_timeout() const;
+  /// Before then on_timeout(), fly() and fly_begun() do nothing.
+  [[nodiscard]] Instant quiet_until(bool may_lead, Instant now) const;
   [[nodiscard]] coalition::Tally tally() const { return participant_.tally(); }
 
  private:

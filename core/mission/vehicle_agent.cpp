@@ -49,8 +49,7 @@ void VehicleAgent::Impl::step(Instant now) {
   if (!ownship_.flight().started()) return;
   leader_.on_timeout(now);
   flyer_.fly_begun(now);
-  flyer_.on_timeout(!leader_.leading() && !scout_.flying() && failsafe_.in(Failsafe::Action::none),
-                    now);
+  flyer_.on_timeout(may_lead(), now);
   pump(now);
   leader_.repeat(now);
   pump(now);
@@ -61,6 +60,10 @@ void VehicleAgent::Impl::step(Instant now) {
   idle(now);
   pump(now);
   check();
+}
+
+bool VehicleAgent::Impl::may_lead() const {
+  return !leader_.leading() && !scout_.flying() && failsafe_.in(Failsafe::Action::none);
 }
 
 /// Each pass hands on what the last one brought forth; what a vehicle leads it also takes part in.
@@ -166,6 +169,20 @@ void VehicleAgent::Impl::idle(Instant now) {
   ownship_.search(now);
 }
 
+/// When idle() does something next.
+Instant VehicleAgent::Impl::idle_until(Instant now) const {
+  constexpr Instant kNever = Instant::max();
+  if (failsafe_.holds_still() || flyer_.flying() || scout_.flying()) return kNever;
+  const Flight& flight = ownship_.flight();
+  if (!flyer_.free() || flight.en_route(now)) return kNever;
+  if (failsafe_.in(Failsafe::Action::come_home)) {
+    return !ownship_.comes_home() || flight.homing() ? kNever : now;
+  }
+  if (!failsafe_.in(Failsafe::Action::none)) return flight.searching() ? kNever : now;
+  const Instant next = std::min(scout_.takes_up_at(), relay_.flies_at());
+  return flight.searching() || flight.stands_by() ? next : now;
+}
+
 RouteStanding VehicleAgent::Impl::route_standing() const {
   const Failsafe::Facts& facts = failsafe_.facts();
   return {.orders_unknown = facts.orders_unknown,
@@ -176,6 +193,18 @@ RouteStanding VehicleAgent::Impl::route_standing() const {
 
 Instant VehicleAgent::Impl::next_timeout() const {
   return std::min({leader_.next_timeout(), flyer_.next_timeout(), scout_.next_timeout()});
+}
+
+/// As step() goes through the parts. A leader looks with every step where it will be.
+Instant VehicleAgent::Impl::quiet_until(Instant now) const {
+  const Flight& flight = ownship_.flight();
+  const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
+  if (!flight.started() || busy || routes_.awaits()) return now;
+  Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
+                           scout_.next_timeout(), idle_until(now)});
+  if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
+  if (!flyer_.in_run()) next = std::min(next, failsafe_.wants_range_at());
+  return next;
 }
 
 Activity VehicleAgent::Impl::activity() const {
@@ -228,6 +257,7 @@ std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
 }
 void VehicleAgent::on_bar(Bar bar, Instant now) { impl_->on_bar(bar, now); }
 Instant VehicleAgent::next_timeout() const { return impl_->next_timeout(); }
+Instant VehicleAgent::quiet_until(Instant now) const { return impl_->quiet_until(now); }
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }
 Counters VehicleAgent::counters() const { return impl_->counters(); }

@@ -26,6 +26,7 @@ class VehicleAgent::Impl {
   void on_bar(Bar bar, Instant now);
   [[nodiscard]] std::optional<Guidance> poll_guidance() { return ownship_.poll_guidance(); }
   [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] Instant quiet_until(Instant now) const;
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
@@ -45,6 +46,8 @@ class VehicleAgent::Impl {
   [[nodiscard]] coalition::Reason otherwise_engaged(const coalition::Announcement& call) const;
   void on_authorisation(const Authorisation& message, Instant now);
   void idle(Instant now);
+  [[nodiscard]] bool may_lead() const;
+  [[nodiscard]] Instant idle_until(Instant now) const;
 
   void on_command(const Command& message, Instant now);
   void obey(CommandKind order, Instant now);

@@ -399,6 +399,13 @@ Instant VehicleNode::next_timeout() const {
                    impl_->setup.next_timeout(), impl_->agent->next_timeout()});
 }
 
+Instant VehicleNode::quiet_until(Instant now) const {
+  if (!impl_->started) return now;
+  Instant next = std::min(next_timeout(), impl_->agent->quiet_until(now));
+  for (const Impl::Told& of : impl_->told) next = std::min(next, of.next);
+  return next;
+}
+
 const OnboardAgent& VehicleNode::agent() const { return *impl_->agent; }
 Bar VehicleNode::bar() const { return impl_->bar; }
 VehicleId VehicleNode::vehicle() const { return impl_->self; }

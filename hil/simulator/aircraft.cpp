@@ -87,6 +87,21 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   const auto of_node = config(hazards);
   node_.emplace(of_node, local(now));
   setup_filter_.emplace(of_node.setup, what_.spec.id);
+  quiet_until_ = Instant::min();
+  untold_.reset();
+}
+
+bool Aircraft::tell_state(Instant now) {
+  untold_.emplace(local_state(), local(now));
+  if (is_quiet(now)) return false;
+  (void)node();
+  return true;
+}
+
+mission::VehicleNode& Aircraft::node() {
+  if (untold_) node_->on_state(untold_->state, untold_->at);
+  untold_.reset();
+  return *node_;
 }
 
 bool Aircraft::in_place() const {

@@ -44,8 +44,15 @@ class Aircraft {
     return mission::concerns(message, what_.spec.id) && setup_filter_->heeds(message, local(now));
   }
 
-  /// Null while no program runs. Its times are of this vehicle's clock.
-  [[nodiscard]] mission::VehicleNode* node() { return node_ ? &*node_ : nullptr; }
+  /// The node is told the state of this moment, or, where it is quiet, not before something else
+  /// comes: then nothing is to be polled, and this is false. Precondition: running().
+  bool tell_state(Instant now);
+  /// Nothing happens in the node but by what comes to it.
+  [[nodiscard]] bool is_quiet(Instant now) const { return local(now) < quiet_until_; }
+  /// Everything that the node had brought forth by now has been polled.
+  void on_polled(Instant now) { quiet_until_ = node_->quiet_until(local(now)); }
+  /// For whatever comes to it. Its times are of this vehicle's clock. Precondition: running().
+  [[nodiscard]] mission::VehicleNode& node();
   [[nodiscard]] bool running() const { return node_.has_value(); }
   /// Its program runs, and it can be found a leader or member of a coalition.
   [[nodiscard]] bool in_coalitions() const { return running() && !what_.flies_formation; }
@@ -99,11 +106,17 @@ class Aircraft {
   const TeamMission& mission_;
   const SimulatedVehicle& what_;
   Duration clock_{};
+  Instant quiet_until_ = Instant::min();  ///< by this vehicle's clock
   std::optional<mission::VehicleNode> node_;
   std::optional<mission::SetupFilter> setup_filter_;  ///< of the node
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;
+  struct Untold {
+    VehicleState state;
+    Instant at;
+  };
+  std::optional<Untold> untold_;  ///< to the node, in this vehicle's time
   Random gusts_;
   std::optional<mission::HeldGuidance> guidance_;  ///< in this vehicle's time; the recorded number
   mission::FlightPlan recorded_;

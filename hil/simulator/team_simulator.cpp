@@ -99,6 +99,7 @@ class Team {
         clocks_agree_{std::ranges::none_of(
             mission.faults,
             [](const Fault& f) { return std::holds_alternative<ClockOff>(f.what); })},
+        wakes_say_nothing_{!mission.radio.bytes_per_s},
         radio_{mission.radio, mission.seed},
         positions_{mission.vehicles.size() + 1},
         mesh_{mission.radio.mesh ? std::optional<radio::Mesh>{*mission.radio.mesh} : std::nullopt},
@@ -303,12 +304,16 @@ class Team {
     const std::size_t bytes = radio_.params().bytes_per_s ? bytes_of(message) : 0;
     const auto what = std::make_shared<const Content>(std::move(message));
     // The ground station is the last node, and the first to hear.
-    if (from != ground_index()) post(from, ground_index(), what, bytes, false, now);
-    // What is not decided by their distance is by post().
+    if (from != ground_index()) {
+      post(from, ground_index(), hops_between(from, ground_index()), what, bytes, false, now);
+    }
+    // Between most vehicles their distance alone decides, and that is looked at here.
     const bool anywhere = mesh_ || radio_.interference().healed || from == ground_index();
+    const bool near_hears = !anywhere && radio_.interference().cuts.empty();
     positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
     for (const std::size_t to : near_) {
-      if (to != from && to != ground_index()) post(from, to, what, bytes, is_telemetry, now);
+      if (to == from || to == ground_index()) continue;
+      post(from, to, near_hears ? 1 : hops_between(from, to), what, bytes, is_telemetry, now);
     }
   }
 
@@ -332,11 +337,9 @@ class Team {
     }
   }
 
-  void post(std::size_t from, std::size_t to, const std::shared_ptr<const Content>& what,
+  void post(std::size_t from, std::size_t to, int hops, const std::shared_ptr<const Content>& what,
             std::size_t bytes, bool only_wakes, Instant now) {
-    if (!nodes_[to].on) return;
-    const int hops = hops_between(from, to);
-    if (hops == 0) return;
+    if (hops == 0 || !nodes_[to].on) return;
     const VehicleId sender = nodes_[from].node.id;
     for (const Duration delay : radio_.carry(hops, channels_[to], sender, bytes, now)) {
       if (only_wakes && clocks_agree_) {
@@ -358,13 +361,13 @@ class Team {
         continue;
       }
       Aircraft& v = vehicles_[parcel->to];
-      if (!v.running()) continue;
+      if (!v.running() || (parcel->only_wakes && wakes_say_nothing_ && v.is_quiet(now))) continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
-        if (parcel->life == v.life()) v.node()->on_planning_result(*planned, v.local(now));
+        if (parcel->life == v.life()) v.node().on_planning_result(*planned, v.local(now));
       } else {
         const auto& message = std::get<mission::Message>(*parcel->what);
         if (!v.heeds(message, now)) continue;
-        v.node()->on_message(message, parcel->from, v.local(now));
+        v.node().on_message(message, parcel->from, v.local(now));
       }
       if (drain(parcel->to, now)) air_.on_moved(*parcel);
     }
@@ -421,8 +424,7 @@ class Team {
       Aircraft& v = vehicles_[i];
       const Duration period = v.what().flies_formation ? kFormationNodePeriod : kNodePeriod;
       if (!v.running() || !due(now, period)) continue;
-      v.node()->on_state(v.local_state(), v.local(now));
-      drain(i, now);
+      if (v.tell_state(now)) drain(i, now);
     }
   }
 
@@ -436,22 +438,22 @@ class Team {
   bool drain(std::size_t i, Instant now) {
     Aircraft& v = vehicles_[i];
     bool any = false;
-    while (auto message = v.node()->poll_message()) {
+    while (auto message = v.node().poll_message()) {
       any = true;
       if (is_for_watchers(*message, mission_)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, std::move(*message), now);
     }
-    while (const auto event = v.node()->poll_event()) {
+    while (const auto event = v.node().poll_event()) {
       any = true;
       on_event(v, *event);
     }
-    while (const auto guidance = v.node()->poll_guidance()) {
+    while (const auto guidance = v.node().poll_guidance()) {
       any = true;
       v.follow(*guidance);
       tell_plan(v, now);
     }
-    while (const auto request = v.node()->poll_planning_request()) {
+    while (const auto request = v.node().poll_planning_request()) {
       any = true;
       const mission::PlanningResult planned{request->round,
                                             planning::allocate(request->params, request->problem),
@@ -459,6 +461,7 @@ class Team {
       air_.post({now + mission_.allocation_takes, 0, i, v.spec().id, v.life(),
                  std::make_shared<const Content>(planned)});
     }
+    v.on_polled(now);
     return any;
   }
 
@@ -540,7 +543,7 @@ class Team {
   }
 
   void count_errors(std::size_t i) {
-    const auto counters = vehicles_[i].node()->counters();
+    const auto counters = vehicles_[i].node().counters();
     result_.protocol_errors += counters.protocol_errors;
     result_.dropped += counters.messages_dropped + counters.events_dropped;
   }
@@ -565,6 +568,8 @@ class Team {
   const TeamObserver& observer_;
   /// Then the telemetry of others does no more than wake a vehicle. Else the time in it counts.
   bool clocks_agree_;
+  /// Where the air has its price, vehicles pace their telemetry by that of others.
+  bool wakes_say_nothing_;
   InFlight air_;
   radio::SimulatedRadio radio_;
   std::vector<radio::Channel> channels_;  ///< around each node

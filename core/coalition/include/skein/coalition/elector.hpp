@@ -46,6 +46,7 @@ class Elector {
     may_lead_ = may_lead;
     if (!may_lead) won_.reset();
   }
+  [[nodiscard]] bool may_lead() const { return may_lead_; }
 
   void on_lease_renewal(const LeaseRenewal& message, Instant now);
   void on_claim(const LeadershipClaim& message, Instant now);
@@ -63,6 +64,8 @@ class Elector {
 
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<Won> poll_won();
+  /// Either of these has something.
+  [[nodiscard]] bool has_output() const { return !messages_.empty() || won_.has_value(); }
   [[nodiscard]] Instant next_timeout() const;
   [[nodiscard]] std::uint64_t bad_messages() const { return bad_messages_; }
   [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped(); }

@@ -122,6 +122,8 @@ class Participant {
   /// Either of these has something.
   [[nodiscard]] bool has_output() const { return !messages_.empty() || !outputs_.empty(); }
   [[nodiscard]] Instant next_timeout() const;
+  /// Before then on_timeout() does nothing, where `may_lead` is set.
+  [[nodiscard]] Instant quiet_until(bool may_lead) const;
 
   [[nodiscard]] State state() const { return machine_.state(); }
   [[nodiscard]] bool free() const { return machine_.in(State::free); }

@@ -88,6 +88,9 @@ class OnboardAgent {
     return std::nullopt;
   }
   [[nodiscard]] virtual Instant next_timeout() const = 0;
+  /// Before then, unless anything else comes, a timeout does nothing, and a state no more than
+  /// replace the one before it: whoever steps many vehicles may leave all but the last out.
+  [[nodiscard]] virtual Instant quiet_until(Instant /*now*/) const { return Instant::min(); }
 
   /// The telemetry of this moment; sent by the node at its own rate.
   [[nodiscard]] virtual Telemetry telemetry() const = 0;

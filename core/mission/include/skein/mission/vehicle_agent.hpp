@@ -46,6 +46,7 @@ class VehicleAgent final : public OnboardAgent {
   [[nodiscard]] std::optional<MissionEvent> poll_event() override;
   [[nodiscard]] std::optional<PlanningRequest> poll_planning_request() override;
   [[nodiscard]] Instant next_timeout() const override;
+  [[nodiscard]] Instant quiet_until(Instant now) const override;
 
   [[nodiscard]] Telemetry telemetry() const override;
   [[nodiscard]] Activity activity() const;

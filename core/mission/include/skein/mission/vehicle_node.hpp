@@ -65,6 +65,8 @@ class VehicleNode {
   /// was issued then: what goes to all takes no aircraft from its pilot.
   [[nodiscard]] std::optional<Instant> poll_give_back();
   [[nodiscard]] Instant next_timeout() const;
+  /// As of OnboardAgent.
+  [[nodiscard]] Instant quiet_until(Instant now) const;
 
   /// What decides, for whoever looks on.
   [[nodiscard]] const OnboardAgent& agent() const;
