@@ -18,7 +18,7 @@ constexpr Duration kTogether = std::chrono::milliseconds{5};
 
 /// Others may be about to ask for the same.
 Duration spread(Duration wait, Random& random) {
-  return from_seconds(to_seconds(wait) * random.uniform(1.0, 2.0));
+  return from_seconds(to_seconds(wait) * random.uniform(1.0, 1.5));
 }
 
 }  // namespace
@@ -31,7 +31,7 @@ std::uint64_t InStream::extended(std::uint16_t number) const {
 /// What lies between what was known and this is missing from now on, and is asked for together.
 void InStream::know_of(std::uint64_t newest, bool hearsay, Instant now, Random& random) {
   if (newest <= newest_) return;
-  const Instant ask_at = now + spread(pace_->patience(now), random);
+  const Instant ask_at = now + pace_->patience(now, random);
   while (newest_ < newest) missing_.emplace(++newest_, Missing{now, ask_at, hearsay});
 }
 
@@ -160,7 +160,7 @@ std::optional<Instant> InStream::ask_at() const {
 std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Random& random) {
   std::optional<MissingFrame> question;
   std::uint64_t first = 0;
-  const double later = random.uniform(1.0, 2.0);
+  const double later = random.uniform(1.0, 1.5);
   for (auto& [number, missing] : missing_) {
     if (missing.ask_at > now + kTogether) continue;
     if (!question) {

@@ -28,7 +28,7 @@ constexpr std::int64_t kSlowDown = 64;
 
 void RepairPace::on_late(Duration by, Instant now) {
   if (by > kLatestMax) return;
-  latest_ = std::max(by, patience(now) - least_);
+  latest_ = std::max(by, latest(now));
   latest_at_ = now;
 }
 
@@ -41,13 +41,17 @@ void RepairPace::on_late_answer() {
   round_trip_ = std::min(round_trip_ + round_trip_ / kSlowDown, kRoundTripMax);
 }
 
-Duration RepairPace::patience(Instant now) const {
+Duration RepairPace::latest(Instant now) const {
   const double halves = to_seconds(now - latest_at_) / to_seconds(kHalved);
-  return least_ + from_seconds(to_seconds(latest_) * std::exp2(-halves));
+  return from_seconds(to_seconds(latest_) * std::exp2(-halves));
+}
+
+Duration RepairPace::patience(Instant now, Random& random) const {
+  return latest(now) + from_seconds(to_seconds(least_) * random.uniform(1.0, 2.0));
 }
 
 Duration RepairPace::ask_again(int asked) const {
-  return std::min(2 * round_trip_ * (1 << std::min(asked, kSlower)), kAskAgainMax);
+  return std::min(3 * round_trip_ / 2 * (1 << std::min(asked, kSlower)), kAskAgainMax);
 }
 
 }  // namespace skein::air

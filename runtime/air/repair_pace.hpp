@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "skein/base/random.hpp"
 #include "skein/base/time.hpp"
 
 namespace skein::air {
@@ -23,14 +24,16 @@ class RepairPace {
   /// It came after several questions: to which of them, nobody knows.
   void on_late_answer();
 
-  /// How long what is missing may still come by itself.
-  [[nodiscard]] Duration patience(Instant now) const;
+  /// How long what is missing may still come by itself; and others may be about to ask.
+  [[nodiscard]] Duration patience(Instant now, Random& random) const;
   /// From a question to its answer, as a rule.
   [[nodiscard]] Duration round_trip() const { return round_trip_; }
   /// How long to wait for an answer, after so many questions.
   [[nodiscard]] Duration ask_again(int asked) const;
 
  private:
+  [[nodiscard]] Duration latest(Instant now) const;
+
   Duration least_;
   Duration latest_{};  ///< the most by which something came late, not long ago
   Instant latest_at_;

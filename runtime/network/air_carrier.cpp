@@ -58,6 +58,10 @@ air::Author author_of(const seal::SenderStart& start) {
   return {start.sender, identity::instance_of(start)};
 }
 
+/// All that has come is read when the thread wakes, or whoever floods takes the room of the others;
+/// but for this, so that it also speaks.
+constexpr int kBatchesMax = 64;
+
 bool wait_for(std::span<pollfd> any, Duration at_most) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(at_most);
   const timespec timeout{seconds.count(), (at_most - seconds).count()};
@@ -206,10 +210,13 @@ void AirCarrier::run() {
   while (!stopping_) {
     wait();
     unsigned received = 0;
-    socket_.receive([&](auto datagram) {
-      ++received;
-      receive(datagram);
-    });
+    bool more = true;
+    for (int i = 0; more && i < kBatchesMax; ++i) {
+      more = socket_.receive([&](auto datagram) {
+        ++received;
+        receive(datagram);
+      });
+    }
     gather_ = received > 1 ? kGatherOfMany : kGather;
     while (!on_their_way_.empty() && on_their_way_.begin()->first <= steady_now()) {
       arrive(on_their_way_.begin()->second);

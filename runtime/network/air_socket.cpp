@@ -72,7 +72,7 @@ bool AirSocket::send(std::span<const std::uint8_t> datagram) {
                 sizeof to) == static_cast<ssize_t>(datagram.size());
 }
 
-void AirSocket::receive(const std::function<void(std::span<const std::uint8_t>)>& take) {
+bool AirSocket::receive(const std::function<void(std::span<const std::uint8_t>)>& take) {
   std::array<mmsghdr, kAtOnce> messages{};
   std::array<iovec, kAtOnce> places{};
   for (std::size_t i = 0; i < kAtOnce; ++i) {
@@ -85,6 +85,7 @@ void AirSocket::receive(const std::function<void(std::span<const std::uint8_t>)>
     if ((messages.at(i).msg_hdr.msg_flags & MSG_TRUNC) != 0) continue;  // none of ours
     take({buffer_.data() + i * kDatagramMax, messages.at(i).msg_len});
   }
+  return count == static_cast<int>(kAtOnce);
 }
 
 }  // namespace skein::network

@@ -23,8 +23,9 @@ class AirSocket {
   [[nodiscard]] int descriptor() const { return socket_.get(); }
   /// False where it could not be sent; nobody is waited for.
   bool send(std::span<const std::uint8_t> datagram);
-  /// What has come, at most kAtOnce. What is longer than kDatagramMax is dropped.
-  void receive(const std::function<void(std::span<const std::uint8_t>)>& take);
+  /// What has come, at most kAtOnce; true where that is so much that there may be more. What is
+  /// longer than kDatagramMax is dropped.
+  bool receive(const std::function<void(std::span<const std::uint8_t>)>& take);
   static constexpr std::size_t kAtOnce = 32;
   static constexpr std::size_t kDatagramMax = 2048;
 
