@@ -231,6 +231,17 @@ TEST_F(GroundRoutesTest, RefusesWhatItKnowsToBeWrong) {
   EXPECT_THAT(refusal({{kTwo, north(300.0, 130.0)}}), HasSubstr("withdraw routes"));
 }
 
+/// One of a long row, 50 m apart.
+Telemetry in_a_row(VehicleId id, Instant now) {
+  Telemetry t;
+  t.vehicle = id;
+  t.instance = {id.value};
+  t.state.time = now;
+  t.state.x_m = 50.0 * id.value;
+  t.range_left_m = 20'000.0;
+  return t;
+}
+
 TEST(GroundRoutes, AsManyAsThereMayBeAreToldInTurnAndAllFly) {
   GroundRoutes routes;
   std::set<VehicleId> ids;
@@ -238,23 +249,14 @@ TEST(GroundRoutes, AsManyAsThereMayBeAreToldInTurnAndAllFly) {
   Fleet fleet{{.expected = {ids.begin(), ids.end()}}};
   Instant now = at_seconds(100.0);
   GroundRoutes::Routes plan;
-  const auto place_m = [](VehicleId id) { return 50.0 * id.value; };
   const auto hear_all = [&] {
-    for (const VehicleId id : ids) {
-      Telemetry t;
-      t.vehicle = id;
-      t.instance = {id.value};
-      t.state.time = now;
-      t.state.x_m = place_m(id);
-      t.range_left_m = 20'000.0;
-      fleet.on_message(Message{t}, now);
-    }
+    for (const VehicleId id : ids) fleet.on_message(Message{in_a_row(id, now)}, now);
   };
   hear_all();
   const TimedPath ahead = north(0.0, 120.0);
   const auto add = [&](VehicleId id) {
     plan[id] = ahead;
-    plan[id].path.start.x_m = place_m(id);
+    plan[id].path.start.x_m = in_a_row(id, now).state.x_m;
   };
   for (const VehicleId id : ids) add(id);
   const auto refused = routes.give(plan, {}, fleet, now);

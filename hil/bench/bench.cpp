@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/hil/bench.hpp"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -24,7 +22,9 @@
 #include "external_hosts.hpp"
 #include "flight_controllers.hpp"
 #include "flooder.hpp"
+#include "interrupt_watch.hpp"
 #include "link_listener.hpp"
+#include "ports.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
@@ -56,34 +56,8 @@ constexpr const char* kKeysFolder = "keys";  ///< of the run
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};
-constexpr auto kAutopilotBoot = std::chrono::seconds{60};
 /// Node ids for them and their companions on one bus.
 constexpr std::size_t kCanVehiclesMax = 50;
-
-volatile std::sig_atomic_t g_interrupted = 0;
-extern "C" void on_interrupt(int /*signal*/) { g_interrupted = 1; }
-
-/// Takes SIGINT and SIGTERM over while it lives.
-class InterruptWatch {
- public:
-  InterruptWatch() {
-    g_interrupted = 0;
-    struct sigaction action {};
-    action.sa_handler = &on_interrupt;
-    ::sigaction(SIGINT, &action, &old_int_);
-    ::sigaction(SIGTERM, &action, &old_term_);
-  }
-  ~InterruptWatch() {
-    ::sigaction(SIGINT, &old_int_, nullptr);
-    ::sigaction(SIGTERM, &old_term_, nullptr);
-  }
-  InterruptWatch(const InterruptWatch&) = delete;
-  InterruptWatch& operator=(const InterruptWatch&) = delete;
-
- private:
-  struct sigaction old_int_ {};
-  struct sigaction old_term_ {};
-};
 
 constexpr const char* kLoopback = "127.0.0.1";
 /// Where there are more, Fast DDS stays in the agents' processes: twice as many processes would
@@ -97,50 +71,6 @@ constexpr double kLead_s = 0.3;
 constexpr double kIsolatedLead_s = 0.8;
 /// What configuring and starting external hosts takes, all at once.
 constexpr double kExternalLead_s = 6.0;
-
-/// `type` is SOCK_DGRAM or SOCK_STREAM; port 0 is free where the address is this machine's.
-bool port_free(int type, const std::string& of, std::uint16_t port) {
-  const int s = ::socket(AF_INET, type | SOCK_CLOEXEC, 0);
-  if (s < 0) return false;
-  const int reuse = type == SOCK_STREAM ? 1 : 0;  // connections that end are in nobody's way
-  ::setsockopt(s, SOL_SOCKET, SO_REUSEADDR, &reuse, sizeof reuse);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  ::inet_pton(AF_INET, of.c_str(), &address.sin_addr);
-  const bool free = ::bind(s, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::close(s);
-  return free;
-}
-
-/// The first port of a free block, or why there is none.
-Result<std::uint16_t> port_block(const std::string& of, std::uint16_t wanted, std::size_t count) {
-  const auto taken = [&](std::uint16_t base) -> std::optional<std::uint16_t> {
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto port = static_cast<std::uint16_t>(base + i);
-      if (!port_free(SOCK_DGRAM, of, port)) return port;
-    }
-    return std::nullopt;
-  };
-  if (wanted != 0) {
-    if (wanted + count > 65535)
-      return Error{"--port-base " + std::to_string(wanted) + " leaves no room for " +
-                   std::to_string(count) + " ports"};
-    if (const auto port = taken(wanted)) {
-      return Error{
-          "UDP port " + std::to_string(*port) +
-          " is in use; name another --port-base, leave it out to have free ports looked for, "
-          "or stop who uses it (ss -ulpn shows who)"};
-    }
-    return wanted;
-  }
-  Random random{static_cast<std::uint64_t>(::getpid())};
-  for (int i = 0; i < 200; ++i) {
-    const auto base = static_cast<std::uint16_t>(12'000 + 2 * random.index(10'000));
-    if (!taken(base)) return base;
-  }
-  return Error{"no free block of " + std::to_string(count) + " UDP ports was found on " + of};
-}
 
 class Bench {
  public:
@@ -237,7 +167,7 @@ class Bench {
     }
     outcome_.ended_at = progress_.now;
     outcome_.finished = mission_done();
-    outcome_.interrupted = g_interrupted != 0;
+    outcome_.interrupted = InterruptWatch::interrupted();
     return stop();
   }
 
@@ -279,11 +209,7 @@ class Bench {
           "--autopilot: no vehicle of the scenario has a flight controller of that kind; give one "
           "flight_controller: {kind: ardupilot}"};
     }
-    const auto spoken = speaks_on_bus(kAutopilotBus, 0, std::chrono::seconds{1});
-    if (!spoken) return spoken.error();
-    if (!*spoken) return {};
-    return Error{std::string{"somebody speaks on "} + kAutopilotBus +
-                 " already; stop other autopilots on this machine"};
+    return autopilot_bus_is_free();
   }
 
   /// From the start of the programs: all have started and found each other before.
@@ -345,15 +271,7 @@ class Bench {
       if (!child) return child.error();
       auto& started =
           user_autopilots_.emplace(config.vehicle.id, std::move(child).value()).first->second;
-      const auto& fc = config.flight_controller.ardupilot;
-      const auto speaks = speaks_on_bus(fc.can, fc.node_id, kAutopilotBoot);
-      if (!speaks) return speaks.error();
-      if (!*speaks) {
-        const auto how = started.ended();
-        return Error{"the autopilot of " + name_of(config.vehicle.id) + " is not heard on " +
-                     fc.can + " as node " + std::to_string(fc.node_id) +
-                     (how ? "; it ended: " + *how : "") + "; its log is " + log.string()};
-      }
+      if (auto up = await_autopilot(config, started, log); !up) return up;
       say("the autopilot of " + name_of(config.vehicle.id) + " has booted");
     }
     return {};
@@ -720,7 +638,7 @@ class Bench {
   }
 
   [[nodiscard]] bool finished() {
-    if (g_interrupted != 0 || outcome_.quit || !outcome_.deaths.empty()) return true;
+    if (InterruptWatch::interrupted() || outcome_.quit || !outcome_.deaths.empty()) return true;
     if (progress_.now >= Instant{} + scenario_.duration_max) return true;
     if (!mission_done()) return false;
     if (!stop_at_) stop_at_ = progress_.now + kAfterwards;

@@ -29,6 +29,9 @@ namespace {
 /// The group of the bus, and so of all its kind.
 constexpr const char* kBusGroup = "239.65.82.0";
 constexpr std::uint32_t kNodeMask = 0x7F;
+constexpr std::uint8_t kAnyNode = 0;
+constexpr auto kListen = std::chrono::seconds{1};
+constexpr auto kBoot = std::chrono::seconds{60};
 /// What a navigation filter takes until it can be armed, and the climb.
 constexpr double kReady_s = 60.0;
 constexpr double kClimb_mps = 3.0;
@@ -63,6 +66,24 @@ bool bus_is_on_loopback() {
                      ::getsockname(s, reinterpret_cast<sockaddr*>(&from), &size) == 0;
   ::close(s);
   return there && from.sin_addr.s_addr == htonl(INADDR_LOOPBACK);
+}
+
+/// Whether that node of the bus speaks within that time.
+Result<bool> speaks_on_bus(const std::string& name, std::uint8_t node_id,
+                           std::chrono::seconds at_most) {
+  auto bus = can::open(name);
+  if (!bus) return bus.error();
+  const auto until = std::chrono::steady_clock::now() + at_most;
+  while (true) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        until - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return false;
+    pollfd item{(*bus)->descriptor(), POLLIN, 0};
+    (void)::poll(&item, 1, static_cast<int>(left.count()));
+    while (const auto frame = (*bus)->receive()) {
+      if (node_id == kAnyNode || (frame->id & kNodeMask) == node_id) return true;
+    }
+  }
 }
 
 void write_to(const char* file, const std::string& text) { std::ofstream{file} << text; }
@@ -182,21 +203,25 @@ Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopil
   // clang-format on
 }
 
-Result<bool> speaks_on_bus(const std::string& name, std::uint8_t node_id,
-                           std::chrono::seconds at_most) {
-  auto bus = can::open(name);
-  if (!bus) return bus.error();
-  const auto until = std::chrono::steady_clock::now() + at_most;
-  while (true) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-        until - std::chrono::steady_clock::now());
-    if (left.count() <= 0) return false;
-    pollfd item{(*bus)->descriptor(), POLLIN, 0};
-    (void)::poll(&item, 1, static_cast<int>(left.count()));
-    while (const auto frame = (*bus)->receive()) {
-      if (node_id == 0 || (frame->id & kNodeMask) == node_id) return true;
-    }
-  }
+Result<void> autopilot_bus_is_free() {
+  const auto spoken = speaks_on_bus(kAutopilotBus, kAnyNode, kListen);
+  if (!spoken) return spoken.error();
+  if (!*spoken) return {};
+  return Error{std::string{"somebody speaks on "} + kAutopilotBus +
+               " already; stop other autopilots on this machine"};
+}
+
+Result<void> await_autopilot(const configuration::VehicleConfig& vehicle, ChildProcess& started,
+                             const std::filesystem::path& log) {
+  const auto& fc = vehicle.flight_controller.ardupilot;
+  const auto speaks = speaks_on_bus(fc.can, fc.node_id, kBoot);
+  if (!speaks) return speaks.error();
+  if (*speaks) return {};
+  const auto how = started.ended();
+  return Error{
+      fmt::format("the autopilot of vehicle {} is not heard on {} as node {}{}; its log is {}",
+                  vehicle.vehicle.id.value, fc.can, fc.node_id, how ? "; it ended: " + *how : "",
+                  log.string())};
 }
 
 double autopilot_lead_s(double height_max_m) { return kReady_s + height_max_m / kClimb_mps; }

@@ -9,6 +9,7 @@
 
 #include "skein/base/result.hpp"
 #include "skein/configuration/vehicle_config.hpp"
+#include "skein/hil/child_process.hpp"
 
 namespace skein::hil {
 
@@ -44,9 +45,11 @@ struct UserAutopilots {
     const UserAutopilots& autopilots, const configuration::VehicleConfig& vehicle, int instance,
     const std::filesystem::path& folder);
 
-/// Waits until that node of the bus speaks; false where it does not within `at_most`.
-[[nodiscard]] Result<bool> speaks_on_bus(const std::string& bus, std::uint8_t node_id,
-                                         std::chrono::seconds at_most);
+/// Nobody speaks on their bus.
+[[nodiscard]] Result<void> autopilot_bus_is_free();
+/// Waits until it has booted: its node speaks on the bus. `log` is named where it does not.
+[[nodiscard]] Result<void> await_autopilot(const configuration::VehicleConfig& vehicle,
+                                           ChildProcess& started, const std::filesystem::path& log);
 
 /// From when the last has booted until all are in the air at their heights.
 [[nodiscard]] double autopilot_lead_s(double height_max_m);
