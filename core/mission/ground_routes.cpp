@@ -9,15 +9,12 @@
 #include "names.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
+#include "told_at_once.hpp"
 
 namespace skein::mission {
 namespace {
 
 constexpr Duration kTellAgain = std::chrono::seconds{1};
-/// So many are told at once: of more, the first would give way before they are on the air (64 are
-/// kept there, topics.json).
-constexpr std::size_t kToldAtOnce = 32;
-constexpr Duration kToldEvery = std::chrono::milliseconds{100};
 /// Who flies is asked now and then how far it is.
 constexpr Duration kAskAgain = std::chrono::seconds{5};
 /// All must have taken theirs so long before the plan begins, or there is no time to tell them.

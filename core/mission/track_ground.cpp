@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "names.hpp"
+#include "told_at_once.hpp"
 
 namespace skein::mission {
 namespace {
@@ -15,9 +16,6 @@ using formation::PlannedTrack;
 
 constexpr Duration kPeriod = std::chrono::milliseconds{100};
 constexpr Duration kRepeat = std::chrono::milliseconds{500};
-/// So many planes are told at once, each kPeriod: of more, the first would give way before they are
-/// on the air (64 are kept there, topics.json).
-constexpr std::size_t kToldAtOnce = 32;
 /// Who has not begun so long after the start does not begin any more.
 constexpr Duration kBegunWithin = std::chrono::seconds{2};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
@@ -141,7 +139,7 @@ void TrackGround::send(Instant now) {
     if (found == members_.end() || !has_not_begun(found->first, found->second)) continue;
     if (told++ == kToldAtOnce) {
       send_from_ = i;
-      send_next_ = now + kPeriod;
+      send_next_ = now + kToldEvery;
       return;
     }
     TrackFlight message;

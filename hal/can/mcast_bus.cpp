@@ -18,13 +18,11 @@
 namespace skein::can {
 namespace {
 
-constexpr std::uint32_t kGroupBase = 0xEF415200;  // 239.65.82.0
-
 sockaddr_in group_address(std::uint8_t index) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(kMcastPort);
-  address.sin_addr.s_addr = htonl(kGroupBase | index);
+  address.sin_addr.s_addr = htonl(kMcastGroup | index);
   return address;
 }
 

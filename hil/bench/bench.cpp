@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -25,7 +24,6 @@
 #include "interrupt_watch.hpp"
 #include "link_listener.hpp"
 #include "ports.hpp"
-#include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/hil/fault_timeline.hpp"
@@ -114,7 +112,9 @@ class Bench {
     if (options_.sealed) {
       if (auto made = make_keys(); !made) return made;
     }
-    if (auto up = boot_autopilots(vehicle_configs(deployment)); !up) return up;
+    if (!options_.autopilots.empty()) {
+      if (auto up = boot_autopilots(vehicle_configs(deployment)); !up) return up;
+    }
     begin_in(lead_s(deployment), deployment);
     const auto configs = vehicle_configs(deployment);
     if (auto up = external_.start(configs); !up) return up;
@@ -270,7 +270,8 @@ class Bench {
       auto child = ChildProcess::start(*command, log, {});
       if (!child) return child.error();
       auto& started =
-          user_autopilots_.emplace(config.vehicle.id, std::move(child).value()).first->second;
+          flight_controllers_.emplace(config.vehicle.id, std::move(child).value()).first->second;
+      user_flown_.insert(config.vehicle.id);
       if (auto up = await_autopilot(config, started, log); !up) return up;
       say("the autopilot of " + name_of(config.vehicle.id) + " has booted");
     }
@@ -432,7 +433,7 @@ class Bench {
 
   Result<void> launch_flight_controller(const configuration::VehicleConfig& config) {
     if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) return {};
-    if (user_autopilots_.contains(config.vehicle.id)) return {};
+    if (flight_controllers_.contains(config.vehicle.id)) return {};  // a user's own
     const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
     auto child = ChildProcess::start(flight_controller_command(options_.programs, config),
                                      options_.run_folder / (name + ".log"), {});
@@ -497,18 +498,16 @@ class Bench {
                                 (options_.run_folder / (log_name(id) + ".log")).string());
       say(outcome_.deaths.back());
     }
-    for (auto* controllers : {&flight_controllers_, &user_autopilots_}) {
-      for (auto& [id, process] : *controllers) {
-        if (killed_.contains(id) || fc_reported_.contains(id)) continue;
-        const auto how = process.ended();
-        if (!how) continue;
-        fc_reported_.insert(id);
-        outcome_.deaths.push_back(
-            "the flight controller of " + name_of(id) + " ended by itself: " + *how +
-            "; its log is " +
-            (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
-        say(outcome_.deaths.back());
-      }
+    for (auto& [id, process] : flight_controllers_) {
+      if (killed_.contains(id) || fc_reported_.contains(id)) continue;
+      const auto how = process.ended();
+      if (!how) continue;
+      fc_reported_.insert(id);
+      outcome_.deaths.push_back(
+          "the flight controller of " + name_of(id) + " ended by itself: " + *how +
+          "; its log is " +
+          (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
+      say(outcome_.deaths.back());
     }
     if (links_ && !links_reported_) {
       if (const auto how = links_->ended()) {
@@ -569,11 +568,8 @@ class Bench {
     const auto process = processes_.find(id);
     if (process == processes_.end() || !killed_.insert(id).second) return;
     process->second.signal(SIGKILL);
-    for (auto* controllers : {&flight_controllers_, &user_autopilots_}) {
-      if (const auto fc = controllers->find(id); fc != controllers->end()) {
-        fc->second.signal(SIGKILL);
-      }
-    }
+    const auto fc = flight_controllers_.find(id);
+    if (fc != flight_controllers_.end()) fc->second.signal(SIGKILL);
     outcome_.killed.push_back(id);
     say("fault: " + name_of(id) + " is killed");
   }
@@ -666,12 +662,12 @@ class Bench {
     for (std::string& problem : external_.stop()) outcome_.deaths.push_back(std::move(problem));
     const bool clean = stop_all(vehicles, kStopWithin);
     std::vector<ChildProcess*> controllers;
+    std::vector<ChildProcess*> autopilots;
     for (auto& [id, process] : flight_controllers_) {
-      if (!killed_.contains(id)) controllers.push_back(&process);
+      if (killed_.contains(id)) continue;
+      (user_flown_.contains(id) ? autopilots : controllers).push_back(&process);
     }
     const bool controllers_clean = stop_all(controllers, kStopWithin);
-    std::vector<ChildProcess*> autopilots;
-    for (auto& [id, process] : user_autopilots_) autopilots.push_back(&process);
     (void)stop_all(autopilots, kStopWithin);  // how they end is theirs
     std::vector<ChildProcess*> ground;
     if (!killed_.contains(kGroundStation)) ground.push_back(&processes_.at(kGroundStation));
@@ -742,7 +738,7 @@ class Bench {
   bool links_reported_ = false;  ///< that it has ended
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
-  std::map<VehicleId, ChildProcess> user_autopilots_;
+  std::set<VehicleId> user_flown_;  ///< of these by autopilots of the user's own
   std::unique_ptr<network::Node> node_;
   std::optional<recording::Writer> writer_;  ///< of what the bench itself says
   SurveySensors sensors_;

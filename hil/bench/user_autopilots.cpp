@@ -20,14 +20,13 @@
 #include "skein/base/attitude.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/can/bus.hpp"
+#include "skein/can/mcast_datagram.hpp"
 #include "skein/hil/bench.hpp"
 #include "skein/hil/child_process.hpp"
 
 namespace skein::hil {
 namespace {
 
-/// The group of the bus, and so of all its kind.
-constexpr const char* kBusGroup = "239.65.82.0";
 constexpr std::uint32_t kNodeMask = 0x7F;
 constexpr std::uint8_t kAnyNode = 0;
 constexpr auto kListen = std::chrono::seconds{1};
@@ -58,8 +57,8 @@ bool bus_is_on_loopback() {
   if (s < 0) return false;
   sockaddr_in to{};
   to.sin_family = AF_INET;
-  to.sin_port = htons(57732);
-  ::inet_pton(AF_INET, kBusGroup, &to.sin_addr);
+  to.sin_port = htons(can::kMcastPort);
+  to.sin_addr.s_addr = htonl(can::kMcastGroup);
   sockaddr_in from{};
   socklen_t size = sizeof from;
   const bool there = ::connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&
@@ -229,7 +228,7 @@ double autopilot_lead_s(double height_max_m) { return kReady_s + height_max_m / 
 Result<void> keep_autopilots_on_loopback(bool reached) {
   if (bus_is_on_loopback()) return {};
   const std::string by_hand =
-      fmt::format("as root: ip link set lo multicast on; ip route add {}/24 dev lo", kBusGroup);
+      "as root: ip link set lo multicast on; ip route add 239.65.82.0/24 dev lo";
   if (reached) {
     return Error{
         "--autopilot and --console: the autopilots' bus would leave this machine, and in a network "

@@ -16,10 +16,10 @@ constexpr std::uint64_t kHearsayMax = 255;
 /// What is due so soon after another is asked for with it.
 constexpr Duration kTogether = std::chrono::milliseconds{5};
 
-/// Others may be about to ask for the same.
-Duration spread(Duration wait, Random& random) {
-  return from_seconds(to_seconds(wait) * random.uniform(1.0, 1.5));
-}
+/// Others may be about to ask for the same: by so much longer this one waits.
+double spread(Random& random) { return random.uniform(1.0, 1.5); }
+
+Duration longer(Duration wait, double by) { return from_seconds(to_seconds(wait) * by); }
 
 }  // namespace
 
@@ -142,7 +142,7 @@ void InStream::on_newest(std::uint16_t newest, Instant now, Random& random) {
 }
 
 void InStream::on_asked(const MissingFrame& asked, Instant now, Random& random) {
-  const Instant answered = now + spread(pace_->ask_again(0), random);
+  const Instant answered = now + longer(pace_->ask_again(0), spread(random));
   for (auto& [number, missing] : missing_) {
     if (!is_asked_for(asked, static_cast<std::uint16_t>(number))) continue;
     missing.others_asked = true;
@@ -160,7 +160,7 @@ std::optional<Instant> InStream::ask_at() const {
 std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Random& random) {
   std::optional<MissingFrame> question;
   std::uint64_t first = 0;
-  const double later = random.uniform(1.0, 1.5);
+  const double later = spread(random);
   for (auto& [number, missing] : missing_) {
     if (missing.ask_at > now + kTogether) continue;
     if (!question) {
@@ -172,7 +172,7 @@ std::optional<MissingFrame> InStream::ask(const Author& author, Instant now, Ran
       break;
     }
     missing.asked_at = now;
-    missing.ask_at = now + from_seconds(later * to_seconds(pace_->ask_again(missing.asked++)));
+    missing.ask_at = now + longer(pace_->ask_again(missing.asked++), later);
   }
   return question;
 }

@@ -29,7 +29,7 @@ PartFrame OutStream::add(std::uint8_t channel, bool begins, bool ends,
 
 void OutStream::asked(const MissingFrame& missing, Duration answered, Instant now) {
   for (std::size_t i = 0; i <= kMoreMissing; ++i) {
-    if (i > 0 && (missing.more >> (i - 1) & 1U) == 0) continue;
+    if (!is_asked_for(missing, static_cast<std::uint16_t>(missing.first + i))) continue;
     // How many parts it is behind the newest; one of the future is many.
     const auto behind = static_cast<std::uint16_t>(newest_ - missing.first - i);
     if (behind >= parts_.size()) continue;

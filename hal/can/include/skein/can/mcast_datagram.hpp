@@ -16,6 +16,8 @@ namespace skein::can {
 
 inline constexpr std::size_t kMcastHeader = 10;
 inline constexpr std::uint16_t kMcastPort = 57732;
+/// The group of bus 0; those of the others follow it.
+inline constexpr std::uint32_t kMcastGroup = 0xEF415200;  // 239.65.82.0
 
 using McastDatagram = StaticVector<std::uint8_t, kMcastHeader + kFdDataMax>;
 
