@@ -4,9 +4,9 @@
 #include <string>
 
 #include "skein/base/time.hpp"
-#include "skein/experiments/grid.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "thousand.hpp"
 
 namespace {
 
@@ -52,29 +52,10 @@ BENCHMARK_CAPTURE(mission, judged, "coalition-32", "none", true)
     ->Name("mission_32/skein/judged")
     ->Unit(benchmark::kMillisecond);
 
-/// The first minute of 1,000 vehicles in 28 km by 28 km that search around 16 sites, of which they
-/// find some and form coalitions: with that range of the radio, and of the protocol.
+/// The first minute of 1,000 vehicles, or less.
 void thousand(benchmark::State& state, double range_m, Duration duration) {
-  constexpr double kHalf_m = 14000.0;
-  constexpr double kStep_m = 7000.0;
-  auto base = scenario("coalition-32");
+  const auto base = thousand_vehicles(range_m, duration);
   if (!base) return state.SkipWithError(base.error().message.c_str());
-  const auto kinds = base->sites;
-  base->sites.clear();
-  base->operator_decisions.clear();
-  for (std::uint16_t i = 0; i < 16; ++i) {
-    skein::Site site = kinds[i % kinds.size()];
-    site.id = skein::SiteId{static_cast<std::uint16_t>(i + 1)};
-    const int row = i / 4;
-    site.position = {kStep_m * (i % 4 - 1.5), kStep_m * (row - 1.5)};
-    base->sites.push_back(site);
-    base->operator_decisions.push_back({.site = site.id, .reaction = std::chrono::seconds{3}});
-  }
-  base->vehicles = skein::experiments::draw_team(
-      {.west_m = -kHalf_m, .east_m = kHalf_m, .south_m = -kHalf_m, .north_m = kHalf_m}, *base, 1000,
-      1);
-  base->radio.range_m = base->protocol.radio_range_m = range_m;
-  base->duration_max = duration;
   const TeamMission mission = team_mission(*base);
   TeamResult result;
   while (state.KeepRunning()) result = simulate_team(mission, {});
