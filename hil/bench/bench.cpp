@@ -14,7 +14,6 @@
 #include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <thread>
 #include <utility>
 
@@ -24,6 +23,7 @@
 #include "interrupt_watch.hpp"
 #include "link_listener.hpp"
 #include "ports.hpp"
+#include "run_keys.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/hil/fault_timeline.hpp"
@@ -40,6 +40,7 @@
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
+#include "truth_recorder.hpp"
 #include "user_autopilots.hpp"
 
 namespace skein::hil {
@@ -50,7 +51,6 @@ using std::chrono::system_clock;
 
 /// The bench's own node: it hears everybody and is in no radio's table.
 constexpr VehicleId kBench = mission::kSensors;
-constexpr const char* kKeysFolder = "keys";  ///< of the run
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
 constexpr auto kStopWithin = std::chrono::seconds{8};
@@ -110,12 +110,14 @@ class Bench {
     }
     configuration::Deployment deployment = deploy(*base, *buses);
     if (options_.sealed) {
-      if (auto made = make_keys(); !made) return made;
+      if (auto made = make_run_keys(options_.run_folder, all_nodes()); !made) return made;
     }
+    if (auto open = open_truth(vehicle_configs(deployment)); !open) return open;
     if (!options_.autopilots.empty()) {
       if (auto up = boot_autopilots(vehicle_configs(deployment)); !up) return up;
     }
     begin_in(lead_s(deployment), deployment);
+    if (auto begun = record_truth(deployment); !begun) return begun;
     const auto configs = vehicle_configs(deployment);
     if (auto up = external_.start(configs); !up) return up;
     started_ = steady_clock::now();
@@ -257,6 +259,21 @@ class Bench {
     return configs;
   }
 
+  Result<void> open_truth(const std::vector<configuration::VehicleConfig>& configs) {
+    const auto aircraft =
+        simulated_aircraft(configs, [this](VehicleId vehicle) { return external_.has(vehicle); });
+    if (aircraft.empty()) return {};
+    auto truth = TruthRecorder::open(aircraft, configs.front().origin);
+    if (!truth) return truth.error();
+    truth_ = std::move(truth).value();
+    return {};
+  }
+  Result<void> record_truth(const configuration::Deployment& deployment) {
+    if (!truth_) return {};
+    return truth_->record(options_.run_folder, deployment.time.epoch_unix_ns,
+                          [this] { return mission_now(); });
+  }
+
   /// One after another: a simulator that boots takes a processor.
   Result<void> boot_autopilots(const std::vector<configuration::VehicleConfig>& configs) {
     int instance = 0;
@@ -264,7 +281,8 @@ class Bench {
       if (!user_flown(config.vehicle, config.flight_controller)) continue;
       const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
       const auto command =
-          autopilot_command(autopilots_, config, instance++, options_.run_folder / name);
+          autopilot_command(autopilots_, config, instance++, truth_->port(config.vehicle.id),
+                            options_.run_folder / name);
       if (!command) return command.error();
       const auto log = options_.run_folder / (name + ".log");
       auto child = ChildProcess::start(*command, log, {});
@@ -298,13 +316,7 @@ class Bench {
       say(fmt::format("{} nodes on {} processors: Fast DDS has no process of its own here",
                       all_nodes().size(), processors));
     }
-    const auto keys = std::filesystem::absolute(options_.run_folder / kKeysFolder);
-    if (!options_.sealed) return deployment;
-    for (const VehicleId node : all_nodes()) {
-      deployment.keys[node] = identity::node_folder(keys, node).string();
-    }
-    deployment.op = {identity::kBenchOperator,
-                     deployment.keys.at(kGroundStation) + "/" + identity::kBenchPasswordFile};
+    if (options_.sealed) use_run_keys(deployment, options_.run_folder, all_nodes());
     return deployment;
   }
 
@@ -313,17 +325,6 @@ class Bench {
     std::vector<VehicleId> nodes{kGroundStation, kBench};
     for (const auto& vehicle : scenario_.vehicles) nodes.push_back(vehicle.spec.id);
     return nodes;
-  }
-
-  /// A mission of its own for each run, so that it is flown sealed as in the field.
-  [[nodiscard]] Result<void> make_keys() const {
-    const auto now =
-        std::chrono::duration_cast<std::chrono::seconds>(system_clock::now().time_since_epoch());
-    const auto nodes = all_nodes();
-    std::error_code ignored;
-    std::filesystem::remove_all(options_.run_folder / kKeysFolder, ignored);  // of a run that died
-    return identity::make_team(options_.run_folder / kKeysFolder, std::span{nodes}.subspan(1),
-                               now.count());
   }
 
   [[nodiscard]] Result<void> keep_console_token(const std::filesystem::path& folder) const {
@@ -435,8 +436,9 @@ class Bench {
     if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) return {};
     if (flight_controllers_.contains(config.vehicle.id)) return {};  // a user's own
     const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
-    auto child = ChildProcess::start(flight_controller_command(options_.programs, config),
-                                     options_.run_folder / (name + ".log"), {});
+    auto child = ChildProcess::start(
+        flight_controller_command(options_.programs, config, truth_->port(config.vehicle.id)),
+        options_.run_folder / (name + ".log"), {});
     if (!child) return child.error();
     child->make_realtime();
     flight_controllers_.emplace(config.vehicle.id, std::move(child).value());
@@ -650,6 +652,7 @@ class Bench {
   BenchOutcome stop() {
     hear();
     writer_.reset();
+    truth_.reset();
     for (const auto& [id, telemetry] : last_) {
       outcome_.control_overruns += telemetry.control_overruns;
       outcome_.messages_dropped += telemetry.messages_dropped;
@@ -684,8 +687,7 @@ class Bench {
     for (const auto& missing : external_.collect(options_.run_folder)) {
       outcome_.not_collected.push_back(missing.why);
     }
-    std::error_code ignored;
-    std::filesystem::remove_all(options_.run_folder / kKeysFolder, ignored);  // of no more use
+    remove_run_keys(options_.run_folder);
     return outcome_;
   }
 
@@ -735,7 +737,8 @@ class Bench {
   ExternalHosts external_;
   std::optional<radio::LinkTable> table_;
   std::optional<LinkListener> links_;
-  bool links_reported_ = false;  ///< that it has ended
+  bool links_reported_ = false;           ///< that it has ended
+  std::unique_ptr<TruthRecorder> truth_;  ///< none where no aircraft is simulated
   std::map<VehicleId, ChildProcess> processes_;
   std::map<VehicleId, ChildProcess> flight_controllers_;
   std::set<VehicleId> user_flown_;  ///< of these by autopilots of the user's own

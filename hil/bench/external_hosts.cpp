@@ -49,7 +49,7 @@ fleet::Program emulator_of(const Host& host, const VehicleConfig& config) {
   fleet::Program program;
   program.host = host;
   program.name = fmt::format("fc-{}", host.node.value);
-  program.command = flight_controller_command(host.programs, config);
+  program.command = flight_controller_command(host.programs, config, {});
   const auto& fc = config.flight_controller.ardupilot;
   program.mark = fmt::format("skein-fc --bus {} --node {} ", fc.can, fc.node_id);
   program.realtime = true;

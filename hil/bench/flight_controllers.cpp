@@ -54,13 +54,14 @@ Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t se
 }
 
 std::vector<std::string> flight_controller_command(const std::filesystem::path& programs,
-                                                   const configuration::VehicleConfig& vehicle) {
+                                                   const configuration::VehicleConfig& vehicle,
+                                                   std::optional<std::uint16_t> truth_port) {
   const VehicleSpec& spec = vehicle.vehicle;
   const configuration::ArdupilotConfig& fc = vehicle.flight_controller.ardupilot;
   const configuration::WindConfig& wind = vehicle.flight_controller.wind;
   const auto number = [](double value) { return fmt::format("{:.10g}", value); };
   // clang-format off
-  return {(programs / "skein-fc").string(),
+  std::vector<std::string> command{(programs / "skein-fc").string(),
           "--bus", fc.can,
           "--node", std::to_string(fc.node_id),
           "--companion", std::to_string(fc.companion_node_id),
@@ -82,6 +83,8 @@ std::vector<std::string> flight_controller_command(const std::filesystem::path& 
           "--gusts", number(std::min(kGustsOfDeviation * wind.gust_mps, kGustsMax_mps)),
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
+  if (truth_port) command.insert(command.end(), {"--truth", std::to_string(*truth_port)});
+  return command;
 }
 
 }  // namespace skein::hil

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,10 @@ namespace skein::hil {
 [[nodiscard]] Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t seed);
 
 /// The command line of the skein-fc that flies this vehicle: in the air at its start, which it
-/// leaves at mission time 0. Precondition: its flight controller is an ardupilot.
+/// leaves at mission time 0; what it really does it says to that port of loopback. Precondition:
+/// its flight controller is an ardupilot.
 [[nodiscard]] std::vector<std::string> flight_controller_command(
-    const std::filesystem::path& programs, const configuration::VehicleConfig& vehicle);
+    const std::filesystem::path& programs, const configuration::VehicleConfig& vehicle,
+    std::optional<std::uint16_t> truth_port);
 
 }  // namespace skein::hil

@@ -22,8 +22,9 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   vehicle.flight_controller.ardupilot.system_id = 9;
   vehicle.flight_controller.wind = {5.0, heading_from_compass_deg(240.0), 0.5};
   vehicle.time.epoch_unix_ns = 1'795'000'000'123'456'789;
-  const auto command = flight_controller_command("/opt/bin", vehicle);
+  const auto command = flight_controller_command("/opt/bin", vehicle, 5001);
   EXPECT_EQ(command.front(), "/opt/bin/skein-fc");
+  EXPECT_EQ(command.back(), "5001");
   const auto after = [&command](const std::string& option) {
     const auto at = std::find(command.begin(), command.end(), option);
     return std::vector<std::string>(at + 1, std::min(at + 4, command.end()));

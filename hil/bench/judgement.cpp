@@ -9,6 +9,7 @@
 #include "skein/checks/flown.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/recording/reader.hpp"
+#include "truth_recorder.hpp"
 
 namespace skein::hil {
 
@@ -37,6 +38,12 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
     } else {
       record.recordings.push_back(std::move(r));
     }
+  }
+  const auto truths = run_folder / kTruthFolder;
+  if (std::filesystem::exists(truths)) {
+    auto read = recording::read_run(truths);
+    if (!read) return read.error();
+    record.truths = std::move(read).value();
   }
   return record;
 }

@@ -162,7 +162,7 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
 
 Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopilots,
                                                    const configuration::VehicleConfig& vehicle,
-                                                   int instance,
+                                                   int instance, std::uint16_t truth_port,
                                                    const std::filesystem::path& folder) {
   const VehicleSpec& spec = vehicle.vehicle;
   const std::filesystem::path& program = *autopilots.of(spec);
@@ -198,7 +198,7 @@ Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopil
                             height_m, compass_deg_from_heading(vehicle.start.heading_rad)),
       "--wipe",
       "--defaults", defaults,
-      "--serial0", "udpclient:127.0.0.1:14550", "--serial1", "none", "--serial2", "none"};
+      "--serial0", "udpclient:127.0.0.1:" + std::to_string(truth_port), "--serial1", "none", "--serial2", "none"};
   // clang-format on
 }
 

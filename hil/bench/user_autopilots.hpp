@@ -40,10 +40,11 @@ struct UserAutopilots {
 [[nodiscard]] std::string autopilot_parameters(const configuration::VehicleConfig& vehicle);
 
 /// The command line that starts it in `folder`, which is made: on the ground, so that its take-off
-/// ends where the vehicle starts. `instance` tells those of one machine apart.
+/// ends where the vehicle starts. `instance` tells those of one machine apart; it says what it
+/// really does where it is asked from `truth_port` of loopback.
 [[nodiscard]] Result<std::vector<std::string>> autopilot_command(
     const UserAutopilots& autopilots, const configuration::VehicleConfig& vehicle, int instance,
-    const std::filesystem::path& folder);
+    std::uint16_t truth_port, const std::filesystem::path& folder);
 
 /// Nobody speaks on their bus.
 [[nodiscard]] Result<void> autopilot_bus_is_free();

@@ -73,9 +73,10 @@ TEST(UserAutopilots, StartWhereTheVehicleDoesWithParametersOfItsAirframe) {
   const auto beside = autopilots->plane->parent_path() / "plane.parm";
   std::ofstream{beside} << "PTCH_TRIM_DEG 0\n";
   const auto folder = std::filesystem::path{testing::TempDir()} / "user_autopilots" / "fc-4";
-  const auto command = autopilot_command(*autopilots, vehicle(), 2, folder);
+  const auto command = autopilot_command(*autopilots, vehicle(), 2, 5001, folder);
   ASSERT_TRUE(command) << command.error().message;
   // 200 m behind its start, on the ground.
+  EXPECT_THAT(*command, Contains("udpclient:127.0.0.1:5001"));
   EXPECT_THAT(*command, Contains("31.49884063,104.99838746,480.00,50.0"));
   EXPECT_THAT(*command, Contains(beside.string() + "," + (folder / "vehicle.parm").string()));
   EXPECT_TRUE(std::filesystem::exists(folder / "vehicle.parm"));

@@ -135,6 +135,10 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
       ->capture_default_str();
   app.add_option("--seed", c.seed, "Of gusts and sensor noise")->capture_default_str();
   app.add_flag("--no-noise", t.no_noise, "Sensors without noise");
+  app.add_option("--truth", a.truth_port,
+                 "Sends what the aircraft really does, MAVLink's SIM_STATE 20 times a second, to\n"
+                 "this UDP port of loopback")
+      ->check(CLI::Range(1, 65535));
   app.add_option("--at", t.at,
                  "'SECONDS LINE': does what the line says on standard input, so long after the\n"
                  "start (with --hold-until: after that)");

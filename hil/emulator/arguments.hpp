@@ -22,6 +22,7 @@ struct FcArguments {
   std::string bus = "mcast:0";
   std::optional<std::int64_t> hold_until_unix_ns;
   std::vector<TimedLine> script;
+  std::optional<std::uint16_t> truth_port;
   EmulatorConfig config;  ///< hold_until and unix_us are the caller's to set
 };
 

@@ -68,6 +68,7 @@ class AutopilotVehicle : public Vehicle {
   }
   template <class Aircraft>
   void sense(const Aircraft& aircraft) {
+    report_.truth = aircraft.state();
     report_.estimate =
         senses_.estimate(aircraft.state(), aircraft.specific_force(air_.wind_ned_mps()),
                          air_.airspeed_mps(aircraft.state()), to_seconds(period()));

@@ -14,6 +14,7 @@
 #include "plane_vehicle.hpp"
 #include "skein/dronecan/node.hpp"
 #include "skein/dronecan/tunnel.hpp"
+#include "telemetry.hpp"
 
 namespace skein::hil {
 namespace {
@@ -132,6 +133,7 @@ struct EmulatedFlightController::State {
   std::map<std::uint8_t, dronecan::UniqueId> nodes;  ///< kept over restarts, as ArduPilot does
   std::string duplicate;
   bool silent = false;
+  mavlink::Encoder truth_encoder{config.system_id, mavlink::kComponentAutopilot};
 };
 
 EmulatedFlightController::EmulatedFlightController(std::unique_ptr<State> state)
@@ -195,6 +197,12 @@ std::span<const can::Frame> EmulatedFlightController::front() {
 
 void EmulatedFlightController::pop() {
   if (state_->link) state_->link->node.pop();
+}
+
+std::vector<std::uint8_t> EmulatedFlightController::truth() {
+  const auto packet =
+      state_->truth_encoder.encode(sim_state(state_->vehicle->report(), state_->earth));
+  return {packet.begin(), packet.end()};
 }
 
 Result<void> EmulatedFlightController::interfere(std::string_view line, Instant now) {

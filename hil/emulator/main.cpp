@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <netinet/in.h>
 #include <poll.h>
 #include <sys/signalfd.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <deque>
@@ -72,14 +75,45 @@ int signals_descriptor() {
   return ::signalfd(-1, &set, SFD_CLOEXEC);
 }
 
+/// Tells the truth to whoever judges.
+class TruthSender {
+ public:
+  explicit TruthSender(std::uint16_t port)
+      : socket_{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)} {
+    to_.sin_family = AF_INET;
+    to_.sin_port = htons(port);
+    to_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  }
+  ~TruthSender() { ::close(socket_); }
+  TruthSender(const TruthSender&) = delete;
+  TruthSender& operator=(const TruthSender&) = delete;
+
+  void step(EmulatedFlightController& of, Instant now) {
+    if (now < next_) return;
+    next_ = next_multiple(now, kPeriod);
+    const auto packet = of.truth();
+    (void)::sendto(socket_, packet.data(), packet.size(), 0,
+                   reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
+  }
+
+ private:
+  static constexpr Duration kPeriod = 50ms;
+  int socket_;
+  sockaddr_in to_{};
+  Instant next_{};
+};
+
 class Program {
  public:
   Program(std::unique_ptr<can::Bus> bus, EmulatedFlightController controller, const Clock& clock,
-          std::deque<std::pair<Instant, std::string>> script)
+          std::deque<std::pair<Instant, std::string>> script,
+          std::optional<std::uint16_t> truth_port)
       : bus_{std::move(bus)},
         controller_{std::move(controller)},
         clock_{clock},
-        script_{std::move(script)} {}
+        script_{std::move(script)} {
+    if (truth_port) truth_.emplace(*truth_port);
+  }
 
   void run(int signals) {
     while (true) {
@@ -91,6 +125,7 @@ class Program {
       }
       while (const auto line = lines_.next()) interfere(*line, now);
       controller_.step(now);
+      if (truth_) truth_->step(controller_, now);
       for (auto frames = controller_.front(); !frames.empty(); frames = controller_.front()) {
         // What a bus refuses is lost, as it is to an ArduPilot after 20 ms.
         (void)bus_->send(frames);
@@ -127,6 +162,7 @@ class Program {
   const Clock& clock_;
   std::deque<std::pair<Instant, std::string>> script_;
   Lines lines_;
+  std::optional<TruthSender> truth_;
 };
 
 int fly(FcArguments arguments) {
@@ -155,8 +191,9 @@ int fly(FcArguments arguments) {
   std::printf("ready: node %d on %s for node %d, MAVLink system %d\n", config.node_id,
               arguments.bus.c_str(), config.companion_node, config.system_id);
   std::fflush(stdout);
-  Program{std::move(bus).value(), std::move(controller).value(), clock, std::move(script)}.run(
-      signals);
+  Program{std::move(bus).value(), std::move(controller).value(), clock, std::move(script),
+          arguments.truth_port}
+      .run(signals);
   return 0;
 }
 

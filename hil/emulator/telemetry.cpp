@@ -136,6 +136,8 @@ GlobalPositionInt global_position(const Situation& s) {
           .hdg = rounded<std::uint16_t>(compass_deg(euler_angles(e.attitude).yaw_rad) * 1e2)};
 }
 
+SimState true_state(const Situation& s) { return sim_state(s.flight, s.earth); }
+
 MissionCurrent mission_current(const Situation& /*s*/) { return {}; }
 
 GpsGlobalOrigin global_origin(const Situation& s) {
@@ -265,6 +267,7 @@ constexpr std::array kProducers{
     producer<ekf_status>(true),
     producer<home_position>(false),
     producer<extended_state>(false),
+    producer<true_state>(false),
 };
 constexpr auto kIds = [] {
   std::array<std::uint32_t, kProducers.size()> ids{};
@@ -279,6 +282,33 @@ const Producer* find(std::uint32_t id) {
 }
 
 }  // namespace
+
+SimState sim_state(const FlightReport& flight, const Earth& earth) {
+  const models::RigidBodyState& truth = flight.truth;
+  const GlobalPosition at = earth.global(truth.position_m);
+  const EulerAngles angles = euler_angles(truth.attitude);
+  const Vec3 velocity = truth.velocity_ned_mps();
+  SimState m;
+  m.q1 = f32(truth.attitude.w());
+  m.q2 = f32(truth.attitude.x());
+  m.q3 = f32(truth.attitude.y());
+  m.q4 = f32(truth.attitude.z());
+  m.roll = f32(angles.roll_rad);
+  m.pitch = f32(angles.pitch_rad);
+  m.yaw = f32(angles.yaw_rad);
+  m.xgyro = f32(truth.rates_radps.x());
+  m.ygyro = f32(truth.rates_radps.y());
+  m.zgyro = f32(truth.rates_radps.z());
+  m.lat = f32(at.latitude_e7 * 1e-7);
+  m.lon = f32(at.longitude_e7 * 1e-7);
+  m.alt = f32(at.height_m);
+  m.vn = f32(velocity.x());
+  m.ve = f32(velocity.y());
+  m.vd = f32(velocity.z());
+  m.lat_int = at.latitude_e7;
+  m.lon_int = at.longitude_e7;
+  return m;
+}
 
 std::span<const std::uint32_t> telemetry_ids() { return kIds; }
 

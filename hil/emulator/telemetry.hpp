@@ -23,6 +23,9 @@ struct Situation {
   Vec3 ekf_origin_m = Vec3::Zero();  ///< of the local position, NED of the mission's origin
 };
 
+/// What the aircraft really does, as a simulator tells it.
+[[nodiscard]] mavlink::SimState sim_state(const FlightReport& flight, const Earth& earth);
+
 /// The messages that can be streamed or asked for, by id.
 [[nodiscard]] std::span<const std::uint32_t> telemetry_ids();
 /// Of these, what ArduPlane streams at 1 Hz unasked.

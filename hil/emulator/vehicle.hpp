@@ -9,12 +9,14 @@
 #include "skein/autopilot/estimate.hpp"
 #include "skein/mavlink/command.hpp"
 #include "skein/mavlink/enums.hpp"
+#include "skein/models/rigid_body.hpp"
 
 namespace skein::hil {
 
 /// What the autopilot tells of its flight. Positions are NED of the mission's origin.
 struct FlightReport {
   autopilot::Estimate estimate;
+  models::RigidBodyState truth;
   Vec3 wind_ned_mps = Vec3::Zero();
   double throttle = 0.0;  ///< [0, 1]
   bool armed = false;

@@ -11,6 +11,7 @@
 #include "skein/report/palette.hpp"
 #include "story.hpp"
 #include "style.hpp"
+#include "truth_table.hpp"
 
 namespace skein::report {
 namespace {
@@ -96,6 +97,23 @@ std::string formation_section(const Contents& contents) {
   return html + "</div>\n";
 }
 
+std::string truth_section(const Contents& contents) {
+  const TruthTable table = truth_table(contents.record, contents.limits);
+  if (table.rows.empty()) return "";
+  std::string html =
+      "<h2>Planned, believed, true</h2><p>Of aircraft in a simulator: how far from its plan each "
+      "believed it was and really was; root mean square / most.</p><div class=\"wide\"><table>"
+      "<thead><tr>";
+  for (const std::string& cell : table.head) html += "<th>" + escaped(cell) + "</th>";
+  html += "</tr></thead><tbody>";
+  for (const auto& row : table.rows) {
+    html += "<tr>";
+    for (const std::string& cell : row) html += "<td>" + escaped(cell) + "</td>";
+    html += "</tr>";
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 }  // namespace
 
 std::string html(const Contents& contents) {
@@ -120,6 +138,7 @@ std::string html(const Contents& contents) {
             "</section>";
   }
   page += "</div>\n" + formation_section(contents);
+  page += truth_section(contents);
   page += "<h2>Checks</h2><div class=\"wide\">" + check_table(contents.checks) + "</div>\n";
 
   std::string curves;

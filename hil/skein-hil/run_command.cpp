@@ -140,7 +140,8 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
   std::ofstream{folder / "map.svg"} << report::mission_svg(record);
   fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\nreplay: {}\n\n{}",
              page.string(), (folder / recording::kRunFileName).string(), contents.replay,
-             report::text_table(contents.checks, contents.comparison));
+             report::truth_text(record, contents.limits) +
+                 report::text_table(contents.checks, contents.comparison));
   return std::all_of(contents.checks.begin(), contents.checks.end(),
                      [](const auto& check) { return check.held(); });
 }

@@ -21,8 +21,8 @@ std::optional<identity::Approval> approval_of(const mission::Authorisation& auth
     approval.vehicles.push_back(delivery.assignment.vehicle);
   }
   std::ranges::sort(approval.vehicles);
-  const auto twice = std::ranges::unique(approval.vehicles);
-  approval.vehicles.erase(twice.begin(), twice.end());
+  approval.vehicles.erase(std::unique(approval.vehicles.begin(), approval.vehicles.end()),
+                          approval.vehicles.end());
   approval.from = plan.decided_at;
   approval.until = plan.until;
   approval.granted = true;

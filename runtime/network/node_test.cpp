@@ -268,8 +268,10 @@ TEST(Node, RefusesToSendWhatItMustNot) {
 
 TEST(Node, PublishingDoesNotWaitForASilentReader) {
   const auto configs = fleet(2);
+  // The reader goes last: Fast DDS 2.9 may hang where one goes for which samples still wait
+  // (docs/decisions/034).
+  const auto b = open(configs[2]);
   const auto a = open(configs[1]);
-  auto b = open(configs[2]);
   ASSERT_TRUE(eventually([&] { return a->peers().size() == 1; }));
   for (int i = 0; i < 2000; ++i) a->publish(coalition::Message{coalition::Cancel{}});
   EXPECT_EQ(a->counters().at("published") + a->counters().at("publish_failed"), 2000U);

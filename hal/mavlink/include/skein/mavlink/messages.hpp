@@ -23,7 +23,7 @@ using Messages =
                GpsGlobalOrigin, MissionRequestInt, NavControllerOutput, RcChannels, MissionItemInt,
                VfrHud, CommandInt, CommandLong, CommandAck, SetAttitudeTarget, AttitudeTarget,
                SetPositionTargetLocalNed, PositionTargetLocalNed, SetPositionTargetGlobalInt,
-               PositionTargetGlobalInt, Timesync, ScaledImu2, PowerStatus, ScaledImu3,
+               PositionTargetGlobalInt, SimState, Timesync, ScaledImu2, PowerStatus, ScaledImu3,
                TerrainRequest, TerrainReport, ScaledPressure2, BatteryStatus, AutopilotVersion,
                Meminfo, Ahrs, Simstate, Wind, Ahrs2, EkfStatusReport, Vibration, HomePosition,
                MessageInterval, ExtendedSysState, Statustext, Airspeed, AoaSsa, EscTelemetry1To4>;

@@ -172,6 +172,27 @@ struct Ahrs2 {
       define(178, "AHRS2", SKEIN_MAVLINK_FIELDS(Ahrs2, roll, pitch, yaw, altitude, lat, lng));
 };
 
+/// Software in the loop only: the truth, with its height and velocity.
+struct SimState {
+  float q1 = 0, q2 = 0, q3 = 0, q4 = 0;
+  float roll = 0, pitch = 0, yaw = 0;     ///< rad
+  float xacc = 0, yacc = 0, zacc = 0;     ///< m/s/s
+  float xgyro = 0, ygyro = 0, zgyro = 0;  ///< rad/s
+  float lat = 0, lon = 0;                 ///< deg
+  float alt = 0;                          ///< m
+  float std_dev_horz = 0, std_dev_vert = 0;
+  float vn = 0, ve = 0, vd = 0;  ///< m/s
+  std::int32_t lat_int = 0;      ///< degE7
+  std::int32_t lon_int = 0;      ///< degE7
+
+  static constexpr auto kDefinition =
+      define(108, "SIM_STATE",
+             SKEIN_MAVLINK_FIELDS(SimState, q1, q2, q3, q4, roll, pitch, yaw, xacc, yacc, zacc,
+                                  xgyro, ygyro, zgyro, lat, lon, alt, std_dev_horz, std_dev_vert,
+                                  vn, ve, vd),
+             SKEIN_MAVLINK_FIELDS(SimState, lat_int, lon_int));
+};
+
 /// Software in the loop only: the truth.
 struct Simstate {
   float roll = 0, pitch = 0, yaw = 0;     ///< rad

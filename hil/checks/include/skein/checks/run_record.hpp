@@ -36,7 +36,6 @@ struct Excuse {
   std::string why;
 };
 
-/// A finished mission: what it was to be, and what was recorded of it.
 /// Where a route that was planned before the mission is to end.
 struct RouteEnd {
   VehicleId vehicle;
@@ -46,11 +45,13 @@ struct RouteEnd {
   Duration offset{};  ///< required, from the common time
 };
 
+/// A finished mission: what it was to be, and what was recorded of it.
 struct RunRecord {
   std::vector<Site> sites;
   std::vector<KnownHazard> hazards;
   std::vector<VehicleSpec> vehicles;
-  std::vector<recording::Recording> recordings;  ///< of vehicles, in any order
+  std::vector<recording::Recording> recordings;   ///< of vehicles, in any order
+  std::vector<recording::Recording> truths = {};  ///< what simulated aircraft really did: tracks
   std::vector<mission::MissionEvent> ground_events;
   std::vector<RouteEnd> route_ends = {};
   std::vector<recording::PlaceRecord> places = {};  ///< of a formation, by the ground station

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
@@ -35,6 +37,10 @@ class EmulatedFlightController {
   /// The frames of the transfer that is to be sent next, or none; send all of them, then pop().
   [[nodiscard]] std::span<const can::Frame> front();
   void pop();
+
+  /// What the aircraft really does: a packet with MAVLink's SIM_STATE, as simulators of ArduPilot
+  /// send it. Of no use to the companion, which is to fly by what the autopilot believes.
+  [[nodiscard]] std::vector<std::uint8_t> truth();
 
   /// What the companion cannot do; a line of words:
   ///   mode NAME             the pilot's switch, with ArduPilot's name of the mode

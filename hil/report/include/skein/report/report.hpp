@@ -41,4 +41,9 @@ struct Contents {
 [[nodiscard]] std::string text_table(const std::vector<checks::CheckResult>& checks,
                                      const std::vector<ComparisonRow>& comparison);
 
+/// What was planned, believed and true, each aircraft and each delivery in a line; empty where no
+/// truth is known.
+[[nodiscard]] std::string truth_text(const checks::RunRecord& record,
+                                     const checks::Limits& limits);
+
 }  // namespace skein::report

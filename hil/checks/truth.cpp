@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/checks/truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "motion.hpp"
+#include "skein/base/geometry.hpp"
+
+namespace skein::checks {
+namespace {
+
+using recording::Recording;
+using recording::TrackPoint;
+
+/// Adds up to a Spread.
+class Sum {
+ public:
+  void add(double value) {
+    squares_ += value * value;
+    most_ = std::max(most_, std::abs(value));
+    ++count_;
+  }
+  [[nodiscard]] std::size_t count() const { return count_; }
+  [[nodiscard]] Spread spread() const {
+    if (count_ == 0) return {};
+    return {std::sqrt(squares_ / static_cast<double>(count_)), most_};
+  }
+
+ private:
+  double squares_ = 0.0;
+  double most_ = 0.0;
+  std::size_t count_ = 0;
+};
+
+const recording::PlanRecord* in_force(const std::vector<recording::PlanRecord>& plans, Instant at) {
+  const auto next =
+      std::ranges::upper_bound(plans, at, {}, [](const auto& plan) { return plan.since; });
+  return next == plans.begin() ? nullptr : &*(next - 1);
+}
+
+PlanErrors plan_errors(const std::vector<TrackPoint>& track,
+                       const std::vector<recording::PlanRecord>& plans, double height_m) {
+  Sum cross;
+  Sum along;
+  Sum height;
+  bool joined = false;
+  for (const TrackPoint& point : track) {
+    const recording::PlanRecord* record = in_force(plans, point.state.time);
+    if (record == nullptr) continue;
+    const TimedPath& plan = record->plan;
+    const Pose2 pose = plan_pose(plan, plan_distance_m(plan, point.state.time));
+    const Vec2 off = Vec2{point.state.x_m, point.state.y_m} - pose.position();
+    joined = joined || off.norm() <= kJoined_m;
+    if (!joined) continue;
+    const Vec2 ahead = unit_vector(pose.heading_rad);
+    along.add(off.dot(ahead));
+    cross.add(ahead.x() * off.y() - ahead.y() * off.x());
+    height.add(point.state.z_m - height_m);
+  }
+  return {cross.count(), cross.spread(), along.spread(), height.spread()};
+}
+
+Spread apart(const std::vector<TrackPoint>& believed, const std::vector<TrackPoint>& truly,
+             double gap_s) {
+  Sum sum;
+  for (const TrackPoint& point : truly) {
+    const auto at = track_at(believed, point.state.time, gap_s);
+    if (!at) continue;
+    const Vec2 off = Vec2{point.state.x_m, point.state.y_m} - at->horizontal;
+    sum.add(std::hypot(off.x(), off.y(), point.state.z_m - at->height_m));
+  }
+  return sum.spread();
+}
+
+}  // namespace
+
+std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limits) {
+  std::vector<FlownTruly> all;
+  for (const Recording& truth : record.truths) {
+    const Recording* believed = recording_of(record, truth.vehicle);
+    const VehicleSpec* spec = spec_of(record, truth.vehicle);
+    if (believed == nullptr || spec == nullptr) continue;
+    all.push_back({truth.vehicle, plan_errors(believed->track, believed->plans, spec->height_m),
+                   plan_errors(truth.track, believed->plans, spec->height_m),
+                   apart(believed->track, truth.track, limits.track_gap_s)});
+  }
+  return all;
+}
+
+std::vector<DeliveryTruly> deliveries_truly(const RunRecord& record, const Limits& limits) {
+  RunRecord as_it_was = record;
+  for (Recording& recorded : as_it_was.recordings) {
+    recorded.track.clear();
+    const auto truth = std::ranges::find(record.truths, recorded.vehicle, &Recording::vehicle);
+    if (truth != record.truths.end()) recorded.track = truth->track;
+  }
+  // The same runs in the same order: only tracks differ.
+  const auto believed = deliveries_flown(record, limits);
+  const auto truly = deliveries_flown(as_it_was, limits);
+  std::vector<DeliveryTruly> all;
+  for (std::size_t i = 0; i < believed.size(); ++i) {
+    if (believed[i].seen && truly[i].seen) all.push_back({believed[i], truly[i]});
+  }
+  return all;
+}
+
+}  // namespace skein::checks

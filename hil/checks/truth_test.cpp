@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/checks/truth.hpp"
+
+#include "test_record.hpp"
+
+namespace skein::checks {
+namespace {
+
+using namespace testing;  // NOLINT(google-build-using-namespace)
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// The aircraft of one vehicle really flew some way beside what it believed.
+RunRecord one_beside(VehicleId vehicle, const Vec2& by, double higher_m) {
+  RunRecord record = good_record();
+  recording::Recording truth;
+  truth.vehicle = vehicle;
+  truth.track = of(record, vehicle).track;
+  shift(truth, by);
+  for (auto& point : truth.track) point.state.z_m += higher_m;
+  record.truths.push_back(truth);
+  return record;
+}
+
+TEST(Truth, IsOfNobodyWhoseTruthIsNotKnown) {
+  EXPECT_THAT(flown_truly(good_record(), {}), IsEmpty());
+  EXPECT_THAT(deliveries_truly(good_record(), {}), IsEmpty());
+}
+
+TEST(Truth, IsMeasuredFromThePlansAsWhatWasBelievedIs) {
+  const auto all = flown_truly(one_beside(kFromWest, {3.0, 0.0}, 2.0), {});
+  ASSERT_THAT(all, SizeIs(1));
+  const FlownTruly& flown = all[0];
+  EXPECT_EQ(flown.vehicle, kFromWest);
+  EXPECT_GT(flown.believed.points, 100U);
+  EXPECT_NEAR(flown.believed.cross_m.most, 0.0, 1e-6);
+  EXPECT_NEAR(flown.believed.along_m.most, 0.0, 1e-6);
+  EXPECT_NEAR(flown.believed.height_m.most, 0.0, 1e-6);
+  // Whichever way it flies, these two have the offset between them.
+  EXPECT_NEAR(std::hypot(flown.truly.cross_m.rms, flown.truly.along_m.rms), 3.0, 1e-6);
+  EXPECT_NEAR(flown.truly.height_m.rms, 2.0, 1e-9);
+  EXPECT_NEAR(flown.apart_m.rms, std::hypot(3.0, 2.0), 1e-6);
+  EXPECT_NEAR(flown.apart_m.most, std::hypot(3.0, 2.0), 1e-6);
+}
+
+TEST(Truth, CountsFromWhenThePlanIsJoined) {
+  RunRecord record = one_beside(kFromWest, {0.0, 0.0}, 0.0);
+  record.truths[0].track[0].state.x_m += 500.0;
+  EXPECT_NEAR(flown_truly(record, {})[0].truly.cross_m.most, 0.0, 1e-6);
+  record.truths[0].track[200].state.x_m += 500.0;
+  const PlanErrors errors = flown_truly(record, {})[0].truly;
+  EXPECT_NEAR(std::hypot(errors.cross_m.most, errors.along_m.most), 500.0, 1e-6);
+}
+
+TEST(Truth, ADeliveryThatWasBelievedGoodIsSeenToMiss) {
+  const auto all = deliveries_truly(one_beside(kFromWest, {-5.0, 4.0}, 0.0), {});
+  ASSERT_THAT(all, SizeIs(1));
+  EXPECT_EQ(all[0].believed.run.vehicle, kFromWest);
+  EXPECT_NEAR(all[0].believed.miss_m, 0.0, 0.1);
+  EXPECT_NEAR(all[0].truly.miss_m, 4.0, 0.1);           // it flies eastward:
+  EXPECT_NEAR(all[0].truly.time_error_s(), 0.1, 0.02);  // 5 m late at 50 m/s
+}
+
+}  // namespace
+}  // namespace skein::checks
