@@ -5,6 +5,8 @@
 
 #include <ctime>
 
+#include "skein/wording/wording.hpp"
+
 namespace skein::onboard {
 
 std::optional<VehicleState> CanFlightController::state(Instant now) {
@@ -39,6 +41,21 @@ void CanFlightController::tell_mode() {
   mode_.write(mode);
 }
 
+void CanFlightController::tell_troubles() {
+  const auto& newest = link_.companion().troubles();
+  if (newest == troubles_) return;  // nobody else writes it
+  const std::lock_guard lock{troubles_mutex_};
+  troubles_ = newest;
+}
+
+std::vector<std::string> CanFlightController::problems() const {
+  const std::lock_guard lock{troubles_mutex_};
+  std::vector<std::string> all;
+  all.reserve(troubles_.size());
+  for (const AutopilotNotice& trouble : troubles_) all.push_back(wording::text_of(trouble));
+  return all;
+}
+
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
     link_.companion().command(newer->demand, newer->at);
@@ -49,6 +66,7 @@ void CanFlightController::step(Instant now) {
   if (const auto sample = link_.companion().sample()) sample_.write(*sample);
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));
   tell_mode();
+  tell_troubles();
   const auto in_use = link_.companion().in_use();
   airborne_.store(!in_use   ? hal::Airborne::unknown
                   : *in_use ? hal::Airborne::yes

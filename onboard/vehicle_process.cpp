@@ -13,6 +13,7 @@
 #include <thread>
 #include <utility>
 
+#include "link_params.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/configuration/setup_params.hpp"
@@ -44,33 +45,6 @@
 
 namespace skein::onboard {
 namespace {
-
-ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) {
-  const configuration::ArdupilotConfig& fc = config.flight_controller.ardupilot;
-  ardupilot::CanLinkParams params;
-  params.node_id = fc.node_id;
-  params.companion_node_id = fc.companion_node_id;
-  params.serial_id = fc.serial_id;
-  ardupilot::CompanionParams& companion = params.companion;
-  companion.vehicle = config.vehicle;
-  companion.system_id = fc.system_id;
-  companion.airframe = config.vehicle.airframe;
-  switch (fc.take_over) {
-    case configuration::TakeOverKind::in_flight:
-      companion.take_over = ardupilot::TakeOver::in_flight;
-      break;
-    case configuration::TakeOverKind::from_ground:
-      companion.take_over = ardupilot::TakeOver::from_ground;
-      break;
-    case configuration::TakeOverKind::when_guided:
-    case configuration::TakeOverKind::count:
-      companion.take_over = ardupilot::TakeOver::when_guided;
-      break;
-  }
-  companion.takeoff_height_m = fc.takeoff_height_m;
-  companion.geoid_height_m = fc.geoid_height_m;
-  return params;
-}
 
 /// What flies the vehicle; `on_can` is the same object where it is on a bus.
 struct FlightControllers {
@@ -113,7 +87,17 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
   return made;
 }
 
-AgentLink link_to(network::Node& node, HealthBoard& health) {
+/// With what keeps its flight controller from flying it.
+mission::Health with_flight_controller(mission::Health health, const CanFlightController* on_can) {
+  if (on_can == nullptr) return health;
+  for (const std::string& problem : on_can->problems()) {
+    if (health.problems.size() >= mission::kProblemsMax) break;
+    health.problems.push_back(problem.substr(0, kTextMax));
+  }
+  return health;
+}
+
+AgentLink link_to(network::Node& node, const CanFlightController* on_can, HealthBoard& health) {
   return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
@@ -123,13 +107,14 @@ AgentLink link_to(network::Node& node, HealthBoard& health) {
             return AgentLink::Received{std::move(received->message), received->sender};
           },
           .send =
-              [&node, &health](const mission::Message& message) {
+              [&node, on_can, &health](const mission::Message& message) {
                 const auto* told = std::get_if<mission::Health>(&message);
                 if (told == nullptr) {
                   node.publish(message);
                   return;
                 }
-                const mission::Health whole = health.with_host(*told);
+                const mission::Health whole =
+                    health.with_host(with_flight_controller(*told, on_can));
                 health.put(whole);
                 node.publish(mission::Message{whole});
               },
@@ -163,7 +148,7 @@ void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
                   std::optional<detectors::DetectorSocket>& socket, AgentRing* records,
                   const process::MissionClock& clock) {
-  AgentLink link = link_to(node, health);
+  AgentLink link = link_to(node, on_can, health);
   link.now = [&clock] { return clock.now(); };
   if (socket) listen_to(*socket, link);
   if (records != nullptr) {

@@ -5,12 +5,26 @@
 #include <string_view>
 #include <utility>
 
+#include "can_link_parts.hpp"
+
 namespace skein::ardupilot {
 namespace {
 
 constexpr std::string_view kUniqueIdStem = "skein.vehicle";
 /// NodeStatus messages that cross may seem to go back by one.
 constexpr std::uint32_t kUptimeSlack_s = 1;
+
+/// That a state has been left in which commands went out that must not arrive late.
+bool breaks_off(Companion::State before, Companion::State now) {
+  using State = Companion::State;
+  const auto is_own = [](State state) {
+    return state == State::arming || state == State::climbing || state == State::taking_over ||
+           state == State::flying;
+  };
+  return is_own(before) && !is_own(now);
+}
+
+}  // namespace
 
 dronecan::NodeParams node_params(const CanLinkParams& params) {
   dronecan::NodeParams node;
@@ -33,17 +47,13 @@ dronecan::TunnelParams tunnel_params(const CanLinkParams& params) {
   return tunnel;
 }
 
-/// That a state has been left in which commands went out that must not arrive late.
-bool breaks_off(Companion::State before, Companion::State now) {
-  using State = Companion::State;
-  const auto is_own = [](State state) {
-    return state == State::arming || state == State::climbing || state == State::taking_over ||
-           state == State::flying;
-  };
-  return is_own(before) && !is_own(now);
+LinkIds link_ids(const CanLinkParams& params, const std::string& bus) {
+  return {.bus = bus,
+          .node_id = params.node_id,
+          .companion_node_id = params.companion_node_id,
+          .serial_id = params.serial_id,
+          .system_id = params.companion.system_id};
 }
-
-}  // namespace
 
 CanLink::CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params,
                  const MissionOrigin& origin, Instant now)
@@ -51,7 +61,10 @@ CanLink::CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params,
       bus_{std::move(bus)},
       node_{node_params(params), now},
       port_{tunnel_params(params), now},
-      companion_{params.companion, origin, now} {}
+      companion_{params.companion, origin, now},
+      watch_{std::make_unique<LinkWatch>(link_ids(params, bus_->name()), now)} {}
+
+CanLink::~CanLink() = default;
 
 void CanLink::step(Instant now) {
   const Companion::State before = companion_.state();
@@ -60,6 +73,7 @@ void CanLink::step(Instant now) {
   while (const std::size_t size = port_.read(bytes)) {
     companion_.on_bytes(std::span{bytes}.first(size), now);
   }
+  watch(now);
   companion_.step(now);
   if (breaks_off(before, companion_.state())) bus_->discard();
   transmit(now);
@@ -67,6 +81,7 @@ void CanLink::step(Instant now) {
 
 void CanLink::receive(Instant now) {
   while (const auto frame = bus_->receive()) {
+    watch_->on_frame(*frame, now);
     const auto header = dronecan::header_of(*frame);
     if (header && header->source == params_.companion_node_id) {
       companion_.on_duplicate(params_.companion_node_id, now);
@@ -81,14 +96,26 @@ void CanLink::receive(Instant now) {
   }
 }
 
+void CanLink::watch(Instant now) {
+  if (const auto own = companion_.heartbeat()) watch_->on_heartbeat(own->system, own->at);
+  if (const auto other = companion_.other_heartbeat()) {
+    watch_->on_heartbeat(other->system, other->at);
+  }
+  companion_.on_link_trouble(watch_->trouble(now));
+}
+
 void CanLink::on_transfer(const dronecan::Transfer& transfer, Instant now) {
+  watch_->on_transfer(transfer, now);
   port_.on_transfer(transfer, params_.companion_node_id, now);
   if (transfer.header.source != params_.node_id || !dronecan::is<dronecan::NodeStatus>(transfer)) {
     return;
   }
   const auto status = dronecan::decode<dronecan::NodeStatus>(transfer);
   if (!status) return;
-  if (uptime_s_ && status->uptime_sec + kUptimeSlack_s < *uptime_s_) companion_.on_reboot(now);
+  if (uptime_s_ && status->uptime_sec + kUptimeSlack_s < *uptime_s_) {
+    watch_->on_reboot(now);
+    companion_.on_reboot(now);
+  }
   uptime_s_ = status->uptime_sec;
 }
 

@@ -126,6 +126,7 @@ void Companion::Impl::step(Instant now) {
     default:
       break;
   }
+  watch_troubles(now);
   if (system_ == 0) return;
   check_parameters(now);
   keep_clock(now);
@@ -164,19 +165,26 @@ void Companion::Impl::prepare(Instant now) {
           false);
     }
   }
-  for (const std::string_view name : parameters_.due(now)) {
-    send(mavlink::ParamRequestRead{.param_index = -1,
-                                   .target_system = system_,
-                                   .target_component = mavlink::kComponentAutopilot,
-                                   .param_id = mavlink::field_of<16>(name)});
-  }
+  for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
+  for (const std::string_view name : limits_.due(now)) ask_parameter(name);
   const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
   const bool is_known = desk_.idle() && clock_known && sensors_ && motion_.sample();
-  if (is_known && parameters_.good()) fire(Event::ready, now);
+  if (is_known && parameters_.good() && limits_.good()) fire(Event::ready, now);
+}
+
+void Companion::Impl::ask_parameter(std::string_view name) {
+  send(mavlink::ParamRequestRead{.param_index = -1,
+                                 .target_system = system_,
+                                 .target_component = mavlink::kComponentAutopilot,
+                                 .param_id = mavlink::field_of<16>(name)});
 }
 
 void Companion::Impl::check_parameters(Instant now) {
-  while (auto finding = parameters_.poll_finding(now)) {
+  const auto next = [this, now] {
+    auto finding = parameters_.poll_finding(now);
+    return finding ? finding : limits_.poll_finding(now);
+  };
+  while (auto finding = next()) {
     const auto news = machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
                                                     : AutopilotNews::parameter_changed;
     say(true, {.news = news, .detail = *std::move(finding)}, now);
@@ -413,6 +421,10 @@ void Companion::Impl::begin_climb(Instant now) {
 }
 
 void Companion::Impl::enter_piloted(State from, Event event, Instant now) {
+  if (from == State::checking && before_loss_ == State::piloted) {
+    // Nobody has taken it anew: a word of the operator from before the loss counts.
+    return say(false, {.news = AutopilotNews::still_piloted, .detail = mode()}, now);
+  }
   if (from != State::checking) desk_.clear();
   custody_.fire(Custody::Event::taken_by_others);
   taken_at_ = now;
@@ -432,7 +444,7 @@ void Companion::Impl::enter_loss(State from, std::uint32_t mode_before, Instant 
 
 void Companion::Impl::entered(State from, Event event, Instant now) {
   const std::uint32_t mode_before = entry_.mode;
-  entry_ = {.mode = mode_, .retry_at = now};
+  entry_ = {.mode = mode_, .retry_at = now, .at = now};
   if (from == State::arming) custody_.fire(Custody::Event::in_use);
   switch (machine_.state()) {
     case State::searching:
@@ -503,6 +515,14 @@ void Companion::on_frame_heard(Instant now) { impl_->on_frame_heard(now); }
 void Companion::on_reboot(Instant now) { impl_->on_reboot(now); }
 void Companion::on_duplicate(std::uint8_t node_id, Instant now) {
   impl_->on_duplicate(node_id, now);
+}
+void Companion::on_link_trouble(std::optional<AutopilotNotice> trouble) {
+  impl_->on_link_trouble(std::move(trouble));
+}
+const std::vector<AutopilotNotice>& Companion::troubles() const { return impl_->troubles(); }
+std::optional<Companion::Heard> Companion::heartbeat() const { return impl_->heartbeat(); }
+std::optional<Companion::Heard> Companion::other_heartbeat() const {
+  return impl_->other_heartbeat();
 }
 void Companion::command(const Demand& demand, Instant now) { impl_->command(demand, now); }
 bool Companion::give_back(Instant now, Instant issued) { return impl_->give_back(now, issued); }

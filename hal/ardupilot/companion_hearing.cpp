@@ -53,6 +53,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
     sensors_ = {.enabled = status->onboard_control_sensors_enabled,
                 .healthy = status->onboard_control_sensors_health};
+    if ((sensors_->healthy & mavlink::sensor_prearm_check) != 0) pre_arm_.clear();
   } else if (const auto extended = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
     landed_ = static_cast<mavlink::LandedState>(extended->landed_state);
     if (landed_ != mavlink::LandedState::undefined && airborne()) {
@@ -65,25 +66,35 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
     on_text(*text, now);
   } else if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
-    parameters_.on_value(mavlink::text_of(parameter->param_id), parameter->param_value);
+    const std::string name = mavlink::text_of(parameter->param_id);
+    parameters_.on_value(name, parameter->param_value);
+    limits_.on_value(name, parameter->param_value);
   } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
   }
 }
 
 void Companion::Impl::refuse_system(const mavlink::Packet& packet, Instant now) {
-  if (packet.id != mavlink::Heartbeat::kDefinition.id || refused_systems_.test(packet.system))
-    return;
+  if (packet.id != mavlink::Heartbeat::kDefinition.id) return;
+  other_heartbeat_ = {packet.system, now};
+  if (refused_systems_.test(packet.system)) return;
   refused_systems_.set(packet.system);
-  say(true,
-      {.news = AutopilotNews::other_system,
-       .number = packet.system,
-       .detail = "system " + std::to_string(params_.system_id)},
-      now);
+  AutopilotNotice other{.news = AutopilotNews::other_system,
+                        .number = packet.system,
+                        .detail = "system " + std::to_string(params_.system_id)};
+  troubles_.on_told(other, now);
+  say(true, std::move(other), now);
+}
+
+void Companion::Impl::refuse(AutopilotNotice why, Instant now) {
+  wrong_ = why;
+  troubles_.on_told(why, now);
+  say(true, std::move(why), now);
 }
 
 void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
                                    const mavlink::Packet& packet, Instant now) {
+  heartbeat_ = {packet.system, now};
   mode_ = heartbeat.custom_mode;
   armed_ = (heartbeat.base_mode & mavlink::mode_safety_armed) != 0;
   custody_.fire(armed_ ? Custody::Event::in_use : Custody::Event::disarmed);
@@ -103,7 +114,9 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
       fire(Event::autopilot_found, now);
     } else if (machine_.in(State::searching)) {
       fire(Event::wrong_autopilot, now);
-      say(true, *wrong, now);
+      refuse(*std::move(wrong), now);
+    } else {
+      wrong_ = wrong;
     }
     return;
   }
@@ -244,7 +257,7 @@ void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Insta
   if (firmware_ == Firmware::accepted) return;
   if ((firmware >> 16U) < kFirmwareMin) {
     firmware_ = Firmware::refused;
-    say(true, {.news = AutopilotNews::old_firmware, .detail = version_text(firmware)}, now);
+    refuse({.news = AutopilotNews::old_firmware, .detail = version_text(firmware)}, now);
     if (machine_.in(State::preparing)) fire(Event::wrong_autopilot, now);
     return;
   }
@@ -263,7 +276,16 @@ void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
   text_id_ = text.id;
   const bool warning = text.severity <= static_cast<std::uint8_t>(mavlink::Severity::warning);
   if (warning) last_text_at_ = now;
-  say(false, {.news = AutopilotNews::text, .detail = last_text_}, now);
+  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by) ||
+                     machine_.in(State::arming);
+  if (!waits || !PreArmTexts::is_one(last_text_)) {
+    say(false, {.news = AutopilotNews::text, .detail = last_text_}, now);
+  } else if (text.id == 0 || text.text.back() == '\0') {  // else more of it is to come
+    const std::string_view reason = PreArmTexts::reason_of(last_text_);
+    if (pre_arm_.add(reason, now)) {
+      say(true, {.news = AutopilotNews::pre_arm, .detail = std::string{reason}}, now);
+    }
+  }
   if (warning && refusal_) report_refusal(now);
 }
 
@@ -283,7 +305,7 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
   if (command == Command::do_change_speed && outcome.answer == Answer::unanswered) {
     speed_sent_.reset();
   }
-  if (outcome.answer != Answer::refused) return;
+  if (outcome.answer != Answer::refused || command == Command::run_prearm_checks) return;
   if (refusal_) report_refusal(now);
   refusal_ = outcome;
   refusal_at_ = now;
@@ -342,6 +364,8 @@ void Companion::Impl::reset_link() {
   sensors_.reset();
   if (firmware_ == Firmware::accepted) firmware_ = Firmware::unknown;
   refusal_.reset();
+  pre_arm_.clear();
+  reasons_asked_at_.reset();
   landed_ = mavlink::LandedState::undefined;
 }
 

@@ -10,9 +10,11 @@
 #include "command_desk.hpp"
 #include "custody.hpp"
 #include "flight_modes.hpp"
+#include "limit_check.hpp"
 #include "parameter_check.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
+#include "troubles.hpp"
 
 namespace skein::ardupilot {
 
@@ -40,10 +42,13 @@ class Companion::Impl {
         origin_{origin},
         motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
         parameters_{params.airframe, params.system_id},
+        limits_{params.vehicle, params.airframe},
         frame_heard_{now},
         packet_heard_{now},
         heartbeat_at_{now},
-        clock_at_{now} {}
+        clock_at_{now},
+        troubles_at_{now},
+        position_good_at_{now} {}
 
   void on_bytes(std::span<const std::uint8_t> bytes, Instant now) {
     on_frame_heard(now);
@@ -59,6 +64,12 @@ class Companion::Impl {
   }
   void on_reboot(Instant now);
   void on_duplicate(std::uint8_t node_id, Instant now);
+  void on_link_trouble(std::optional<AutopilotNotice> trouble) {
+    link_trouble_ = std::move(trouble);
+  }
+  [[nodiscard]] const std::vector<AutopilotNotice>& troubles() const { return troubles_.holding(); }
+  [[nodiscard]] std::optional<Heard> heartbeat() const { return heartbeat_; }
+  [[nodiscard]] std::optional<Heard> other_heartbeat() const { return other_heartbeat_; }
   void command(const Demand& demand, Instant now) {
     const auto* point = std::get_if<PositionSetpoint>(&demand);
     if (point != nullptr && (params_.airframe != Airframe::copter || !point->finite())) return;
@@ -80,6 +91,7 @@ class Companion::Impl {
   void on_heartbeat(const mavlink::Heartbeat& heartbeat, const mavlink::Packet& packet,
                     Instant now);
   void refuse_system(const mavlink::Packet& packet, Instant now);
+  void refuse(AutopilotNotice why, Instant now);
   void on_mode(Instant now);
   void on_check(Instant now);
   /// While arming: neither what it was before nor what was asked for.
@@ -95,6 +107,11 @@ class Companion::Impl {
   void prepare(Instant now);
   void ask_streams();
   void check_parameters(Instant now);
+  void ask_parameter(std::string_view name);
+  void watch_troubles(Instant now);
+  [[nodiscard]] std::vector<AutopilotNotice> troubles_now(Instant now) const;
+  [[nodiscard]] std::string not_told() const;
+  [[nodiscard]] bool fails_pre_arm() const;
   void stand_by(Instant now);
   void leave_return_on_ground(Instant now);
   void arm(Instant now);
@@ -143,13 +160,20 @@ class Companion::Impl {
   BootClock clock_;
   Motion motion_;
   ParameterCheck parameters_;
+  LimitCheck limits_;
   BoundedQueue<mavlink::WireBytes> packets_{64};
   BoundedQueue<Notice> notices_{64};
+  Troubles troubles_;
+  PreArmTexts pre_arm_;
 
   // What was heard.
   Instant frame_heard_;
   Instant packet_heard_;
   std::bitset<256> refused_systems_;
+  std::optional<Heard> heartbeat_;
+  std::optional<Heard> other_heartbeat_;
+  std::optional<AutopilotNotice> link_trouble_;
+  std::optional<AutopilotNotice> wrong_;  ///< why it is refused
   std::uint32_t mode_ = 0;
   enum class Firmware : std::uint8_t { unknown, accepted, refused };
   Firmware firmware_ = Firmware::unknown;  ///< accepted too where the autopilot does not tell
@@ -176,6 +200,7 @@ class Companion::Impl {
     bool clock_heard = false;  ///< and not younger than the newest before it
     int retries = 0;
     Instant retry_at;
+    Instant at;
   };
   SinceEntry entry_;
   std::uint8_t duplicate_node_ = 0;
@@ -201,6 +226,9 @@ class Companion::Impl {
   std::optional<Outcome> refusal_;
   Instant refusal_at_;
   std::optional<AutopilotNotice> said_refusal_;
+  Instant troubles_at_;
+  Instant position_good_at_;
+  std::optional<Instant> reasons_asked_at_;  ///< for not arming
 };
 
 }  // namespace skein::ardupilot

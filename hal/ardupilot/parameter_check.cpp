@@ -16,7 +16,7 @@ using std::chrono::seconds;
 constexpr Duration kAskUnanswered = milliseconds{500};
 constexpr Duration kAskWrong = seconds{2};
 constexpr int kUnansweredAfter = 5;  ///< questions
-constexpr Duration kTellAgain = seconds{30};
+constexpr Duration kTellAgain = seconds{60};
 
 // ArduPlane 4.6, FS_GCS_ENABL: 1 heartbeat, 2 heartbeat and REMRSSI; 3 is for AUTO alone.
 constexpr std::array kPlaneFailsafe{1, 2};
@@ -94,6 +94,29 @@ std::optional<std::string> ParameterCheck::poll_finding(Instant now) {
     return finding(entry);
   }
   return std::nullopt;
+}
+
+std::vector<std::string> ParameterCheck::findings() const {
+  std::vector<std::string> all;
+  for (const Entry& entry : entries_) {
+    if (is_found_wrong(entry)) all.push_back(finding(entry));
+  }
+  return all;
+}
+
+std::vector<TestedParameter> ParameterCheck::tested() const {
+  std::vector<TestedParameter> all;
+  for (const Entry& entry : entries_) {
+    TestedParameter& tested = all.emplace_back();
+    tested.name = entry.name;
+    if (entry.value) tested.value = static_cast<double>(*entry.value);
+    if (!is_good(entry)) tested.finding = finding(entry);
+  }
+  return all;
+}
+
+bool ParameterCheck::all_told() const {
+  return std::ranges::all_of(entries_, [](const Entry& entry) { return entry.value.has_value(); });
 }
 
 bool ParameterCheck::is_good(const Entry& entry) const {

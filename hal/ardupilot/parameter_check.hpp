@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skein/ardupilot/survey.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
 
@@ -38,6 +39,11 @@ class ParameterCheck {
   [[nodiscard]] bool good() const;
   /// What is wrong and was not told yet, or not for long, as a sentence with its remedy.
   [[nodiscard]] std::optional<std::string> poll_finding(Instant now);
+  /// All that is wrong.
+  [[nodiscard]] std::vector<std::string> findings() const;
+  /// Each of them, as far as it is known.
+  [[nodiscard]] std::vector<TestedParameter> tested() const;
+  [[nodiscard]] bool all_told() const;
 
  private:
   struct Entry {

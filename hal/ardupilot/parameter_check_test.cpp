@@ -48,9 +48,9 @@ TEST(ParameterCheck, SaysWhatIsWrongAndWhatToSet) {
             "FS_GCS_ENABL is 0, so the autopilot flies on when the companion falls silent; set it "
             "to 1 or 2");
   EXPECT_THAT(check.poll_finding(at_seconds(0.0)).value_or(""), HasSubstr("set it to 7"));
-  EXPECT_FALSE(check.poll_finding(at_seconds(20.0))) << "once";
-  EXPECT_TRUE(check.poll_finding(at_seconds(31.0))) << "who comes later is told, too";
-  EXPECT_THAT(check.due(at_seconds(40.0)), ElementsAre("FS_GCS_ENABL", "SYSID_MYGCS"));
+  EXPECT_FALSE(check.poll_finding(at_seconds(59.0))) << "once";
+  EXPECT_TRUE(check.poll_finding(at_seconds(61.0))) << "who comes later is told, too";
+  EXPECT_THAT(check.due(at_seconds(70.0)), ElementsAre("FS_GCS_ENABL", "SYSID_MYGCS"));
 }
 
 TEST(ParameterCheck, NoAnswerIsSaidAfterSeveralQuestions) {

@@ -41,6 +41,8 @@ constexpr const char* kFooter =
     "                        in flight it comes back armed and in LOITER\n"
     "  silent on|off         it sends nothing, but hears and flies on\n"
     "  position lost|good    the navigation filter\n"
+    "  prearm REASON         it would not arm, and says why: 'PreArm: REASON'; without a reason:\n"
+    "                        it would again\n"
     "\n"
     "Standard output says 'ready' once it is on the bus. It ends with status 0 on SIGINT or\n"
     "SIGTERM; 2 means bad arguments, 3 that the bus cannot be used.";
@@ -90,6 +92,10 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--serial", t.serial, "Number of the serial port")
       ->check(CLI::Range(0, 15))
       ->capture_default_str();
+  app.add_flag("--no-serial{false}", c.serial_port,
+               "Without serial ports over CAN (CAN_D1_UC_SER_EN 0)");
+  app.add_flag("--no-mavlink{false}", c.mavlink,
+               "Its serial port speaks no MAVLink (CAN_D1_UC_S1_PRO -1)");
   app.add_flag("--fd", c.fd, "Send CAN FD frames");
   app.add_option("--system", t.system, "Its MAVLink system")
       ->check(CLI::Range(1, 255))
@@ -99,6 +105,9 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
       ->check(CLI::Range(1, 255));
   app.add_flag("--failsafe", c.companion_failsafe,
                "RTL 5 s after the last heartbeat of the companion");
+  app.add_option("--without", c.unknown_parameters,
+                 "A parameter that it does not know, such as FS_LONG_ACTN; several times, if need "
+                 "be");
   app.add_option("--airframe", t.airframe, "The kind of aircraft")
       ->check(CLI::IsMember({"plane", "copter"}))
       ->capture_default_str();

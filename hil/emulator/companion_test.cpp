@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -55,9 +56,11 @@ class WireBus final : public can::Bus {
 
 class Bench {
  public:
-  explicit Bench(const EmulatorConfig& config)
+  explicit Bench(const EmulatorConfig& config) : Bench{config, config} {}
+  /// With a companion that looks for another one.
+  Bench(const EmulatorConfig& config, const EmulatorConfig& expected)
       : controller_{EmulatedFlightController::make(config, Instant{}).value()},
-        link_{std::make_unique<WireBus>(up_, down_), params(config),
+        link_{std::make_unique<WireBus>(up_, down_), params(expected),
               MissionOrigin::make(kOrigin).value(), Instant{}} {}
 
   void run(double seconds) {
@@ -208,6 +211,128 @@ TEST(CompanionAndEmulator, ACopterIsFlown) {
   EXPECT_NEAR(bench.state().groundspeed_mps, 5.0, 0.7) << bench.log();
   EXPECT_NEAR(degrees(bench.state().course_rad), 0.0, 8.0);
   EXPECT_NEAR(bench.state().z_m, 30.0, 1.5);
+}
+
+/// How often the log has that.
+int count(const std::string& log, const std::string& what) {
+  int n = 0;
+  for (auto at = log.find(what); at != std::string::npos; at = log.find(what, at + 1)) ++n;
+  return n;
+}
+
+// Bench's companion is node 42 and looks for node 10, system 1.
+struct Misfit {
+  const char* what;
+  std::function<void(EmulatorConfig&)> make;
+  const char* said;
+};
+
+class NothingIsSilent : public ::testing::TestWithParam<Misfit> {};
+
+TEST_P(NothingIsSilent, ItIsToldWithinFiveSecondsWithItsRemedyAndOnceAMinute) {
+  EmulatorConfig config = plane_in_wind();
+  GetParam().make(config);
+  Bench bench{config, {}};
+  bench.run(5.0);
+  EXPECT_EQ(count(bench.log(), GetParam().said), 1) << bench.log();
+  ASSERT_FALSE(bench.companion().troubles().empty());
+  EXPECT_NE(wording::text_of(bench.companion().troubles().front()).find(GetParam().said),
+            std::string::npos);
+  bench.run(53.0);
+  EXPECT_EQ(count(bench.log(), GetParam().said), 1) << bench.log();
+  bench.run(10.0);
+  EXPECT_EQ(count(bench.log(), GetParam().said), 2) << bench.log();
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CompanionAndEmulator, NothingIsSilent,
+    ::testing::Values(
+        Misfit{"WrongNode", [](EmulatorConfig& c) { c.node_id = 11; },
+               "heard are: 11 (its serial port is for node 42). Set flight_controller.node_id"},
+        Misfit{"NoSerial", [](EmulatorConfig& c) { c.serial_port = false; },
+               "set CAN_D1_UC_SER_EN 1, CAN_D1_UC_S1_NOD 42, CAN_D1_UC_S1_IDX 0, "
+               "CAN_D1_UC_S1_PRO 2 and reboot it"},
+        Misfit{"ForAnother", [](EmulatorConfig& c) { c.companion_node = 43; },
+               "for node 43 (port 0): set CAN_D1_UC_SER_EN 1, CAN_D1_UC_S1_NOD 42"},
+        Misfit{"AnotherPort", [](EmulatorConfig& c) { c.serial_id = 1; },
+               "for node 42 (port 1): set"},
+        Misfit{"NoMavlink", [](EmulatorConfig& c) { c.mavlink = false; },
+               "no HEARTBEAT comes through it: set CAN_D1_UC_S1_PRO 2"},
+        Misfit{"OtherSystem", [](EmulatorConfig& c) { c.system_id = 7; },
+               "set flight_controller.system_id to 7"},
+        Misfit{"WrongAirframe",
+               [](EmulatorConfig& c) {
+                 c.airframe = Airframe::copter;
+                 c.airspeed_mps = 10.0;
+               },
+               "mend the airframe in the configuration"},
+        Misfit{"NoParameter", [](EmulatorConfig& c) { c.unknown_parameters = {"FS_LONG_ACTN"}; },
+               "it does not tell FS_LONG_ACTN, which must be 1"}),
+    [](const auto& tested) { return std::string{tested.param.what}; });
+
+TEST(CompanionAndEmulator, ASilentBusIsTold) {
+  Bench bench{plane_in_wind()};
+  bench.interfere("silent on");
+  bench.run(5.0);
+  EXPECT_EQ(count(bench.log(), "not one frame comes from the bus wire"), 1) << bench.log();
+  bench.interfere("silent off");
+  ASSERT_TRUE(bench.run_until(State::flying, 5.0)) << bench.log();
+  bench.run(1.0);
+  EXPECT_TRUE(bench.companion().troubles().empty());
+}
+
+TEST(CompanionAndEmulator, ARestartIsNoTroubleOfTheLink) {
+  Bench bench{plane_in_wind()};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.run(5.0);  // that its uptime goes back is seen
+  bench.interfere("reboot");
+  bench.run(15.0);
+  EXPECT_EQ(count(bench.log(), "Set "), 0) << bench.log();
+  EXPECT_EQ(count(bench.log(), "set "), 0) << bench.log();
+}
+
+TEST(CompanionAndEmulator, WhyItWouldNotArmIsToldOnceAndForgottenOnceItWould) {
+  EmulatorConfig config = plane_in_wind();
+  config.airborne = false;
+  config.height_m = 0.0;
+  Bench bench{config};
+  ASSERT_TRUE(bench.run_until(State::standing_by, 10.0)) << bench.log();
+  bench.interfere("prearm Compass not calibrated");
+  bench.run(3.0);
+  const std::string said = "the autopilot would not arm: Compass not calibrated";
+  EXPECT_EQ(count(bench.log(), said), 1) << bench.log();
+  bench.run(100.0);
+  EXPECT_EQ(count(bench.log(), said), 1) << bench.log();
+  ASSERT_EQ(bench.companion().troubles().size(), 1U);
+  EXPECT_EQ(bench.companion().troubles().front().news, AutopilotNews::pre_arm);
+  bench.interfere("prearm Battery low");
+  bench.run(3.0);
+  bench.interfere("prearm");
+  bench.run(2.0);
+  EXPECT_TRUE(bench.companion().troubles().empty());
+  bench.interfere("prearm Compass not calibrated");
+  bench.run(40.0);
+  EXPECT_EQ(count(bench.log(), said), 2) << bench.log();
+}
+
+TEST(CompanionAndEmulator, ALinkThatFlapsIsNoNewTakeover) {
+  Bench bench{plane_in_wind()};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.interfere("mode LOITER");
+  ASSERT_TRUE(bench.run_until(State::piloted, 1.0)) << bench.log();
+  bench.run(0.5);
+  const Instant word = bench.now();  // of the operator: it takes its time to come here
+  for (int i = 0; i < 5; ++i) {
+    bench.interfere("silent on");
+    ASSERT_TRUE(bench.run_until(State::lost, 1.0)) << bench.log();
+    bench.interfere("silent off");
+    ASSERT_TRUE(bench.run_until(State::piloted, 1.0)) << bench.log();
+  }
+  EXPECT_EQ(count(bench.log(), "the mode was changed to LOITER by the pilot"), 1) << bench.log();
+  EXPECT_EQ(count(bench.log(), "still, in LOITER"), 5) << bench.log();
+  EXPECT_TRUE(bench.companion().give_back(bench.now(), word)) << bench.log();
+  EXPECT_TRUE(bench.run_until(State::flying, 3.0)) << bench.log();
 }
 
 }  // namespace

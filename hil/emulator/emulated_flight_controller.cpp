@@ -91,6 +91,7 @@ struct EmulatedFlightController::State {
     if (const auto reason = autopilot::arming_refusal(health)) return std::string{*reason};
     if (!vehicle->report().mode_armable) return std::string{autopilot::kRtlNotArmable};
     if (!duplicate.empty()) return duplicate;
+    if (!reason.empty()) return reason;
     for (const dronecan::RemoteNode& other : link->node.others()) {
       if (other.online && (other.status.health != dronecan::Health::ok ||
                            other.status.mode != dronecan::Mode::operational)) {
@@ -110,7 +111,7 @@ struct EmulatedFlightController::State {
       vehicle->restart(t);
     }
     vehicle->control(t);
-    if (t < mavlink_from) return;
+    if (t < mavlink_from || !config.serial_port || !config.mavlink) return;
     if (!link->mavlink) {
       link->mavlink.emplace(config, earth, *vehicle, link->port, booted, t);
     }
@@ -132,6 +133,7 @@ struct EmulatedFlightController::State {
   autopilot::Health health;
   std::map<std::uint8_t, dronecan::UniqueId> nodes;  ///< kept over restarts, as ArduPilot does
   std::string duplicate;
+  std::string reason;  ///< not to arm, from outside
   bool silent = false;
   mavlink::Encoder truth_encoder{config.system_id, mavlink::kComponentAutopilot};
 };
@@ -178,14 +180,16 @@ void EmulatedFlightController::step(Instant now) {
   }
   if (!s.link) return;
   s.watch_nodes();
-  s.link->port.step(s.link->node, now);
+  if (s.config.serial_port) s.link->port.step(s.link->node, now);
   s.link->node.step(now);
 }
 
 Instant EmulatedFlightController::next_timeout() const {
   const State& s = *state_;
   if (!s.link) return s.next_period;
-  return std::min({s.next_period, s.link->port.next_timeout(), s.link->node.next_timeout()});
+  const Instant node = s.link->node.next_timeout();
+  if (!s.config.serial_port) return std::min(s.next_period, node);
+  return std::min({s.next_period, s.link->port.next_timeout(), node});
 }
 
 std::span<const can::Frame> EmulatedFlightController::front() {
@@ -221,6 +225,10 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
     s.vehicle->set_health(s.health);
     return {};
   }
+  if (verb == "prearm") {
+    s.reason = word;
+    return {};
+  }
   if (verb == "reboot" && !is_word) {
     s.restart(now);
     return {};
@@ -229,7 +237,7 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
   if (!is_arming && (verb != "mode" || !is_word)) {
     return Error{
         fmt::format("'{}': not one of mode NAME, arm, disarm, reboot, silent on|off, "
-                    "position lost|good",
+                    "position lost|good, prearm REASON",
                     line)};
   }
   if (!s.link || !s.link->mavlink) return Error{fmt::format("'{}': the autopilot restarts", line)};

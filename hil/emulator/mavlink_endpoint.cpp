@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 
+#include "skein/base/angles.hpp"
+
 namespace skein::hil {
 namespace {
 
@@ -165,6 +167,10 @@ CommandResult MavlinkEndpoint::obey(const mavlink::CommandInt& command, Instant 
       return set_mode(command);
     case Command::component_arm_disarm:
       return arm_or_disarm(command);
+    case Command::run_prearm_checks:
+      if (vehicle_.report().armed) return CommandResult::temporarily_rejected;
+      refusal_told_at_ = now;
+      return CommandResult::accepted;
     case Command::set_message_interval:
       return set_interval(command, now);
     case Command::get_message_interval:
@@ -259,23 +265,35 @@ CommandResult MavlinkEndpoint::restart(const mavlink::CommandInt& command, Insta
 /// Those that it keeps to; of others it says nothing, as ArduPilot of those that it does not know.
 void MavlinkEndpoint::tell_parameter(std::string_view name) {
   const bool is_plane = config_.airframe == Airframe::plane;
-  const float failsafe = config_.companion_failsafe ? 1.0F : 0.0F;
-  const std::array<std::pair<std::string_view, float>, 4> parameters{{
-      {"SYSID_THISMAV", config_.system_id},
-      {"SYSID_MYGCS", config_.companion_system},
+  const double failsafe = config_.companion_failsafe ? 1.0 : 0.0;
+  struct Parameter {
+    std::string_view name;
+    double value = 0.0;
+    mavlink::ParamType type = mavlink::ParamType::int8;
+  };
+  constexpr auto kReal = mavlink::ParamType::real32;
+  const std::array<Parameter, 8> parameters{{
+      {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
+      {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
       {is_plane ? "FS_LONG_ACTN" : "", failsafe},  // RTL, or none
+      {is_plane ? "ROLL_LIMIT_DEG" : "", degrees(bank_limit_rad(config_)), kReal},
+      {is_plane ? "AIRSPEED_MIN" : "", config_.airspeed_min_mps, kReal},
+      {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
+      {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
   }};
-  for (const auto& [known, value] : parameters) {
-    if (name.empty() || name != known) continue;
-    mavlink::ParamValue answer;
-    answer.param_value = value;
-    answer.param_count = static_cast<std::uint16_t>(parameters.size());
-    answer.param_index = 0xFFFF;  // it was asked for by its name
-    answer.param_id = mavlink::field_of<16>(name);
-    answer.param_type = 2;  // MAV_PARAM_TYPE_INT8
-    send(encoder_.encode(answer));
+  const auto known = std::ranges::find(parameters, name, &Parameter::name);
+  if (name.empty() || known == parameters.end() ||
+      std::ranges::find(config_.unknown_parameters, name) != config_.unknown_parameters.end()) {
+    return;
   }
+  mavlink::ParamValue answer;
+  answer.param_value = static_cast<float>(known->value);
+  answer.param_count = static_cast<std::uint16_t>(parameters.size());
+  answer.param_index = 0xFFFF;  // it was asked for by its name
+  answer.param_id = mavlink::field_of<16>(name);
+  answer.param_type = static_cast<std::uint8_t>(known->type);
+  send(encoder_.encode(answer));
 }
 
 void MavlinkEndpoint::on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet,

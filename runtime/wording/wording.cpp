@@ -215,7 +215,8 @@ constexpr std::array kAutopilotNews{
     std::string_view{"the aircraft cannot be given to the companion: {refusal}"},
     std::string_view{"given back on the ground"},
     std::string_view{"an autopilot of system {number} is on the line, and not heeded: the "
-                     "configuration names {detail}"},
+                     "configuration names {detail}; if it is this aircraft's, set "
+                     "flight_controller.system_id to {number}, or SYSID_THISMAV"},
     std::string_view{"the autopilot is of make {number}, not an ArduPilot (3); choose another kind "
                      "of flight controller"},
     std::string_view{"the autopilot flies an aircraft of MAV_TYPE {number}, which is no {detail}; "
@@ -226,6 +227,26 @@ constexpr std::array kAutopilotNews{
     std::string_view{"the autopilot refuses {detail}"},
     std::string_view{"the aircraft is not flown with the autopilot's parameters: {detail}"},
     std::string_view{"a parameter of the autopilot was changed: {detail}"},
+    std::string_view{"not one frame comes from the bus {detail}: check the interface "
+                     "(flight_controller.can), power, cable, terminators and bit rate "
+                     "(CAN_P1_BITRATE)"},
+    std::string_view{"no node {number} is on the bus; heard are: {detail}. Set "
+                     "flight_controller.node_id, or the autopilot's CAN_D1_UC_NODE to {number}"},
+    std::string_view{"node {number} has no serial port for this companion: set {detail} and reboot "
+                     "it"},
+    std::string_view{"the flight controller's serial port over CAN is for node {detail} and reboot "
+                     "it"},
+    std::string_view{"the serial port of node {number} answers, but no HEARTBEAT comes through it: "
+                     "set CAN_D1_UC_S1_PRO 2 and reboot it; if it is, the autopilot does not "
+                     "start"},
+    std::string_view{"the autopilot has not told {detail}, and is not flown before: do its sensors "
+                     "start?"},
+    std::string_view{
+        "the autopilot's GNSS or its filter is missing or not healthy: the aircraft is "
+        "neither taken nor launched until it knows where it is"},
+    std::string_view{"the autopilot would not arm: {detail}"},
+    std::string_view{"the autopilot is heard again; the pilot or a failsafe has it still, in "
+                     "{detail}"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 

@@ -5,8 +5,10 @@
 #include <atomic>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skein/ardupilot/can_link.hpp"
 #include "skein/hal/flight_controller.hpp"
@@ -44,6 +46,8 @@ class CanFlightController final : public hal::FlightController {
   /// The autopilot's mode, and what the companion is about where it does not fly: "LOITER,
   /// piloted".
   [[nodiscard]] std::string mode();
+  /// What keeps the aircraft from being flown now, as sentences.
+  [[nodiscard]] std::vector<std::string> problems() const;
 
  private:
   struct Mode {
@@ -60,6 +64,9 @@ class CanFlightController final : public hal::FlightController {
   Mode told_mode_;                               ///< CAN's
   Mode newest_mode_;                             ///< the agent's
   void tell_mode();
+  void tell_troubles();
+  mutable std::mutex troubles_mutex_;  ///< CAN to agent, of a copy that seldom changes
+  std::vector<AutopilotNotice> troubles_;
   std::atomic<hal::Airborne> airborne_{hal::Airborne::unknown};  ///< CAN to control
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued

@@ -14,6 +14,8 @@
 
 namespace skein::ardupilot {
 
+class LinkWatch;
+
 struct CanLinkParams {
   CompanionParams companion;
   std::uint8_t node_id = 10;            ///< of the flight controller: CAN_D1_UC_NODE
@@ -27,6 +29,7 @@ class CanLink {
  public:
   CanLink(std::unique_ptr<can::Bus> bus, const CanLinkParams& params, const MissionOrigin& origin,
           Instant now);
+  ~CanLink();
 
   /// Takes what has come, decides, and sends. To be called when descriptor() is readable, and every
   /// 10 ms or so. Precondition: `now` never decreases.
@@ -45,12 +48,14 @@ class CanLink {
   void receive(Instant now);
   void on_transfer(const dronecan::Transfer& transfer, Instant now);
   void transmit(Instant now);
+  void watch(Instant now);
 
   CanLinkParams params_;
   std::unique_ptr<can::Bus> bus_;
   dronecan::Node node_;
   dronecan::TunnelPort port_;
   Companion companion_;
+  std::unique_ptr<LinkWatch> watch_;
   std::optional<std::uint32_t> uptime_s_;  ///< of the flight controller, as heard last
   std::uint64_t transfers_dropped_ = 0;
 };

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skein/ardupilot/motion.hpp"
 #include "skein/base/frames.hpp"
@@ -117,6 +118,8 @@ class Companion {
   void on_reboot(Instant now);
   /// A sign that two nodes on the bus have that id: ours or the flight controller's.
   void on_duplicate(std::uint8_t node_id, Instant now);
+  /// What is wrong between the bus and the autopilot's MAVLink, while it is.
+  void on_link_trouble(std::optional<AutopilotNotice> trouble);
 
   /// Flown while the state is `flying`; the last one stands until it is too old. A position is
   /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kLandFrom_m
@@ -146,6 +149,16 @@ class Companion {
   [[nodiscard]] std::string mode() const;
   /// Armed or in the air, by what the autopilot says now; nothing while none is heard.
   [[nodiscard]] std::optional<bool> in_use() const;
+  /// What keeps the aircraft from being flown, as it stands; the notices have it too, when it comes
+  /// up and each minute from then on.
+  [[nodiscard]] const std::vector<AutopilotNotice>& troubles() const;
+  struct Heard {
+    std::uint8_t system = 0;
+    Instant at;
+  };
+  /// The newest HEARTBEAT of our autopilot, and of another's.
+  [[nodiscard]] std::optional<Heard> heartbeat() const;
+  [[nodiscard]] std::optional<Heard> other_heartbeat() const;
   [[nodiscard]] bool may_send() const { return state() != State::duplicated; }
   /// Events that the table had no entry for.
   [[nodiscard]] std::uint64_t protocol_errors() const;

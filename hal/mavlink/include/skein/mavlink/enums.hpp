@@ -16,6 +16,7 @@ enum class Command : std::uint16_t {
   nav_return_to_launch = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_alt = 31,
   do_set_mode = 176, do_change_speed = 178, do_set_home = 179, do_change_altitude = 186,
   do_land_start = 189, do_reposition = 192, mission_start = 300, component_arm_disarm = 400,
+  run_prearm_checks = 401,
   get_home_position = 410, get_message_interval = 510, set_message_interval = 511,
   request_message = 512, request_autopilot_capabilities = 520, preflight_reboot_shutdown = 246,
   do_set_mission_current = 224,

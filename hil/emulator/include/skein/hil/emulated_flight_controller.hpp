@@ -48,6 +48,7 @@ class EmulatedFlightController {
   ///   reboot                the autopilot restarts: 1.2 s off the bus, MAVLink after 5.2 s
   ///   silent on|off         it sends nothing, but hears and flies on
   ///   position lost|good    the navigation filter
+  ///   prearm REASON         it would not arm, and says why; without a reason: it would again
   /// Fails with what is wrong with the line, or what the autopilot refused.
   [[nodiscard]] Result<void> interfere(std::string_view line, Instant now);
 

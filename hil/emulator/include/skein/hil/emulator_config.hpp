@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "skein/base/frames.hpp"
 #include "skein/base/geometry.hpp"
@@ -23,10 +24,13 @@ struct EmulatorConfig {
   std::uint8_t node_id = 10;          ///< DroneCAN, 1..127
   std::uint8_t companion_node = 42;   ///< CAN_D1_UC_S1_NOD: who may use the serial port
   std::int8_t serial_id = 0;          ///< CAN_D1_UC_S1_IDX, 0..15
+  bool serial_port = true;            ///< CAN_D1_UC_SER_EN
+  bool mavlink = true;                ///< CAN_D1_UC_S1_PRO 2; else the port is there, and empty
   bool fd = false;                    ///< sends CAN FD frames
   std::uint8_t system_id = 1;         ///< MAVLink
   std::uint8_t companion_system = 1;  ///< SYSID_MYGCS: whose heartbeat the failsafe waits for
   bool companion_failsafe = false;    ///< FS_GCS_ENABL and FS_LONG_ACTN; a companion needs them
+  std::vector<std::string> unknown_parameters;  ///< those that it says nothing of
 
   Wgs84 origin;                 ///< of the frame in which `start` is given
   Pose2 start;                  ///< mission frame

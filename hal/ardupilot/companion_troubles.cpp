@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "companion_impl.hpp"
+
+/// What keeps an aircraft on the ground, and that somebody learns of it.
+namespace skein::ardupilot {
+namespace {
+
+constexpr Duration kLookPeriod = std::chrono::milliseconds{250};
+constexpr Duration kPatience = std::chrono::seconds{5};  ///< with what ought to come at once
+constexpr Duration kReasonsAgain = std::chrono::seconds{30};
+
+}  // namespace
+
+void Companion::Impl::watch_troubles(Instant now) {
+  if (now < troubles_at_) return;
+  troubles_at_ = now + kLookPeriod;
+  if (navigation_healthy() || !machine_.in(State::standing_by)) position_good_at_ = now;
+  if (fails_pre_arm() && (!reasons_asked_at_ || now - *reasons_asked_at_ >= kReasonsAgain)) {
+    reasons_asked_at_ = now;
+    ask(command_of(mavlink::Command::run_prearm_checks), {1, Patience{}.each}, true);
+  }
+  if (armed_) pre_arm_.clear();
+  pre_arm_.expire(now);
+  for (AutopilotNotice& trouble : troubles_.update(troubles_now(now), now)) {
+    say(true, std::move(trouble), now);
+  }
+}
+
+bool Companion::Impl::fails_pre_arm() const {
+  return machine_.in(State::standing_by) && !armed_ && !airborne() && !custody_.by_others() &&
+         sensors_ && (sensors_->enabled & ~sensors_->healthy & mavlink::sensor_prearm_check) != 0;
+}
+
+std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
+  if (machine_.in(State::duplicated)) {
+    return {{.news = AutopilotNews::duplicate_node, .number = duplicate_node_}};
+  }
+  std::vector<AutopilotNotice> all;
+  std::vector<std::string> safety_findings = parameters_.findings();
+  std::vector<std::string> limit_findings = limits_.findings();
+  if (link_trouble_) all.push_back(*link_trouble_);
+  if (machine_.in(State::refused) && wrong_) all.push_back(*wrong_);
+  if (machine_.in(State::preparing) && now - entry_.at >= kPatience) {
+    if (auto missing = not_told(); !missing.empty()) {
+      all.push_back({.news = AutopilotNews::not_told, .detail = std::move(missing)});
+    }
+  }
+  const auto parameters = machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
+                                                        : AutopilotNews::parameter_changed;
+  for (auto* findings : {&safety_findings, &limit_findings}) {
+    for (std::string& finding : *findings) {
+      all.push_back({.news = parameters, .detail = std::move(finding)});
+    }
+  }
+  if (now - position_good_at_ >= kPatience) all.push_back({AutopilotNews::no_position});
+  for (const auto& reason : pre_arm_.texts()) {
+    all.push_back({.news = AutopilotNews::pre_arm, .detail = reason.text});
+  }
+  return all;
+}
+
+std::string Companion::Impl::not_told() const {
+  if (!sensors_) return "its health (SYS_STATUS)";
+  if (!motion_.sample()) return "where it is (ATTITUDE, GLOBAL_POSITION_INT, VFR_HUD)";
+  return {};
+}
+
+}  // namespace skein::ardupilot

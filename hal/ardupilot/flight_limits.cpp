@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/flight_limits.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "skein/base/angles.hpp"
+#include "skein/base/attitude.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using Verdict = LimitFinding::Verdict;
+
+constexpr std::array kPlane{kRollLimit, kAirspeedMin, kAirspeedMax, kAirspeedCruise};
+/// Parameters are floats, and people round.
+constexpr double kSlack = 1e-3;
+/// The autopilot returns home by itself at its own cruise airspeed.
+constexpr double kCruiseOff_mps = 2.0;
+
+/// In the unit of the name that the autopilot knows.
+std::string number(const LimitParameter& parameter, std::string_view name, double value) {
+  const bool is_older = name == parameter.older_name;
+  return fmt::format("{:.{}f}", is_older ? value / parameter.older_unit : value,
+                     is_older && parameter.older_unit < 1.0 ? 0 : 1);
+}
+
+LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, double limit_deg,
+                        std::string found) {
+  const double v2 = vehicle.cruise_speed_mps * vehicle.cruise_speed_mps;
+  const double radius_m = limit_deg <= 0.0
+                              ? INFINITY
+                              : v2 / (kGravity_mps2 * std::tan(radians(std::min(limit_deg, 89.0))));
+  found +=
+      fmt::format(": at {:g} m/s it turns within {:.0f} m", vehicle.cruise_speed_mps, radius_m);
+  if (radius_m <= vehicle.turn_radius_m * (1.0 + kSlack)) return {Verdict::good, found, {}};
+  const double needed_deg =
+      std::ceil(degrees(std::atan(v2 / (kGravity_mps2 * vehicle.turn_radius_m))));
+  return {Verdict::refused, found,
+          fmt::format("turn_radius_m is {:g}: set {} to {}, if the airframe bears it, or "
+                      "turn_radius_m to {:.0f} or more",
+                      vehicle.turn_radius_m, name, number(kRollLimit, name, needed_deg),
+                      std::ceil(radius_m))};
+}
+
+}  // namespace
+
+std::span<const LimitParameter> limit_parameters(Airframe airframe) {
+  if (airframe == Airframe::plane) return kPlane;
+  return {};
+}
+
+LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& parameter,
+                         std::string_view name, double value) {
+  const std::string found = fmt::format("{} is {:g}", name, value);
+  const double si = name == parameter.older_name ? value * parameter.older_unit : value;
+  const auto set = [&](double wanted) { return number(parameter, name, wanted); };
+  if (!std::isfinite(si)) return {Verdict::refused, found, fmt::format("set {} anew", name)};
+  if (parameter.name == kRollLimit.name) return judge_roll(vehicle, name, si, found);
+  if (parameter.name == kAirspeedMin.name && si > vehicle.speed_min_mps * (1.0 + kSlack)) {
+    return {Verdict::refused, found,
+            fmt::format("the autopilot flies no slower, and speed_min_mps is {:g}: set {} to {} or "
+                        "less, if the airframe bears it, or speed_min_mps to {:g} or more",
+                        vehicle.speed_min_mps, name, set(vehicle.speed_min_mps), si)};
+  }
+  if (parameter.name == kAirspeedMax.name && si < vehicle.speed_max_mps * (1.0 - kSlack)) {
+    return {Verdict::refused, found,
+            fmt::format("the autopilot flies no faster, and speed_max_mps is {:g}: set {} to {} or "
+                        "more, if the airframe bears it, or speed_max_mps to {:g} or less",
+                        vehicle.speed_max_mps, name, set(vehicle.speed_max_mps), si)};
+  }
+  if (parameter.name == kAirspeedCruise.name &&
+      std::abs(si - vehicle.cruise_speed_mps) > kCruiseOff_mps) {
+    return {Verdict::differs, found,
+            fmt::format("cruise_speed_mps is {:g}, and by itself it returns home at its own: set "
+                        "{} to {}, or cruise_speed_mps to {:g}",
+                        vehicle.cruise_speed_mps, name, set(vehicle.cruise_speed_mps), si)};
+  }
+  return {Verdict::good, found, {}};
+}
+
+}  // namespace skein::ardupilot

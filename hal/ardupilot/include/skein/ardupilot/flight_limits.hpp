@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "skein/domain/vehicle.hpp"
+
+namespace skein::ardupilot {
+
+/// A parameter of an ArduPlane that limits what may be asked of it, in SI units but for degrees.
+struct LimitParameter {
+  std::string_view name;
+  std::string_view older_name;
+  double older_unit = 1.0;  ///< what 1 of the older one is
+};
+inline constexpr LimitParameter kRollLimit{"ROLL_LIMIT_DEG", "LIM_ROLL_CD", 0.01};
+inline constexpr LimitParameter kAirspeedMin{"AIRSPEED_MIN", "ARSPD_FBW_MIN"};
+inline constexpr LimitParameter kAirspeedMax{"AIRSPEED_MAX", "ARSPD_FBW_MAX"};
+inline constexpr LimitParameter kAirspeedCruise{"AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 0.01};
+/// Those of an airframe: a copter has none.
+[[nodiscard]] std::span<const LimitParameter> limit_parameters(Airframe airframe);
+
+/// What a vehicle's configuration asks of a parameter.
+struct LimitFinding {
+  enum class Verdict : std::uint8_t { good, differs, refused };
+  Verdict verdict = Verdict::good;
+  std::string found;   ///< what the autopilot has
+  std::string remedy;  ///< which number to change, and to what; empty where it is good
+};
+/// `name` is the one that the autopilot answered by, `value` as it told it. A circle is flown where
+/// V^2 / (g tan(roll limit)) is no more than its radius.
+[[nodiscard]] LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& parameter,
+                                       std::string_view name, double value);
+
+}  // namespace skein::ardupilot

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "limit_check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "companion_line.hpp"
+
+namespace skein::ardupilot {
+namespace {
+
+using State = Companion::State;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+// test_vehicle(): 50 m/s within 150 m takes 59.5 degrees; 42.5 to 57.5 m/s.
+
+TEST(LimitCheck, AsksByBothNamesUntilItIsTold) {
+  LimitCheck check{test_vehicle(), Airframe::plane};
+  EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(8));
+  check.on_value("LIM_ROLL_CD", 6000.0F);
+  check.on_value("AIRSPEED_MIN", 40.0F);
+  check.on_value("AIRSPEED_MAX", 60.0F);
+  EXPECT_FALSE(check.good());
+  EXPECT_THAT(check.due(at_seconds(1.0)), ElementsAre("AIRSPEED_CRUISE", "TRIM_ARSPD_CM"));
+  check.on_value("TRIM_ARSPD_CM", 5000.0F);
+  EXPECT_TRUE(check.good());
+  EXPECT_THAT(check.due(at_seconds(2.0)), IsEmpty());
+}
+
+TEST(LimitCheck, WhatAFirmwareDoesNotKnowKeepsNobodyOnTheGround) {
+  LimitCheck check{test_vehicle(), Airframe::plane};
+  int questions = 0;
+  for (double t = 0.0; !check.good(); t += 0.1) {
+    questions += check.due(at_seconds(t)).empty() ? 0 : 1;
+    ASSERT_LT(t, 5.0);
+  }
+  EXPECT_EQ(questions, 4);
+  LimitCheck copter{test_vehicle(), Airframe::copter};
+  EXPECT_TRUE(copter.good());
+}
+
+TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {
+  LimitCheck check{test_vehicle(), Airframe::plane};
+  check.on_value("ROLL_LIMIT_DEG", 45.0F);
+  EXPECT_EQ(check.poll_finding(at_seconds(0.0)),
+            "ROLL_LIMIT_DEG is 45: at 50 m/s it turns within 255 m; turn_radius_m is 150: set "
+            "ROLL_LIMIT_DEG to 60.0, if the airframe bears it, or turn_radius_m to 255 or more");
+  EXPECT_FALSE(check.poll_finding(at_seconds(59.0)));
+  EXPECT_TRUE(check.poll_finding(at_seconds(61.0)));
+  check.on_value("ROLL_LIMIT_DEG", std::numeric_limits<float>::quiet_NaN());
+  EXPECT_THAT(check.findings(), SizeIs(1));
+  check.on_value("ROLL_LIMIT_DEG", 60.0F);
+  EXPECT_THAT(check.findings(), IsEmpty());
+}
+
+TEST(CompanionLimits, NothingIsFlownUntilTheBankLimitAllowsTheTurns) {
+  Line line;
+  line.autopilot.parameters["ROLL_LIMIT_DEG"] = 45.0F;
+  line.run(5.0);
+  EXPECT_EQ(line.companion.state(), State::preparing);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("set ROLL_LIMIT_DEG to 60.0")));
+  line.autopilot.set_parameter("ROLL_LIMIT_DEG", 60.0F);
+  EXPECT_LT(line.until(State::flying, 5.0), std::chrono::seconds{5});
+}
+
+}  // namespace
+}  // namespace skein::ardupilot
