@@ -8,6 +8,7 @@
 #include <system_error>
 #include <vector>
 
+#include "check_command.hpp"
 #include "key_commands.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/network/carrier_process.hpp"
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
       "flies the vehicle's flight controller."};
   app.footer(
       "Examples:\n  skein-onboard --config vehicle-07.yaml\n  skein-onboard status\n"
-      "  skein-onboard enrol --id 7\n\n"
+      "  skein-onboard check --config vehicle-07.yaml\n  skein-onboard enrol --id 7\n\n"
       "The keys of the file are explained in docs/configuration.md. The process ends on\n"
       "SIGINT or SIGTERM with exit code 0; 2 means bad arguments or configuration, 3 that it\n"
       "could not start.");
@@ -149,11 +150,13 @@ int main(int argc, char** argv) {
                 "Only whether it may be in the air. Ends with 0 if so, with 1 on the ground, with "
                 "3 where there is no process, with 4 where it is not known");
   const onboard::KeyCommands keys{app};
+  const onboard::CheckCommand check{app};
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
   }
   if (keys.given()) return keys.run();
+  if (check.given()) return check.run();
   return asks.parsed() ? show_status(status) : fly(arguments);
 }
