@@ -39,7 +39,7 @@ LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, doubl
   const double needed_deg =
       std::ceil(degrees(std::atan(v2 / (kGravity_mps2 * vehicle.turn_radius_m))));
   return {Verdict::refused, found,
-          fmt::format("turn_radius_m is {:g}: set {} to {}, if the airframe bears it, or "
+          fmt::format("turn_radius_m is {:g}: set {} to {}, or "
                       "turn_radius_m to {:.0f} or more",
                       vehicle.turn_radius_m, name, number(kRollLimit, name, needed_deg),
                       std::ceil(radius_m))};
@@ -62,13 +62,13 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
   if (parameter.name == kAirspeedMin.name && si > vehicle.speed_min_mps * (1.0 + kSlack)) {
     return {Verdict::refused, found,
             fmt::format("the autopilot flies no slower, and speed_min_mps is {:g}: set {} to {} or "
-                        "less, if the airframe bears it, or speed_min_mps to {:g} or more",
+                        "less, or speed_min_mps to {:g} or more",
                         vehicle.speed_min_mps, name, set(vehicle.speed_min_mps), si)};
   }
   if (parameter.name == kAirspeedMax.name && si < vehicle.speed_max_mps * (1.0 - kSlack)) {
     return {Verdict::refused, found,
             fmt::format("the autopilot flies no faster, and speed_max_mps is {:g}: set {} to {} or "
-                        "more, if the airframe bears it, or speed_max_mps to {:g} or less",
+                        "more, or speed_max_mps to {:g} or less",
                         vehicle.speed_max_mps, name, set(vehicle.speed_max_mps), si)};
   }
   if (parameter.name == kAirspeedCruise.name &&

@@ -50,7 +50,7 @@ TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {
   check.on_value("ROLL_LIMIT_DEG", 45.0F);
   EXPECT_EQ(check.poll_finding(at_seconds(0.0)),
             "ROLL_LIMIT_DEG is 45: at 50 m/s it turns within 255 m; turn_radius_m is 150: set "
-            "ROLL_LIMIT_DEG to 60.0, if the airframe bears it, or turn_radius_m to 255 or more");
+            "ROLL_LIMIT_DEG to 60.0, or turn_radius_m to 255 or more");
   EXPECT_FALSE(check.poll_finding(at_seconds(59.0)));
   EXPECT_TRUE(check.poll_finding(at_seconds(61.0)));
   check.on_value("ROLL_LIMIT_DEG", std::numeric_limits<float>::quiet_NaN());

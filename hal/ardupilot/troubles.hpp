@@ -72,11 +72,12 @@ class PreArmTexts {
   /// It says all of them again each 30 s.
   static constexpr Duration kGoneAfter = std::chrono::seconds{70};
   static constexpr std::size_t kMax = 8;
+  static constexpr std::size_t kBytesMax = 150;
 
   [[nodiscard]] static bool is_one(std::string_view text) { return text.starts_with(kPrefix); }
   /// Precondition: is_one(text).
   [[nodiscard]] static std::string_view reason_of(std::string_view text) {
-    return text.substr(kPrefix.size());
+    return text.substr(kPrefix.size(), kBytesMax);
   }
   /// True where it is news.
   bool add(std::string_view text, Instant now) {
