@@ -34,7 +34,9 @@ TEST(LinkWatch, TellsTheLowestThatIsMissingAndGivesTheNextItsTime) {
     watch.on_frame(frame_of(10), at_seconds(i));
     const auto trouble = watch.trouble(at_seconds(i));
     EXPECT_EQ(trouble.has_value(), i == 25) << i;
-    if (trouble) EXPECT_EQ(trouble->news, AutopilotNews::no_serial_port);
+    if (trouble) {
+      EXPECT_EQ(trouble->news, AutopilotNews::no_serial_port);
+    }
   }
 }
 

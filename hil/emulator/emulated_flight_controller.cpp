@@ -91,7 +91,7 @@ struct EmulatedFlightController::State {
     if (const auto reason = autopilot::arming_refusal(health)) return std::string{*reason};
     if (!vehicle->report().mode_armable) return std::string{autopilot::kRtlNotArmable};
     if (!duplicate.empty()) return duplicate;
-    if (!reason.empty()) return reason;
+    if (!reason_given.empty()) return reason_given;
     for (const dronecan::RemoteNode& other : link->node.others()) {
       if (other.online && (other.status.health != dronecan::Health::ok ||
                            other.status.mode != dronecan::Mode::operational)) {
@@ -133,7 +133,7 @@ struct EmulatedFlightController::State {
   autopilot::Health health;
   std::map<std::uint8_t, dronecan::UniqueId> nodes;  ///< kept over restarts, as ArduPilot does
   std::string duplicate;
-  std::string reason;  ///< not to arm, from outside
+  std::string reason_given;  ///< not to arm, from outside
   bool silent = false;
   mavlink::Encoder truth_encoder{config.system_id, mavlink::kComponentAutopilot};
 };
@@ -226,7 +226,7 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
     return {};
   }
   if (verb == "prearm") {
-    s.reason = word;
+    s.reason_given = word;
     return {};
   }
   if (verb == "reboot" && !is_word) {
