@@ -188,7 +188,8 @@ TEST(Preflight, TheEpochMayBeNeitherFarAheadNorLongAgo) {
 }
 
 TEST(Preflight, TheInterfaceOfABusIsJudged) {
-  can::InterfaceFacts facts{.name = "can0"};
+  can::InterfaceFacts facts;
+  facts.name = "can0";
   EXPECT_FALSE(is_good(check_interface(facts)));
   facts.is_there = true;
   EXPECT_THAT(text_of(check_interface(facts)), HasSubstr("ip link set can0 up type can"));

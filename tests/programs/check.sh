@@ -42,6 +42,7 @@ version: 1
 vehicle: {id: 7, cruise_speed_mps: 50, speed_min_mps: 42, speed_max_mps: 58, turn_radius_m: 150,
   range_m: 40000, capabilities: [survey], sensor_radius_m: 300, height_m: 100}
 origin: {latitude_deg: 31.522062, longitude_deg: 105.044327, height_m: 480}
+start: {east_m: 0, north_m: 0, heading_deg: 90}
 search: [[2000, 0]]
 flight_controller: {kind: ardupilot, can: "$bus"$1}
 network: {address: 127.0.0.1, port: $((20000 + BASHPID % 10000)), peers: [{id: 0, address: 127.0.0.1, port: 19999}]}
