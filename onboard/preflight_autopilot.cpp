@@ -225,7 +225,7 @@ class Judge {
     if (!monitored || !known) {
       return warn("battery", "not measured", "set BATT_MONITOR; an empty one shows in flight only");
     }
-    const int percent = health.battery_remaining;
+    const int percent{health.battery_remaining};  // -1: not told
     const std::string found = fmt::format("{:.1f} V{}", health.voltage_battery / 1e3,
                                           percent < 0 ? "" : fmt::format(", {} %", percent));
     if ((health.onboard_control_sensors_health & mavlink::sensor_battery) == 0) {
@@ -247,6 +247,10 @@ class Judge {
           "arming",
           "it would arm, though it has said: " + fmt::format("{}", fmt::join(facts_.pre_arm, "; ")),
           "see to it");
+    }
+    if (facts_.only_mode_forbids_arming() &&
+        fc_.take_over == configuration::TakeOverKind::from_ground) {
+      return ok("arming", "it would arm in the mode that the companion asks for");
     }
     if (facts_.pre_arm.empty()) {
       return fail("arming", "it would not arm, and does not say why",

@@ -87,7 +87,8 @@ TEST(Preflight, ATurnThatTheBankLimitForbidsFailsAndNamesBothNumbers) {
   const Check roll = check_of("ROLL_LIMIT_DEG", facts);
   EXPECT_EQ(roll.verdict, Verdict::fail);
   EXPECT_EQ(roll.found, "ROLL_LIMIT_DEG is 30: at 20 m/s it turns within 71 m");
-  EXPECT_THAT(roll.remedy, HasSubstr("turn_radius_m is 60: set ROLL_LIMIT_DEG to 35.0"));
+  EXPECT_THAT(roll.remedy,
+              HasSubstr("turn_radius_m is 60: set ROLL_LIMIT_DEG to 40.0 (35.0 at least)"));
   EXPECT_THAT(roll.remedy, HasSubstr("turn_radius_m to 71 or more"));
 }
 
@@ -95,7 +96,8 @@ TEST(Preflight, AnOlderNameIsToldInItsOwnUnit) {
   AutopilotFacts facts = good();
   facts.parameters.erase("ROLL_LIMIT_DEG");
   facts.parameters["LIM_ROLL_CD"] = 3000.0;
-  EXPECT_THAT(check_of("LIM_ROLL_CD", facts).remedy, HasSubstr("set LIM_ROLL_CD to 3500"));
+  EXPECT_THAT(check_of("LIM_ROLL_CD", facts).remedy,
+              HasSubstr("set LIM_ROLL_CD to 4000 (3500 at least)"));
   facts.parameters.erase("AIRSPEED_CRUISE");
   facts.parameters["TRIM_ARSPD_CM"] = 2000.0;
   EXPECT_EQ(check_of("TRIM_ARSPD_CM", facts).verdict, Verdict::ok);
@@ -110,6 +112,18 @@ TEST(Preflight, SpeedsBeyondTheAutopilotsFail) {
   EXPECT_THAT(check_of("AIRSPEED_MAX", facts).remedy, HasSubstr("speed_max_mps to 22 or less"));
   facts.parameters["AIRSPEED_CRUISE"] = 16.0;
   EXPECT_EQ(check_of("AIRSPEED_CRUISE", facts).verdict, Verdict::warn);
+}
+
+TEST(Preflight, AModeThatForbidsArmingIsNoFaultWhereTheCompanionLaunches) {
+  AutopilotFacts facts = good();
+  facts.health->onboard_control_sensors_health &= ~mavlink::sensor_prearm_check;
+  facts.pre_arm = {"RTL mode not armable (switch to another mode)"};
+  configuration::VehicleConfig c = config();
+  EXPECT_EQ(check_of("arming", facts, c).verdict, Verdict::fail);
+  c.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
+  EXPECT_EQ(check_of("arming", facts, c).verdict, Verdict::ok);
+  facts.pre_arm.emplace_back("GPS 1: Bad fix");
+  EXPECT_EQ(check_of("arming", facts, c).verdict, Verdict::fail);
 }
 
 struct Fault {
@@ -184,7 +198,7 @@ TEST(Preflight, TheEpochMayBeNeitherFarAheadNorLongAgo) {
   EXPECT_EQ(at(60).verdict, Verdict::ok);
   EXPECT_EQ(at(-60).found, "the mission begins in 60 s");
   EXPECT_EQ(at(-7200).verdict, Verdict::warn);
-  EXPECT_EQ(at(30 * 86400).found, "the mission began 30 days ago");
+  EXPECT_EQ(at(std::int64_t{30} * 86400).found, "the mission began 30 days ago");
 }
 
 TEST(Preflight, TheInterfaceOfABusIsJudged) {

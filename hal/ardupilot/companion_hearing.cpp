@@ -281,9 +281,12 @@ void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
   if (!waits || !PreArmTexts::is_one(last_text_)) {
     say(false, {.news = AutopilotNews::text, .detail = last_text_}, now);
   } else if (text.id == 0 || text.text.back() == '\0') {  // else more of it is to come
-    const std::string_view reason = PreArmTexts::reason_of(last_text_);
-    if (pre_arm_.add(reason, now)) {
-      say(true, {.news = AutopilotNews::pre_arm, .detail = std::string{reason}}, now);
+    std::string reason = PreArmTexts::reason_of(last_text_);
+    // Who launches it puts it into another mode.
+    const bool leaves_mode =
+        params_.take_over == TakeOver::from_ground && PreArmTexts::is_of_mode(reason);
+    if (!leaves_mode && pre_arm_.add(reason, now)) {
+      say(true, {.news = AutopilotNews::pre_arm, .detail = std::move(reason)}, now);
     }
   }
   if (warning && refusal_) report_refusal(now);

@@ -6,7 +6,7 @@ namespace skein::ardupilot {
 namespace {
 
 constexpr Duration kLookPeriod = std::chrono::milliseconds{250};
-constexpr Duration kPatience = std::chrono::seconds{5};  ///< with what ought to come at once
+constexpr Duration kPatience = std::chrono::seconds{4};  ///< with what ought to come at once
 constexpr Duration kReasonsAgain = std::chrono::seconds{30};
 
 }  // namespace
@@ -27,8 +27,9 @@ void Companion::Impl::watch_troubles(Instant now) {
 }
 
 bool Companion::Impl::fails_pre_arm() const {
-  return machine_.in(State::standing_by) && !armed_ && !airborne() && !custody_.by_others() &&
-         sensors_ && (sensors_->enabled & ~sensors_->healthy & mavlink::sensor_prearm_check) != 0;
+  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by);
+  return waits && !armed_ && !airborne() && !custody_.by_others() && sensors_ &&
+         (sensors_->enabled & ~sensors_->healthy & mavlink::sensor_prearm_check) != 0;
 }
 
 std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {

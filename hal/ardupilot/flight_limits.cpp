@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -17,6 +18,9 @@ using Verdict = LimitFinding::Verdict;
 constexpr std::array kPlane{kRollLimit, kAirspeedMin, kAirspeedMax, kAirspeedCruise};
 /// Parameters are floats, and people round.
 constexpr double kSlack = 1e-3;
+/// Of bank, over that of a steady turn: an aircraft slips, and rolls past before it settles.
+constexpr double kBankReserve_deg = 5.0;
+constexpr double kBankMax_deg = 80.0;
 /// The autopilot returns home by itself at its own cruise airspeed.
 constexpr double kCruiseOff_mps = 2.0;
 
@@ -38,11 +42,13 @@ LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, doubl
   if (radius_m <= vehicle.turn_radius_m * (1.0 + kSlack)) return {Verdict::good, found, {}};
   const double needed_deg =
       std::ceil(degrees(std::atan(v2 / (kGravity_mps2 * vehicle.turn_radius_m))));
+  const double good_deg =
+      std::max(needed_deg, std::min(kBankMax_deg, needed_deg + kBankReserve_deg));
   return {Verdict::refused, found,
-          fmt::format("turn_radius_m is {:g}: set {} to {}, or "
+          fmt::format("turn_radius_m is {:g}: set {} to {} ({} at least), or "
                       "turn_radius_m to {:.0f} or more",
-                      vehicle.turn_radius_m, name, number(kRollLimit, name, needed_deg),
-                      std::ceil(radius_m))};
+                      vehicle.turn_radius_m, name, number(kRollLimit, name, good_deg),
+                      number(kRollLimit, name, needed_deg), std::ceil(radius_m))};
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {
   check.on_value("ROLL_LIMIT_DEG", 45.0F);
   EXPECT_EQ(check.poll_finding(at_seconds(0.0)),
             "ROLL_LIMIT_DEG is 45: at 50 m/s it turns within 255 m; turn_radius_m is 150: set "
-            "ROLL_LIMIT_DEG to 60.0, or turn_radius_m to 255 or more");
+            "ROLL_LIMIT_DEG to 65.0 (60.0 at least), or turn_radius_m to 255 or more");
   EXPECT_FALSE(check.poll_finding(at_seconds(59.0)));
   EXPECT_TRUE(check.poll_finding(at_seconds(61.0)));
   check.on_value("ROLL_LIMIT_DEG", std::numeric_limits<float>::quiet_NaN());
@@ -64,7 +64,7 @@ TEST(CompanionLimits, NothingIsFlownUntilTheBankLimitAllowsTheTurns) {
   line.autopilot.parameters["ROLL_LIMIT_DEG"] = 45.0F;
   line.run(5.0);
   EXPECT_EQ(line.companion.state(), State::preparing);
-  EXPECT_THAT(line.warnings, Contains(HasSubstr("set ROLL_LIMIT_DEG to 60.0")));
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("set ROLL_LIMIT_DEG to 65.0 (60.0 at least)")));
   line.autopilot.set_parameter("ROLL_LIMIT_DEG", 60.0F);
   EXPECT_LT(line.until(State::flying, 5.0), std::chrono::seconds{5});
 }

@@ -43,7 +43,7 @@ class LinkWatch {
   [[nodiscard]] std::optional<AutopilotNotice> trouble(Instant now);
 
  private:
-  enum Layer : std::uint8_t { frames, node, tunnel, heartbeat, kLayers };
+  enum Layer : std::uint8_t { frames, node, tunnel, heartbeat, layer_count };
   static constexpr std::size_t kNodes = 128;
   struct Served {  ///< whom a node's serial port is for
     std::uint8_t target = 0;
@@ -60,7 +60,7 @@ class LinkWatch {
 
   LinkIds ids_;
   Duration patience_;
-  std::array<Instant, kLayers> heard_;
+  std::array<Instant, layer_count> heard_;
   std::array<std::optional<Instant>, kNodes> nodes_;  ///< when each was heard
   std::array<std::optional<Served>, kNodes> served_;  ///< other ports than ours, by sender
   std::uint8_t other_system_ = 0;

@@ -89,8 +89,28 @@ TEST(PreArmTexts, EachIsNewsOnceUntilItIsSaidNoMore) {
   EXPECT_FALSE(texts.add("a", at_seconds(30.0)));
   texts.expire(at_seconds(80.0));
   EXPECT_EQ(texts.texts().size(), 1U);
-  for (int i = 0; i < 20; ++i) EXPECT_TRUE(texts.add(std::to_string(i), at_seconds(81.0)));
+  for (char c = 'c'; c <= 'z'; ++c) EXPECT_TRUE(texts.add(std::string{c}, at_seconds(81.0)));
   EXPECT_LE(texts.texts().size(), PreArmTexts::kMax);
+}
+
+TEST(PreArmTexts, EachHasARemedy) {
+  EXPECT_EQ(PreArmTexts::reason_of("PreArm: GPS 1: Bad fix"),
+            "GPS 1: Bad fix (wait under open sky; is its receiver connected?)");
+  EXPECT_EQ(PreArmTexts::reason_of("PreArm: Tuesday"), "Tuesday (see ArduPilot's pre-arm checks)");
+  const std::string longest = PreArmTexts::reason_of("PreArm: " + std::string(400, 'x'));
+  EXPECT_EQ(longest.size(), PreArmTexts::kBytesMax);
+  EXPECT_TRUE(longest.ends_with("x (see ArduPilot's pre-arm checks)"));
+}
+
+TEST(PreArmTexts, OneThatIsMeasuredAgainIsNoNews) {
+  PreArmTexts texts;
+  EXPECT_TRUE(texts.add("EKF3 Yaw inconsistent 94 deg", at_seconds(0.0)));
+  EXPECT_FALSE(texts.add("EKF3 Yaw inconsistent 101 deg", at_seconds(30.0)));
+  ASSERT_EQ(texts.texts().size(), 1U);
+  EXPECT_EQ(texts.texts().front().text, "EKF3 Yaw inconsistent 101 deg");
+  EXPECT_TRUE(texts.add("GPS 1: Bad fix", at_seconds(30.0)));
+  EXPECT_TRUE(texts.add("GPS 2: Bad fix", at_seconds(30.0)));
+  EXPECT_TRUE(texts.add("GPS", at_seconds(30.0)));
 }
 
 }  // namespace

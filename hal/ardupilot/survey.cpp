@@ -39,6 +39,10 @@ bool AutopilotFacts::prearm_good() const {
          (health->onboard_control_sensors_enabled & mavlink::sensor_prearm_check) == 0;
 }
 
+bool AutopilotFacts::only_mode_forbids_arming() const {
+  return !pre_arm.empty() && std::ranges::all_of(pre_arm, PreArmTexts::is_of_mode);
+}
+
 std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
   return name_of_mode(airframe, heartbeat.custom_mode);
 }

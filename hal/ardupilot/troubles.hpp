@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "pre_arm_remedies.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/autopilot_notice.hpp"
 
@@ -76,15 +77,19 @@ class PreArmTexts {
 
   [[nodiscard]] static bool is_one(std::string_view text) { return text.starts_with(kPrefix); }
   /// Precondition: is_one(text).
-  [[nodiscard]] static std::string_view reason_of(std::string_view text) {
-    return text.substr(kPrefix.size(), kBytesMax);
+  [[nodiscard]] static std::string reason_of(std::string_view text) {
+    return with_remedy(text.substr(kPrefix.size()), kBytesMax);
+  }
+  [[nodiscard]] static bool is_of_mode(std::string_view reason) {
+    return reason.find(kOfMode) != std::string_view::npos;
   }
   /// True where it is news.
   bool add(std::string_view text, Instant now) {
     expire(now);
-    const auto known = std::ranges::find(texts_, text, &Text::text);
+    const auto known = std::ranges::find_if(
+        texts_, [text](const Text& other) { return is_same_reason(other.text, text); });
     if (known != texts_.end()) {
-      known->heard = now;
+      *known = {std::string{text}, now};
       return false;
     }
     if (texts_.size() == kMax) texts_.erase(texts_.begin());
@@ -103,6 +108,8 @@ class PreArmTexts {
 
  private:
   static constexpr std::string_view kPrefix = "PreArm: ";
+  /// An autopilot tells why in words alone.
+  static constexpr std::string_view kOfMode = "mode not armable";
   std::vector<Text> texts_;
 };
 

@@ -315,6 +315,20 @@ TEST(CompanionAndEmulator, WhyItWouldNotArmIsToldOnceAndForgottenOnceItWould) {
   EXPECT_EQ(count(bench.log(), said), 2) << bench.log();
 }
 
+TEST(CompanionAndEmulator, WhyItWouldNotArmIsAskedForWhileAParameterIsMissing) {
+  EmulatorConfig config = plane_in_wind();
+  config.airborne = false;
+  config.height_m = 0.0;
+  config.unknown_parameters = {"FS_LONG_ACTN"};
+  Bench bench{config};
+  bench.interfere("prearm Battery 1 below minimum arming voltage");
+  bench.run(5.0);
+  EXPECT_EQ(bench.companion().state(), State::preparing) << bench.log();
+  EXPECT_EQ(count(bench.log(), "FS_LONG_ACTN"), 1) << bench.log();
+  EXPECT_EQ(count(bench.log(), "would not arm: Battery 1 below minimum arming voltage (charge"), 1)
+      << bench.log();
+}
+
 TEST(CompanionAndEmulator, ALinkThatFlapsIsNoNewTakeover) {
   Bench bench{plane_in_wind()};
   bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};

@@ -86,7 +86,7 @@ says '^FAIL  serial port over CAN: .*set CAN_D1_UC_SER_EN 1'
 stop_fc
 start_fc --turn-radius 300 --without FS_LONG_ACTN --at '0 prearm Compass not calibrated'
 checked 1
-says '^FAIL  ROLL_LIMIT_DEG: .*turn_radius_m is 150: set ROLL_LIMIT_DEG to 60'
+says '^FAIL  ROLL_LIMIT_DEG: .*turn_radius_m is 150: set ROLL_LIMIT_DEG to 65'
 says '^FAIL  FS_LONG_ACTN: not told'
 says '^FAIL  arming: it would not arm: Compass not calibrated'
 stop_fc

@@ -42,6 +42,8 @@ struct AutopilotFacts {
   std::vector<std::string> pre_arm;          ///< why it would not arm
 
   [[nodiscard]] bool prearm_good() const;
+  /// It would arm in another mode, into which a companion that launches it puts it.
+  [[nodiscard]] bool only_mode_forbids_arming() const;
 };
 /// "LOITER".
 [[nodiscard]] std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat);
