@@ -29,6 +29,8 @@ void TakeOff::begin(const Vec3& from, Instant now) {
   formation::Mover& mover = change.movers.emplace_back();
   mover.vehicle = vehicle_.id;
   mover.points = {from, Vec3{from.x(), from.y(), vehicle_.height_m}};
+  climb_.reset();
+  if (!formation::valid(change)) return;  // no place from which one climbs
   climb_.emplace(change, 0, formation::PassageParams{}, now);
 }
 
@@ -42,9 +44,9 @@ bool TakeOff::done(const VehicleState& state, Instant now) {
   if (climb_) climb_->step(now);
   if (!climb_ || (here - climb_->reference(now).position_m).norm() > kAstray_m) {
     begin(here, now);
-    climb_->step(now);
+    if (climb_) climb_->step(now);
   }
-  track_ = climb_->track();
+  if (climb_) track_ = climb_->track();
   return false;
 }
 

@@ -52,6 +52,16 @@ TEST(TakeOff, ACopterClimbsStraightUpToItsHeight) {
   EXPECT_FALSE(take_off.poll_track()) << "nothing is left to follow";
 }
 
+TEST(TakeOff, FromAPlaceThatCannotBeNothingIsBegun) {
+  TakeOff take_off{copter()};
+  VehicleState state = at_rest({7.0e6, -9.0e6, -6.0e6});  // 0, 0 on the globe
+  EXPECT_FALSE(take_off.done(state, at_seconds(0.0)));
+  EXPECT_FALSE(take_off.poll_track());
+  state = at_rest({3.0, -4.0, 0.0});
+  climb_s(take_off, state, at_seconds(1.0));
+  EXPECT_NEAR(state.z_m, 40.0, 1.0);
+}
+
 TEST(TakeOff, WhoIsTooHighComesDown) {
   TakeOff take_off{copter()};
   VehicleState state = at_rest({3.0, -4.0, 55.0});

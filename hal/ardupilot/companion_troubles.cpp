@@ -14,7 +14,8 @@ constexpr Duration kReasonsAgain = std::chrono::seconds{30};
 void Companion::Impl::watch_troubles(Instant now) {
   if (now < troubles_at_) return;
   troubles_at_ = now + kLookPeriod;
-  if (navigation_healthy() || !machine_.in(State::standing_by)) position_good_at_ = now;
+  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by);
+  if (navigation_healthy() || !sensors_ || !waits) position_good_at_ = now;
   if (fails_pre_arm() && (!reasons_asked_at_ || now - *reasons_asked_at_ >= kReasonsAgain)) {
     reasons_asked_at_ = now;
     ask(command_of(mavlink::Command::run_prearm_checks), {1, Patience{}.each}, true);
@@ -62,7 +63,8 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
 
 std::string Companion::Impl::not_told() const {
   if (!sensors_) return "its health (SYS_STATUS)";
-  if (!motion_.sample()) return "where it is (ATTITUDE, GLOBAL_POSITION_INT, VFR_HUD)";
+  if (!motion_.sample() && navigation_healthy())
+    return "where it is (ATTITUDE, GLOBAL_POSITION_INT, VFR_HUD)";
   return {};
 }
 

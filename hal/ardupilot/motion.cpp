@@ -61,6 +61,8 @@ void Motion::on_attitude(const mavlink::Attitude& attitude, Instant measured) {
 }
 
 void Motion::on_position(const mavlink::GlobalPositionInt& position, Instant measured) {
+  // An ArduPilot that does not know where it is tells 0, 0.
+  if (position.lat == 0 && position.lon == 0) return;
   if (position.lat < -kLatitudeMax_e7 || position.lat > kLatitudeMax_e7 ||
       position.lon < -kLongitudeMax_e7 || position.lon > kLongitudeMax_e7) {
     return;

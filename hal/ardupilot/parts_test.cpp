@@ -225,6 +225,16 @@ TEST(Motion, KnowsWhereACopterDriftsThoughNotWhereItIsHeaded) {
   EXPECT_NEAR(carried_to(*motion.sample(), at_seconds(10.2)).z_m - state.z_m, 0.08, 1e-9);
 }
 
+TEST(Motion, KnowsNotWhereItIsBeforeTheAutopilotDoes) {
+  Motion motion{MissionOrigin::make({31.0, 105.0, 0.0}).value(), 0.0, true};
+  motion.on_attitude({}, at_seconds(10.0));
+  motion.on_hud({}, at_seconds(10.0));
+  mavlink::GlobalPositionInt p;  // 0, 0
+  p.alt = 480'000;
+  motion.on_position(p, at_seconds(10.0));
+  EXPECT_FALSE(motion.sample());
+}
+
 TEST(Motion, TakesNothingThatIsNoNumber) {
   Heard heard;
   heard.airspeed(10.0);

@@ -11,11 +11,12 @@ namespace {
 constexpr std::string_view kElse = "see ArduPilot's pre-arm checks";
 
 /// By a word of the reason, as ArduPilot 4.5 and 4.6 say it; the first that fits counts.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 28> kRemedies{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kRemedies{{
     {"not armable", "switch to another mode"},
     {"safety switch", "press the safety switch"},
     {"ompass", "away from metal; calibrate the compass"},
     {"GPS", "wait under open sky; is its receiver connected?"},
+    {"home", "wait under open sky until it knows where it is"},
     {"osition", "wait under open sky until it knows where it is"},
     {"EKF", "keep it still until the filter has settled"},
     {"AHRS", "keep it still until the filter has settled"},
