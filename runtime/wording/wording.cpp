@@ -240,7 +240,7 @@ constexpr std::array kAutopilotNews{
                      "set CAN_D1_UC_S1_PRO 2 and reboot it; if it is, the autopilot does not "
                      "start"},
     std::string_view{"the autopilot has not told {detail}, and is not flown before: do its sensors "
-                     "start?"},
+                     "start, has it a GNSS fix?"},
     std::string_view{
         "the autopilot's GNSS or its filter is missing or not healthy: the aircraft is "
         "neither taken nor launched until it knows where it is"},
