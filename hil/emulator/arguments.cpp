@@ -79,7 +79,8 @@ struct Texts {
   std::vector<std::string> at;
 };
 
-void add_options(CLI::App& app, FcArguments& a, Texts& t) {
+/// How it is reached.
+void add_link_options(CLI::App& app, FcArguments& a, Texts& t) {
   EmulatorConfig& c = a.config;
   app.add_option("--bus", a.bus, "CAN bus: mcast:N, mcast:N@INTERFACE, can0, vcan0")
       ->capture_default_str();
@@ -108,6 +109,11 @@ void add_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--without", c.unknown_parameters,
                  "A parameter that it does not know, such as FS_LONG_ACTN; several times, if need "
                  "be");
+}
+
+/// What flies, from where, in what air.
+void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
+  EmulatorConfig& c = a.config;
   app.add_option("--airframe", t.airframe, "The kind of aircraft")
       ->check(CLI::IsMember({"plane", "copter"}))
       ->capture_default_str();
@@ -162,7 +168,8 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   app.set_help_all_flag("--help-all", "The same of every command");
   FcArguments arguments;
   Texts texts;
-  add_options(app, arguments, texts);
+  add_link_options(app, arguments, texts);
+  add_flight_options(app, arguments, texts);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
