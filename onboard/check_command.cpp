@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "check_makers.hpp"
 #include "skein/configuration/vehicle_config.hpp"
-#include "skein/onboard/preflight.hpp"
 
 namespace skein::onboard {
 namespace {
@@ -32,7 +32,7 @@ int CheckCommand::run() const {
   if (config) {
     checks = check_before_flight(*config);
   } else {
-    checks.push_back({"configuration", Verdict::fail, config_, config.error().message});
+    checks.push_back(fail("configuration", config_, config.error().message));
   }
   std::fputs(json_ ? (json_of(checks) + "\n").c_str() : text_of(checks).c_str(), stdout);
   return is_good(checks) ? 0 : kExitFails;

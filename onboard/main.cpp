@@ -24,7 +24,6 @@ namespace onboard = skein::onboard;
 using skein::hal::Airborne;
 
 constexpr std::chrono::seconds kAnswerWithin{5};
-constexpr const char* kSockets = "/run/skein";
 
 // What `status --flying` ends with: the packages' scripts read it.
 constexpr int kMayFly = 0;
@@ -70,8 +69,8 @@ int fly(const Arguments& arguments) {
 std::vector<std::string> sockets() {
   std::vector<std::string> found;
   std::error_code failed;
-  for (std::filesystem::directory_iterator file{kSockets, failed}, end; !failed && file != end;
-       file.increment(failed)) {
+  for (std::filesystem::directory_iterator file{onboard::kStatusSockets, failed}, end;
+       !failed && file != end; file.increment(failed)) {
     const std::string name = file->path().filename();
     if (name.starts_with("onboard-") && name.ends_with(".sock")) found.push_back(file->path());
   }
@@ -107,8 +106,9 @@ int show_status(const std::string& socket, const StatusArguments& arguments) {
 int show_status(const StatusArguments& arguments) {
   const auto all = arguments.socket.empty() ? sockets() : std::vector{arguments.socket};
   if (all.empty()) {
-    return fail(std::string{"no process of a vehicle has a status socket in "} + kSockets,
-                kNobodyThere);
+    return fail(
+        std::string{"no process of a vehicle has a status socket in "} + onboard::kStatusSockets,
+        kNobodyThere);
   }
   if (arguments.flying && all.size() > 1) {
     return fail("several vehicles are on this host; give --socket", skein::process::kExitBadInput);

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "check_makers.hpp"
 #include "link_params.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/codec/json_text.hpp"
@@ -28,7 +29,7 @@ Checks check_bus(const configuration::VehicleConfig& config) {
   const std::string& name = config.flight_controller.ardupilot.can;
   auto bus = can::open(name);
   if (!bus) {
-    return {{"CAN bus", Verdict::fail, "cannot be opened", std::move(bus).error().message}};
+    return {fail("CAN bus", "cannot be opened", std::move(bus).error().message)};
   }
   const auto begun = std::chrono::steady_clock::now();
   const auto now = [begun] { return Instant{std::chrono::steady_clock::now() - begun}; };
@@ -76,16 +77,12 @@ bool is_good(const Checks& checks) {
 
 Checks check_before_flight(const configuration::VehicleConfig& config) {
   Checks all = check_host(config, unix_ns());
-  const auto add = [&all](Checks more) {
-    all.insert(all.end(), std::make_move_iterator(more.begin()),
-               std::make_move_iterator(more.end()));
-  };
   if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) {
-    all.push_back({"flight controller", Verdict::ok, "simulated: no bus is looked at", {}});
+    all.push_back(ok("flight controller", "simulated: no bus is looked at"));
     return all;
   }
-  add(check_interface(can::interface_of(config.flight_controller.ardupilot.can)));
-  add(check_bus(config));
+  append(all, check_interface(can::interface_of(config.flight_controller.ardupilot.can)));
+  append(all, check_bus(config));
   return all;
 }
 

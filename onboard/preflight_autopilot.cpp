@@ -9,9 +9,10 @@
 #include <string_view>
 #include <utility>
 
+#include "check_makers.hpp"
+#include "skein/ardupilot/firmware.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
 #include "skein/mavlink/enums.hpp"
-#include "skein/onboard/preflight.hpp"
 #include "skein/wording/wording.hpp"
 
 /// What a bus and its autopilot are judged by. No I/O.
@@ -30,15 +31,6 @@ constexpr std::uint16_t kFilterWithout = 0x80 | 0x400;
 constexpr std::uint32_t kSensorFence = 0x100000;
 constexpr double kTakeoffShare = 0.9;  ///< of takeoff_height_m: there the companion takes it
 
-Check ok(std::string what, std::string found) {
-  return {std::move(what), Verdict::ok, std::move(found), {}};
-}
-Check fail(std::string what, std::string found, std::string remedy) {
-  return {std::move(what), Verdict::fail, std::move(found), std::move(remedy)};
-}
-Check warn(std::string what, std::string found, std::string remedy) {
-  return {std::move(what), Verdict::warn, std::move(found), std::move(remedy)};
-}
 Check not_told(std::string what, std::string_view message) {
   return warn(std::move(what), fmt::format("the autopilot did not tell ({})", message),
               "ask again; if it stays so, its firmware lacks it");
@@ -354,8 +346,7 @@ Checks check_autopilot(const configuration::VehicleConfig& config,
                        const ardupilot::AutopilotFacts& facts, std::int64_t unix_s_at_gnss) {
   const Judge judge{config, facts};
   Checks all = judge.link();
-  Checks more = judge.autopilot(unix_s_at_gnss);
-  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+  append(all, judge.autopilot(unix_s_at_gnss));
   return all;
 }
 

@@ -23,17 +23,20 @@
 #include <thread>
 #include <utility>
 
+#include "check_makers.hpp"
 #include "skein/configuration/routes_config.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/mission/host_watch.hpp"
-#include "skein/onboard/preflight.hpp"
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/threads.hpp"
 #include "skein/process/host.hpp"
 #include "skein/process/mission_network.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::onboard {
 namespace {
+
+using system::Descriptor;
 
 namespace fs = std::filesystem;
 
@@ -46,30 +49,7 @@ constexpr std::uint64_t kMega = 1'000'000;
 constexpr std::uint64_t kMemoryMin = 256 * kMega;  ///< twice what a process of a large team takes
 constexpr std::chrono::milliseconds kStatusWithin{500};
 
-Check ok(std::string what, std::string found) {
-  return {std::move(what), Verdict::ok, std::move(found), {}};
-}
-Check fail(std::string what, std::string found, std::string remedy) {
-  return {std::move(what), Verdict::fail, std::move(found), std::move(remedy)};
-}
-Check warn(std::string what, std::string found, std::string remedy) {
-  return {std::move(what), Verdict::warn, std::move(found), std::move(remedy)};
-}
 std::string said(int error) { return std::generic_category().message(error); }
-
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_{value} {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return value_; }
-
- private:
-  int value_;
-};
 
 // --- time --------------------------------------------------------------------------------------
 
@@ -329,7 +309,7 @@ void check_network(Checks& all, const configuration::NetworkConfig& network) {
 // --- the machine -------------------------------------------------------------------------------
 
 Check check_other_process(const configuration::VehicleConfig& config) {
-  const std::string socket = fmt::format("/run/skein/onboard-{}.sock", config.vehicle.id.value);
+  const std::string socket = status_socket_of(config.vehicle.id);
   const auto asked = ask_status(socket, kStatusWithin);
   if (asked.failed != NoStatus::nobody_there) {
     return fail("other skein-onboard", "this vehicle's runs already: " + socket,

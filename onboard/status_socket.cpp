@@ -13,9 +13,12 @@
 #include <utility>
 
 #include "skein/onboard/status.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::onboard {
 namespace {
+
+using system::Descriptor;
 
 constexpr int kWaiting = 8;
 constexpr int kAnswersAtOnce = 8;  // so that a flood cannot keep the process from its watchdog
@@ -34,21 +37,6 @@ const sockaddr* generic(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);
 }
 
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_{value} {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return value_; }
-  [[nodiscard]] int release() { return std::exchange(value_, -1); }
-
- private:
-  int value_;
-};
-
 int new_socket(int more) { return ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | more, 0); }
 
 /// A process that stands still has a queue, in which connect() waits.
@@ -58,7 +46,7 @@ std::optional<NoStatus> connect_to(const sockaddr_un& address, int socket,
   timeval wait{};
   wait.tv_sec = whole.count();
   wait.tv_usec = std::chrono::microseconds{at_most - whole}.count();
-  if (::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &wait, sizeof wait) != 0) {
+  if (socket < 0 || ::setsockopt(socket, SOL_SOCKET, SO_SNDTIMEO, &wait, sizeof wait) != 0) {
     return NoStatus::no_answer;
   }
   if (::connect(socket, generic(address), sizeof address) == 0) return std::nullopt;

@@ -14,34 +14,14 @@
 #include <system_error>
 #include <utility>
 
+#include "skein/system/descriptor.hpp"
+
 namespace skein::fleet {
 namespace {
 
+using system::Descriptor;
+
 using std::chrono::steady_clock;
-
-/// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int number = -1) : number_{number} {}
-  ~Descriptor() { close(); }
-  Descriptor(Descriptor&& other) noexcept : number_{std::exchange(other.number_, -1)} {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    close();
-    number_ = std::exchange(other.number_, -1);
-    return *this;
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int number() const { return number_; }
-  [[nodiscard]] bool open() const { return number_ >= 0; }
-  void close() {
-    if (number_ >= 0) ::close(number_);
-    number_ = -1;
-  }
-
- private:
-  int number_;
-};
 
 Error failure(const std::string& what) {
   return Error{what + ": " + std::generic_category().message(errno)};
@@ -50,13 +30,13 @@ Error failure(const std::string& what) {
 /// In memory, so that a command that does not read it ends nobody by a signal.
 Result<Descriptor> input_file(std::string_view text) {
   Descriptor file{::memfd_create("skein-input", MFD_CLOEXEC)};
-  if (!file.open()) return failure("no memory for a command's input");
+  if (!file) return failure("no memory for a command's input");
   while (!text.empty()) {
-    const auto written = ::write(file.number(), text.data(), text.size());
+    const auto written = ::write(file.get(), text.data(), text.size());
     if (written < 0) return failure("no memory for a command's input");
     text.remove_prefix(static_cast<std::size_t>(written));
   }
-  ::lseek(file.number(), 0, SEEK_SET);
+  ::lseek(file.get(), 0, SEEK_SET);
   return file;
 }
 
@@ -92,19 +72,18 @@ Result<pid_t> spawn(const std::vector<std::string>& command, int input, int outp
 /// Appends what is there; false at the end.
 bool take(Descriptor& from, std::string& text) {
   std::array<char, 65536> bytes{};
-  const auto count = ::read(from.number(), bytes.data(), bytes.size());
+  const auto count = ::read(from.get(), bytes.data(), bytes.size());
   if (count > 0) text.append(bytes.data(), static_cast<std::size_t>(count));
   if (count < 0 && errno == EINTR) return true;
-  if (count <= 0) from.close();
+  if (count <= 0) from.reset();
   return count > 0;
 }
 
 /// Reads both until both end; false where that takes too long.
 bool listen(Descriptor& output, Descriptor& errors, CommandOutcome& outcome,
             steady_clock::time_point deadline) {
-  while (output.open() || errors.open()) {
-    std::array<pollfd, 2> items{pollfd{output.number(), POLLIN, 0},
-                                pollfd{errors.number(), POLLIN, 0}};
+  while (output || errors) {
+    std::array<pollfd, 2> items{pollfd{output.get(), POLLIN, 0}, pollfd{errors.get(), POLLIN, 0}};
     const auto left =
         std::chrono::duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now());
     if (left.count() <= 0) return false;
@@ -143,12 +122,12 @@ Result<CommandOutcome> run_command(const std::vector<std::string>& command, std:
   } else {
     output.writes =
         Descriptor{::open(into.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)};
-    if (!output.writes.open()) return failure(into.string() + ": cannot be written");
+    if (!output.writes) return failure(into.string() + ": cannot be written");
   }
-  const auto pid = spawn(command, in->number(), output.writes.number(), errors->writes.number());
+  const auto pid = spawn(command, in->get(), output.writes.get(), errors->writes.get());
   if (!pid) return pid.error();
-  output.writes.close();
-  errors->writes.close();
+  output.writes.reset();
+  errors->writes.reset();
   CommandOutcome outcome;
   if (!listen(output.reads, errors->reads, outcome, deadline)) {
     ::kill(*pid, SIGKILL);

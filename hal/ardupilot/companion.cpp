@@ -165,29 +165,28 @@ void Companion::Impl::prepare(Instant now) {
           false);
     }
   }
-  for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
-  for (const std::string_view name : limits_.due(now)) ask_parameter(name);
+  for (const std::string_view name : parameters_.due(now)) {
+    send(mavlink::ParamRequestRead{.param_index = -1,
+                                   .target_system = system_,
+                                   .target_component = mavlink::kComponentAutopilot,
+                                   .param_id = mavlink::field_of<16>(name)});
+  }
   const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
   const bool is_known = desk_.idle() && clock_known && sensors_ && motion_.sample();
-  if (is_known && parameters_.good() && limits_.good()) fire(Event::ready, now);
+  if (is_known && parameters_.good()) fire(Event::ready, now);
 }
 
-void Companion::Impl::ask_parameter(std::string_view name) {
-  send(mavlink::ParamRequestRead{.param_index = -1,
-                                 .target_system = system_,
-                                 .target_component = mavlink::kComponentAutopilot,
-                                 .param_id = mavlink::field_of<16>(name)});
+std::vector<ParameterQuestion> Companion::Impl::questions_of(const CompanionParams& params) {
+  auto questions = safety_questions(params.airframe, params.system_id);
+  for (ParameterQuestion& limit : limit_questions(params.vehicle, params.airframe)) {
+    questions.push_back(std::move(limit));
+  }
+  return questions;
 }
 
 void Companion::Impl::check_parameters(Instant now) {
-  const auto next = [this, now] {
-    auto finding = parameters_.poll_finding(now);
-    return finding ? finding : limits_.poll_finding(now);
-  };
-  while (auto finding = next()) {
-    const auto news = machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
-                                                    : AutopilotNews::parameter_changed;
-    say(true, {.news = news, .detail = *std::move(finding)}, now);
+  while (auto finding = parameters_.poll_finding(now)) {
+    say(true, {.news = parameter_news(), .detail = *std::move(finding)}, now);
   }
 }
 

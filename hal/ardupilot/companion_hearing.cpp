@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "companion_impl.hpp"
+#include "skein/ardupilot/firmware.hpp"
 
 /// What the companion makes of what it hears.
 namespace skein::ardupilot {
@@ -13,20 +14,13 @@ using std::chrono::seconds;
 
 constexpr Duration kTripMax = seconds{2};  ///< of a question about the time
 constexpr Duration kBootMax = std::chrono::hours{2400};
-constexpr std::size_t kTextMax = 400;  ///< of an autopilot's text, in however many chunks
 constexpr Duration kBootStep = milliseconds{500};  ///< the clock goes back so far: a reboot
-constexpr std::uint32_t kFirmwareMin = 0x0405;     ///< 4.5 is the first with the tunnel
 
 /// The states in which the companion has the aircraft, or asks for it.
 bool is_own(Companion::State state) {
   using State = Companion::State;
   return state == State::arming || state == State::climbing || state == State::taking_over ||
          state == State::flying || state == State::landing;
-}
-
-std::string version_text(std::uint32_t version) {
-  return std::to_string(version >> 24U) + "." + std::to_string((version >> 16U) & 0xFFU) + "." +
-         std::to_string((version >> 8U) & 0xFFU);
 }
 
 }  // namespace
@@ -66,9 +60,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
     on_text(*text, now);
   } else if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
-    const std::string name = mavlink::text_of(parameter->param_id);
-    parameters_.on_value(name, parameter->param_value);
-    limits_.on_value(name, parameter->param_value);
+    parameters_.on_value(mavlink::text_of(parameter->param_id), parameter->param_value);
   } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
   }
@@ -255,33 +247,24 @@ void Companion::Impl::on_timesync(const mavlink::Timesync& timesync, Instant now
 void Companion::Impl::on_version(const mavlink::AutopilotVersion& version, Instant now) {
   const std::uint32_t firmware = version.flight_sw_version;
   if (firmware_ == Firmware::accepted) return;
-  if ((firmware >> 16U) < kFirmwareMin) {
+  if (!firmware_is_new_enough(firmware)) {
     firmware_ = Firmware::refused;
-    refuse({.news = AutopilotNews::old_firmware, .detail = version_text(firmware)}, now);
+    refuse({.news = AutopilotNews::old_firmware, .detail = firmware_text(firmware)}, now);
     if (machine_.in(State::preparing)) fire(Event::wrong_autopilot, now);
     return;
   }
   firmware_ = Firmware::accepted;
-  say(false, {.news = AutopilotNews::firmware, .detail = version_text(firmware)}, now);
+  say(false, {.news = AutopilotNews::firmware, .detail = firmware_text(firmware)}, now);
 }
 
 void Companion::Impl::on_text(const mavlink::Statustext& text, Instant now) {
-  // A long one comes in chunks with one id.
-  if (text.id != 0 && text.chunk_seq > 0 && text.id == text_id_) {
-    last_text_ += mavlink::text_of(text.text);
-    last_text_.resize(std::min(last_text_.size(), kTextMax));
-  } else {
-    last_text_ = mavlink::text_of(text.text);
-  }
-  text_id_ = text.id;
+  const std::string& whole = text_.add(text);
   const bool warning = text.severity <= static_cast<std::uint8_t>(mavlink::Severity::warning);
   if (warning) last_text_at_ = now;
-  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by) ||
-                     machine_.in(State::arming);
-  if (!waits || !PreArmTexts::is_one(last_text_)) {
-    say(false, {.news = AutopilotNews::text, .detail = last_text_}, now);
-  } else if (text.id == 0 || text.text.back() == '\0') {  // else more of it is to come
-    std::string reason = PreArmTexts::reason_of(last_text_);
+  if (!(waits() || machine_.in(State::arming)) || !PreArmTexts::is_one(whole)) {
+    say(false, {.news = AutopilotNews::text, .detail = whole}, now);
+  } else if (StatusText::ends(text)) {
+    std::string reason = PreArmTexts::reason_of(whole);
     // Who launches it puts it into another mode.
     const bool leaves_mode =
         params_.take_over == TakeOver::from_ground && PreArmTexts::is_of_mode(reason);
@@ -325,7 +308,7 @@ void Companion::Impl::report_refusal(Instant now) {
     const auto* info = mavlink::find_message(id);
     text += " (" + (info != nullptr ? std::string{info->name} : std::to_string(id)) + ")";
   }
-  if (last_text_at_ && now - *last_text_at_ <= 2 * kReasonWithin) text += ": " + last_text_;
+  if (last_text_at_ && now - *last_text_at_ <= 2 * kReasonWithin) text += ": " + text_.text();
   refusal_.reset();
   AutopilotNotice refused{.news = AutopilotNews::command_refused, .detail = std::move(text)};
   if (refused == said_refusal_) return;

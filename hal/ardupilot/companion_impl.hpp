@@ -10,10 +10,10 @@
 #include "command_desk.hpp"
 #include "custody.hpp"
 #include "flight_modes.hpp"
-#include "limit_check.hpp"
 #include "parameter_check.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
+#include "status_text.hpp"
 #include "troubles.hpp"
 
 namespace skein::ardupilot {
@@ -41,8 +41,7 @@ class Companion::Impl {
       : params_{params},
         origin_{origin},
         motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
-        parameters_{params.airframe, params.system_id},
-        limits_{params.vehicle, params.airframe},
+        parameters_{questions_of(params)},
         frame_heard_{now},
         packet_heard_{now},
         heartbeat_at_{now},
@@ -107,11 +106,19 @@ class Companion::Impl {
   void prepare(Instant now);
   void ask_streams();
   void check_parameters(Instant now);
-  void ask_parameter(std::string_view name);
+  [[nodiscard]] AutopilotNews parameter_news() const {
+    return machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
+                                         : AutopilotNews::parameter_changed;
+  }
   void watch_troubles(Instant now);
   [[nodiscard]] std::vector<AutopilotNotice> troubles_now(Instant now) const;
   [[nodiscard]] std::string not_told() const;
   [[nodiscard]] bool fails_pre_arm() const;
+  /// For the pilot, the operator, or what is missing, on the ground or in the air.
+  [[nodiscard]] bool waits() const {
+    return machine_.in(State::preparing) || machine_.in(State::standing_by);
+  }
+  [[nodiscard]] static std::vector<ParameterQuestion> questions_of(const CompanionParams& params);
   void stand_by(Instant now);
   void leave_return_on_ground(Instant now);
   void arm(Instant now);
@@ -160,7 +167,6 @@ class Companion::Impl {
   BootClock clock_;
   Motion motion_;
   ParameterCheck parameters_;
-  LimitCheck limits_;
   BoundedQueue<mavlink::WireBytes> packets_{64};
   BoundedQueue<Notice> notices_{64};
   Troubles troubles_;
@@ -187,9 +193,8 @@ class Companion::Impl {
   std::optional<Sensors> sensors_;
   mavlink::LandedState landed_ = mavlink::LandedState::undefined;
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
-  std::string last_text_;
+  StatusText text_;
   std::optional<Instant> last_text_at_;
-  std::uint16_t text_id_ = 0;
 
   // What was asked and done.
   Custody custody_;

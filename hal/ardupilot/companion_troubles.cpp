@@ -14,8 +14,7 @@ constexpr Duration kReasonsAgain = std::chrono::seconds{30};
 void Companion::Impl::watch_troubles(Instant now) {
   if (now < troubles_at_) return;
   troubles_at_ = now + kLookPeriod;
-  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by);
-  if (navigation_healthy() || !sensors_ || !waits) position_good_at_ = now;
+  if (navigation_healthy() || !sensors_ || !waits()) position_good_at_ = now;
   if (fails_pre_arm() && (!reasons_asked_at_ || now - *reasons_asked_at_ >= kReasonsAgain)) {
     reasons_asked_at_ = now;
     ask(command_of(mavlink::Command::run_prearm_checks), {1, Patience{}.each}, true);
@@ -28,8 +27,7 @@ void Companion::Impl::watch_troubles(Instant now) {
 }
 
 bool Companion::Impl::fails_pre_arm() const {
-  const bool waits = machine_.in(State::preparing) || machine_.in(State::standing_by);
-  return waits && !armed_ && !airborne() && !custody_.by_others() && sensors_ &&
+  return waits() && !armed_ && !airborne() && !custody_.by_others() && sensors_ &&
          (sensors_->enabled & ~sensors_->healthy & mavlink::sensor_prearm_check) != 0;
 }
 
@@ -38,8 +36,6 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
     return {{.news = AutopilotNews::duplicate_node, .number = duplicate_node_}};
   }
   std::vector<AutopilotNotice> all;
-  std::vector<std::string> safety_findings = parameters_.findings();
-  std::vector<std::string> limit_findings = limits_.findings();
   if (link_trouble_) all.push_back(*link_trouble_);
   if (machine_.in(State::refused) && wrong_) all.push_back(*wrong_);
   if (machine_.in(State::preparing) && now - entry_.at >= kPatience) {
@@ -47,12 +43,8 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
       all.push_back({.news = AutopilotNews::not_told, .detail = std::move(missing)});
     }
   }
-  const auto parameters = machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
-                                                        : AutopilotNews::parameter_changed;
-  for (auto* findings : {&safety_findings, &limit_findings}) {
-    for (std::string& finding : *findings) {
-      all.push_back({.news = parameters, .detail = std::move(finding)});
-    }
+  for (std::string& finding : parameters_.findings()) {
+    all.push_back({.news = parameter_news(), .detail = std::move(finding)});
   }
   if (now - position_good_at_ >= kPatience) all.push_back({AutopilotNews::no_position});
   for (const auto& reason : pre_arm_.texts()) {

@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "skein/ardupilot/flight_limits.hpp"
 
 namespace skein::ardupilot {
 namespace {
@@ -16,6 +19,7 @@ using std::chrono::seconds;
 constexpr Duration kAskUnanswered = milliseconds{500};
 constexpr Duration kAskWrong = seconds{2};
 constexpr int kUnansweredAfter = 5;  ///< questions
+constexpr int kUnknownAfter = 4;     ///< questions
 constexpr Duration kTellAgain = seconds{60};
 
 // ArduPlane 4.6, FS_GCS_ENABL: 1 heartbeat, 2 heartbeat and REMRSSI; 3 is for AUTO alone.
@@ -45,27 +49,60 @@ std::span<const SafetyParameter> safety_parameters(Airframe airframe) {
   return kPlane;
 }
 
-ParameterCheck::ParameterCheck(Airframe airframe, std::uint8_t system_id) : system_id_{system_id} {
+std::vector<ParameterQuestion> safety_questions(Airframe airframe, std::uint8_t system_id) {
+  std::vector<ParameterQuestion> questions;
   for (const SafetyParameter& parameter : safety_parameters(airframe)) {
-    entries_.push_back({&parameter, parameter.name});
+    const std::string wanted = parameter.good.empty()
+                                   ? std::to_string(system_id)
+                                   : fmt::format("{}", fmt::join(parameter.good, " or "));
+    const auto judge = [parameter, system_id, wanted](std::string_view name,
+                                                      float value) -> std::optional<std::string> {
+      const auto is = [value](int good) { return value == static_cast<float>(good); };
+      if (parameter.good.empty() ? is(system_id) : std::ranges::any_of(parameter.good, is)) {
+        return std::nullopt;
+      }
+      return fmt::format("{} is {:g}, so {}; set it to {}", name, value, parameter.why, wanted);
+    };
+    questions.push_back(
+        {parameter.name, parameter.later_name, judge,
+         fmt::format("it does not tell {}, which must be {}", parameter.name, wanted)});
   }
+  return questions;
+}
+
+std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle, Airframe airframe) {
+  std::vector<ParameterQuestion> questions;
+  for (const LimitParameter& parameter : limit_parameters(airframe)) {
+    const auto judge = [vehicle, parameter](std::string_view name,
+                                            float value) -> std::optional<std::string> {
+      const auto judged = judge_limit(vehicle, parameter, name, static_cast<double>(value));
+      if (judged.verdict != LimitFinding::Verdict::refused) return std::nullopt;
+      return judged.found + "; " + judged.remedy;
+    };
+    questions.push_back({parameter.name, parameter.older_name, judge, {}});
+  }
+  return questions;
+}
+
+ParameterCheck::ParameterCheck(std::vector<ParameterQuestion> questions) {
+  for (ParameterQuestion& question : questions) entries_.push_back({std::move(question)});
 }
 
 void ParameterCheck::begin() {
-  for (Entry& entry : entries_) entry = {entry.parameter, entry.parameter->name};
+  for (Entry& entry : entries_) entry = {std::move(entry.question)};
 }
 
 std::vector<std::string_view> ParameterCheck::due(Instant now) {
   std::vector<std::string_view> names;
   for (Entry& entry : entries_) {
-    if (is_good(entry)) continue;
+    if (is_settled(entry)) continue;
     const Duration pause = entry.value ? kAskWrong : kAskUnanswered;
     if (entry.asked_at && now - *entry.asked_at < pause) continue;
     entry.asked_at = now;
     ++entry.asked;
     names.push_back(entry.name);
-    if (!entry.value && !entry.parameter->later_name.empty()) {
-      names.push_back(entry.parameter->later_name);
+    if (!entry.value && !entry.question.other_name.empty()) {
+      names.push_back(entry.question.other_name);
     }
   }
   return names;
@@ -73,25 +110,26 @@ std::vector<std::string_view> ParameterCheck::due(Instant now) {
 
 void ParameterCheck::on_value(std::string_view name, float value) {
   for (Entry& entry : entries_) {
-    const SafetyParameter& parameter = *entry.parameter;
-    if (name.empty() || (name != parameter.name && name != parameter.later_name)) continue;
+    const ParameterQuestion& question = entry.question;
+    if (name.empty() || (name != question.name && name != question.other_name)) continue;
     if (entry.value != value) entry.told_at.reset();
-    entry.name = name == parameter.name ? parameter.name : parameter.later_name;
+    entry.name = name == question.name ? question.name : question.other_name;
     entry.value = value;
+    entry.wrong = question.judge(entry.name, value);
     entry.asked = 0;
   }
 }
 
 bool ParameterCheck::good() const {
-  return std::ranges::all_of(entries_, [this](const Entry& entry) { return is_good(entry); });
+  return std::ranges::all_of(entries_, &ParameterCheck::is_settled);
 }
 
 std::optional<std::string> ParameterCheck::poll_finding(Instant now) {
   for (Entry& entry : entries_) {
-    if (!is_found_wrong(entry)) continue;
-    if (entry.told_at && now - *entry.told_at < kTellAgain) continue;
+    const std::string* wrong = finding(entry);
+    if (wrong == nullptr || (entry.told_at && now - *entry.told_at < kTellAgain)) continue;
     entry.told_at = now;
-    return finding(entry);
+    return *wrong;
   }
   return std::nullopt;
 }
@@ -99,7 +137,7 @@ std::optional<std::string> ParameterCheck::poll_finding(Instant now) {
 std::vector<std::string> ParameterCheck::findings() const {
   std::vector<std::string> all;
   for (const Entry& entry : entries_) {
-    if (is_found_wrong(entry)) all.push_back(finding(entry));
+    if (const std::string* wrong = finding(entry)) all.push_back(*wrong);
   }
   return all;
 }
@@ -110,7 +148,7 @@ std::vector<TestedParameter> ParameterCheck::tested() const {
     TestedParameter& tested = all.emplace_back();
     tested.name = entry.name;
     if (entry.value) tested.value = static_cast<double>(*entry.value);
-    if (!is_good(entry)) tested.finding = finding(entry);
+    tested.finding = entry.value ? entry.wrong.value_or("") : entry.question.untold;
   }
   return all;
 }
@@ -119,28 +157,15 @@ bool ParameterCheck::all_told() const {
   return std::ranges::all_of(entries_, [](const Entry& entry) { return entry.value.has_value(); });
 }
 
-bool ParameterCheck::is_good(const Entry& entry) const {
-  if (!entry.value) return false;
-  const auto& good = entry.parameter->good;
-  if (good.empty()) return *entry.value == static_cast<float>(system_id_);
-  return std::ranges::any_of(good,
-                             [&](int value) { return *entry.value == static_cast<float>(value); });
+bool ParameterCheck::is_settled(const Entry& entry) {
+  if (entry.value) return !entry.wrong;
+  return entry.question.untold.empty() && entry.asked >= kUnknownAfter;
 }
 
-bool ParameterCheck::is_found_wrong(const Entry& entry) const {
-  return entry.value ? !is_good(entry) : entry.asked >= kUnansweredAfter;
-}
-
-std::string ParameterCheck::finding(const Entry& entry) const {
-  const SafetyParameter& parameter = *entry.parameter;
-  const std::string wanted = parameter.good.empty()
-                                 ? std::to_string(system_id_)
-                                 : fmt::format("{}", fmt::join(parameter.good, " or "));
-  if (!entry.value) {
-    return fmt::format("it does not tell {}, which must be {}", parameter.name, wanted);
-  }
-  return fmt::format("{} is {:g}, so {}; set it to {}", entry.name, *entry.value, parameter.why,
-                     wanted);
+const std::string* ParameterCheck::finding(const Entry& entry) {
+  if (entry.value) return entry.wrong ? &*entry.wrong : nullptr;
+  const std::string& untold = entry.question.untold;
+  return !untold.empty() && entry.asked >= kUnansweredAfter ? &untold : nullptr;
 }
 
 }  // namespace skein::ardupilot

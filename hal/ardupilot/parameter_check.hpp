@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,11 +25,26 @@ struct SafetyParameter {
 /// Those of an airframe; docs/ardupilot.md is printed from it.
 [[nodiscard]] std::span<const SafetyParameter> safety_parameters(Airframe airframe);
 
-/// Asks an autopilot for them, and judges its answers. Whoever may fly waits until all are good;
-/// what is wrong is asked for again, so that setting it is enough.
+/// A parameter that an autopilot is asked for, and what is made of its answer.
+struct ParameterQuestion {
+  std::string_view name;
+  std::string_view other_name;  ///< of other releases; may be empty
+  /// What is wrong with a value, told by one of the names, as a sentence with its remedy.
+  std::function<std::optional<std::string>(std::string_view name, float value)> judge;
+  /// What is wrong where none is told. Empty: nothing; its firmware has no such parameter then.
+  std::string untold;
+};
+[[nodiscard]] std::vector<ParameterQuestion> safety_questions(Airframe airframe,
+                                                              std::uint8_t system_id);
+/// Of what limits the vehicle (flight_limits.hpp).
+[[nodiscard]] std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle,
+                                                             Airframe airframe);
+
+/// Asks an autopilot for parameters, and judges its answers. Whoever may fly waits until all are
+/// good; what is wrong is asked for again, so that setting it is enough.
 class ParameterCheck {
  public:
-  ParameterCheck(Airframe airframe, std::uint8_t system_id);
+  explicit ParameterCheck(std::vector<ParameterQuestion> questions);
 
   /// Nothing is known any more: the autopilot is another, or has started anew.
   void begin();
@@ -37,7 +53,7 @@ class ParameterCheck {
   /// What a PARAM_VALUE says; any name and value.
   void on_value(std::string_view name, float value);
   [[nodiscard]] bool good() const;
-  /// What is wrong and was not told yet, or not for long, as a sentence with its remedy.
+  /// What is wrong and was not told yet, or not for long.
   [[nodiscard]] std::optional<std::string> poll_finding(Instant now);
   /// All that is wrong.
   [[nodiscard]] std::vector<std::string> findings() const;
@@ -47,18 +63,19 @@ class ParameterCheck {
 
  private:
   struct Entry {
-    const SafetyParameter* parameter = nullptr;
-    std::string_view name;  ///< by which it has answered; at first its own
+    ParameterQuestion question;
+    std::string_view name = question.name;  ///< by which it has answered; at first the first
     std::optional<float> value = {};
-    int asked = 0;  ///< since the last answer
+    std::optional<std::string> wrong = {};  ///< with that value
+    int asked = 0;                          ///< since the last answer
     std::optional<Instant> asked_at = {};
     std::optional<Instant> told_at = {};
   };
-  [[nodiscard]] bool is_good(const Entry& entry) const;
-  [[nodiscard]] bool is_found_wrong(const Entry& entry) const;
-  [[nodiscard]] std::string finding(const Entry& entry) const;
+  /// There is nothing to ask any more.
+  [[nodiscard]] static bool is_settled(const Entry& entry);
+  /// Null where nothing is wrong, or not known to be.
+  [[nodiscard]] static const std::string* finding(const Entry& entry);
 
-  std::uint8_t system_id_;
   std::vector<Entry> entries_;
 };
 

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(ParameterCheck, AsksUntilEachIsGood) {
-  ParameterCheck check{Airframe::plane, 7};
+  ParameterCheck check{safety_questions(Airframe::plane, 7)};
   EXPECT_THAT(check.due(at_seconds(0.0)),
               ElementsAre("FS_GCS_ENABL", "FS_LONG_ACTN", "SYSID_MYGCS", "MAV_GCS_SYSID"));
   EXPECT_THAT(check.due(at_seconds(0.1)), IsEmpty());
@@ -40,7 +40,7 @@ TEST(ParameterCheck, AsksUntilEachIsGood) {
 }
 
 TEST(ParameterCheck, SaysWhatIsWrongAndWhatToSet) {
-  ParameterCheck check{Airframe::plane, 7};
+  ParameterCheck check{safety_questions(Airframe::plane, 7)};
   check.on_value("FS_GCS_ENABL", 0.0F);
   check.on_value("FS_LONG_ACTN", 1.0F);
   check.on_value("SYSID_MYGCS", 255.0F);
@@ -54,7 +54,7 @@ TEST(ParameterCheck, SaysWhatIsWrongAndWhatToSet) {
 }
 
 TEST(ParameterCheck, NoAnswerIsSaidAfterSeveralQuestions) {
-  ParameterCheck check{Airframe::copter, 1};
+  ParameterCheck check{safety_questions(Airframe::copter, 1)};
   check.on_value("SYSID_MYGCS", 1.0F);
   double t = 0.0;
   for (; !check.poll_finding(at_seconds(t)); t += 0.1) {
@@ -65,7 +65,7 @@ TEST(ParameterCheck, NoAnswerIsSaidAfterSeveralQuestions) {
 }
 
 TEST(ParameterCheck, TakesAnyBytesForWhatTheyAre) {
-  ParameterCheck check{Airframe::copter, 1};
+  ParameterCheck check{safety_questions(Airframe::copter, 1)};
   check.on_value("", 1.0F);
   check.on_value("FS_GCS_ENABLEX", 1.0F);
   check.on_value("SYSID_MYGCS", 1.0F);

@@ -13,6 +13,7 @@
 #include "skein/ardupilot/flight_limits.hpp"
 #include "skein/dronecan/node.hpp"
 #include "skein/dronecan/tunnel.hpp"
+#include "status_text.hpp"
 #include "troubles.hpp"
 
 namespace skein::ardupilot {
@@ -25,7 +26,6 @@ constexpr Duration kAskPeriod = milliseconds{400};
 constexpr Duration kWatchPatience = milliseconds{2500};
 /// After the last reason not to arm, whether there is another.
 constexpr Duration kReasonsWithin = milliseconds{1500};
-constexpr std::uint32_t kFirmwareMin = 0x0405;
 
 /// Told where they are there; a firmware may lack them.
 constexpr std::array<std::string_view, 3> kOthers{"FENCE_ENABLE", "ARMING_CHECK", "TKOFF_ALT"};
@@ -35,8 +35,8 @@ constexpr int kOthersAsked = 4;
 
 bool AutopilotFacts::prearm_good() const {
   if (!health) return false;
-  return (health->onboard_control_sensors_health & mavlink::sensor_prearm_check) != 0 ||
-         (health->onboard_control_sensors_enabled & mavlink::sensor_prearm_check) == 0;
+  return (health->onboard_control_sensors_enabled & ~health->onboard_control_sensors_health &
+          mavlink::sensor_prearm_check) == 0;
 }
 
 bool AutopilotFacts::only_mode_forbids_arming() const {
@@ -49,12 +49,6 @@ std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
 bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
   return is_of(airframe, heartbeat.type);
 }
-std::string firmware_text(std::uint32_t version) {
-  return std::to_string(version >> 24U) + "." + std::to_string((version >> 16U) & 0xFFU) + "." +
-         std::to_string((version >> 8U) & 0xFFU);
-}
-bool firmware_is_new_enough(std::uint32_t version) { return (version >> 16U) >= kFirmwareMin; }
-
 class Survey::Impl {
  public:
   Impl(std::unique_ptr<can::Bus> bus, const CanLinkParams& params, Instant now)
@@ -62,7 +56,7 @@ class Survey::Impl {
         bus_{std::move(bus)},
         begun_{now},
         watch_{link_ids(params, bus_->name()), now, kWatchPatience},
-        parameters_{params.companion.airframe, params.companion.system_id},
+        parameters_{safety_questions(params.companion.airframe, params.companion.system_id)},
         encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer} {}
 
   bool step(Instant now) {
@@ -154,11 +148,9 @@ class Survey::Impl {
   }
 
   void on_text(const mavlink::Statustext& text, Instant now) {
-    const bool continues = text.id != 0 && text.chunk_seq > 0 && text.id == text_id_;
-    text_ = (continues ? text_ : std::string{}) + mavlink::text_of(text.text);
-    text_id_ = text.id;
-    if (!PreArmTexts::is_one(text_) || (text.id != 0 && text.text.back() != '\0')) return;
-    if (reasons_.add(PreArmTexts::reason_of(text_), now)) reason_at_ = now;
+    const std::string& whole = text_.add(text);
+    if (!PreArmTexts::is_one(whole) || !StatusText::ends(text)) return;
+    if (reasons_.add(PreArmTexts::reason_of(whole), now)) reason_at_ = now;
   }
 
   template <class Message>
@@ -259,8 +251,7 @@ class Survey::Impl {
   std::optional<dronecan::TunnelPort> port_;
   std::set<std::uint8_t> nodes_;
   PreArmTexts reasons_;
-  std::string text_;
-  std::uint16_t text_id_ = 0;
+  StatusText text_;
   std::optional<Instant> reasons_asked_at_;
   Instant reason_at_{Instant::min()};
   Instant ask_at_{Instant::min()};

@@ -10,7 +10,6 @@
 namespace skein::can {
 namespace {
 
-constexpr std::string_view kMcast = "mcast:";
 constexpr std::size_t kInterfaceMax = 15;  // IFNAMSIZ with its zero is 16
 
 }  // namespace
@@ -21,7 +20,7 @@ Result<std::unique_ptr<Bus>> open(const std::string& name, const BusOptions& opt
     const std::size_t at = name.find('@');
     const std::string_view number = std::string_view{name}.substr(
         kMcast.size(), at == std::string::npos ? at : at - kMcast.size());
-    const std::string interface = at == std::string::npos ? "lo" : name.substr(at + 1);
+    const std::string interface = interface_in(name);
     std::uint8_t index = 0;
     const auto [end, failed] = std::from_chars(number.data(), number.data() + number.size(), index);
     if (failed != std::errc{} || end != number.data() + number.size() || interface.empty()) {

@@ -11,14 +11,12 @@
 #include <array>
 #include <cstring>
 #include <span>
-#include <string_view>
 
+#include "mcast_bus.hpp"
 #include "socket.hpp"
 
 namespace skein::can {
 namespace {
-
-constexpr std::string_view kMcast = "mcast:";
 
 /// The attributes of a message or of one that holds others; calls `sink(type, payload)` for each.
 template <class Sink>
@@ -103,8 +101,7 @@ void ask_kernel(InterfaceFacts& facts) {
 InterfaceFacts interface_of(const std::string& bus) {
   InterfaceFacts facts;
   facts.over_udp = bus.starts_with(kMcast);
-  const std::size_t at = bus.find('@');
-  facts.name = !facts.over_udp ? bus : at == std::string::npos ? "lo" : bus.substr(at + 1);
+  facts.name = facts.over_udp ? interface_in(bus) : bus;
   const auto flags = interface_flags(facts.name);
   facts.is_there = flags.has_value();
   facts.is_up = flags && (*flags & IFF_UP) != 0;

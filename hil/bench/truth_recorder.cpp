@@ -4,7 +4,6 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
-#include <unistd.h>
 
 #include <array>
 #include <cerrno>
@@ -23,6 +22,7 @@
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
 #include "skein/recording/writer.hpp"
+#include "skein/system/descriptor.hpp"
 #include "skein/version/version.hpp"
 
 namespace skein::hil {
@@ -58,16 +58,14 @@ VehicleState state_of(const mavlink::SimState& told, double geoid_height_m,
 /// One simulator: its socket, who speaks there, what it said.
 class Source {
  public:
-  Source(const SimulatedAircraft& aircraft, int socket) : aircraft_{aircraft}, socket_{socket} {}
-  ~Source() { ::close(socket_); }
-  Source(const Source&) = delete;
-  Source& operator=(const Source&) = delete;
+  Source(const SimulatedAircraft& aircraft, system::Descriptor socket)
+      : aircraft_{aircraft}, socket_{std::move(socket)} {}
 
-  [[nodiscard]] int socket() const { return socket_; }
+  [[nodiscard]] int socket() const { return socket_.get(); }
   [[nodiscard]] std::uint16_t port() const {
     sockaddr_in own{};
     socklen_t size = sizeof own;
-    ::getsockname(socket_, reinterpret_cast<sockaddr*>(&own), &size);
+    ::getsockname(socket_.get(), reinterpret_cast<sockaddr*>(&own), &size);
     return ntohs(own.sin_port);
   }
   Result<void> record(const std::filesystem::path& folder, std::int64_t epoch_unix_ns) {
@@ -85,7 +83,7 @@ class Source {
     while (true) {
       sockaddr_in from{};
       socklen_t size = sizeof from;
-      const ssize_t count = ::recvfrom(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT,
+      const ssize_t count = ::recvfrom(socket_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT,
                                        reinterpret_cast<sockaddr*>(&from), &size);
       if (count < 0) return;
       speaker_ = from;
@@ -111,14 +109,14 @@ class Source {
     command.param1 = static_cast<float>(mavlink::SimState::kDefinition.id);
     command.param2 = kPeriod_us;
     const auto packet = encoder_.encode(command);
-    (void)::sendto(socket_, packet.begin(), packet.size(), MSG_DONTWAIT,
+    (void)::sendto(socket_.get(), packet.begin(), packet.size(), MSG_DONTWAIT,
                    reinterpret_cast<const sockaddr*>(&*speaker_), sizeof *speaker_);
   }
   void flush() { (void)writer_->flush(); }
 
  private:
   SimulatedAircraft aircraft_;
-  int socket_;
+  system::Descriptor socket_;
   std::optional<sockaddr_in> speaker_;
   steady_clock::time_point told_at_{};
   steady_clock::time_point asked_at_{};
@@ -148,17 +146,15 @@ class TruthRecorder::Impl {
   explicit Impl(const MissionOrigin& origin) : origin_{origin} {}
 
   Result<void> add(const SimulatedAircraft& aircraft) {
-    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    system::Descriptor socket{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)};
     sockaddr_in own{};
     own.sin_family = AF_INET;
     own.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (socket < 0 || ::bind(socket, reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
-      const int reason = errno;
-      if (socket >= 0) ::close(socket);
+    if (!socket || ::bind(socket.get(), reinterpret_cast<const sockaddr*>(&own), sizeof own) != 0) {
       return Error{"no port for what an aircraft really does: " +
-                   std::generic_category().message(reason)};
+                   std::generic_category().message(errno)};
     }
-    sources_.emplace(aircraft.vehicle, std::make_unique<Source>(aircraft, socket));
+    sources_.emplace(aircraft.vehicle, std::make_unique<Source>(aircraft, std::move(socket)));
     return {};
   }
   [[nodiscard]] std::uint16_t port(VehicleId vehicle) const { return sources_.at(vehicle)->port(); }

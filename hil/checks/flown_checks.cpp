@@ -199,6 +199,13 @@ CheckResult check_arcs(const RunRecord& record, const Limits& limits, TaskKind k
 }  // namespace
 
 std::vector<DeliveryFlown> deliveries_flown(const RunRecord& record, const Limits& limits) {
+  return deliveries_flown(record, record.recordings, limits);
+}
+
+std::vector<DeliveryFlown> deliveries_flown(const RunRecord& record,
+                                            const std::vector<recording::Recording>& tracks,
+                                            const Limits& limits) {
+  const std::vector<TrackPoint> unknown;
   std::vector<DeliveryFlown> all;
   for (const TaskRun& run : task_runs(record)) {
     const Site* site = site_of(record, run.task.site);
@@ -206,8 +213,9 @@ std::vector<DeliveryFlown> deliveries_flown(const RunRecord& record, const Limit
         run.task.index >= site->deliveries.size()) {
       continue;
     }
+    const recording::Recording* recorded = recording_of(tracks, run.vehicle);
     all.push_back(seen_delivery(run, *site, site->deliveries[run.task.index],
-                                recording_of(record, run.vehicle)->track, limits));
+                                recorded != nullptr ? recorded->track : unknown, limits));
   }
   std::stable_sort(all.begin(), all.end(), [](const DeliveryFlown& a, const DeliveryFlown& b) {
     return std::pair{*a.run.planned, a.run.task} < std::pair{*b.run.planned, b.run.task};

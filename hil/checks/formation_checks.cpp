@@ -13,18 +13,6 @@
 
 namespace skein::checks {
 
-namespace {
-
-/// What the vehicle was told to fly at that moment; null before its first plan.
-const recording::PlanRecord* plan_in_force(const recording::Recording& recorded, Instant time) {
-  const auto after = std::partition_point(
-      recorded.plans.begin(), recorded.plans.end(),
-      [time](const recording::PlanRecord& plan) { return plan.since <= time; });
-  return after == recorded.plans.begin() ? nullptr : &*std::prev(after);
-}
-
-}  // namespace
-
 CheckResult check_orders(const RunRecord& record, const Limits& /*limits*/) {
   CheckResult result{"orders", "every order ends with all in their places", 0, "orders", "", {}};
   for (const FormationChange& change : formation_changes(record)) {
@@ -146,7 +134,7 @@ CheckResult check_moving_places(const RunRecord& record, const Limits& limits) {
     for (const auto& recorded : record.recordings) {
       if (contains(record.lost, recorded.vehicle)) continue;
       judge.judge(change, recorded, [&recorded](const VehicleState& s) -> std::optional<Vec3> {
-        const auto* plan = plan_in_force(recorded, s.time);
+        const auto* plan = plan_in_force(recorded.plans, s.time);
         if (plan == nullptr) return std::nullopt;
         const Pose2 place = plan_pose(plan->plan, plan_distance_m(plan->plan, s.time));
         return Vec3{s.x_m - place.x_m, s.y_m - place.y_m, 0.0};

@@ -92,6 +92,14 @@ std::size_t first_at(const std::vector<recording::TrackPoint>& track, Instant ti
   return static_cast<std::size_t>(it - track.begin());
 }
 
+const recording::PlanRecord* plan_in_force(const std::vector<recording::PlanRecord>& plans,
+                                           Instant time) {
+  const auto after = std::partition_point(
+      plans.begin(), plans.end(),
+      [time](const recording::PlanRecord& plan) { return plan.since <= time; });
+  return after == plans.begin() ? nullptr : &*std::prev(after);
+}
+
 std::optional<TrackPosition> track_at(const std::vector<recording::TrackPoint>& track, Instant time,
                                       double gap_s) {
   const std::size_t after = first_at(track, time);

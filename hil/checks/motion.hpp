@@ -24,6 +24,10 @@ namespace skein::checks {
 void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
                const std::function<double(double distance_m, const Vec2&)>& see);
 
+/// What the vehicle was told to fly at that moment; null before its first plan.
+[[nodiscard]] const recording::PlanRecord* plan_in_force(
+    const std::vector<recording::PlanRecord>& plans, Instant time);
+
 /// Position of a track at a time, linear between its points; none outside it and in a gap.
 struct TrackPosition {
   Vec2 horizontal{0.0, 0.0};

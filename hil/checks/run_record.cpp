@@ -5,11 +5,10 @@
 
 namespace skein::checks {
 
-const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle) {
-  const auto found =
-      std::find_if(record.recordings.begin(), record.recordings.end(),
-                   [&](const recording::Recording& r) { return r.vehicle == vehicle; });
-  return found == record.recordings.end() ? nullptr : &*found;
+const recording::Recording* recording_of(const std::vector<recording::Recording>& recordings,
+                                         VehicleId vehicle) {
+  const auto found = std::ranges::find(recordings, vehicle, &recording::Recording::vehicle);
+  return found == recordings.end() ? nullptr : &*found;
 }
 
 }  // namespace skein::checks

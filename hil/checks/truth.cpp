@@ -34,12 +34,6 @@ class Sum {
   std::size_t count_ = 0;
 };
 
-const recording::PlanRecord* in_force(const std::vector<recording::PlanRecord>& plans, Instant at) {
-  const auto next =
-      std::ranges::upper_bound(plans, at, {}, [](const auto& plan) { return plan.since; });
-  return next == plans.begin() ? nullptr : &*(next - 1);
-}
-
 PlanErrors plan_errors(const std::vector<TrackPoint>& track,
                        const std::vector<recording::PlanRecord>& plans, double height_m) {
   Sum cross;
@@ -47,7 +41,7 @@ PlanErrors plan_errors(const std::vector<TrackPoint>& track,
   Sum height;
   bool joined = false;
   for (const TrackPoint& point : track) {
-    const recording::PlanRecord* record = in_force(plans, point.state.time);
+    const recording::PlanRecord* record = plan_in_force(plans, point.state.time);
     if (record == nullptr) continue;
     const TimedPath& plan = record->plan;
     const Pose2 pose = plan_pose(plan, plan_distance_m(plan, point.state.time));
@@ -90,15 +84,9 @@ std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limit
 }
 
 std::vector<DeliveryTruly> deliveries_truly(const RunRecord& record, const Limits& limits) {
-  RunRecord as_it_was = record;
-  for (Recording& recorded : as_it_was.recordings) {
-    recorded.track.clear();
-    const auto truth = std::ranges::find(record.truths, recorded.vehicle, &Recording::vehicle);
-    if (truth != record.truths.end()) recorded.track = truth->track;
-  }
   // The same runs in the same order: only tracks differ.
   const auto believed = deliveries_flown(record, limits);
-  const auto truly = deliveries_flown(as_it_was, limits);
+  const auto truly = deliveries_flown(record, record.truths, limits);
   std::vector<DeliveryTruly> all;
   for (std::size_t i = 0; i < believed.size(); ++i) {
     if (believed[i].seen && truly[i].seen) all.push_back({believed[i], truly[i]});

@@ -22,6 +22,7 @@
 #include "arguments.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/hil/emulated_flight_controller.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::hil {
 namespace {
@@ -84,21 +85,18 @@ class TruthSender {
     to_.sin_port = htons(port);
     to_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   }
-  ~TruthSender() { ::close(socket_); }
-  TruthSender(const TruthSender&) = delete;
-  TruthSender& operator=(const TruthSender&) = delete;
 
   void step(EmulatedFlightController& of, Instant now) {
     if (now < next_) return;
     next_ = next_multiple(now, kPeriod);
     const auto packet = of.truth();
-    (void)::sendto(socket_, packet.data(), packet.size(), 0,
+    (void)::sendto(socket_.get(), packet.data(), packet.size(), 0,
                    reinterpret_cast<const sockaddr*>(&to_), sizeof to_);
   }
 
  private:
   static constexpr Duration kPeriod = 50ms;
-  int socket_;
+  system::Descriptor socket_;
   sockaddr_in to_{};
   Instant next_{};
 };

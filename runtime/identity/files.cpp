@@ -13,8 +13,12 @@
 #include <thread>
 #include <utility>
 
+#include "skein/system/descriptor.hpp"
+
 namespace skein::identity {
 namespace {
+
+using system::Descriptor;
 
 constexpr mode_t kOthers = 077;
 constexpr std::chrono::milliseconds kLookAgain{10};
@@ -25,21 +29,6 @@ std::string said() { return std::generic_category().message(errno); }
 Error cannot(const char* what, const std::filesystem::path& path) {
   return Error{fmt::format("cannot {} {}: {}", what, path.string(), said())};
 }
-
-class Descriptor {
- public:
-  explicit Descriptor(int descriptor) : value_{descriptor} {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  [[nodiscard]] int get() const { return value_; }
-  [[nodiscard]] bool good() const { return value_ >= 0; }
-
- private:
-  int value_;
-};
 
 /// So that a service that runs as another user reads what root made for it.
 bool give_to_owner_of(const std::filesystem::path& folder, int descriptor) {
@@ -62,7 +51,7 @@ bool write_all(int descriptor, std::string_view text) {
 /// So that a name is on the disk, too.
 bool sync_folder(const std::filesystem::path& folder) {
   const Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-  return opened.good() && ::fsync(opened.get()) == 0;
+  return opened && ::fsync(opened.get()) == 0;
 }
 
 std::filesystem::path folder_of(const std::filesystem::path& file) {
@@ -75,7 +64,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
 Result<std::string> read_file(const std::filesystem::path& file, std::size_t bytes_max,
                               Readers readers) {
   const Descriptor opened{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
-  if (!opened.good()) return cannot("read", file);
+  if (!opened) return cannot("read", file);
   struct stat is {};
   if (::fstat(opened.get(), &is) != 0) return cannot("read", file);
   if (!S_ISREG(is.st_mode)) return Error{fmt::format("{}: is no file", file.string())};
@@ -108,7 +97,7 @@ Result<void> write_file(const std::filesystem::path& file, std::string_view text
   {
     const Descriptor made{
         ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600)};
-    if (!made.good()) return cannot("write", beside);
+    if (!made) return cannot("write", beside);
     if (!give_to_owner_of(folder, made.get()) || !write_all(made.get(), text) ||
         (durable == Durable::yes && ::fsync(made.get()) != 0)) {
       auto error = cannot("write", file);
@@ -135,7 +124,7 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   }
   if (::mkdir(folder.c_str(), 0700) != 0) return cannot("make", folder);
   const Descriptor opened{::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)};
-  if (!opened.good() || !give_to_owner_of(above, opened.get())) return cannot("make", folder);
+  if (!opened || !give_to_owner_of(above, opened.get())) return cannot("make", folder);
   return {};
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "air_channels.hpp"
 #include "signatures.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/seal/header.hpp"
@@ -78,10 +79,7 @@ air::LinkConfig link_config(const CarrierConfig& config) {
   link.self = {config.self,
                config.seal ? identity::instance_of(config.seal->start) : config.instance};
   link.role = static_cast<std::uint8_t>(config.role);
-  for (const codec::TopicInfo& topic : codec::kTopics) {
-    link.channels.push_back(
-        {topic.reliable, topic.urgency, static_cast<std::size_t>(topic.writer_history)});
-  }
+  link.channels = air_channels();
   link.certificate = config.certificate;
   link.overhead_bytes = kIpUdpBytes + (config.seal ? seal::kOverheadBytes : kClearBytes);
   link.bytes_per_s = config.air->bytes_per_s;
@@ -123,8 +121,8 @@ bool HeardClear::is_first(const air::Author& author, std::uint64_t counter) {
   return true;
 }
 
-AirCarrier::AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, Descriptor wake,
-                       std::unique_ptr<AirRadio> radio)
+AirCarrier::AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket,
+                       system::Descriptor wake, std::unique_ptr<AirRadio> radio)
     : config_{std::move(config)},
       sink_{sink},
       socket_{std::move(socket)},
@@ -365,7 +363,7 @@ Result<std::unique_ptr<Carrier>> open_air_carrier(CarrierConfig config, CarrierS
   if (!radio) return radio.error();
   auto socket = AirSocket::open(config.air->group, config.endpoint.address);
   if (!socket) return socket.error();
-  Descriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
+  system::Descriptor wake{eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)};
   if (wake.get() < 0) return Error{"there is no event to wake the network's thread with"};
   return std::unique_ptr<Carrier>{
       std::make_unique<AirCarrier>(std::move(config), sink, std::move(socket).value(),

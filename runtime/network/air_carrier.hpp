@@ -13,11 +13,11 @@
 
 #include "air_socket.hpp"
 #include "carrier.hpp"
-#include "descriptor.hpp"
 #include "seals.hpp"
 #include "skein/air/link.hpp"
 #include "skein/network/air_radio.hpp"
 #include "skein/seal/replay_window.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::network {
 
@@ -40,7 +40,7 @@ class HeardClear {
 /// An air::Link on a socket, with a thread of its own that listens and speaks.
 class AirCarrier final : public Carrier, private air::LinkSink {
  public:
-  AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, Descriptor wake,
+  AirCarrier(CarrierConfig config, CarrierSink& sink, AirSocket socket, system::Descriptor wake,
              std::unique_ptr<AirRadio> radio);
   AirCarrier(const AirCarrier&) = delete;
   AirCarrier& operator=(const AirCarrier&) = delete;
@@ -80,7 +80,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   const CarrierConfig config_;
   CarrierSink& sink_;
   AirSocket socket_;
-  const Descriptor wake_;
+  const system::Descriptor wake_;
   const std::unique_ptr<AirRadio> radio_;  ///< none: what is received is there
   std::unique_ptr<Seals> seals_;           ///< none: in clear
   std::atomic<bool> stopping_{false};

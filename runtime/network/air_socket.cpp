@@ -37,7 +37,7 @@ Result<AirSocket> AirSocket::open(const Endpoint& group, const std::string& inte
   if (inet_pton(AF_INET, interface.c_str(), &from) != 1) {
     return Error{interface + " is not an IPv4 address"};
   }
-  Descriptor s{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
+  system::Descriptor s{socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};
   if (s.get() < 0) return failed(group, "no socket");
   sockaddr_in address{};
   address.sin_family = AF_INET;

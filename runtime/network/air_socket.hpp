@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "descriptor.hpp"
 #include "skein/base/result.hpp"
 #include "skein/network/node.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::network {
 
@@ -30,9 +30,9 @@ class AirSocket {
   static constexpr std::size_t kDatagramMax = 2048;
 
  private:
-  AirSocket(Descriptor socket, std::uint32_t group, std::uint16_t port)
+  AirSocket(system::Descriptor socket, std::uint32_t group, std::uint16_t port)
       : socket_{std::move(socket)}, group_{group}, port_{port} {}
-  Descriptor socket_;
+  system::Descriptor socket_;
   std::uint32_t group_;  ///< in network order
   std::uint16_t port_;
   std::vector<std::uint8_t> buffer_ = std::vector<std::uint8_t>(kAtOnce * kDatagramMax);

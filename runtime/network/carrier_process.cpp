@@ -160,7 +160,7 @@ class CarrierProcess final : public Carrier {
 
   const CarrierConfig config_;
   CarrierSink& sink_;
-  const Descriptor wake_;
+  const system::Descriptor wake_;
   std::atomic<bool> ending_{false};
   std::atomic<std::uint64_t> restarts_{0};
 

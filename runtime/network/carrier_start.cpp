@@ -80,8 +80,8 @@ Result<CarrierChild> CarrierChild::start(VehicleId self) {
   if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return Error{"there is no socket to the network's process: " + message_of(errno)};
   }
-  Descriptor ours{ends[0]};
-  const Descriptor its{ends[1]};
+  system::Descriptor ours{ends[0]};
+  const system::Descriptor its{ends[1]};
   for (const int end : ends) {
     (void)setsockopt(end, SOL_SOCKET, SO_SNDBUF, &kSocketBufferBytes, sizeof kSocketBufferBytes);
   }
@@ -90,7 +90,7 @@ Result<CarrierChild> CarrierChild::start(VehicleId self) {
   if (const int error = spawning.start(pid, self); error != 0) {
     return Error{"the network's process cannot be started: " + message_of(error)};
   }
-  Descriptor ended{static_cast<int>(syscall(SYS_pidfd_open, pid, 0))};
+  system::Descriptor ended{static_cast<int>(syscall(SYS_pidfd_open, pid, 0))};
   return CarrierChild{pid, std::move(ours), std::move(ended)};
 }
 

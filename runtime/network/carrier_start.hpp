@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "descriptor.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
+#include "skein/system/descriptor.hpp"
 
 namespace skein::network {
 
@@ -47,11 +47,11 @@ class CarrierChild {
   void end_in_order(int milliseconds);
 
  private:
-  CarrierChild(pid_t pid, Descriptor socket, Descriptor ended)
+  CarrierChild(pid_t pid, system::Descriptor socket, system::Descriptor ended)
       : pid_{pid}, socket_{std::move(socket)}, ended_{std::move(ended)} {}
   pid_t pid_;
-  Descriptor socket_;
-  Descriptor ended_;
+  system::Descriptor socket_;
+  system::Descriptor ended_;
 };
 
 }  // namespace skein::network

@@ -115,7 +115,7 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
   node.endpoint = {config.address, config.port};
   for (const auto& peer : config.peers) node.peers.push_back({peer.id, {peer.address, peer.port}});
   if (config.peers.empty()) {
-    node.air.emplace(network::Endpoint{config.air.group, config.port}, std::nullopt);
+    node.air = network::AirConfig{{config.air.group, config.port}, std::nullopt};
     const double limit = config.air.limit_bytes_per_s;
     if (limit > 0.0) node.air->bytes_per_s = limit;
     node.air->hops_max = config.air.hops_max;

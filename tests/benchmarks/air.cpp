@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "air_channels.hpp"
 #include "signatures.hpp"
 #include "skein/air/link.hpp"
 #include "skein/base/random.hpp"
@@ -81,10 +82,7 @@ class Air {
  public:
   explicit Air(std::size_t count) : nodes_(count) {
     air::LinkConfig config;
-    for (const codec::TopicInfo& topic : codec::kTopics) {
-      config.channels.push_back(
-          {topic.reliable, topic.urgency, static_cast<std::size_t>(topic.writer_history)});
-    }
+    config.channels = network::air_channels();
     config.certificate.resize(kCertificateBytes);
     for (std::size_t i = 0; i < count; ++i) {
       config.self = author(i);

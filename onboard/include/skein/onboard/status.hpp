@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/hal/flight_controller.hpp"
@@ -38,6 +39,12 @@ struct Status {
   bool watched = false;  ///< by the service manager
   std::uint64_t network_restarts = 0;
 };
+
+/// Where the packages' services have the sockets that ask_status() asks.
+inline constexpr const char* kStatusSockets = "/run/skein";
+[[nodiscard]] inline std::string status_socket_of(VehicleId vehicle) {
+  return std::string{kStatusSockets} + "/onboard-" + std::to_string(vehicle.value) + ".sock";
+}
 
 /// One line of JSON, without its end.
 [[nodiscard]] std::string status_json(const Status& status);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -48,9 +47,6 @@ struct AutopilotFacts {
 /// "LOITER".
 [[nodiscard]] std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat);
 [[nodiscard]] bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat);
-/// "4.6.3".
-[[nodiscard]] std::string firmware_text(std::uint32_t version);
-[[nodiscard]] bool firmware_is_new_enough(std::uint32_t version);
 
 /// Asks an autopilot for all that is to be known before a flight. It only listens until it is
 /// sure that nobody else has our node id, and sends neither HEARTBEAT nor anything that changes

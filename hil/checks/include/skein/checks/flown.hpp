@@ -23,6 +23,9 @@ struct DeliveryFlown {
 /// Of every delivery that was reported done with a planned time, by planned time.
 [[nodiscard]] std::vector<DeliveryFlown> deliveries_flown(const RunRecord& record,
                                                           const Limits& limits);
+/// The same deliveries, as others' tracks of these vehicles show them.
+[[nodiscard]] std::vector<DeliveryFlown> deliveries_flown(
+    const RunRecord& record, const std::vector<recording::Recording>& tracks, const Limits& limits);
 
 /// A survey or assessment arc.
 struct ArcFlown {

@@ -61,7 +61,12 @@ struct RunRecord {
 };
 
 /// Of this vehicle; null where there is none.
-[[nodiscard]] const recording::Recording* recording_of(const RunRecord& record, VehicleId vehicle);
+[[nodiscard]] const recording::Recording* recording_of(
+    const std::vector<recording::Recording>& recordings, VehicleId vehicle);
+[[nodiscard]] inline const recording::Recording* recording_of(const RunRecord& record,
+                                                              VehicleId vehicle) {
+  return recording_of(record.recordings, vehicle);
+}
 
 /// What a mission is held to.
 struct Limits {

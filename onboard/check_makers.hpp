@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <iterator>
+#include <string>
+#include <utility>
+
+#include "skein/onboard/preflight.hpp"
+
+namespace skein::onboard {
+
+[[nodiscard]] inline Check ok(std::string what, std::string found) {
+  return {std::move(what), Verdict::ok, std::move(found), {}};
+}
+[[nodiscard]] inline Check warn(std::string what, std::string found, std::string remedy) {
+  return {std::move(what), Verdict::warn, std::move(found), std::move(remedy)};
+}
+[[nodiscard]] inline Check fail(std::string what, std::string found, std::string remedy) {
+  return {std::move(what), Verdict::fail, std::move(found), std::move(remedy)};
+}
+inline void append(Checks& all, Checks more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+}  // namespace skein::onboard
