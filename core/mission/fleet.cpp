@@ -19,6 +19,12 @@ void Fleet::on_message(const Message& message, Instant now) {
     const auto known = vehicles_.find(health->vehicle);
     if (known != vehicles_.end()) known->second.health = *health;
   }
+  if (const auto* preflight = std::get_if<Preflight>(&message)) {
+    const auto known = vehicles_.find(preflight->vehicle);
+    if (known == vehicles_.end()) return;
+    known->second.preflight = *preflight;
+    known->second.preflight_at = now;
+  }
 }
 
 void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {

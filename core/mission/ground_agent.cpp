@@ -40,7 +40,10 @@ GroundAgent::GroundAgent(const GroundAgentConfig& config, Instant /*now*/)
     : config_{config}, fleet_{{.expected = config.expected, .silence = config.silence}} {}
 
 void GroundAgent::recall(const Message& message, VehicleId sender, Instant at) {
-  if (std::holds_alternative<Telemetry>(message) || std::holds_alternative<Health>(message)) return;
+  if (std::holds_alternative<Telemetry>(message) || std::holds_alternative<Health>(message) ||
+      std::holds_alternative<Preflight>(message)) {
+    return;
+  }
   if (sender == kGroundStation) {
     recall_own(message, at);
   } else {

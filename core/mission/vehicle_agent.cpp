@@ -35,6 +35,7 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [](const formation::Change&) {}, [](const FormationStatus&) {},
                         [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
                         [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
+                        [](const Preflight&) {},
                         [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
              message);
   step(now);

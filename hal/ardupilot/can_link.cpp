@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/ardupilot/can_link.hpp"
 
+#include <algorithm>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -132,6 +134,21 @@ void CanLink::transmit(Instant now) {
     node_.pop();
   }
   bus_->flush();
+}
+
+std::optional<AutopilotFacts> CanLink::facts(Instant now) const {
+  auto facts = companion_.facts(now);
+  if (!facts) return std::nullopt;
+  const auto troubled = [&](std::initializer_list<AutopilotNews> any) {
+    return facts->trouble && std::ranges::find(any, facts->trouble->news) != any.end();
+  };
+  using enum AutopilotNews;
+  facts->own_id_taken =
+      troubled({duplicate_node}) && facts->trouble->number == params_.companion_node_id;
+  facts->frames = troubled({no_bus_traffic}) ? 0 : bus_->statistics().received;
+  facts->node_heard = !troubled({no_bus_traffic, node_missing, duplicate_node});
+  facts->serial_heard = facts->node_heard && !troubled({no_serial_port, serial_port_elsewhere});
+  return facts;
 }
 
 }  // namespace skein::ardupilot

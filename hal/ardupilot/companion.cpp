@@ -37,6 +37,7 @@ constexpr double kHeightStep_m = 0.5;
 constexpr double kHeartbeat_hz = 20.0;  ///< it tells of the pilot's switch
 constexpr double kHud_hz = 10.0;
 constexpr double kHealth_hz = 2.0;
+constexpr double kLook_hz = 1.0;
 
 /// As MAVLink carries it, and still within the limits: an autopilot refuses a speed beyond its own.
 double speed_within(double speed_mps, const VehicleSpec& vehicle) {
@@ -188,6 +189,7 @@ void Companion::Impl::check_parameters(Instant now) {
   while (auto finding = parameters_.poll_finding(now)) {
     say(true, {.news = parameter_news(), .detail = *std::move(finding)}, now);
   }
+  ask_others(now);
 }
 
 void Companion::Impl::ask_streams() {
@@ -200,6 +202,7 @@ void Companion::Impl::ask_streams() {
   stream(mavlink::VfrHud::kDefinition.id, kHud_hz);
   stream(mavlink::SysStatus::kDefinition.id, kHealth_hz);
   stream(mavlink::ExtendedSysState::kDefinition.id, kHealth_hz);
+  for (const std::uint32_t id : kOnlyLookedAt) stream(id, kLook_hz);
 }
 
 bool Companion::Impl::airborne() const {
@@ -519,6 +522,7 @@ void Companion::on_link_trouble(std::optional<AutopilotNotice> trouble) {
   impl_->on_link_trouble(std::move(trouble));
 }
 const std::vector<AutopilotNotice>& Companion::troubles() const { return impl_->troubles(); }
+std::optional<AutopilotFacts> Companion::facts(Instant now) const { return impl_->facts(now); }
 std::optional<Companion::Heard> Companion::heartbeat() const { return impl_->heartbeat(); }
 std::optional<Companion::Heard> Companion::other_heartbeat() const {
   return impl_->other_heartbeat();

@@ -34,6 +34,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
     return on_heartbeat(*heartbeat, packet, now);
   }
   if (system_ == 0) return;
+  look_at(packet, now);
   if (const auto attitude = mavlink::decode<mavlink::Attitude>(packet)) {
     if (const auto at = measured_at(attitude->time_boot_ms, now)) {
       motion_.on_attitude(*attitude, *at);
@@ -87,6 +88,7 @@ void Companion::Impl::refuse(AutopilotNotice why, Instant now) {
 void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
                                    const mavlink::Packet& packet, Instant now) {
   heartbeat_ = {packet.system, now};
+  looked_at_.heartbeat = heartbeat;
   mode_ = heartbeat.custom_mode;
   armed_ = (heartbeat.base_mode & mavlink::mode_safety_armed) != 0;
   custody_.fire(armed_ ? Custody::Event::in_use : Custody::Event::disarmed);
@@ -291,7 +293,14 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
   if (command == Command::do_change_speed && outcome.answer == Answer::unanswered) {
     speed_sent_.reset();
   }
-  if (outcome.answer != Answer::refused || command == Command::run_prearm_checks) return;
+  const bool is_only_looked_at =
+      command == Command::set_message_interval &&
+      std::ranges::find(kOnlyLookedAt, static_cast<std::uint32_t>(outcome.command.param1)) !=
+          kOnlyLookedAt.end();
+  if (outcome.answer != Answer::refused || command == Command::run_prearm_checks ||
+      is_only_looked_at) {
+    return;
+  }
   if (refusal_) report_refusal(now);
   refusal_ = outcome;
   refusal_at_ = now;
@@ -352,6 +361,8 @@ void Companion::Impl::reset_link() {
   refusal_.reset();
   pre_arm_.clear();
   reasons_asked_at_.reset();
+  looked_at_ = {};
+  others_asked_ = 0;
   landed_ = mavlink::LandedState::undefined;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <utility>
 #include <variant>
@@ -20,6 +21,10 @@ namespace skein::ardupilot {
 
 /// A refusal and its reason come apart, in any order.
 inline constexpr Duration kReasonWithin = std::chrono::milliseconds{500};
+/// What nothing is flown by, but checks before a flight look at: an autopilot may refuse them.
+inline constexpr std::array kOnlyLookedAt{mavlink::GpsRawInt::kDefinition.id,
+                                          mavlink::EkfStatusReport::kDefinition.id,
+                                          mavlink::SystemTime::kDefinition.id};
 /// What it takes to know where the aircraft is.
 inline constexpr std::uint32_t kNavigation = mavlink::sensor_gps | mavlink::sensor_ahrs;
 /// After it a mode or arming is asked for again.
@@ -67,6 +72,7 @@ class Companion::Impl {
     link_trouble_ = std::move(trouble);
   }
   [[nodiscard]] const std::vector<AutopilotNotice>& troubles() const { return troubles_.holding(); }
+  [[nodiscard]] std::optional<AutopilotFacts> facts(Instant now) const;
   [[nodiscard]] std::optional<Heard> heartbeat() const { return heartbeat_; }
   [[nodiscard]] std::optional<Heard> other_heartbeat() const { return other_heartbeat_; }
   void command(const Demand& demand, Instant now) {
@@ -99,6 +105,7 @@ class Companion::Impl {
   void on_version(const mavlink::AutopilotVersion& version, Instant now);
   void on_text(const mavlink::Statustext& text, Instant now);
   void on_outcome(const Outcome& outcome, Instant now);
+  void look_at(const mavlink::Packet& packet, Instant now);
   std::optional<Instant> measured_at(std::uint32_t time_boot_ms, Instant now);
 
   // What is due.
@@ -106,6 +113,9 @@ class Companion::Impl {
   void prepare(Instant now);
   void ask_streams();
   void check_parameters(Instant now);
+  void ask_others(Instant now);
+  [[nodiscard]] bool others_tried(Instant now) const;
+  [[nodiscard]] bool facts_are_known(Instant now) const;
   [[nodiscard]] AutopilotNews parameter_news() const {
     return machine_.in(State::preparing) ? AutopilotNews::parameter_wrong
                                          : AutopilotNews::parameter_changed;
@@ -195,6 +205,7 @@ class Companion::Impl {
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
   StatusText text_;
   std::optional<Instant> last_text_at_;
+  AutopilotFacts looked_at_;  ///< as far as it was told
 
   // What was asked and done.
   Custody custody_;
@@ -234,6 +245,8 @@ class Companion::Impl {
   Instant troubles_at_;
   Instant position_good_at_;
   std::optional<Instant> reasons_asked_at_;  ///< for not arming
+  int others_asked_ = 0;                     ///< parameters that are only looked at
+  Instant others_at_{Instant::min()};
 };
 
 }  // namespace skein::ardupilot

@@ -65,7 +65,8 @@ std::vector<ParameterQuestion> safety_questions(Airframe airframe, std::uint8_t 
     };
     questions.push_back(
         {parameter.name, parameter.later_name, judge,
-         fmt::format("it does not tell {}, which must be {}", parameter.name, wanted)});
+         fmt::format("it does not tell {}, which must be {}", parameter.name, wanted),
+         parameter.good.empty()});
   }
   return questions;
 }
@@ -149,12 +150,19 @@ std::vector<TestedParameter> ParameterCheck::tested() const {
     tested.name = entry.name;
     if (entry.value) tested.value = static_cast<double>(*entry.value);
     tested.finding = entry.value ? entry.wrong.value_or("") : entry.question.untold;
+    tested.of_own_id = entry.question.of_own_id;
   }
   return all;
 }
 
 bool ParameterCheck::all_told() const {
   return std::ranges::all_of(entries_, [](const Entry& entry) { return entry.value.has_value(); });
+}
+
+bool ParameterCheck::all_tried() const {
+  return std::ranges::all_of(entries_, [](const Entry& entry) {
+    return entry.value || is_settled(entry) || finding(entry) != nullptr;
+  });
 }
 
 bool ParameterCheck::is_settled(const Entry& entry) {

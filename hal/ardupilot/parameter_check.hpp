@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "skein/ardupilot/survey.hpp"
+#include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
 
@@ -33,6 +33,7 @@ struct ParameterQuestion {
   std::function<std::optional<std::string>(std::string_view name, float value)> judge;
   /// What is wrong where none is told. Empty: nothing; its firmware has no such parameter then.
   std::string untold;
+  bool of_own_id = false;  ///< what is good is the autopilot's own system id
 };
 [[nodiscard]] std::vector<ParameterQuestion> safety_questions(Airframe airframe,
                                                               std::uint8_t system_id);
@@ -60,6 +61,8 @@ class ParameterCheck {
   /// Each of them, as far as it is known.
   [[nodiscard]] std::vector<TestedParameter> tested() const;
   [[nodiscard]] bool all_told() const;
+  /// What is not told has been asked for so often that it is not waited for.
+  [[nodiscard]] bool all_tried() const;
 
  private:
   struct Entry {

@@ -20,6 +20,8 @@ struct FleetEntry {
   std::optional<Telemetry> telemetry;            ///< the newest
   Instant heard_at{};                            ///< of it
   std::optional<Health> health;                  ///< the newest
+  std::optional<Preflight> preflight = {};       ///< the newest
+  Instant preflight_at{};                        ///< when it was heard
   bool silent = false;                           ///< was heard, and not since FleetParams::silence
   std::optional<SetupDifference> differs;        ///< from the ground station
   bool duplicate = false;                        ///< two instances speak with this id
@@ -42,7 +44,7 @@ class Fleet {
 
   explicit Fleet(const FleetParams& params);
 
-  /// Takes telemetry and health from it.
+  /// Takes telemetry, health and what checks find from it.
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
   /// What the operator should know.

@@ -41,6 +41,8 @@ class CanLink {
   [[nodiscard]] const dronecan::ReassemblyStatistics& reassembly() const {
     return node_.reassembly();
   }
+  /// Companion::facts(), and what is heard on the bus.
+  [[nodiscard]] std::optional<AutopilotFacts> facts(Instant now) const;
   /// Transfers that the bus did not take. They are not kept: what is old is not to be flown.
   [[nodiscard]] std::uint64_t transfers_dropped() const { return transfers_dropped_; }
 

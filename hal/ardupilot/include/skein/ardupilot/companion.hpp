@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/ardupilot/motion.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/base/state_table.hpp"
@@ -152,6 +153,9 @@ class Companion {
   /// What keeps the aircraft from being flown, as it stands; the notices have it too, when it comes
   /// up and each minute from then on.
   [[nodiscard]] const std::vector<AutopilotNotice>& troubles() const;
+  /// What the autopilot has said of itself, as checks before a flight look at it; nothing while
+  /// that may yet come. Of the link only what troubles tell.
+  [[nodiscard]] std::optional<AutopilotFacts> facts(Instant now) const;
   struct Heard {
     std::uint8_t system = 0;
     Instant at;
