@@ -8,6 +8,11 @@
 #include "skein/wording/wording.hpp"
 
 namespace skein::onboard {
+namespace {
+
+constexpr Duration kFactsPeriod = std::chrono::milliseconds{500};
+
+}  // namespace
 
 std::optional<VehicleState> CanFlightController::state(Instant now) {
   if (const auto* newer = sample_.read()) newest_ = *newer;
@@ -56,6 +61,19 @@ std::vector<std::string> CanFlightController::problems() const {
   return all;
 }
 
+void CanFlightController::tell_facts(Instant now) {
+  if (now < facts_at_) return;
+  const std::unique_lock lock{facts_mutex_, std::try_to_lock};
+  if (!lock.owns_lock()) return;  // in the next period
+  facts_ = link_.facts(now);
+  facts_at_ = now + kFactsPeriod;
+}
+
+std::optional<ardupilot::AutopilotFacts> CanFlightController::facts() const {
+  const std::lock_guard lock{facts_mutex_};
+  return facts_;
+}
+
 void CanFlightController::step(Instant now) {
   if (const auto* newer = command_.read()) {
     link_.companion().command(newer->demand, newer->at);
@@ -67,6 +85,7 @@ void CanFlightController::step(Instant now) {
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));
   tell_mode();
   tell_troubles();
+  tell_facts(now);
   const auto in_use = link_.companion().in_use();
   airborne_.store(!in_use   ? hal::Airborne::unknown
                   : *in_use ? hal::Airborne::yes

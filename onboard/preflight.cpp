@@ -5,20 +5,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <string_view>
 #include <utility>
 
 #include "check_makers.hpp"
 #include "link_params.hpp"
+#include "skein/ardupilot/survey.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/codec/json_text.hpp"
 
 namespace skein::onboard {
 namespace {
-
-std::string_view name_of(Verdict verdict) {
-  return verdict == Verdict::ok ? "ok" : verdict == Verdict::warn ? "warn" : "fail";
-}
 
 std::int64_t unix_ns() {
   return std::chrono::nanoseconds{std::chrono::system_clock::now().time_since_epoch()}.count();
@@ -29,7 +25,8 @@ Checks check_bus(const configuration::VehicleConfig& config) {
   const std::string& name = config.flight_controller.ardupilot.can;
   auto bus = can::open(name);
   if (!bus) {
-    return {fail("CAN bus", "cannot be opened", std::move(bus).error().message)};
+    return in_group(CheckGroup::bus,
+                    {fail("CAN bus", "cannot be opened", std::move(bus).error().message)});
   }
   const auto begun = std::chrono::steady_clock::now();
   const auto now = [begun] { return Instant{std::chrono::steady_clock::now() - begun}; };
@@ -62,8 +59,9 @@ std::string text_of(const Checks& checks) {
 std::string json_of(const Checks& checks) {
   codec::Json json{{"good", is_good(checks)}, {"checks", codec::Json::array()}};
   for (const Check& check : checks) {
-    json["checks"].push_back({{"what", check.what},
-                              {"verdict", name_of(check.verdict)},
+    json["checks"].push_back({{"group", to_string(check.group)},
+                              {"what", check.what},
+                              {"verdict", to_string(check.verdict)},
                               {"found", check.found},
                               {"remedy", check.remedy}});
   }
@@ -78,7 +76,8 @@ bool is_good(const Checks& checks) {
 Checks check_before_flight(const configuration::VehicleConfig& config) {
   Checks all = check_host(config, unix_ns());
   if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) {
-    all.push_back(ok("flight controller", "simulated: no bus is looked at"));
+    append(all, in_group(CheckGroup::bus,
+                         {ok("flight controller", "simulated: no bus is looked at")}));
     return all;
   }
   append(all, check_interface(can::interface_of(config.flight_controller.ardupilot.can)));

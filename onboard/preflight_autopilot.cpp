@@ -31,6 +31,24 @@ constexpr std::uint16_t kFilterWithout = 0x80 | 0x400;
 constexpr std::uint32_t kSensorFence = 0x100000;
 constexpr double kTakeoffShare = 0.9;  ///< of takeoff_height_m: there the companion takes it
 
+/// What is not known while it is not heard.
+constexpr std::array<std::pair<CheckGroup, const char*>, 14> kOfAutopilot{{
+    {CheckGroup::firmware, "autopilot's make"},
+    {CheckGroup::firmware, "airframe"},
+    {CheckGroup::firmware, "firmware"},
+    {CheckGroup::parameters, "failsafe parameters"},
+    {CheckGroup::parameters, "limits"},
+    {CheckGroup::gnss, "GNSS"},
+    {CheckGroup::gnss, "satellites"},
+    {CheckGroup::gnss, "GNSS time"},
+    {CheckGroup::filter, "filter"},
+    {CheckGroup::battery, "battery"},
+    {CheckGroup::arming, "arming"},
+    {CheckGroup::arming, "mode"},
+    {CheckGroup::arming, "armed"},
+    {CheckGroup::arming, "geofence"},
+}};
+
 Check not_told(std::string what, std::string_view message) {
   return warn(std::move(what), fmt::format("the autopilot did not tell ({})", message),
               "ask again; if it stays so, its firmware lacks it");
@@ -71,19 +89,23 @@ class Judge {
 
   [[nodiscard]] Checks autopilot(std::int64_t unix_s_at_gnss) const {
     if (!facts_.heartbeat) return unknown();
-    Checks all{make(), airframe(), firmware()};
-    for (const auto& parameter : facts_.safety) all.push_back(safety(parameter));
+    Checks all = in_group(CheckGroup::firmware, {make(), airframe(), firmware()});
+    Checks parameters;
+    for (const auto& parameter : facts_.safety) parameters.push_back(safety(parameter));
     for (const auto& limit : ardupilot::limit_parameters(config_.vehicle.airframe)) {
-      all.push_back(of_limit(limit));
+      parameters.push_back(of_limit(limit));
     }
     if (fc_.take_over == configuration::TakeOverKind::from_ground && !config_.vehicle.is_copter()) {
-      all.push_back(takeoff_height());
+      parameters.push_back(takeoff_height());
     }
-    for (const auto check : {&Judge::gnss, &Judge::satellites, &Judge::filter, &Judge::battery,
-                             &Judge::pre_arm, &Judge::mode, &Judge::armed, &Judge::fence}) {
-      all.push_back((this->*check)());
-    }
-    all.push_back(gnss_time(unix_s_at_gnss));
+    append(all, in_group(CheckGroup::parameters, std::move(parameters)));
+    append(all, in_group(CheckGroup::gnss, {gnss(), satellites(), gnss_time(unix_s_at_gnss)}));
+    append(all, in_group(CheckGroup::filter, {filter()}));
+    append(all, in_group(CheckGroup::battery, {battery()}));
+    Checks arming;
+    if (!facts_.in_flight) arming = {pre_arm(), mode(), armed()};
+    arming.push_back(fence());
+    append(all, in_group(CheckGroup::arming, std::move(arming)));
     return all;
   }
 
@@ -106,10 +128,8 @@ class Judge {
   }
   [[nodiscard]] static Checks unknown() {
     Checks all;
-    for (const char* what :
-         {"autopilot's make", "airframe", "firmware", "failsafe parameters", "limits", "GNSS",
-          "satellites", "filter", "battery", "arming", "mode", "armed", "geofence", "GNSS time"}) {
-      all.push_back(warn(what, "not known", "the autopilot must be heard first"));
+    for (const auto& [group, what] : kOfAutopilot) {
+      append(all, in_group(group, {warn(what, "not known", "the autopilot must be heard first")}));
     }
     return all;
   }
@@ -158,7 +178,7 @@ class Judge {
       const Verdict verdict = finding.verdict == Finding::refused   ? Verdict::fail
                               : finding.verdict == Finding::differs ? Verdict::warn
                                                                     : Verdict::ok;
-      return {std::string{name}, verdict, std::move(finding.found), std::move(finding.remedy)};
+      return {std::string{name}, verdict, std::move(finding.found), std::move(finding.remedy), {}};
     }
     return not_told(std::string{limit.name}, limit.older_name);
   }
@@ -306,9 +326,7 @@ class Judge {
   const AutopilotFacts& facts_;
 };
 
-}  // namespace
-
-Checks check_interface(const can::InterfaceFacts& facts) {
+Checks interface_checks(const can::InterfaceFacts& facts) {
   Checks all;
   const std::string& name = facts.name;
   if (!facts.is_there) {
@@ -342,10 +360,16 @@ Checks check_interface(const can::InterfaceFacts& facts) {
   return all;
 }
 
+}  // namespace
+
+Checks check_interface(const can::InterfaceFacts& facts) {
+  return in_group(CheckGroup::bus, interface_checks(facts));
+}
+
 Checks check_autopilot(const configuration::VehicleConfig& config,
                        const ardupilot::AutopilotFacts& facts, std::int64_t unix_s_at_gnss) {
   const Judge judge{config, facts};
-  Checks all = judge.link();
+  Checks all = in_group(CheckGroup::bus, judge.link());
   append(all, judge.autopilot(unix_s_at_gnss));
   return all;
 }

@@ -296,7 +296,6 @@ void check_network(Checks& all, const configuration::NetworkConfig& network) {
                       : ok("group", group));
     all.push_back(check_route("route to the group", network.address, group, network.port));
   }
-  all.push_back(check_port(network));
   std::error_code failed;
   if (!network.transport_plugin.empty()) {
     all.push_back(fs::exists(network.transport_plugin, failed)
@@ -404,23 +403,32 @@ Check check_epoch(const configuration::TimeConfig& time, std::int64_t now_unix_n
 }
 
 Checks check_host(const configuration::VehicleConfig& config, std::int64_t now_unix_ns) {
-  Checks all;
-  all.push_back(ok("configuration", fmt::format("good, vehicle {}", config.vehicle.id.value)));
+  Checks all = check_host_of_running(config, now_unix_ns);
+  append(all, in_group(CheckGroup::network, {check_port(config.network)}));
+  append(all, in_group(CheckGroup::computer, {check_other_process(config)}));
+  return all;
+}
+
+Checks check_host_of_running(const configuration::VehicleConfig& config, std::int64_t now_unix_ns) {
   const auto route = configuration::timed_path(config.route, config.vehicle);
-  all.push_back(route ? ok("route", config.route.waypoints.empty() ? "none" : "can be flown")
-                      : fail("route", "cannot be flown", route.error().message));
-  all.push_back(check_epoch(config.time, now_unix_ns));
-  all.push_back(check_clock(process::among_machines(config.network)));
-  all.push_back(check_time_source());
-  check_recording(all, config);
-  all.push_back(check_detectors(config.detections_socket));
-  check_keys(all, config, now_unix_ns / kSecond_ns);
-  check_network(all, config.network);
-  all.push_back(check_other_process(config));
-  all.push_back(check_realtime());
-  all.push_back(check_cores());
-  all.push_back(check_memory());
-  all.push_back(check_core_files());
+  Checks all{ok("configuration", fmt::format("good, vehicle {}", config.vehicle.id.value)),
+             route ? ok("route", config.route.waypoints.empty() ? "none" : "can be flown")
+                   : fail("route", "cannot be flown", route.error().message)};
+  append(all, in_group(CheckGroup::clock, {check_epoch(config.time, now_unix_ns),
+                                           check_clock(process::among_machines(config.network)),
+                                           check_time_source()}));
+  Checks storage;
+  check_recording(storage, config);
+  storage.push_back(check_detectors(config.detections_socket));
+  append(all, in_group(CheckGroup::storage, std::move(storage)));
+  Checks keys;
+  check_keys(keys, config, now_unix_ns / kSecond_ns);
+  append(all, in_group(CheckGroup::keys, std::move(keys)));
+  Checks network;
+  check_network(network, config.network);
+  append(all, in_group(CheckGroup::network, std::move(network)));
+  append(all, in_group(CheckGroup::computer,
+                       {check_realtime(), check_cores(), check_memory(), check_core_files()}));
   return all;
 }
 

@@ -237,15 +237,16 @@ TEST(Preflight, ThisMachineIsLookedAtAndNothingStaysBehind) {
 }
 
 TEST(Preflight, ItIsWrittenForPeopleAndForPrograms) {
-  const Checks all{{"mode", Verdict::ok, "FBWA", {}},
-                   {"GNSS", Verdict::fail, "no fix", "wait"},
-                   {"geofence", Verdict::warn, "off", "set it"}};
+  const Checks all{{"mode", Verdict::ok, "FBWA", {}, CheckGroup::arming},
+                   {"GNSS", Verdict::fail, "no fix", "wait", CheckGroup::gnss},
+                   {"geofence", Verdict::warn, "off", "set it", CheckGroup::arming}};
   EXPECT_EQ(text_of(all),
             "ok    mode: FBWA\nFAIL  GNSS: no fix; wait\nwarn  geofence: off; set it\n");
   const auto json = codec::parse_json(json_of(all));
   EXPECT_FALSE(json.at("good").get<bool>());
   EXPECT_EQ(json.at("checks").at(1).at("verdict"), "fail");
   EXPECT_EQ(json.at("checks").at(1).at("remedy"), "wait");
+  EXPECT_EQ(json.at("checks").at(1).at("group"), "gnss");
 }
 
 }  // namespace

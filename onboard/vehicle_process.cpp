@@ -22,6 +22,7 @@
 #include "skein/hal/simulated_multirotor.hpp"
 #include "skein/mission/concerns.hpp"
 #include "skein/mission/may_say.hpp"
+#include "skein/mission/setup_book.hpp"
 #include "skein/mission/setup_filter.hpp"
 #include "skein/network/node.hpp"
 #include "skein/onboard/agent_loop.hpp"
@@ -29,6 +30,7 @@
 #include "skein/onboard/control_loop.hpp"
 #include "skein/onboard/node_config.hpp"
 #include "skein/onboard/planner.hpp"
+#include "skein/onboard/preflight_watch.hpp"
 #include "skein/onboard/recorder.hpp"
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/threads.hpp"
@@ -97,17 +99,27 @@ mission::Health with_flight_controller(mission::Health health, const CanFlightCo
   return health;
 }
 
-AgentLink link_to(network::Node& node, const CanFlightController* on_can, HealthBoard& health) {
-  return {.receive = [&node]() -> std::optional<AgentLink::Received> {
+/// Whether it is of a ground station that was not heard before; `known` is that from then on.
+bool is_of_new_ground_station(const mission::Message& message, InstanceId& known) {
+  const auto* setup = std::get_if<mission::Setup>(&message);
+  return setup != nullptr && setup->node == kGroundStation &&
+         std::exchange(known, setup->instance) != setup->instance;
+}
+
+AgentLink link_to(network::Node& node, const CanFlightController* on_can, HealthBoard& health,
+                  PreflightWatch& preflight) {
+  return {.receive = [&node, &preflight,
+                      ground = InstanceId{}]() mutable -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
               process::log_troubles(node);
               return std::nullopt;
             }
+            if (is_of_new_ground_station(received->message, ground)) preflight.ask();
             return AgentLink::Received{std::move(received->message), received->sender};
           },
           .send =
-              [&node, on_can, &health](const mission::Message& message) {
+              [&node, on_can, &health, &preflight](const mission::Message& message) {
                 const auto* told = std::get_if<mission::Health>(&message);
                 if (told == nullptr) {
                   node.publish(message);
@@ -117,6 +129,8 @@ AgentLink link_to(network::Node& node, const CanFlightController* on_can, Health
                     health.with_host(with_flight_controller(*told, on_can));
                 health.put(whole);
                 node.publish(mission::Message{whole});
+                // Once a second is soon enough for it, too.
+                if (auto due = preflight.due()) node.publish(mission::Message{*std::move(due)});
               },
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }
@@ -146,9 +160,9 @@ void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
 }
 
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
-                  std::optional<detectors::DetectorSocket>& socket, AgentRing* records,
+                  PreflightWatch& preflight, std::optional<detectors::DetectorSocket>& socket, AgentRing* records,
                   const process::MissionClock& clock) {
-  AgentLink link = link_to(node, on_can, health);
+  AgentLink link = link_to(node, on_can, health, preflight);
   link.now = [&clock] { return clock.now(); };
   if (socket) listen_to(*socket, link);
   if (records != nullptr) {
@@ -175,7 +189,7 @@ class Threads {
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
           InstanceId instance, std::optional<recording::Writer> writer,
           FlightControllers flight_controllers, std::optional<detectors::DetectorSocket> detectors,
-          HealthBoard& health, Instant now)
+          HealthBoard& health, PreflightWatch& preflight, Instant now)
       : clock_{clock},
         detectors_{std::move(detectors)},
         wake_agent_{wake_agent},
@@ -185,7 +199,7 @@ class Threads {
                  ports_,
                  {.turn_lead_s = config.flight_controller.turn_lead_s()}},
         agent_{node_config(config, route, instance, "skein-onboard " + version()),
-               link_to(node, flight_controllers_.on_can, health, detectors_,
+               link_to(node, flight_controllers_.on_can, health, preflight, detectors_,
                        writer ? &records_ : nullptr, clock),
                ports_,
                planner_,
@@ -412,6 +426,22 @@ class Ear {
   mission::SetupFilter filter_;
 };
 
+/// What does not change of what the vehicle's checks find.
+mission::Preflight preflight_base(const configuration::VehicleConfig& config, InstanceId instance) {
+  std::string common;
+  const auto setup = configuration::setup_params(config, {version(), codec::wire_versions()});
+  for (const mission::SetupItem& item : mission::items_of(setup)) {
+    common += std::to_string(item.key) + " " + std::to_string(item.value) + "\n";
+  }
+  mission::Preflight base;
+  base.vehicle = config.vehicle.id;
+  base.instance = instance;
+  base.copter = config.vehicle.is_copter();
+  base.release = version().substr(0, mission::kCheckNameMax);
+  base.configuration = mission::setup_hash(common);
+  return base;
+}
+
 /// The clock must outlive the node.
 Result<std::unique_ptr<network::Node>> join(const configuration::VehicleConfig& config,
                                             const process::NodeStart& start,
@@ -484,9 +514,12 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   std::optional<process::KeyWatch> keys;
   if (start->identity) keys.emplace(**node, std::move(*start->identity), config.network.keys);
   HealthBoard health;
+  PreflightWatch preflight{config, preflight_base(config, instance), clock,
+                           [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
       config, *route, clock, **node, wake_agent, instance, std::move(writer),
-      std::move(controllers).value(), std::move(*detectors), health, clock.now());
+      std::move(controllers).value(), std::move(*detectors), health, preflight,
+      clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};
   service.ready();
@@ -494,6 +527,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   while ((signal = shutdown.wait_for(desk.period())) == nullptr) desk.step();
   service.stopping();
   spdlog::info("{}: stopping", signal);
+  preflight.stop();
   threads->stop();
   threads->log_summary(**node);
   close_limit.start(process::kCloseWithin);

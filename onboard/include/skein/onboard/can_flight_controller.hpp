@@ -49,6 +49,10 @@ class CanFlightController final : public hal::FlightController {
   /// What keeps the aircraft from being flown now, as sentences.
   [[nodiscard]] std::vector<std::string> problems() const;
 
+  // Of any thread.
+  /// What the autopilot says of itself, half a second old at most; nothing while it is not known.
+  [[nodiscard]] std::optional<ardupilot::AutopilotFacts> facts() const;
+
  private:
   struct Mode {
     std::array<char, 64> text{};  ///< ends with a zero
@@ -65,8 +69,12 @@ class CanFlightController final : public hal::FlightController {
   Mode newest_mode_;                             ///< the agent's
   void tell_mode();
   void tell_troubles();
+  void tell_facts(Instant now);
   mutable std::mutex troubles_mutex_;  ///< CAN to agent, of a copy that seldom changes
   std::vector<AutopilotNotice> troubles_;
+  mutable std::mutex facts_mutex_;  ///< CAN, which does not wait for it, to whoever looks
+  std::optional<ardupilot::AutopilotFacts> facts_;
+  Instant facts_at_{Instant::min()};  ///< CAN's: when they are due
   std::atomic<hal::Airborne> airborne_{hal::Airborne::unknown};  ///< CAN to control
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued

@@ -13,7 +13,15 @@
 
 namespace skein::onboard {
 
-enum class ThreadRole : std::uint8_t { control, can, agent, planner, recorder, count };
+enum class ThreadRole : std::uint8_t {
+  control,
+  can,
+  agent,
+  planner,
+  recorder,
+  preflight,
+  count
+};
 enum class SchedulingPolicy : std::uint8_t { realtime, normal };
 
 /// One thread of skein-onboard. Periods are mission time; a period of zero means that the
@@ -34,6 +42,8 @@ inline constexpr std::array<ThreadSpec, static_cast<std::size_t>(ThreadRole::cou
     {ThreadRole::agent, "agent", SchedulingPolicy::normal, 0, std::chrono::milliseconds{50}},
     {ThreadRole::planner, "planner", SchedulingPolicy::normal, 0, Duration::zero()},
     {ThreadRole::recorder, "recorder", SchedulingPolicy::normal, 0, std::chrono::milliseconds{200}},
+    {ThreadRole::preflight, "preflight", SchedulingPolicy::normal, 0,
+     std::chrono::milliseconds{500}},
 }};
 
 [[nodiscard]] constexpr const ThreadSpec& spec_of(ThreadRole role) {
