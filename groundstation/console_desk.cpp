@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "skein/codec/json_text.hpp"
+#include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/logins.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/process/token.hpp"
@@ -81,6 +82,8 @@ std::optional<console::Section> section_of(View view) {
       return Section::hazards;
     case View::proposals:
       return Section::proposals;
+    case View::preflight:
+      return Section::preflight;
     case View::help:
     case View::audit:
     case View::routes:
@@ -88,6 +91,13 @@ std::optional<console::Section> section_of(View view) {
       break;
   }
   return std::nullopt;
+}
+
+Answer preflight_answer(const mission::Fleet& fleet, VehicleId vehicle, Instant now) {
+  const auto team = console::team_preflight(fleet, now);
+  auto text = console::preflight_text(team, vehicle, now);
+  if (!text) return {false, fmt::format("vehicle {} is not of this fleet\n", vehicle.value)};
+  return {true, *std::move(text), console::preflight_json(team)};
 }
 
 namespace {

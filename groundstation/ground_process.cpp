@@ -126,6 +126,7 @@ bool only_looks(const Input& input) {
   const auto* site = std::get_if<NewSite>(&input);
   const auto* routes = std::get_if<RoutesFromFile>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
+         std::holds_alternative<PreflightOf>(input) ||
          (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
          (routes != nullptr && routes->preview);
 }
@@ -335,6 +336,9 @@ class GroundLoop {
     if (const auto* view = std::get_if<View>(&input)) {
       return {true, text_of(*view, now), data_of(*view, now)};
     }
+    if (const auto* of = std::get_if<PreflightOf>(&input)) {
+      return preflight_answer(node_.fleet(), of->vehicle, now);
+    }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
     if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
     if (const auto* preview = std::get_if<RoutesFromFile>(&input)) {
@@ -435,6 +439,8 @@ class GroundLoop {
         return sites_.proposals_text();
       case View::routes:
         return routes_.text(now);
+      case View::preflight:
+        return console::preflight_text(console::team_preflight(node_.fleet(), now), now);
     }
     return "";
   }

@@ -14,9 +14,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 11> kWords{
+  static constexpr std::array<std::string_view, 12> kWords{
       "help",    "status", "sites",     "pending", "places", "coalitions",
-      "hazards", "audit",  "proposals", "routes",  "console"};
+      "hazards", "audit",  "proposals", "routes",  "preflight", "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -52,6 +52,9 @@ struct Line {
   std::string operator()(const RoutesFromFile& from) const {
     return fmt::format("{}routes {}{}", from.preview ? "preview " : "", from.file,
                        from.in_s ? fmt::format(" in {}", *from.in_s) : "");
+  }
+  std::string operator()(const PreflightOf& of) const {
+    return fmt::format("preflight {}", of.vehicle.value);
   }
   std::string operator()(const CallOffRoutes& /*off*/) const { return "withdraw routes"; }
   std::string operator()(const ProposalAnswer& answer) const {

@@ -220,6 +220,13 @@ Result<Input> wait(const std::vector<std::string_view>& words) {
   return Input{Wait{from_seconds(*seconds)}};
 }
 
+Result<Input> preflight(const std::vector<std::string_view>& words) {
+  if (words.size() == 1 || (words.size() == 2 && words[1] == "all")) return Input{View::preflight};
+  const auto id = words.size() == 2 ? id_of(words[1]) : std::nullopt;
+  if (!id) return Error{"'preflight' stands alone, or before 'all' or a vehicle's number"};
+  return Input{PreflightOf{{*id}}};
+}
+
 Result<Input> record(const std::vector<std::string_view>& words) {
   if (words.size() != 2) return Error{"'record' needs a folder, or 'stop'"};
   return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
@@ -250,6 +257,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "authorise") return decision(true, words);
   if (verb == "refuse") return decision(false, words);
   if (verb == "coalitions") return view(View::coalitions, words);
+  if (verb == "preflight") return preflight(words);
   if (verb == "hazards") return view(View::hazards, words);
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
@@ -279,6 +287,7 @@ bool is_of_formation(std::string_view line) {
 
 std::string help_text() {
   return "status            the fleet: what each vehicle does, when it was last heard, its health\n"
+         "preflight [ID]    who is ready before the flight, and what each vehicle's checks find\n"
          "sites             the sites and what was done there\n"
          "pending           deliveries that wait for your decision\n"
          "authorise SITE    let the deliveries at SITE be flown as planned\n"

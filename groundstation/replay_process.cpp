@@ -113,6 +113,9 @@ class ReplayLoop {
     }
     if (const auto input = parse_input(line)) {
       if (const auto* view = std::get_if<View>(&*input)) return look(*view);
+      if (const auto* of = std::get_if<PreflightOf>(&*input)) {
+        return preflight_answer(playback_.fleet(), of->vehicle, playback_.now());
+      }
       if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
     }
     return {false,
@@ -141,6 +144,9 @@ class ReplayLoop {
         return coalitions_text(playback_.picture());
       case View::hazards:
         return hazards_text(playback_.picture());
+      case View::preflight:
+        return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
+                              playback_.now());
       default:
         return "";
     }

@@ -368,6 +368,7 @@ Check check_memory() {
   if (::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
     available = std::min<std::uint64_t>(available, limit.rlim_cur);
   }
+  if (available == UINT64_MAX) return ok("memory", "the kernel does not say");
   const std::string found = fmt::format("{} MB available", available / kMega);
   if (available >= kMemoryMin) return ok("memory", found);
   return fail("memory", found,

@@ -12,6 +12,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/console/team_preflight.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
 #include "skein/idl/domain_fields.hpp"
@@ -483,7 +484,7 @@ Json timeline_json(const Picture& picture) {
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
       "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
-      "formation", "timeline", "audit", "replay",     "proposals"};
+      "formation", "timeline", "audit", "replay",     "proposals",      "preflight"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -529,6 +530,8 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return codec::json_text(timeline_json(picture));
     case Section::proposals:
       return codec::json_text(proposals_json(picture));
+    case Section::preflight:
+      return preflight_json(team_preflight(fleet, now));
     case Section::audit:
     case Section::replay:
     case Section::count:

@@ -14,6 +14,7 @@
 #include "skein/console/picture.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/console/server.hpp"
+#include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
 
@@ -92,5 +93,8 @@ struct ShownRecording {
 /// The section that has what a view of the prompt shows; none for those that are not of the
 /// picture.
 [[nodiscard]] std::optional<console::Section> section_of(View view);
+
+/// What that vehicle's checks find, in words and as the whole section.
+[[nodiscard]] Answer preflight_answer(const mission::Fleet& fleet, VehicleId vehicle, Instant now);
 
 }  // namespace skein::groundstation

@@ -51,7 +51,12 @@ enum class View {
   audit,
   proposals,
   routes,
+  preflight,
   console  ///< its address
+};
+/// What that vehicle's checks find.
+struct PreflightOf {
+  VehicleId vehicle;
 };
 /// The operator's decision on the deliveries at a site.
 struct Decision {
@@ -142,7 +147,7 @@ struct Quit {};
 /// monostate: an empty line.
 using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard,
                            NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
-                           ProposalAnswer, Formation, Wait, Record, Quit>;
+                           ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

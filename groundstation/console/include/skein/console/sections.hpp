@@ -26,6 +26,7 @@ enum class Section : std::uint8_t {
   audit,
   replay,
   proposals,
+  preflight,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);

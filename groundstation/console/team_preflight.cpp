@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/console/team_preflight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <tuple>
+
+#include "skein/codec/json_text.hpp"
+
+namespace skein::console {
+namespace {
+
+using codec::Json;
+using mission::CheckGroup;
+using mission::CheckVerdict;
+using mission::Preflight;
+
+constexpr std::size_t kNamedMax = 12;  ///< in the summary
+
+void add(std::string& list, std::string_view word) {
+  list.append(list.empty() ? "" : ", ").append(word);
+}
+
+CheckMark mark_of(const mission::CheckCount& count) {
+  if (count.failed > 0) return CheckMark::fail;
+  if (count.warned > 0) return CheckMark::warn;
+  return count.passed > 0 ? CheckMark::ok : CheckMark::not_looked_at;
+}
+
+/// Why what it has told does not count, or the vehicle is not worked with; empty: neither.
+std::string why_not_heard(const mission::FleetEntry& entry, Instant now) {
+  if (entry.revoked) return "revoked";
+  if (entry.duplicate) return "two programs with this number";
+  if (!entry.telemetry) return "never heard";
+  if (entry.silent) return "silent";
+  if (!entry.preflight || entry.preflight->instance != entry.telemetry->instance) {
+    return "has not told yet";
+  }
+  return now - entry.preflight_at > kPreflightCounts ? "has not told lately" : "";
+}
+
+/// Fills in whether it is ready, and why not.
+void judge(PreflightRow& row, const mission::FleetEntry& entry) {
+  const Preflight& told = *row.told;
+  for (std::size_t group = 0; group < kCheckGroups; ++group) {
+    if (row.marks.at(group) == CheckMark::fail) {
+      add(row.why, name_of(static_cast<CheckGroup>(group)));
+    }
+  }
+  if (entry.differs) add(row.why, "differs from the ground station");
+  if (!row.why.empty()) {
+    row.readiness = Readiness::not_ready;
+  } else if (!told.complete) {
+    row.readiness = Readiness::not_known;
+    row.why = "has not told all yet";
+  } else {
+    row.readiness = Readiness::ready;
+  }
+  if (told.in_flight) row.readiness = Readiness::in_flight;
+}
+
+PreflightRow row_of(VehicleId vehicle, const mission::FleetEntry& entry, Instant now) {
+  PreflightRow row;
+  row.vehicle = vehicle;
+  if (entry.preflight) {
+    row.told = &*entry.preflight;
+    row.told_at = entry.preflight_at;
+    if (row.told->complete) row.marks.fill(CheckMark::not_looked_at);
+    for (const auto& count : row.told->counts) {
+      row.marks.at(static_cast<std::size_t>(count.group)) = mark_of(count);
+    }
+  }
+  row.why = why_not_heard(entry, now);
+  row.counts = row.why.empty();
+  if (row.counts) {
+    judge(row, entry);
+  } else {
+    const bool will_come = entry.telemetry && !entry.silent && !entry.duplicate && !entry.revoked;
+    row.readiness = will_come ? Readiness::not_known : Readiness::not_ready;
+  }
+  return row;
+}
+
+/// Marks those whose value is not the one that most have. `value_of` gives what is compared and
+/// among whom; nothing where it is not known.
+template <class ValueOf>
+void mark_odd(std::vector<PreflightRow>& rows, bool PreflightRow::Odd::*odd,
+              const ValueOf& value_of) {
+  std::map<int, std::map<std::string, int>> counts;
+  for (const auto& row : rows) {
+    if (!row.counts) continue;
+    if (const auto [among, value] = value_of(*row.told); !value.empty()) ++counts[among][value];
+  }
+  for (auto& row : rows) {
+    if (!row.counts) continue;
+    const auto [among, value] = value_of(*row.told);
+    if (value.empty()) continue;
+    const auto& values = counts[among];
+    const int own = values.at(value);
+    row.odd.*odd = std::ranges::any_of(values, [&](const auto& other) {
+      return other.first != value && other.second >= own;
+    });
+  }
+}
+
+void mark_odd(std::vector<PreflightRow>& rows) {
+  using Compared = std::pair<int, std::string>;
+  mark_odd(rows, &PreflightRow::Odd::release, [](const Preflight& told) {
+    return Compared{0, told.release};
+  });
+  mark_odd(rows, &PreflightRow::Odd::configuration, [](const Preflight& told) {
+    return Compared{0, digest_text(told.configuration)};
+  });
+  mark_odd(rows, &PreflightRow::Odd::firmware, [](const Preflight& told) {
+    return Compared{told.copter ? 1 : 0, told.firmware};
+  });
+  mark_odd(rows, &PreflightRow::Odd::parameters, [](const Preflight& told) {
+    return Compared{told.copter ? 1 : 0, digest_text(told.parameters)};
+  });
+}
+
+std::string summary_of(const std::vector<PreflightRow>& rows) {
+  if (rows.empty()) return "no vehicle is expected, and none is heard";
+  const auto count = [&](Readiness wanted) {
+    return std::ranges::count(rows, wanted, &PreflightRow::readiness);
+  };
+  std::string text = fmt::format("{} of {} ready", count(Readiness::ready), rows.size());
+  if (const auto flying = count(Readiness::in_flight); flying > 0) {
+    text += fmt::format(", {} armed or in the air", flying);
+  }
+  const auto others = count(Readiness::not_ready) + count(Readiness::not_known);
+  if (others == 0) return text;
+  std::string named;
+  std::size_t names = 0;
+  for (const auto& row : rows) {
+    if (row.readiness == Readiness::ready || row.readiness == Readiness::in_flight) continue;
+    if (++names <= kNamedMax) add(named, fmt::format("{} ({})", row.vehicle.value, row.why));
+  }
+  if (names > kNamedMax) named += fmt::format(" and {} more", names - kNamedMax);
+  return text + fmt::format(", {} not: {}", others, named);
+}
+
+std::string verdict_text(const PreflightRow& row) {
+  switch (row.readiness) {
+    case Readiness::ready:
+      return std::ranges::find(row.marks, CheckMark::warn) != row.marks.end() ? "ready, warned"
+                                                                              : "ready";
+    case Readiness::in_flight:
+      return row.why.empty() ? "armed or in the air" : "armed or in the air: " + row.why;
+    case Readiness::not_known:
+      return "not known: " + row.why;
+    default:
+      return "NOT READY: " + row.why;
+  }
+}
+
+std::string figure(const std::string& text, bool odd) {
+  return text.empty() ? "-" : odd ? text + "*" : text;
+}
+
+/// Its line in the table.
+void add_row(std::string& text, const PreflightRow& row, Instant now) {
+  const auto to = std::back_inserter(text);
+  if (row.told == nullptr) {
+    fmt::format_to(to, "{:>7}{:>9}  {:<12}{:<10}{:<12}{:<15}{}\n", row.vehicle.value, "-", "-", "-",
+                   "-", "-", verdict_text(row));
+    return;
+  }
+  const Preflight& told = *row.told;
+  fmt::format_to(to, "{:>7}{:>7.0f} s  {:<12}{:<10}{:<12}{:<15}{}\n", row.vehicle.value,
+                 to_seconds(now - row.told_at), figure(told.release, row.odd.release),
+                 figure(told.firmware, row.odd.firmware),
+                 figure(digest_text(told.parameters), row.odd.parameters),
+                 figure(digest_text(told.configuration), row.odd.configuration), verdict_text(row));
+}
+
+constexpr std::string_view kHead =
+    "vehicle     told  release     firmware  parameters  configuration  checks\n";
+constexpr std::string_view kOddNote = "* not what most of the team have\n";
+
+bool is_odd(const PreflightRow& row) {
+  return row.odd.release || row.odd.firmware || row.odd.parameters || row.odd.configuration;
+}
+
+/// What was told of it and is not ok.
+void add_lines(std::string& text, const PreflightRow& row, bool fails_only) {
+  if (row.told == nullptr || row.told->lines.empty()) return;
+  if (!row.counts) text += "         as it was told last:\n";
+  for (const auto& line : row.told->lines) {
+    if (fails_only && line.verdict != CheckVerdict::fail) continue;
+    text += "         " + line_text(line) + "\n";
+  }
+}
+
+Json row_json(const PreflightRow& row) {
+  Json json{{"id", row.vehicle.value},
+            {"readiness", to_string(row.readiness)},
+            {"why", row.why},
+            {"counts", row.counts},
+            {"told_s", nullptr},
+            {"release", nullptr},
+            {"firmware", nullptr},
+            {"parameters", nullptr},
+            {"configuration", nullptr},
+            {"odd", Json::array()},
+            {"marks", Json::array()},
+            {"lines", Json::array()},
+            {"lines_left_out", 0}};
+  for (const CheckMark mark : row.marks) json["marks"].push_back(to_string(mark));
+  if (row.told == nullptr) return json;
+  const Preflight& told = *row.told;
+  json["told_s"] = to_seconds(row.told_at);
+  const auto set = [&json](const char* name, const std::string& text, bool odd) {
+    if (!text.empty()) json[name] = text;
+    if (odd) json["odd"].push_back(name);
+  };
+  set("release", told.release, row.odd.release);
+  set("firmware", told.firmware, row.odd.firmware);
+  set("parameters", digest_text(told.parameters), row.odd.parameters);
+  set("configuration", digest_text(told.configuration), row.odd.configuration);
+  for (const auto& line : told.lines) {
+    json["lines"].push_back({{"group", name_of(line.group)},
+                             {"verdict", to_string(line.verdict)},
+                             {"what", line.what},
+                             {"found", line.found},
+                             {"remedy", line.remedy}});
+  }
+  json["lines_left_out"] = told.lines_left_out;
+  return json;
+}
+
+}  // namespace
+
+std::string_view name_of(CheckGroup group) {
+  static constexpr std::array<std::string_view, kCheckGroups> kNames{
+      "clock",    "storage",    "keys", "network", "computer", "configuration", "bus",
+      "firmware", "parameters", "GNSS", "filter",  "battery",  "arming"};
+  return kNames.at(static_cast<std::size_t>(group));
+}
+
+std::string_view to_string(Readiness readiness) {
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(Readiness::count)> kNames{
+      "ready", "not_ready", "in_flight", "not_known"};
+  return kNames.at(static_cast<std::size_t>(readiness));
+}
+
+std::string_view to_string(CheckMark mark) {
+  static constexpr std::array<std::string_view, static_cast<std::size_t>(CheckMark::count)> kNames{
+      "not_known", "not_looked_at", "ok", "warn", "fail"};
+  return kNames.at(static_cast<std::size_t>(mark));
+}
+
+TeamPreflight team_preflight(const mission::Fleet& fleet, Instant now) {
+  TeamPreflight team;
+  for (const auto& [vehicle, entry] : fleet.vehicles()) {
+    team.rows.push_back(row_of(vehicle, entry, now));
+  }
+  mark_odd(team.rows);
+  team.summary = summary_of(team.rows);
+  return team;
+}
+
+std::string digest_text(std::uint32_t digest) {
+  return digest == 0 ? "" : fmt::format("{:08x}", digest);
+}
+
+std::string line_text(const mission::CheckLine& line) {
+  std::string text =
+      fmt::format("{}  {}: {}", line.verdict == CheckVerdict::fail ? "FAIL" : "warn", line.what,
+                  line.found);
+  if (!line.remedy.empty()) text.append("; ").append(line.remedy);
+  return text;
+}
+
+std::string preflight_text(const TeamPreflight& team, Instant now) {
+  std::string text = team.summary + "\n";
+  text += kHead;
+  for (const auto& row : team.rows) {
+    add_row(text, row, now);
+    add_lines(text, row, true);
+  }
+  if (std::ranges::any_of(team.rows, is_odd)) text += kOddNote;
+  return text;
+}
+
+std::optional<std::string> preflight_text(const TeamPreflight& team, VehicleId vehicle,
+                                          Instant now) {
+  const auto row = std::ranges::find(team.rows, vehicle, &PreflightRow::vehicle);
+  if (row == team.rows.end()) return std::nullopt;
+  std::string text{kHead};
+  add_row(text, *row, now);
+  add_lines(text, *row, false);
+  if (row->told != nullptr) {
+    if (row->told->lines_left_out > 0) {
+      text += fmt::format("         and {} more: 'skein-onboard check' there has them\n",
+                          row->told->lines_left_out);
+    }
+    std::string good;
+    for (const auto& count : row->told->counts) {
+      if (count.passed > 0) add(good, fmt::format("{} {}", name_of(count.group), count.passed));
+    }
+    text += fmt::format("         {}: {}\n", row->counts ? "ok" : "were ok", good);
+  }
+  if (is_odd(*row)) text += kOddNote;
+  return text;
+}
+
+std::string preflight_json(const TeamPreflight& team) {
+  Json json{{"summary", team.summary}, {"groups", Json::array()}, {"vehicles", Json::array()}};
+  for (std::size_t group = 0; group < kCheckGroups; ++group) {
+    json["groups"].push_back(name_of(static_cast<CheckGroup>(group)));
+  }
+  for (const auto& row : team.rows) json["vehicles"].push_back(row_json(row));
+  return codec::json_text(json);
+}
+
+}  // namespace skein::console
