@@ -17,6 +17,7 @@
 #include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/configuration/setup_params.hpp"
+#include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"

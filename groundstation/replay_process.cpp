@@ -16,6 +16,7 @@
 #include <variant>
 
 #include "skein/codec/json_text.hpp"
+#include "skein/console/team_preflight.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"

@@ -15,6 +15,7 @@ import "./mission/timeline.css";
 import "./orders/orders.css";
 import "./log/log.css";
 import "./plots/plots.css";
+import "./preflight/preflight.css";
 import "./replay/replay.css";
 import { App } from "./shell/app";
 import { theme } from "./shell/view";

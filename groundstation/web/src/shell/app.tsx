@@ -8,6 +8,7 @@ import { MissionPanel } from "../mission/mission_panel";
 import { TimelinePanel } from "../mission/timeline_panel";
 import { OrdersPanel } from "../orders/orders_panel";
 import { PlotsPanel } from "../plots/plots_panel";
+import { PreflightPanel } from "../preflight/preflight_panel";
 import { ReplayBar } from "../replay/replay_bar";
 import { current, in_replay, session } from "../wire/store";
 import { Banners } from "./banners";
@@ -26,6 +27,7 @@ const panel_of = {
   orders: OrdersPanel,
   log: LogPanel,
   plots: PlotsPanel,
+  preflight: PreflightPanel,
 } as const;
 
 export function App() {

@@ -13,7 +13,7 @@ export interface Key {
 
 export const key_list: readonly Key[] = [
   { keys: "Shift+H or F9", what: "Hold all: every vehicle holds, at once. F9 works while typing too" },
-  { keys: "1 … 5", what: "Panel: fleet, mission, orders, log, plots" },
+  { keys: "1 … 6", what: "Panel: fleet, mission, orders, log, plots, preflight" },
   { keys: "[ and ]", what: "Select the vehicle before, after" },
   { keys: "F", what: "Follow the selected vehicle on the map" },
   { keys: "A", what: "Show all vehicles and sites on the map" },

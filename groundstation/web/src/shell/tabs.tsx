@@ -4,7 +4,7 @@ import { count_alarms } from "./alarms";
 import { panel, panels } from "./view";
 import type { Panel } from "./view";
 
-const names: Record<Panel, string> = { fleet: "Fleet", mission: "Mission", orders: "Orders", log: "Log", plots: "Plots" };
+const names: Record<Panel, string> = { fleet: "Fleet", mission: "Mission", orders: "Orders", log: "Log", plots: "Plots", preflight: "Preflight" };
 
 export function Tabs() {
   const { waiting } = count_alarms(shown.value);

@@ -34,6 +34,7 @@ export const section_names = [
   "audit",
   "replay",
   "proposals",
+  "preflight",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -51,6 +52,7 @@ export function empty_picture(): Picture {
     audit: [],
     replay: null,
     proposals: [],
+    preflight: null,
     events: [],
     next_seq: 0,
     events_missed: 0,

@@ -254,6 +254,46 @@ export interface Sections {
   audit: AuditEntry[];
   replay: ReplayState | null;
   proposals: Proposal[];
+  preflight: Preflight | null;
+}
+
+export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";
+export type CheckMark = "ok" | "warn" | "fail" | "not_looked_at" | "not_known";
+
+export interface PreflightLine {
+  group: string;
+  verdict: "warn" | "fail";
+  what: string;
+  found: string;
+  remedy: string;
+}
+
+/** What a vehicle's checks find. */
+export interface PreflightVehicle {
+  id: number;
+  readiness: Readiness;
+  /** Where it is not ready; empty: nothing is. */
+  why: string;
+  /** What it has told is of now: else it is only what was. */
+  counts: boolean;
+  told_s: number | null;
+  release: string | null;
+  firmware: string | null;
+  parameters: string | null;
+  configuration: string | null;
+  /** Those of the four that most of the team have otherwise. */
+  odd: string[];
+  /** One for each of the groups. */
+  marks: CheckMark[];
+  /** What is not ok. */
+  lines: PreflightLine[];
+  lines_left_out: number;
+}
+
+export interface Preflight {
+  summary: string;
+  groups: string[];
+  vehicles: PreflightVehicle[];
 }
 
 /** What a detector has seen, and nobody has answered. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples for the tests.
 
-import type { Coalition, Hello, MissionEvent, Vehicle } from "./protocol";
+import type { Coalition, Hello, MissionEvent, PreflightVehicle, Vehicle } from "./protocol";
 
 export function a_hello(): Hello {
   return {
@@ -92,6 +92,25 @@ export function a_coalition(key: string, other: Partial<Coalition> = {}): Coalit
     members: [],
     rounds: [],
     lease_until_s: null,
+    ...other,
+  };
+}
+
+export function a_preflight_vehicle(id: number, other: Partial<PreflightVehicle> = {}): PreflightVehicle {
+  return {
+    id,
+    readiness: "ready",
+    why: "",
+    counts: true,
+    told_s: 1,
+    release: "0.1.0",
+    firmware: null,
+    parameters: null,
+    configuration: "00000001",
+    odd: [],
+    marks: [],
+    lines: [],
+    lines_left_out: 0,
     ...other,
   };
 }

@@ -38,6 +38,7 @@ export const proposals = computed(() => shown.value.proposals);
 export const formation = computed(() => shown.value.formation);
 export const timeline = computed(() => shown.value.timeline);
 export const audit = computed(() => shown.value.audit);
+export const preflight = computed(() => shown.value.preflight);
 export const replay = computed(() => shown.value.replay);
 export const events = computed(() => shown.value.events);
 export const in_replay = computed(() => Boolean(hello.value?.replay));

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who is ready before the flight: vehicles by what their checks are about, and each one's lines with
+// what to do.
+
+import { signal } from "@preact/signals";
+import { age } from "../shell/format";
+import { tick } from "../shell/ticker";
+import type { Preflight, PreflightVehicle } from "../wire/protocol";
+import { link, lost_at_ms, preflight, shown, since_state_s } from "../wire/store";
+import { shown_mark, shown_vehicle, told_age_s } from "./marks";
+
+const opened = signal<ReadonlySet<number>>(new Set());
+/** A page that connects again has not lost anything yet. */
+const patience_ms = 1500;
+
+function toggle(id: number): void {
+  const next = new Set(opened.value);
+  if (!next.delete(id)) next.add(id);
+  opened.value = next;
+}
+
+const digests = [
+  ["release", "Release", "Of its program"],
+  ["firmware", "Firmware", "Of its autopilot"],
+  ["parameters", "Param.", "A digest of the autopilot's parameters that are looked at"],
+  ["configuration", "Config.", "A digest of what the team has in common"],
+] as const;
+
+function Lines({ vehicle, columns }: { vehicle: PreflightVehicle; columns: number }) {
+  const heard = vehicle.counts;
+  return (
+    <tr class="preflight-lines">
+      <td colSpan={columns}>
+        <div class="lines-sheet" id={`preflight-lines-${vehicle.id}`} data-testid={`preflight-lines-${vehicle.id}`}>
+          {vehicle.why && (
+            <p>
+              <b>{shown_vehicle(vehicle, true).label}</b>
+            </p>
+          )}
+          {!heard && vehicle.told_s !== null && <p class="muted">What follows is as it was told last.</p>}
+          <ul>
+            {vehicle.lines.map((line, i) => (
+              <li key={i}>
+                <b class={heard ? `problem ${line.verdict === "fail" ? "alarm" : "warning"}` : "muted"}>
+                  {line.verdict === "fail" ? "FAIL" : "warn"} {line.what}:
+                </b>{" "}
+                {line.found}
+                {line.remedy && <span class="remedy"> {line.remedy}</span>}
+              </li>
+            ))}
+          </ul>
+          {vehicle.lines.length === 0 && <p class="muted">{vehicle.told_s === null ? "It has told nothing yet." : "It has named nothing that is not ok."}</p>}
+          {vehicle.lines_left_out > 0 && <p class="muted">And {vehicle.lines_left_out} more, which skein-onboard check there has.</p>}
+        </div>
+      </td>
+    </tr>
+  );
+}
+
+function Row({ vehicle, groups, connected, lost_s }: { vehicle: PreflightVehicle; groups: string[]; connected: boolean; lost_s: number }) {
+  const open = opened.value.has(vehicle.id);
+  const whole = shown_vehicle(vehicle, connected);
+  const heard = vehicle.counts && connected;
+  const told_s = told_age_s(vehicle, shown.value.time_s, connected ? since_state_s() : lost_s);
+  return (
+    <>
+      <tr class={`vehicle${heard ? "" : " old"}`} data-testid={`preflight-${vehicle.id}`} data-readiness={connected ? vehicle.readiness : "not_known"} onClick={() => toggle(vehicle.id)}>
+        <th scope="row">
+          <button type="button" class="row-button" aria-expanded={open} aria-controls={open ? `preflight-lines-${vehicle.id}` : undefined} aria-label={`Vehicle ${vehicle.id}, ${whole.label}`}>
+            <span class={`mark ${whole.tone}`} aria-hidden="true">
+              {whole.sign}
+            </span>
+            {vehicle.id}
+          </button>
+        </th>
+        <td class="figure">{age(told_s)}</td>
+        {vehicle.marks.map((mark, i) => {
+          const { sign, tone, label } = shown_mark(mark, heard);
+          return (
+            <td key={i} class={`mark ${tone}`} title={`${groups[i]}: ${label}`} data-mark={tone}>
+              <span aria-hidden="true">{sign}</span>
+              <span class="only-spoken">{label}</span>
+            </td>
+          );
+        })}
+        {digests.map(([name]) => {
+          const odd = vehicle.odd.includes(name);
+          return (
+            <td key={name} class={odd && heard ? "digest odd" : "digest"} title={odd ? "Not what most of the team have" : undefined} data-testid={`preflight-${vehicle.id}-${name}`}>
+              {odd && <span aria-hidden="true">≠ </span>}
+              {odd && <span class="only-spoken">differs: </span>}
+              {vehicle[name] ?? "–"}
+            </td>
+          );
+        })}
+      </tr>
+      {open && <Lines vehicle={vehicle} columns={2 + groups.length + digests.length} />}
+    </>
+  );
+}
+
+function Table({ of, connected, lost_s }: { of: Preflight; connected: boolean; lost_s: number }) {
+  return (
+    <table class="preflight-table">
+      <caption class="only-spoken">What the vehicles' checks find, by what they are about</caption>
+      <thead>
+        <tr>
+          <th scope="col" class="col-id">
+            Id
+          </th>
+          <th scope="col" class="figure col-told" title="Since it has told what its checks find">
+            Told
+          </th>
+          {of.groups.map((group) => (
+            <th key={group} scope="col" class="group">
+              <span>{group}</span>
+            </th>
+          ))}
+          {digests.map(([name, title, what]) => (
+            <th key={name} scope="col" class="col-digest" title={what}>
+              {title}
+            </th>
+          ))}
+        </tr>
+      </thead>
+      <tbody>
+        {of.vehicles.map((vehicle) => (
+          <Row key={vehicle.id} vehicle={vehicle} groups={of.groups} connected={connected} lost_s={lost_s} />
+        ))}
+      </tbody>
+    </table>
+  );
+}
+
+export function PreflightPanel() {
+  void tick.value;
+  const of = preflight.value;
+  const lost_ms = link.value === "open" || lost_at_ms.value === null ? 0 : performance.now() - lost_at_ms.value;
+  const connected = lost_ms < patience_ms;
+  if (!of) return <p class="empty">Nothing has been told yet.</p>;
+  return (
+    <div class="preflight" data-testid="preflight">
+      <p class={`preflight-summary${connected ? "" : " old"}`} role="status" data-testid="preflight-summary">
+        {connected ? of.summary : `Not known now; last: ${of.summary}`}
+      </p>
+      <div class="scroll" tabIndex={0} role="region" aria-label="Checks of the vehicles">
+        <Table of={of} connected={connected} lost_s={lost_ms / 1000} />
+        {of.vehicles.length === 0 && <p class="empty">No vehicle has been heard yet.</p>}
+      </div>
+    </div>
+  );
+}
