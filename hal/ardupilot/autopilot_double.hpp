@@ -60,6 +60,7 @@ class AutopilotDouble {
                                           {"AIRSPEED_MAX", 100.0F},  {"AIRSPEED_CRUISE", 50.0F}};
   int deaf_to_parameters = 0;       ///< so many questions get lost
   std::set<std::uint32_t> stopped;  ///< streams
+  std::set<std::uint32_t> refuses_streams;
 
   std::vector<mavlink::CommandLong> commands;
   std::vector<mavlink::SetAttitudeTarget> attitudes;
@@ -82,6 +83,22 @@ class AutopilotDouble {
       due(1, now, [&] { return status(); });
       due(245, now,
           [&] { return mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = landed}; });
+      due(mavlink::GpsRawInt::kDefinition.id, now, [] {
+        mavlink::GpsRawInt gnss;
+        gnss.fix_type = 3;
+        gnss.satellites_visible = 12;
+        return gnss;
+      });
+      due(mavlink::EkfStatusReport::kDefinition.id, now, [] {
+        mavlink::EkfStatusReport filter;
+        filter.flags = 0x33F;
+        return filter;
+      });
+      due(mavlink::SystemTime::kDefinition.id, now, [] {
+        mavlink::SystemTime time;
+        time.time_unix_usec = 1'760'000'000'000'000;
+        return time;
+      });
     }
     std::vector<std::uint8_t> said;
     said.swap(out_);
@@ -240,6 +257,11 @@ class AutopilotDouble {
         say(refusal->second.text, mavlink::Severity::critical);
       }
       return;
+    }
+    if (static_cast<mavlink::Command>(command.command) == mavlink::Command::set_message_interval &&
+        refuses_streams.contains(static_cast<std::uint32_t>(command.param1))) {
+      ack.result = static_cast<std::uint8_t>(mavlink::CommandResult::failed);
+      return send(ack);
     }
     send(ack);
     switch (static_cast<mavlink::Command>(command.command)) {
