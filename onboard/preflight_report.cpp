@@ -40,7 +40,7 @@ void count(Preflight& told, const Check& check) {
 /// But for figures in what they say.
 bool same_verdicts(const Preflight& a, const Preflight& b) {
   const auto without_texts = [](Preflight told) {
-    for (auto& line : told.lines) line.found.clear(), line.remedy.clear();
+    for (auto& line : told.lines) line.found = line.remedy = {};
     return told;
   };
   return without_texts(a) == without_texts(b);

@@ -20,7 +20,7 @@ using ::testing::Not;
 struct Team {
   mission::Fleet fleet{{.expected = {{1}, {2}, {3}}}};
 
-  void hear(VehicleId vehicle, double seconds, std::uint64_t instance = 1) {
+  void speak(VehicleId vehicle, double seconds, std::uint64_t instance = 1) {
     mission::Telemetry telemetry;
     telemetry.vehicle = vehicle;
     telemetry.instance = {instance};
@@ -28,7 +28,7 @@ struct Team {
     fleet.on_message(mission::Message{telemetry}, at_seconds(seconds));
   }
   void hear(const Preflight& told, double seconds) {
-    hear(told.vehicle, seconds, told.instance.value);
+    speak(told.vehicle, seconds, told.instance.value);
     fleet.on_message(mission::Message{told}, at_seconds(seconds));
   }
   [[nodiscard]] TeamPreflight at(double seconds) {
@@ -63,7 +63,7 @@ TEST(TeamPreflight, CountsWhoIsReadyAndNamesWhoIsNot) {
             "0 of 3 ready, 3 not: 1 (never heard), 2 (never heard), 3 (never heard)");
   team.hear(good({1}), 1.0);
   team.hear(failing({2}), 1.0);
-  team.hear({3}, 1.0);
+  team.speak({3}, 1.0);
   EXPECT_EQ(team.at(1.0).summary, "1 of 3 ready, 2 not: 2 (parameters), 3 (has not told yet)");
   team.hear(good({2}), 2.0);
   team.hear(good({3}), 2.0);
@@ -81,9 +81,9 @@ TEST(TeamPreflight, NothingIsGoodThatIsNotHeardNow) {
   EXPECT_FALSE(team.at(6.5).rows[0].counts);  // silent
   EXPECT_EQ(team.at(6.5).rows[0].readiness, Readiness::not_ready);
   EXPECT_EQ(team.at(6.5).rows[0].why, "silent");
-  team.hear({1}, 7.0);
+  team.speak({1}, 7.0);
   EXPECT_EQ(team.at(7.0).rows[0].readiness, Readiness::ready);
-  team.hear({1}, 76.5);  // it is heard, but has not told for long
+  team.speak({1}, 76.5);  // it is heard, but has not told for long
   EXPECT_EQ(team.at(76.5).rows[0].why, "has not told lately");
   EXPECT_EQ(team.at(76.5).rows[0].readiness, Readiness::not_known);
 }
@@ -91,7 +91,7 @@ TEST(TeamPreflight, NothingIsGoodThatIsNotHeardNow) {
 TEST(TeamPreflight, WhatAnEarlierStartHasToldDoesNotCount) {
   Team team;
   team.hear(good({1}), 1.0);
-  team.hear({1}, 10.0, 2);
+  team.speak({1}, 10.0, 2);
   EXPECT_EQ(team.at(10.0).rows[0].why, "has not told yet");
   Preflight again = good({1});
   again.instance = {2};
