@@ -41,7 +41,7 @@ test("the fleet is there, well, and accounted for", async () => {
 });
 
 test("an observer's eyes: no serious barrier in any panel", async () => {
-  for (const panel of ["fleet", "mission", "orders", "log", "plots"]) {
+  for (const panel of ["fleet", "mission", "orders", "log", "plots", "preflight"]) {
     await view.part(`tab-${panel}`).click();
     assert.deepEqual(await barriers(), [], panel);
   }
