@@ -15,7 +15,7 @@ namespace {
 
 std::string_view word_of(View view) {
   static constexpr std::array<std::string_view, 12> kWords{
-      "help",    "status", "sites",     "pending", "places", "coalitions",
+      "help",    "status", "sites",     "pending", "places",    "coalitions",
       "hazards", "audit",  "proposals", "routes",  "preflight", "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }

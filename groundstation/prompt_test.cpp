@@ -42,6 +42,11 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<Order>("return 2").kind, mission::CommandKind::return_home);
   EXPECT_EQ(parsed<Order>("give-back 7").vehicle, VehicleId{7});
   EXPECT_EQ(parsed<Order>("give-back 7").kind, mission::CommandKind::give_back);
+  EXPECT_EQ(parsed<View>("preflight"), View::preflight);
+  EXPECT_EQ(parsed<View>("preflight all"), View::preflight);
+  EXPECT_EQ(parsed<PreflightOf>("preflight 12").vehicle, VehicleId{12});
+  EXPECT_THAT(refusal_of("preflight zero"), HasSubstr("a vehicle's number"));
+  EXPECT_THAT(refusal_of("preflight 1 2"), HasSubstr("a vehicle's number"));
   EXPECT_EQ(parsed<Record>("record runs/mine").folder, "runs/mine");
   EXPECT_EQ(parsed<Record>("record stop").folder, "");
   parsed<Quit>("quit");

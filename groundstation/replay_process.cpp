@@ -16,8 +16,8 @@
 #include <variant>
 
 #include "skein/codec/json_text.hpp"
-#include "skein/console/team_preflight.hpp"
 #include "skein/console/sections.hpp"
+#include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/line_reader.hpp"
@@ -147,7 +147,7 @@ class ReplayLoop {
         return hazards_text(playback_.picture());
       case View::preflight:
         return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
-                              playback_.now());
+                                       playback_.now());
       default:
         return "";
     }

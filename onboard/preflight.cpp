@@ -76,8 +76,8 @@ bool is_good(const Checks& checks) {
 Checks check_before_flight(const configuration::VehicleConfig& config) {
   Checks all = check_host(config, unix_ns());
   if (config.flight_controller.kind != configuration::FlightControllerKind::ardupilot) {
-    append(all, in_group(CheckGroup::bus,
-                         {ok("flight controller", "simulated: no bus is looked at")}));
+    append(all,
+           in_group(CheckGroup::bus, {ok("flight controller", "simulated: no bus is looked at")}));
     return all;
   }
   append(all, check_interface(can::interface_of(config.flight_controller.ardupilot.can)));

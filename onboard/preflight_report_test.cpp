@@ -20,10 +20,9 @@ Check check(Verdict verdict, CheckGroup group, std::string what = "x", std::stri
 }
 
 TEST(PreflightReport, CountsByGroupAndTellsWhatIsNotOkFailuresFirst) {
-  const Preflight told = preflight_of({}, {check(Verdict::ok, CheckGroup::clock),
-                                           check(Verdict::warn, CheckGroup::clock, "source"),
-                                           check(Verdict::ok, CheckGroup::gnss),
-                                           check(Verdict::fail, CheckGroup::gnss, "fix")});
+  const Preflight told = preflight_of(
+      {}, {check(Verdict::ok, CheckGroup::clock), check(Verdict::warn, CheckGroup::clock, "source"),
+           check(Verdict::ok, CheckGroup::gnss), check(Verdict::fail, CheckGroup::gnss, "fix")});
   ASSERT_THAT(told.counts, SizeIs(2));
   EXPECT_EQ(told.counts[0], (mission::CheckCount{CheckGroup::clock, 1, 1, 0}));
   EXPECT_EQ(told.counts[1], (mission::CheckCount{CheckGroup::gnss, 1, 0, 1}));
@@ -45,8 +44,8 @@ TEST(PreflightReport, IsSmallWhateverIsFound) {
   const auto bytes = codec::encode(mission::Message{told});
   ASSERT_TRUE(bytes);  // no half of a letter, either
   EXPECT_LE(bytes->size(), 1400U);
-  EXPECT_TRUE(std::holds_alternative<mission::Message>(
-      codec::decode(codec::Topic::preflight, *bytes)));
+  EXPECT_TRUE(
+      std::holds_alternative<mission::Message>(codec::decode(codec::Topic::preflight, *bytes)));
 }
 
 TEST(PreflightReport, ADigestIsTheSameWhereParametersAreSetAlike) {

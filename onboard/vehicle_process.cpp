@@ -160,8 +160,8 @@ void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
 }
 
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
-                  PreflightWatch& preflight, std::optional<detectors::DetectorSocket>& socket, AgentRing* records,
-                  const process::MissionClock& clock) {
+                  PreflightWatch& preflight, std::optional<detectors::DetectorSocket>& socket,
+                  AgentRing* records, const process::MissionClock& clock) {
   AgentLink link = link_to(node, on_can, health, preflight);
   link.now = [&clock] { return clock.now(); };
   if (socket) listen_to(*socket, link);
@@ -518,8 +518,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
                            [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
       config, *route, clock, **node, wake_agent, instance, std::move(writer),
-      std::move(controllers).value(), std::move(*detectors), health, preflight,
-      clock.now());
+      std::move(controllers).value(), std::move(*detectors), health, preflight, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};
   service.ready();

@@ -41,6 +41,9 @@ TEST(MaySay, AVehicleSpeaksForItself) {
   Health health;
   health.vehicle = kSelf;
   EXPECT_EQ(of(health), kItself);
+  Preflight preflight;
+  preflight.vehicle = kSelf;
+  EXPECT_EQ(of(preflight), kItself);
 }
 
 TEST(MaySay, DecisionsAreSigned) {

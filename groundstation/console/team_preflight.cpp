@@ -100,9 +100,8 @@ void mark_odd(std::vector<PreflightRow>& rows, bool PreflightRow::Odd::*odd,
     if (value.empty()) continue;
     const auto& values = counts[among];
     const int own = values.at(value);
-    row.odd.*odd = std::ranges::any_of(values, [&](const auto& other) {
-      return other.first != value && other.second >= own;
-    });
+    row.odd.*odd = std::ranges::any_of(
+        values, [&](const auto& other) { return other.first != value && other.second >= own; });
   }
 }
 
@@ -196,18 +195,12 @@ void add_lines(std::string& text, const PreflightRow& row, bool fails_only) {
 }
 
 Json row_json(const PreflightRow& row) {
-  Json json{{"id", row.vehicle.value},
-            {"readiness", to_string(row.readiness)},
-            {"why", row.why},
-            {"counts", row.counts},
-            {"told_s", nullptr},
-            {"release", nullptr},
-            {"firmware", nullptr},
-            {"parameters", nullptr},
-            {"configuration", nullptr},
-            {"odd", Json::array()},
-            {"marks", Json::array()},
-            {"lines", Json::array()},
+  Json json{{"id", row.vehicle.value},  {"readiness", to_string(row.readiness)},
+            {"why", row.why},           {"counts", row.counts},
+            {"told_s", nullptr},        {"release", nullptr},
+            {"firmware", nullptr},      {"parameters", nullptr},
+            {"configuration", nullptr}, {"odd", Json::array()},
+            {"marks", Json::array()},   {"lines", Json::array()},
             {"lines_left_out", 0}};
   for (const CheckMark mark : row.marks) json["marks"].push_back(to_string(mark));
   if (row.told == nullptr) return json;
@@ -268,9 +261,8 @@ std::string digest_text(std::uint32_t digest) {
 }
 
 std::string line_text(const mission::CheckLine& line) {
-  std::string text =
-      fmt::format("{}  {}: {}", line.verdict == CheckVerdict::fail ? "FAIL" : "warn", line.what,
-                  line.found);
+  std::string text = fmt::format("{}  {}: {}", line.verdict == CheckVerdict::fail ? "FAIL" : "warn",
+                                 line.what, line.found);
   if (!line.remedy.empty()) text.append("; ").append(line.remedy);
   return text;
 }

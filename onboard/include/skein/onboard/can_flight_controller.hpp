@@ -74,7 +74,7 @@ class CanFlightController final : public hal::FlightController {
   std::vector<AutopilotNotice> troubles_;
   mutable std::mutex facts_mutex_;  ///< CAN, which does not wait for it, to whoever looks
   std::optional<ardupilot::AutopilotFacts> facts_;
-  Instant facts_at_{Instant::min()};  ///< CAN's: when they are due
+  Instant facts_at_{Instant::min()};                             ///< CAN's: when they are due
   std::atomic<hal::Airborne> airborne_{hal::Airborne::unknown};  ///< CAN to control
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued

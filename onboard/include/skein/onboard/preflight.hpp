@@ -43,7 +43,8 @@ using Checks = std::vector<Check>;
                                            std::int64_t now_unix_ns);
 [[nodiscard]] Checks check_interface(const can::InterfaceFacts& facts);
 /// The bus and who is on it, then the autopilot; where it is not heard, what depends on it is
-/// warned of. In flight what is about arming is left out. `unix_s_at_gnss`: this machine's clock when the autopilot told the time of its GNSS.
+/// warned of. In flight what is about arming is left out. `unix_s_at_gnss`: this machine's clock
+/// when the autopilot told the time of its GNSS.
 [[nodiscard]] Checks check_autopilot(const configuration::VehicleConfig& config,
                                      const ardupilot::AutopilotFacts& facts,
                                      std::int64_t unix_s_at_gnss);

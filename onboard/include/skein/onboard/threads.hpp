@@ -13,15 +13,7 @@
 
 namespace skein::onboard {
 
-enum class ThreadRole : std::uint8_t {
-  control,
-  can,
-  agent,
-  planner,
-  recorder,
-  preflight,
-  count
-};
+enum class ThreadRole : std::uint8_t { control, can, agent, planner, recorder, preflight, count };
 enum class SchedulingPolicy : std::uint8_t { realtime, normal };
 
 /// One thread of skein-onboard. Periods are mission time; a period of zero means that the
