@@ -120,6 +120,8 @@ AgentLink link_to(network::Node& node, const CanFlightController* on_can, Health
           },
           .send =
               [&node, on_can, &health, &preflight](const mission::Message& message) {
+                // Telemetry comes several times a second: soon enough for it.
+                if (auto due = preflight.due()) node.publish(mission::Message{*std::move(due)});
                 const auto* told = std::get_if<mission::Health>(&message);
                 if (told == nullptr) {
                   node.publish(message);
@@ -129,8 +131,6 @@ AgentLink link_to(network::Node& node, const CanFlightController* on_can, Health
                     health.with_host(with_flight_controller(*told, on_can));
                 health.put(whole);
                 node.publish(mission::Message{whole});
-                // Once a second is soon enough for it, too.
-                if (auto due = preflight.due()) node.publish(mission::Message{*std::move(due)});
               },
           .dropped = [&node] { return process::traffic_of(node).dropped; }};
 }

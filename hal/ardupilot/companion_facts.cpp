@@ -43,9 +43,8 @@ void Companion::Impl::look_at(const mavlink::Packet& packet, Instant now) {
   }
 }
 
-/// After those that a flight rests on.
 void Companion::Impl::ask_others(Instant now) {
-  if (!waits() || !parameters_.all_tried() || others_tried(now)) return;
+  if (!waits() || others_tried(now)) return;
   if (others_asked_ > 0 && now - others_at_ < kOthersPeriod) return;
   ++others_asked_;
   others_at_ = now;
