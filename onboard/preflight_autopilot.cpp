@@ -178,7 +178,8 @@ class Judge {
       const Verdict verdict = finding.verdict == Finding::refused   ? Verdict::fail
                               : finding.verdict == Finding::differs ? Verdict::warn
                                                                     : Verdict::ok;
-      return {std::string{name}, verdict, std::move(finding.found), std::move(finding.remedy), {}};
+      return {std::string{name}, verdict, std::move(finding.found), std::move(finding.remedy),
+              kAnyGroup};
     }
     return not_told(std::string{limit.name}, limit.older_name);
   }

@@ -236,6 +236,32 @@ TEST(Preflight, ThisMachineIsLookedAtAndNothingStaysBehind) {
   EXPECT_FALSE(std::filesystem::exists(folder));
 }
 
+TEST(Preflight, EveryGroupIsLookedAtAndOfARunningVehicleNoPort) {
+  configuration::VehicleConfig c = config();
+  c.time.epoch_unix_ns = kNow_s * 1'000'000'000;
+  Checks all = check_host_of_running(c, kNow_s * 1'000'000'000);
+  EXPECT_EQ(std::ranges::find(all, "port", &Check::what), all.end());
+  EXPECT_EQ(std::ranges::find(all, "other skein-onboard", &Check::what), all.end());
+  for (const Check& check : check_interface({})) all.push_back(check);
+  for (const Check& check : check_autopilot(c, good(), kNow_s)) all.push_back(check);
+  for (std::size_t group = 0; group < static_cast<std::size_t>(CheckGroup::count); ++group) {
+    const auto wanted = static_cast<CheckGroup>(group);
+    EXPECT_NE(std::ranges::find(all, wanted, &Check::group), all.end()) << to_string(wanted);
+  }
+  EXPECT_EQ(std::ranges::find(all, "route", &Check::what)->group, CheckGroup::configuration);
+}
+
+TEST(Preflight, InFlightNothingIsSaidOfArming) {
+  AutopilotFacts facts = good();
+  facts.heartbeat->base_mode = mavlink::mode_safety_armed;
+  facts.in_flight = true;
+  const Checks all = check_autopilot(config(), facts, kNow_s);
+  for (const char* what : {"arming", "armed", "mode"}) {
+    EXPECT_EQ(std::ranges::find(all, what, &Check::what), all.end()) << what;
+  }
+  EXPECT_NE(std::ranges::find(all, "geofence", &Check::what), all.end());
+}
+
 TEST(Preflight, ItIsWrittenForPeopleAndForPrograms) {
   const Checks all{{"mode", Verdict::ok, "FBWA", {}, CheckGroup::arming},
                    {"GNSS", Verdict::fail, "no fix", "wait", CheckGroup::gnss},

@@ -160,25 +160,55 @@ std::string figure(const std::string& text, bool odd) {
   return text.empty() ? "-" : odd ? text + "*" : text;
 }
 
-/// Its line in the table.
-void add_row(std::string& text, const PreflightRow& row, Instant now) {
-  const auto to = std::back_inserter(text);
-  if (row.told == nullptr) {
-    fmt::format_to(to, "{:>7}{:>9}  {:<12}{:<10}{:<12}{:<15}{}\n", row.vehicle.value, "-", "-", "-",
-                   "-", "-", verdict_text(row));
-    return;
-  }
+/// A row's figures, as the table has them.
+std::array<std::string, 6> cells_of(const PreflightRow& row, Instant now) {
+  std::array<std::string, 6> cells{std::to_string(row.vehicle.value), "-", "-", "-", "-", "-"};
+  if (row.told == nullptr) return cells;
   const Preflight& told = *row.told;
-  fmt::format_to(to, "{:>7}{:>7.0f} s  {:<12}{:<10}{:<12}{:<15}{}\n", row.vehicle.value,
-                 to_seconds(now - row.told_at), figure(told.release, row.odd.release),
-                 figure(told.firmware, row.odd.firmware),
-                 figure(digest_text(told.parameters), row.odd.parameters),
-                 figure(digest_text(told.configuration), row.odd.configuration), verdict_text(row));
+  cells[1] = fmt::format("{:.0f} s", to_seconds(now - row.told_at));
+  cells[2] = figure(told.release, row.odd.release);
+  cells[3] = figure(told.firmware, row.odd.firmware);
+  cells[4] = figure(digest_text(told.parameters), row.odd.parameters);
+  cells[5] = figure(digest_text(told.configuration), row.odd.configuration);
+  return cells;
 }
 
-constexpr std::string_view kHead =
-    "vehicle     told  release     firmware  parameters  configuration  checks\n";
-constexpr std::string_view kOddNote = "* not what most of the team have\n";
+constexpr std::array<std::string_view, 6> kHeads{"vehicle",  "told",       "release",
+                                                 "firmware", "parameters", "configuration"};
+constexpr std::size_t kFiguresFirst = 2;  ///< of them: to the right
+constexpr std::string_view kOddNote = "* others of the team have another one\n";
+
+/// Columns as wide as what stands in them, and what is made of the checks.
+class Table {
+ public:
+  Table(const std::vector<PreflightRow>& rows, Instant now) : now_{now} {
+    for (std::size_t i = 0; i < kHeads.size(); ++i) widths_.at(i) = kHeads.at(i).size();
+    for (const auto& row : rows) {
+      const auto cells = cells_of(row, now);
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        widths_.at(i) = std::max(widths_.at(i), cells.at(i).size());
+      }
+    }
+  }
+  [[nodiscard]] std::string head() const { return line(kHeads) + "checks\n"; }
+  [[nodiscard]] std::string of(const PreflightRow& row) const {
+    return line(cells_of(row, now_)) + verdict_text(row) + "\n";
+  }
+
+ private:
+  template <class Cells>
+  [[nodiscard]] std::string line(const Cells& cells) const {
+    std::string text;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      text += i < kFiguresFirst ? fmt::format("{:>{}}  ", cells.at(i), widths_.at(i))
+                                : fmt::format("{:<{}}  ", cells.at(i), widths_.at(i));
+    }
+    return text;
+  }
+
+  Instant now_;
+  std::array<std::size_t, kHeads.size()> widths_{};
+};
 
 bool is_odd(const PreflightRow& row) {
   return row.odd.release || row.odd.firmware || row.odd.parameters || row.odd.configuration;
@@ -186,12 +216,14 @@ bool is_odd(const PreflightRow& row) {
 
 /// What was told of it and is not ok.
 void add_lines(std::string& text, const PreflightRow& row, bool fails_only) {
-  if (row.told == nullptr || row.told->lines.empty()) return;
-  if (!row.counts) text += "         as it was told last:\n";
+  if (row.told == nullptr) return;
+  std::string lines;
   for (const auto& line : row.told->lines) {
     if (fails_only && line.verdict != CheckVerdict::fail) continue;
-    text += "         " + line_text(line) + "\n";
+    lines += "         " + line_text(line) + "\n";
   }
+  if (!row.counts && !lines.empty()) text += "         as it was told last:\n";
+  text += lines;
 }
 
 Json row_json(const PreflightRow& row) {
@@ -269,9 +301,10 @@ std::string line_text(const mission::CheckLine& line) {
 
 std::string preflight_text(const TeamPreflight& team, Instant now) {
   std::string text = team.summary + "\n";
-  text += kHead;
+  const Table table{team.rows, now};
+  text += table.head();
   for (const auto& row : team.rows) {
-    add_row(text, row, now);
+    text += table.of(row);
     add_lines(text, row, true);
   }
   if (std::ranges::any_of(team.rows, is_odd)) text += kOddNote;
@@ -282,8 +315,8 @@ std::optional<std::string> preflight_text(const TeamPreflight& team, VehicleId v
                                           Instant now) {
   const auto row = std::ranges::find(team.rows, vehicle, &PreflightRow::vehicle);
   if (row == team.rows.end()) return std::nullopt;
-  std::string text{kHead};
-  add_row(text, *row, now);
+  const Table table{{*row}, now};
+  std::string text = table.head() + table.of(*row);
   add_lines(text, *row, false);
   if (row->told != nullptr) {
     if (row->told->lines_left_out > 0) {

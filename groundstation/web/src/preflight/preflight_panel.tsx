@@ -26,6 +26,11 @@ const digests = [
   ["configuration", "Config.", "A digest of what the team has in common"],
 ] as const;
 
+/** Of a digest the beginning tells which are alike; the whole is its title. */
+function brief(text: string | null): string | undefined {
+  return text && /^[0-9a-f]{8}$/.test(text) ? text.slice(0, 6) : (text ?? undefined);
+}
+
 function Lines({ vehicle, columns }: { vehicle: PreflightVehicle; columns: number }) {
   const heard = vehicle.counts;
   return (
@@ -86,10 +91,10 @@ function Row({ vehicle, groups, connected, lost_s }: { vehicle: PreflightVehicle
         {digests.map(([name]) => {
           const odd = vehicle.odd.includes(name);
           return (
-            <td key={name} class={odd && heard ? "digest odd" : "digest"} title={odd ? "Not what most of the team have" : undefined} data-testid={`preflight-${vehicle.id}-${name}`}>
+            <td key={name} class={odd && heard ? "digest odd" : "digest"} title={`${vehicle[name] ?? "Not known"}${odd ? ": others of the team have another one" : ""}`} data-testid={`preflight-${vehicle.id}-${name}`}>
               {odd && <span aria-hidden="true">≠ </span>}
               {odd && <span class="only-spoken">differs: </span>}
-              {vehicle[name] ?? "–"}
+              {brief(vehicle[name]) ?? "–"}
             </td>
           );
         })}

@@ -281,7 +281,7 @@ export interface PreflightVehicle {
   firmware: string | null;
   parameters: string | null;
   configuration: string | null;
-  /** Those of the four that most of the team have otherwise. */
+  /** Those of the four of which at least as many others have another one. */
   odd: string[];
   /** One for each of the groups. */
   marks: CheckMark[];
