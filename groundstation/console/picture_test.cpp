@@ -88,6 +88,20 @@ coalition::Award award() {
   return a;
 }
 
+TEST(Picture, HasASectionOfChecks) {
+  Desk desk;
+  mission::Preflight told;
+  told.vehicle = {2};
+  told.instance = {1};
+  told.complete = true;
+  desk.telemetry({2}, 10.0, 10.1);
+  desk.hear(told, {3}, 10.2);  // not its to say
+  EXPECT_EQ(desk.section(Section::preflight, 10.3)["vehicles"][1]["readiness"], "not_known");
+  desk.hear(told, {2}, 10.4);
+  EXPECT_EQ(desk.section(Section::preflight, 10.5)["vehicles"][1]["readiness"], "ready");
+  EXPECT_EQ(to_string(Section::preflight), "preflight");
+}
+
 TEST(Picture, NamesWhatNeedsAttention) {
   Desk desk;
   desk.telemetry({1}, 10.0, 10.1);

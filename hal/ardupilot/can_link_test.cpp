@@ -203,6 +203,30 @@ TEST(CanLink, StopsSendingWhenASecondCompanionHasItsId) {
   EXPECT_EQ(bench.link.companion().state(), State::flying);
 }
 
+TEST(CanLink, KnowsWhichLayerOfTheLinkIsMissing) {
+  Bench bench;
+  EXPECT_FALSE(bench.link.facts(bench.now));
+  bench.run(6.0);
+  const auto good = bench.link.facts(bench.now);
+  ASSERT_TRUE(good);
+  EXPECT_TRUE(good->node_heard && good->serial_heard && good->heartbeat && !good->own_id_taken);
+  bench.fc->autopilot.mute = true;  // its node is on the bus all the same
+  bench.run(1.0);
+  EXPECT_FALSE(bench.link.facts(bench.now));
+  bench.run(5.0);
+  const auto silent = bench.link.facts(bench.now);
+  ASSERT_TRUE(silent);
+  EXPECT_TRUE(silent->node_heard);
+  EXPECT_FALSE(silent->serial_heard);
+  EXPECT_FALSE(silent->heartbeat);
+  bench.fc.reset();
+  bench.run(6.0);
+  const auto dead = bench.link.facts(bench.now);
+  ASSERT_TRUE(dead);
+  EXPECT_FALSE(dead->node_heard);
+  EXPECT_EQ(dead->trouble->news, AutopilotNews::no_bus_traffic);
+}
+
 TEST(CanLink, ForgetsWhatMustNotArriveLate) {
   Bench bench;
   bench.run(6.0);
