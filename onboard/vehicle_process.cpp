@@ -426,6 +426,20 @@ class Ear {
   mission::SetupFilter filter_;
 };
 
+/// Nothing where nothing is to be recorded.
+Result<std::optional<recording::Writer>> open_recording(const configuration::VehicleConfig& config,
+                                                        InstanceId instance,
+                                                        const process::MissionClock& clock) {
+  if (config.recording_folder.empty()) return std::optional<recording::Writer>{};
+  recording::Writer::Options options;
+  options.session = {config.vehicle.id,     instance,       "skein-onboard", version(),
+                     clock.epoch_unix_ns(), to_yaml(config)};
+  options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
+  auto opened = recording::Writer::open(config.recording_folder, options);
+  if (!opened) return opened.error();
+  return std::optional<recording::Writer>{std::move(*opened)};
+}
+
 /// What does not change of what the vehicle's checks find.
 mission::Preflight preflight_base(const configuration::VehicleConfig& config, InstanceId instance) {
   std::string common;
@@ -476,18 +490,10 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
   const InstanceId instance = start->instance;
-  std::optional<recording::Writer> writer;
-  if (!config.recording_folder.empty()) {
-    recording::Writer::Options options;
-    options.session = {config.vehicle.id,     instance,       "skein-onboard", version(),
-                       clock.epoch_unix_ns(), to_yaml(config)};
-    options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
-    auto opened = recording::Writer::open(config.recording_folder, options);
-    if (!opened) {
-      spdlog::critical("cannot record: {}", opened.error().message);
-      return process::kExitCannotStart;
-    }
-    writer = std::move(*opened);
+  auto writer = open_recording(config, instance, clock);
+  if (!writer) {
+    spdlog::critical("cannot record: {}", writer.error().message);
+    return process::kExitCannotStart;
   }
   process::Wake wake_agent;
   auto node = join(config, *start, clock, wake_agent);
@@ -517,7 +523,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   PreflightWatch preflight{config, preflight_base(config, instance), clock,
                            [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
-      config, *route, clock, **node, wake_agent, instance, std::move(writer),
+      config, *route, clock, **node, wake_agent, instance, std::move(*writer),
       std::move(controllers).value(), std::move(*detectors), health, preflight, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};

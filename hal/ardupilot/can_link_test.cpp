@@ -216,9 +216,9 @@ TEST(CanLink, KnowsWhichLayerOfTheLinkIsMissing) {
   bench.run(5.0);
   const auto silent = bench.link.facts(bench.now);
   ASSERT_TRUE(silent);
-  EXPECT_TRUE(silent->node_heard);
-  EXPECT_FALSE(silent->serial_heard);
+  EXPECT_TRUE(silent->node_heard && silent->serial_heard);
   EXPECT_FALSE(silent->heartbeat);
+  EXPECT_EQ(silent->trouble->news, AutopilotNews::no_heartbeat);
   bench.fc.reset();
   bench.run(6.0);
   const auto dead = bench.link.facts(bench.now);
