@@ -106,22 +106,17 @@ bool is_of_new_ground_station(const mission::Message& message, InstanceId& known
          std::exchange(known, setup->instance) != setup->instance;
 }
 
-AgentLink link_to(network::Node& node, const CanFlightController* on_can, HealthBoard& health,
-                  PreflightWatch& preflight) {
-  return {.receive = [&node, &preflight,
-                      ground = InstanceId{}]() mutable -> std::optional<AgentLink::Received> {
+AgentLink link_to(network::Node& node, const CanFlightController* on_can, HealthBoard& health) {
+  return {.receive = [&node]() -> std::optional<AgentLink::Received> {
             auto received = node.poll();
             if (!received) {
               process::log_troubles(node);
               return std::nullopt;
             }
-            if (is_of_new_ground_station(received->message, ground)) preflight.ask();
             return AgentLink::Received{std::move(received->message), received->sender};
           },
           .send =
-              [&node, on_can, &health, &preflight](const mission::Message& message) {
-                // Telemetry comes several times a second: soon enough for it.
-                if (auto due = preflight.due()) node.publish(mission::Message{*std::move(due)});
+              [&node, on_can, &health](const mission::Message& message) {
                 const auto* told = std::get_if<mission::Health>(&message);
                 if (told == nullptr) {
                   node.publish(message);
@@ -159,10 +154,33 @@ void listen_to(detectors::DetectorSocket& socket, AgentLink& link) {
   };
 }
 
+/// Beside what the node says, several times a second, what the vehicle's checks find.
+void tell_checks(PreflightWatch& preflight, network::Node& node, AgentRing* records,
+                 const process::MissionClock& clock, AgentLink& link) {
+  link.receive = [receive = std::move(link.receive), &preflight,
+                  ground = InstanceId{}]() mutable -> std::optional<AgentLink::Received> {
+    auto received = receive();
+    if (received && is_of_new_ground_station(received->message, ground)) preflight.ask();
+    return received;
+  };
+  link.send = [send = std::move(link.send), &preflight, &node, records,
+               &clock](const mission::Message& message) {
+    send(message);
+    const auto due = preflight.due();
+    if (!due) return;
+    const mission::Message told{*due};
+    if (records != nullptr) {
+      records->push(recording::MessageRecord{told, due->vehicle, clock.now()});
+    }
+    node.publish(told);
+  };
+}
+
 AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard& health,
                   PreflightWatch& preflight, std::optional<detectors::DetectorSocket>& socket,
                   AgentRing* records, const process::MissionClock& clock) {
-  AgentLink link = link_to(node, on_can, health, preflight);
+  AgentLink link = link_to(node, on_can, health);
+  tell_checks(preflight, node, records, clock, link);
   link.now = [&clock] { return clock.now(); };
   if (socket) listen_to(*socket, link);
   if (records != nullptr) {

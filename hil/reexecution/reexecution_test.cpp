@@ -106,6 +106,9 @@ class Vehicle {
       const mission::Condition condition{"GUIDED", overruns_, ++overruns_ / 3};
       note(recording::ConditionGiven{condition, now});
       node_.on_condition(condition);
+      mission::Preflight checks;  // said beside the node
+      checks.vehicle = config_.vehicle.id;
+      note(recording::MessageRecord{mission::Message{checks}, config_.vehicle.id, now});
     }
     note(recording::TimeoutGiven{now});
     node_.on_timeout(now);
