@@ -48,6 +48,30 @@ TEST(PreflightReport, IsSmallWhateverIsFound) {
       std::holds_alternative<mission::Message>(codec::decode(codec::Topic::preflight, *bytes)));
 }
 
+TEST(PreflightReport, AUsualOneIsAHundredthOfWhatAVehicleMaySay) {
+  Checks all;
+  for (std::size_t group = 0; group < static_cast<std::size_t>(CheckGroup::count); ++group) {
+    all.push_back(check(Verdict::ok, static_cast<CheckGroup>(group)));
+  }
+  all.push_back({"time source", Verdict::warn, "none of chrony, systemd-timesyncd, ntpd runs",
+                 "in the field a GNSS receiver or one machine of the team gives the time "
+                 "(docs/field-guide.md)",
+                 CheckGroup::clock});
+  all.push_back({"geofence", Verdict::warn, "FENCE_ENABLE is not told",
+                 "with FENCE_ENABLE 1 the autopilot keeps within its own bounds, whatever it is "
+                 "asked",
+                 CheckGroup::arming});
+  Preflight base;
+  base.release = "0.2.0+g8d24e6798ec5";
+  base.firmware = "4.6.3";
+  const auto bytes = codec::encode(mission::Message{preflight_of(base, all)});
+  ASSERT_TRUE(bytes);
+  constexpr double kAir_bytes_per_s = 3000.0;
+  EXPECT_LE(static_cast<double>(bytes->size()) / to_seconds(PreflightTeller::kRepeat),
+            0.01 * kAir_bytes_per_s)
+      << bytes->size();
+}
+
 TEST(PreflightReport, ADigestIsTheSameWhereParametersAreSetAlike) {
   ardupilot::AutopilotFacts facts;
   EXPECT_EQ(digest_of(facts), 0U);
