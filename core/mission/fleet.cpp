@@ -17,7 +17,9 @@ void Fleet::on_message(const Message& message, Instant now) {
   if (const auto* telemetry = std::get_if<Telemetry>(&message)) on_telemetry(*telemetry, now);
   if (const auto* health = std::get_if<Health>(&message)) {
     const auto known = vehicles_.find(health->vehicle);
-    if (known != vehicles_.end()) known->second.health = *health;
+    if (known == vehicles_.end()) return;
+    known->second.health = *health;
+    known->second.health_at = now;
   }
   if (const auto* preflight = std::get_if<Preflight>(&message)) {
     const auto known = vehicles_.find(preflight->vehicle);

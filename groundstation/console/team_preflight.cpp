@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include "skein/codec/json_text.hpp"
 
@@ -30,16 +30,37 @@ CheckMark mark_of(const mission::CheckCount& count) {
   return count.passed > 0 ? CheckMark::ok : CheckMark::not_looked_at;
 }
 
-/// Why what it has told does not count, or the vehicle is not worked with; empty: neither.
-std::string why_not_heard(const mission::FleetEntry& entry, Instant now) {
-  if (entry.revoked) return "revoked";
-  if (entry.duplicate) return "two programs with this number";
-  if (!entry.telemetry) return "never heard";
-  if (entry.silent) return "silent";
-  if (!entry.preflight || entry.preflight->instance != entry.telemetry->instance) {
-    return "has not told yet";
+struct Heard {
+  Instant at;
+  InstanceId instance;
+};
+/// A vehicle whose flight controller has told no state yet sends no telemetry, but how it is.
+std::optional<Heard> newest_of(const mission::FleetEntry& entry) {
+  std::optional<Heard> newest;
+  if (entry.telemetry) newest = {entry.heard_at, entry.telemetry->instance};
+  if (entry.health && (!newest || entry.health_at > newest->at)) {
+    newest = {entry.health_at, entry.health->instance};
   }
-  return now - entry.preflight_at > kPreflightCounts ? "has not told lately" : "";
+  return newest;
+}
+
+/// Why what it has told does not count, or the vehicle is not worked with; empty: neither. And
+/// whether that will be over by itself.
+struct NotHeard {
+  std::string why;
+  bool will_come = false;
+};
+NotHeard why_not_heard(const mission::FleetEntry& entry, Instant now) {
+  if (entry.revoked) return {"revoked"};
+  if (entry.duplicate) return {"two programs with this number"};
+  const auto heard = newest_of(entry);
+  if (!heard) return {"never heard"};
+  if (now - heard->at >= mission::FleetParams{}.silence) return {"silent"};
+  if (!entry.preflight || entry.preflight->instance != heard->instance) {
+    return {"has not told yet", true};
+  }
+  if (now - entry.preflight_at > kPreflightCounts) return {"has not told lately", true};
+  return {};
 }
 
 /// Fills in whether it is ready, and why not.
@@ -73,12 +94,12 @@ PreflightRow row_of(VehicleId vehicle, const mission::FleetEntry& entry, Instant
       row.marks.at(static_cast<std::size_t>(count.group)) = mark_of(count);
     }
   }
-  row.why = why_not_heard(entry, now);
+  auto [why, will_come] = why_not_heard(entry, now);
+  row.why = std::move(why);
   row.counts = row.why.empty();
   if (row.counts) {
     judge(row, entry);
   } else {
-    const bool will_come = entry.telemetry && !entry.silent && !entry.duplicate && !entry.revoked;
     row.readiness = will_come ? Readiness::not_known : Readiness::not_ready;
   }
   return row;

@@ -88,6 +88,18 @@ TEST(TeamPreflight, NothingIsGoodThatIsNotHeardNow) {
   EXPECT_EQ(team.at(76.5).rows[0].readiness, Readiness::not_known);
 }
 
+TEST(TeamPreflight, AVehicleThatKnowsNoPlaceYetIsHeardAllTheSame) {
+  Team team;
+  mission::Health health;  // and no telemetry, while its flight controller tells no state
+  health.vehicle = {1};
+  health.instance = {1};
+  team.fleet.on_message(mission::Message{health}, at_seconds(1.0));
+  EXPECT_EQ(team.at(1.0).rows[0].why, "has not told yet");
+  team.fleet.on_message(mission::Message{failing({1})}, at_seconds(2.0));
+  EXPECT_EQ(team.at(2.0).rows[0].why, "parameters");
+  EXPECT_EQ(team.at(6.0).rows[0].why, "silent");
+}
+
 TEST(TeamPreflight, WhatAnEarlierStartHasToldDoesNotCount) {
   Team team;
   team.hear(good({1}), 1.0);

@@ -20,6 +20,7 @@ struct FleetEntry {
   std::optional<Telemetry> telemetry;            ///< the newest
   Instant heard_at{};                            ///< of it
   std::optional<Health> health;                  ///< the newest
+  Instant health_at{};                           ///< when it was heard
   std::optional<Preflight> preflight = {};       ///< the newest
   Instant preflight_at{};                        ///< when it was heard
   bool silent = false;                           ///< was heard, and not since FleetParams::silence
