@@ -12,6 +12,7 @@
 #include "skein/ardupilot/survey.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::onboard {
 namespace {
@@ -46,12 +47,7 @@ Checks check_bus(const configuration::VehicleConfig& config) {
 std::string text_of(const Checks& checks) {
   std::string text;
   for (const Check& check : checks) {
-    text += check.verdict == Verdict::ok     ? "ok    "
-            : check.verdict == Verdict::warn ? "warn  "
-                                             : "FAIL  ";
-    text += check.what + ": " + check.found;
-    if (!check.remedy.empty()) text += "; " + check.remedy;
-    text += '\n';
+    text += wording::check_line(check.verdict, check.what, check.found, check.remedy) + "\n";
   }
   return text;
 }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "skein/base/text.hpp"
 #include "skein/mission/setup_book.hpp"
 
 namespace skein::onboard {
@@ -15,16 +16,11 @@ namespace {
 
 using mission::Preflight;
 
-/// At most so many bytes, and no half of a letter.
+/// At most so many bytes.
 std::string cut(std::string_view text, std::size_t most) {
-  if (text.size() <= most) return std::string{text};
+  if (text.size() <= most) return as_text(text, most);
   constexpr std::string_view kMore = "...";
-  std::size_t end = most - kMore.size();
-  const auto is_inside = [&](std::size_t at) {
-    return (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
-  };
-  while (end > 0 && is_inside(end)) --end;
-  return std::string{text.substr(0, end)}.append(kMore);
+  return as_text(text, most - kMore.size()).append(kMore);
 }
 
 void count(Preflight& told, const Check& check) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "skein/codec/json_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::console {
 namespace {
@@ -50,12 +51,12 @@ struct NotHeard {
   std::string why;
   bool will_come = false;
 };
-NotHeard why_not_heard(const mission::FleetEntry& entry, Instant now) {
+NotHeard why_not_heard(const mission::FleetEntry& entry, Duration silence, Instant now) {
   if (entry.revoked) return {"revoked"};
   if (entry.duplicate) return {"two programs with this number"};
   const auto heard = newest_of(entry);
   if (!heard) return {"never heard"};
-  if (now - heard->at >= mission::FleetParams{}.silence) return {"silent"};
+  if (now - heard->at >= silence) return {"silent"};
   if (!entry.preflight || entry.preflight->instance != heard->instance) {
     return {"has not told yet", true};
   }
@@ -83,7 +84,8 @@ void judge(PreflightRow& row, const mission::FleetEntry& entry) {
   if (told.in_flight) row.readiness = Readiness::in_flight;
 }
 
-PreflightRow row_of(VehicleId vehicle, const mission::FleetEntry& entry, Instant now) {
+PreflightRow row_of(VehicleId vehicle, const mission::FleetEntry& entry, Duration silence,
+                    Instant now) {
   PreflightRow row;
   row.vehicle = vehicle;
   if (entry.preflight) {
@@ -94,7 +96,7 @@ PreflightRow row_of(VehicleId vehicle, const mission::FleetEntry& entry, Instant
       row.marks.at(static_cast<std::size_t>(count.group)) = mark_of(count);
     }
   }
-  auto [why, will_come] = why_not_heard(entry, now);
+  auto [why, will_come] = why_not_heard(entry, silence, now);
   row.why = std::move(why);
   row.counts = row.why.empty();
   if (row.counts) {
@@ -241,7 +243,8 @@ void add_lines(std::string& text, const PreflightRow& row, bool fails_only) {
   std::string lines;
   for (const auto& line : row.told->lines) {
     if (fails_only && line.verdict != CheckVerdict::fail) continue;
-    lines += "         " + line_text(line) + "\n";
+    lines +=
+        "         " + wording::check_line(line.verdict, line.what, line.found, line.remedy) + "\n";
   }
   if (!row.counts && !lines.empty()) text += "         as it was told last:\n";
   text += lines;
@@ -302,7 +305,7 @@ std::string_view to_string(CheckMark mark) {
 TeamPreflight team_preflight(const mission::Fleet& fleet, Instant now) {
   TeamPreflight team;
   for (const auto& [vehicle, entry] : fleet.vehicles()) {
-    team.rows.push_back(row_of(vehicle, entry, now));
+    team.rows.push_back(row_of(vehicle, entry, fleet.silence(), now));
   }
   mark_odd(team.rows);
   team.summary = summary_of(team.rows);
@@ -311,13 +314,6 @@ TeamPreflight team_preflight(const mission::Fleet& fleet, Instant now) {
 
 std::string digest_text(std::uint32_t digest) {
   return digest == 0 ? "" : fmt::format("{:08x}", digest);
-}
-
-std::string line_text(const mission::CheckLine& line) {
-  std::string text = fmt::format("{}  {}: {}", line.verdict == CheckVerdict::fail ? "FAIL" : "warn",
-                                 line.what, line.found);
-  if (!line.remedy.empty()) text.append("; ").append(line.remedy);
-  return text;
 }
 
 std::string preflight_text(const TeamPreflight& team, Instant now) {

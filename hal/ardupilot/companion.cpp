@@ -130,6 +130,7 @@ void Companion::Impl::step(Instant now) {
   watch_troubles(now);
   if (system_ == 0) return;
   check_parameters(now);
+  ask_others(now);
   keep_clock(now);
   if (now >= heartbeat_at_) {
     heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
@@ -166,14 +167,9 @@ void Companion::Impl::prepare(Instant now) {
           false);
     }
   }
-  for (const std::string_view name : parameters_.due(now)) {
-    send(mavlink::ParamRequestRead{.param_index = -1,
-                                   .target_system = system_,
-                                   .target_component = mavlink::kComponentAutopilot,
-                                   .param_id = mavlink::field_of<16>(name)});
-  }
+  for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
   const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
-  const bool is_known = desk_.idle() && clock_known && sensors_ && motion_.sample();
+  const bool is_known = desk_.idle() && clock_known && looked_at_.health && motion_.sample();
   if (is_known && parameters_.good()) fire(Event::ready, now);
 }
 
@@ -189,7 +185,6 @@ void Companion::Impl::check_parameters(Instant now) {
   while (auto finding = parameters_.poll_finding(now)) {
     say(true, {.news = parameter_news(), .detail = *std::move(finding)}, now);
   }
-  ask_others(now);
 }
 
 void Companion::Impl::ask_streams() {
@@ -206,7 +201,8 @@ void Companion::Impl::ask_streams() {
 }
 
 bool Companion::Impl::airborne() const {
-  if (landed_ != mavlink::LandedState::undefined) return landed_ != mavlink::LandedState::on_ground;
+  const auto landed = landed_state();
+  if (landed != mavlink::LandedState::undefined) return landed != mavlink::LandedState::on_ground;
   const auto sample = motion_.sample();
   if (!sample) return false;
   return params_.airframe == Airframe::copter
@@ -236,12 +232,10 @@ void Companion::Impl::stand_by(Instant now) {
       if (in_flight) fire(guided() ? Event::guided : Event::may_take, now);
       break;
     case TakeOver::from_ground: {
-      const bool may_arm = (sensors_->healthy & mavlink::sensor_prearm_check) != 0 ||
-                           (sensors_->enabled & mavlink::sensor_prearm_check) == 0;
       if (custody_.own_flight() && in_flight && high()) {
         fire(guided() ? Event::guided : Event::may_take, now);
       } else if (custody_.may_launch() && !armed_ && !airborne()) {
-        if (may_arm) {
+        if (looked_at_.prearm_good()) {
           fire(Event::may_launch, now);
         } else {
           leave_return_on_ground(now);
@@ -365,6 +359,13 @@ void Companion::Impl::keep_clock(Instant now) {
   if (clock_asked_.size() == kClockAskedMax) clock_asked_.erase(clock_asked_.begin());
   clock_asked_.push_back(now);
   send(question);
+}
+
+void Companion::Impl::ask_parameter(std::string_view name) {
+  send(mavlink::ParamRequestRead{.param_index = -1,
+                                 .target_system = system_,
+                                 .target_component = mavlink::kComponentAutopilot,
+                                 .param_id = mavlink::field_of<16>(name)});
 }
 
 void Companion::Impl::ask(const mavlink::CommandLong& command, const Patience& patience,

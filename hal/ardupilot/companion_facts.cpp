@@ -18,20 +18,8 @@ constexpr int kOthersAsked = 3;
 }  // namespace
 
 void Companion::Impl::look_at(const mavlink::Packet& packet, Instant now) {
-  if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
-    looked_at_.health = *status;
-  } else if (const auto gnss = mavlink::decode<mavlink::GpsRawInt>(packet)) {
-    looked_at_.gnss = *gnss;
-  } else if (const auto filter = mavlink::decode<mavlink::EkfStatusReport>(packet)) {
-    looked_at_.filter = *filter;
-  } else if (const auto time = mavlink::decode<mavlink::SystemTime>(packet)) {
-    looked_at_.time = *time;
-    looked_at_.time_at = now;
-  } else if (const auto landed = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
-    looked_at_.landed = *landed;
-  } else if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
-    looked_at_.firmware = version->flight_sw_version;
-  } else if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
+  if (looked_at_.take(packet, now)) return;
+  if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
     const std::string name = mavlink::text_of(parameter->param_id);
     const auto is_limit = [&name](const LimitParameter& limit) {
       return name == limit.name || name == limit.older_name;
@@ -49,11 +37,7 @@ void Companion::Impl::ask_others(Instant now) {
   ++others_asked_;
   others_at_ = now;
   for (const std::string_view name : kOthers) {
-    if (looked_at_.parameters.contains(std::string{name})) continue;
-    send(mavlink::ParamRequestRead{.param_index = -1,
-                                   .target_system = system_,
-                                   .target_component = mavlink::kComponentAutopilot,
-                                   .param_id = mavlink::field_of<16>(name)});
+    if (!looked_at_.parameters.contains(std::string{name})) ask_parameter(name);
   }
 }
 
@@ -74,7 +58,7 @@ bool Companion::Impl::facts_are_known(Instant now) const {
       return false;
     case State::preparing:
       return now - entry_.at >= kPatience ||
-             (sensors_ && parameters_.all_tried() && others_tried(now));
+             (looked_at_.health && parameters_.all_tried() && others_tried(now));
     default:
       return true;
   }

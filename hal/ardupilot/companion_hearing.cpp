@@ -46,12 +46,11 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
   } else if (const auto hud = mavlink::decode<mavlink::VfrHud>(packet)) {
     motion_.on_hud(*hud, now);
   } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
-    sensors_ = {.enabled = status->onboard_control_sensors_enabled,
-                .healthy = status->onboard_control_sensors_health};
-    if ((sensors_->healthy & mavlink::sensor_prearm_check) != 0) pre_arm_.clear();
-  } else if (const auto extended = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
-    landed_ = static_cast<mavlink::LandedState>(extended->landed_state);
-    if (landed_ != mavlink::LandedState::undefined && airborne()) {
+    if ((status->onboard_control_sensors_health & mavlink::sensor_prearm_check) != 0) {
+      pre_arm_.clear();
+    }
+  } else if (mavlink::decode<mavlink::ExtendedSysState>(packet)) {
+    if (landed_state() != mavlink::LandedState::undefined && airborne()) {
       custody_.fire(Custody::Event::in_use);
     }
   } else if (const auto timesync = mavlink::decode<mavlink::Timesync>(packet)) {
@@ -356,14 +355,12 @@ void Companion::Impl::reset_link() {
   clock_asked_.clear();
   streams_asked_at_.reset();
   streams_granted_ = false;
-  sensors_.reset();
   if (firmware_ == Firmware::accepted) firmware_ = Firmware::unknown;
   refusal_.reset();
   pre_arm_.clear();
   reasons_asked_at_.reset();
   looked_at_ = {};
   others_asked_ = 0;
-  landed_ = mavlink::LandedState::undefined;
 }
 
 }  // namespace skein::ardupilot

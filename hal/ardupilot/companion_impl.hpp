@@ -152,13 +152,20 @@ class Companion::Impl {
   void enter_piloted(State from, Event event, Instant now);
   void enter_loss(State from, std::uint32_t mode_before, Instant now);
   void reset_link();
+  [[nodiscard]] mavlink::LandedState landed_state() const {
+    return looked_at_.landed ? static_cast<mavlink::LandedState>(looked_at_.landed->landed_state)
+                             : mavlink::LandedState::undefined;
+  }
   [[nodiscard]] bool airborne() const;
   [[nodiscard]] bool high() const;
   [[nodiscard]] bool navigation_healthy() const {
     // An ArduPilot without a GNSS does not count it among what is enabled.
-    return sensors_ && (sensors_->enabled & sensors_->healthy & kNavigation) == kNavigation;
+    return looked_at_.health &&
+           (looked_at_.health->onboard_control_sensors_enabled &
+            looked_at_.health->onboard_control_sensors_health & kNavigation) == kNavigation;
   }
   [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
+  void ask_parameter(std::string_view name);
   void ask(const mavlink::CommandLong& command, const Patience& patience, bool latest);
   template <class Message>
   void send(const Message& message) {
@@ -196,16 +203,10 @@ class Companion::Impl {
   std::uint8_t system_ = 0;                ///< once it has been found
   bool armed_ = false;
   bool streams_granted_ = false;
-  struct Sensors {
-    std::uint32_t enabled = 0;
-    std::uint32_t healthy = 0;
-  };
-  std::optional<Sensors> sensors_;
-  mavlink::LandedState landed_ = mavlink::LandedState::undefined;
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
   StatusText text_;
   std::optional<Instant> last_text_at_;
-  AutopilotFacts looked_at_;  ///< as far as it was told
+  AutopilotFacts looked_at_;  ///< what it says of itself, as far as it was told
 
   // What was asked and done.
   Custody custody_;

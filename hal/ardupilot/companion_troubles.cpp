@@ -14,7 +14,7 @@ constexpr Duration kReasonsAgain = std::chrono::seconds{30};
 void Companion::Impl::watch_troubles(Instant now) {
   if (now < troubles_at_) return;
   troubles_at_ = now + kLookPeriod;
-  if (navigation_healthy() || !sensors_ || !waits()) position_good_at_ = now;
+  if (navigation_healthy() || !looked_at_.health || !waits()) position_good_at_ = now;
   if (fails_pre_arm() && (!reasons_asked_at_ || now - *reasons_asked_at_ >= kReasonsAgain)) {
     reasons_asked_at_ = now;
     ask(command_of(mavlink::Command::run_prearm_checks), {1, Patience{}.each}, true);
@@ -27,8 +27,8 @@ void Companion::Impl::watch_troubles(Instant now) {
 }
 
 bool Companion::Impl::fails_pre_arm() const {
-  return waits() && !armed_ && !airborne() && !custody_.by_others() && sensors_ &&
-         (sensors_->enabled & ~sensors_->healthy & mavlink::sensor_prearm_check) != 0;
+  return waits() && !armed_ && !airborne() && !custody_.by_others() && looked_at_.health &&
+         !looked_at_.prearm_good();
 }
 
 std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
@@ -54,7 +54,7 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
 }
 
 std::string Companion::Impl::not_told() const {
-  if (!sensors_) return "its health (SYS_STATUS)";
+  if (!looked_at_.health) return "its health (SYS_STATUS)";
   if (!motion_.sample() && navigation_healthy())
     return "where it is (ATTITUDE, GLOBAL_POSITION_INT, VFR_HUD)";
   return {};

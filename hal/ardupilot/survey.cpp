@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "can_link_parts.hpp"
-#include "flight_modes.hpp"
 #include "link_watch.hpp"
 #include "parameter_check.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
@@ -33,22 +32,6 @@ constexpr int kOthersAsked = 4;
 
 }  // namespace
 
-bool AutopilotFacts::prearm_good() const {
-  if (!health) return false;
-  return (health->onboard_control_sensors_enabled & ~health->onboard_control_sensors_health &
-          mavlink::sensor_prearm_check) == 0;
-}
-
-bool AutopilotFacts::only_mode_forbids_arming() const {
-  return !pre_arm.empty() && std::ranges::all_of(pre_arm, PreArmTexts::is_of_mode);
-}
-
-std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
-  return name_of_mode(airframe, heartbeat.custom_mode);
-}
-bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
-  return is_of(airframe, heartbeat.type);
-}
 class Survey::Impl {
  public:
   Impl(std::unique_ptr<can::Bus> bus, const CanLinkParams& params, Instant now)
@@ -122,23 +105,9 @@ class Survey::Impl {
     const auto heartbeat = mavlink::decode<mavlink::Heartbeat>(packet);
     if (heartbeat) watch_.on_heartbeat(packet.system, now);
     if (packet.system != params_.companion.system_id) return;
-    if (heartbeat) {
-      if (!facts_.heartbeat) found_at_ = now;
-      facts_.heartbeat = *heartbeat;
-    } else if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
-      facts_.firmware = version->flight_sw_version;
-    } else if (const auto status = mavlink::decode<mavlink::SysStatus>(packet)) {
-      facts_.health = *status;
-    } else if (const auto gnss = mavlink::decode<mavlink::GpsRawInt>(packet)) {
-      facts_.gnss = *gnss;
-    } else if (const auto filter = mavlink::decode<mavlink::EkfStatusReport>(packet)) {
-      facts_.filter = *filter;
-    } else if (const auto time = mavlink::decode<mavlink::SystemTime>(packet)) {
-      facts_.time = *time;
-      facts_.time_at = now;
-    } else if (const auto landed = mavlink::decode<mavlink::ExtendedSysState>(packet)) {
-      facts_.landed = *landed;
-    } else if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
+    if (heartbeat && !facts_.heartbeat) found_at_ = now;
+    if (facts_.take(packet, now)) return;
+    if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
       on_text(*text, now);
     } else if (const auto parameter = mavlink::decode<mavlink::ParamValue>(packet)) {
       const std::string name = mavlink::text_of(parameter->param_id);

@@ -518,4 +518,11 @@ std::string text_of(const mission::MissionEvent& event) {
   return because(std::move(line), news_of(event));
 }
 
+std::string check_line(mission::CheckVerdict verdict, std::string_view what, std::string_view found,
+                       std::string_view remedy) {
+  static constexpr std::array<std::string_view, 3> kVerdicts{"ok", "warn", "FAIL"};
+  return fmt::format("{:<6}{}: {}{}{}", kVerdicts.at(static_cast<std::size_t>(verdict)), what,
+                     found, remedy.empty() ? "" : "; ", remedy);
+}
+
 }  // namespace skein::wording

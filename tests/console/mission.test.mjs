@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The small mission: watched, authorised and finished from the page.
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
-import { createRequire } from "node:module";
 import { after, before, test } from "node:test";
 
 import { fly, until } from "./bench.mjs";
-import { browse, hold, say } from "./browser.mjs";
-
-const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
+import { barriers, browse, hold, say } from "./browser.mjs";
 
 let mission;
 let view;
@@ -24,15 +20,6 @@ after(async () => {
 const event_numbers = () =>
   view.page.locator('[data-testid^="event-"]').evaluateAll((rows) => rows.map((row) => Number(row.dataset.testid.slice("event-".length))));
 
-/** Findings of axe-core that keep people from using the page. */
-async function barriers() {
-  await view.page.evaluate(await readFile(axe, "utf8"));
-  const { violations } = await view.page.evaluate(() => globalThis.axe.run());
-  return violations
-    .filter(({ impact }) => impact === "serious" || impact === "critical")
-    .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" ")}`);
-}
-
 test("the fleet is there, well, and accounted for", async () => {
   await until("six vehicles", async () => (await view.part("count-heard").innerText()).includes("6/6"));
   await view.part("tab-fleet").click();
@@ -43,10 +30,10 @@ test("the fleet is there, well, and accounted for", async () => {
 test("an observer's eyes: no serious barrier in any panel", async () => {
   for (const panel of ["fleet", "mission", "orders", "log", "plots", "preflight"]) {
     await view.part(`tab-${panel}`).click();
-    assert.deepEqual(await barriers(), [], panel);
+    assert.deepEqual(await barriers(view.page), [], panel);
   }
   await view.part("theme").click();
-  assert.deepEqual(await barriers(), [], "the other theme");
+  assert.deepEqual(await barriers(view.page), [], "the other theme");
   await view.picture("night");
   await view.part("theme").click();
 });

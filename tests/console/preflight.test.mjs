@@ -4,16 +4,13 @@
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { once } from "node:events";
-import { mkdir, writeFile } from "node:fs/promises";
-import { createRequire } from "node:module";
-import { readFile } from "node:fs/promises";
+import { mkdir, readFile, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { free_port, programs, until, work } from "./bench.mjs";
-import { browse } from "./browser.mjs";
+import { barriers, browse } from "./browser.mjs";
 
-const axe = createRequire(import.meta.url).resolve("axe-core/axe.min.js");
 const folder = join(work, "preflight");
 const children = new Map();
 let view;
@@ -117,10 +114,7 @@ test("a row opens to its lines by the keyboard, with what to do", async () => {
 
 test("no serious barrier, in either colours", async () => {
   for (const colours of ["these", "the others"]) {
-    await view.page.evaluate(await readFile(axe, "utf8"));
-    const { violations } = await view.page.evaluate(() => globalThis.axe.run());
-    const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-    assert.deepEqual(serious.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" ")}`), [], colours);
+    assert.deepEqual(await barriers(view.page), [], colours);
     await view.part("theme").click();
   }
 });

@@ -3,15 +3,13 @@
 // what to do.
 
 import { signal } from "@preact/signals";
+import { lost_for_s } from "../shell/connection";
 import { age } from "../shell/format";
-import { tick } from "../shell/ticker";
 import type { Preflight, PreflightVehicle } from "../wire/protocol";
-import { link, lost_at_ms, preflight, shown, since_state_s } from "../wire/store";
+import { preflight, shown, since_state_s } from "../wire/store";
 import { shown_mark, shown_vehicle, told_age_s } from "./marks";
 
 const opened = signal<ReadonlySet<number>>(new Set());
-/** A page that connects again has not lost anything yet. */
-const patience_ms = 1500;
 
 function toggle(id: number): void {
   const next = new Set(opened.value);
@@ -138,10 +136,9 @@ function Table({ of, connected, lost_s }: { of: Preflight; connected: boolean; l
 }
 
 export function PreflightPanel() {
-  void tick.value;
   const of = preflight.value;
-  const lost_ms = link.value === "open" || lost_at_ms.value === null ? 0 : performance.now() - lost_at_ms.value;
-  const connected = lost_ms < patience_ms;
+  const lost_s = lost_for_s();
+  const connected = lost_s === 0;
   if (!of) return <p class="empty">Nothing has been told yet.</p>;
   return (
     <div class="preflight" data-testid="preflight">
@@ -149,7 +146,7 @@ export function PreflightPanel() {
         {connected ? of.summary : `Not known now; last: ${of.summary}`}
       </p>
       <div class="scroll" tabIndex={0} role="region" aria-label="Checks of the vehicles">
-        <Table of={of} connected={connected} lost_s={lost_ms / 1000} />
+        <Table of={of} connected={connected} lost_s={lost_s} />
         {of.vehicles.length === 0 && <p class="empty">No vehicle has been heard yet.</p>}
       </div>
     </div>

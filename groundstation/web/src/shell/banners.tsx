@@ -1,17 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must not be overlooked: the picture is old, or a recording, or only to be looked at.
 
-import { hello, in_replay, link, lost_at_ms, shown } from "../wire/store";
+import { hello, in_replay, shown } from "../wire/store";
+import { lost_for_s } from "./connection";
 import { duration } from "./format";
-import { tick } from "./ticker";
 
 function LostBanner() {
-  void tick.value;
-  const lost = lost_at_ms.value;
-  if (link.value === "open" || lost === null) return null;
-  // Of the newest state; a page that has just begun to connect, or connects again, has lost nothing.
-  const age_s = (performance.now() - lost) / 1000;
-  if (age_s < 1.5) return null;
+  const age_s = lost_for_s();
+  if (age_s === 0) return null;
   const has_picture = shown.value.time_s !== null;
   return (
     <div class="banner alarm" role="status" data-testid="banner-lost">

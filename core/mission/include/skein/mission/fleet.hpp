@@ -52,6 +52,7 @@ class Fleet {
   [[nodiscard]] std::optional<event::FleetWarning> poll_news() { return news_.pop(); }
 
   [[nodiscard]] Instant next_timeout() const;
+  [[nodiscard]] Duration silence() const { return params_.silence; }
   [[nodiscard]] std::uint64_t dropped() const { return news_.dropped(); }
 
   [[nodiscard]] const std::map<VehicleId, FleetEntry>& vehicles() const { return vehicles_; }

@@ -61,8 +61,6 @@ struct TeamPreflight {
 
 /// "9f3a0c11"; empty where it is not known.
 [[nodiscard]] std::string digest_text(std::uint32_t digest);
-/// "FAIL  GNSS: no fix; wait under open sky", as `skein-onboard check` says it.
-[[nodiscard]] std::string line_text(const mission::CheckLine& line);
 
 /// At the prompt: the team, with what fails.
 [[nodiscard]] std::string preflight_text(const TeamPreflight& team, Instant now);

@@ -11,6 +11,7 @@
 #include "skein/domain/autopilot_notice.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/messages.hpp"
+#include "skein/mavlink/packet.hpp"
 
 namespace skein::ardupilot {
 
@@ -44,6 +45,9 @@ struct AutopilotFacts {
   /// Armed or in the air, and not only waiting on the ground for who flies it.
   bool in_flight = false;
 
+  /// What the autopilot says of itself in a message of its own; false: that is another one.
+  bool take(const mavlink::Packet& packet, Instant now);
+  /// Told, and it would arm or is not asked to look.
   [[nodiscard]] bool prearm_good() const;
   /// It would arm in another mode, into which a companion that launches it puts it.
   [[nodiscard]] bool only_mode_forbids_arming() const;

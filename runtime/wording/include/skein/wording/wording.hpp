@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/autopilot_notice.hpp"
@@ -22,6 +23,11 @@ namespace skein::wording {
 
 /// "refused: it leads into a hazard"
 [[nodiscard]] std::string text_of(mission::RouteState state, mission::RouteObstacle why);
+
+/// A check before a flight: "FAIL  GNSS: no fix; wait under open sky"; without a remedy where that
+/// is empty.
+[[nodiscard]] std::string check_line(mission::CheckVerdict verdict, std::string_view what,
+                                     std::string_view found, std::string_view remedy);
 
 /// What an event says besides its kind, its vehicle and its task: "planned for 60.0 s". May be
 /// empty.

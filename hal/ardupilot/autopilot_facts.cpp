@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/ardupilot/autopilot_facts.hpp"
+
+#include <algorithm>
+
+#include "flight_modes.hpp"
+#include "troubles.hpp"
+
+namespace skein::ardupilot {
+
+bool AutopilotFacts::take(const mavlink::Packet& packet, Instant now) {
+  const auto is = [&packet]<class Message>(std::optional<Message>& told) {
+    const auto message = mavlink::decode<Message>(packet);
+    if (message) told = *message;
+    return message.has_value();
+  };
+  if (is(time)) {
+    time_at = now;
+    return true;
+  }
+  if (const auto version = mavlink::decode<mavlink::AutopilotVersion>(packet)) {
+    firmware = version->flight_sw_version;
+    return true;
+  }
+  return is(heartbeat) || is(health) || is(gnss) || is(filter) || is(landed);
+}
+
+bool AutopilotFacts::prearm_good() const {
+  if (!health) return false;
+  return (health->onboard_control_sensors_enabled & ~health->onboard_control_sensors_health &
+          mavlink::sensor_prearm_check) == 0;
+}
+
+bool AutopilotFacts::only_mode_forbids_arming() const {
+  return !pre_arm.empty() && std::ranges::all_of(pre_arm, PreArmTexts::is_of_mode);
+}
+
+std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
+  return name_of_mode(airframe, heartbeat.custom_mode);
+}
+bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
+  return is_of(airframe, heartbeat.type);
+}
+
+}  // namespace skein::ardupilot
