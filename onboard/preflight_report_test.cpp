@@ -12,7 +12,6 @@ namespace skein::onboard {
 namespace {
 
 using mission::Preflight;
-using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
 Check check(Verdict verdict, CheckGroup group, std::string what = "x", std::string remedy = {}) {

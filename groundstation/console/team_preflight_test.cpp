@@ -12,7 +12,6 @@ namespace {
 using mission::CheckGroup;
 using mission::CheckVerdict;
 using mission::Preflight;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
