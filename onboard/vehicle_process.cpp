@@ -215,7 +215,7 @@ class Threads {
         control_{config.vehicle,
                  *flight_controllers_.any,
                  ports_,
-                 {.turn_lead_s = config.flight_controller.turn_lead_s()}},
+                 config.flight_controller.follower()},
         agent_{node_config(config, route, instance, "skein-onboard " + version()),
                link_to(node, flight_controllers_.on_can, health, preflight, detectors_,
                        writer ? &records_ : nullptr, clock),

@@ -10,7 +10,6 @@
 namespace skein::planning {
 namespace {
 
-constexpr double kAirspeedTime_s = 1.0;  ///< of the autopilot's airspeed loop, to be inverted
 constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the vehicle is sought
 constexpr int kNearestSteps = 4;
 constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the search
@@ -98,11 +97,20 @@ Nearest nearest(const TimedPath& plan, const PieceStarts& starts, const Vec2& po
   return result;
 }
 
-/// The plan's speed when what is commanded now is flown: begun so much earlier, a step of it costs
-/// no way in the end.
-double speed_soon(const TimedPath& plan, double on_time_m) {
-  const double lead_m = plan.speed_at_distance(on_time_m) * kAirspeedTime_s;
-  return plan.speed_at_distance(on_time_m + lead_m);
+/// The airspeed that the plan takes there.
+double planned_airspeed(const TimedPath& plan, PlanPoses& poses, double distance_m,
+                        const Vec2& wind_mps) {
+  return (plan.speed_at_distance(distance_m) * poses.at(distance_m).forward - wind_mps).norm();
+}
+
+/// By how much the plan's airspeed rises until what is commanded now is flown: begun so much
+/// earlier, a change of it costs no way in the end.
+double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on_time_m,
+                     const Vec2& wind_mps, double lead_s) {
+  PlanPoses poses{plan, starts};
+  const double soon_m = on_time_m + lead_s * plan.speed_at_distance(on_time_m);
+  const double now_mps = planned_airspeed(plan, poses, on_time_m, wind_mps);
+  return planned_airspeed(plan, poses, soon_m, wind_mps) - now_mps;
 }
 
 }  // namespace
@@ -132,8 +140,8 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
                              params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean);
 
   // Velocity over the ground, and the velocity through the air that gives it.
-  const double ground_mps =
-      std::max(0.0, speed_soon(plan, at.on_time_m) - params.along_track_gain_per_s * at.ahead_m);
+  const double ground_mps = std::max(
+      0.0, plan.speed_at_distance(at.on_time_m) - params.along_track_gain_per_s * at.ahead_m);
   const Vec2 wanted = ground_mps * unit_vector(course);
   const Vec2 wanted_rate = course_rate * left_of(wanted);
   const Vec2 through_air = wanted - wind;
@@ -141,16 +149,16 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
   Setpoint setpoint{state.heading_rad, vehicle.speed_min_mps, vehicle.height_m};
   if (air_mps < 1.0) return setpoint;
 
-  const double air_rate = through_air.dot(wanted_rate) / air_mps;
-  setpoint.airspeed_mps = std::clamp(air_mps + kAirspeedTime_s * air_rate, vehicle.speed_min_mps,
-                                     vehicle.speed_max_mps);
+  const double rise_mps = airspeed_rise(plan, starts, at.on_time_m, wind, params.airspeed_lead_s);
+  setpoint.airspeed_mps =
+      std::clamp(air_mps + rise_mps, vehicle.speed_min_mps, vehicle.speed_max_mps);
   // The heading loop d heading/dt = W (commanded - heading) is inverted; its rate keeps within
   // what the turn radius allows.
   const double heading_rate = cross(through_air, wanted_rate) / (air_mps * air_mps);
   const double error = wrap_pi(std::atan2(through_air.y(), through_air.x()) - state.heading_rad);
   const double rate_max = state.airspeed_mps / vehicle.turn_radius_m;
-  const double rate =
-      std::clamp(vehicle.heading_gain_per_s * error + heading_rate, -rate_max, rate_max);
+  const double gain = std::min(vehicle.heading_gain_per_s, params.heading_gain_most_per_s);
+  const double rate = std::clamp(gain * error + heading_rate, -rate_max, rate_max);
   setpoint.heading_rad = wrap_pi(state.heading_rad + rate / vehicle.heading_gain_per_s);
   return setpoint;
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/atmosphere.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -36,7 +37,7 @@ class AutopilotDouble {
                      .course_rad = 0.6,
                      .groundspeed_mps = 52.0,
                      .airspeed_mps = 50.0};
-  double turn_rate_radps = 0.0;
+  double bank_rad = 0.0;    ///< of its attitude; what it flies stands in truth
   std::uint32_t mode = 12;  ///< LOITER
   bool armed = true;
   std::uint8_t landed = 2;  ///< in the air
@@ -168,7 +169,7 @@ class AutopilotDouble {
     mavlink::Attitude a;
     a.time_boot_ms = boot_ms(now);
     a.yaw = static_cast<float>(yaw_from_heading(truth.heading_rad));
-    a.yawspeed = static_cast<float>(-turn_rate_radps);
+    a.roll = static_cast<float>(bank_rad);
     return a;
   }
   [[nodiscard]] mavlink::GlobalPositionInt position(Instant now) const {
@@ -188,7 +189,8 @@ class AutopilotDouble {
   }
   [[nodiscard]] mavlink::VfrHud hud() const {
     mavlink::VfrHud h;
-    h.airspeed = static_cast<float>(truth.airspeed_mps);
+    h.airspeed = static_cast<float>(truth.airspeed_mps /
+                                    true_per_equivalent_airspeed(kTestOrigin.height_m + truth.z_m));
     return h;
   }
   [[nodiscard]] mavlink::SysStatus status() const {

@@ -32,7 +32,7 @@ constexpr Duration kDuplicateGone = seconds{2};
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
-constexpr Duration kSpeedPeriod = milliseconds{200};
+constexpr Duration kSpeedPeriod = milliseconds{500};
 constexpr double kHeightStep_m = 0.5;
 constexpr double kHeartbeat_hz = 20.0;  ///< it tells of the pilot's switch
 constexpr double kHud_hz = 10.0;
@@ -305,8 +305,8 @@ void Companion::Impl::fly(Instant now) {
     send_target(velocity_target(setpoint, state), now);
     return;
   }
-  send_target(roll_target(bank_for(params_.vehicle, setpoint, state)), now);
-  set_speed(setpoint, now);
+  send_target(roll_target(bank_for(params_.vehicle, setpoint, state, sample->turn_ability)), now);
+  set_speed(setpoint, sample->true_per_equivalent, now);
   set_height(setpoint, state, now);
 }
 
@@ -328,8 +328,8 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
   send_target(point_target(point, origin_, params_.geoid_height_m), now);
 }
 
-void Companion::Impl::set_speed(const Setpoint& setpoint, Instant now) {
-  const double wanted = speed_within(setpoint.airspeed_mps, params_.vehicle);
+void Companion::Impl::set_speed(const Setpoint& setpoint, double true_per_equivalent, Instant now) {
+  const double wanted = speed_within(setpoint.airspeed_mps / true_per_equivalent, params_.vehicle);
   const bool differs = !speed_sent_ || std::abs(wanted - *speed_sent_) >= kSpeedStep_mps;
   if (!differs || (speed_sent_ && now - speed_at_ < kSpeedPeriod)) return;
   speed_sent_ = wanted;
@@ -338,9 +338,13 @@ void Companion::Impl::set_speed(const Setpoint& setpoint, Instant now) {
 }
 
 void Companion::Impl::set_height(const Setpoint& setpoint, const VehicleState& state, Instant now) {
+  const double seconds = flown_at_ ? to_seconds(now - *flown_at_) : 0.0;
+  flown_at_ = now;
+  const double height_m =
+      setpoint.height_m + height_error_.step(setpoint.height_m - state.z_m, seconds);
   // The mission's plane is flat and the sea is not: by two metres at five kilometres.
   const double above_sea =
-      origin_.to_wgs84({state.x_m, state.y_m, setpoint.height_m}).height_m - params_.geoid_height_m;
+      origin_.to_wgs84({state.x_m, state.y_m, height_m}).height_m - params_.geoid_height_m;
   if (height_sent_ && std::abs(above_sea - *height_sent_) < kHeightStep_m) return;
   if (height_at_ && now - *height_at_ < kRetryPeriod) return;
   height_sent_ = above_sea;
@@ -479,6 +483,8 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       speed_sent_.reset();
       height_sent_.reset();
       height_at_.reset();
+      height_error_.reset();
+      flown_at_.reset();
       target_at_ = now;
       say(false, {AutopilotNews::flying}, now);
       break;

@@ -335,6 +335,7 @@ std::optional<Instant> Companion::Impl::measured_at(std::uint32_t time_boot_ms, 
 
 void Companion::Impl::on_reboot(Instant now) {
   reset_link();
+  parameters_.begin();  // it may have read others
   firmware_ = Firmware::unknown;
   if (machine_.accepts(Event::rebooted)) fire(Event::rebooted, now);
 }

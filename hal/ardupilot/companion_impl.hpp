@@ -15,6 +15,7 @@
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "status_text.hpp"
+#include "steady_error.hpp"
 #include "troubles.hpp"
 
 namespace skein::ardupilot {
@@ -138,7 +139,7 @@ class Companion::Impl {
   /// With the time and the autopilot's address in it, when one is due.
   template <class Message>
   void send_target(Message target, Instant now);
-  void set_speed(const Setpoint& setpoint, Instant now);
+  void set_speed(const Setpoint& setpoint, double true_per_equivalent, Instant now);
   void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
   void keep_clock(Instant now);
   void report_refusal(Instant now);
@@ -236,6 +237,8 @@ class Companion::Impl {
   Instant demand_at_;
   Instant target_at_;
   std::optional<Instant> on_ground_since_;  ///< the point that is flown
+  SteadyError height_error_{{}};
+  std::optional<Instant> flown_at_;  ///< when a plane was last told what to fly
   std::optional<double> speed_sent_;
   Instant speed_at_;
   std::optional<double> height_sent_;

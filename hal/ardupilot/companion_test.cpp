@@ -13,6 +13,7 @@
 
 #include "companion_line.hpp"
 #include "custody.hpp"
+#include "skein/base/atmosphere.hpp"
 #include "skein/base/random.hpp"
 
 namespace skein::ardupilot {
@@ -97,6 +98,16 @@ TEST(Companion, SendsSpeedAndHeightWhenTheyChange) {
   }
 }
 
+TEST(Companion, AsksForEquivalentAirspeeds) {
+  Line line;
+  line.setpoint.airspeed_mps = 52.0;
+  line.until(State::flying, 10.0);
+  line.run(1.0);
+  const auto speed = line.autopilot.last(mavlink::Command::do_change_speed);
+  ASSERT_TRUE(speed);
+  EXPECT_NEAR(speed->param2, 52.0 / true_per_equivalent_airspeed(480.0 + 300.0), 1e-2);
+}
+
 TEST(Companion, SendsASpeedAgainThatWasLost) {
   Line line;
   line.autopilot.deaf_to[178] = 1;
@@ -170,7 +181,7 @@ TEST(Companion, HeedsNoAutopilotOfAnotherSystem) {
 TEST(Companion, ReportsTheStateInTheMissionsFrameAndTime) {
   Line line;
   line.delay = milliseconds{30};
-  line.autopilot.turn_rate_radps = 0.2;
+  line.autopilot.bank_rad = -0.05;  // to the left, and too flat to learn from
   line.until(State::flying, 10.0);
   line.run(1.0);
   const auto sample = line.companion.sample();
@@ -183,7 +194,7 @@ TEST(Companion, ReportsTheStateInTheMissionsFrameAndTime) {
   EXPECT_NEAR(sample->state.course_rad, truth.course_rad, 1e-3);
   EXPECT_NEAR(sample->state.groundspeed_mps, truth.groundspeed_mps, 0.01);
   EXPECT_NEAR(sample->state.airspeed_mps, truth.airspeed_mps, 1e-4);
-  EXPECT_NEAR(sample->turn_rate_radps, 0.2, 1e-6);
+  EXPECT_NEAR(sample->turn_rate_radps, 9.80665 * std::tan(0.05) / truth.airspeed_mps, 1e-4);
   // Measured one delay before it came, and the stream has 40 ms.
   const Duration age = line.now - sample->state.time;
   EXPECT_GE(age, milliseconds{25});
@@ -492,6 +503,20 @@ TEST(Companion, ARebootedAutopilotIsPreparedAnew) {
   EXPECT_THAT(line.warnings, Contains("the autopilot has rebooted"));
   line.run(1.0);
   EXPECT_LE(line.now - line.companion.sample()->state.time, milliseconds{70});
+}
+
+TEST(Companion, ARebootedAutopilotIsAskedForItsParametersAgain) {
+  Line line;
+  line.until(State::flying, 10.0);
+  line.autopilot.parameters["FS_GCS_ENABL"] = 0.0F;  // set where nobody heard of it
+  line.autopilot.reboot(line.now);
+  line.companion.on_reboot(line.now);
+  line.run(8.0);
+  EXPECT_EQ(line.companion.state(), State::preparing);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("FS_GCS_ENABL")));
+  line.autopilot.parameters["FS_GCS_ENABL"] = 1.0F;
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
 }
 
 TEST(Companion, TheFirstModeOfARebootedAutopilotIsNotThePilots) {

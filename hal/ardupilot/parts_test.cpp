@@ -9,7 +9,10 @@
 #include "flight_modes.hpp"
 #include "skein/ardupilot/motion.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/base/atmosphere.hpp"
+#include "skein/base/attitude.hpp"
 #include "skein/base/random.hpp"
+#include "steady_error.hpp"
 #include "steering.hpp"
 
 namespace skein::ardupilot {
@@ -243,6 +246,131 @@ TEST(Motion, TakesNothingThatIsNoNumber) {
   a.yawspeed = std::numeric_limits<float>::quiet_NaN();
   heard.motion.on_attitude(a, at_seconds(10.0));
   EXPECT_FALSE(heard.motion.sample());
+}
+
+TEST(Motion, HasTheTrueAirspeed) {
+  Heard heard;
+  heard.airspeed(10.0);
+  heard.attitude(10.0);
+  mavlink::GlobalPositionInt p;
+  p.lat = 310'000'000;
+  p.lon = 1'050'000'000;
+  p.alt = 3'000'000;
+  heard.motion.on_position(p, at_seconds(10.0));
+  const auto sample = heard.motion.sample();
+  ASSERT_TRUE(sample);
+  EXPECT_NEAR(sample->state.airspeed_mps, 50.0 * std::sqrt(1.2250 / 0.9093), 0.01);
+  EXPECT_EQ(sample->true_per_equivalent, true_per_equivalent_airspeed(3000.0));
+}
+
+/// An aircraft that turns at `share` of a coordinated turn's rate, in wind, its nose swinging about
+/// where it moves through the air and standing out of the turn.
+struct Turning {
+  double share = 0.73;
+  Vec2 wind_mps{0.0, 0.0};
+  Motion motion{MissionOrigin::make({31.0, 105.0, 0.0}).value(), 0.0, false};
+  double heading_rad = 0.0;  ///< where it moves through the air
+  double bank_rad = 0.0;
+  double time_s = 1.0;
+  static constexpr double kAirspeed_mps = 25.0;
+
+  void tell() {
+    const Instant now = at_seconds(time_s);
+    mavlink::Attitude a;
+    const double nose =
+        heading_rad + radians(8.0) * std::sin(3.0 * time_s) + radians(4.0) * std::tan(bank_rad);
+    a.yaw = static_cast<float>(heading_from_yaw(nose));  // the rule is its own inverse
+    a.roll = static_cast<float>(bank_rad);
+    motion.on_attitude(a, now);
+    mavlink::VfrHud hud;
+    hud.airspeed = static_cast<float>(kAirspeed_mps);
+    motion.on_hud(hud, now);
+    const Vec2 over_ground = kAirspeed_mps * unit_vector(heading_rad) + wind_mps;
+    mavlink::GlobalPositionInt p;
+    p.lat = 310'000'000;
+    p.lon = 1'050'000'000;
+    p.vx = static_cast<std::int16_t>(std::lround(100.0 * over_ground.y()));
+    p.vy = static_cast<std::int16_t>(std::lround(100.0 * over_ground.x()));
+    motion.on_position(p, now);
+  }
+  [[nodiscard]] double rate_radps() const {
+    return -share * kGravity_mps2 * std::tan(bank_rad) / kAirspeed_mps;
+  }
+  void fly(double seconds_flown, double wanted_radps) {
+    VehicleSpec spec;
+    spec.turn_radius_m = 50.0;
+    spec.speed_min_mps = 20.0;
+    for (const double end_s = time_s + seconds_flown; time_s < end_s; time_s += 0.04) {
+      tell();
+      const auto sample = motion.sample();
+      const Setpoint ahead{.heading_rad = sample->state.heading_rad + wanted_radps};
+      bank_rad += 0.15 * (bank_for(spec, ahead, sample->state, sample->turn_ability) - bank_rad);
+      heading_rad = wrap_pi(heading_rad + 0.04 * rate_radps());
+    }
+  }
+};
+
+TEST(TurnAbility, BanksSlippingAircraftUntilTheyTurnAsTheyShall) {
+  for (const double share : {0.6, 0.73, 1.0}) {
+    for (const double rate : {0.3, -0.3, 0.15}) {
+      Turning turning{.share = share, .wind_mps = {6.0, -3.0}};
+      turning.fly(30.0, rate);
+      EXPECT_NEAR(turning.rate_radps(), rate, 0.03 * std::abs(rate)) << share;
+      EXPECT_NEAR(turning.motion.sample()->turn_rate_radps, rate, 0.03 * std::abs(rate)) << share;
+    }
+  }
+}
+
+TEST(TurnAbility, KeepsFromTurnToTurnWhatItHasLearned) {
+  Turning turning;
+  turning.fly(10.0, 0.3);
+  const double learned = turning.motion.sample()->turn_ability;
+  EXPECT_NEAR(learned, 0.73, 0.03);
+  turning.fly(60.0, 0.0);
+  EXPECT_NEAR(turning.motion.sample()->turn_ability, learned, 0.02);
+}
+
+TEST(TurnAbility, LearnsFromNothingThatIsNoTurn) {
+  TurnAbility ability;
+  for (int i = 1; i < 500; ++i) ability.on_measurement(at_seconds(0.04 * i), 5.0, 0.1);
+  for (int i = 500; i < 1000; ++i) ability.on_measurement(at_seconds(0.04 * i), 5.0, 1.5);
+  ability.on_measurement(at_seconds(100.0), 5.0, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_EQ(ability.share(), 1.0);
+  for (int i = 0; i < 100; ++i) ability.on_measurement(at_seconds(50.0), 5.0, 0.7);
+  EXPECT_EQ(ability.share(), 1.0);  // one measurement, told again
+  for (int i = 0; i < 500; ++i) ability.on_measurement(at_seconds(60.0 + 0.04 * i), -5.0, 0.7);
+  EXPECT_EQ(ability.share(), TurnAbility::kLeast);  // it turns against its bank
+}
+
+TEST(Motion, KnowsTheWindAndWhereAFixedWingMovesThroughIt) {
+  Turning turning{.wind_mps = {6.0, -3.0}};
+  turning.fly(60.0, 0.3);
+  for (int i = 0; i < 50; ++i) {
+    turning.fly(0.3, 0.3);
+    turning.tell();
+    const VehicleState state = turning.motion.sample()->state;
+    EXPECT_NEAR(wrap_pi(state.heading_rad - turning.heading_rad), 0.0, radians(2.0));
+    const Vec2 wind = state.groundspeed_mps * unit_vector(state.course_rad) -
+                      state.airspeed_mps * unit_vector(state.heading_rad);
+    EXPECT_LE((wind - turning.wind_mps).norm(), 1.0);
+  }
+}
+
+TEST(SteadyError, GoesAwayAndStaysWithinItsLimit) {
+  SteadyError error{{.time_s = 8.0, .most = 5.0, .small_enough = 4.0}};
+  // An autopilot that flies 3 m below what it is told, three seconds late.
+  double height = 97.0;
+  double told = 100.0;
+  for (int i = 0; i < 1500; ++i) {
+    told = 100.0 + error.step(100.0 - height, 0.04);
+    height += 0.04 / 3.0 * (told - 3.0 - height);
+  }
+  EXPECT_NEAR(height, 100.0, 0.1);
+  for (int i = 0; i < 1000; ++i) told = error.step(3.0, 0.04);
+  EXPECT_EQ(told, 5.0);
+  EXPECT_EQ(error.step(-20.0, 0.04), 5.0);  // on the way to another height
+  error.reset();
+  EXPECT_EQ(error.step(0.0, 0.04), 0.0);
 }
 
 TEST(FlightModes, AreThoseOfTheAirframe) {

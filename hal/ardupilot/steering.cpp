@@ -28,13 +28,15 @@ constexpr std::uint16_t kVelocityAlone =
 
 }  // namespace
 
-double bank_for(const VehicleSpec& vehicle, const Setpoint& setpoint, const VehicleState& state) {
+double bank_for(const VehicleSpec& vehicle, const Setpoint& setpoint, const VehicleState& state,
+                double ability) {
   const double airspeed = std::max(state.airspeed_mps, vehicle.speed_min_mps);
   const double rate_max = airspeed / (kRollReserve * vehicle.turn_radius_m);
   const double error = wrap_pi(setpoint.heading_rad - state.heading_rad);
   const double rate = std::clamp(vehicle.heading_gain_per_s * error, -rate_max, rate_max);
   // Headings count counter-clockwise, banks to the right.
-  return std::clamp(-std::atan(airspeed * rate / kGravity_mps2), -kBankMax_rad, kBankMax_rad);
+  return std::clamp(-std::atan(airspeed * rate / (kGravity_mps2 * ability)), -kBankMax_rad,
+                    kBankMax_rad);
 }
 
 mavlink::SetAttitudeTarget roll_target(double bank_rad) {

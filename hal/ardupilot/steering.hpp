@@ -11,10 +11,11 @@ namespace skein::ardupilot {
 /// Setpoints in the words of the autopilot. Pure.
 
 /// The bank that turns a fixed wing from its heading to the setpoint's with the vehicle's heading
-/// gain, in a coordinated turn within its turn radius: tan(bank) = airspeed * rate / g (Beard and
-/// McLain, eq. 9.14). rad, positive to the right.
+/// gain, within its turn radius: tan(bank) = airspeed * rate / (g * ability), where `ability` is
+/// what it turns by at a bank against a coordinated turn (TurnAbility; Beard and McLain, eq. 9.14).
+/// rad, positive to the right.
 [[nodiscard]] double bank_for(const VehicleSpec& vehicle, const Setpoint& setpoint,
-                              const VehicleState& state);
+                              const VehicleState& state, double ability);
 
 /// Roll alone; height and airspeed stay with the autopilot.
 [[nodiscard]] mavlink::SetAttitudeTarget roll_target(double bank_rad);

@@ -150,12 +150,15 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   set("FS_GCS_ENABL", 1);
   set("FS_LONG_ACTN", 1);
   set("TKOFF_ALT", fc.takeoff_height_m);
-  set("AIRSPEED_MIN", std::floor(spec.speed_min_mps));
   set("AIRSPEED_CRUISE", spec.cruise_speed_mps);
   set("AIRSPEED_MAX", std::ceil(spec.speed_max_mps));
   const double bank_deg = degrees(std::atan(spec.cruise_speed_mps * spec.cruise_speed_mps /
                                             (kGravity_mps2 * spec.turn_radius_m)));
-  set("ROLL_LIMIT_DEG", std::min(kBankMax_deg, std::ceil(bank_deg + kBankReserve_deg)));
+  const double roll_limit_deg = std::min(kBankMax_deg, std::ceil(bank_deg + kBankReserve_deg));
+  set("ROLL_LIMIT_DEG", roll_limit_deg);
+  // In turns it is raised by the root of the load factor (STALL_PREVENTION).
+  set("AIRSPEED_MIN",
+      std::floor(spec.speed_min_mps * std::sqrt(std::cos(radians(roll_limit_deg)))));
   set("WP_LOITER_RAD", std::ceil(spec.planning_radius_m()));
   return text;
 }

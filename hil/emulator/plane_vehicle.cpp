@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/atmosphere.hpp"
 #include "skein/base/frames.hpp"
 
 namespace skein::hil {
@@ -53,9 +54,12 @@ models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& tri
 
 autopilot::PlaneParams params_of(const EmulatorConfig& config) {
   autopilot::PlaneParams p;
-  p.tuning.airspeed_min_mps = config.airspeed_min_mps;
-  p.tuning.airspeed_cruise_mps = config.airspeed_mps;
-  p.tuning.airspeed_max_mps = config.airspeed_max_mps;
+  // Its parameters are equivalent airspeeds, the loops of the model go by true ones.
+  const double true_per_equivalent =
+      true_per_equivalent_airspeed(config.origin.height_m + config.height_m);
+  p.tuning.airspeed_min_mps = config.airspeed_min_mps * true_per_equivalent;
+  p.tuning.airspeed_cruise_mps = config.airspeed_mps * true_per_equivalent;
+  p.tuning.airspeed_max_mps = config.airspeed_max_mps * true_per_equivalent;
   p.tuning.roll_max_rad = bank_limit_rad(config);
   p.loiter_radius_m = kLoiterRadii * config.turn_radius_m;
   p.companion_failsafe = config.companion_failsafe;
@@ -75,7 +79,9 @@ PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
                            const models::Trim& trim, Instant now)
     : AutopilotVehicle{config, earth, params_of(config), now},
       aircraft_{at_start(config, trim)},
-      params_{params_of(config)} {
+      params_{params_of(config)},
+      airspeed_min_mps_{config.airspeed_min_mps},
+      airspeed_max_mps_{config.airspeed_max_mps} {
   sense(aircraft_);
   const auto mode = autopilot::plane_mode(mode_named(config.airframe, config.mode).value_or(0));
   start_autopilot(now, mode.value_or(PlaneMode::manual));
@@ -204,9 +210,19 @@ CommandResult PlaneVehicle::change_speed(const mavlink::CommandInt& c) {
   constexpr float kAirspeed = 0.0F;
   if (!guided() && autopilot_.mode() != PlaneMode::mission) return CommandResult::failed;
   if (c.param1 != kAirspeed) return CommandResult::failed;
-  const auto result = autopilot_.change_speed(static_cast<double>(c.param2));
-  return result == autopilot::CommandResult::accepted ? CommandResult::accepted
-                                                      : CommandResult::failed;
+  const auto wanted = true_airspeed(static_cast<double>(c.param2));
+  if (!wanted) return CommandResult::failed;
+  return on_wire(autopilot_.change_speed(*wanted));
+}
+
+std::optional<double> PlaneVehicle::true_airspeed(double equivalent_mps) const {
+  // Written so that a number that is none fails.
+  if (!(equivalent_mps >= airspeed_min_mps_ && equivalent_mps <= airspeed_max_mps_)) {
+    return std::nullopt;
+  }
+  const double wanted = equivalent_mps * true_per_equivalent_airspeed(earth_.origin_height_m() +
+                                                                      report_.estimate.height_m());
+  return std::clamp(wanted, params_.tuning.airspeed_min_mps, params_.tuning.airspeed_max_mps);
 }
 
 CommandResult PlaneVehicle::change_height(const mavlink::CommandInt& c) {
@@ -222,8 +238,9 @@ CommandResult PlaneVehicle::change_height(const mavlink::CommandInt& c) {
 CommandResult PlaneVehicle::guided_speed(const mavlink::CommandInt& c) {
   if (!guided()) return CommandResult::failed;
   if (std::trunc(c.param1) != 0.0F) return CommandResult::denied;
-  return on_wire(autopilot_.guided_speed(static_cast<double>(c.param2),
-                                         std::abs(static_cast<double>(c.param3))));
+  const auto wanted = true_airspeed(static_cast<double>(c.param2));
+  if (!wanted) return CommandResult::denied;
+  return on_wire(autopilot_.guided_speed(*wanted, std::abs(static_cast<double>(c.param3))));
 }
 
 CommandResult PlaneVehicle::guided_height(const mavlink::CommandInt& c) {

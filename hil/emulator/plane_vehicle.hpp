@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "autopilot_vehicle.hpp"
 #include "skein/autopilot/plane_autopilot.hpp"
@@ -47,9 +48,13 @@ class PlaneVehicle final : public AutopilotVehicle<autopilot::PlaneAutopilot> {
   mavlink::CommandResult guided_height(const mavlink::CommandInt& c);
   mavlink::CommandResult guided_heading(const mavlink::CommandInt& c);
   mavlink::CommandResult enter(autopilot::PlaneMode mode);
+  /// Nothing where its parameters do not allow that equivalent airspeed.
+  [[nodiscard]] std::optional<double> true_airspeed(double equivalent_mps) const;
 
   models::FixedWing aircraft_;
   autopilot::PlaneParams params_;
+  double airspeed_min_mps_;  ///< equivalent, as its parameters are
+  double airspeed_max_mps_;
   autopilot::SurfaceCommand surfaces_;
 };
 

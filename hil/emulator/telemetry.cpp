@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/atmosphere.hpp"
 
 namespace skein::hil {
 namespace {
@@ -148,12 +149,19 @@ GpsGlobalOrigin global_origin(const Situation& s) {
           .time_usec = boot_us(s)};
 }
 
+/// What a pitot tube knows.
+double equivalent_airspeed(const Situation& s, double true_mps) {
+  return true_mps /
+         true_per_equivalent_airspeed(s.earth.origin_height_m() + s.flight.estimate.height_m());
+}
+
 NavControllerOutput nav_controller(const Situation& s) {
   const Vec3 to = s.flight.goal_m - s.flight.estimate.position_m;
   return {.nav_roll = f32(degrees(s.flight.roll_demand_rad)),
           .nav_pitch = f32(degrees(s.flight.pitch_demand_rad)),
           .alt_error = f32(-to.z()),
-          .aspd_error = f32(s.flight.goal_airspeed_mps - s.flight.estimate.airspeed_mps),
+          .aspd_error = f32(
+              equivalent_airspeed(s, s.flight.goal_airspeed_mps - s.flight.estimate.airspeed_mps)),
           .nav_bearing = rounded<std::int16_t>(degrees(s.flight.estimate.course_rad())),
           .target_bearing = rounded<std::int16_t>(degrees(bearing(to))),
           .wp_dist = rounded<std::uint16_t>(to.head<2>().norm())};
@@ -161,7 +169,7 @@ NavControllerOutput nav_controller(const Situation& s) {
 
 VfrHud vfr_hud(const Situation& s) {
   const autopilot::Estimate& e = s.flight.estimate;
-  return {.airspeed = f32(e.airspeed_mps),
+  return {.airspeed = f32(equivalent_airspeed(s, e.airspeed_mps)),
           .groundspeed = f32(e.groundspeed_mps()),
           .alt = f32(s.earth.origin_height_m() + e.height_m()),
           .climb = f32(e.climb_mps()),

@@ -93,7 +93,7 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
       "flight_controller: {kind: ardupilot, can: 'mcast:3', node_id: 11, companion_node_id: 43, "
       "system_id: 7, airframe: copter, take_over: from_ground, takeoff_height_m: 25, "
       "geoid_height_m: -38.5, "
-      "turn_lead_s: 0.75}\n";
+      "turn_lead_s: 0.75, airspeed_lead_s: 3}\n";
   const std::string in_formation =
       replaced(kVehicle, "capabilities: [survey, deliver]", "capabilities: []");
   const auto config = parse_vehicle_config(in_formation + keys, "v.yaml");
@@ -110,7 +110,8 @@ TEST(VehicleConfigFile, NamesTheFlightControllerOnItsBus) {
     EXPECT_EQ(fc.take_over, TakeOverKind::from_ground);
     EXPECT_EQ(fc.takeoff_height_m, 25.0);
     EXPECT_EQ(fc.geoid_height_m, -38.5);
-    EXPECT_EQ(c.flight_controller.turn_lead_s(), 0.75);
+    EXPECT_EQ(c.flight_controller.follower().turn_lead_s, 0.75);
+    EXPECT_EQ(c.flight_controller.follower().airspeed_lead_s, 3.0);
   }
 }
 

@@ -86,6 +86,9 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, A
            {-120.0, 100.0, "m"}, fc.geoid_height_m);
   v.number({"turn_lead_s", "turns are begun so much earlier: the time that rolling takes"},
            {0.0, 5.0, "s"}, fc.turn_lead_s);
+  v.number({"airspeed_lead_s",
+            "changes of airspeed are begun so much earlier: the time that a plane takes"},
+           {0.0, 10.0, "s"}, fc.airspeed_lead_s);
   v.require(!bus_required || config.kind != FlightControllerKind::ardupilot || !fc.can.empty(),
             "can", "an ardupilot needs a CAN bus; name one, such as can0 or mcast:0");
   v.require(fc.node_id != fc.companion_node_id, "companion_node_id",

@@ -3,6 +3,8 @@
 
 #include <optional>
 
+#include "skein/ardupilot/turn_ability.hpp"
+#include "skein/ardupilot/wind_estimate.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -14,6 +16,10 @@ namespace skein::ardupilot {
 struct MotionSample {
   VehicleState state;
   double turn_rate_radps = 0.0;  ///< of heading and course, counter-clockwise
+  /// What a fixed wing turns by at its bank, against a coordinated turn.
+  double turn_ability = 1.0;
+  /// True per equivalent airspeed where it flies; autopilots are asked for the latter.
+  double true_per_equivalent = 1.0;
 };
 
 /// How far a state is carried on. Older ones stay as old as they then are: who asks sees it.
@@ -24,6 +30,11 @@ inline constexpr Duration kCarryMax = std::chrono::milliseconds{250};
 
 /// Puts the vehicle's state together from ATTITUDE, GLOBAL_POSITION_INT and VFR_HUD. Each comes
 /// with the mission time at which it was measured.
+///
+/// A fixed wing's heading is where it moves through the air: its velocity over the ground less the
+/// wind, which is learned in flight. Its nose swings about that by some degrees when it rolls, and
+/// stands out of the turn where nothing coordinates it; who steered by it would answer the swing.
+/// Its turn rate is that of its bank, by what it is known to turn by at a bank.
 class Motion {
  public:
   /// `geoid_height_m`: of the geoid above the ellipsoid at the origin; autopilots count heights
@@ -47,19 +58,29 @@ class Motion {
   [[nodiscard]] double relative_height_m() const { return relative_height_m_; }
 
  private:
+  [[nodiscard]] double airspeed_mps() const;  ///< true
+  [[nodiscard]] double turn_rate_radps() const;
+  /// The wind, and what it turns by: from a velocity that is `since` younger than the last one.
+  void learn(const Vec2& over_ground_mps, Duration since, Instant measured);
+
   MissionOrigin origin_;
   double geoid_height_m_;
   bool hovers_;
   bool has_attitude_ = false;
   bool has_position_ = false;
   bool has_hud_ = false;
-  double heading_rad_ = 0.0;
-  double turn_rate_radps_ = 0.0;
+  double nose_rad_ = 0.0;
+  double nose_rate_radps_ = 0.0;
+  double bank_rad_ = 0.0;  ///< positive to the right
   Instant attitude_at_;
-  double airspeed_mps_ = 0.0;
+  double equivalent_airspeed_mps_ = 0.0;
+  double true_per_equivalent_ = 1.0;
   Instant hud_at_;
   double relative_height_m_ = 0.0;
-  VehicleState state_;  ///< its heading and airspeed stand above
+  VehicleState state_;  ///< its airspeed stands above
+  Vec2 over_ground_mps_{0.0, 0.0};
+  WindEstimate wind_;
+  TurnAbility turn_ability_;
 };
 
 }  // namespace skein::ardupilot

@@ -18,6 +18,7 @@
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
+#include "skein/planning/path_follower.hpp"
 
 namespace skein::configuration {
 
@@ -42,7 +43,8 @@ struct ArdupilotConfig {
   TakeOverKind take_over = TakeOverKind::when_guided;
   double takeoff_height_m = 40.0;
   double geoid_height_m = 0.0;
-  double turn_lead_s = 0.5;  ///< rolling into a turn takes so long
+  double turn_lead_s = 0.6;      ///< rolling into a turn takes so long
+  double airspeed_lead_s = 4.0;  ///< and a change of airspeed
 };
 
 struct FlightControllerConfig {
@@ -50,8 +52,14 @@ struct FlightControllerConfig {
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
 
-  [[nodiscard]] double turn_lead_s() const {
-    return kind == FlightControllerKind::ardupilot ? ardupilot.turn_lead_s : 0.0;
+  /// Asked for more per radian, an ArduPlane that flies 25 m/s swings (docs/ardupilot.md).
+  static constexpr double kHeadingGainMost_per_s = 0.8;
+  /// How plans are followed on it; the simulated one needs no leads.
+  [[nodiscard]] planning::PathFollowerParams follower() const {
+    if (kind != FlightControllerKind::ardupilot) return {};
+    return {.turn_lead_s = ardupilot.turn_lead_s,
+            .airspeed_lead_s = ardupilot.airspeed_lead_s,
+            .heading_gain_most_per_s = kHeadingGainMost_per_s};
   }
 };
 
