@@ -22,26 +22,33 @@ namespace {
 
 /// Between two delays that are tried; in less a conflict seldom ends.
 constexpr double kDelayStep_s = 2.0;
-/// Detours: straight on first, and over a point beside the middle of the way; in turn radii.
-constexpr std::array kStraightOn{2.0, 5.0, 10.0};
-constexpr std::array kBeside{-6.0, -3.0, 3.0, 6.0};
+/// Detours, in turn radii: straight on first; a turn and some way on; over a point beside the
+/// middle of the way.
+constexpr std::array kStraightOn{2.0, 4.0, 7.0, 12.0};
+constexpr std::array kTurnFirst_rad{-kPi, -0.5 * kPi, 0.5 * kPi, kPi};
+constexpr std::array kBeside{-12.0, -6.0, -3.0, 3.0, 6.0, 12.0};
 /// Around the orbits of others there is room for what stay_apart() refuses besides.
-constexpr double kAroundMargin_m = 2.0;
+constexpr double kAround_m = 2.0;
+/// Onto an orbit, besides the tangent.
+constexpr int kEntries = 7;
 constexpr double kSpeedMin_mps = 0.1;
 constexpr double kRadiusMin_m = 0.1;
 constexpr double kFar_m = 1e7;
 
-/// A way to a vehicle's orbit, flown at once.
+/// A way to a vehicle's orbit; laps are flown where the first part ends.
 struct Way {
-  Path path;
+  Path first;
+  Path rest;
   double length_m = 0.0;
+  std::vector<std::size_t> through{};  ///< whose places to wait it leads through
 };
 
 /// What does not depend on the order of priority.
 struct Homecoming {
   std::optional<ReturnFailure> failure;
   ReturnHold hold;
-  std::vector<Way> ways;  ///< the shortest that was found first
+  std::vector<Way> ways;      ///< the shortest that was found first
+  std::optional<Ring> waits;  ///< where it can fly laps first, beside all others that do
 };
 
 /// One of a vehicle's ways, at one time.
@@ -93,6 +100,7 @@ class Planner {
       if (holds[i]) homecomings_[i].hold = *holds[i];
       if (wanted[i] && !holds[i]) fail(i, ReturnObstacle::no_room_to_hold);
     }
+    for (std::size_t i = 0; i < vehicles.size(); ++i) find_place_to_wait(i);
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
       if (!homecomings_[i].failure) find_ways(i);
     }
@@ -110,22 +118,20 @@ class Planner {
 
   [[nodiscard]] CollectiveReturn best() const {
     CollectiveReturn best;
-    std::vector<std::size_t> best_order;
+    CollectiveReturn found;
+    std::vector<std::size_t> order;
     std::set<std::vector<std::size_t>> tried;
     for (std::size_t n = 0; n < std::max<std::size_t>(params_.orders, 1); ++n) {
-      auto order = n < kOrders ? first_order(n) : promoted(best, best_order);
+      order = n < kOrders ? first_order(n) : promoted(found, std::move(order));
       if (!tried.insert(order).second) {
         if (n < kOrders) continue;
         break;
       }
-      CollectiveReturn found = in_order(order);
-      if (tried.size() == 1 || worth(found) < worth(best)) {
-        best = std::move(found);
-        best_order = std::move(order);
-      }
+      found = in_order(order);
+      if (tried.size() == 1 || worth(found) < worth(best)) best = found;
       const bool all = best.failures.size() == given_up();
-      if (all && best.length_m <= shortest_m() + 1e-6 && on_time(best)) break;
-      if (all && n + 1 >= kOrders) break;
+      const bool soonest = best.length_m <= shortest_m() + 1e-6 && on_time(best);
+      if (all && (soonest || n + 1 >= kOrders)) break;
     }
     return best;
   }
@@ -147,17 +153,33 @@ class Planner {
 
   // --- ways ---
 
-  /// The orbits of others at the height of this one, as circles to fly around.
-  [[nodiscard]] std::vector<Hazard> orbits_of_others(std::size_t i) const {
-    std::vector<Hazard> circles;
-    for (std::size_t j = 0; j < vehicles_.size(); ++j) {
-      if (j == i || homecomings_[j].failure) continue;
-      if (apart_in_height(params_, vehicles_[i], vehicles_[j])) continue;
-      const Ring& ring = homecomings_[j].hold.ring;
-      const double apart_m = params_.separation_horizontal_m + kAroundMargin_m;
-      circles.push_back(Hazard{{}, ring.centre, ring.radius_m + apart_m});
+  void find_place_to_wait(std::size_t i) {
+    if (homecomings_[i].failure) return;
+    for (const double side : {1.0, -1.0}) {
+      const Ring ring = ring_of(vehicles_[i].start, side / vehicles_[i].turn_radius_m);
+      bool free = keeps_clear(ring);
+      for (std::size_t j = 0; j < i && free; ++j) {
+        const auto& other = homecomings_[j].waits;
+        free = !other || apart_in_height(params_, vehicles_[i], vehicles_[j]) ||
+               distance_m(ring, *other) >= params_.separation_horizontal_m;
+      }
+      if (!free) continue;
+      homecomings_[i].waits = ring;
+      return;
     }
-    return circles;
+  }
+  [[nodiscard]] bool keeps_clear(const Ring& ring) const {
+    return std::ranges::all_of(hazards_, [&](const Hazard& h) {
+      return distance_m(ring, h.centre) >= params_.avoidance.safety_radius_m(h);
+    });
+  }
+  /// A ring as a circle to fly around.
+  [[nodiscard]] Hazard circle_of(const Ring& ring) const {
+    return Hazard{{}, ring.centre, ring.radius_m + params_.separation_horizontal_m + kAround_m};
+  }
+  [[nodiscard]] bool concerns(std::size_t i, std::size_t j) const {
+    return i != j && !homecomings_[j].failure &&
+           !apart_in_height(params_, vehicles_[i], vehicles_[j]);
   }
 
   void find_ways(std::size_t i) {
@@ -169,14 +191,18 @@ class Planner {
     if (needs_m > v.range_left_m) {
       return fail(i, ReturnObstacle::out_of_range, needs_m - v.range_left_m);
     }
-    std::vector<Hazard> circles = orbits_of_others(i);
-    if (!is_clear(home.ways.front().path, circles)) {
-      circles.insert(circles.end(), hazards_.begin(), hazards_.end());
-      add_way(i, Path{v.start, {}}, circles);
-    }
+    add_ways_around(i);
     for (const double radii : kStraightOn) {
       Path first{v.start, {}};
       if (first.append(Segment{0.0, radii * v.turn_radius_m})) add_way(i, first, hazards_);
+    }
+    for (const double turn_rad : kTurnFirst_rad) {
+      Path first{v.start, {}};
+      const double curvature = std::copysign(1.0 / v.turn_radius_m, turn_rad);
+      if (first.append(Segment{curvature, std::abs(turn_rad) * v.turn_radius_m}) &&
+          first.append(Segment{0.0, 3.0 * v.turn_radius_m})) {
+        add_way(i, first, hazards_);
+      }
     }
     const Vec2 along = entry_of(home.hold, v.start).position() - v.start.position();
     if (along.norm() < v.turn_radius_m) return;
@@ -190,39 +216,89 @@ class Planner {
     }
   }
 
+  /// Around where others hold in the end, and around where they may wait besides.
+  void add_ways_around(std::size_t i) {
+    std::vector<Hazard> circles;
+    for (std::size_t j = 0; j < vehicles_.size(); ++j) {
+      if (concerns(i, j)) circles.push_back(circle_of(homecomings_[j].hold.ring));
+    }
+    const Path direct = homecomings_[i].ways.front().rest;
+    const Path none{vehicles_[i].start, {}};
+    const auto add_around = [&] {
+      if (is_clear(direct, circles)) return;
+      std::vector<Hazard> all = circles;
+      all.insert(all.end(), hazards_.begin(), hazards_.end());
+      add_way(i, none, all, kEntries);
+    };
+    add_around();
+    const std::size_t holds = circles.size();
+    for (std::size_t j = 0; j < vehicles_.size(); ++j) {
+      const auto& waits = homecomings_[j].waits;
+      if (concerns(i, j) && waits) circles.push_back(circle_of(*waits));
+    }
+    if (circles.size() > holds) add_around();
+  }
+
+  [[nodiscard]] std::vector<std::size_t> leads_through(std::size_t i, const Path& first,
+                                                       const Path& rest) const {
+    std::vector<std::size_t> through;
+    for (std::size_t j = 0; j < vehicles_.size(); ++j) {
+      const auto& waits = homecomings_[j].waits;
+      if (!concerns(i, j) || !waits) continue;
+      const std::array circle{
+          Hazard{{}, waits->centre, waits->radius_m + params_.separation_horizontal_m}};
+      if (!is_clear(first, circle) || !is_clear(rest, circle)) through.push_back(j);
+    }
+    return through;
+  }
+
+  /// The shortest onto the orbit around those circles: along the tangent, else by that many other
+  /// entries, where all that orbits beside it may leave only some sides open.
+  [[nodiscard]] std::optional<Path> way_in(std::size_t i, const Pose2& from,
+                                           std::span<const Hazard> circles, int entries) const {
+    const ReturnHold& hold = homecomings_[i].hold;
+    const Pose2 tangent = entry_of(hold, from);
+    std::optional<Path> best;
+    for (int k = 0; k <= (hold.entry ? 0 : entries); ++k) {
+      const Pose2 to =
+          k == 0 ? tangent : entry_at(hold, tangent.heading_rad + k * kTwoPi / (entries + 1));
+      const auto way =
+          shortest_clear_path(params_.avoidance, from, to, vehicles_[i].turn_radius_m, circles);
+      const bool shorter = way && (!best || way->length_m() < best->length_m());
+      if (shorter && is_clear(*way, hazards_)) best = *way;
+      if (k == 0 && best) break;
+    }
+    return best;
+  }
+
   /// From the end of `first` to the orbit, around those circles.
-  void add_way(std::size_t i, Path first, std::span<const Hazard> circles) {
+  void add_way(std::size_t i, const Path& first, std::span<const Hazard> circles, int entries = 0) {
     const ReturningVehicle& v = vehicles_[i];
-    const Pose2 from = first.end();
-    const auto rest = shortest_clear_path(
-        params_.avoidance, from, entry_of(homecomings_[i].hold, from), v.turn_radius_m, circles);
-    if (!rest || !first.append(*rest) || !is_clear(first, hazards_)) return;
-    const double length_m = first.length_m();
+    if (!is_clear(first, hazards_)) return;
+    const auto rest = way_in(i, first.end(), circles, entries);
+    if (!rest) return;
+    // Laps are a piece, too.
+    if (first.segments.size() + rest->segments.size() >= kPathSegmentsMax) return;
+    const double length_m = first.length_m() + rest->length_m();
     if (length_m + lap_m(v) > v.range_left_m && !homecomings_[i].ways.empty()) return;
-    homecomings_[i].ways.push_back({std::move(first), length_m});
+    homecomings_[i].ways.push_back({first, *rest, length_m, leads_through(i, first, *rest)});
   }
 
   // --- one vehicle after those before it ---
 
-  /// Why it cannot; nothing, and placed, where it can.
+  /// Why it cannot; nothing, and placed, where it can. First without leading through where others
+  /// may wait for it, so that these find a way later.
   [[nodiscard]] std::optional<ReturnFailure> place(std::size_t i,
                                                    std::vector<Placed>& placed) const {
     std::map<std::size_t, std::size_t> blockers;  // how often who was in the way
-    std::size_t last = 0;                         // of `placed`: probably in the way again
-    std::size_t tries = 0;
-    for (const Candidate& candidate : candidates(i, placed, blockers)) {
-      if (tries++ == params_.tries) break;
-      const auto timed = timed_path(i, candidate);
-      if (!timed) continue;
-      const ReturnTrack track{*timed, epoch()};
-      const auto blocker = first_blocker(i, track, placed, last);
-      if (!blocker) {
-        const double off_m = homecomings_[i].hold.off_home_m;
-        placed.push_back({i, {vehicles_[i].id, *timed, off_m}, track});
-        return std::nullopt;
-      }
-      last = *blocker;
-      ++blockers[placed[last].index];
+    const auto all = candidates(i, placed, blockers);
+    for (const bool considerate : {true, false}) {
+      auto found = first_free(i, all, considerate, placed, blockers);
+      if (!found) continue;
+      const double off_m = homecomings_[i].hold.off_home_m;
+      const ReturnTrack track{*found, epoch()};
+      placed.push_back({i, {vehicles_[i].id, *std::move(found), off_m}, track});
+      return std::nullopt;
     }
     ReturnFailure failure{vehicles_[i].id, ReturnObstacle::others, {}, 0.0};
     std::size_t most = 0;
@@ -232,6 +308,30 @@ class Planner {
       failure.other = vehicles_[index].id;
     }
     return failure;
+  }
+
+  [[nodiscard]] std::optional<TimedPath> first_free(
+      std::size_t i, const std::vector<Candidate>& all, bool considerate,
+      const std::vector<Placed>& placed, std::map<std::size_t, std::size_t>& blockers) const {
+    std::vector<bool> waiting(vehicles_.size(), considerate);
+    for (const Placed& other : placed) waiting[other.index] = false;
+    const auto disturbs = [&](const Candidate& candidate) {
+      const auto& through = homecomings_[i].ways[candidate.way].through;
+      return std::ranges::any_of(through, [&](std::size_t j) { return waiting[j]; });
+    };
+    std::size_t last = 0;  // of `placed`: probably in the way again
+    std::size_t tries = 0;
+    for (const Candidate& candidate : all) {
+      if (considerate && disturbs(candidate)) continue;
+      if (tries++ == params_.tries) break;
+      auto timed = timed_path(i, candidate);
+      if (!timed) continue;
+      const auto blocker = first_blocker(i, ReturnTrack{*timed, epoch()}, placed, last);
+      if (!blocker) return timed;
+      last = *blocker;
+      ++blockers[placed[last].index];
+    }
+    return std::nullopt;
   }
 
   [[nodiscard]] std::optional<std::size_t> first_blocker(std::size_t i, const ReturnTrack& track,
@@ -299,22 +399,19 @@ class Planner {
     timed.start_time = v.start_time;
     timed.tail_curvature_per_m = homecomings_[i].hold.curvature_per_m;
     timed.speed_mps = v.speed_mps;
-    timed.path.start = v.start;
+    timed.path = way.first;
     if (what.lap_side != 0.0) {
       // As few laps as are wide enough turn to exactly that length, and to where they began.
       const double laps = std::floor(what.extra_m / lap_m(v));
       const double curvature = what.lap_side * kTwoPi * laps / what.extra_m;
-      const Ring ring = ring_of(v.start, curvature);
-      for (const Hazard& h : hazards_) {
-        if (distance_m(ring, h.centre) < params_.avoidance.safety_radius_m(h)) return std::nullopt;
-      }
+      if (!keeps_clear(ring_of(way.first.end(), curvature))) return std::nullopt;
       if (!timed.path.append(Segment{curvature, what.extra_m})) return std::nullopt;
     } else {
       const double flown_s = what.arrival_s - start_s(i);
       if (flown_s > 0.0) timed.speed_mps = std::min(v.speed_mps, way.length_m / flown_s);
       timed.speed_mps = std::max({timed.speed_mps, v.speed_min_mps, kSpeedMin_mps});
     }
-    if (!timed.path.append(way.path)) return std::nullopt;
+    if (!timed.path.append(way.rest)) return std::nullopt;
     return timed;
   }
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kHeadings = 8;
 /// Between orbits of the lattice there is room for a way through that keeps its margin.
-constexpr double kLatticeRoom = 1.3;
+constexpr double kLatticeRoom = 2.5;
 /// Of the lattice, around a home: room for some thousands of orbits.
 constexpr double kRings = 40.0;
 
@@ -59,10 +59,6 @@ class Assignment {
       const double curvature = side / v.turn_radius_m;
       ReturnHold hold{{{x, y}, v.turn_radius_m}, curvature, {}, 0.0};
       hold.off_home_m = planning::distance_m(hold.ring, v.home);
-      if (v.arrival_heading_rad) {
-        const Vec2 at = Vec2{x, y} - left_of(unit_vector(*v.arrival_heading_rad)) / curvature;
-        hold.entry = Pose2{at.x(), at.y(), *v.arrival_heading_rad};
-      }
       if (take(i, hold)) return true;
     }
     return false;
@@ -121,6 +117,11 @@ class Assignment {
 
 }  // namespace
 
+Pose2 entry_at(const ReturnHold& hold, double heading_rad) {
+  const Vec2 at = hold.ring.centre - left_of(unit_vector(heading_rad)) / hold.curvature_per_m;
+  return {at.x(), at.y(), wrap_pi(heading_rad)};
+}
+
 Pose2 entry_of(const ReturnHold& hold, const Pose2& from) {
   if (hold.entry) return *hold.entry;
   const Vec2 to_centre = hold.ring.centre - from.position();
@@ -132,8 +133,7 @@ Pose2 entry_of(const ReturnHold& hold, const Pose2& from) {
     heading = std::atan2(to_centre.y(), to_centre.x()) -
               side * std::asin(std::min(1.0, hold.ring.radius_m / away_m));
   }
-  const Vec2 at = hold.ring.centre - left_of(unit_vector(heading)) / hold.curvature_per_m;
-  return {at.x(), at.y(), wrap_pi(heading)};
+  return entry_at(hold, heading);
 }
 
 bool apart_in_height(const ReturnParams& params, const ReturningVehicle& a,

@@ -20,6 +20,9 @@ struct ReturnHold {
 /// Where a way from that pose comes onto the ring: at its entry, or along the tangent.
 [[nodiscard]] Pose2 entry_of(const ReturnHold& hold, const Pose2& from);
 
+/// The pose on the ring of that heading.
+[[nodiscard]] Pose2 entry_at(const ReturnHold& hold, double heading_rad);
+
 /// Do heights alone keep them apart?
 [[nodiscard]] bool apart_in_height(const ReturnParams& params, const ReturningVehicle& a,
                                    const ReturningVehicle& b);

@@ -28,10 +28,7 @@ double distance_m(const Ring& ring, const Vec2& point) {
 }
 
 double distance_m(const Ring& a, const Ring& b) {
-  const double centres_m = (a.centre - b.centre).norm();
-  const double beside_m = centres_m - a.radius_m - b.radius_m;
-  const double around_m = std::abs(a.radius_m - b.radius_m) - centres_m;
-  return std::max({beside_m, around_m, 0.0});
+  return std::max((a.centre - b.centre).norm() - a.radius_m - b.radius_m, 0.0);
 }
 
 Ring ring_of(const Pose2& at, double curvature_per_m) {

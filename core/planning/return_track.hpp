@@ -14,7 +14,7 @@ struct Ring {
   double radius_m = 0.0;
 };
 [[nodiscard]] double distance_m(const Ring& ring, const Vec2& point);
-/// 0 where they cross.
+/// 0 where they cross, or one lies within the other: who is inside would be shut in.
 [[nodiscard]] double distance_m(const Ring& a, const Ring& b);
 /// Precondition: the curvature is not 0.
 [[nodiscard]] Ring ring_of(const Pose2& at, double curvature_per_m);

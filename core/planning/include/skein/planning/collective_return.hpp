@@ -28,7 +28,7 @@ struct ReturningVehicle {
   double turn_radius_m = 0.0;  ///< of its paths, and of its orbit at home
   double range_left_m = 0.0;   ///< from the start: its way home and one lap there
   Vec2 home{0.0, 0.0};         ///< its orbit passes here, or as near as others leave room for
-  std::optional<double> arrival_heading_rad = {};  ///< none: any
+  std::optional<double> arrival_heading_rad = {};  ///< over home; none: any
 };
 
 struct ReturnParams {
@@ -42,8 +42,8 @@ struct ReturnParams {
       1500.0;  ///< of home an orbit may pass, where homes are too near each other
   Duration delay_max = std::chrono::minutes{15};  ///< of an arrival, for others
   AvoidanceParams avoidance{};
-  std::size_t orders = 8;     ///< of priority that are tried
-  std::size_t tries = 1'500;  ///< ways of one vehicle that are looked at, in one order
+  std::size_t orders = 60;    ///< of priority that are tried
+  std::size_t tries = 30'000;  ///< ways of one vehicle that are looked at, in one order
 };
 
 struct ReturnFlight {
