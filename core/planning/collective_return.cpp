@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <functional>
 #include <map>
 #include <numeric>
 #include <set>
@@ -30,7 +30,7 @@ constexpr std::array kBeside{-12.0, -6.0, -3.0, 3.0, 6.0, 12.0};
 /// Around the orbits of others there is room for what stay_apart() refuses besides.
 constexpr double kAround_m = 2.0;
 /// Onto an orbit, besides the tangent.
-constexpr int kEntries = 7;
+constexpr int kEntries = 3;
 constexpr double kSpeedMin_mps = 0.1;
 constexpr double kRadiusMin_m = 0.1;
 constexpr double kFar_m = 1e7;
@@ -224,19 +224,19 @@ class Planner {
     }
     const Path direct = homecomings_[i].ways.front().rest;
     const Path none{vehicles_[i].start, {}};
-    const auto add_around = [&] {
+    const auto add_around = [&](int entries) {
       if (is_clear(direct, circles)) return;
       std::vector<Hazard> all = circles;
       all.insert(all.end(), hazards_.begin(), hazards_.end());
-      add_way(i, none, all, kEntries);
+      add_way(i, none, all, entries);
     };
-    add_around();
+    add_around(kEntries);
     const std::size_t holds = circles.size();
     for (std::size_t j = 0; j < vehicles_.size(); ++j) {
       const auto& waits = homecomings_[j].waits;
       if (concerns(i, j) && waits) circles.push_back(circle_of(*waits));
     }
-    if (circles.size() > holds) add_around();
+    if (circles.size() > holds) add_around(0);
   }
 
   [[nodiscard]] std::vector<std::size_t> leads_through(std::size_t i, const Path& first,
@@ -245,9 +245,10 @@ class Planner {
     for (std::size_t j = 0; j < vehicles_.size(); ++j) {
       const auto& waits = homecomings_[j].waits;
       if (!concerns(i, j) || !waits) continue;
-      const std::array circle{
-          Hazard{{}, waits->centre, waits->radius_m + params_.separation_horizontal_m}};
-      if (!is_clear(first, circle) || !is_clear(rest, circle)) through.push_back(j);
+      const double apart_m = waits->radius_m + params_.separation_horizontal_m;
+      if (!keeps_off(first, waits->centre, apart_m) || !keeps_off(rest, waits->centre, apart_m)) {
+        through.push_back(j);
+      }
     }
     return through;
   }
@@ -291,7 +292,7 @@ class Planner {
   [[nodiscard]] std::optional<ReturnFailure> place(std::size_t i,
                                                    std::vector<Placed>& placed) const {
     std::map<std::size_t, std::size_t> blockers;  // how often who was in the way
-    const auto all = candidates(i, placed, blockers);
+    const std::vector<Candidate> all = candidates(i, placed, blockers);
     for (const bool considerate : {true, false}) {
       auto found = first_free(i, all, considerate, placed, blockers);
       if (!found) continue;
@@ -311,7 +312,7 @@ class Planner {
   }
 
   [[nodiscard]] std::optional<TimedPath> first_free(
-      std::size_t i, const std::vector<Candidate>& all, bool considerate,
+      std::size_t i, std::vector<Candidate> all, bool considerate,
       const std::vector<Placed>& placed, std::map<std::size_t, std::size_t>& blockers) const {
     std::vector<bool> waiting(vehicles_.size(), considerate);
     for (const Placed& other : placed) waiting[other.index] = false;
@@ -321,9 +322,12 @@ class Planner {
     };
     std::size_t last = 0;  // of `placed`: probably in the way again
     std::size_t tries = 0;
-    for (const Candidate& candidate : all) {
-      if (considerate && disturbs(candidate)) continue;
-      if (tries++ == params_.tries) break;
+    // Few are looked at, mostly: they are taken out of a heap, not sorted.
+    if (considerate) std::erase_if(all, disturbs);
+    std::ranges::make_heap(all, std::greater{}, &Candidate::key);
+    for (; !all.empty() && tries < params_.tries; all.pop_back(), ++tries) {
+      std::ranges::pop_heap(all, std::greater{}, &Candidate::key);
+      const Candidate& candidate = all.back();
       auto timed = timed_path(i, candidate);
       if (!timed) continue;
       const auto blocker = first_blocker(i, ReturnTrack{*timed, epoch()}, placed, last);
@@ -345,7 +349,7 @@ class Planner {
     return std::nullopt;
   }
 
-  /// Its ways at all times, the earliest first; without those that come too soon before or after
+  /// Its ways at all times, without those that come too soon before or after
   /// another at its runway.
   [[nodiscard]] std::vector<Candidate> candidates(
       std::size_t i, const std::vector<Placed>& placed,
@@ -387,7 +391,6 @@ class Planner {
         }
       }
     }
-    std::ranges::sort(all, {}, &Candidate::key);
     return all;
   }
 

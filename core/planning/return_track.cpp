@@ -12,6 +12,8 @@ namespace {
 /// Keeps the steps from becoming endlessly small.
 constexpr double kMargin_m = 1.0;
 
+double square(double x) { return x * x; }
+
 double distance_at(const ReturnTrack& a, const ReturnTrack& b, double time_s) {
   const bool a_holds = time_s >= a.end_s();
   const bool b_holds = time_s >= b.end_s();
@@ -42,11 +44,18 @@ ReturnTrack::ReturnTrack(const TimedPath& timed, Instant epoch)
   SKEIN_ASSERT(timed.paces.empty());
   Pose2 from = timed.path.start;
   for (const Segment& s : timed.path.segments) {
-    pieces_.push_back({from, s.curvature_per_m, length_m_});
+    const Vec2 forward = unit_vector(from.heading_rad);
+    if (s.curvature_per_m == 0.0) {
+      pieces_.push_back({length_m_, 0.0, from.position(), forward});
+    } else {
+      const Vec2 to_centre = left_of(forward) / s.curvature_per_m;
+      pieces_.push_back({length_m_, s.curvature_per_m, from.position() + to_centre, -to_centre});
+    }
     from = advance(from, s.curvature_per_m, s.length_m);
     length_m_ += s.length_m;
   }
-  if (pieces_.empty()) pieces_.push_back({from, 0.0, 0.0});
+  if (pieces_.empty())
+    pieces_.push_back({0.0, 0.0, from.position(), unit_vector(from.heading_rad)});
   ring_ = ring_of(from, timed.tail_curvature_per_m);
 }
 
@@ -55,7 +64,23 @@ Vec2 ReturnTrack::position_at(double time_s) const {
   std::size_t i = 0;
   while (i + 1 < pieces_.size() && pieces_[i + 1].begin_m <= at_m) ++i;
   const Piece& piece = pieces_[i];
-  return advance(piece.from, piece.curvature_per_m, at_m - piece.begin_m).position();
+  const double along_m = at_m - piece.begin_m;
+  if (piece.curvature_per_m == 0.0) return piece.origin + along_m * piece.vector;
+  const Vec2 turned = unit_vector(piece.curvature_per_m * along_m);
+  return {piece.origin.x() + piece.vector.dot(Vec2{turned.x(), -turned.y()}),
+          piece.origin.y() + piece.vector.dot(Vec2{turned.y(), turned.x()})};
+}
+
+bool keeps_off(const Path& path, const Vec2& point, double apart_m) {
+  Pose2 from = path.start;
+  for (const Segment& s : path.segments) {
+    const bool far = (from.position() - point).squaredNorm() >= square(apart_m + s.length_m);
+    if (!far && distance_to_piece(point, from, s.curvature_per_m, s.length_m) < apart_m) {
+      return false;
+    }
+    from = advance(from, s.curvature_per_m, s.length_m);
+  }
+  return true;
 }
 
 bool stay_apart(const ReturnTrack& a, const ReturnTrack& b, double apart_m) {

@@ -33,9 +33,10 @@ class ReturnTrack {
 
  private:
   struct Piece {
-    Pose2 from;
-    double curvature_per_m = 0.0;
     double begin_m = 0.0;
+    double curvature_per_m = 0.0;
+    Vec2 origin{0.0, 0.0};  ///< of a line its begin, of an arc its centre
+    Vec2 vector{0.0, 0.0};  ///< the direction of a line; from the centre to the begin of an arc
   };
   double begin_s_;
   double speed_mps_;
@@ -43,6 +44,10 @@ class ReturnTrack {
   std::vector<Piece> pieces_;
   Ring ring_;
 };
+
+/// Does the path never come nearer to that point than that? As is_clear(), but fast for what is
+/// far.
+[[nodiscard]] bool keeps_off(const Path& path, const Vec2& point, double apart_m);
 
 /// Are they never nearer than that from when both have begun? Who has arrived is anywhere on its
 /// ring. By conservative advancement: a distance cannot shrink faster than both together fly. It
