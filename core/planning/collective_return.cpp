@@ -20,8 +20,9 @@
 namespace skein::planning {
 namespace {
 
-/// Between two delays that are tried; in less a conflict seldom ends.
+/// Between two delays that are tried: in less a conflict seldom ends; and of long ones this share.
 constexpr double kDelayStep_s = 2.0;
+constexpr double kDelayStep = 0.02;
 /// Detours, in turn radii: straight on first; a turn and some way on; over a point beside the
 /// middle of the way.
 constexpr std::array kStraightOn{2.0, 4.0, 7.0, 12.0};
@@ -369,14 +370,15 @@ class Planner {
     };
     std::vector<Candidate> all;
     const auto& ways = homecomings_[i].ways;
-    const auto delays = static_cast<int>(to_seconds(params_.delay_max) / kDelayStep_s);
+    const double delay_max_s = to_seconds(params_.delay_max);
     for (std::size_t w = 0; w < ways.size(); ++w) {
       const double length_m = ways[w].length_m;
       const double slowest_s = length_m / std::max(v.speed_min_mps, kSpeedMin_mps);
-      for (int k = 0; k <= delays; ++k) {
-        const double flown_s = length_m / v.speed_mps + k * kDelayStep_s;
-        const double extra_m = k * kDelayStep_s * v.speed_mps;
-        const bool slower = k == 0 || (v.speed_min_mps > 0.0 && flown_s <= slowest_s);
+      for (double delay_s = 0.0; delay_s <= delay_max_s;
+           delay_s += std::max(kDelayStep_s, kDelayStep * delay_s)) {
+        const double flown_s = length_m / v.speed_mps + delay_s;
+        const double extra_m = delay_s * v.speed_mps;
+        const bool slower = delay_s == 0.0 || (v.speed_min_mps > 0.0 && flown_s <= slowest_s);
         const double needs_m = length_m + (slower ? 0.0 : extra_m);
         if (needs_m + lap_m(v) > v.range_left_m) break;  // later ones need as much or more
         if (!slower && extra_m < lap_m(v)) continue;

@@ -300,8 +300,6 @@ TEST(CollectiveReturn, FiftyAtOneHeightWithHomesInARow) {
     }
     const auto plan = plan_return(world.params, world.vehicles, world.hazards);
     EXPECT_THAT(plan.failures, IsEmpty());
-    for (const ReturnFailure& f : plan.failures) std::printf("%s\n", text_of(f).c_str());
-    std::printf("last arrival %.0f s\n", to_seconds(plan.last_arrival));
     expect_good(world, plan, 0.2);
   }
 }

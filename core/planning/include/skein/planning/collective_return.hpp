@@ -42,8 +42,8 @@ struct ReturnParams {
       1500.0;  ///< of home an orbit may pass, where homes are too near each other
   Duration delay_max = std::chrono::minutes{15};  ///< of an arrival, for others
   AvoidanceParams avoidance{};
-  std::size_t orders = 60;    ///< of priority that are tried
-  std::size_t tries = 30'000;  ///< ways of one vehicle that are looked at, in one order
+  std::size_t orders = 12;    ///< of priority that are tried
+  std::size_t tries = 5'000;  ///< ways of one vehicle that are looked at, in one order
 };
 
 struct ReturnFlight {
@@ -82,20 +82,21 @@ struct CollectiveReturn {
 /// both have started, for good, orbits included; no way turns tighter than its vehicle, enters a
 /// hazard, or takes more than the range that is left. Arrivals at one runway keep their spacing.
 ///
-/// First every vehicle is given its orbit: at home, or where two homes leave no room for two orbits
-/// at one height, on a lattice around. Then prioritised planning (Erdmann & Lozano-Perez 1987, doi
+/// First every vehicle is given its orbit: at home, or where homes leave no room for two orbits at
+/// one height, on a lattice around. Then prioritised planning (Erdmann & Lozano-Perez 1987, doi
 /// 10.1007/BF01840371): one after another, each takes the earliest way clear of those before it.
-/// Its ways are the shortest around hazards, the shortest around all orbits of others besides (as
-/// the revised algorithm of Cap et al. 2015, doi 10.1109/TASE.2015.2445780, keeps away from where
-/// others are in the end), and some detours; each also later, by flying it slower, or after laps
-/// where it starts, as wide as the delay asks for. Two ways are compared by conservative
-/// advancement: steps that cannot leap over a conflict, so there is no sampling to be too coarse. A
-/// vehicle in its orbit is anywhere on it, so that being late or early there does not matter.
+/// Its ways are the shortest around hazards, the shortest around the orbits of all others besides,
+/// and some detours; each also later, by flying it slower, or by laps on the way, as wide as the
+/// delay asks for. As in the revised algorithm (Cap et al. 2015, doi 10.1109/TASE.2015.2445780) it
+/// leaves alone where those after it can wait in laps, as long as it can.
+/// Two ways are compared by conservative advancement (Mirtich 1996): steps that cannot leap over a
+/// conflict, so there is no sampling to be too coarse. A vehicle in its orbit is anywhere on it, so
+/// that being late or early there does not matter.
 /// Orders of priority: first come first, least range first, furthest first; then who has failed
 /// goes to the front (Bennewitz et al. 2002, doi 10.1016/S0921-8890(02)00256-7). The best by fewest
-/// failures, last arrival, length is taken. All of that is deterministic; prioritised planning is
+/// failures, last arrival, length is taken. All of that is deterministic. Prioritised planning is
 /// not complete: who fails might have a way that none of these orders finds.
-/// 50 vehicles at one height with homes in a row: ./dev bench collective_return.
+/// What it takes: ./dev bench collective_return.
 [[nodiscard]] CollectiveReturn plan_return(const ReturnParams& params,
                                            std::span<const ReturningVehicle> vehicles,
                                            std::span<const Hazard> hazards);
