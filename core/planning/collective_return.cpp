@@ -50,6 +50,8 @@ struct Homecoming {
   ReturnHold hold;
   std::vector<Way> ways;      ///< the shortest that was found first
   std::optional<Ring> waits;  ///< where it can fly laps first, beside all others that do
+  /// No place is looked for: it has its way, or none.
+  [[nodiscard]] bool done(const ReturningVehicle& v) const { return failure || v.flies; }
 };
 
 /// One of a vehicle's ways, at one time.
@@ -70,6 +72,12 @@ struct Placed {
 };
 
 bool has_sense(const ReturningVehicle& v) {
+  if (v.flies) {
+    const TimedPath& timed = *v.flies;
+    return timed.tail_curvature_per_m != 0.0 && timed.speed_mps >= kSpeedMin_mps &&
+           timed.paces.empty() && timed.path.length_m() <= kFar_m && std::isfinite(v.height_m) &&
+           v.home.norm() <= kFar_m;
+  }
   const bool finite = std::isfinite(v.start.heading_rad) && std::isfinite(v.height_m) &&
                       std::isfinite(v.arrival_heading_rad.value_or(0.0)) &&
                       std::isfinite(v.range_left_m);
@@ -91,7 +99,9 @@ class Planner {
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
       wanted[i] = has_sense(vehicles[i]) && ids.insert(vehicles[i].id).second;
       if (wanted[i]) {
-        epoch_ = epoch_ ? std::min(*epoch_, vehicles[i].start_time) : vehicles[i].start_time;
+        const auto& flies = vehicles[i].flies;
+        const Instant start = flies ? flies->start_time : vehicles[i].start_time;
+        epoch_ = epoch_ ? std::min(*epoch_, start) : start;
       } else {
         fail(i, ReturnObstacle::bad_request);
       }
@@ -103,15 +113,20 @@ class Planner {
     }
     for (std::size_t i = 0; i < vehicles.size(); ++i) find_place_to_wait(i);
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
-      if (!homecomings_[i].failure) find_ways(i);
+      if (!homecomings_[i].done(vehicles[i])) find_ways(i);
     }
   }
 
   [[nodiscard]] CollectiveReturn in_order(std::span<const std::size_t> order) const {
     std::vector<Placed> placed;
     std::vector<ReturnFailure> failures;
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (homecomings_[i].failure || !vehicles_[i].flies) continue;
+      const TimedPath& flies = *vehicles_[i].flies;
+      placed.push_back({i, {vehicles_[i].id, flies, 0.0}, ReturnTrack{flies, epoch()}});
+    }
     for (const std::size_t i : order) {
-      if (homecomings_[i].failure) continue;
+      if (homecomings_[i].done(vehicles_[i])) continue;
       if (auto failure = place(i, placed)) failures.push_back(*failure);
     }
     return collect(placed, failures);
@@ -155,7 +170,7 @@ class Planner {
   // --- ways ---
 
   void find_place_to_wait(std::size_t i) {
-    if (homecomings_[i].failure) return;
+    if (homecomings_[i].done(vehicles_[i])) return;
     for (const double side : {1.0, -1.0}) {
       const Ring ring = ring_of(vehicles_[i].start, side / vehicles_[i].turn_radius_m);
       bool free = keeps_clear(ring);
@@ -431,7 +446,7 @@ class Planner {
     };
     std::vector<std::size_t> order(vehicles_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::erase_if(order, [&](std::size_t i) { return homecomings_[i].failure.has_value(); });
+    std::erase_if(order, [&](std::size_t i) { return homecomings_[i].done(vehicles_[i]); });
     std::ranges::stable_sort(order, {}, key);
     return order;
   }
@@ -456,7 +471,7 @@ class Planner {
   [[nodiscard]] double shortest_m() const {
     double sum_m = 0.0;
     for (const Homecoming& h : homecomings_) {
-      if (!h.failure) sum_m += h.ways.front().length_m;
+      if (!h.ways.empty() && !h.failure) sum_m += h.ways.front().length_m;
     }
     return sum_m;
   }
@@ -464,7 +479,7 @@ class Planner {
   [[nodiscard]] bool on_time(const CollectiveReturn& found) const {
     double last_s = 0.0;
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
-      if (!homecomings_[i].failure) last_s = std::max(last_s, direct_s(i));
+      if (!homecomings_[i].done(vehicles_[i])) last_s = std::max(last_s, direct_s(i));
     }
     return to_seconds(found.last_arrival - epoch()) <= last_s + 1e-6;
   }
@@ -473,6 +488,7 @@ class Planner {
                                          const std::vector<ReturnFailure>& failures) const {
     CollectiveReturn all;
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (vehicles_[i].flies && !homecomings_[i].failure) continue;
       const auto flight = std::ranges::find(placed, i, &Placed::index);
       if (flight != placed.end()) {
         const Instant end = flight->flight.timed.end_time();
@@ -512,26 +528,24 @@ CollectiveReturn plan_return_in_order(const ReturnParams& params,
   return Planner{params, vehicles, hazards}.in_order(order);
 }
 
-std::string text_of(const ReturnFailure& failure) {
-  const auto name = [](VehicleId id) { return "vehicle " + std::to_string(id.value); };
-  const std::string who = name(failure.vehicle);
+std::string reason_of(const ReturnFailure& failure) {
   switch (failure.why) {
     case ReturnObstacle::bad_request:
-      return who + " tells of itself what cannot be, or twice; look at its telemetry";
+      return "tells of itself what cannot be, or twice; look at its telemetry";
     case ReturnObstacle::no_way:
-      return who + " has no way home clear of hazards; withdraw a hazard or let it hold";
+      return "has no way home clear of hazards; withdraw a hazard or let it hold";
     case ReturnObstacle::no_room_to_hold:
-      return who + " finds no room for an orbit near its home; give it a height of its own";
+      return "finds no room for an orbit near its home; give it a height of its own";
     case ReturnObstacle::out_of_range:
-      return who + " lacks " + std::to_string(std::lround(failure.short_m)) +
+      return "lacks " + std::to_string(std::lround(failure.short_m)) +
              " m of range for the way home and an orbit there; recover it where it is";
     case ReturnObstacle::others:
-      return who + " finds no time at which " + name(failure.other) +
+      return "finds no time at which vehicle " + std::to_string(failure.other.value) +
              " is not in its way; give it a height of its own";
     case ReturnObstacle::count:
       break;
   }
-  return who + " has no way home";
+  return "has no way home";
 }
 
 }  // namespace skein::planning

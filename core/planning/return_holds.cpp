@@ -33,6 +33,13 @@ class Assignment {
              std::span<const Hazard> hazards)
       : params_{params}, vehicles_{vehicles}, hazards_{hazards}, holds_(vehicles.size()) {}
 
+  /// The orbit of a way that is flown already.
+  void keep(std::size_t i) {
+    const TimedPath& flies = *vehicles_[i].flies;
+    const double curvature = flies.tail_curvature_per_m;
+    holds_[i] = ReturnHold{ring_of(flies.path.end(), curvature), curvature, {}, 0.0};
+  }
+
   /// Passing over home.
   bool at_home(std::size_t i) {
     const ReturningVehicle& v = vehicles_[i];
@@ -148,7 +155,10 @@ std::vector<std::optional<ReturnHold>> assign_holds(const ReturnParams& params,
   Assignment assignment{params, vehicles, hazards};
   std::vector<std::size_t> later;
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
-    if (wanted[i] && !assignment.at_home(i)) later.push_back(i);
+    if (wanted[i] && vehicles[i].flies) assignment.keep(i);
+  }
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    if (wanted[i] && !vehicles[i].flies && !assignment.at_home(i)) later.push_back(i);
   }
   for (const std::size_t i : later) (void)assignment.near_home(i);
   return assignment.result();

@@ -17,7 +17,7 @@
 
 namespace skein::planning {
 
-/// A vehicle on its way home: mission frame, SI units.
+/// A vehicle on its way home, or there: mission frame, SI units.
 struct ReturningVehicle {
   VehicleId id;
   Pose2 start;
@@ -29,6 +29,9 @@ struct ReturningVehicle {
   double range_left_m = 0.0;   ///< from the start: its way home and one lap there
   Vec2 home{0.0, 0.0};         ///< its orbit passes here, or as near as others leave room for
   std::optional<double> arrival_heading_rad = {};  ///< over home; none: any
+  /// It keeps to that, and the others keep clear of it. Of one speed, to an orbit. Nothing is
+  /// planned for it, and of the rest its id, height and home alone are read.
+  std::optional<TimedPath> flies = {};
 };
 
 struct ReturnParams {
@@ -53,7 +56,7 @@ struct ReturnFlight {
 };
 
 enum class ReturnObstacle : std::uint8_t {
-  bad_request,      ///< numbers without sense, or an id that is there twice
+  bad_request,      ///< numbers without sense, an id that is there twice, or no such way
   no_way,           ///< clear of hazards
   no_room_to_hold,  ///< near home, clear of hazards and of others that hold there
   out_of_range,     ///< by `short_m`, on the shortest way
@@ -68,11 +71,11 @@ struct ReturnFailure {
   VehicleId other{};     ///< of `others`: who was in the way most often
   double short_m = 0.0;  ///< of `out_of_range`
 };
-/// As a sentence: who, why, and what to do.
-[[nodiscard]] std::string text_of(const ReturnFailure& failure);
+/// Why, and what to do: the sentence after the vehicle's name.
+[[nodiscard]] std::string reason_of(const ReturnFailure& failure);
 
 struct CollectiveReturn {
-  std::vector<ReturnFlight> flights;    ///< in order of the request
+  std::vector<ReturnFlight> flights;    ///< in order of the request, without who flies already
   std::vector<ReturnFailure> failures;  ///< in order of the request
   Instant last_arrival{};               ///< at an orbit; of no flights: the epoch
   double length_m = 0.0;                ///< of all ways
