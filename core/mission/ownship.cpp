@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "return_way.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
 #include "skein/planning/path_follower.hpp"
@@ -76,6 +77,11 @@ void Ownship::come_home(Instant now) {
   } else if (!flight_.homing()) {
     fly_home(now);
   }
+}
+
+bool Ownship::return_along(const TimedPath& way, Instant now) {
+  return is_way_home(way, spec(), flight_, hazards(), range_to_spend(now), now) &&
+         flight_.return_along(way, now);
 }
 
 bool Ownship::keeps_clear(Instant now) {

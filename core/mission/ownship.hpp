@@ -45,6 +45,8 @@ class Ownship {
   }
   void hold(Instant now) { flight_.hold(hazards(), now); }
   void fly_home(Instant now) { flight_.fly_home(hazards(), now); }
+  /// Leaves its own way home for that one, where it is one that it can fly. Else false.
+  bool return_along(const TimedPath& way, Instant now);
   /// Home where it is recovered there, an orbit where it is recovered anywhere.
   void come_home(Instant now);
   /// Does the plan keep clear of the hazards, if need be after a search or a way home was planned

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "flight.hpp"
+#include "return_way.hpp"
 #include "skein/base/angles.hpp"
 
 namespace skein::mission {
@@ -58,7 +59,17 @@ void TrackAgent::on_message(const Message& message, VehicleId /*sender*/, Instan
     on_command(*command, now);
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
     on_hazard(*hazard, now);
+  } else if (const auto* way = std::get_if<ReturnFlight>(&message)) {
+    if (way->vehicle == config_.vehicle.id) on_return_flight(*way, now);
   }
+}
+
+void TrackAgent::on_return_flight(const ReturnFlight& message, Instant now) {
+  if (message.plan <= return_plan_ || !ordered_) return;
+  const double lap_m = kTwoPi * config_.vehicle.planning_radius_m();
+  const bool takes = is_way_home(message.timed, config_.vehicle, *flight_, hazards_.all(),
+                                 range_left_m() - lap_m, now);
+  if (takes && flight_->return_along(message.timed, now)) return_plan_ = message.plan;
 }
 
 void TrackAgent::on_flight(const TrackFlight& flight, Instant now) {

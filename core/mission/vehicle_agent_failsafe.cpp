@@ -19,6 +19,13 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   if (response != nullptr) respond(*response, now);
 }
 
+/// With the others, and only while the operator's order to come home is what it obeys.
+void VehicleAgent::Impl::on_return_flight(const ReturnFlight& message, Instant now) {
+  const bool ours = message.vehicle == ownship_.spec().id && message.plan > return_plan_;
+  if (!ours || !failsafe_.facts().ordered) return;
+  if (ownship_.return_along(message.timed, now)) return_plan_ = message.plan;
+}
+
 void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
   const auto* response = failsafe_.update(now, {.bar = bar});
   if (response != nullptr && ownship_.flight().started()) respond(*response, now);

@@ -457,6 +457,15 @@ struct News {
   std::string operator()(const event::RoutesCalledOff& e) const {
     return fmt::format("the routes of plan {} are called off: {}", e.plan, cause_of(e));
   }
+  std::string operator()(const event::ReturnPlanned& e) const {
+    return fmt::format(
+        "return {}: {} vehicles come home on ways clear of each other, the last in "
+        "{:.0f} s",
+        e.plan, e.vehicles, to_seconds(e.takes));
+  }
+  std::string operator()(const event::ReturnAlone& e) const {
+    return because(text_of(e.vehicle) + " comes home on its own way", e.detail);
+  }
 };
 
 /// Does the event concern one task, rather than a site or nothing?

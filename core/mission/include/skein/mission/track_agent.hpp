@@ -55,6 +55,7 @@ class TrackAgent final : public OnboardAgent {
   void on_flight(const TrackFlight& flight, Instant now);
   [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const TrackFlight& flight,
                                                             Instant now) const;
+  void on_return_flight(const ReturnFlight& message, Instant now);
   void on_command(const Command& command, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void step(Instant now);
@@ -75,6 +76,7 @@ class TrackAgent final : public OnboardAgent {
   std::optional<TrackFlight> next_flight_;  ///< taken up, and not begun yet
   std::optional<TrackFlight> flown_;        ///< none where it has left its formation
   std::uint32_t number_ = 0;                ///< of the newest that was taken up
+  std::uint32_t return_plan_ = 0;           ///< of the way home that it flies
   std::uint32_t refused_ = 0;
   CommandFilter commands_;
   bool ordered_ = false;  ///< to hold or to come home
