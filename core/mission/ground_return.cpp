@@ -13,12 +13,12 @@ namespace {
 
 constexpr Duration kPeriod = std::chrono::milliseconds{100};
 constexpr Duration kTellAgain = std::chrono::seconds{1};
-/// The order is repeated for so long, and so may be what a vehicle flies.
+/// The order is repeated for so long, and each time what a vehicle flies.
 constexpr Duration kGatherFor = std::chrono::seconds{6};
 /// From the plan to its begin: enough to be heard once of six times.
 constexpr Duration kLead = std::chrono::seconds{6};
-/// After the begin, to hear who flies it.
-constexpr Duration kToldBack = std::chrono::seconds{6};
+/// After the begin, to hear who flies it: that is told each time that a vehicle is told its way.
+constexpr Duration kToldBack = std::chrono::seconds{3};
 constexpr int kRounds = 4;
 constexpr std::size_t kPlansMax = 1024;
 /// Two ways are one that come to the same places at the same times, to this.
@@ -90,18 +90,22 @@ void GroundReturn::gather(Instant now) {
   ++rounds_;
 }
 
+/// What it flies is known: no newer plan of it is heard of than the one that it has told.
+bool GroundReturn::is_known(VehicleId vehicle, const Telemetry& telemetry) const {
+  const auto flies = flies_.find(vehicle);
+  return flies != flies_.end() && flies->second.number >= telemetry.plan_number;
+}
+
 /// Its own way home is a plan after those that it flew when it was ordered; on the way it works for
 /// nobody.
 bool GroundReturn::has_told(VehicleId vehicle, Homing& homing, const Fleet& fleet) const {
-  if (homing.home) return true;
-  const auto flies = flies_.find(vehicle);
   const auto known = fleet.vehicles().find(vehicle);
-  if (flies == flies_.end() || known == fleet.vehicles().end()) return false;
-  const auto& telemetry = known->second.telemetry;
-  const FlightPlan& plan = flies->second;
-  if (!telemetry || telemetry->activity != Activity::holding) return false;
-  if (plan.number <= homing.number_before || plan.number < telemetry->plan_number) return false;
-  if (plan.timed.tail_curvature_per_m == 0.0) return false;
+  if (known == fleet.vehicles().end() || !known->second.telemetry) return false;
+  const Telemetry& telemetry = *known->second.telemetry;
+  if (telemetry.activity != Activity::holding || !is_known(vehicle, telemetry)) return false;
+  if (homing.home) return true;
+  const FlightPlan& plan = flies_.at(vehicle);
+  if (plan.number <= homing.number_before || plan.timed.tail_curvature_per_m == 0.0) return false;
   homing.home = plan.timed.path.end().position();
   return true;
 }
@@ -125,8 +129,9 @@ planning::ReturningVehicle GroundReturn::vehicle_of(VehicleId vehicle, const Hom
   v.id = vehicle;
   v.height_m = telemetry.state.z_m;
   v.home = *homing.home;
-  if (follows(vehicle, homing)) {
-    v.flies = timed;
+  // Who flies something newer than it has told has taken up what it was given, most likely.
+  if (follows(vehicle, homing) || !is_known(vehicle, telemetry)) {
+    v.flies = homing.given;
     return v;
   }
   v.start = timed.pose_at(start);
@@ -148,7 +153,9 @@ void GroundReturn::plan(const Fleet& fleet, const std::vector<Hazard>& hazards, 
     const bool heard =
         known != fleet.vehicles().end() && known->second.telemetry && !known->second.silent;
     if (!heard || !homing.home || homing.alone) continue;
-    vehicles.push_back(vehicle_of(vehicle, homing, *known->second.telemetry, start));
+    const Telemetry& telemetry = *known->second.telemetry;
+    if (!homing.given && !is_known(vehicle, telemetry)) continue;
+    vehicles.push_back(vehicle_of(vehicle, homing, telemetry, start));
   }
   const auto planned = planning::plan_return(config_.params, vehicles, hazards);
   for (const auto& flight : planned.flights) {
@@ -179,7 +186,7 @@ void GroundReturn::plan(const Fleet& fleet, const std::vector<Hazard>& hazards, 
 void GroundReturn::tell(Instant now) {
   std::size_t told = 0;
   for (auto& [vehicle, homing] : homing_) {
-    const bool due = homing.given && now >= homing.tell_at && now < homing.given->start_time;
+    const bool due = homing.given && now >= homing.tell_at;
     if (!due || follows(vehicle, homing)) continue;
     if (told++ == kToldAtOnce) return;
     messages_.push(Message{ReturnFlight{vehicle, plan_, *homing.given}});

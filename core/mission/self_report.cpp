@@ -14,8 +14,13 @@ void SelfReport::on_plan(const FlightPlan& plan) {
   next_plan_ = Instant::min();
 }
 
+void SelfReport::plan_wanted() {
+  if (plan_) next_plan_ = std::min(next_plan_, plan_told_ + kPlanWanted);
+}
+
 std::optional<PlanReport> SelfReport::plan_due(Instant now) {
   if (!plan_ || now < next_plan_) return std::nullopt;
+  plan_told_ = now;
   next_plan_ = now + kPlanPeriod;
   return PlanReport{base_.vehicle, *plan_};
 }

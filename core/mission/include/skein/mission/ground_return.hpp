@@ -59,6 +59,7 @@ class GroundReturn {
   };
   enum class Step : std::uint8_t { idle, gathering, telling };
 
+  [[nodiscard]] bool is_known(VehicleId vehicle, const Telemetry& telemetry) const;
   [[nodiscard]] bool has_told(VehicleId vehicle, Homing& homing, const Fleet& fleet) const;
   [[nodiscard]] bool follows(VehicleId vehicle, const Homing& homing) const;
   [[nodiscard]] planning::ReturningVehicle vehicle_of(VehicleId vehicle, const Homing& homing,
