@@ -310,11 +310,11 @@ class Planner {
     std::map<std::size_t, std::size_t> blockers;  // how often who was in the way
     const std::vector<Candidate> all = candidates(i, placed, blockers);
     for (const bool considerate : {true, false}) {
-      auto found = first_free(i, all, considerate, placed, blockers);
+      const auto found = first_free(i, all, considerate, placed, blockers);
       if (!found) continue;
       const double off_m = homecomings_[i].hold.off_home_m;
       const ReturnTrack track{*found, epoch()};
-      placed.push_back({i, {vehicles_[i].id, *std::move(found), off_m}, track});
+      placed.push_back({i, {vehicles_[i].id, *found, off_m}, track});
       return std::nullopt;
     }
     ReturnFailure failure{vehicles_[i].id, ReturnObstacle::others, {}, 0.0};
