@@ -117,7 +117,7 @@ class Planner {
     }
   }
 
-  [[nodiscard]] CollectiveReturn in_order(std::span<const std::size_t> order) const {
+  [[nodiscard]] CollectiveReturn in_order(std::span<const std::size_t> order) {
     std::vector<Placed> placed;
     std::vector<ReturnFailure> failures;
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
@@ -132,12 +132,13 @@ class Planner {
     return collect(placed, failures);
   }
 
-  [[nodiscard]] CollectiveReturn best() const {
+  [[nodiscard]] CollectiveReturn best() {
     CollectiveReturn best;
     CollectiveReturn found;
     std::vector<std::size_t> order;
     std::set<std::vector<std::size_t>> tried;
     for (std::size_t n = 0; n < std::max<std::size_t>(params_.orders, 1); ++n) {
+      if (n > 0 && looked_at_ > params_.tries_all) break;
       order = n < kOrders ? first_order(n) : promoted(found, std::move(order));
       if (!tried.insert(order).second) {
         if (n < kOrders) continue;
@@ -305,8 +306,7 @@ class Planner {
 
   /// Why it cannot; nothing, and placed, where it can. First without leading through where others
   /// may wait for it, so that these find a way later.
-  [[nodiscard]] std::optional<ReturnFailure> place(std::size_t i,
-                                                   std::vector<Placed>& placed) const {
+  [[nodiscard]] std::optional<ReturnFailure> place(std::size_t i, std::vector<Placed>& placed) {
     std::map<std::size_t, std::size_t> blockers;  // how often who was in the way
     const std::vector<Candidate> all = candidates(i, placed, blockers);
     for (const bool considerate : {true, false}) {
@@ -327,9 +327,10 @@ class Planner {
     return failure;
   }
 
-  [[nodiscard]] std::optional<TimedPath> first_free(
-      std::size_t i, std::vector<Candidate> all, bool considerate,
-      const std::vector<Placed>& placed, std::map<std::size_t, std::size_t>& blockers) const {
+  [[nodiscard]] std::optional<TimedPath> first_free(std::size_t i, std::vector<Candidate> all,
+                                                    bool considerate,
+                                                    const std::vector<Placed>& placed,
+                                                    std::map<std::size_t, std::size_t>& blockers) {
     std::vector<bool> waiting(vehicles_.size(), considerate);
     for (const Placed& other : placed) waiting[other.index] = false;
     const auto disturbs = [&](const Candidate& candidate) {
@@ -346,6 +347,7 @@ class Planner {
       const Candidate& candidate = all.back();
       auto timed = timed_path(i, candidate);
       if (!timed) continue;
+      ++looked_at_;
       const auto blocker = first_blocker(i, ReturnTrack{*timed, epoch()}, placed, last);
       if (!blocker) return timed;
       last = *blocker;
@@ -511,6 +513,7 @@ class Planner {
   std::span<const Hazard> hazards_;
   std::optional<Instant> epoch_;  ///< the first start
   std::vector<Homecoming> homecomings_;
+  std::size_t looked_at_ = 0;  ///< ways, in all orders so far
 };
 
 }  // namespace

@@ -31,7 +31,8 @@ std::vector<ReturningVehicle> team(std::size_t count, bool one_height, std::uint
     v.range_left_m = 40'000.0;
     v.home = {0.0, 20.0 * static_cast<double>(all.size())};
     const bool alone = std::ranges::all_of(all, [&](const ReturningVehicle& other) {
-      return (other.start.position() - v.start.position()).norm() > 300.0;
+      const double apart_m = (other.start.position() - v.start.position()).norm();
+      return other.height_m != v.height_m || apart_m > 300.0;
     });
     if (alone) all.push_back(v);
   }
@@ -67,6 +68,7 @@ BENCHMARK_CAPTURE(collective_return, skein / one_height, true)
 BENCHMARK_CAPTURE(collective_return, skein / own_heights, false)
     ->Name("collective_return/skein/own_heights")
     ->Arg(50)
+    ->Arg(200)
     ->Iterations(5)
     ->Unit(benchmark::kMillisecond);
 

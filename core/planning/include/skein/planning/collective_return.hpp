@@ -45,8 +45,9 @@ struct ReturnParams {
       1500.0;  ///< of home an orbit may pass, where homes are too near each other
   Duration delay_max = std::chrono::minutes{15};  ///< of an arrival, for others
   AvoidanceParams avoidance{};
-  std::size_t orders = 12;    ///< of priority that are tried
-  std::size_t tries = 5'000;  ///< ways of one vehicle that are looked at, in one order
+  std::size_t orders = 12;          ///< of priority that are tried
+  std::size_t tries = 5'000;        ///< ways of one vehicle that are looked at, in one order
+  std::size_t tries_all = 300'000;  ///< of all in all orders: then no other order is tried
 };
 
 struct ReturnFlight {
