@@ -30,6 +30,20 @@ TEST(SelfReport, SendsAPlanAtOnceAndAgainFromTimeToTime) {
   EXPECT_EQ(report.plan_due(at_seconds(105.1)).value().plan.number, 2U);
 }
 
+TEST(SelfReport, SendsAPlanThatIsWantedOnceInASecondAtMost) {
+  SelfReport report = made();
+  report.plan_wanted();
+  EXPECT_FALSE(report.plan_due(at_seconds(100.0))) << "there is none";
+  report.on_plan(plan(1));
+  report.plan_wanted();
+  EXPECT_TRUE(report.plan_due(at_seconds(100.0)));
+  report.plan_wanted();
+  EXPECT_FALSE(report.plan_due(at_seconds(100.9)));
+  EXPECT_TRUE(report.plan_due(at_seconds(101.0)));
+  EXPECT_FALSE(report.plan_due(at_seconds(105.9))) << "not wanted again";
+  EXPECT_TRUE(report.plan_due(at_seconds(106.0)));
+}
+
 TEST(SelfReport, SaysWhomItHearsNewestFirstAndForgetsThem) {
   SelfReport report = made();
   report.on_heard({3}, at_seconds(10.0));

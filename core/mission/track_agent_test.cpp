@@ -212,5 +212,39 @@ TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
   EXPECT_TRUE(cockpit.status->at_rest);
 }
 
+TEST(TrackAgent, OnItsWayHomeByOrderItTakesUpTheWayThatIsPlannedWithTheOthers) {
+  Cockpit cockpit;
+  cockpit.fly(60.0);
+  ReturnFlight way;
+  way.vehicle = {3};
+  way.plan = 1;
+  const auto way_from = [&](double in_s) {
+    way.timed.start_time = cockpit.now + from_seconds(in_s);
+    way.timed.speed_mps = 20.0;
+    way.timed.path = Path{cockpit.plan->timed.pose_at(way.timed.start_time), {}};
+    EXPECT_TRUE(way.timed.path.append(Segment{1.0 / 90.0, 400.0}));
+    way.timed.tail_curvature_per_m = 1.0 / 90.0;
+  };
+  way_from(5.0);
+  cockpit.tell(way);
+  const auto number = cockpit.plan->number;
+  cockpit.fly(1.0);
+  EXPECT_EQ(cockpit.plan->number, number) << "it was not ordered home";
+  Command home;
+  home.vehicle = {3};
+  home.number = 61'001;
+  home.kind = CommandKind::return_home;
+  cockpit.tell(home);
+  EXPECT_GT(cockpit.plan->number, number);
+  way_from(5.0);
+  cockpit.tell(way);
+  const Instant later = way.timed.start_time + std::chrono::seconds{10};
+  const Vec2 there = way.timed.pose_at(later).position();
+  EXPECT_LT((cockpit.plan->timed.pose_at(later).position() - there).norm(), 1e-6);
+  const auto taken = cockpit.plan->number;
+  cockpit.tell(way);
+  EXPECT_EQ(cockpit.plan->number, taken) << "once";
+}
+
 }  // namespace
 }  // namespace skein::mission
