@@ -139,8 +139,7 @@ double Ownship::spare_s(Instant now) const {
 }
 
 event::RangeSpent Ownship::range_spent(Instant now) const {
-  const double home_m =
-      comes_home() ? flight_.way_home_m(flight_.pose_at(now), hazards()) : -1.0;
+  const double home_m = comes_home() ? flight_.way_home_m(flight_.pose_at(now), hazards()) : -1.0;
   return {range_left(now), comes_home(), home_m, range_.battery_decides()};
 }
 

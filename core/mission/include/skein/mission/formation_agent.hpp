@@ -18,7 +18,7 @@ namespace skein::mission {
 struct FormationAgentConfig {
   VehicleId vehicle;
   InstanceId instance;
-  double range_m = 0.0;            ///< of the vehicle, from its start
+  double range_m = 0.0;  ///< of the vehicle, from its start
   double battery_reserve_percent = 20.0;
   formation::MotionLimits limits;  ///< of the vehicle; a change that asks for more is refused
   formation::Avoidance avoidance = formation::Avoidance::passage;
