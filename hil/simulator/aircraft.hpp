@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,6 +35,10 @@ class Aircraft {
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
   void start_program(const std::vector<Hazard>& hazards, Instant now);
+  /// At once no more than that is left of its battery.
+  void battery_falls(double percent) {
+    if (battery_) battery_ = {std::min(percent, battery_percent()), state_.distance_flown_m};
+  }
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;
@@ -99,6 +104,8 @@ class Aircraft {
   [[nodiscard]] bool holds_orbit() const {
     return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);
   }
+  [[nodiscard]] double battery_percent() const;
+  void see_state(Instant now);
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
   void sink_at(Instant now);
 
@@ -112,6 +119,11 @@ class Aircraft {
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;
+  struct Battery {
+    double percent = 100.0;
+    double at_m = 0.0;  ///< distance flown
+  };
+  std::optional<Battery> battery_;  ///< of one to whose battery something happens
   struct Untold {
     VehicleState state;
     Instant at;
