@@ -47,7 +47,7 @@ bool RangeBudget::rises(double percent, const VehicleState& state) {
   told_too_much_ = 0.0;
   percent_ = static_cast<double>(state.battery_percent);
   stepped_at_m_ = flown_m_;
-  metres_per_percent_ = range_m_ / 100.0;
+  metres_per_percent_ = configured();
   return true;
 }
 
@@ -56,8 +56,7 @@ void RangeBudget::learn(double percent, const VehicleState& state) {
   if (!step_ || used > kJump_percent) return;
   const double metres = flown_m_ - step_->flown_m;
   if (metres < flies_from_mps_ * to_seconds(state.time - step_->at)) return;
-  const double configured = range_m_ / 100.0;
-  const double measured = std::clamp(metres / used, configured / kWild, configured * kWild);
+  const double measured = std::clamp(metres / used, configured() / kWild, configured() * kWild);
   metres_per_percent_ +=
       (1.0 - std::exp(-used / kForgotten_percent)) * (measured - metres_per_percent_);
 }

@@ -15,6 +15,7 @@ namespace {
 constexpr double kSpeed_mps = 50.0;
 constexpr double kRange_m = 50'000.0;
 constexpr double kReserve_percent = 20.0;
+constexpr double kConfigured_m = kRange_m / (100.0 - kReserve_percent);  // of a percent
 
 VehicleSpec spec() {
   VehicleSpec vehicle;
@@ -93,19 +94,19 @@ TEST(RangeBudget, WithoutABatteryTheConfigurationAloneCounts) {
 
 TEST(RangeBudget, OnTheGroundItIsWhatTheConfigurationMakesOfThePercentage) {
   Flown full{200'000.0};
-  EXPECT_EQ(full.budget.left_m(), kRange_m * 0.8);
+  EXPECT_EQ(full.budget.left_m(), kRange_m);
   Flown half{200'000.0, 50.0};
-  EXPECT_EQ(half.budget.left_m(), kRange_m * 0.3);
+  EXPECT_EQ(half.budget.left_m(), 30.0 * kConfigured_m);
   EXPECT_TRUE(half.budget.battery_decides());
   half.wait(3600.0, 4.0);  // its electronics run
-  EXPECT_EQ(half.budget.metres_per_percent(), kRange_m / 100.0);
-  EXPECT_EQ(half.budget.left_m(), kRange_m * 0.26);
+  EXPECT_EQ(half.budget.metres_per_percent(), kConfigured_m);
+  EXPECT_EQ(half.budget.left_m(), 26.0 * kConfigured_m);
 }
 
 TEST(RangeBudget, LearnsABatteryThatDoesNotLastAsLongAsConfigured) {
   Flown flown{25'000.0};  // half of it
   flown.fly(500.0);
-  EXPECT_GT(flown.budget.left_m(), 0.7 * (kRange_m - 500.0));  // two steps decide on nothing
+  EXPECT_GT(flown.budget.left_m(), 0.85 * (kRange_m - 500.0));  // two steps decide on nothing
   flown.fly(12'000.0);
   EXPECT_NEAR(flown.budget.metres_per_percent(), 250.0, 6.0);
   EXPECT_NEAR(flown.budget.left_m(), flown.true_left_m(), 500.0);

@@ -194,8 +194,9 @@ void Aircraft::sink_at(Instant now) {
 }
 
 double Aircraft::battery_percent() const {
-  const double used = (state_.distance_flown_m - battery_->at_m) / what_.spec.range_m;
-  return std::max(0.0, battery_->percent - 100.0 * used);
+  const double share = (state_.distance_flown_m - battery_->at_m) / what_.spec.range_m;
+  const double used = (100.0 - what_.spec.battery_reserve_percent) * share;
+  return std::max(0.0, battery_->percent - used);
 }
 
 void Aircraft::see_state(Instant now) {

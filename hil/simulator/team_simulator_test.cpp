@@ -171,6 +171,40 @@ TEST(TeamSimulator, WhoseBatteryFallsGivesItsTaskBackAndIsHomeBeforeItsReserve) 
   }
 }
 
+/// Whenever it falls, and to whatever that is still enough for the way home.
+TEST(TeamSimulator, WhoTurnsHomeInTimeIsThereBeforeItsReserve) {
+  int returned = 0;
+  for (std::uint16_t run = 0; run < 24; ++run) {
+    auto team = mission_with_spare_carrier();
+    const VehicleId low{static_cast<std::uint16_t>(1 + run % 6)};
+    team.faults = {{{at_seconds(3.0 + 5.0 * (run / 6) + 0.37 * run)},
+                    std::nullopt,
+                    BatteryFalls{low, 23.5 + 0.5 * (run % 8)}}};
+    std::optional<mission::event::RangeSpent> told;
+    std::optional<int> percent_at_home;
+    TeamObserver observer;
+    observer.event = [&](const MissionEvent& e) {
+      const auto* spent = std::get_if<mission::event::RangeSpent>(&e.body);
+      if (spent == nullptr) return;
+      EXPECT_EQ(e.vehicle, low);
+      told = *spent;
+    };
+    observer.track = [&](VehicleId id, const VehicleState& s, const mission::FlightPlan&) {
+      if (id != low || !told || percent_at_home) return;
+      const auto& home = team.vehicles[low.value - 1U].start;
+      const double away_m = (s.position().horizontal() - home.position()).norm();
+      if (away_m < 30.0) percent_at_home = s.battery_percent;
+    };
+    (void)simulate_team(team, observer);
+    const bool in_time = told && told->range_left_m > told->home_m;
+    if (!in_time) continue;
+    ++returned;
+    ASSERT_TRUE(percent_at_home) << run;
+    EXPECT_GE(*percent_at_home, 20) << run;
+  }
+  EXPECT_GT(returned, 12);
+}
+
 TEST(TeamSimulator, ASuccessorGoesOnWithWhatWasGrantedAndAllThatIsSaidFitsTheWire) {
   auto team = small_mission();
   // From so far away that there is time for a successor.

@@ -30,7 +30,8 @@ struct VehicleSpec {
   double turn_radius_m = 0.0;       ///< r_min, at cruise speed
   double heading_gain_per_s = 1.0;  ///< W: d heading/dt = W (commanded - heading)
   double range_m = 0.0;             ///< L_max
-  /// Kept in the battery, of which only the rest counts as range, where the battery is told.
+  /// Kept in the battery: a full one flies range_m down to it, and below it nothing counts as
+  /// range. Below 100.
   double battery_reserve_percent = 20.0;
   Recovery recovery = Recovery::home;
   Capabilities capabilities;

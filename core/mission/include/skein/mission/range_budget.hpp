@@ -13,18 +13,18 @@ namespace skein::mission {
 /// told, the configuration alone. Pure: the same states give the same numbers.
 ///
 /// The battery leaves what stands above its reserve, times the metres that a percent of it flies.
-/// These begin as the configuration has them, range_m / 100, and are learned from the steps of the
-/// percentage: an exponential mean over 10 % of the battery, so that one step more or less decides
-/// on nothing. What was used without flying (on the ground, in a hover) is gone, but teaches
-/// nothing; nor does a percentage that falls by more than 5 at once, which is a gauge that has
-/// found out, not a flight.
+/// These begin as the configuration has them, which is that a full battery flies range_m down to
+/// its reserve, and are learned from the steps of the percentage: an exponential mean over 10 % of
+/// the battery, so that one step more or less decides on nothing. What was used without flying (on
+/// the ground, in a hover) is gone, but teaches nothing; nor does a percentage that falls by more
+/// than 5 at once, which is a gauge that has found out, not a flight.
 class RangeBudget {
  public:
   explicit RangeBudget(const VehicleSpec& vehicle)
       : range_m_{vehicle.range_m},
         flies_from_mps_{vehicle.cruise_speed_mps / 2.0},
         reserve_percent_{vehicle.battery_reserve_percent},
-        metres_per_percent_{vehicle.range_m / 100.0} {}
+        metres_per_percent_{configured()} {}
 
   /// True where the percentage has changed: then what is left is another than who plans by the
   /// distance flown alone expects. Times of states never decrease.
@@ -42,6 +42,7 @@ class RangeBudget {
     Instant at;
     double flown_m = 0.0;
   };
+  [[nodiscard]] double configured() const { return range_m_ / (100.0 - reserve_percent_); }
   [[nodiscard]] std::optional<double> battery_left_m() const;
   bool rises(double percent, const VehicleState& state);
   void learn(double percent, const VehicleState& state);

@@ -42,7 +42,8 @@ struct ProgramsEnd {
   std::optional<Duration> sinks_after = std::nullopt;  ///< a multirotor comes down where it is
 };
 /// A cell of the vehicle's battery fails: at once no more than that is left of it, as its gauge
-/// tells. A vehicle to which that happens has a battery that, full, lasts for its range.
+/// tells. A vehicle to which that happens has a battery that, full, lasts for its range down to
+/// its reserve.
 struct BatteryFalls {
   VehicleId vehicle;
   double percent = 0.0;
