@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace skein::mission {
 namespace {
@@ -11,6 +10,7 @@ namespace {
 constexpr double kForgotten_percent = 10.0;  ///< the mean's constant
 /// More, up or down at once, is not flown: another battery, another count, a gauge that was wrong.
 constexpr double kJump_percent = 5.0;
+constexpr Duration kBelieved = std::chrono::seconds{3};
 constexpr double kStill_mps = 1.0;
 /// That many times the configuration's metres, either way, are the gauge's fault.
 constexpr double kWild = 5.0;
@@ -26,6 +26,7 @@ bool RangeBudget::on_state(const VehicleState& state) {
     stepped_at_m_ = flown_m_;
     return true;
   }
+  if (jumps(percent, state.time)) return false;
   if (percent > *percent_) return rises(percent, state);
   if (percent == *percent_) return false;
   learn(percent, state);
@@ -35,10 +36,22 @@ bool RangeBudget::on_state(const VehicleState& state) {
   return true;
 }
 
+/// As one broken message would have it.
+bool RangeBudget::jumps(double percent, Instant now) {
+  if (std::abs(percent - *percent_) <= kJump_percent) {
+    jumps_since_.reset();
+    return false;
+  }
+  if (!jumps_since_) jumps_since_ = now;
+  if (now - *jumps_since_ < kBelieved) return true;
+  jumps_since_.reset();
+  return false;
+}
+
 /// A battery does not charge in flight: a little more is noise, much more an autopilot that has
 /// restarted and counts from full; on the ground it is another battery.
 bool RangeBudget::rises(double percent, const VehicleState& state) {
-  if (percent - *percent_ < kJump_percent) return false;
+  if (percent - *percent_ <= kJump_percent) return false;
   step_.reset();
   if (state.groundspeed_mps >= kStill_mps) {
     told_too_much_ += percent - *percent_;

@@ -52,9 +52,13 @@ class Flown {
       tell();
     }
   }
-  void gauge(double percent) {
+  /// For so long, and on the way from there on.
+  void gauge(double percent, double seconds = 4.0) {
     percent_ = percent;
-    tell();
+    for (double t = 0.0; t <= seconds; t += 0.5) {
+      tell();
+      state_.time += from_seconds(0.5);
+    }
   }
   void forget_gauge() { tells_ = false; }
   [[nodiscard]] double true_left_m() const {
@@ -140,6 +144,18 @@ TEST(RangeBudget, AGaugeThatFallsAtOnceIsBelievedButTeachesNothing) {
   EXPECT_EQ(flown.budget.left_m(), 5.0 * before);
 }
 
+TEST(RangeBudget, AGaugeThatIsWrongForAMomentIsNotBelieved) {
+  Flown flown{50'000.0};
+  flown.fly(10'100.0);
+  const double left_m = flown.budget.left_m();
+  for (const double wrong : {0.0, 100.0}) {
+    flown.gauge(wrong, 2.0);
+    EXPECT_EQ(flown.budget.left_m(), left_m);
+    flown.gauge(79.8, 1.0);
+    EXPECT_EQ(flown.budget.left_m(), left_m);
+  }
+}
+
 TEST(RangeBudget, AnAutopilotThatRestartsInFlightAndCountsFromFullChargesNoBattery) {
   Flown flown{50'000.0};
   flown.fly(20'000.0);
@@ -185,8 +201,8 @@ TEST(RangeBudget, SaysWhenThePercentageHasChanged) {
 }
 
 /// Whatever its battery is, how it is flown and how often it is told: never more than the
-/// configuration leaves, never up by more than a percent, and right within a twentieth once a
-/// quarter of the battery has been flown.
+/// configuration leaves, never up by more than a percent, and right within a twentieth once two
+/// fifths of the battery have been flown.
 TEST(RangeBudget, HoldsForAnyBattery) {
   Random random{20'261'125};
   for (int run = 0; run < 200; ++run) {

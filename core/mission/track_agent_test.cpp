@@ -207,7 +207,7 @@ TEST(TrackAgent, ComesHomeWhenItsBatteryFalls) {
   cockpit.fly(20.0);
   EXPECT_TRUE(cockpit.on_straight());
   cockpit.battery(21);  // 250 m above its reserve
-  cockpit.fly(2.0);
+  cockpit.fly(5.0);
   EXPECT_LE(cockpit.range_left_m(), 250.0);
   ASSERT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
   const auto& spent = std::get<event::RangeSpent>(cockpit.events.back().body);

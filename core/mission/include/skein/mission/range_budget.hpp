@@ -17,7 +17,8 @@ namespace skein::mission {
 /// its reserve, and are learned from the steps of the percentage: an exponential mean over 10 % of
 /// the battery, so that one step more or less decides on nothing. What was used without flying (on
 /// the ground, in a hover) is gone, but teaches nothing; nor does a percentage that falls by more
-/// than 5 at once, which is a gauge that has found out, not a flight.
+/// than 5 at once, which is a gauge that has found out, not a flight. It counts once it has stood
+/// for 3 s.
 class RangeBudget {
  public:
   explicit RangeBudget(const VehicleSpec& vehicle)
@@ -44,6 +45,7 @@ class RangeBudget {
   };
   [[nodiscard]] double configured() const { return range_m_ / (100.0 - reserve_percent_); }
   [[nodiscard]] std::optional<double> battery_left_m() const;
+  [[nodiscard]] bool jumps(double percent, Instant now);
   bool rises(double percent, const VehicleState& state);
   void learn(double percent, const VehicleState& state);
 
@@ -55,6 +57,7 @@ class RangeBudget {
   std::optional<double> percent_ = std::nullopt;  ///< left; whatever a restarted autopilot tells
   double told_too_much_ = 0.0;                    ///< by one that has restarted in flight
   double stepped_at_m_ = 0.0;                     ///< distance flown when percent_ came up
+  std::optional<Instant> jumps_since_ = std::nullopt;  ///< that percentage is not believed yet
   std::optional<Step> step_ = std::nullopt;  ///< the last one; of the first percentage nobody knows
 };
 
