@@ -55,7 +55,8 @@ class Flown {
   /// For so long, and on the way from there on.
   void gauge(double percent, double seconds = 4.0) {
     percent_ = percent;
-    for (double t = 0.0; t <= seconds; t += 0.5) {
+    const auto times = static_cast<int>(2.0 * seconds);
+    for (int i = 0; i <= times; ++i) {
       tell();
       state_.time += from_seconds(0.5);
     }

@@ -58,7 +58,7 @@ Aircraft::Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Ran
     const auto* falls = std::get_if<BatteryFalls>(&fault.what);
     return falls != nullptr && falls->vehicle == what.spec.id;
   };
-  if (std::ranges::any_of(mission.faults, is_its_battery)) battery_.emplace();
+  if (std::ranges::any_of(mission.faults, is_its_battery)) battery_ = SimulatedBattery{};
 }
 
 void Aircraft::take_off(Instant now) {

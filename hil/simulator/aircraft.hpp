@@ -16,6 +16,12 @@
 
 namespace skein::hil {
 
+/// What is left of a battery where a vehicle had flown so far.
+struct SimulatedBattery {
+  double percent = 100.0;
+  double at_m = 0.0;
+};
+
 /// One aircraft of the simulated team: its body under its flight controller, its clock, and the
 /// node on board while its program runs. Times are true mission time but for what the node is given
 /// and gives.
@@ -37,7 +43,8 @@ class Aircraft {
   void start_program(const std::vector<Hazard>& hazards, Instant now);
   /// At once no more than that is left of its battery.
   void battery_falls(double percent) {
-    if (battery_) battery_ = {std::min(percent, battery_percent()), state_.distance_flown_m};
+    if (!battery_) return;
+    battery_ = SimulatedBattery{std::min(percent, battery_percent()), state_.distance_flown_m};
   }
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
@@ -119,11 +126,7 @@ class Aircraft {
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;
-  struct Battery {
-    double percent = 100.0;
-    double at_m = 0.0;  ///< distance flown
-  };
-  std::optional<Battery> battery_;  ///< of one to whose battery something happens
+  std::optional<SimulatedBattery> battery_;  ///< of one to whose battery something happens
   struct Untold {
     VehicleState state;
     Instant at;

@@ -177,7 +177,8 @@ TEST(TeamSimulator, WhoTurnsHomeInTimeIsThereBeforeItsReserve) {
   for (std::uint16_t run = 0; run < 24; ++run) {
     auto team = mission_with_spare_carrier();
     const VehicleId low{static_cast<std::uint16_t>(1 + run % 6)};
-    team.faults = {{{at_seconds(3.0 + 5.0 * (run / 6) + 0.37 * run)},
+    const int lap = run / 6;
+    team.faults = {{{at_seconds(3.0 + 5.0 * lap + 0.37 * run)},
                     std::nullopt,
                     BatteryFalls{low, 23.5 + 0.5 * (run % 8)}}};
     std::optional<mission::event::RangeSpent> told;
