@@ -26,6 +26,7 @@ VehicleAgentConfig with_margin(VehicleAgentConfig config) {
 
 Ownship::Ownship(const VehicleAgentConfig& config)
     : config_{with_margin(config)},
+      range_{config.vehicle},
       take_off_{config.vehicle},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
@@ -114,7 +115,7 @@ bool Ownship::can(const TaskId& task) const {
 
 double Ownship::range_left(Instant at) const {
   const double until_then = std::max(0.0, to_seconds(at - state_.time)) * spec().cruise_speed_mps;
-  return spec().range_m - state_.distance_flown_m - until_then;
+  return range_.left_m() - until_then;
 }
 
 double Ownship::range_to_spend(Instant at) const {
@@ -143,6 +144,11 @@ double Ownship::spare_s(Instant now) const {
   return spare_m / (2.0 * spec().cruise_speed_mps);
 }
 
+event::RangeSpent Ownship::range_spent(Instant now) const {
+  const double home_m = comes_home() ? flight_.way_home_m(flight_.pose_at(now), hazards()) : -1.0;
+  return {range_left(now), comes_home(), home_m, range_.battery_decides()};
+}
+
 planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
   const VehicleSpec& vehicle = spec();
   return {vehicle.id,
@@ -161,7 +167,7 @@ Telemetry Ownship::telemetry() const {
   t.vehicle = spec().id;
   t.instance = config_.instance;
   t.state = state_;
-  t.range_left_m = spec().range_m - state_.distance_flown_m;
+  t.range_left_m = range_.left_m();
   t.loads = loads_;
   t.plan_number = flight_.plan().number;
   t.capabilities = spec().capabilities;

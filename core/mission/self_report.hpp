@@ -49,6 +49,7 @@ class SelfReport {
     std::uint64_t refused = 0;                 ///< messages that were not their sender's to say
     const SetupDifference* differs = nullptr;  ///< from the ground station
     bool knows_orders = true;
+    bool range_spent = false;  ///< but for the way home
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }

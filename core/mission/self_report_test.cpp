@@ -85,6 +85,11 @@ TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
                                       "2 messages refused: not their sender's to say"}));
   facts.state_at = at_seconds(5.0);
   EXPECT_TRUE(report.health(facts, at_seconds(5.0)).problems.empty());
+  facts.range_spent = true;  // as long as that is so
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(report.health(facts, at_seconds(5.5)).problems,
+              std::vector<std::string>{"its range is used up, but for the way home"});
+  }
 }
 
 }  // namespace

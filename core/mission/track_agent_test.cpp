@@ -68,6 +68,8 @@ class Cockpit {
     return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
   }
   [[nodiscard]] std::uint64_t bad_messages() const { return agent_.counters().bad_messages; }
+  void battery(std::uint8_t percent) { state_.battery_percent = percent; }
+  [[nodiscard]] double range_left_m() const { return agent_.telemetry().range_left_m; }
   void distance_m(double metres) { state_.distance_flown_m = metres; }
 
   Instant now = at_seconds(1.0);
@@ -194,6 +196,23 @@ TEST(TrackAgent, ComesHomeWhenItsRangeIsSpent) {
   cockpit.distance_m(19'900.0);
   cockpit.fly(2.0);
   EXPECT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
+  EXPECT_FALSE(cockpit.on_straight());
+}
+
+TEST(TrackAgent, ComesHomeWhenItsBatteryFalls) {
+  Cockpit cockpit;
+  cockpit.battery(90);
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(20.0);
+  EXPECT_TRUE(cockpit.on_straight());
+  cockpit.battery(21);  // 250 m above its reserve
+  cockpit.fly(5.0);
+  EXPECT_LE(cockpit.range_left_m(), 250.0);
+  ASSERT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
+  const auto& spent = std::get<event::RangeSpent>(cockpit.events.back().body);
+  EXPECT_TRUE(spent.by_battery && spent.comes_home);
+  EXPECT_GT(spent.home_m, 0.0);
   EXPECT_FALSE(cockpit.on_straight());
 }
 

@@ -48,7 +48,7 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
     outbox.report(event::HazardWithdrawn{hazard.id}, {}, {}, now);
     return;
   }
-  failsafe_.on_hazard(now);
+  failsafe_.look_again(now);
   outbox.report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
   if (!ownship_.flight().started() || ownship_.keeps_clear(now)) return;
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
@@ -69,7 +69,7 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
   const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});
   if (response == nullptr) return;
-  outbox.report(event::RangeSpent{ownship_.range_left(now), ownship_.comes_home()}, {}, {}, now);
+  outbox.report(ownship_.range_spent(now), {}, {}, now);
   respond(*response, now);
 }
 

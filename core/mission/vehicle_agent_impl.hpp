@@ -30,6 +30,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
+  [[nodiscard]] bool range_spent() const { return failsafe_.facts().range_spent; }
 
   Outbox outbox;
 

@@ -264,7 +264,8 @@ class VehicleNode::Impl {
     SelfReport::Facts facts{.condition = condition,
                             .refused = refused,
                             .differs = setup.difference(kGroundStation),
-                            .knows_orders = knows_orders};
+                            .knows_orders = knows_orders,
+                            .range_spent = agent->range_spent()};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});

@@ -215,6 +215,10 @@ class Team {
       tell(now, FaultEvent::Kind::joined, late->vehicle);
       return true;
     }
+    if (const auto* falls = std::get_if<BatteryFalls>(&fault.what)) {
+      vehicles_[index_of(falls->vehicle)].battery_falls(falls->percent);
+      return true;
+    }
     if (const auto* seen = std::get_if<PlaceSeen>(&fault.what)) {
       see(*seen, now);
       return true;
