@@ -15,6 +15,7 @@ mission::FormationAgentConfig formation_agent(const configuration::VehicleConfig
   agent.vehicle = config.vehicle.id;
   agent.instance = instance;
   agent.range_m = config.vehicle.range_m;
+  agent.battery_reserve_percent = config.vehicle.battery_reserve_percent;
   agent.limits = config.formation.limits;
   agent.avoidance = config.formation.avoidance;
   agent.passage.tolerance_m = config.formation.tracking_m;

@@ -109,8 +109,8 @@ class Failsafe {
   [[nodiscard]] Instant wants_range_at() const {
     return facts_.range_spent ? Instant::max() : range_again_;
   }
-  /// The way home may have become longer.
-  void on_hazard(Instant now) { range_again_ = now; }
+  /// The way home may have become longer, or the range shorter than by flying on.
+  void look_again(Instant now) { range_again_ = now; }
 
   [[nodiscard]] const Facts& facts() const { return facts_; }
   [[nodiscard]] Action action() const { return rule_ == nullptr ? Action::none : rule_->action; }

@@ -48,7 +48,7 @@ TEST(Failsafe, LooksAtTheRangeAsRarelyAsItCanMatter) {
   EXPECT_EQ(failsafe.update(at_seconds(0.0), {.spare_s = 60.0}), nullptr);
   EXPECT_FALSE(failsafe.wants_range(at_seconds(59.9)));
   EXPECT_TRUE(failsafe.wants_range(at_seconds(60.0)));
-  failsafe.on_hazard(at_seconds(5.0));
+  failsafe.look_again(at_seconds(5.0));
   EXPECT_TRUE(failsafe.wants_range(at_seconds(5.0)));
   EXPECT_EQ(failsafe.update(at_seconds(5.0), {.spare_s = 0.01}), nullptr);
   EXPECT_FALSE(failsafe.wants_range(at_seconds(5.9))) << "but not at every step";

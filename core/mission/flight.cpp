@@ -290,6 +290,15 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
   search_marks_.clear();
 }
 
+bool Flight::return_along(const TimedPath& way, Instant now) {
+  if (!continue_with(way.start_time, way.path, way.tail_curvature_per_m, now, way.speed_mps)) {
+    return false;
+  }
+  homing_ = true;
+  search_marks_.clear();
+  return true;
+}
+
 void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
                       const std::vector<Hazard>& hazards, double range_m, Instant now) {
   if (place) {

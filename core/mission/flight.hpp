@@ -44,6 +44,10 @@ class Flight {
   /// an orbit where that ends.
   void search(const std::vector<Hazard>& hazards, double range_m, Instant now);
   void fly_home(const std::vector<Hazard>& hazards, Instant now);
+  /// Home by that way, which begins where this plan is then. False, and nothing changed, when that
+  /// has too many pieces.
+  bool return_along(const TimedPath& way, Instant now);
+  [[nodiscard]] const Vec2& home() const { return home_; }
   /// An orbit at that place, where it can be reached clear of hazards and `range_m` lasts there and
   /// home again; else, and without a place, here. The search goes on from there later.
   void stand_by(SiteId site, const std::optional<Vec2>& place, const std::vector<Hazard>& hazards,

@@ -14,13 +14,23 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 /// Who waits for longer says so.
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
+/// As far as its range goes.
+VehicleSpec spec_of(const FormationAgentConfig& config) {
+  VehicleSpec vehicle;
+  vehicle.cruise_speed_mps = config.limits.speed_mps;
+  vehicle.range_m = config.range_m;
+  vehicle.battery_reserve_percent = config.battery_reserve_percent;
+  return vehicle;
+}
+
 }  // namespace
 
 FormationAgent::FormationAgent(const FormationAgentConfig& config, Instant now)
-    : config_{config}, next_slot_{now}, next_status_{now} {}
+    : config_{config}, range_{spec_of(config)}, next_slot_{now}, next_status_{now} {}
 
 void FormationAgent::on_state(const VehicleState& state, Instant now) {
   state_ = state;
+  (void)range_.on_state(state);
   on_timeout(now);
 }
 
@@ -186,7 +196,7 @@ Telemetry FormationAgent::telemetry() const {
   telemetry.vehicle = config_.vehicle;
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;
-  telemetry.range_left_m = config_.range_m - telemetry.state.distance_flown_m;
+  telemetry.range_left_m = range_.left_m();
   const bool moving = change_ && !execution_->finished();
   telemetry.activity = moving ? Activity::forming : Activity::holding;
   telemetry.plan_number = change_ ? change_->number : 0;

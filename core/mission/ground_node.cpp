@@ -26,7 +26,8 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       setup_{config.setup, kGroundStation, config.instance, now},
       knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now},
       hazards_{config.hazards},
-      detections_{config.detections} {}
+      detections_{config.detections},
+      returns_{config.returns} {}
 
 void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   if (!may_say(message, sender) || told_by(message) != kGroundStation) return;
@@ -71,6 +72,7 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   }
   formation_.on_message(message, now);
   tracks_.on_message(message, now);
+  returns_.on_message(message);
   return true;
 }
 
@@ -108,6 +110,7 @@ void GroundNode::on_timeout(Instant now) {
   detections_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
+  returns_.on_timeout(fleet(), hazards_.known(), now);
 }
 
 /// Of all: nobody does anything else.
@@ -125,7 +128,19 @@ Result<void> GroundNode::command(VehicleId vehicle, CommandKind kind, Instant no
                  std::string{" flies in a formation of copters, which know no way home of their "
                              "own; order the formation to rally, or to land"}};
   }
-  return agent_.command(vehicle, kind, now);
+  auto given = agent_.command(vehicle, kind, now);
+  if (given) returns_.on_order(concerned(vehicle), kind, fleet(), now);
+  return given;
+}
+
+/// Whom an order moves that ways home are planned for: who flies in a formation has none.
+std::vector<VehicleId> GroundNode::concerned(VehicleId vehicle) const {
+  if (vehicle != kGroundStation) return {vehicle};
+  std::vector<VehicleId> all;
+  for (const auto& [id, entry] : fleet().vehicles()) {
+    if (!formation_.members().contains(id)) all.push_back(id);
+  }
+  return all;
 }
 
 Result<std::vector<TaskId>> GroundNode::withdraw_site(SiteId site, const std::string& by,
@@ -175,6 +190,7 @@ void GroundNode::take_events() {
   take(sites_);
   take(routes_);
   take(detections_);
+  take(returns_);
 }
 
 std::optional<Message> GroundNode::poll_message() {
@@ -197,6 +213,7 @@ std::optional<Message> GroundNode::poll_message() {
   }
   if (auto message = formation_.poll_message()) return message;
   if (auto message = tracks_.poll_message()) return message;
+  if (auto message = returns_.poll_message()) return message;
   return messages_.pop();
 }
 
@@ -209,7 +226,7 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 Instant GroundNode::next_timeout() const {
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
                    routes_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
-                   setup_.next_timeout()});
+                   setup_.next_timeout(), returns_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "return_way.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
 #include "skein/planning/path_follower.hpp"
@@ -25,6 +26,7 @@ VehicleAgentConfig with_margin(VehicleAgentConfig config) {
 
 Ownship::Ownship(const VehicleAgentConfig& config)
     : config_{with_margin(config)},
+      range_{config.vehicle},
       take_off_{config.vehicle},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
@@ -78,6 +80,11 @@ void Ownship::come_home(Instant now) {
   }
 }
 
+bool Ownship::return_along(const TimedPath& way, Instant now) {
+  return is_way_home(way, spec(), flight_, hazards(), range_to_spend(now), now) &&
+         flight_.return_along(way, now);
+}
+
 bool Ownship::keeps_clear(Instant now) {
   if (flight_.keeps_clear(hazards(), now)) return true;
   if (flight_.homing()) {
@@ -108,7 +115,7 @@ bool Ownship::can(const TaskId& task) const {
 
 double Ownship::range_left(Instant at) const {
   const double until_then = std::max(0.0, to_seconds(at - state_.time)) * spec().cruise_speed_mps;
-  return spec().range_m - state_.distance_flown_m - until_then;
+  return range_.left_m() - until_then;
 }
 
 double Ownship::range_to_spend(Instant at) const {
@@ -137,6 +144,11 @@ double Ownship::spare_s(Instant now) const {
   return spare_m / (2.0 * spec().cruise_speed_mps);
 }
 
+event::RangeSpent Ownship::range_spent(Instant now) const {
+  const double home_m = comes_home() ? flight_.way_home_m(flight_.pose_at(now), hazards()) : -1.0;
+  return {range_left(now), comes_home(), home_m, range_.battery_decides()};
+}
+
 planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
   const VehicleSpec& vehicle = spec();
   return {vehicle.id,
@@ -155,7 +167,7 @@ Telemetry Ownship::telemetry() const {
   t.vehicle = spec().id;
   t.instance = config_.instance;
   t.state = state_;
-  t.range_left_m = spec().range_m - state_.distance_flown_m;
+  t.range_left_m = range_.left_m();
   t.loads = loads_;
   t.plan_number = flight_.plan().number;
   t.capabilities = spec().capabilities;

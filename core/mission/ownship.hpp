@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "flight.hpp"
+#include "skein/mission/events.hpp"
+#include "skein/mission/range_budget.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "take_off.hpp"
 
@@ -19,6 +21,9 @@ class Ownship {
   /// The first state at its height starts the route, where the vehicle is there, else the search.
   /// False where its configuration has a route and it is elsewhere.
   bool on_state(const VehicleState& state, Instant now);
+  /// Of every state, before on_state(): true where what is left of the range is another than by
+  /// flying on.
+  bool measures_range(const VehicleState& state) { return range_.on_state(state); }
   /// False where it is no news.
   bool on_hazard(const HazardReport& report);
   void use_load();
@@ -45,6 +50,8 @@ class Ownship {
   }
   void hold(Instant now) { flight_.hold(hazards(), now); }
   void fly_home(Instant now) { flight_.fly_home(hazards(), now); }
+  /// Leaves its own way home for that one, where it is one that it can fly. Else false.
+  bool return_along(const TimedPath& way, Instant now);
   /// Home where it is recovered there, an orbit where it is recovered anywhere.
   void come_home(Instant now);
   /// Does the plan keep clear of the hazards, if need be after a search or a way home was planned
@@ -67,6 +74,8 @@ class Ownship {
   [[nodiscard]] double range_for_route(const TimedPath& route, Instant at) const;
   /// For how long it can surely fly on before it must turn for home; 0 or less: it must now.
   [[nodiscard]] double spare_s(Instant now) const;
+  /// What is told when it must.
+  [[nodiscard]] event::RangeSpent range_spent(Instant now) const;
 
   /// For the planner: the vehicle as it will be at that pose and time.
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
@@ -78,6 +87,7 @@ class Ownship {
 
   VehicleAgentConfig config_;
   VehicleState state_;
+  RangeBudget range_;
   TakeOff take_off_;
   Flight flight_;
   KnownHazards hazards_;

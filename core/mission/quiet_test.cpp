@@ -73,6 +73,10 @@ class Vehicle {
     state.heading_rad = state.course_rad = pose.heading_rad;
     state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
     state.distance_flown_m = flown_s * kTestSpeed_mps;
+    // One has a battery, which lasts for half of what its configuration says.
+    if (node_.vehicle() == VehicleId{3}) {
+      state.battery_percent = static_cast<std::uint8_t>(45.0 - state.distance_flown_m / 250.0);
+    }
     return state;
   }
   void tell() {

@@ -14,8 +14,13 @@ void SelfReport::on_plan(const FlightPlan& plan) {
   next_plan_ = Instant::min();
 }
 
+void SelfReport::plan_wanted() {
+  if (plan_) next_plan_ = std::min(next_plan_, plan_told_ + kPlanWanted);
+}
+
 std::optional<PlanReport> SelfReport::plan_due(Instant now) {
   if (!plan_ || now < next_plan_) return std::nullopt;
+  plan_told_ = now;
   next_plan_ = now + kPlanPeriod;
   return PlanReport{base_.vehicle, *plan_};
 }
@@ -63,6 +68,7 @@ std::vector<std::string> SelfReport::problems(const Facts& facts, Instant now) c
   if (facts.differs != nullptr) {
     all.push_back("the ground station has " + text_of(*facts.differs) + ": it holds");
   }
+  if (facts.range_spent) all.emplace_back("its range is used up, but for the way home");
   if (!facts.knows_orders) all.emplace_back("it does not know which orders stand: it holds");
   const auto more = [&all](std::uint64_t count, std::uint64_t told, const char* what) {
     if (count > told) all.push_back(std::to_string(count - told) + what);

@@ -21,6 +21,7 @@ namespace skein::mission {
 class SelfReport {
  public:
   static constexpr Duration kPlanPeriod = std::chrono::seconds{5};
+  static constexpr Duration kPlanWanted = std::chrono::seconds{1};
   static constexpr Duration kHealthPeriod = std::chrono::seconds{1};
   static constexpr Duration kHeardFor = std::chrono::seconds{60};  ///< then it is left out
 
@@ -38,6 +39,8 @@ class SelfReport {
     }
   }
   void on_plan(const FlightPlan& plan);
+  /// Somebody plans for it: the plan is told again, but not more than once in a second.
+  void plan_wanted();
 
   /// What can be wrong, counted since the start.
   struct Facts {
@@ -46,6 +49,7 @@ class SelfReport {
     std::uint64_t refused = 0;                 ///< messages that were not their sender's to say
     const SetupDifference* differs = nullptr;  ///< from the ground station
     bool knows_orders = true;
+    bool range_spent = false;  ///< but for the way home
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }
@@ -63,6 +67,7 @@ class SelfReport {
   std::vector<Instant> heard_at_;   ///< when, of each
   std::optional<FlightPlan> plan_;
   Instant next_plan_ = Instant::max();
+  Instant plan_told_{};
   Instant next_health_;
   Facts told_;
 };

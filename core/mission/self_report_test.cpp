@@ -30,6 +30,20 @@ TEST(SelfReport, SendsAPlanAtOnceAndAgainFromTimeToTime) {
   EXPECT_EQ(report.plan_due(at_seconds(105.1)).value().plan.number, 2U);
 }
 
+TEST(SelfReport, SendsAPlanThatIsWantedOnceInASecondAtMost) {
+  SelfReport report = made();
+  report.plan_wanted();
+  EXPECT_FALSE(report.plan_due(at_seconds(100.0))) << "there is none";
+  report.on_plan(plan(1));
+  report.plan_wanted();
+  EXPECT_TRUE(report.plan_due(at_seconds(100.0)));
+  report.plan_wanted();
+  EXPECT_FALSE(report.plan_due(at_seconds(100.9)));
+  EXPECT_TRUE(report.plan_due(at_seconds(101.0)));
+  EXPECT_FALSE(report.plan_due(at_seconds(105.9))) << "not wanted again";
+  EXPECT_TRUE(report.plan_due(at_seconds(106.0)));
+}
+
 TEST(SelfReport, SaysWhomItHearsNewestFirstAndForgetsThem) {
   SelfReport report = made();
   report.on_heard({3}, at_seconds(10.0));
@@ -71,6 +85,11 @@ TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
                                       "2 messages refused: not their sender's to say"}));
   facts.state_at = at_seconds(5.0);
   EXPECT_TRUE(report.health(facts, at_seconds(5.0)).problems.empty());
+  facts.range_spent = true;  // as long as that is so
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(report.health(facts, at_seconds(5.5)).problems,
+              std::vector<std::string>{"its range is used up, but for the way home"});
+  }
 }
 
 }  // namespace

@@ -71,6 +71,24 @@ TEST(TaskFlyer, BidsUnlessItIsOtherwiseEngaged) {
   EXPECT_FALSE(f.flyer.flying());
 }
 
+TEST(TaskFlyer, BidsOnlyForWhatItsBatteryBringsItHomeFrom) {
+  for (const bool enough : {false, true}) {
+    Flying f;
+    VehicleState state = f.ownship.state();
+    state.battery_percent = enough ? 40 : 22;  // 625 m a percent above the reserve of 20
+    EXPECT_TRUE(f.ownship.measures_range(state));
+    f.call();
+    EXPECT_EQ(f.reported(EventKind::bid_sent), enough ? 1 : 0);
+    EXPECT_EQ(f.reported(EventKind::bid_declined), enough ? 0 : 1);
+    const auto said = f.flyer.poll_message();
+    ASSERT_EQ(said.has_value(), enough);
+    if (!said) continue;
+    const auto& bid = std::get<coalition::Bid>(*said);
+    EXPECT_LT(bid.range_left_m, 20 * 625.0);  // with the way home
+    EXPECT_GT(bid.range_left_m, 15 * 625.0);
+  }
+}
+
 TEST(TaskFlyer, OfAWithdrawnSiteOnlyABegunDeliveryIsFlownToItsEnd) {
   for (const bool told : {true, false}) {  // by the operator, or by the leader's cancel alone
     for (const bool begun : {false, true}) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "flight.hpp"
+#include "return_way.hpp"
 #include "skein/base/angles.hpp"
 
 namespace skein::mission {
@@ -37,6 +38,7 @@ bool flyable(const TimedPath& timed, const VehicleSpec& vehicle) {
 
 TrackAgent::TrackAgent(const TrackAgentConfig& config, Instant now)
     : config_{config},
+      range_{config.vehicle},
       flight_{std::make_unique<Flight>(config.vehicle, config.avoidance, std::vector<Vec2>{})},
       hazards_{config.hazards},
       now_{now},
@@ -47,6 +49,7 @@ TrackAgent::~TrackAgent() = default;
 
 void TrackAgent::on_state(const VehicleState& state, Instant now) {
   state_ = state;
+  if (range_.on_state(state)) next_range_ = std::min(next_range_, now);
   if (!flight_->started()) flight_->start(state.pose(), hazards_.all(), range_left_m(), now);
   on_timeout(now);
 }
@@ -58,7 +61,17 @@ void TrackAgent::on_message(const Message& message, VehicleId /*sender*/, Instan
     on_command(*command, now);
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
     on_hazard(*hazard, now);
+  } else if (const auto* way = std::get_if<ReturnFlight>(&message)) {
+    if (way->vehicle == config_.vehicle.id) on_return_flight(*way, now);
   }
+}
+
+void TrackAgent::on_return_flight(const ReturnFlight& message, Instant now) {
+  if (message.plan <= return_plan_ || !ordered_) return;
+  const double lap_m = kTwoPi * config_.vehicle.planning_radius_m();
+  const bool takes = is_way_home(message.timed, config_.vehicle, *flight_, hazards_.all(),
+                                 range_left_m() - lap_m, now);
+  if (takes && flight_->return_along(message.timed, now)) return_plan_ = message.plan;
 }
 
 void TrackAgent::on_flight(const TrackFlight& flight, Instant now) {
@@ -165,18 +178,17 @@ void TrackAgent::step(Instant now) {
 void TrackAgent::watch_range(Instant now) {
   if (range_spent_ || now < next_range_) return;
   next_range_ = next_multiple(now, kRangePeriod);
-  const double left_m = range_left_m() - flight_->way_home_m(flight_->pose_at(now), hazards_.all());
+  const double home_m = flight_->way_home_m(flight_->pose_at(now), hazards_.all());
+  const double left_m = range_left_m() - home_m;
   if (left_m > config_.vehicle.cruise_speed_mps * 2.0 * to_seconds(kRangePeriod)) return;
   range_spent_ = true;
   leave();
   const bool comes_home = config_.vehicle.recovery == Recovery::home;
   if (!comes_home && !ordered_) flight_->hold(hazards_.all(), now);
   if (comes_home && !flight_->homing()) flight_->fly_home(hazards_.all(), now);
-  report(event::RangeSpent{range_left_m(), comes_home}, now);
-}
-
-double TrackAgent::range_left_m() const {
-  return config_.vehicle.range_m - (state_ ? state_->distance_flown_m : 0.0);
+  report(event::RangeSpent{range_left_m(), comes_home, comes_home ? home_m : -1.0,
+                           range_.battery_decides()},
+         now);
 }
 
 double TrackAgent::off_m(Instant now) const {

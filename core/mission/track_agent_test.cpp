@@ -68,6 +68,8 @@ class Cockpit {
     return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
   }
   [[nodiscard]] std::uint64_t bad_messages() const { return agent_.counters().bad_messages; }
+  void battery(std::uint8_t percent) { state_.battery_percent = percent; }
+  [[nodiscard]] double range_left_m() const { return agent_.telemetry().range_left_m; }
   void distance_m(double metres) { state_.distance_flown_m = metres; }
 
   Instant now = at_seconds(1.0);
@@ -197,6 +199,23 @@ TEST(TrackAgent, ComesHomeWhenItsRangeIsSpent) {
   EXPECT_FALSE(cockpit.on_straight());
 }
 
+TEST(TrackAgent, ComesHomeWhenItsBatteryFalls) {
+  Cockpit cockpit;
+  cockpit.battery(90);
+  cockpit.fly(2.0);
+  cockpit.tell(cockpit.flight(1, 1.0));
+  cockpit.fly(20.0);
+  EXPECT_TRUE(cockpit.on_straight());
+  cockpit.battery(21);  // 250 m above its reserve
+  cockpit.fly(5.0);
+  EXPECT_LE(cockpit.range_left_m(), 250.0);
+  ASSERT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
+  const auto& spent = std::get<event::RangeSpent>(cockpit.events.back().body);
+  EXPECT_TRUE(spent.by_battery && spent.comes_home);
+  EXPECT_GT(spent.home_m, 0.0);
+  EXPECT_FALSE(cockpit.on_straight());
+}
+
 TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
   TrackAgentConfig config = Cockpit::plane();
   config.vehicle.recovery = Recovery::anywhere;
@@ -210,6 +229,40 @@ TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
   EXPECT_EQ(cockpit.events.back().kind(), EventKind::range_spent);
   EXPECT_FALSE(cockpit.on_straight());
   EXPECT_TRUE(cockpit.status->at_rest);
+}
+
+TEST(TrackAgent, OnItsWayHomeByOrderItTakesUpTheWayThatIsPlannedWithTheOthers) {
+  Cockpit cockpit;
+  cockpit.fly(60.0);
+  ReturnFlight way;
+  way.vehicle = {3};
+  way.plan = 1;
+  const auto way_from = [&](double in_s) {
+    way.timed.start_time = cockpit.now + from_seconds(in_s);
+    way.timed.speed_mps = 20.0;
+    way.timed.path = Path{cockpit.plan->timed.pose_at(way.timed.start_time), {}};
+    EXPECT_TRUE(way.timed.path.append(Segment{1.0 / 90.0, 400.0}));
+    way.timed.tail_curvature_per_m = 1.0 / 90.0;
+  };
+  way_from(5.0);
+  cockpit.tell(way);
+  const auto number = cockpit.plan->number;
+  cockpit.fly(1.0);
+  EXPECT_EQ(cockpit.plan->number, number) << "it was not ordered home";
+  Command home;
+  home.vehicle = {3};
+  home.number = 61'001;
+  home.kind = CommandKind::return_home;
+  cockpit.tell(home);
+  EXPECT_GT(cockpit.plan->number, number);
+  way_from(5.0);
+  cockpit.tell(way);
+  const Instant later = way.timed.start_time + std::chrono::seconds{10};
+  const Vec2 there = way.timed.pose_at(later).position();
+  EXPECT_LT((cockpit.plan->timed.pose_at(later).position() - there).norm(), 1e-6);
+  const auto taken = cockpit.plan->number;
+  cockpit.tell(way);
+  EXPECT_EQ(cockpit.plan->number, taken) << "once";
 }
 
 }  // namespace

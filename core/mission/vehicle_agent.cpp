@@ -12,6 +12,7 @@ namespace skein::mission {
 
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   const bool starts = !ownship_.flight().started();
+  if (ownship_.measures_range(state)) failsafe_.look_again(now);
   if (!ownship_.on_state(state, now)) {
     outbox.report(event::VehicleTrouble{event::Trouble::route_not_flown}, {}, {}, now);
   }
@@ -25,19 +26,20 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
 }
 
 void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
-  std::visit(Overloaded{[&](const coalition::Message& m) { receive(m, now); },
-                        [&](const Authorisation& m) { on_authorisation(m, now); },
-                        [&](const Command& m) { on_command(m, now); },
-                        [&](const SiteReport& m) { on_site(m, now); },
-                        [&](const HazardReport& m) { on_hazard(m, now); },
-                        [&](const Telemetry& m) { on_telemetry(m, now); },
-                        [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
-                        [](const formation::Change&) {}, [](const FormationStatus&) {},
-                        [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
-                        [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
-                        [](const Preflight&) {},
-                        [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
-             message);
+  std::visit(
+      Overloaded{[&](const coalition::Message& m) { receive(m, now); },
+                 [&](const Authorisation& m) { on_authorisation(m, now); },
+                 [&](const Command& m) { on_command(m, now); },
+                 [&](const SiteReport& m) { on_site(m, now); },
+                 [&](const HazardReport& m) { on_hazard(m, now); },
+                 [&](const Telemetry& m) { on_telemetry(m, now); },
+                 [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
+                 [](const formation::Change&) {}, [](const FormationStatus&) {},
+                 [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
+                 [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
+                 [](const Preflight&) {}, [&](const ReturnFlight& m) { on_return_flight(m, now); },
+                 [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
+      message);
   step(now);
 }
 
@@ -205,6 +207,8 @@ Instant VehicleAgent::Impl::quiet_until(Instant now) const {
                            scout_.next_timeout(), idle_until(now)});
   if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
   if (!flyer_.in_run()) next = std::min(next, failsafe_.wants_range_at());
+  // A battery's percentage counts from when it changes.
+  if (ownship_.state().battery_percent != kBatteryNotTold) next = now;
   return next;
 }
 
@@ -262,5 +266,6 @@ Instant VehicleAgent::quiet_until(Instant now) const { return impl_->quiet_until
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }
 Counters VehicleAgent::counters() const { return impl_->counters(); }
+bool VehicleAgent::range_spent() const { return impl_->range_spent(); }
 
 }  // namespace skein::mission

@@ -19,6 +19,13 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   if (response != nullptr) respond(*response, now);
 }
 
+/// With the others, and only while the operator's order to come home is what it obeys.
+void VehicleAgent::Impl::on_return_flight(const ReturnFlight& message, Instant now) {
+  const bool ours = message.vehicle == ownship_.spec().id && message.plan > return_plan_;
+  if (!ours || !failsafe_.facts().ordered) return;
+  if (ownship_.return_along(message.timed, now)) return_plan_ = message.plan;
+}
+
 void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
   const auto* response = failsafe_.update(now, {.bar = bar});
   if (response != nullptr && ownship_.flight().started()) respond(*response, now);
@@ -41,7 +48,7 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
     outbox.report(event::HazardWithdrawn{hazard.id}, {}, {}, now);
     return;
   }
-  failsafe_.on_hazard(now);
+  failsafe_.look_again(now);
   outbox.report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
   if (!ownship_.flight().started() || ownship_.keeps_clear(now)) return;
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
@@ -62,7 +69,7 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
   const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});
   if (response == nullptr) return;
-  outbox.report(event::RangeSpent{ownship_.range_left(now), ownship_.comes_home()}, {}, {}, now);
+  outbox.report(ownship_.range_spent(now), {}, {}, now);
   respond(*response, now);
 }
 

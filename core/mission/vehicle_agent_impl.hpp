@@ -30,6 +30,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
+  [[nodiscard]] bool range_spent() const { return failsafe_.facts().range_spent; }
 
   Outbox outbox;
 
@@ -51,6 +52,7 @@ class VehicleAgent::Impl {
 
   void on_command(const Command& message, Instant now);
   void obey(CommandKind order, Instant now);
+  void on_return_flight(const ReturnFlight& message, Instant now);
   void on_site(const SiteReport& message, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void on_telemetry(const Telemetry& message, Instant now);
@@ -66,6 +68,7 @@ class VehicleAgent::Impl {
   RouteFlyer routes_{ownship_, outbox};
   RelayOrbit relay_{ownship_};
   CommandFilter commands_;
+  std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 

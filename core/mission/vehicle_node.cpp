@@ -48,6 +48,16 @@ bool is_joint_work(const Message& message) {
          std::holds_alternative<Authorisation>(message);
 }
 
+/// The ground station plans ways home from what vehicles tell that they fly, and sees by that who
+/// has taken up his.
+bool is_about_return(const Message& message, VehicleId self) {
+  const auto* command = std::get_if<Command>(&message);
+  const auto* way = std::get_if<ReturnFlight>(&message);
+  const bool ordered = command != nullptr && command->kind == CommandKind::return_home &&
+                       (command->vehicle == self || command->vehicle == kGroundStation);
+  return ordered || (way != nullptr && way->vehicle == self);
+}
+
 bool speaks_of_ground(const EventBody& news) {
   const auto* differs = std::get_if<event::SetupDiffers>(&news);
   const auto* agrees = std::get_if<event::SetupAgrees>(&news);
@@ -254,7 +264,8 @@ class VehicleNode::Impl {
     SelfReport::Facts facts{.condition = condition,
                             .refused = refused,
                             .differs = setup.difference(kGroundStation),
-                            .knows_orders = knows_orders};
+                            .knows_orders = knows_orders,
+                            .range_spent = agent->range_spent()};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});
@@ -332,6 +343,7 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
     return;
   }
   impl_->self_report.on_heard(sender, now);
+  if (is_about_return(message, impl_->self)) impl_->self_report.plan_wanted();
   if (const auto* detection = std::get_if<Detection>(&message)) {
     if (sender == kSensors) impl_->on_detection(*detection, now);
     return;  // others tell the ground station

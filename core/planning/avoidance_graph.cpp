@@ -318,6 +318,8 @@ std::optional<Path> TangentGraph::shortest() {
 }  // namespace
 
 bool piece_is_clear(const Pose2& from, const Segment& piece, const Hazard& circle) {
+  const double reach_m = circle.radius_m + piece.length_m;  // most pieces are nowhere near
+  if ((circle.centre - from.position()).squaredNorm() > reach_m * reach_m) return true;
   return distance_to_piece(circle.centre, from, piece.curvature_per_m, piece.length_m) >=
          circle.radius_m - kTouch_m;
 }

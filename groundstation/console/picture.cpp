@@ -94,6 +94,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                         [](const mission::Health&) {}, [](const mission::Setup&) {},
                         [](const mission::Detection&) {}, [](const mission::Route&) {},
                         [](const mission::RouteStatus&) {}, [](const mission::Preflight&) {},
+                        [](const mission::ReturnFlight&) {},
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
                           formation_.flights[m.vehicle] = {m.number, m.joined};

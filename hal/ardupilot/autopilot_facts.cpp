@@ -31,6 +31,15 @@ bool AutopilotFacts::prearm_good() const {
           mavlink::sensor_prearm_check) == 0;
 }
 
+std::uint8_t AutopilotFacts::battery_percent() const {
+  if (!health || (health->onboard_control_sensors_enabled & mavlink::sensor_battery) == 0) {
+    return kBatteryNotTold;
+  }
+  const int percent{health->battery_remaining};  // -1: no capacity is set
+  if (percent < 0 || percent > kBatteryFull_percent) return kBatteryNotTold;
+  return static_cast<std::uint8_t>(percent);
+}
+
 bool AutopilotFacts::only_mode_forbids_arming() const {
   return !pre_arm.empty() && std::ranges::all_of(pre_arm, PreArmTexts::is_of_mode);
 }

@@ -95,5 +95,19 @@ TEST(CompanionFacts, AStreamThatIsOnlyLookedAtMayBeRefused) {
   EXPECT_FALSE(line.companion.facts(line.now)->gnss);
 }
 
+TEST(AutopilotFacts, TellTheBatteryWhereItIsMeasured) {
+  AutopilotFacts facts;
+  EXPECT_EQ(facts.battery_percent(), kBatteryNotTold);
+  facts.health.emplace();
+  facts.health->battery_remaining = 55;
+  EXPECT_EQ(facts.battery_percent(), kBatteryNotTold) << "BATT_MONITOR is 0";
+  facts.health->onboard_control_sensors_enabled = mavlink::sensor_battery;
+  EXPECT_EQ(facts.battery_percent(), 55);
+  for (const std::int8_t none : {std::int8_t{-1}, std::int8_t{101}}) {
+    facts.health->battery_remaining = none;
+    EXPECT_EQ(facts.battery_percent(), kBatteryNotTold);
+  }
+}
+
 }  // namespace
 }  // namespace skein::ardupilot

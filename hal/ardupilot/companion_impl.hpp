@@ -87,7 +87,11 @@ class Companion::Impl {
 
   std::optional<mavlink::WireBytes> poll_packet() { return packets_.pop(); }
   std::optional<Notice> poll_notice() { return notices_.pop(); }
-  [[nodiscard]] std::optional<MotionSample> sample() const { return motion_.sample(); }
+  [[nodiscard]] std::optional<MotionSample> sample() const {
+    auto sample = motion_.sample();
+    if (sample) sample->state.battery_percent = looked_at_.battery_percent();
+    return sample;
+  }
   [[nodiscard]] const StateMachine<State, Event>& machine() const { return machine_; }
   [[nodiscard]] const mavlink::ParserStatistics& parser() const { return parser_.statistics(); }
 

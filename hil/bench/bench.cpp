@@ -200,7 +200,7 @@ class Bench {
                    " is beyond the bench's radio, which has ids 1 to " +
                    std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
     }
-    return {};
+    return batteries_can_fall(scenario_, autopilots_);
   }
 
   [[nodiscard]] Result<void> check_autopilots() const {
@@ -437,7 +437,8 @@ class Bench {
     if (flight_controllers_.contains(config.vehicle.id)) return {};  // a user's own
     const std::string name = "fc-" + std::to_string(config.vehicle.id.value);
     auto child = ChildProcess::start(
-        flight_controller_command(options_.programs, config, truth_->port(config.vehicle.id)),
+        flight_controller_command(options_.programs, config, truth_->port(config.vehicle.id),
+                                  scenario_.faults),
         options_.run_folder / (name + ".log"), {});
     if (!child) return child.error();
     child->make_realtime();

@@ -49,7 +49,7 @@ fleet::Program emulator_of(const Host& host, const VehicleConfig& config) {
   fleet::Program program;
   program.host = host;
   program.name = fmt::format("fc-{}", host.node.value);
-  program.command = flight_controller_command(host.programs, config, {});
+  program.command = flight_controller_command(host.programs, config, {}, {});
   const auto& fc = config.flight_controller.ardupilot;
   program.mark = fmt::format("skein-fc --bus {} --node {} ", fc.can, fc.node_id);
   program.realtime = true;
@@ -103,11 +103,16 @@ Result<ExternalHosts> ExternalHosts::make(const configuration::Scenario& scenari
     if (is_on_can(vehicle->flight_controller) && host->can.empty()) {
       return Error{who + " has a flight controller on CAN; name its bus in its host's can"};
     }
-    const bool killed =
-        std::any_of(scenario.faults.begin(), scenario.faults.end(), [id](const auto& fault) {
-          return fault.kind == configuration::FaultKind::kill_vehicle && fault.vehicle == id;
-        });
-    if (killed) return Error{"a fault kills " + who + "; leave it on the bench"};
+    const auto happens = [&scenario, id](configuration::FaultKind kind) {
+      return std::ranges::any_of(scenario.faults, [kind, id](const auto& fault) {
+        return fault.kind == kind && fault.vehicle == id;
+      });
+    };
+    using enum configuration::FaultKind;
+    if (happens(kill_vehicle)) return Error{"a fault kills " + who + "; leave it on the bench"};
+    if (happens(battery)) {
+      return Error{"a fault is of the battery of " + who + "; leave it on the bench"};
+    }
     hosts.push_back(*host);
   }
   ExternalHosts external{std::move(hosts)};

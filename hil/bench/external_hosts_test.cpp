@@ -49,6 +49,8 @@ TEST(ExternalHosts, WhatCannotBeExternalIsTold) {
   s.faults[0].kind = configuration::FaultKind::kill_vehicle;
   s.faults[0].vehicle = VehicleId{1};
   EXPECT_THAT(refusal(s, 1), HasSubstr("a fault kills vehicle 1"));
+  s.faults[0].kind = configuration::FaultKind::battery;
+  EXPECT_THAT(refusal(s, 1), HasSubstr("of the battery of vehicle 1"));
   EXPECT_EQ(refusal(s, 2), "");
 }
 

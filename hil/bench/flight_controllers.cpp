@@ -53,9 +53,9 @@ Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t se
   return names;
 }
 
-std::vector<std::string> flight_controller_command(const std::filesystem::path& programs,
-                                                   const configuration::VehicleConfig& vehicle,
-                                                   std::optional<std::uint16_t> truth_port) {
+std::vector<std::string> flight_controller_command(
+    const std::filesystem::path& programs, const configuration::VehicleConfig& vehicle,
+    std::optional<std::uint16_t> truth_port, const std::vector<configuration::Fault>& faults) {
   const VehicleSpec& spec = vehicle.vehicle;
   const configuration::ArdupilotConfig& fc = vehicle.flight_controller.ardupilot;
   const configuration::WindConfig& wind = vehicle.flight_controller.wind;
@@ -84,7 +84,31 @@ std::vector<std::string> flight_controller_command(const std::filesystem::path& 
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
   if (truth_port) command.insert(command.end(), {"--truth", std::to_string(*truth_port)});
+  for (const configuration::Fault& fault : faults) {
+    if (fault.kind != configuration::FaultKind::battery || fault.vehicle != spec.id) continue;
+    command.insert(command.end(), {"--at", number(to_seconds(fault.at)) + " battery " +
+                                               number(fault.battery_percent)});
+  }
   return command;
+}
+
+Result<void> batteries_can_fall(const configuration::Scenario& scenario,
+                                const UserAutopilots& autopilots) {
+  for (const configuration::Fault& fault : scenario.faults) {
+    if (fault.kind != configuration::FaultKind::battery) continue;
+    const auto vehicle = std::ranges::find_if(
+        scenario.vehicles, [&fault](const auto& v) { return v.spec.id == fault.vehicle; });
+    const bool emulated =
+        vehicle != scenario.vehicles.end() &&
+        vehicle->flight_controller.kind == configuration::FlightControllerKind::ardupilot &&
+        autopilots.of(vehicle->spec) == nullptr;
+    if (emulated) continue;
+    return Error{fmt::format(
+        "battery_vehicle {}: only a battery that skein-fc emulates can fall; give the vehicle "
+        "flight_controller: {{kind: ardupilot}}, and no --autopilot of its airframe",
+        fault.vehicle.value)};
+  }
+  return {};
 }
 
 }  // namespace skein::hil

@@ -22,9 +22,19 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   vehicle.flight_controller.ardupilot.system_id = 9;
   vehicle.flight_controller.wind = {5.0, heading_from_compass_deg(240.0), 0.5};
   vehicle.time.epoch_unix_ns = 1'795'000'000'123'456'789;
-  const auto command = flight_controller_command("/opt/bin", vehicle, 5001);
+  vehicle.vehicle.id = VehicleId{2};
+  std::vector<configuration::Fault> faults(3);
+  faults[0].at = at_seconds(20.5);
+  faults[0].kind = configuration::FaultKind::battery;
+  faults[0].vehicle = VehicleId{2};
+  faults[0].battery_percent = 31.0;
+  faults[1] = faults[0];
+  faults[1].vehicle = VehicleId{3};
+  faults[2].vehicle = VehicleId{2};
+  const auto command = flight_controller_command("/opt/bin", vehicle, 5001, faults);
   EXPECT_EQ(command.front(), "/opt/bin/skein-fc");
-  EXPECT_EQ(command.back(), "5001");
+  EXPECT_EQ(std::ranges::count(command, "--at"), 1);
+  EXPECT_EQ(command.back(), "20.5 battery 31");
   const auto after = [&command](const std::string& option) {
     const auto at = std::find(command.begin(), command.end(), option);
     return std::vector<std::string>(at + 1, std::min(at + 4, command.end()));
@@ -38,6 +48,27 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   EXPECT_EQ(after("--hold-until").front(), "1795000000123456789");
   EXPECT_EQ(after("--wind-from").front(), "240");
   EXPECT_EQ(after("--gusts").front(), "5");
+  EXPECT_EQ(after("--truth").front(), "5001");
+}
+
+TEST(FlightControllers, OnlyAnEmulatedBatteryCanFall) {
+  configuration::Scenario scenario;
+  scenario.vehicles.emplace_back();
+  scenario.vehicles[0].spec.id = VehicleId{4};
+  EXPECT_TRUE(batteries_can_fall(scenario, {}).ok());
+  scenario.faults.emplace_back();
+  scenario.faults[0].kind = configuration::FaultKind::battery;
+  scenario.faults[0].vehicle = VehicleId{4};
+  const auto simulated = batteries_can_fall(scenario, {});
+  ASSERT_FALSE(simulated.ok());
+  EXPECT_THAT(simulated.error().message, testing::HasSubstr("battery_vehicle 4: only a battery"));
+  scenario.vehicles[0].flight_controller.kind = configuration::FlightControllerKind::ardupilot;
+  EXPECT_TRUE(batteries_can_fall(scenario, {}).ok());
+  UserAutopilots others;
+  others.copter = "arducopter";
+  EXPECT_TRUE(batteries_can_fall(scenario, others).ok());
+  others.plane = "arduplane";
+  EXPECT_FALSE(batteries_can_fall(scenario, others).ok());
 }
 
 TEST(QuietBuses, AreDifferentOnes) {

@@ -159,9 +159,10 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
 }
 
 CheckResult check_range(const RunRecord& record, const Limits& limits) {
-  CheckResult result{"range", "no vehicle flies, or plans to fly, further than its range",
-                     0,       "plans and tracks",
-                     "",      {}};
+  CheckResult result{
+      "range", "no vehicle flies, or plans to fly, further than its range, or on an empty battery",
+      0,       "plans and tracks",
+      "",      {}};
   double fullest = 0.0;
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
@@ -179,6 +180,13 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
       result.violations.push_back({recorded.vehicle, recorded.track.back().state.time,
                                    vehicle_name(recorded.vehicle) + " flew " + fixed(flown, 0) +
                                        " m (range " + fixed(vehicle->range_m, 0) + " m)"});
+    }
+    const auto empty = std::ranges::find_if(
+        recorded.track, [](const auto& point) { return point.state.battery_percent == 0; });
+    if (empty != recorded.track.end()) {
+      result.violations.push_back(
+          {recorded.vehicle, empty->state.time,
+           vehicle_name(recorded.vehicle) + " flies on a battery that is empty"});
     }
     for (const PlanRecord& plan : recorded.plans) {
       const auto there = track_at(recorded.track, plan.since, limits.track_gap_s);

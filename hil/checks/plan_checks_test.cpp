@@ -127,6 +127,15 @@ TEST(PlanChecks, RangeIsJudgedByTrackAndByPlan) {
               HasSubstr("brings the distance flown to 6000 m"));
 }
 
+TEST(PlanChecks, WhoFliesOnAnEmptyBatteryIsFound) {
+  RunRecord record = good_record();
+  auto& track = of(record, kAssessor).track;
+  for (auto& point : track) point.state.battery_percent = 1;
+  EXPECT_THAT(failed(record), IsEmpty());
+  track.back().state.battery_percent = 0;
+  EXPECT_THAT(only_sentence(check_range(record, {})), HasSubstr("a battery that is empty"));
+}
+
 TEST(PlanChecks, RangeIsNotTakenOnTheVehiclesWord) {
   RunRecord record = good_record();
   spec(record, kAssessor).range_m = 4990.0;

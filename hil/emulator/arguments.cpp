@@ -43,6 +43,7 @@ constexpr const char* kFooter =
     "  position lost|good    the navigation filter\n"
     "  prearm REASON         it would not arm, and says why: 'PreArm: REASON'; without a reason:\n"
     "                        it would again\n"
+    "  battery PERCENT       so much is left of it from now on, as its gauge tells, too\n"
     "\n"
     "Standard output says 'ready' once it is on the bus. It ends with status 0 on SIGINT or\n"
     "SIGTERM; 2 means bad arguments, 3 that the bus cannot be used.";
@@ -138,6 +139,9 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
       ->capture_default_str();
   app.add_option("--turn-radius", c.turn_radius_m,
                  "m, of a plane at cruise: the bank limit is that of this circle and 5 degrees")
+      ->capture_default_str();
+  app.add_option("--battery", c.battery_mah,
+                 "mAh of a full battery: it gives 0.5 A, and 60 A more at full throttle")
       ->capture_default_str();
   app.add_option("--wind-speed", t.wind_mps, "Steady wind, m/s")
       ->check(CLI::Range(0.0, 25.0))

@@ -139,6 +139,29 @@ EmulatorConfig plane_in_wind() {
   return config;
 }
 
+TEST(CompanionAndEmulator, ThrustEmptiesTheBatteryAndTheStateTellsIt) {
+  EmulatorConfig config = plane_in_wind();
+  config.battery_mah = 1000.0;
+  Bench bench{config};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0));
+  bench.setpoint = {0.5, 50.0, 300.0};
+  bench.run(2.0);
+  const int before{bench.state().battery_percent};
+  EXPECT_GT(before, 80);
+  EXPECT_LE(before, 100);
+  bench.run(20.0);
+  const int after{bench.state().battery_percent};
+  EXPECT_LT(after, before - 2);
+  EXPECT_GT(after, before - 40);  // 60 A at most
+  bench.interfere("battery 30.5");
+  bench.run(1.0);
+  EXPECT_NEAR(bench.state().battery_percent, 30, 2);
+  // Its gauge counts from full when the autopilot restarts.
+  bench.interfere("reboot");
+  bench.run(12.0);
+  EXPECT_GT(bench.state().battery_percent, 70);
+}
+
 TEST(CompanionAndEmulator, APlaneIsFlownInWindWithGusts) {
   EmulatorConfig config = plane_in_wind();
   config.hold_until = at_seconds(3.0);

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "battery.hpp"
 #include "copter_vehicle.hpp"
 #include "mavlink_endpoint.hpp"
 #include "plane_vehicle.hpp"
@@ -51,6 +53,14 @@ dronecan::TunnelParams tunnel_params(const EmulatorConfig& config) {
   return p;
 }
 
+std::optional<double> percent_of(std::string_view word) {
+  double percent = 0.0;
+  const auto read = std::from_chars(word.data(), word.data() + word.size(), percent);
+  const bool whole = read.ec == std::errc{} && read.ptr == word.data() + word.size();
+  if (!whole || !(percent >= 0.0 && percent <= 100.0)) return std::nullopt;
+  return percent;
+}
+
 /// All that a restart of the autopilot begins anew.
 struct Link {
   Link(const EmulatorConfig& config, Instant booted)
@@ -64,7 +74,8 @@ struct Link {
 }  // namespace
 
 struct EmulatedFlightController::State {
-  State(const EmulatorConfig& c, const MissionOrigin& origin) : config{c}, earth{origin} {}
+  State(const EmulatorConfig& c, const MissionOrigin& origin)
+      : config{c}, earth{origin}, battery{c.battery_mah} {}
 
   void restart(Instant now) {
     link.reset();
@@ -101,19 +112,27 @@ struct EmulatedFlightController::State {
     return std::nullopt;
   }
 
+  /// One that stands still in the air, until its mission begins, takes nothing.
+  void drain(Instant t) {
+    if (t >= config.hold_until) battery.give(vehicle->report().throttle, vehicle->period());
+  }
+
   void period(Instant t, bool last) {
     if (!link) {
       if (t < bus_from) {
         vehicle->coast(t);
+        drain(t);
         return;
       }
       link.emplace(config, booted);
       vehicle->restart(t);
+      battery.count_from_full();
     }
     vehicle->control(t);
+    drain(t);
     if (t < mavlink_from || !config.serial_port || !config.mavlink) return;
     if (!link->mavlink) {
-      link->mavlink.emplace(config, earth, *vehicle, link->port, booted, t);
+      link->mavlink.emplace(config, earth, *vehicle, battery, link->port, booted, t);
     }
     if (!last) return;  // a program that was held up does not send the past
     link->mavlink->set_refusal(refusal());
@@ -125,6 +144,7 @@ struct EmulatedFlightController::State {
   EmulatorConfig config;
   Earth earth;
   std::unique_ptr<Vehicle> vehicle;
+  Battery battery;
   std::optional<Link> link;
   Instant booted;
   Instant bus_from;
@@ -229,6 +249,12 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
     s.reason_given = word;
     return {};
   }
+  if (verb == "battery") {
+    const auto percent = percent_of(word);
+    if (!percent) return Error{fmt::format("'{}': battery takes a number from 0 to 100", line)};
+    s.battery.fall_to(*percent);
+    return {};
+  }
   if (verb == "reboot" && !is_word) {
     s.restart(now);
     return {};
@@ -237,7 +263,7 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
   if (!is_arming && (verb != "mode" || !is_word)) {
     return Error{
         fmt::format("'{}': not one of mode NAME, arm, disarm, reboot, silent on|off, "
-                    "position lost|good, prearm REASON",
+                    "position lost|good, prearm REASON, battery PERCENT",
                     line)};
   }
   if (!s.link || !s.link->mavlink) return Error{fmt::format("'{}': the autopilot restarts", line)};

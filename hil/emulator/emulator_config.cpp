@@ -76,6 +76,9 @@ Result<void> check(const EmulatorConfig& c) {
     return Error{
         fmt::format("nodes {} and {}: a DroneCAN node is 1 to 127", c.node_id, c.companion_node)};
   }
+  if (!(c.battery_mah >= 100.0 && c.battery_mah <= 1e6)) {
+    return Error{fmt::format("battery of {:g} mAh: it has 100 to 1000000", c.battery_mah)};
+  }
   if (c.node_id == c.companion_node) {
     return Error{fmt::format("node {}: the companion must have another", c.node_id)};
   }

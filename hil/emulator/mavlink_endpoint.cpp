@@ -64,10 +64,12 @@ mavlink::CommandInt as_int(const mavlink::CommandLong& c) {
 }  // namespace
 
 MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& earth, Vehicle& vehicle,
-                                 dronecan::TunnelPort& port, Instant booted, Instant now)
+                                 const Battery& battery, dronecan::TunnelPort& port, Instant booted,
+                                 Instant now)
     : config_{config},
       earth_{earth},
       vehicle_{vehicle},
+      battery_{battery},
       port_{port},
       booted_{booted},
       encoder_{config.system_id, mavlink::kComponentAutopilot},
@@ -310,6 +312,7 @@ void MavlinkEndpoint::on_timesync(const mavlink::Timesync& question, const mavli
 Situation MavlinkEndpoint::situation(Instant now) const {
   return {.flight = vehicle_.report(),
           .earth = earth_,
+          .battery = battery_,
           .type = vehicle_.type(),
           .since_boot = now - booted_,
           .unix_us = config_.unix_us + now.time_since_epoch() / std::chrono::microseconds{1},

@@ -20,7 +20,7 @@ namespace skein::hil {
 class MavlinkEndpoint {
  public:
   MavlinkEndpoint(const EmulatorConfig& config, const Earth& earth, Vehicle& vehicle,
-                  dronecan::TunnelPort& port, Instant booted, Instant now);
+                  const Battery& battery, dronecan::TunnelPort& port, Instant booted, Instant now);
 
   /// Once in each period of the main loop: reads the port, obeys, sends what is due.
   void step(Instant now);
@@ -62,6 +62,7 @@ class MavlinkEndpoint {
   EmulatorConfig config_;
   const Earth& earth_;
   Vehicle& vehicle_;
+  const Battery& battery_;
   dronecan::TunnelPort& port_;
   Instant booted_;
   mavlink::Parser parser_;

@@ -27,7 +27,6 @@ constexpr std::uint16_t kEkfGood = 0x033F;
 constexpr std::uint32_t kSensors = sensor_gyro | sensor_accelerometer | sensor_magnetometer |
                                    sensor_absolute_pressure | sensor_differential_pressure |
                                    sensor_gps | sensor_ahrs | sensor_battery;
-constexpr std::uint16_t kVoltage_mv = 12600;
 
 /// To a type of the wire, within its limits.
 template <class Integer>
@@ -70,8 +69,9 @@ SysStatus sys_status(const Situation& s) {
   }
   if (s.may_arm || s.flight.armed) m.onboard_control_sensors_health |= sensor_prearm_check;
   m.load = 166;
-  m.voltage_battery = kVoltage_mv;
-  m.battery_remaining = 99;
+  m.voltage_battery = rounded<std::uint16_t>(s.battery.volts() * 1e3);
+  m.current_battery = rounded<std::int16_t>(s.battery.amperes() * 1e2);
+  m.battery_remaining = s.battery.percent_told();
   return m;
 }
 
@@ -190,13 +190,15 @@ PositionTargetGlobalInt position_target(const Situation& s) {
   return m;
 }
 
-BatteryStatus battery(const Situation& /*s*/) {
+BatteryStatus battery(const Situation& s) {
   constexpr std::uint16_t kNoCell = 0xFFFF;
   BatteryStatus m;
   m.temperature = std::numeric_limits<std::int16_t>::max();
   m.voltages.fill(kNoCell);
-  m.voltages[0] = kVoltage_mv;
-  m.battery_remaining = 99;
+  m.voltages[0] = rounded<std::uint16_t>(s.battery.volts() * 1e3);
+  m.current_battery = rounded<std::int16_t>(s.battery.amperes() * 1e2);
+  m.current_consumed = rounded<std::int32_t>(s.battery.counted_mah());
+  m.battery_remaining = s.battery.percent_told();
   m.charge_state = 1;
   return m;
 }

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "battery.hpp"
 #include "skein/base/time.hpp"
 #include "skein/mavlink/parser.hpp"
 #include "vehicle.hpp"
@@ -15,6 +16,7 @@ namespace skein::hil {
 struct Situation {
   const FlightReport& flight;
   const Earth& earth;
+  const Battery& battery;
   mavlink::VehicleType type = mavlink::VehicleType::fixed_wing;
   Duration since_boot{};
   std::int64_t unix_us = 0;

@@ -53,11 +53,17 @@ Aircraft::Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Ran
       what_{what},
       clock_{clock_offset(mission.faults, what.spec.id)},
       gusts_{gusts},
-      loads_left_{what.spec.loads} {}
+      loads_left_{what.spec.loads} {
+  const auto is_its_battery = [&what](const Fault& fault) {
+    const auto* falls = std::get_if<BatteryFalls>(&fault.what);
+    return falls != nullptr && falls->vehicle == what.spec.id;
+  };
+  if (std::ranges::any_of(mission.faults, is_its_battery)) battery_ = SimulatedBattery{};
+}
 
 void Aircraft::take_off(Instant now) {
   body_ = body_of(mission_, what_, gusts_, now);
-  state_ = *body_->state(now);
+  see_state(now);
   std::vector<Hazard> known;
   for (const auto& h : mission_.hazards) {
     if (h.known_from <= now) known.push_back(h.hazard);
@@ -187,8 +193,19 @@ void Aircraft::sink_at(Instant now) {
   body_->command(down, now);
 }
 
-bool Aircraft::control(Instant now) {
+double Aircraft::battery_percent() const {
+  const double share = (state_.distance_flown_m - battery_->at_m) / what_.spec.range_m;
+  const double used = (100.0 - what_.spec.battery_reserve_percent) * share;
+  return std::max(0.0, battery_->percent - used);
+}
+
+void Aircraft::see_state(Instant now) {
   state_ = *body_->state(now);
+  if (battery_) state_.battery_percent = static_cast<std::uint8_t>(battery_percent());
+}
+
+bool Aircraft::control(Instant now) {
+  see_state(now);
   if (sinks(now)) {
     sink_at(now);
     return true;

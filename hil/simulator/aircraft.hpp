@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -14,6 +15,12 @@
 #include "skein/mission/vehicle_node.hpp"
 
 namespace skein::hil {
+
+/// What is left of a battery where a vehicle had flown so far.
+struct SimulatedBattery {
+  double percent = 100.0;
+  double at_m = 0.0;
+};
 
 /// One aircraft of the simulated team: its body under its flight controller, its clock, and the
 /// node on board while its program runs. Times are true mission time but for what the node is given
@@ -34,6 +41,11 @@ class Aircraft {
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
   void start_program(const std::vector<Hazard>& hazards, Instant now);
+  /// At once no more than that is left of its battery.
+  void battery_falls(double percent) {
+    if (!battery_) return;
+    battery_ = SimulatedBattery{std::min(percent, battery_percent()), state_.distance_flown_m};
+  }
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;
@@ -99,6 +111,8 @@ class Aircraft {
   [[nodiscard]] bool holds_orbit() const {
     return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);
   }
+  [[nodiscard]] double battery_percent() const;
+  void see_state(Instant now);
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
   void sink_at(Instant now);
 
@@ -112,6 +126,7 @@ class Aircraft {
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;
+  std::optional<SimulatedBattery> battery_;  ///< of one to whose battery something happens
   struct Untold {
     VehicleState state;
     Instant at;

@@ -56,6 +56,9 @@ struct Sentence {
   std::string operator()(const radio::Flood& what) const {
     return names_of({what.vehicle}) + " floods the air";
   }
+  std::string operator()(const BatteryFalls& what) const {
+    return fmt::format("the battery of {} falls to {:g} %", names_of({what.vehicle}), what.percent);
+  }
   std::string operator()(const LateStart& what) const {
     return names_of({what.vehicle}) + " takes off";
   }
@@ -103,6 +106,9 @@ std::vector<Fault> faults_of(const configuration::Scenario& scenario) {
         break;
       case configuration::FaultKind::flood:
         faults.push_back({when, fault.duration, radio::Flood{fault.vehicle}});
+        break;
+      case configuration::FaultKind::battery:
+        faults.push_back({when, std::nullopt, BatteryFalls{fault.vehicle, fault.battery_percent}});
         break;
     }
   }

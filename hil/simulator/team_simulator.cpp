@@ -58,10 +58,18 @@ bool due(Instant now, Duration period) {
   return now.time_since_epoch() % period == Duration::zero();
 }
 
-/// What no program of the team reads: people do, and nobody watches here. The ground station of
-/// planes in formation plans from what they fly.
-bool is_for_watchers(const mission::Message& message, const TeamMission& mission) {
-  const bool plans_are_read = mission.formation && mission.formation->planes;
+/// The ground station plans from what vehicles fly: planes in formation, and who is ordered home.
+bool reads_plans(const TeamMission& mission) {
+  const auto is_return = [](const Fault& fault) {
+    const auto* order = std::get_if<Ordered>(&fault.what);
+    return order != nullptr && order->kind == mission::CommandKind::return_home;
+  };
+  return (mission.formation && mission.formation->planes) ||
+         std::ranges::any_of(mission.faults, is_return);
+}
+
+/// What no program of the team reads: people do, and nobody watches here.
+bool is_for_watchers(const mission::Message& message, bool plans_are_read) {
   return (std::holds_alternative<mission::PlanReport>(message) && !plans_are_read) ||
          std::holds_alternative<mission::Health>(message);
 }
@@ -100,6 +108,7 @@ class Team {
             mission.faults,
             [](const Fault& f) { return std::holds_alternative<ClockOff>(f.what); })},
         wakes_say_nothing_{!mission.radio.bytes_per_s},
+        plans_are_read_{reads_plans(mission)},
         radio_{mission.radio, mission.seed},
         positions_{mission.vehicles.size() + 1},
         mesh_{mission.radio.mesh ? std::optional<radio::Mesh>{*mission.radio.mesh} : std::nullopt},
@@ -204,6 +213,10 @@ class Team {
     if (const auto* late = std::get_if<LateStart>(&fault.what)) {
       take_off(index_of(late->vehicle), now);
       tell(now, FaultEvent::Kind::joined, late->vehicle);
+      return true;
+    }
+    if (const auto* falls = std::get_if<BatteryFalls>(&fault.what)) {
+      vehicles_[index_of(falls->vehicle)].battery_falls(falls->percent);
       return true;
     }
     if (const auto* seen = std::get_if<PlaceSeen>(&fault.what)) {
@@ -440,7 +453,7 @@ class Team {
     bool any = false;
     while (auto message = v.node().poll_message()) {
       any = true;
-      if (is_for_watchers(*message, mission_)) continue;
+      if (is_for_watchers(*message, plans_are_read_)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, std::move(*message), now);
     }
@@ -570,6 +583,7 @@ class Team {
   bool clocks_agree_;
   /// Where the air has its price, vehicles pace their telemetry by that of others.
   bool wakes_say_nothing_;
+  bool plans_are_read_;
   InFlight air_;
   radio::SimulatedRadio radio_;
   std::vector<radio::Channel> channels_;  ///< around each node

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -109,6 +111,99 @@ TEST(TeamSimulator, TheSmallMissionIsFlownToItsEnd) {
     EXPECT_NEAR(to_seconds(planned), to_seconds(deliveries[0].time) + 5.0, 0.05)
         << "start, after the wait";
   }
+}
+
+/// With a carrier more than the site needs.
+TeamMission mission_with_spare_carrier() {
+  auto team = small_mission();
+  team.vehicles.push_back({spec(6, {TaskKind::deliver}, 1), {-900, -700, 0.5}, {{-900, -700}}});
+  return team;
+}
+
+TEST(TeamSimulator, WhoseBatteryFallsGivesItsTaskBackAndIsHomeBeforeItsReserve) {
+  constexpr VehicleId kLow{3};
+  auto team = mission_with_spare_carrier();
+  const auto whole = fly(team);
+  ASSERT_EQ(whole.result.sites_done, 1U);
+  EXPECT_TRUE(whole.of(EventKind::range_spent).empty());
+  const auto formed = whole.of(EventKind::coalition_formed);
+  ASSERT_EQ(formed.size(), 1U);
+
+  // On its way to its delivery, with enough left for the way home and not for the task.
+  team.faults = {{{formed[0].time + from_seconds(4.0)}, std::nullopt, BatteryFalls{kLow, 23.5}}};
+  std::optional<int> percent_at_home;
+  TeamObserver observer;
+  Flown flown;
+  observer.event = [&](const MissionEvent& e) { flown.events.push_back(e); };
+  observer.track = [&](VehicleId id, const VehicleState& s, const mission::FlightPlan&) {
+    const int percent{s.battery_percent};
+    EXPECT_EQ(percent == kBatteryNotTold, id != kLow);
+    const double from_home_m =
+        (s.position().horizontal() - team.vehicles[2].start.position()).norm();
+    const bool returns = id == kLow && !flown.of(EventKind::range_spent).empty();
+    if (returns && from_home_m < 30.0 && !percent_at_home) percent_at_home = percent;
+  };
+  flown.result = simulate_team(team, observer);
+
+  const auto spent = flown.of(EventKind::range_spent);
+  ASSERT_EQ(spent.size(), 1U);
+  EXPECT_EQ(spent[0].vehicle, kLow);
+  const auto& told = std::get<mission::event::RangeSpent>(spent[0].body);
+  EXPECT_TRUE(told.by_battery && told.comes_home);
+  EXPECT_GT(told.range_left_m, told.home_m);
+  EXPECT_EQ(flown.result.sites_done, 1U);
+  EXPECT_EQ(flown.result.protocol_errors, 0U);
+  // No task forgotten, none flown twice, and none by who flies home.
+  const auto deliveries = flown.done(TaskKind::deliver);
+  std::set<std::uint8_t> which;
+  for (const auto& e : deliveries) {
+    EXPECT_NE(e.vehicle, kLow);
+    EXPECT_TRUE(which.insert(e.task.index).second);
+  }
+  EXPECT_EQ(which.size(), 3U);
+  EXPECT_EQ(flown.done(TaskKind::assess).size(), 2U);
+  // It has come home with its reserve, and orbits there for whoever lands it.
+  ASSERT_TRUE(percent_at_home);
+  EXPECT_GE(*percent_at_home, 20);
+  for (const auto& end : flown.result.vehicles) {
+    if (end.vehicle != kLow) continue;
+    EXPECT_LT((end.position - team.vehicles[2].start.position()).norm(), 200.0);
+  }
+}
+
+/// Whenever it falls, and to whatever that is still enough for the way home.
+TEST(TeamSimulator, WhoTurnsHomeInTimeIsThereBeforeItsReserve) {
+  int returned = 0;
+  for (std::uint16_t run = 0; run < 24; ++run) {
+    auto team = mission_with_spare_carrier();
+    const VehicleId low{static_cast<std::uint16_t>(1 + run % 6)};
+    const int lap = run / 6;
+    team.faults = {{{at_seconds(3.0 + 5.0 * lap + 0.37 * run)},
+                    std::nullopt,
+                    BatteryFalls{low, 23.5 + 0.5 * (run % 8)}}};
+    std::optional<mission::event::RangeSpent> told;
+    std::optional<int> percent_at_home;
+    TeamObserver observer;
+    observer.event = [&](const MissionEvent& e) {
+      const auto* spent = std::get_if<mission::event::RangeSpent>(&e.body);
+      if (spent == nullptr) return;
+      EXPECT_EQ(e.vehicle, low);
+      told = *spent;
+    };
+    observer.track = [&](VehicleId id, const VehicleState& s, const mission::FlightPlan&) {
+      if (id != low || !told || percent_at_home) return;
+      const auto& home = team.vehicles[low.value - 1U].start;
+      const double away_m = (s.position().horizontal() - home.position()).norm();
+      if (away_m < 30.0) percent_at_home = s.battery_percent;
+    };
+    (void)simulate_team(team, observer);
+    const bool in_time = told && told->range_left_m > told->home_m;
+    if (!in_time) continue;
+    ++returned;
+    ASSERT_TRUE(percent_at_home) << run;
+    EXPECT_GE(*percent_at_home, 20) << run;
+  }
+  EXPECT_GT(returned, 12);
 }
 
 TEST(TeamSimulator, ASuccessorGoesOnWithWhatWasGrantedAndAllThatIsSaidFitsTheWire) {

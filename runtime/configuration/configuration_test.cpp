@@ -328,8 +328,11 @@ TEST(ScenarioFile, NamesEveryMistake) {
        "s.yaml:20: sites[1].assessments.start_angles_deg: must have one angle for each assessment, "
        "or none; compare with count"},
       {"kill_vehicle: 3", "kill_vehicle: 3, for_s: 2, loss_ratio: 0.5",
-       "s.yaml:26: faults[1].at_s: a fault has exactly one of kill_vehicle, partition, loss_ratio "
-       "and flood_vehicle; split it or add one"},
+       "s.yaml:26: faults[1].at_s: a fault has exactly one of kill_vehicle, partition, loss_ratio, "
+       "flood_vehicle and battery_vehicle; split it or add one"},
+      {"kill_vehicle: 3", "battery_vehicle: 3",
+       "s.yaml:26: faults[1].battery_percent: goes with battery_vehicle; add the one that is "
+       "missing"},
       {"for_s: 5, loss_ratio", "loss_ratio",
        "s.yaml:28: faults[3].for_s: a partition, loss or flood lasts for some time; add for_s "
        "above 0 s"},

@@ -150,6 +150,11 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
            {0.05, 20.0, "1/s"}, spec.heading_gain_per_s);
   v.number({"range_m", "distance that the vehicle can fly", kRequired}, {100.0, 1e7, "m"},
            spec.range_m);
+  v.number(
+      {"battery_reserve_percent",
+       "kept in the battery, where the flight controller tells how full that is: range_m is what "
+       "a full one flies down to it, until flying has shown how far it does"},
+      {0.0, 90.0, "%"}, spec.battery_reserve_percent);
   auto recovery = static_cast<std::size_t>(spec.recovery);
   v.choice({"recovery",
             "where the flight ends: `home`, its start, for which it keeps enough of its range, or "

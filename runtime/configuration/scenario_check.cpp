@@ -333,8 +333,8 @@ class Check {
       if (to_seconds(fault.at) >= to_seconds(s_.duration_max)) {
         problem(at + " comes after duration_max_s; move one of them");
       }
-      const bool names_one =
-          fault.kind == FaultKind::kill_vehicle || fault.kind == FaultKind::flood;
+      const bool names_one = fault.kind == FaultKind::kill_vehicle ||
+                             fault.kind == FaultKind::flood || fault.kind == FaultKind::battery;
       if (names_one && fault.vehicle != kGroundStation) {
         need_vehicle(fault.vehicle, at);
       }

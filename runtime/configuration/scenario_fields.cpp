@@ -47,8 +47,14 @@ void fault_fields(FieldVisitor& v, Fault& fault) {
   std::optional<std::uint16_t> killed;
   std::optional<double> loss;
   std::optional<std::uint16_t> floods;
+  std::optional<std::uint16_t> falls;
+  std::optional<double> falls_to;
   if (fault.kind == FaultKind::kill_vehicle) killed = fault.vehicle.value;
   if (fault.kind == FaultKind::flood) floods = fault.vehicle.value;
+  if (fault.kind == FaultKind::battery) {
+    falls = fault.vehicle.value;
+    falls_to = fault.battery_percent;
+  }
   if (fault.kind == FaultKind::loss) loss = fault.loss_ratio;
   seconds(v, {"at_s", "mission time", kRequired}, kSeconds, fault.at);
   seconds(v, {"for_s", "how long a partition, a loss or a flood lasts"}, kSeconds, fault.duration);
@@ -58,18 +64,28 @@ void fault_fields(FieldVisitor& v, Fault& fault) {
   v.number({"loss_ratio", "share of the messages that are lost meanwhile"}, {0.0, 1.0}, loss);
   whole(v, {"flood_vehicle", "id of the vehicle that says 500 kB/s of noise meanwhile"},
         {1.0, 65535.0}, floods);
-  const int kinds =
-      (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0) + (floods ? 1 : 0);
+  whole(v, {"battery_vehicle", "id of the vehicle whose battery falls to battery_percent at once"},
+        {1.0, 65535.0}, falls);
+  v.number({"battery_percent", "what is left of it then; flying takes more"}, {0.0, 100.0, "%"},
+           falls_to);
+  v.require(falls.has_value() == falls_to.has_value(), "battery_percent",
+            "goes with battery_vehicle; add the one that is missing");
+  const int kinds = (killed ? 1 : 0) + (fault.groups.empty() ? 0 : 1) + (loss ? 1 : 0) +
+                    (floods ? 1 : 0) + (falls ? 1 : 0);
   v.require(kinds == 1, "at_s",
-            "a fault has exactly one of kill_vehicle, partition, loss_ratio and flood_vehicle; "
-            "split it or add one");
-  v.require(killed.has_value() || fault.duration > Duration{}, "for_s",
+            "a fault has exactly one of kill_vehicle, partition, loss_ratio, flood_vehicle and "
+            "battery_vehicle; split it or add one");
+  v.require(killed.has_value() || falls.has_value() || fault.duration > Duration{}, "for_s",
             "a partition, loss or flood lasts for some time; add for_s above 0 s");
   fault.kind = FaultKind::partition;
   if (killed) fault.kind = FaultKind::kill_vehicle;
   if (loss) fault.kind = FaultKind::loss;
   if (floods) fault.kind = FaultKind::flood;
-  if (killed || floods) fault.vehicle = VehicleId{killed ? *killed : *floods};
+  if (falls) fault.kind = FaultKind::battery;
+  if (falls_to) fault.battery_percent = *falls_to;
+  for (const auto& named : {killed, floods, falls}) {
+    if (named) fault.vehicle = VehicleId{*named};
+  }
   if (loss) fault.loss_ratio = *loss;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <string_view>
 
 #include "skein/mission/setup_book.hpp"
@@ -34,6 +35,14 @@ std::string names_of(const std::vector<VehicleId>& vehicles) {
     text += (text.empty() ? "" : ", ") + std::to_string(vehicle.value);
   }
   return text;
+}
+
+/// "1,850 m".
+std::string metres(double length_m) {
+  std::string digits = fmt::format("{:.0f}", std::abs(length_m));
+  for (std::size_t before = digits.size(); before > 3; before -= 3) digits.insert(before - 3, ",");
+  const bool below = length_m < 0.0 && digits != "0";
+  return (below ? "-" : "") + digits + " m";
 }
 
 std::string moment(Instant t) { return fmt::format("{:.1f} s", to_seconds(t)); }
@@ -308,8 +317,12 @@ struct News {
     return "around the hazard, to the same time";
   }
   std::string operator()(const event::RangeSpent& e) const {
-    return fmt::format("its range is used up{}; {:.0f} m are left",
-                       e.comes_home ? " but for the way home" : ": it holds", e.range_left_m);
+    const char* const left = e.by_battery ? "its battery leaves" : "range left";
+    if (!e.comes_home) {
+      return fmt::format("holds, to be recovered: {} {}", left, metres(e.range_left_m));
+    }
+    return fmt::format("flies home: {} {}{}", left, metres(e.range_left_m),
+                       e.home_m < 0.0 ? "" : ", home is " + metres(e.home_m) + " away");
   }
   std::string operator()(const event::ReliefBegun& /*e*/) const {
     return "the site's leader is lost: goes there to lead";
@@ -456,6 +469,15 @@ struct News {
   }
   std::string operator()(const event::RoutesCalledOff& e) const {
     return fmt::format("the routes of plan {} are called off: {}", e.plan, cause_of(e));
+  }
+  std::string operator()(const event::ReturnPlanned& e) const {
+    return fmt::format(
+        "return {}: {} vehicles come home on ways clear of each other, the last in "
+        "{:.0f} s",
+        e.plan, e.vehicles, to_seconds(e.takes));
+  }
+  std::string operator()(const event::ReturnAlone& e) const {
+    return because(text_of(e.vehicle) + " comes home on its own way", e.detail);
   }
 };
 

@@ -20,6 +20,18 @@ TEST(Wording, SaysWhoWhatAndWhere) {
   EXPECT_EQ(text_of(done), "vehicle 2: coalition formed, site 4: 10 vehicles");
 }
 
+TEST(Wording, SaysWhyAVehicleFliesHomeAndHowFarThatIs) {
+  MissionEvent spent{{3}, {}, {}, {}, event::RangeSpent{1850.2, true, 1599.6, false}};
+  EXPECT_EQ(text_of(spent),
+            "vehicle 3: warning: flies home: range left 1,850 m, home is 1,600 m away");
+  spent.body = event::RangeSpent{12'345'678.0, true, 0.4, true};
+  EXPECT_EQ(news_of(spent), "flies home: its battery leaves 12,345,678 m, home is 0 m away");
+  spent.body = event::RangeSpent{-999.0, true, -1.0, false};  // of an older release
+  EXPECT_EQ(news_of(spent), "flies home: range left -999 m");
+  spent.body = event::RangeSpent{-1000.0, false, -1.0, false};
+  EXPECT_EQ(news_of(spent), "holds, to be recovered: range left -1,000 m");
+}
+
 TEST(Wording, EveryReasonHasASentenceOfItsOwn) {
   std::set<std::string> sentences;
   const auto count = static_cast<int>(coalition::Reason::count);

@@ -72,7 +72,8 @@ edit(join(after, 'idl/mission.idl'), '  @appended @default(7) Capabilities capab
 edit(join(after, 'idl/domain.idl'), '  Amount reward_decay_per_s;    // beta (eq. 9)\n',
   '  Amount reward_decay_per_s;\n  @appended @default(TRUE) boolean charted;\n')
 edit(join(after, 'idl/coalition.idl'), '  Instant time_ns;  // when it came into that state\n',
-  '  Instant time_ns;\n  @appended @default("once") Text tried;\n')
+  // Short: a sequence of long ones would be more than the older leaves room for (kRoomToGrow).
+  '  Instant time_ns;\n  @appended @default("once") string<7> tried;\n')
 edit(join(after, 'idl/mission.idl'), '// How a vehicle\'s program is,',
   '// "I am here."\n@version(1) @said_by("vehicle")\nstruct Beacon {\n  VehicleId vehicle;\n  Point3 position_m;\n};\n\n// How a vehicle\'s program is,')
 edit(join(after, 'idl/topics.json'), '\n]',

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -119,6 +120,27 @@ TEST_F(EndToEnd, CoptersSurveyAndAssessWhatPlanesDeliver) {
             "exit status 0")
       << output();
   EXPECT_NE(output().find("1 survey, 2 assess"), std::string::npos) << output();
+  EXPECT_EQ(run({"reexecute", (folder_ / "run").string()}), "exit status 0") << output();
+}
+
+TEST_F(EndToEnd, WhoseBatteryFallsFliesHomeAndTheOthersDoItsWork) {
+  const std::string mission = scenario_with(
+      "sites:\n", "faults:\n  - {at_s: 22, battery_vehicle: 2, battery_percent: 33}\n\nsites:\n",
+      SKEIN_SOURCE_DIR "/scenarios/hil-2.yaml");
+  EXPECT_EQ(run({"run", mission, "--headless", "--out", (folder_ / "run").string()}),
+            "exit status 0")
+      << output();
+  EXPECT_NE(output().find("vehicle 2: warning: flies home: its battery leaves"), std::string::npos)
+      << output();
+  const auto low = recording::read(folder_ / "run" / "vehicle-02", VehicleId{2});
+  ASSERT_TRUE(low.ok()) << low.error().message;
+  const auto& first = low->track.front().state;
+  const auto& last = low->track.back().state;
+  EXPECT_GE(first.battery_percent, 99);
+  EXPECT_LE(last.battery_percent, 33);
+  EXPECT_GT(last.battery_percent, 20);  // its reserve
+  // In the orbit at home.
+  EXPECT_LT(std::hypot(last.x_m - first.x_m, last.y_m - first.y_m), 500.0);
   EXPECT_EQ(run({"reexecute", (folder_ / "run").string()}), "exit status 0") << output();
 }
 

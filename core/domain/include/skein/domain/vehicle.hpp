@@ -30,6 +30,9 @@ struct VehicleSpec {
   double turn_radius_m = 0.0;       ///< r_min, at cruise speed
   double heading_gain_per_s = 1.0;  ///< W: d heading/dt = W (commanded - heading)
   double range_m = 0.0;             ///< L_max
+  /// Kept in the battery: a full one flies range_m down to it, and below it nothing counts as
+  /// range. Below 100.
+  double battery_reserve_percent = 20.0;
   Recovery recovery = Recovery::home;
   Capabilities capabilities;
   double sensor_radius_m = 0.0;   ///< C^r: detection and the survey arc
@@ -47,6 +50,9 @@ struct VehicleSpec {
   [[nodiscard]] double planning_radius_m() const { return turn_radius_m * turn_radius_margin; }
 };
 
+inline constexpr std::uint8_t kBatteryFull_percent = 100;
+inline constexpr std::uint8_t kBatteryNotTold = 255;
+
 /// What the flight controller reports. Trivially copyable.
 struct VehicleState {
   Instant time{};
@@ -60,6 +66,8 @@ struct VehicleState {
   double distance_flown_m =
       0.0;                 ///< over the ground, since the start; what the range budget counts
   double climb_mps = 0.0;  ///< of a multirotor; 0 where it is not known
+  /// What its gauge says is left of a full battery; kBatteryNotTold where there is none.
+  std::uint8_t battery_percent = kBatteryNotTold;
   [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
   [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
   /// Over the ground, mission frame.

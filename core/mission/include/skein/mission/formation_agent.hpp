@@ -11,13 +11,15 @@
 #include "skein/formation/field_flight.hpp"
 #include "skein/formation/passage.hpp"
 #include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/range_budget.hpp"
 
 namespace skein::mission {
 
 struct FormationAgentConfig {
   VehicleId vehicle;
   InstanceId instance;
-  double range_m = 0.0;            ///< of the vehicle, from its start
+  double range_m = 0.0;  ///< of the vehicle, from its start
+  double battery_reserve_percent = 20.0;
   formation::MotionLimits limits;  ///< of the vehicle; a change that asks for more is refused
   formation::Avoidance avoidance = formation::Avoidance::passage;
   formation::PassageParams passage{};
@@ -64,6 +66,7 @@ class FormationAgent final : public OnboardAgent {
   void report(EventBody body, Instant now);
 
   FormationAgentConfig config_;
+  RangeBudget range_;
   std::optional<formation::Change> change_;
   std::unique_ptr<formation::Execution> execution_;  ///< of change_; none before the first
   std::optional<VehicleState> state_;

@@ -10,6 +10,7 @@
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/ground_detections.hpp"
 #include "skein/mission/ground_hazards.hpp"
+#include "skein/mission/ground_return.hpp"
 #include "skein/mission/ground_routes.hpp"
 #include "skein/mission/ground_sites.hpp"
 #include "skein/mission/order_book.hpp"
@@ -24,6 +25,7 @@ struct GroundNodeConfig {
   TrackGroundConfig tracks{};     ///< of planes in formation; without planes it does nothing
   std::vector<Hazard> hazards{};  ///< known before the mission
   GroundDetectionsConfig detections{};
+  GroundReturnConfig returns{};
   SetupParams setup{};
   InstanceId instance{};  ///< of this program
 };
@@ -100,7 +102,7 @@ class GroundNode {
   [[nodiscard]] std::uint64_t dropped() const {
     return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
            tracks_.dropped() + sites_.dropped() + hazards_.dropped() + routes_.dropped() +
-           detections_.dropped();
+           detections_.dropped() + returns_.dropped();
   }
 
  private:
@@ -109,6 +111,7 @@ class GroundNode {
   void on_setup(const Setup& setup, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
+  [[nodiscard]] std::vector<VehicleId> concerned(VehicleId vehicle) const;
 
   GroundAgent agent_;
   FormationGround formation_;
@@ -120,6 +123,7 @@ class GroundNode {
   GroundHazards hazards_;
   GroundRoutes routes_;
   GroundDetections detections_;
+  GroundReturn returns_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

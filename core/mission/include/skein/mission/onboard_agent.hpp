@@ -95,6 +95,8 @@ class OnboardAgent {
   /// The telemetry of this moment; sent by the node at its own rate.
   [[nodiscard]] virtual Telemetry telemetry() const = 0;
   [[nodiscard]] virtual Counters counters() const = 0;
+  /// What is left of its range is for the way home.
+  [[nodiscard]] virtual bool range_spent() const { return false; }
 };
 
 }  // namespace skein::mission

@@ -9,6 +9,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/mission/onboard_agent.hpp"
+#include "skein/mission/range_budget.hpp"
 #include "skein/planning/avoidance.hpp"
 
 namespace skein::mission {
@@ -47,6 +48,7 @@ class TrackAgent final : public OnboardAgent {
   [[nodiscard]] Instant next_timeout() const override { return next_; }
   [[nodiscard]] Telemetry telemetry() const override;
   [[nodiscard]] Counters counters() const override;
+  [[nodiscard]] bool range_spent() const override { return range_spent_; }
 
   /// It is in its place, or has none.
   [[nodiscard]] bool in_place() const { return !flown_ || arrived_; }
@@ -55,6 +57,7 @@ class TrackAgent final : public OnboardAgent {
   void on_flight(const TrackFlight& flight, Instant now);
   [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const TrackFlight& flight,
                                                             Instant now) const;
+  void on_return_flight(const ReturnFlight& message, Instant now);
   void on_command(const Command& command, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void step(Instant now);
@@ -63,18 +66,20 @@ class TrackAgent final : public OnboardAgent {
   void watch_range(Instant now);
   void say_status(Instant now);
   [[nodiscard]] double off_m(Instant now) const;
-  [[nodiscard]] double range_left_m() const;
+  [[nodiscard]] double range_left_m() const { return range_.left_m(); }
   /// On the track, and not in the orbit at its end.
   [[nodiscard]] bool forming(Instant now) const;
   void report(EventBody body, Instant now);
 
   TrackAgentConfig config_;
+  RangeBudget range_;
   std::unique_ptr<Flight> flight_;
   KnownHazards hazards_;
   std::optional<VehicleState> state_;
   std::optional<TrackFlight> next_flight_;  ///< taken up, and not begun yet
   std::optional<TrackFlight> flown_;        ///< none where it has left its formation
   std::uint32_t number_ = 0;                ///< of the newest that was taken up
+  std::uint32_t return_plan_ = 0;           ///< of the way home that it flies
   std::uint32_t refused_ = 0;
   CommandFilter commands_;
   bool ordered_ = false;  ///< to hold or to come home

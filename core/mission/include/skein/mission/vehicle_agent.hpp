@@ -51,6 +51,7 @@ class VehicleAgent final : public OnboardAgent {
   [[nodiscard]] Telemetry telemetry() const override;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const override;
+  [[nodiscard]] bool range_spent() const override;
 
  private:
   class Impl;

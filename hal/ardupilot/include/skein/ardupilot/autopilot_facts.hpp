@@ -49,6 +49,8 @@ struct AutopilotFacts {
   bool take(const mavlink::Packet& packet, Instant now);
   /// Told, and it would arm or is not asked to look.
   [[nodiscard]] bool prearm_good() const;
+  /// What SYS_STATUS has of the first battery; kBatteryNotTold where it is not measured.
+  [[nodiscard]] std::uint8_t battery_percent() const;
   /// It would arm in another mode, into which a companion that launches it puts it.
   [[nodiscard]] bool only_mode_forbids_arming() const;
 };

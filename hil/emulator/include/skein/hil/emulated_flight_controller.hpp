@@ -49,6 +49,7 @@ class EmulatedFlightController {
   ///   silent on|off         it sends nothing, but hears and flies on
   ///   position lost|good    the navigation filter
   ///   prearm REASON         it would not arm, and says why; without a reason: it would again
+  ///   battery PERCENT       so much is left of it from now on, as its gauge tells, too
   /// Fails with what is wrong with the line, or what the autopilot refused.
   [[nodiscard]] Result<void> interfere(std::string_view line, Instant now);
 

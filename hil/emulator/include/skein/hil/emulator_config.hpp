@@ -45,6 +45,8 @@ struct EmulatorConfig {
   double airspeed_max_mps = 70.0;
   double turn_radius_m = 150.0;  ///< at cruise, that the bank limit must allow
 
+  double battery_mah = 16000.0;  ///< BATT_CAPACITY; 60 A at full throttle and 0.5 A besides
+
   Vec2 wind_mps{0.0, 0.0};      ///< where the air moves to, mission frame
   double gusts_wind_mps = 0.0;  ///< Dryden gusts of a wind of this speed at 6 m; 0 for none
   bool noise = true;            ///< of the sensors

@@ -41,6 +41,13 @@ struct ProgramsEnd {
   std::uint64_t pick = 0;                              ///< among those that have the role
   std::optional<Duration> sinks_after = std::nullopt;  ///< a multirotor comes down where it is
 };
+/// A cell of the vehicle's battery fails: at once no more than that is left of it, as its gauge
+/// tells. A vehicle to which that happens has a battery that, full, lasts for its range down to
+/// its reserve.
+struct BatteryFalls {
+  VehicleId vehicle;
+  double percent = 0.0;
+};
 /// The vehicle takes off only then.
 struct LateStart {
   VehicleId vehicle;
@@ -81,7 +88,8 @@ struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
   std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff,
-               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, Healing>
+               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, BatteryFalls,
+               Healing>
       what;
 };
 

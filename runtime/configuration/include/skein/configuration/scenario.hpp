@@ -58,16 +58,18 @@ struct ScenarioHazard {
   Instant known_from{};  ///< at the epoch: known before the mission
 };
 
-enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss, flood };
+enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss, flood, battery };
 
 /// Something that goes wrong.
 struct Fault {
   Instant at{};
   FaultKind kind = FaultKind::partition;
-  Duration duration{};                         ///< of a partition, of loss, of a flood
-  VehicleId vehicle;                           ///< that is killed, or floods; 0 = ground station
+  Duration duration{};  ///< of a partition, of loss, of a flood
+  /// That is killed or floods, 0 = ground station; or whose battery falls.
+  VehicleId vehicle;
   std::vector<std::vector<VehicleId>> groups;  ///< that hear themselves only; 0 = ground station
   double loss_ratio = 0.0;                     ///< in place of the radio's
+  double battery_percent = 0.0;                ///< that it falls to
 };
 
 /// Published values of one site, to be printed beside ours. Mission time.
