@@ -119,12 +119,13 @@ void mark_odd(std::vector<PreflightRow>& rows, bool PreflightRow::Odd::*odd,
   }
   for (auto& row : rows) {
     if (!row.counts) continue;
-    const auto [among, value] = value_of(*row.told);
-    if (value.empty()) continue;
-    const auto& values = counts[among];
-    const int own = values.at(value);
-    row.odd.*odd = std::ranges::any_of(
-        values, [&](const auto& other) { return other.first != value && other.second >= own; });
+    const auto own = value_of(*row.told);
+    if (own.second.empty()) continue;
+    const auto& values = counts[own.first];
+    const int as_own = values.at(own.second);
+    row.odd.*odd = std::ranges::any_of(values, [&](const auto& other) {
+      return other.first != own.second && other.second >= as_own;
+    });
   }
 }
 
