@@ -49,8 +49,8 @@ function(_skein_tests name)
   _skein_precompiled(${name}_test test)
   add_test(NAME ${name} COMMAND ${name}_test)
   set(seconds 300)
-  if(SKEIN_SANITIZE)
-    set(seconds 1800)  # Eigen is slow without optimisation, slower yet on a busy machine
+  if(SKEIN_SANITIZE OR CMAKE_CROSSCOMPILING)
+    set(seconds 1800)  # Eigen is slow without optimisation and under QEMU, slower yet on a busy machine
   endif()
   set_tests_properties(${name} PROPERTIES TIMEOUT ${seconds})
 endfunction()
