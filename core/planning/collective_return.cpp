@@ -71,6 +71,16 @@ struct Placed {
   ReturnTrack track;
 };
 
+/// That are tried: none, then in steps that widen.
+std::vector<double> delays_up_to(double most_s) {
+  std::vector<double> all{0.0};
+  while (true) {
+    const double next_s = all.back() + std::max(kDelayStep_s, kDelayStep * all.back());
+    if (next_s > most_s) return all;
+    all.push_back(next_s);
+  }
+}
+
 bool has_sense(const ReturningVehicle& v) {
   if (v.flies) {
     const TimedPath& timed = *v.flies;
@@ -387,12 +397,11 @@ class Planner {
     };
     std::vector<Candidate> all;
     const auto& ways = homecomings_[i].ways;
-    const double delay_max_s = to_seconds(params_.delay_max);
+    const auto delays = delays_up_to(to_seconds(params_.delay_max));
     for (std::size_t w = 0; w < ways.size(); ++w) {
       const double length_m = ways[w].length_m;
       const double slowest_s = length_m / std::max(v.speed_min_mps, kSpeedMin_mps);
-      for (double delay_s = 0.0; delay_s <= delay_max_s;
-           delay_s += std::max(kDelayStep_s, kDelayStep * delay_s)) {
+      for (const double delay_s : delays) {
         const double flown_s = length_m / v.speed_mps + delay_s;
         const double extra_m = delay_s * v.speed_mps;
         const bool slower = delay_s == 0.0 || (v.speed_min_mps > 0.0 && flown_s <= slowest_s);

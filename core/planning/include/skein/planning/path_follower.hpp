@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <limits>
-
 #include <cstddef>
+#include <limits>
 
 #include "skein/base/static_vector.hpp"
 #include "skein/domain/path.hpp"
@@ -14,7 +13,7 @@ namespace skein::planning {
 struct PathFollowerParams {
   double cross_track_gain_per_m = 0.01;  ///< tuned in path_follower_test
   double along_track_gain_per_s = 0.3;   ///< metres behind to m/s faster
-  double turn_lead_s = 0.0;  ///< turns are begun so much earlier: the time that rolling takes
+  double turn_lead_s = 0.0;      ///< turns are begun so much earlier: the time that rolling takes
   double airspeed_lead_s = 1.0;  ///< lag of the autopilot's airspeed loop, to be inverted
   /// Errors of the heading are taken back at that rate, or at the vehicle's own if it is lower: an
   /// aircraft answers late, and one that is asked for more swings.
