@@ -86,7 +86,11 @@ WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const H
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
                std::vector<Vec2> search)
-    : vehicle_{vehicle}, avoidance_{avoidance}, search_{std::move(search)} {}
+
+    : vehicle_{vehicle},
+      planning_radius_m_{vehicle.planning_radius_m()},
+      avoidance_{avoidance},
+      search_{std::move(search)} {}
 
 void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
                    Instant now) {
@@ -165,10 +169,10 @@ Vec2 orbit_centre(const Pose2& from, double radius_m) {
 }  // namespace
 
 Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const {
-  Orbit best{1.0 / vehicle_.planning_radius_m(), -std::numeric_limits<double>::infinity()};
+  Orbit best{1.0 / planning_radius_m_, -std::numeric_limits<double>::infinity()};
   for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
     for (const double side : {1.0, -1.0}) {
-      const double radius = factor * vehicle_.planning_radius_m();
+      const double radius = factor * planning_radius_m_;
       const Vec2 centre = orbit_centre(at, side * radius);
       double clearance = kHoldClearanceM;
       for (const Hazard& h : hazards) {
@@ -184,7 +188,7 @@ Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& haz
 }
 
 Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const {
-  const double planning_radius = vehicle_.planning_radius_m();
+  const double planning_radius = planning_radius_m_;
   Path path{from, {}};
   if (is_free(from, planning_radius, hazards)) return path;
   // What need not be entered is the planner's to find its way around.
@@ -212,13 +216,12 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
   double shortest_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kWaysOut; ++i) {
     const double heading = wrap_pi(from.heading_rad + i * kTwoPi / kWaysOut);
-    const Vec2 there =
-        from.position() + kWayOutRadii * vehicle_.planning_radius_m() * unit_vector(heading);
+    const Vec2 there = from.position() + kWayOutRadii * planning_radius_m_ * unit_vector(heading);
     const Pose2 to{there.x(), there.y(), heading};
     const Orbit room = best_orbit(to, hazards);
     if (room.clearance_m < kHoldClearanceM) continue;
     const auto leg =
-        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
+        planning::shortest_clear_path(avoidance_, from, to, planning_radius_m_, hazards);
     if (!leg || leg->length_m() >= shortest_m) continue;
     shortest_m = leg->length_m();
     way = *leg;
@@ -315,7 +318,7 @@ double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards)
   const Vec2 way = home_ - from.position();
   const double heading = way.norm() > 1.0 ? std::atan2(way.y(), way.x()) : from.heading_rad;
   const Pose2 to{home_.x(), home_.y(), heading};
-  const double radius = vehicle_.planning_radius_m();
+  const double radius = planning_radius_m_;
   const auto clear = planning::shortest_clear_length(avoidance_, from, to, radius, hazards);
   return clear ? *clear : planning::shortest_dubins_length(from, to, radius);
 }
@@ -338,7 +341,7 @@ void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard
         along.norm() > 0.01 ? std::atan2(along.y(), along.x()) : from.heading_rad;
     const Pose2 to{waypoints[i].x(), waypoints[i].y(), heading};
     const auto leg =
-        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
+        planning::shortest_clear_path(avoidance_, from, to, planning_radius_m_, hazards);
     // A point that cannot be reached clear of hazards is left out; a full path ends in an orbit,
     // and the rest of the route is planned when that is resumed.
     if (!leg) {

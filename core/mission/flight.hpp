@@ -33,6 +33,10 @@ class Flight {
   [[nodiscard]] Pose2 pose_at(Instant t) const { return plan_.timed.pose_at(t); }
   [[nodiscard]] const FlightPlan& plan() const { return plan_; }
 
+  /// Of the turns of all plans from now on; the vehicle's own to begin with. Not below its turn
+  /// radius.
+  void set_planning_radius(double radius_m) { planning_radius_m_ = radius_m; }
+
   /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`; at
   /// `speed_mps` over the ground, or at cruise speed. False, and nothing changed, when that has too
   /// many pieces.
@@ -98,6 +102,7 @@ class Flight {
   void pass_waypoints(Instant now);
 
   VehicleSpec vehicle_;
+  double planning_radius_m_ = 0.0;
   planning::AvoidanceParams avoidance_;
   std::vector<Vec2> search_;  ///< what is left of the route; its last point is never dropped
   std::vector<double>

@@ -27,6 +27,7 @@ VehicleAgentConfig with_margin(VehicleAgentConfig config) {
 Ownship::Ownship(const VehicleAgentConfig& config)
     : config_{with_margin(config)},
       range_{config.vehicle},
+      turn_room_{config.vehicle, config.airspeed_change_mps2},
       take_off_{config.vehicle},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
@@ -41,6 +42,12 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
   }
   flight_.start(state.pose(), hazards(), range_to_spend(now), now);
   return !config_.route || told_route_;
+}
+
+bool Ownship::measures_wind(const VehicleState& state) {
+  if (!turn_room_.on_state(state)) return false;
+  flight_.set_planning_radius(planning_radius_m());
+  return true;
 }
 
 void Ownship::give_route(const TimedPath& route) {
@@ -119,13 +126,13 @@ double Ownship::range_left(Instant at) const {
 }
 
 double Ownship::range_to_spend(Instant at) const {
-  return range_left(at) - kTwoPi * spec().planning_radius_m();
+  return range_left(at) - kTwoPi * planning_radius_m();
 }
 
 double Ownship::range_for(const Site& site, Instant at) const {
   if (!comes_home()) return range_to_spend(at);
   const Pose2 there{site.position.x(), site.position.y(), 0.0};
-  const double turn_m = kTwoPi * spec().planning_radius_m();
+  const double turn_m = kTwoPi * planning_radius_m();
   return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
          turn_m;
 }
@@ -154,7 +161,7 @@ planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
   return {vehicle.id,
           pose,
           vehicle.cruise_speed_mps,
-          vehicle.planning_radius_m(),
+          planning_radius_m(),
           range_left(at),
           vehicle.final_approach_m,
           vehicle.assess_radius_m,

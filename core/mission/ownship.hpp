@@ -9,6 +9,7 @@
 #include "skein/mission/range_budget.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "take_off.hpp"
+#include "turn_room.hpp"
 
 namespace skein::mission {
 
@@ -24,6 +25,8 @@ class Ownship {
   /// Of every state, before on_state(): true where what is left of the range is another than by
   /// flying on.
   bool measures_range(const VehicleState& state) { return range_.on_state(state); }
+  /// Of every state, before on_state(): true where turns are planned at another radius from now on.
+  bool measures_wind(const VehicleState& state);
   /// False where it is no news.
   bool on_hazard(const HazardReport& report);
   void use_load();
@@ -33,6 +36,9 @@ class Ownship {
   [[nodiscard]] const VehicleState& state() const { return state_; }
   [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_.all(); }
   [[nodiscard]] std::uint8_t loads() const { return loads_; }
+  /// Of the turns that are planned now: the vehicle's, or wider where the wind takes that.
+  [[nodiscard]] double planning_radius_m() const { return turn_room_.radius_m(); }
+  [[nodiscard]] bool lacks_turn_room() const { return turn_room_.lacks_room(); }
   [[nodiscard]] Flight& flight() { return flight_; }
   [[nodiscard]] const Flight& flight() const { return flight_; }
 
@@ -88,6 +94,7 @@ class Ownship {
   VehicleAgentConfig config_;
   VehicleState state_;
   RangeBudget range_;
+  TurnRoom turn_room_;
   TakeOff take_off_;
   Flight flight_;
   KnownHazards hazards_;

@@ -145,6 +145,7 @@ std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site
   const Instant start = now + kLead;
   Flight& flight = ownship_.flight();
   VehicleSpec vehicle = ownship_.spec();
+  vehicle.turn_radius_margin = ownship_.planning_radius_m() / vehicle.turn_radius_m;
   if (relief) {  // at any radius that it can fly
     vehicle.sensor_radius_m =
         std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());

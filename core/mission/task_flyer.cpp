@@ -6,6 +6,7 @@
 
 #include "skein/base/assert.hpp"
 #include "skein/base/overloaded.hpp"
+#include "skein/planning/avoidance.hpp"
 #include "skein/planning/dubins.hpp"
 #include "task_timing.hpp"
 
@@ -19,6 +20,7 @@ constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 /// A plan that starts now, for an award that came after the agreed moment, starts so late that
 /// control can take it over.
 constexpr Duration kLateStart = std::chrono::milliseconds{200};
+constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// Nearer to its time a new path would gain little.
@@ -101,7 +103,7 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
     }
   }
   const double way =
-      planning::shortest_to_point(pose, announcement.site.position, vehicle.planning_radius_m())
+      planning::shortest_to_point(pose, announcement.site.position, ownship_.planning_radius_m())
           .length_m();
   auto self = ownship_.candidate(pose, announcement.formed_at);
   self.range_left_m = ownship_.range_for(announcement.site, announcement.formed_at);
@@ -263,11 +265,22 @@ void TaskFlyer::commit_delivery(Instant now) {
   Flight& flight = ownship_.flight();
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
-  const auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
+  auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
   if (!rest) return;
-  const double tail = flight.hold_curvature(timed.path.end(), ownship_.hazards());
+  run_out(*rest, timed.speed_mps);
+  const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
   if (flight.continue_with(at, *rest, tail, now, timed.speed_mps)) {
     task_->fire(TaskFlight::Event::committed);
+  }
+}
+
+/// Straight on over the site, where no hazard is: the turn away, begun early, would be over it.
+void TaskFlyer::run_out(Path& path, double speed_mps) const {
+  const double length_m = kRunOut * ownship_.config().turn_lead_s * speed_mps;
+  Path beyond{path.end(), {}};
+  (void)beyond.append(Segment{0.0, length_m});
+  if (length_m > 0.0 && planning::is_clear(beyond, ownship_.hazards())) {
+    (void)path.append(beyond);  // without room for it the turn follows at once
   }
 }
 

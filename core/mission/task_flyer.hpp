@@ -71,6 +71,7 @@ class TaskFlyer {
                                                       Instant start, Instant now);
   void keep_time(Instant now);
   void commit_delivery(Instant now);
+  void run_out(Path& path, double speed_mps) const;
   void begin(Instant now);
   void end(Instant now);
   void drop(Instant now);

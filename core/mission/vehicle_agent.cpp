@@ -13,6 +13,7 @@ namespace skein::mission {
 void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   const bool starts = !ownship_.flight().started();
   if (ownship_.measures_range(state)) failsafe_.look_again(now);
+  watch_wind(state, now);
   if (!ownship_.on_state(state, now)) {
     outbox.report(event::VehicleTrouble{event::Trouble::route_not_flown}, {}, {}, now);
   }
@@ -23,6 +24,17 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
     obey(*std::exchange(order_at_start_, {}), now);
   }
   step(now);
+}
+
+/// What is flown for a time agreed on is not planned anew: the next plan is the wider one.
+void VehicleAgent::Impl::watch_wind(const VehicleState& state, Instant now) {
+  const bool lacked = ownship_.lacks_turn_room();
+  const bool replan = ownship_.measures_wind(state) && ownship_.flight().started() &&
+                      ownship_.flight().searching();
+  if (ownship_.lacks_turn_room() && !lacked) {
+    outbox.report(event::VehicleTrouble{event::Trouble::turns_not_held}, {}, {}, now);
+  }
+  if (replan) ownship_.search(now);
 }
 
 void VehicleAgent::Impl::on_message(const Message& message, Instant now) {

@@ -58,6 +58,7 @@ class VehicleAgent::Impl {
   void on_telemetry(const Telemetry& message, Instant now);
   [[nodiscard]] RouteStanding route_standing() const;
   void watch_range(Instant now);
+  void watch_wind(const VehicleState& state, Instant now);
   void respond(const Failsafe::Response& response, Instant now);
 
   Ownship ownship_;

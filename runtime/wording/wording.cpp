@@ -120,7 +120,9 @@ std::string_view sentence_of(event::Trouble trouble) {
       "neither its speed nor another path keeps its time in this wind",
       "it is not where its route has it at this time: the route is not flown",
       "another vehicle uses this id; this one bids and leads no more",
-      "it has started anew, and holds until it is told which orders stand"};
+      "it has started anew, and holds until it is told which orders stand",
+      "its circles would have to be wider in this wind than there is room for: it flies off their "
+      "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind"};
   return sentence_in(kSentences, trouble);
 }
 

@@ -24,6 +24,12 @@ struct VehicleAgentConfig {
   std::optional<TimedPath> route;  ///< flown first, to its end unless a task comes between
   std::vector<Hazard> hazards;     ///< known before the mission
   Duration status_period = std::chrono::seconds{1};
+  /// Of a fixed wing: how fast its airspeed changes in turns. Turns are planned so wide that the
+  /// wind takes no more. None: it follows at once, and turns are as the vehicle has them.
+  std::optional<double> airspeed_change_mps2{};
+  /// The follower begins turns so much before the path does: a delivery's run goes straight on for
+  /// longer than that.
+  double turn_lead_s = 0.0;
 };
 
 /// All decisions of one vehicle of a coalition: search, survey, lead, bid, execute, hold.
