@@ -36,6 +36,26 @@ EventBody body_of(EventKind kind) {
   return body_at(static_cast<std::size_t>(kind));
 }
 
+std::optional<bool> tells_piloted(const EventBody& news) {
+  const auto* order = std::get_if<event::Commanded>(&news);
+  if (order != nullptr && order->command == CommandKind::give_back) return false;
+  const auto* told = std::get_if<event::FlightWarning>(&news);
+  if (told == nullptr) return std::nullopt;
+  switch (told->notice.news) {
+    case AutopilotNews::mode_changed:
+    case AutopilotNews::armed_by_others:
+    case AutopilotNews::not_obeying:
+    case AutopilotNews::not_climbed:
+    case AutopilotNews::still_piloted:
+    case AutopilotNews::not_given_back:
+      return true;
+    case AutopilotNews::flying:
+      return false;
+    default:
+      return std::nullopt;
+  }
+}
+
 event::FormationWarning formation_warning(event::FormationNews news,
                                           std::vector<VehicleId> vehicles) {
   const std::size_t named = std::min(vehicles.size(), event::kNamedMax);

@@ -129,6 +129,15 @@ void Flight::replace(const TimedPath& timed) {
   fresh_ = true;
 }
 
+void Flight::change_height(double offset_m, Instant now) {
+  if (offset_m == plan_.height_to_m) return;
+  plan_.height_from_m = height_offset_m(plan_, now);
+  plan_.height_to_m = offset_m;
+  plan_.height_since = now;
+  ++plan_.number;
+  fresh_ = true;
+}
+
 bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now,
                            std::optional<double> speed_mps) {
   SKEIN_ASSERT(started() && at >= now);

@@ -51,6 +51,9 @@ class Flight {
   /// Home by that way, which begins where this plan is then. False, and nothing changed, when that
   /// has too many pieces.
   bool return_along(const TimedPath& way, Instant now);
+  /// The plan's height from now on goes to that, from the vehicle's layer; its path and times stay,
+  /// and whatever is planned next is flown there, too.
+  void change_height(double offset_m, Instant now);
   [[nodiscard]] const Vec2& home() const { return home_; }
   /// An orbit at that place, where it can be reached clear of hazards and `range_m` lasts there and
   /// home again; else, and without a place, here. The search goes on from there later.

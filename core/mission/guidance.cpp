@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/guidance.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -29,8 +30,16 @@ PositionSetpoint setpoint_on(const MotionTrack& track, Instant now) {
   return setpoint;
 }
 
+/// Up or down, m/s.
+double height_rate_mps(const FlightPlan& plan, Instant at) {
+  const double from_m = height_offset_m(plan, at);
+  if (from_m == plan.height_to_m || at < plan.height_since) return 0.0;
+  return plan.height_to_m > from_m ? kHeightRate_mps : -kHeightRate_mps;
+}
+
 /// The path's point at `now`: velocity along it, acceleration towards the centre of its arc.
-PositionSetpoint setpoint_on(const TimedPath& path, const VehicleSpec& vehicle, Instant now) {
+PositionSetpoint setpoint_on(const FlightPlan& plan, const VehicleSpec& vehicle, Instant now) {
+  const TimedPath& path = plan.timed;
   const double distance_m = path.distance_at(now);
   const Pose2 pose = path.pose_at_distance(distance_m);
   const double speed_mps = now < path.start_time ? 0.0 : path.speed_mps;
@@ -39,9 +48,10 @@ PositionSetpoint setpoint_on(const TimedPath& path, const VehicleSpec& vehicle, 
   PositionSetpoint setpoint;
   setpoint.x_m = pose.x_m;
   setpoint.y_m = pose.y_m;
-  setpoint.z_m = vehicle.height_m;
+  setpoint.z_m = vehicle.height_m + height_offset_m(plan, now);
   setpoint.vx_mps = velocity.x();
   setpoint.vy_mps = velocity.y();
+  setpoint.vz_mps = height_rate_mps(plan, now);
   setpoint.ax_mps2 = acceleration.x();
   setpoint.ay_mps2 = acceleration.y();
   setpoint.yaw_rad = pose.heading_rad;
@@ -49,11 +59,11 @@ PositionSetpoint setpoint_on(const TimedPath& path, const VehicleSpec& vehicle, 
 }
 
 /// Straight up or down to its height: there alone it is clear of vehicles in other layers.
-PositionSetpoint back_to_height(const VehicleSpec& vehicle, const VehicleState& state) {
+PositionSetpoint back_to_height(double height_m, const VehicleState& state) {
   PositionSetpoint setpoint;
   setpoint.x_m = state.x_m;
   setpoint.y_m = state.y_m;
-  setpoint.z_m = vehicle.height_m;
+  setpoint.z_m = height_m;
   setpoint.yaw_rad = state.heading_rad;
   return setpoint;
 }
@@ -73,6 +83,13 @@ Deviation off_point(const FlightPlan& plan, const VehicleState& state) {
 
 }  // namespace
 
+double height_offset_m(const FlightPlan& plan, Instant at) {
+  const double way_m = plan.height_to_m - plan.height_from_m;
+  const double done_m = kHeightRate_mps * std::max(0.0, to_seconds(at - plan.height_since));
+  if (done_m >= std::abs(way_m)) return plan.height_to_m;
+  return plan.height_from_m + std::copysign(done_m, way_m);
+}
+
 HeldGuidance::HeldGuidance(const Guidance& held) : guidance{held} {
   if (const auto* plan = std::get_if<FlightPlan>(&guidance)) starts.emplace(plan->timed.path);
 }
@@ -82,10 +99,13 @@ Demand follow(const HeldGuidance& held, const planning::PathFollowerParams& para
   if (const auto* track = std::get_if<MotionTrack>(&held.guidance)) return setpoint_on(*track, now);
   const auto& plan = std::get<FlightPlan>(held.guidance);
   if (vehicle.is_copter()) {
-    const bool in_layer = std::abs(state.z_m - vehicle.height_m) <= kLayer_m;
-    return in_layer ? setpoint_on(plan.timed, vehicle, now) : back_to_height(vehicle, state);
+    const double height_m = vehicle.height_m + height_offset_m(plan, now);
+    const bool in_layer = std::abs(state.z_m - height_m) <= kLayer_m;
+    return in_layer ? setpoint_on(plan, vehicle, now) : back_to_height(height_m, state);
   }
-  return planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
+  Setpoint setpoint = planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
+  setpoint.height_m += height_offset_m(plan, now);
+  return setpoint;
 }
 
 Deviation deviation(const HeldGuidance& held, const VehicleSpec& vehicle, const VehicleState& state,

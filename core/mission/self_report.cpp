@@ -7,7 +7,19 @@
 #include <cstdio>
 #include <tuple>
 
+#include "names.hpp"
+
 namespace skein::mission {
+namespace {
+
+std::string text_of(const SeparationConflict& conflict, VehicleId self) {
+  const std::string near = name_of(conflict.other) + " comes too near: ";
+  if (conflict.gives_way == self) return near + "it gives way by its height";
+  if (conflict.gives_way == VehicleId{}) return near + "it has no room to give way";
+  return near + name_of(conflict.gives_way) + " gives way";
+}
+
+}  // namespace
 
 void SelfReport::on_plan(const FlightPlan& plan) {
   plan_ = plan;
@@ -69,6 +81,7 @@ std::vector<std::string> SelfReport::problems(const Facts& facts, Instant now) c
     all.push_back("the ground station has " + text_of(*facts.differs) + ": it holds");
   }
   if (facts.range_spent) all.emplace_back("its range is used up, but for the way home");
+  if (facts.separation) all.push_back(text_of(*facts.separation, base_.vehicle));
   if (!facts.knows_orders) all.emplace_back("it does not know which orders stand: it holds");
   const auto more = [&all](std::uint64_t count, std::uint64_t told, const char* what) {
     if (count > told) all.push_back(std::to_string(count - told) + what);

@@ -50,6 +50,7 @@ class SelfReport {
     const SetupDifference* differs = nullptr;  ///< from the ground station
     bool knows_orders = true;
     bool range_spent = false;  ///< but for the way home
+    std::optional<SeparationConflict> separation = {};
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }

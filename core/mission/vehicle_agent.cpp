@@ -45,7 +45,7 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                  [&](const SiteReport& m) { on_site(m, now); },
                  [&](const HazardReport& m) { on_hazard(m, now); },
                  [&](const Telemetry& m) { on_telemetry(m, now); },
-                 [](const AuthorisationRequest&) {}, [](const MissionEvent&) {},
+                 [](const AuthorisationRequest&) {}, [&](const MissionEvent& m) { on_event(m); },
                  [](const formation::Change&) {}, [](const FormationStatus&) {},
                  [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
                  [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
@@ -74,6 +74,7 @@ void VehicleAgent::Impl::step(Instant now) {
   watch_range(now);
   idle(now);
   pump(now);
+  watch_separation(now);
   check();
 }
 
@@ -214,7 +215,7 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  if (!flight.started() || busy || routes_.awaits()) return now;
+  if (!flight.started() || busy || routes_.awaits() || separation_.watches()) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});
   if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
@@ -278,6 +279,11 @@ Instant VehicleAgent::quiet_until(Instant now) const { return impl_->quiet_until
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }
 Counters VehicleAgent::counters() const { return impl_->counters(); }
+void VehicleAgent::on_piloted(bool piloted) { impl_->on_piloted(piloted); }
+bool VehicleAgent::watches_others() const { return impl_->separation().watches(); }
+std::optional<SeparationConflict> VehicleAgent::separation_conflict() const {
+  return impl_->separation().conflict();
+}
 bool VehicleAgent::range_spent() const { return impl_->range_spent(); }
 
 }  // namespace skein::mission

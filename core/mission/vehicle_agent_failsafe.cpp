@@ -34,11 +34,26 @@ void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
 void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
   const bool other =
       message.vehicle == ownship_.spec().id && message.instance != ownship_.config().instance;
+  if (ownship_.flight().started()) separation_.on_telemetry(message, ownship_.state(), now);
   if (!other) return;
   const auto* response = failsafe_.update(now, {.id_in_use = true});
   if (response == nullptr) return;
   outbox.report(event::VehicleTrouble{event::Trouble::id_in_use}, {}, {}, now);
   respond(*response, now);
+}
+
+void VehicleAgent::Impl::on_event(const MissionEvent& message) {
+  if (const auto piloted = tells_piloted(message.body)) {
+    separation_.on_piloted(message.vehicle, *piloted);
+  }
+}
+
+/// By its height alone: what it flies, and when, stays.
+void VehicleAgent::Impl::watch_separation(Instant now) {
+  if (!separation_.watches()) return;
+  separation_.step({ownship_.state(), activity()}, now);
+  while (auto news = separation_.poll_event()) outbox.report(*std::move(news), {}, {}, now);
+  ownship_.flight().change_height(separation_.offset_m(), now);
 }
 
 void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {

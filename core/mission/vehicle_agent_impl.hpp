@@ -8,6 +8,7 @@
 #include "relay_orbit.hpp"
 #include "route_flyer.hpp"
 #include "scout.hpp"
+#include "skein/mission/separation_watch.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "task_flyer.hpp"
 
@@ -17,7 +18,10 @@ namespace skein::mission {
 /// because of its Failsafe is in vehicle_agent_failsafe.cpp.
 class VehicleAgent::Impl {
  public:
-  explicit Impl(const VehicleAgentConfig& config) : outbox{config.vehicle.id}, ownship_{config} {}
+  explicit Impl(const VehicleAgentConfig& config)
+      : outbox{config.vehicle.id},
+        ownship_{config},
+        separation_{config.protocol, config.vehicle.id, config.vehicle.height_m} {}
 
   void on_state(const VehicleState& state, Instant now);
   void on_message(const Message& message, Instant now);
@@ -30,6 +34,8 @@ class VehicleAgent::Impl {
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
+  void on_piloted(bool piloted) { separation_.on_piloted(outbox.self, piloted); }
+  [[nodiscard]] const SeparationWatch& separation() const { return separation_; }
   [[nodiscard]] bool range_spent() const { return failsafe_.facts().range_spent; }
 
   Outbox outbox;
@@ -56,9 +62,11 @@ class VehicleAgent::Impl {
   void on_site(const SiteReport& message, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void on_telemetry(const Telemetry& message, Instant now);
+  void on_event(const MissionEvent& message);
   [[nodiscard]] RouteStanding route_standing() const;
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
+  void watch_separation(Instant now);
   void respond(const Failsafe::Response& response, Instant now);
 
   Ownship ownship_;
@@ -68,6 +76,7 @@ class VehicleAgent::Impl {
   TaskFlyer flyer_{ownship_, outbox};
   RouteFlyer routes_{ownship_, outbox};
   RelayOrbit relay_{ownship_};
+  SeparationWatch separation_;
   CommandFilter commands_;
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps

@@ -265,7 +265,8 @@ class VehicleNode::Impl {
                             .refused = refused,
                             .differs = setup.difference(kGroundStation),
                             .knows_orders = knows_orders,
-                            .range_spent = agent->range_spent()};
+                            .range_spent = agent->range_spent(),
+                            .separation = agent->separation_conflict()};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});
@@ -372,8 +373,10 @@ void VehicleNode::on_planning_result(const PlanningResult& result, Instant now) 
 }
 
 void VehicleNode::on_notice(const FlightNotice& notice) {
+  const EventBody news = event::FlightWarning{notice.what};
+  if (const auto piloted = tells_piloted(news)) impl_->agent->on_piloted(*piloted);
   if (!notice.warning) return;
-  impl_->report(event::FlightWarning{notice.what}, notice.time);
+  impl_->report(news, notice.time);
 }
 
 void VehicleNode::on_condition(const Condition& condition) { impl_->condition = condition; }

@@ -2,6 +2,7 @@
 #include "aircraft.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <type_traits>
 #include <utility>
 
@@ -20,6 +21,8 @@ namespace {
 /// An orbit in wind is flown some metres off its circle.
 constexpr double kOrbitClearance_m = 15.0;
 constexpr double kSink_mps = 1.0;
+/// A vehicle's height may change by that before it hears what is being said.
+constexpr double kHeightOnTheWay_m = 1.0;
 constexpr Duration kTelemetryPeriod = std::chrono::milliseconds{200};
 
 /// A number for an instance that no other life of any vehicle has.
@@ -97,6 +100,13 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   untold_.reset();
 }
 
+bool Aircraft::watches(const VehicleState& other) const {
+  if (!running() || what_.flies_formation) return false;
+  const double apart_m = std::max(0.0, std::abs(other.z_m - state_.z_m) - kHeightOnTheWay_m);
+  return node_->agent().watches_others() ||
+         mission::SeparationWatch::concerns(mission_.protocol, apart_m);
+}
+
 bool Aircraft::tell_state(Instant now) {
   untold_.emplace(local_state(), local(now));
   if (is_quiet(now)) return false;
@@ -146,6 +156,7 @@ void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
   mission::FlightPlan orbit = recorded_;
   ++orbit.number;
   orbit.timed = {};
+  orbit.height_from_m = orbit.height_to_m = mission::height_offset_m(recorded_, now);
   orbit.timed.start_time = local(now);
   orbit.timed.speed_mps = what_.spec.cruise_speed_mps;
   orbit.timed.path.start = state_.pose();
@@ -180,6 +191,7 @@ void Aircraft::follow(const mission::Guidance& guidance) {
     plan->number += numbers_before_;
     recorded_ = *plan;
     recorded_.timed.start_time -= clock_;
+    recorded_.height_since -= clock_;
   }
   guidance_.emplace(numbered);
 }

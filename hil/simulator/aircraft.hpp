@@ -56,6 +56,10 @@ class Aircraft {
     return mission::concerns(message, what_.spec.id) && setup_filter_->heeds(message, local(now));
   }
 
+  /// Does its node go by what that other vehicle tells of where it is, now? Otherwise telemetry
+  /// does no more than wake it.
+  [[nodiscard]] bool watches(const VehicleState& other) const;
+
   /// The node is told the state of this moment, or, where it is quiet, not before something else
   /// comes: then nothing is to be polled, and this is false. Precondition: running().
   bool tell_state(Instant now);

@@ -119,6 +119,7 @@ TeamMission fan(std::uint64_t seed) {
   team.wind.gust_mps = 0.5;
   team.wind.seed = seed;
   team.radio.range_m = 20'000.0;
+  team.protocol.separation_look_ahead = {};  // nobody helps the planned ways by a change of height
   team.duration_max = std::chrono::seconds{420};
   team.seed = seed;
   return team;

@@ -313,9 +313,9 @@ class Team {
 
   void broadcast(std::size_t from, mission::Message message, Instant now) {
     if (observer_.message) observer_.message(message);
-    const bool is_telemetry = std::holds_alternative<mission::Telemetry>(message);
     const std::size_t bytes = radio_.params().bytes_per_s ? bytes_of(message) : 0;
     const auto what = std::make_shared<const Content>(std::move(message));
+    const auto* telemetry = std::get_if<mission::Telemetry>(&std::get<mission::Message>(*what));
     // The ground station is the last node, and the first to hear.
     if (from != ground_index()) {
       post(from, ground_index(), hops_between(from, ground_index()), what, bytes, false, now);
@@ -326,7 +326,8 @@ class Team {
     positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
     for (const std::size_t to : near_) {
       if (to == from || to == ground_index()) continue;
-      post(from, to, near_hears ? 1 : hops_between(from, to), what, bytes, is_telemetry, now);
+      const bool only_wakes = telemetry != nullptr && !vehicles_[to].watches(telemetry->state);
+      post(from, to, near_hears ? 1 : hops_between(from, to), what, bytes, only_wakes, now);
     }
   }
 

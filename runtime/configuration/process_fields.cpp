@@ -205,6 +205,31 @@ void hazard_fields(FieldVisitor& v, Hazard& hazard) {
   v.number({"radius_m", "no path enters it", kRequired}, {1.0, 1e5, "m"}, hazard.radius_m);
 }
 
+namespace {
+
+void separation_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
+  v.number({"separation_horizontal_m",
+            "in flight, two vehicles that will be closer than this and less than "
+            "separation_vertical_m apart in height are warned of, and one of them gives way"},
+           {1.0, 1000.0, "m"}, p.separation_horizontal_m);
+  v.number({"separation_vertical_m",
+            "and who gives way leaves its height by 2 m more; less than the layers of the vehicles "
+            "are apart, by 3 m or more"},
+           {1.0, 1000.0, "m"}, p.separation_vertical_m);
+  seconds(v, {"separation_look_ahead_s", "so far ahead that is looked at; 0: it is not"},
+          {0.0, 120.0, "s"}, p.separation_look_ahead);
+  v.number({"separation_floor_m",
+            "above the origin: nobody gives way downwards to less; ground and trees below count "
+            "from there"},
+           {0.0, 10000.0, "m"}, p.separation_floor_m);
+  v.number({"separation_ceiling_m", "nobody gives way upwards to more"}, {1.0, 20000.0, "m"},
+           p.separation_ceiling_m);
+  v.require(p.separation_floor_m < p.separation_ceiling_m, "separation_ceiling_m",
+            "must be above separation_floor_m; mend one of them");
+}
+
+}  // namespace
+
 void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
   const Range short_time{0.001, 60.0, "s"};
   const Range long_time{0.1, 600.0, "s"};
@@ -235,6 +260,7 @@ void protocol_fields(FieldVisitor& v, coalition::ProtocolParams& p) {
           long_time, p.monitoring_interval);
   seconds(v, {"authorisation_lead_s", "time that the operator has at least to decide"},
           {0.0, 600.0, "s"}, p.authorisation_lead);
+  separation_fields(v, p);
 }
 
 namespace {

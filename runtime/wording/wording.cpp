@@ -478,6 +478,16 @@ struct News {
         "{:.0f} s",
         e.plan, e.vehicles, to_seconds(e.takes));
   }
+  std::string operator()(const event::SeparationWarning& e) const {
+    const std::string who = e.gives_way == VehicleId{}
+                                ? "neither has room to give way"
+                                : text_of(e.gives_way) + " gives way by its height";
+    return fmt::format("{} in {:.0f} s: {} to the side, {} in height; {}", text_of(e.other),
+                       to_seconds(e.in), metres(e.horizontal_m), metres(e.vertical_m), who);
+  }
+  std::string operator()(const event::SeparationRestored& e) const {
+    return "clear of " + text_of(e.other);
+  }
   std::string operator()(const event::ReturnAlone& e) const {
     return because(text_of(e.vehicle) + " comes home on its own way", e.detail);
   }

@@ -26,6 +26,14 @@ struct ProtocolParams {
   Duration cut_max = std::chrono::seconds{60};
   Duration authorisation_lead = std::chrono::seconds{8};  ///< what the operator has at least
 
+  // Separation, as all vehicles of a team watch it in flight: both of a pair go by the same.
+  double separation_horizontal_m = 20.0;  ///< two vehicles closer than this ...
+  double separation_vertical_m = 5.0;     ///< ... are to be at least that far apart in height
+  /// So far ahead their ways are looked at; 0: they are not watched.
+  Duration separation_look_ahead = std::chrono::seconds{20};
+  double separation_floor_m = 30.0;  ///< above the origin; nobody gives way downwards below it
+  double separation_ceiling_m = 10'000.0;  ///< nor upwards above this
+
   /// delta_max (eq. 20): from the announcement to the standing coalition.
   [[nodiscard]] Duration formation_time() const {
     return 3 * message_delay + allocation_time + margin;

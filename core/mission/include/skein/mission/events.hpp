@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "skein/idl/events.hpp"
@@ -15,6 +16,9 @@ static_assert(std::variant_size_v<EventBody::variant> ==
 
 /// That alternative, with its defaults.
 [[nodiscard]] EventBody body_of(EventKind kind);
+
+/// Does it say that others fly the vehicle, or that its program may again? Nothing of both: nothing.
+[[nodiscard]] std::optional<bool> tells_piloted(const EventBody& news);
 
 /// Names as many of them as it can.
 [[nodiscard]] event::FormationWarning formation_warning(event::FormationNews news,

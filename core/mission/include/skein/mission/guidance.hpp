@@ -13,10 +13,15 @@
 
 namespace skein::mission {
 
-/// What control follows: a path at a speed, at the vehicle's height, or a point that moves, of one
+/// What control follows: a path at a speed, at the vehicle's height or what the plan says off it, or a point that moves, of one
 /// that is flown by its position. Each ends in a hold. A newer one replaces an
 /// older one of either kind. Trivially copyable.
 using Guidance = std::variant<FlightPlan, MotionTrack>;
+
+/// A plan's height changes at that rate, of every vehicle.
+inline constexpr double kHeightRate_mps = 2.0;
+/// From the vehicle's layer, at that time.
+[[nodiscard]] double height_offset_m(const FlightPlan& plan, Instant at);
 
 /// Without a state for so long the flight controller is silent: nothing is asked of it.
 inline constexpr Duration kFlightControllerSilence = std::chrono::milliseconds{500};

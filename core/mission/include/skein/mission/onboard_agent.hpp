@@ -9,6 +9,7 @@
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/guidance.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/mission/separation_watch.hpp"
 #include "skein/planning/allocation.hpp"
 
 namespace skein::mission {
@@ -97,6 +98,13 @@ class OnboardAgent {
   [[nodiscard]] virtual Counters counters() const = 0;
   /// What is left of its range is for the way home.
   [[nodiscard]] virtual bool range_spent() const { return false; }
+  /// From now on others fly the aircraft, or this program again.
+  virtual void on_piloted(bool /*piloted*/) {}
+  /// It goes by the telemetry of others, wherever they are (SeparationWatch).
+  [[nodiscard]] virtual bool watches_others() const { return false; }
+  [[nodiscard]] virtual std::optional<SeparationConflict> separation_conflict() const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace skein::mission

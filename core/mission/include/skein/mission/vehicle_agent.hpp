@@ -58,6 +58,9 @@ class VehicleAgent final : public OnboardAgent {
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const override;
   [[nodiscard]] bool range_spent() const override;
+  void on_piloted(bool piloted) override;
+  [[nodiscard]] bool watches_others() const override;
+  [[nodiscard]] std::optional<SeparationConflict> separation_conflict() const override;
 
  private:
   class Impl;

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "skein/base/ids.hpp"
+#include "skein/base/time.hpp"
+#include "skein/coalition/protocol_params.hpp"
+#include "skein/domain/vehicle.hpp"
+#include "skein/mission/events.hpp"
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// That other one is, or is about to be, nearer than the minima.
+struct SeparationConflict {
+  VehicleId other;
+  VehicleId gives_way;  ///< 0: nobody can
+};
+
+/// Looks in flight whether others come too near, from what they tell of themselves, and has this
+/// vehicle give way by its height where the rule says so (docs/protocol.md). Others are taken to
+/// fly straight on at their height. Who gives way is worked out from what both sides know:
+///
+/// 1. a vehicle that a pilot flies, that is silent, or that does not watch keeps its height;
+/// 2. one that executes a task keeps it before one that does not;
+/// 3. else the lower number does.
+///
+/// Where the other one does not begin to within kPatience, this one gives way after all. Nothing is
+/// known of vehicles in other layers while nothing is wrong: then this costs nothing, and messages
+/// of theirs need not even be brought here (concerns()). Precondition of step(): the vehicle flies.
+class SeparationWatch {
+ public:
+  /// Not heard for so long, a vehicle is taken not to hear either.
+  static constexpr Duration kSilent = std::chrono::seconds{2};
+  /// It is not looked at any more, then; later where it is in a conflict.
+  static constexpr Duration kForgotten = std::chrono::seconds{5};
+  static constexpr Duration kForgottenInConflict = std::chrono::seconds{15};
+  static constexpr Duration kPatience = std::chrono::seconds{5};
+  /// Without a conflict for so long, two are clear of each other.
+  static constexpr Duration kClear = std::chrono::seconds{2};
+  /// Of one other vehicle a new conflict is told of no more often.
+  static constexpr Duration kToldEvery = std::chrono::seconds{10};
+  static constexpr std::size_t kVehiclesMax = 64;
+  /// Beyond the vertical minimum: what is left when a vehicle has given way; how far away another
+  /// one's height is looked at while nothing is wrong, which is less than two layers are apart.
+  static constexpr double kRoom_m = 2.0;
+
+  struct Self {
+    VehicleState state;
+    Activity activity = Activity::searching;
+  };
+
+  /// `layer_m`: the vehicle's own height, above the origin.
+  SeparationWatch(const coalition::ProtocolParams& params, VehicleId self, double layer_m);
+
+  /// Whether the watch of one vehicle wants to hear of another that far from its height, though it
+  /// knows of none.
+  [[nodiscard]] static bool concerns(const coalition::ProtocolParams& params, double apart_m) {
+    return params.separation_look_ahead > Duration{} &&
+           std::abs(apart_m) < params.separation_vertical_m + kRoom_m;
+  }
+
+  void on_telemetry(const Telemetry& other, const VehicleState& own, Instant now);
+  /// From now on others fly that vehicle, or its program again; itself, too.
+  void on_piloted(VehicleId who, bool piloted);
+  void step(const Self& self, Instant now);
+
+  /// It knows of others: step() is to be called with every state.
+  [[nodiscard]] bool watches() const { return !known_.empty() || target_.has_value(); }
+  /// From its layer, to which the vehicle is to change its height; 0: it flies there.
+  [[nodiscard]] double offset_m() const { return target_ ? *target_ - layer_m_ : 0.0; }
+  [[nodiscard]] std::optional<SeparationConflict> conflict() const;
+  [[nodiscard]] std::optional<EventBody> poll_event();
+
+ private:
+  struct Other {
+    VehicleState state;
+    Activity activity = Activity::searching;
+    Instant heard{};
+    Duration delay{};  ///< of its state, when it was heard
+    bool conflict = false;
+    bool yields = false;  ///< this one, to it
+    VehicleId gives_way;
+    Instant since{};     ///< the conflict began
+    double apart_m = 0;  ///< in height, then
+    Instant clear_since{};
+    bool told = false;
+    Instant told_at = Instant::min();
+  };
+  /// Of both when they are closest, as they fly now.
+  struct Approach {
+    double horizontal_m = 0.0;
+    double vertical_m = 0.0;
+    double in_s = 0.0;
+    double margin_m = 0.0;  ///< of what is not known of the way until then
+    double height_margin_m = 0.0;
+  };
+  [[nodiscard]] Approach approach(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] bool breaks(const Approach& a) const;
+  [[nodiscard]] bool still_breaks(const Approach& a, const Self& self, const Other& other) const;
+  [[nodiscard]] bool passes_near(const Self& self, const Other& other, Instant now) const;
+  void look(VehicleId id, Other& other, const Self& self, Instant now);
+  void begin(Other& other, const Approach& a, Instant now);
+  void end_when_clear(VehicleId id, Other& other, bool breaks, Instant now);
+  void decide(VehicleId id, Other& other, const Self& self, const Approach& a, Instant now);
+  [[nodiscard]] bool must_yield(VehicleId id, const Other& other, const Self& self,
+                                Instant now) const;
+  void tell(VehicleId id, Other& other, const Approach& a, Instant now);
+  [[nodiscard]] std::optional<double> height_for(VehicleId id, const Other& other, const Self& self,
+                                                 Instant now) const;
+  [[nodiscard]] std::optional<double> free_height(const Other& other, bool up, const Self& self,
+                                                  Instant now) const;
+  void keep_free(const Self& self, Instant now);
+  [[nodiscard]] bool any_conflict() const;
+
+  coalition::ProtocolParams params_;
+  VehicleId self_;
+  double layer_m_;
+  std::map<VehicleId, Other> known_;
+  std::set<VehicleId> piloted_;
+  std::optional<double> target_;  ///< height
+  Instant chosen_at_ = Instant::min();
+  std::deque<EventBody> events_;
+};
+
+}  // namespace skein::mission

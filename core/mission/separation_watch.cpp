@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/mission/separation_watch.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/mission/guidance.hpp"
+
+namespace skein::mission {
+namespace {
+
+/// What is not known of where a vehicle will be grows by so much: it may turn, and climb.
+constexpr double kMargin_mps = 1.0;
+constexpr double kHeightMargin_mps = 0.5;
+constexpr double kHeightMarginMost_m = 1.0;
+/// A conflict ends only beyond these.
+constexpr double kClearFactor = 1.5;
+constexpr double kClearHeight_m = 1.0;
+/// A clock that differs by more tells nothing of the delay.
+constexpr Duration kDelayMost = std::chrono::seconds{1};
+/// Less apart in height, the numbers decide who goes up.
+constexpr double kLevel_m = 0.5;
+/// Whose height has moved away by that has begun to give way.
+constexpr double kBegun_m = 1.0;
+/// A climb is begun so much later than it is asked for.
+constexpr double kClimbLag_s = 3.0;
+constexpr Duration kChosenFor = std::chrono::seconds{2};
+/// While something is wrong, others are looked at that are as far away in height.
+constexpr double kOthersWithin_m = 40.0;
+constexpr std::size_t kEventsMax = 64;
+
+Vec2 position_at(const VehicleState& state, double seconds) {
+  return Vec2{state.x_m, state.y_m} + seconds * Vec2{state.velocity_mps().head<2>()};
+}
+
+}  // namespace
+
+SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, VehicleId self,
+                                 double layer_m)
+    : params_{params}, self_{self}, layer_m_{layer_m} {}
+
+void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& own, Instant now) {
+  if (params_.separation_look_ahead == Duration{} || other.vehicle == self_) return;
+  const double apart_m = other.state.z_m - own.z_m;
+  const auto found = known_.find(other.vehicle);
+  if (found == known_.end()) {
+    const bool near =
+        any_conflict() ? std::abs(apart_m) < kOthersWithin_m : concerns(params_, apart_m);
+    if (!near || known_.size() >= kVehiclesMax) return;
+  }
+  Other& known = known_[other.vehicle];
+  known.state = other.state;
+  known.activity = other.activity;
+  known.heard = now;
+  known.delay = std::clamp(now - other.state.time, Duration{}, kDelayMost);
+}
+
+void SeparationWatch::on_piloted(VehicleId who, bool piloted) {
+  if (!piloted) {
+    piloted_.erase(who);
+  } else if (piloted_.size() < kVehiclesMax || who == self_) {
+    piloted_.insert(who);
+  }
+}
+
+bool SeparationWatch::any_conflict() const {
+  return std::ranges::any_of(known_, [](const auto& entry) { return entry.second.conflict; });
+}
+
+std::optional<SeparationConflict> SeparationWatch::conflict() const {
+  for (const auto& [id, other] : known_) {
+    if (other.conflict) return SeparationConflict{id, other.gives_way};
+  }
+  return std::nullopt;
+}
+
+std::optional<EventBody> SeparationWatch::poll_event() {
+  if (events_.empty()) return std::nullopt;
+  EventBody first = std::move(events_.front());
+  events_.pop_front();
+  return first;
+}
+
+void SeparationWatch::step(const Self& self, Instant now) {
+  for (auto& [id, other] : known_) look(id, other, self, now);
+  const bool wrong = any_conflict();
+  std::erase_if(known_, [&](const auto& entry) {
+    const Other& other = entry.second;
+    if (other.conflict) return false;
+    if (now - other.heard > kForgotten) return true;
+    const double apart_m = other.state.z_m - self.state.z_m;
+    const bool was_told = other.told_at != Instant::min() && now - other.told_at < kToldEvery;
+    return !wrong && !was_told && !concerns(params_, apart_m);
+  });
+  const bool yields =
+      std::ranges::any_of(known_, [](const auto& entry) { return entry.second.yields; });
+  if (!yields) {
+    target_.reset();
+  } else {
+    keep_free(self, now);
+  }
+}
+
+SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Other& other,
+                                                    Instant now) const {
+  const double age_s = to_seconds(now - other.heard + other.delay);
+  const double own_age_s = std::clamp(to_seconds(now - self.state.time), 0.0, 1.0);
+  const Vec2 apart = position_at(other.state, age_s) - position_at(self.state, own_age_s);
+  const Vec2 closing =
+      Vec2{other.state.velocity_mps().head<2>()} - Vec2{self.state.velocity_mps().head<2>()};
+  const double speed2 = closing.squaredNorm();
+  Approach a;
+  if (speed2 > 0.0) {
+    a.in_s =
+        std::clamp(-apart.dot(closing) / speed2, 0.0, to_seconds(params_.separation_look_ahead));
+  }
+  a.horizontal_m = (apart + a.in_s * closing).norm();
+  a.vertical_m = std::abs(other.state.z_m - self.state.z_m);
+  a.margin_m = kMargin_mps * (age_s + a.in_s);
+  a.height_margin_m = std::min(kHeightMarginMost_m, kHeightMargin_mps * age_s);
+  return a;
+}
+
+bool SeparationWatch::breaks(const Approach& a) const {
+  return a.horizontal_m < params_.separation_horizontal_m + a.margin_m &&
+         a.vertical_m < params_.separation_vertical_m + a.height_margin_m;
+}
+
+/// Who gives way looks at all heights from its layer to where it has gone: it is to come back.
+bool SeparationWatch::still_breaks(const Approach& a, const Self& self, const Other& other) const {
+  if (a.horizontal_m >= kClearFactor * params_.separation_horizontal_m + a.margin_m) return false;
+  const double within_m = params_.separation_vertical_m + kClearHeight_m;
+  if (!other.yields) return a.vertical_m < within_m;
+  const auto [low, high] = std::minmax({layer_m_, self.state.z_m, target_.value_or(layer_m_)});
+  return other.state.z_m > low - within_m && other.state.z_m < high + within_m;
+}
+
+bool SeparationWatch::passes_near(const Self& self, const Other& other, Instant now) const {
+  const Approach a = approach(self, other, now);
+  return a.horizontal_m < kClearFactor * params_.separation_horizontal_m + a.margin_m;
+}
+
+void SeparationWatch::look(VehicleId id, Other& other, const Self& self, Instant now) {
+  const Approach a = approach(self, other, now);
+  const bool heard = now - other.heard <= (other.conflict ? kForgottenInConflict : kForgotten);
+  if (!other.conflict && heard && breaks(a)) begin(other, a, now);
+  if (!other.conflict) return;
+  end_when_clear(id, other, heard && still_breaks(a, self, other), now);
+  if (!other.conflict) return;
+  decide(id, other, self, a, now);
+  tell(id, other, a, now);
+}
+
+void SeparationWatch::begin(Other& other, const Approach& a, Instant now) {
+  other.conflict = true;
+  other.yields = other.told = false;
+  other.gives_way = {};
+  other.since = other.clear_since = now;
+  other.apart_m = a.vertical_m;
+}
+
+void SeparationWatch::end_when_clear(VehicleId id, Other& other, bool breaks, Instant now) {
+  if (breaks) {
+    other.clear_since = now;
+  } else if (now - other.clear_since >= kClear) {
+    other.conflict = other.yields = false;
+    if (std::exchange(other.told, false)) events_.emplace_back(event::SeparationRestored{id});
+  }
+}
+
+void SeparationWatch::decide(VehicleId id, Other& other, const Self& self, const Approach& a,
+                             Instant now) {
+  if (other.yields) return;
+  const bool both_piloted = piloted_.contains(self_) && piloted_.contains(id);
+  if (piloted_.contains(self_)) {
+    other.gives_way = both_piloted ? VehicleId{} : id;
+    return;
+  }
+  const bool unmoved =
+      now - other.since >= kPatience && a.vertical_m < other.apart_m + kBegun_m && breaks(a);
+  if (!must_yield(id, other, self, now) && !unmoved) {
+    other.gives_way = id;
+    return;
+  }
+  const auto height_m = height_for(id, other, self, now);
+  // Where the other one was to, the operator is told anew, once.
+  if (height_m && other.told) other.told_at = Instant::min();
+  if (height_m) other.told = false;
+  other.yields = height_m.has_value();
+  other.gives_way = height_m ? self_ : VehicleId{};
+  if (!height_m) return;
+  target_ = height_m;
+  chosen_at_ = now;
+}
+
+bool SeparationWatch::must_yield(VehicleId id, const Other& other, const Self& self,
+                                 Instant now) const {
+  const bool keeps =
+      piloted_.contains(id) || now - other.heard > kSilent || other.activity == Activity::forming;
+  if (keeps) return true;
+  const bool own_task = self.activity == Activity::executing;
+  const bool other_task = other.activity == Activity::executing;
+  return own_task != other_task ? other_task : self_ > id;
+}
+
+void SeparationWatch::tell(VehicleId id, Other& other, const Approach& a, Instant now) {
+  const bool too_soon = other.told_at != Instant::min() && now - other.told_at < kToldEvery;
+  if (other.told || too_soon || events_.size() >= kEventsMax) return;
+  other.told = true;
+  other.told_at = now;
+  events_.emplace_back(event::SeparationWarning{id, a.horizontal_m, a.vertical_m,
+                                                from_seconds(a.in_s), other.gives_way});
+}
+
+/// Away from the other one; through its height only where there is no other way, and time for it.
+std::optional<double> SeparationWatch::height_for(VehicleId id, const Other& other,
+                                                  const Self& self, Instant now) const {
+  const double above_m = self.state.z_m - other.state.z_m;
+  const bool level = std::abs(above_m) < kLevel_m;
+  const bool up = level ? self_ > id : above_m > 0.0;
+  if (const auto away = free_height(other, up, self, now)) return away;
+  const auto through = free_height(other, !up, self, now);
+  if (!through || level) return through;
+  const double takes_s = std::abs(*through - self.state.z_m) / kHeightRate_mps + kClimbLag_s;
+  return takes_s < approach(self, other, now).in_s ? through : std::nullopt;
+}
+
+/// The nearest height on that side of the other one at which nobody else passes near.
+std::optional<double> SeparationWatch::free_height(const Other& other, bool up, const Self& self,
+                                                   Instant now) const {
+  const double side = up ? 1.0 : -1.0;
+  const double room_m = params_.separation_vertical_m + kRoom_m;
+  double height_m = other.state.z_m + side * room_m;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& [id, third] : known_) {
+      const bool bars = std::abs(third.state.z_m - height_m) < params_.separation_vertical_m;
+      if (!bars || !passes_near(self, third, now)) continue;
+      height_m = third.state.z_m + side * room_m;
+      moved = true;
+    }
+  }
+  const bool allowed =
+      up ? height_m <= params_.separation_ceiling_m : height_m >= params_.separation_floor_m;
+  return allowed ? std::optional{height_m} : std::nullopt;
+}
+
+/// Others may have come near, or changed their heights, since it was chosen.
+void SeparationWatch::keep_free(const Self& self, Instant now) {
+  if (now - chosen_at_ < kChosenFor || !target_) return;
+  const auto bars = [&](const Other& other) {
+    return std::abs(other.state.z_m - *target_) < params_.separation_vertical_m &&
+           passes_near(self, other, now);
+  };
+  if (std::ranges::none_of(known_, [&](const auto& entry) { return bars(entry.second); })) return;
+  for (const auto& [id, other] : known_) {
+    if (!other.yields) continue;
+    const auto height_m = height_for(id, other, self, now);
+    if (!height_m) continue;
+    target_ = height_m;
+    chosen_at_ = now;
+    return;
+  }
+}
+
+}  // namespace skein::mission
