@@ -83,6 +83,26 @@ TEST(Flight, ARouteIsTakenUpWhereItWasLeft) {
   EXPECT_LT(plan.path.length_m() - flown_m, 3500.0 + 1500.0);
 }
 
+TEST(Flight, AChangeOfHeightKeepsPathAndTimesAndLastsOverPlans) {
+  Flight flight{vehicle_with(Recovery::home), {}, {{6000.0, 0.0}}};
+  flight.start({0.0, 0.0, 0.0}, {}, 1e6, Instant{});
+  const FlightPlan before = *flight.poll_plan();
+  flight.change_height(0.0, Instant{} + 1s);
+  EXPECT_FALSE(flight.poll_plan()) << "it is there";
+  flight.change_height(7.0, Instant{} + 2s);
+  const auto higher = flight.poll_plan();
+  ASSERT_TRUE(higher);
+  EXPECT_GT(higher->number, before.number);
+  EXPECT_EQ(higher->height_to_m, 7.0);
+  EXPECT_EQ(higher->timed.start_time, before.timed.start_time);
+  EXPECT_EQ(higher->timed.path.length_m(), before.timed.path.length_m());
+  flight.hold({}, Instant{} + 3s);
+  EXPECT_EQ(flight.plan().height_to_m, 7.0);
+  flight.change_height(0.0, Instant{} + 4s);  // half way up
+  EXPECT_NEAR(flight.plan().height_from_m, 4.0, 1e-9);
+  EXPECT_EQ(flight.plan().height_to_m, 0.0);
+}
+
 TEST(Flight, ARouteGivenBeforeTheMissionIsFlownFirst) {
   TimedPath route;
   route.start_time = Instant{};

@@ -50,6 +50,46 @@ PositionSetpoint point_at(double seconds) {
   return std::get<PositionSetpoint>(demand);
 }
 
+/// As plan(), and 7 m above the layer from 9.5 s on, for which it climbs from 6 s on.
+FlightPlan higher_plan() {
+  FlightPlan p = plan();
+  p.height_to_m = 7.0;
+  p.height_since = at_seconds(6.0);
+  return p;
+}
+
+TEST(Guidance, APlansHeightGoesFromOneToTheOtherAtItsRate) {
+  EXPECT_EQ(height_offset_m(plan(), at_seconds(100.0)), 0.0);
+  EXPECT_EQ(height_offset_m(higher_plan(), at_seconds(1.0)), 0.0);
+  EXPECT_NEAR(height_offset_m(higher_plan(), at_seconds(8.0)), 4.0, 1e-9);
+  EXPECT_EQ(height_offset_m(higher_plan(), at_seconds(10.0)), 7.0);
+  FlightPlan back = plan();
+  back.height_from_m = 7.0;
+  EXPECT_NEAR(height_offset_m(back, at_seconds(1.0)), 5.0, 1e-9);
+  EXPECT_EQ(height_offset_m(back, at_seconds(4.0)), 0.0);
+}
+
+TEST(Guidance, WhatIsAskedForIsOffTheLayerAsThePlanSays) {
+  const HeldGuidance held{higher_plan()};
+  VehicleState state = at_height();
+  state.groundspeed_mps = state.airspeed_mps = kSpeed_mps;
+  const auto plane = follow(held, {}, vehicle(Airframe::plane), state, at_seconds(8.0));
+  EXPECT_NEAR(std::get<Setpoint>(plane).height_m, kHeight_m + 4.0, 1e-9);
+
+  const auto climbs = std::get<PositionSetpoint>(
+      follow(held, {}, vehicle(Airframe::copter), state, at_seconds(8.0)));
+  EXPECT_NEAR(climbs.z_m, kHeight_m + 4.0, 1e-9);
+  EXPECT_EQ(climbs.vz_mps, kHeightRate_mps);
+  EXPECT_EQ(climbs.vx_mps, kSpeed_mps) << "it goes on meanwhile";
+
+  state.z_m = kHeight_m + 7.0;
+  const auto there = std::get<PositionSetpoint>(
+      follow(held, {}, vehicle(Airframe::copter), state, at_seconds(12.0)));
+  EXPECT_EQ(there.z_m, kHeight_m + 7.0);
+  EXPECT_EQ(there.vz_mps, 0.0);
+  EXPECT_EQ(there.vx_mps, kSpeed_mps) << "there its plan is flown";
+}
+
 TEST(Guidance, ACopterIsWhereItsPlanIsWithItsNoseAlongIt) {
   const PositionSetpoint straight = point_at(10.0);
   EXPECT_LT((straight.position_m() - Vec3{50.0, 20.0, kHeight_m}).norm(), 1e-9);

@@ -164,7 +164,7 @@ class Team {
       tell(Authorisation{asked->round, asked->site, true, "test", now, {}, {}, {}}, kGroundStation);
     }
     said.push_back({now, sender, message.index()});
-    // That of others changes nothing.
+    // That of others changes nothing but by their separation, which is not looked at here.
     if (!std::holds_alternative<Telemetry>(message)) tell(message, sender);
   }
   std::vector<std::pair<Message, VehicleId>> air_;

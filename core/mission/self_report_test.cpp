@@ -90,6 +90,17 @@ TEST(SelfReport, NamesWhatIsWrongSinceItWasLastAsked) {
     EXPECT_EQ(report.health(facts, at_seconds(5.5)).problems,
               std::vector<std::string>{"its range is used up, but for the way home"});
   }
+  facts.range_spent = false;
+  const auto told = [&](VehicleId gives_way) {
+    facts.separation = SeparationConflict{VehicleId{8}, gives_way};
+    return report.health(facts, at_seconds(5.5)).problems;
+  };
+  EXPECT_EQ(told(VehicleId{7}),
+            std::vector<std::string>{"vehicle 8 comes too near: it gives way by its height"});
+  EXPECT_EQ(told(VehicleId{8}),
+            std::vector<std::string>{"vehicle 8 comes too near: vehicle 8 gives way"});
+  EXPECT_EQ(told({}),
+            std::vector<std::string>{"vehicle 8 comes too near: it has no room to give way"});
 }
 
 }  // namespace

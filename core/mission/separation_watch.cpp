@@ -29,6 +29,9 @@ constexpr Duration kChosenFor = std::chrono::seconds{2};
 constexpr double kOthersWithin_m = 40.0;
 constexpr std::size_t kEventsMax = 64;
 
+/// Lower, a vehicle takes off, or has not yet: planes wait side by side on the ground.
+bool has_taken_off(const VehicleState& own, double layer_m) { return own.z_m > 0.5 * layer_m; }
+
 Vec2 position_at(const VehicleState& state, double seconds) {
   return Vec2{state.x_m, state.y_m} + seconds * Vec2{state.velocity_mps().head<2>()};
 }
@@ -41,6 +44,7 @@ SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, Vehicl
 
 void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& own, Instant now) {
   if (params_.separation_look_ahead == Duration{} || other.vehicle == self_) return;
+  if (!has_taken_off(own, layer_m_)) return;
   const double apart_m = other.state.z_m - own.z_m;
   const auto found = known_.find(other.vehicle);
   if (found == known_.end()) {
@@ -82,6 +86,11 @@ std::optional<EventBody> SeparationWatch::poll_event() {
 }
 
 void SeparationWatch::step(const Self& self, Instant now) {
+  if (!has_taken_off(self.state, layer_m_)) {  // it has landed
+    known_.clear();
+    target_.reset();
+    return;
+  }
   for (auto& [id, other] : known_) look(id, other, self, now);
   const bool wrong = any_conflict();
   std::erase_if(known_, [&](const auto& entry) {

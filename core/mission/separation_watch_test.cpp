@@ -189,6 +189,15 @@ TEST(SeparationWatch, InLayersThatAreApartNothingIsKnownOfOthers) {
   }
 }
 
+TEST(SeparationWatch, OnTheGroundNobodyIsWarned) {
+  Sky sky{{Flyer{1, {0.0, 0.0}, 0.0, 0.0}, Flyer{2, {5.0, 0.0}, 0.0, 0.0}}};
+  for (double t = 0.0; t < 10.0; t += to_seconds(kTick)) {
+    for (Flyer& flyer : sky.flyers) flyer.state.z_m = 0.3;
+    sky.fly(to_seconds(kTick));
+  }
+  for (const Flyer& flyer : sky.flyers) EXPECT_FALSE(flyer.watch.watches());
+}
+
 TEST(SeparationWatch, WhoIsBelowGivesWayDownwardsButNotBelowTheFloor) {
   Sky sky = head_on(1, 2, kLayer_m - 3.0);
   sky.fly(15.0);

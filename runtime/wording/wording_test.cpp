@@ -32,6 +32,19 @@ TEST(Wording, SaysWhyAVehicleFliesHomeAndHowFarThatIs) {
   EXPECT_EQ(news_of(spent), "holds, to be recovered: range left -1,000 m");
 }
 
+TEST(Wording, SaysWhoComesTooNearAndWhoGivesWay) {
+  MissionEvent near{{3}, {}, {}, {}, {}};
+  near.body = event::SeparationWarning{{5}, 2.7, 4.0, std::chrono::seconds{14}, {5}};
+  EXPECT_EQ(text_of(near),
+            "vehicle 3: warning: vehicle 5 in 14 s: 3 m to the side, 4 m in height; vehicle 5 "
+            "gives way by its height");
+  near.body = event::SeparationWarning{{5}, 2.7, 4.0, std::chrono::seconds{14}, {}};
+  EXPECT_EQ(news_of(near),
+            "vehicle 5 in 14 s: 3 m to the side, 4 m in height; neither has room to give way");
+  near.body = event::SeparationRestored{{5}};
+  EXPECT_EQ(news_of(near), "clear of vehicle 5");
+}
+
 TEST(Wording, EveryReasonHasASentenceOfItsOwn) {
   std::set<std::string> sentences;
   const auto count = static_cast<int>(coalition::Reason::count);
