@@ -85,7 +85,10 @@ Demand follow(const HeldGuidance& held, const planning::PathFollowerParams& para
     const bool in_layer = std::abs(state.z_m - vehicle.height_m) <= kLayer_m;
     return in_layer ? setpoint_on(plan.timed, vehicle, now) : back_to_height(vehicle, state);
   }
-  return planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
+  Setpoint setpoint =
+      planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
+  if (plan.lands) setpoint.landing = plan.landing;
+  return setpoint;
 }
 
 Deviation deviation(const HeldGuidance& held, const VehicleSpec& vehicle, const VehicleState& state,

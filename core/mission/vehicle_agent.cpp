@@ -61,6 +61,7 @@ void VehicleAgent::Impl::step(Instant now) {
   pump(now);
   watch_range(now);
   idle(now);
+  come_down(now);
   pump(now);
   check();
 }
@@ -202,7 +203,7 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  if (!flight.started() || busy || routes_.awaits()) return now;
+  if (!flight.started() || busy || routes_.awaits() || lands_) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});
   if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
@@ -214,6 +215,8 @@ Instant VehicleAgent::Impl::quiet_until(Instant now) const {
 
 Activity VehicleAgent::Impl::activity() const {
   return activity_of({.failsafe = failsafe_.action(),
+                      .lands = ownship_.landing(),
+                      .landed = ownship_.landing() && ownship_.state().on_ground(),
                       .has_task = flyer_.flying(),
                       .leads = leader_.leading(),
                       .monitors = leader_.monitoring(),

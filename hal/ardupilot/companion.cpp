@@ -122,7 +122,7 @@ void Companion::Impl::step(Instant now) {
       fly(now);
       break;
     case State::landing:
-      if (!entry_.mode_confirmed) ask_for_mode(land_mode(), now);
+      land(now);
       break;
     default:
       break;
@@ -132,6 +132,7 @@ void Companion::Impl::step(Instant now) {
   check_parameters(now);
   ask_others(now);
   keep_clock(now);
+  say_mission(now);
   if (now >= heartbeat_at_) {
     heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
     mavlink::Heartbeat heartbeat;
@@ -308,6 +309,11 @@ void Companion::Impl::fly(Instant now) {
   send_target(roll_target(bank_for(params_.vehicle, setpoint, state, sample->turn_ability)), now);
   set_speed(setpoint, sample->true_per_equivalent, now);
   set_height(setpoint, state, now);
+  if (setpoint.landing) {
+    prepare_landing(*setpoint.landing, now);
+  } else if (uploads_) {
+    forget_landing();
+  }
 }
 
 void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m,
@@ -476,10 +482,12 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       if (from == State::arming) begin_climb(now);
       break;
     case State::landing:
+      told_too_low_ = false;
       say(false, {AutopilotNews::landing}, now);
       break;
     case State::flying:
       on_ground_since_.reset();
+      forget_landing();
       speed_sent_.reset();
       height_sent_.reset();
       height_at_.reset();
