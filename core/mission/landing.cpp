@@ -28,7 +28,7 @@ Landing landing_of(const VehicleSpec& vehicle, const Pose2& start) {
   landing.y_m = spec.y_m.value_or(start.y_m);
   landing.heading_rad = wrap_pi(spec.heading_rad.value_or(start.heading_rad));
   landing.approach_m = spec.approach_m;
-  landing.approach_height_m = spec.approach_height_m;
+  landing.approach_height_m = std::min(spec.approach_height_m, vehicle.height_m);
   landing.radius_m = vehicle.planning_radius_m();
   return landing;
 }
@@ -58,10 +58,9 @@ void Descent::step(const VehicleState& state, Instant now) {
   if (state.on_ground()) return;
   const Vec3 here = state.position().metres();
   if (passage_) passage_->step(now);
-  const bool follows =
-      passage_ && (here - passage_->reference(now).position_m).norm() <= kAstray_m;
-  const bool is_over = follows && !sinks_ && passage_->finished() &&
-                       (here - over_).head<2>().norm() <= kOver_m;
+  const bool follows = passage_ && (here - passage_->reference(now).position_m).norm() <= kAstray_m;
+  const bool is_over =
+      follows && !sinks_ && passage_->finished() && (here - over_).head<2>().norm() <= kOver_m;
   if (!follows || is_over) {
     begin(here, now);
     if (passage_) passage_->step(now);

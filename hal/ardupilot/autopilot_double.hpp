@@ -59,12 +59,12 @@ class AutopilotDouble {
                                           {"FS_LONG_ACTN", 1.0F},    {"SYSID_MYGCS", 1.0F},
                                           {"ROLL_LIMIT_DEG", 75.0F}, {"AIRSPEED_MIN", 10.0F},
                                           {"AIRSPEED_MAX", 100.0F},  {"AIRSPEED_CRUISE", 50.0F}};
-  int deaf_to_parameters = 0;       ///< so many questions get lost
+  int deaf_to_parameters = 0;  ///< so many questions get lost
   std::vector<mavlink::MissionItemInt> mission;
   int deaf_to_mission = 0;             ///< so many messages about it get lost
   std::uint8_t mission_result = 0;     ///< of MISSION_ACK
   std::optional<std::size_t> spoiled;  ///< that item is stored 11 m further north
-  std::set<std::uint32_t> stopped;  ///< streams
+  std::set<std::uint32_t> stopped;     ///< streams
   std::set<std::uint32_t> refuses_streams;
 
   std::vector<mavlink::CommandLong> commands;

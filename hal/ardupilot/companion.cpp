@@ -29,6 +29,7 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
+constexpr double kSinks_mps = 0.2;  ///< a point that does so faster comes down
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
@@ -326,8 +327,10 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
   } else if (now - *on_ground_since_ >= kLandAfter) {
     return fire(Event::may_land, now);
   }
-  if (point.z_m < home_z_m + kLandFrom_m) {
-    point.z_m = home_z_m + kLandFrom_m;
+  const bool sinks = point.vz_mps < -kSinks_mps || point.z_m <= home_z_m + kGround_m;
+  const double least_m = sinks ? kLandFrom_m : kHoverFrom_m;
+  if (point.z_m < home_z_m + least_m) {
+    point.z_m = home_z_m + least_m;
     point.vz_mps = 0.0;
     point.az_mps2 = 0.0;
   }

@@ -51,8 +51,8 @@ void Companion::Impl::prepare_landing(const Landing& landing, Instant now) {
 void Companion::Impl::land(Instant now) {
   const auto* setpoint = demand_ ? std::get_if<Setpoint>(&*demand_) : nullptr;
   const bool fresh = now - demand_at_ <= params_.setpoint_age_max;
-  const bool called_off = params_.airframe == Airframe::plane && setpoint != nullptr && fresh &&
-                          !setpoint->landing;
+  const bool called_off =
+      params_.airframe == Airframe::plane && setpoint != nullptr && fresh && !setpoint->landing;
   if (called_off && airborne() && motion_.relative_height_m() >= kGoAroundFrom_m) {
     say(false, {.news = AutopilotNews::going_around}, now);
     return fire(Event::called_off, now);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "skein/domain/landing.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "companion_line.hpp"
-#include "skein/domain/landing.hpp"
 
 namespace skein::ardupilot {
 namespace {

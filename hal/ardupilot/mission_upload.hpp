@@ -29,9 +29,9 @@ inline constexpr std::uint16_t kLandFromItem = 2;
 class MissionUpload {
  public:
   enum class State : std::uint8_t { idle, sending, reading, verified, failed };
-  using Message = std::variant<mavlink::MissionCount, mavlink::MissionItemInt,
-                               mavlink::MissionRequestList, mavlink::MissionRequestInt,
-                               mavlink::MissionAck>;
+  using Message =
+      std::variant<mavlink::MissionCount, mavlink::MissionItemInt, mavlink::MissionRequestList,
+                   mavlink::MissionRequestInt, mavlink::MissionAck>;
   static constexpr Duration kPatience = std::chrono::seconds{5};
 
   void begin(std::vector<mavlink::MissionItemInt> items, Instant now);

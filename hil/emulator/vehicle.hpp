@@ -65,8 +65,7 @@ class Vehicle {
   /// Commands that depend on the kind of vehicle; unsupported where it knows none.
   virtual mavlink::CommandResult command(const mavlink::CommandInt& command) = 0;
   /// Takes the place of the one before; the first item is home.
-  virtual mavlink::MissionResult load_mission(
-      std::span<const mavlink::MissionItemInt> /*items*/) {
+  virtual mavlink::MissionResult load_mission(std::span<const mavlink::MissionItemInt> /*items*/) {
     return mavlink::MissionResult::unsupported;
   }
   virtual void on_attitude_target(const mavlink::SetAttitudeTarget& target, Instant now) = 0;

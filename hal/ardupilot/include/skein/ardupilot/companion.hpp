@@ -84,9 +84,9 @@ class Companion {
     ready,       ///< the streams flow, and the parameters are good
     may_launch,  ///< on the ground, ready to arm, and that was asked for
     armed,
-    climbed,     ///< high enough to be taken
-    may_take,    ///< in the air, and the companion shall ask for it
-    guided,      ///< HEARTBEAT says GUIDED
+    climbed,   ///< high enough to be taken
+    may_take,  ///< in the air, and the companion shall ask for it
+    guided,    ///< HEARTBEAT says GUIDED
     /// The setpoint stays at the ground, and the copter is there; or it has a plane's landing, and
     /// the autopilot has that for a mission, read back and compared.
     may_land,
@@ -126,11 +126,13 @@ class Companion {
   void on_link_trouble(std::optional<AutopilotNotice> trouble);
 
   /// Flown while the state is `flying`; the last one stands until it is too old. A position is
-  /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kLandFrom_m
-  /// above home; where the point stays at home's height or below it for kLandAfter, and the copter
+  /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kHoverFrom_m
+  /// above home, and where it sinks no lower than kLandFrom_m: ArduCopter overshoots a point that
+  /// sinks. Now where the point stays at home's height or below it for kLandAfter, and the copter
   /// is within kLandWithin_m of it, the autopilot lands it there.
   void command(const Demand& demand, Instant now);
-  static constexpr double kLandFrom_m = 1.0;
+  static constexpr double kHoverFrom_m = 1.0;
+  static constexpr double kLandFrom_m = 3.0;
   static constexpr double kLandWithin_m = 2.0;  ///< horizontally
   static constexpr Duration kLandAfter = std::chrono::seconds{1};
   /// A plane whose setpoint has a landing is given that as a mission, and flown by the rest of the
