@@ -54,6 +54,11 @@ class Flown {
     collect();
   }
 
+  void tell(const Message& message) {
+    agent.on_message(message, kGroundStation, at_seconds(now_s_));
+    collect();
+  }
+
   VehicleAgent agent;
   FlightPlan plan;
   VehicleState state;
@@ -129,6 +134,29 @@ TEST(LandingOrder, AHazardOnTheApproachKeepsItInItsOrbitAndIsTold) {
                                            t->trouble == event::Trouble::landing_barred;
                                   }),
             1);
+}
+
+TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
+  Flown vehicle;
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  ASSERT_TRUE(vehicle.plan.lands);
+  vehicle.tell(HazardReport{{{1}, {-400.0, -120.0}, 60.0}});
+  vehicle.fly(60.0);
+  EXPECT_FALSE(vehicle.plan.lands);
+}
+
+TEST(LandingOrder, WhoHasLandedIsSentNowhere) {
+  Flown vehicle;
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  vehicle.state.phase = FlightPhase::disarmed;
+  vehicle.fly(1.0);
+  for (const auto kind : {CommandKind::hold, CommandKind::return_home, CommandKind::resume}) {
+    vehicle.order(kind);
+    vehicle.fly(10.0);
+    EXPECT_EQ(vehicle.agent.activity(), Activity::landed) << to_string(kind);
+  }
 }
 
 TEST(LandingOrder, ACopterComesOverItsPlaceAndThenStraightDown) {

@@ -115,6 +115,10 @@ bool Ownship::return_along(const TimedPath& way, Instant now) {
 }
 
 bool Ownship::keeps_clear(Instant now) {
+  const FlightPlan& plan = flight_.plan();
+  if (plan.lands && !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m)) {
+    fly_home(now);  // it goes around
+  }
   if (flight_.keeps_clear(hazards(), now)) return true;
   if (flight_.homing()) {
     fly_home(now);

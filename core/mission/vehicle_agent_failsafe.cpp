@@ -17,6 +17,8 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
 
 void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   outbox.report(event::Commanded{order}, {}, {}, now);
+  // It stands on the ground: nothing is flown before it is in the air again.
+  if (ownship_.landing() && ownship_.state().on_ground()) return;
   lands_ = order == CommandKind::land;
   told_barred_ = false;
   const auto* response = failsafe_.update(now, {.order = order});
