@@ -21,7 +21,8 @@ std::string_view word_of(View view) {
 }
 
 std::string_view verb_of(mission::CommandKind kind) {
-  static constexpr std::array<std::string_view, 4> kVerbs{"hold", "resume", "return", "give-back"};
+  static constexpr std::array<std::string_view, 5> kVerbs{"hold", "resume", "return", "give-back",
+                                                          "land"};
   static_assert(kVerbs.size() == static_cast<std::size_t>(mission::CommandKind::count));
   return kVerbs.at(static_cast<std::size_t>(kind));
 }

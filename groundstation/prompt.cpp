@@ -50,6 +50,11 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
   return Input{Order{{*vehicle}, kind}};
 }
 
+/// 'land' alone is of a formation.
+bool lands_vehicles(const std::vector<std::string_view>& words) {
+  return words.size() == 2 && words[0] == "land";
+}
+
 Result<Input> hazard(const std::vector<std::string_view>& words) {
   if (words.size() != 4) {
     return Error{
@@ -265,6 +270,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
   if (verb == "return") return order(mission::CommandKind::return_home, words);
+  if (lands_vehicles(words)) return order(mission::CommandKind::land, words);
   if (is_formation_verb(verb)) return formation_order(words, false);
   if (verb == "preview") return preview(words);
   if (verb == "wait") return wait(words);
@@ -280,7 +286,7 @@ Result<Input> parse_input(std::string_view line) {
 
 bool is_of_formation(std::string_view line) {
   const auto words = words_of(line);
-  return !words.empty() &&
+  return !words.empty() && !lands_vehicles(words) &&
          (is_formation_verb(words[0]) || words[0] == "places" ||
           (words[0] == "preview" && words.size() > 1 && is_formation_verb(words[1])));
 }
@@ -324,6 +330,9 @@ std::string help_text() {
          "hold ID|all       fly a holding pattern until told otherwise\n"
          "resume ID|all     go on with the mission\n"
          "return ID|all     fly back to the start and hold there\n"
+         "land ID|all       who is at home, or on the way there, lands, one after another, the "
+         "lowest\n"
+         "                  first; hold, return or resume before touch-down: it goes around\n"
          "give-back ID      its pilot gives the aircraft (back) to the companion: in the air to "
          "be\n"
          "                  flown, on the ground to be launched where it takes off by itself\n"

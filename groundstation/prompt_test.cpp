@@ -41,6 +41,10 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<Order>("resume all").kind, mission::CommandKind::resume);
   EXPECT_EQ(parsed<Order>("return 2").kind, mission::CommandKind::return_home);
   EXPECT_EQ(parsed<Order>("give-back 7").vehicle, VehicleId{7});
+  EXPECT_EQ(parsed<Order>("land 7").kind, mission::CommandKind::land);
+  EXPECT_EQ(parsed<Order>("land all").vehicle, kGroundStation);
+  EXPECT_FALSE(is_of_formation("land 7"));
+  EXPECT_TRUE(is_of_formation("land"));
   EXPECT_EQ(parsed<Order>("give-back 7").kind, mission::CommandKind::give_back);
   EXPECT_EQ(parsed<View>("preflight"), View::preflight);
   EXPECT_EQ(parsed<View>("preflight all"), View::preflight);

@@ -175,12 +175,14 @@ std::string SiteDesk::nobody_text() const {
     heard = true;
     if (!known.telemetry->capabilities.has(TaskKind::survey)) continue;
     can = true;
-    free = free || (known.telemetry->activity != mission::Activity::holding && !known.differs &&
-                    !known.duplicate);
+    using enum mission::Activity;
+    const auto activity = known.telemetry->activity;
+    const bool works = activity != holding && activity != landing && activity != landed;
+    free = free || (works && !known.differs && !known.duplicate);
   }
   if (!heard) return "no vehicle is heard";
   if (!can) return "no vehicle that is heard can survey";
-  if (!free) return "the vehicles that can survey hold; 'status' says why";
+  if (!free) return "the vehicles that can survey hold or land; 'status' says why";
   return "no vehicle that can survey has the range for it";
 }
 

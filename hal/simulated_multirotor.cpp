@@ -209,6 +209,7 @@ std::optional<VehicleState> SimulatedMultirotor::state(Instant now) {
       state.groundspeed_mps > 0.0 ? std::atan2(velocity.y(), velocity.x()) : state.heading_rad;
   state.airspeed_mps = (truth.velocity_ned_mps() - wind_ned_mps_).norm();
   state.climb_mps = velocity.z();
+  state.phase = flying_ ? FlightPhase::flying : FlightPhase::disarmed;
   state.distance_flown_m = distance_flown_m_;
   return state;
 }

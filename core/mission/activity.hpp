@@ -11,6 +11,8 @@ namespace skein::mission {
 /// The states of a vehicle's parts, as far as they make its activity.
 struct PartStates {
   Failsafe::Action failsafe = Failsafe::Action::none;
+  bool lands = false;   ///< comes down by order, or has
+  bool landed = false;  ///< and is on the ground
   bool has_task = false;
   bool leads = false;
   bool monitors = false;  ///< leads, and waits before its next round
@@ -26,6 +28,8 @@ struct ActivityRule {
 };
 /// Earlier entries take precedence; where none holds, a vehicle is searching.
 inline constexpr std::array kActivityRules{
+    ActivityRule{[](const PartStates& s) { return s.landed; }, Activity::landed},
+    ActivityRule{[](const PartStates& s) { return s.lands; }, Activity::landing},
     ActivityRule{[](const PartStates& s) { return s.failsafe == Failsafe::Action::obey; },
                  Activity::holding},
     ActivityRule{[](const PartStates& s) {

@@ -14,6 +14,8 @@ const Failsafe::Response* response_to(CommandKind order) {
       return &Failsafe::kHold;
     case CommandKind::return_home:
       return &Failsafe::kReturnHome;
+    case CommandKind::land:
+      return &Failsafe::kLand;
     case CommandKind::resume:
       return &Failsafe::kResume;
     case CommandKind::give_back:  // of the flight controller: the node's, not the agent's
@@ -34,7 +36,7 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
   if (news.bar) response = on_bar(*news.bar);
   if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
   if (news.order) response = response_to(*news.order);
-  if (response == &kHold || response == &kReturnHome) facts_.ordered = true;
+  if (response == &kHold || response == &kReturnHome || response == &kLand) facts_.ordered = true;
   if (response == &kResume) {
     facts_.ordered = false;
     if (barred() != nullptr) response = barred();
@@ -85,8 +87,8 @@ std::string_view to_string(Failsafe::Lead lead) {
 }
 
 std::string_view to_string(Failsafe::Manoeuvre manoeuvre) {
-  static constexpr std::array<std::string_view, 5> kNames{"none", "hold", "fly_home", "come_home",
-                                                          "search"};
+  static constexpr std::array<std::string_view, 6> kNames{"none", "hold", "fly_home", "come_home",
+                                                          "land", "search"};
   static_assert(kNames.size() == static_cast<std::size_t>(Failsafe::Manoeuvre::count));
   return kNames.at(static_cast<std::size_t>(manoeuvre));
 }

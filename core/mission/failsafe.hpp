@@ -31,7 +31,7 @@ class Failsafe {
     bool setup_differs = false;   ///< from the ground station's
     bool orders_unknown = false;  ///< to a program that has started anew
     bool range_spent = false;     ///< what is left of its range is for the way home
-    bool ordered = false;         ///< by the operator to hold or to come home
+    bool ordered = false;         ///< by the operator to hold, to come home or to land
   };
   struct Rule {
     std::string_view fact;
@@ -61,6 +61,7 @@ class Failsafe {
     hold,       ///< an orbit here
     fly_home,   ///< and an orbit there
     come_home,  ///< the same, or hold where it is recovered anywhere
+    land,       ///< at home; fly_home first where it does not yet
     search,     ///< unless it has a task or a survey; where its range is spent: come_home
     count
   };
@@ -87,10 +88,11 @@ class Failsafe {
                                   Manoeuvre::hold};
   static constexpr Response kReturnHome{"return_home", Reason::sent_home, true, Lead::put_off,
                                         Manoeuvre::fly_home};
+  static constexpr Response kLand{"land", Reason::sent_home, true, Lead::put_off, Manoeuvre::land};
   static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
   static constexpr std::array kResponses{kPathBarred,    kIdInUse,    kSetupDiffers,
                                          kOrdersUnknown, kMayWork,    kRangeSpent,
-                                         kHold,          kReturnHome, kResume};
+                                         kHold,          kReturnHome, kLand, kResume};
 
   /// One of these at a time.
   struct News {

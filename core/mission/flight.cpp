@@ -95,6 +95,7 @@ Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
 void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
                    Instant now) {
   home_ = pose.position();
+  first_pose_ = pose;
   TimedPath here;
   here.start_time = now;
   here.speed_mps = vehicle_.cruise_speed_mps;
@@ -106,6 +107,7 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double
 
 void Flight::start_route(const TimedPath& route) {
   home_ = route.path.start.position();
+  first_pose_ = route.path.start;
   replace(route);
   en_route_ = true;
 }
@@ -123,8 +125,15 @@ void Flight::fly_route(const TimedPath& timed, Instant now) {
   en_route_ = true;
 }
 
+void Flight::land(const Landing& landing) {
+  replace(plan_.timed);
+  plan_.lands = true;
+  plan_.landing = landing;
+}
+
 void Flight::replace(const TimedPath& timed) {
   plan_.timed = timed;
+  plan_.lands = false;
   ++plan_.number;
   fresh_ = true;
 }

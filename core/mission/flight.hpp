@@ -55,6 +55,13 @@ class Flight {
   /// and whatever is planned next is flown there, too.
   void change_height(double offset_m, Instant now);
   [[nodiscard]] const Vec2& home() const { return home_; }
+  /// Where the first plan began.
+  [[nodiscard]] const Pose2& first_pose() const { return first_pose_; }
+  /// It is in its orbit at home.
+  [[nodiscard]] bool at_home(Instant t) const { return homing_ && t >= plan_.timed.end_time(); }
+  /// The same plan, from which it lands.
+  void land(const Landing& landing);
+  [[nodiscard]] bool landing() const { return plan_.lands; }
   /// An orbit at that place, where it can be reached clear of hazards and `range_m` lasts there and
   /// home again; else, and without a place, here. The search goes on from there later.
   void stand_by(SiteId site, const std::optional<Vec2>& place, const std::vector<Hazard>& hazards,
@@ -111,6 +118,7 @@ class Flight {
   std::vector<double>
       search_marks_;  ///< distances along the search plan at which a point is passed
   Vec2 home_{0.0, 0.0};
+  Pose2 first_pose_;
   FlightPlan plan_;
   bool searching_ = false;
   bool homing_ = false;

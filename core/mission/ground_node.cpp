@@ -111,6 +111,8 @@ void GroundNode::on_timeout(Instant now) {
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
   returns_.on_timeout(fleet(), hazards_.known(), now);
+  const auto lands = landings_.next(fleet(), now);
+  if (lands) (void)agent_.command(*lands, CommandKind::land, now);  // else it is not in the fleet
 }
 
 /// Of all: nobody does anything else.
@@ -122,14 +124,40 @@ bool GroundNode::stays_in_formation(VehicleId vehicle) const {
   });
 }
 
+std::optional<std::string> GroundNode::why_not_land(VehicleId vehicle) const {
+  if (!fleet().expects(vehicle)) return name_of(vehicle) + " is not in the fleet";
+  if (formation_.members().contains(vehicle) || tracks_.members().contains(vehicle)) {
+    return name_of(vehicle) + " flies in a formation, which lands as one or is landed by pilots";
+  }
+  if (auto why = fleet().why_not_with(vehicle)) return why;
+  return GroundLanding::why_not(vehicle, orders_.standing(vehicle, kGroundStation).kind, fleet());
+}
+
+/// Of all those that may.
+Result<void> GroundNode::land(VehicleId vehicle, Instant now) {
+  const bool all = vehicle == kGroundStation;
+  bool any = false;
+  for (const VehicleId one : concerned(vehicle)) {
+    const auto why = why_not_land(one);
+    if (why && !all) return Error{*why};
+    if (!why) landings_.add(one, now);
+    any = any || !why;
+  }
+  if (!any) return Error{"nobody is at home or on the way there: order 'return all' first"};
+  return {};
+}
+
 Result<void> GroundNode::command(VehicleId vehicle, CommandKind kind, Instant now) {
+  if (kind == CommandKind::land) return land(vehicle, now);
   if (kind == CommandKind::return_home && stays_in_formation(vehicle)) {
     return Error{(vehicle == kGroundStation ? "the fleet" : name_of(vehicle)) +
                  std::string{" flies in a formation of copters, which know no way home of their "
                              "own; order the formation to rally, or to land"}};
   }
   auto given = agent_.command(vehicle, kind, now);
-  if (given) returns_.on_order(concerned(vehicle), kind, fleet(), now);
+  if (!given || kind == CommandKind::give_back) return given;
+  returns_.on_order(concerned(vehicle), kind, fleet(), now);
+  for (const VehicleId one : concerned(vehicle)) landings_.drop(one);
   return given;
 }
 
@@ -191,6 +219,7 @@ void GroundNode::take_events() {
   take(routes_);
   take(detections_);
   take(returns_);
+  take(landings_);
 }
 
 std::optional<Message> GroundNode::poll_message() {
@@ -226,7 +255,7 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 Instant GroundNode::next_timeout() const {
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
                    routes_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
-                   setup_.next_timeout(), returns_.next_timeout()});
+                   setup_.next_timeout(), returns_.next_timeout(), landings_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -116,6 +116,38 @@ TEST(GroundNode, SendsNoCopterHomeThatIsInAFormation) {
   EXPECT_FALSE(home(kGroundStation).ok());
 }
 
+TEST(GroundNode, OrdersToLandOnlyWhoIsOrderedHomeAndRefusesOthersWithTheRemedy) {
+  GroundNode ground = node();
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  telemetry.instance = {7};
+  telemetry.activity = Activity::searching;
+  ground.on_message(telemetry, kVehicle, at_seconds(1.0));
+  const auto land = [&](VehicleId vehicle, double s) {
+    return ground.command(vehicle, CommandKind::land, at_seconds(s));
+  };
+  const auto ordered = [&](double s) {
+    int told = 0;
+    ground.on_timeout(at_seconds(s));
+    while (const auto message = ground.poll_message()) {
+      const auto* command = std::get_if<Command>(&*message);
+      const bool lands = command != nullptr && command->kind == CommandKind::land;
+      told += lands && command->vehicle == kVehicle ? 1 : 0;
+    }
+    return told;
+  };
+  ASSERT_FALSE(land(kVehicle, 1.0).ok());
+  EXPECT_NE(land(kVehicle, 1.0).error().message.find("order 'return"), std::string::npos);
+  EXPECT_FALSE(land(kGroundStation, 1.0).ok());
+  EXPECT_EQ(ordered(1.5), 0);
+  ASSERT_TRUE(ground.command(kVehicle, CommandKind::return_home, at_seconds(2.0)).ok());
+  EXPECT_EQ(ordered(2.5), 0);
+  telemetry.activity = Activity::holding;
+  ground.on_message(telemetry, kVehicle, at_seconds(3.0));
+  ASSERT_TRUE(land(kVehicle, 3.0).ok());
+  EXPECT_GE(ordered(3.5), 1);
+}
+
 TEST(GroundNode, HearsOfAFormationAndTellsOfIt) {
   GroundNode ground = node();
   FormationStatus status;

@@ -50,6 +50,7 @@ void GroundReturn::on_order(const std::vector<VehicleId>& vehicles, CommandKind 
     if (kind != CommandKind::return_home || known == fleet.vehicles().end()) continue;
     const FleetEntry& entry = known->second;
     if (!entry.expected || !entry.telemetry || entry.silent) continue;
+    if (entry.telemetry->activity == Activity::landed) continue;
     homing_[vehicle].number_before = entry.telemetry->plan_number;
   }
   if (kind != CommandKind::return_home) {

@@ -66,6 +66,9 @@ Result<void> check_one(VehicleId id, const TimedPath& timed, const std::vector<H
   if (telemetry.activity == Activity::holding) {
     return Error{name_of(id) + " holds; let it resume before it is given a route"};
   }
+  if (telemetry.activity == Activity::landing || telemetry.activity == Activity::landed) {
+    return Error{name_of(id) + " lands, or has; it is given no route"};
+  }
   if (telemetry.activity == Activity::forming) {
     return Error{name_of(id) + " flies in a formation"};
   }

@@ -35,8 +35,9 @@ bool is_to_survey(const GroundSite& entry) {
 bool can_survey(const FleetEntry& known) {
   if (!known.telemetry || known.silent || known.duplicate || known.differs) return false;
   const Activity activity = known.telemetry->activity;
-  return known.telemetry->capabilities.has(TaskKind::survey) && activity != Activity::holding &&
-         activity != Activity::forming;
+  const bool works = activity != Activity::holding && activity != Activity::forming &&
+                     activity != Activity::landing && activity != Activity::landed;
+  return works && known.telemetry->capabilities.has(TaskKind::survey);
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ Demand follow(const HeldGuidance& held, const planning::PathFollowerParams& para
   }
   Setpoint setpoint = planning::follow_path(params, vehicle, plan.timed, *held.starts, state, now);
   setpoint.height_m += height_offset_m(plan, now);
+  if (plan.lands) setpoint.landing = plan.landing;
   return setpoint;
 }
 

@@ -16,6 +16,14 @@ namespace {
 constexpr double kOnTrackM = 30.0;
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
+/// A copter that is first seen so near to its height flies.
+constexpr double kStandsBelow_m = 4.0;
+
+/// Where that copter stands, above the origin; the origin's height where it is seen in the air first.
+double stands_m(const VehicleState& state, const VehicleSpec& vehicle) {
+  const bool is_high = std::abs(state.z_m - vehicle.height_m) < kStandsBelow_m;
+  return state.on_ground() || !is_high ? state.z_m : 0.0;
+}
 
 VehicleAgentConfig with_margin(VehicleAgentConfig config) {
   double& margin_m = config.planning.avoidance.margin_m;
@@ -35,6 +43,8 @@ Ownship::Ownship(const VehicleAgentConfig& config)
 
 bool Ownship::on_state(const VehicleState& state, Instant now) {
   state_ = state;
+  if (descent_) descent_->step(state, now);
+  if (!ground_m_) ground_m_ = stands_m(state, spec());
   if (flight_.started() || !take_off_.done(state, now)) return true;
   if (config_.route && is_at_route()) {
     flight_.start_route(*config_.route);
@@ -61,6 +71,10 @@ void Ownship::take_route_back() {
 
 std::optional<Guidance> Ownship::poll_guidance() {
   if (!flight_.started()) return take_off_.poll_track();
+  if (descent_) {
+    if (auto track = descent_->poll_track()) return Guidance{*track};
+    return std::nullopt;
+  }
   return flight_.poll_plan();
 }
 
@@ -87,12 +101,31 @@ void Ownship::come_home(Instant now) {
   }
 }
 
+bool Ownship::at_home(Instant now) const {
+  return flight_.at_home(now) && on_track(flight_.plan().timed);
+}
+
+bool Ownship::land() {
+  const Landing landing = landing_of(spec(), flight_.first_pose());
+  if (spec().is_copter()) {
+    descent_.emplace(landing, spec().height_m, ground_m_.value_or(0.0));
+    return true;
+  }
+  if (!is_open(landing, hazards(), config_.planning.avoidance.margin_m)) return false;
+  flight_.land(landing);
+  return true;
+}
+
 bool Ownship::return_along(const TimedPath& way, Instant now) {
   return is_way_home(way, spec(), flight_, hazards(), range_to_spend(now), now) &&
          flight_.return_along(way, now);
 }
 
 bool Ownship::keeps_clear(Instant now) {
+  const FlightPlan& plan = flight_.plan();
+  if (plan.lands && !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m)) {
+    fly_home(now);  // it goes around
+  }
   if (flight_.keeps_clear(hazards(), now)) return true;
   if (flight_.homing()) {
     fly_home(now);

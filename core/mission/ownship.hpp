@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "flight.hpp"
+#include "landing.hpp"
 #include "skein/mission/events.hpp"
 #include "skein/mission/range_budget.hpp"
 #include "skein/mission/vehicle_agent.hpp"
@@ -50,12 +51,27 @@ class Ownship {
   [[nodiscard]] std::optional<Guidance> poll_guidance();
 
   // Flight, around the known hazards. Precondition: flight().started().
-  void search(Instant now) { flight_.search(hazards(), range_to_spend(now), now); }
+  void search(Instant now) {
+    descent_.reset();
+    flight_.search(hazards(), range_to_spend(now), now);
+  }
   void stand_by(SiteId site, const std::optional<Vec2>& place, Instant now) {
     flight_.stand_by(site, place, hazards(), range_to_spend(now), now);
   }
-  void hold(Instant now) { flight_.hold(hazards(), now); }
-  void fly_home(Instant now) { flight_.fly_home(hazards(), now); }
+  void hold(Instant now) {
+    descent_.reset();
+    flight_.hold(hazards(), now);
+  }
+  void fly_home(Instant now) {
+    descent_.reset();
+    flight_.fly_home(hazards(), now);
+  }
+  /// Is it in its orbit at home, where the plan has it?
+  [[nodiscard]] bool at_home(Instant now) const;
+  /// From there it comes down. False, and nothing changed, where a hazard bars that.
+  bool land();
+  /// Comes down, or has.
+  [[nodiscard]] bool landing() const { return descent_.has_value() || flight_.landing(); }
   /// Leaves its own way home for that one, where it is one that it can fly. Else false.
   bool return_along(const TimedPath& way, Instant now);
   /// Home where it is recovered there, an orbit where it is recovered anywhere.
@@ -96,6 +112,8 @@ class Ownship {
   RangeBudget range_;
   TurnRoom turn_room_;
   TakeOff take_off_;
+  std::optional<Descent> descent_;  ///< of a copter
+  std::optional<double> ground_m_;  ///< where it stood before its first flight
   Flight flight_;
   KnownHazards hazards_;
   std::uint8_t loads_;

@@ -204,9 +204,10 @@ void SeparationWatch::decide(VehicleId id, Other& other, const Self& self, const
 
 bool SeparationWatch::must_yield(VehicleId id, const Other& other, const Self& self,
                                  Instant now) const {
-  const bool keeps =
-      piloted_.contains(id) || now - other.heard > kSilent || other.activity == Activity::forming;
+  const bool keeps = piloted_.contains(id) || now - other.heard > kSilent ||
+                     other.activity == Activity::forming || other.activity == Activity::landing;
   if (keeps) return true;
+  if (self.activity == Activity::landing) return false;  // its autopilot flies it down
   const bool own_task = self.activity == Activity::executing;
   const bool other_task = other.activity == Activity::executing;
   return own_task != other_task ? other_task : self_ > id;

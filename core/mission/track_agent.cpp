@@ -124,7 +124,8 @@ void TrackAgent::leave() {
 
 void TrackAgent::on_command(const Command& command, Instant now) {
   if (!flight_->started() || !commands_.take(command, config_.vehicle.id)) return;
-  if (command.kind == CommandKind::give_back) return;
+  // It lands by its pilot (GroundNode::command()).
+  if (command.kind == CommandKind::give_back || command.kind == CommandKind::land) return;
   ordered_ = command.kind != CommandKind::resume;
   if (command.kind == CommandKind::hold) flight_->hold(hazards_.all(), now);
   if (command.kind == CommandKind::return_home) flight_->fly_home(hazards_.all(), now);

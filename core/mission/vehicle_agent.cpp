@@ -29,8 +29,8 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
 /// What is flown for a time agreed on is not planned anew: the next plan is the wider one.
 void VehicleAgent::Impl::watch_wind(const VehicleState& state, Instant now) {
   const bool lacked = ownship_.lacks_turn_room();
-  const bool replan = ownship_.measures_wind(state) && ownship_.flight().started() &&
-                      ownship_.flight().searching();
+  const bool replan =
+      ownship_.measures_wind(state) && ownship_.flight().started() && ownship_.flight().searching();
   if (ownship_.lacks_turn_room() && !lacked) {
     outbox.report(event::VehicleTrouble{event::Trouble::turns_not_held}, {}, {}, now);
   }
@@ -73,6 +73,7 @@ void VehicleAgent::Impl::step(Instant now) {
   pump(now);
   watch_range(now);
   idle(now);
+  come_down(now);
   pump(now);
   watch_separation(now);
   check();
@@ -215,7 +216,8 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  if (!flight.started() || busy || routes_.awaits() || separation_.watches()) return now;
+  const bool looks = separation_.watches() || lands_;
+  if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});
   if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
@@ -227,6 +229,8 @@ Instant VehicleAgent::Impl::quiet_until(Instant now) const {
 
 Activity VehicleAgent::Impl::activity() const {
   return activity_of({.failsafe = failsafe_.action(),
+                      .lands = ownship_.landing(),
+                      .landed = ownship_.landing() && ownship_.state().on_ground(),
                       .has_task = flyer_.flying(),
                       .leads = leader_.leading(),
                       .monitors = leader_.monitoring(),

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // News for the failsafe, and what the vehicle does because of it.
+#include <utility>
+
 #include "vehicle_agent_impl.hpp"
 
 namespace skein::mission {
@@ -15,14 +17,25 @@ void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
 
 void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   outbox.report(event::Commanded{order}, {}, {}, now);
+  // It stands on the ground: nothing is flown before it is in the air again.
+  if (ownship_.landing() && ownship_.state().on_ground()) return;
+  lands_ = order == CommandKind::land;
+  told_barred_ = false;
   const auto* response = failsafe_.update(now, {.order = order});
   if (response != nullptr) respond(*response, now);
+}
+
+/// By order, where it is at home: else it is on its way there.
+void VehicleAgent::Impl::come_down(Instant now) {
+  if (!lands_ || ownship_.landing() || !ownship_.at_home(now)) return;
+  if (ownship_.land() || std::exchange(told_barred_, true)) return;
+  outbox.report(event::VehicleTrouble{event::Trouble::landing_barred}, {}, {}, now);
 }
 
 /// With the others, and only while the operator's order to come home is what it obeys.
 void VehicleAgent::Impl::on_return_flight(const ReturnFlight& message, Instant now) {
   const bool ours = message.vehicle == ownship_.spec().id && message.plan > return_plan_;
-  if (!ours || !failsafe_.facts().ordered) return;
+  if (!ours || !failsafe_.facts().ordered || ownship_.landing()) return;
   if (ownship_.return_along(message.timed, now)) return_plan_ = message.plan;
 }
 
@@ -106,6 +119,9 @@ void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now
       return ownship_.fly_home(now);
     case Failsafe::Manoeuvre::come_home:
       return ownship_.come_home(now);
+    case Failsafe::Manoeuvre::land:
+      if (!ownship_.flight().homing()) ownship_.fly_home(now);
+      return come_down(now);
     case Failsafe::Manoeuvre::search:
       if (flyer_.flying() || scout_.flying()) return;
       return failsafe_.facts().range_spent ? ownship_.come_home(now) : ownship_.search(now);

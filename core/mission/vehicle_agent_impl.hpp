@@ -58,6 +58,7 @@ class VehicleAgent::Impl {
 
   void on_command(const Command& message, Instant now);
   void obey(CommandKind order, Instant now);
+  void come_down(Instant now);
   void on_return_flight(const ReturnFlight& message, Instant now);
   void on_site(const SiteReport& message, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
@@ -78,6 +79,8 @@ class VehicleAgent::Impl {
   RelayOrbit relay_{ownship_};
   SeparationWatch separation_;
   CommandFilter commands_;
+  bool lands_ = false;                         ///< by order, once it is at home
+  bool told_barred_ = false;                   ///< that a hazard keeps it from that
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };

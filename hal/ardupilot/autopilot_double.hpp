@@ -59,8 +59,12 @@ class AutopilotDouble {
                                           {"FS_LONG_ACTN", 1.0F},    {"SYSID_MYGCS", 1.0F},
                                           {"ROLL_LIMIT_DEG", 75.0F}, {"AIRSPEED_MIN", 10.0F},
                                           {"AIRSPEED_MAX", 100.0F},  {"AIRSPEED_CRUISE", 50.0F}};
-  int deaf_to_parameters = 0;       ///< so many questions get lost
-  std::set<std::uint32_t> stopped;  ///< streams
+  int deaf_to_parameters = 0;  ///< so many questions get lost
+  std::vector<mavlink::MissionItemInt> mission;
+  int deaf_to_mission = 0;             ///< so many messages about it get lost
+  std::uint8_t mission_result = 0;     ///< of MISSION_ACK
+  std::optional<std::size_t> spoiled;  ///< that item is stored 11 m further north
+  std::set<std::uint32_t> stopped;     ///< streams
   std::set<std::uint32_t> refuses_streams;
 
   std::vector<mavlink::CommandLong> commands;
@@ -224,12 +228,41 @@ class AutopilotDouble {
       target_times.push_back(now);
     }
     if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);
+    on_mission(packet);
     if (const auto asked = mavlink::decode<mavlink::ParamRequestRead>(packet)) {
       if (deaf_to_parameters > 0) {
         --deaf_to_parameters;
       } else {
         tell_parameter(mavlink::text_of(asked->param_id));
       }
+    }
+  }
+  void on_mission(const mavlink::Packet& packet) {
+    const auto count = mavlink::decode<mavlink::MissionCount>(packet);
+    auto item = mavlink::decode<mavlink::MissionItemInt>(packet);
+    const auto list = mavlink::decode<mavlink::MissionRequestList>(packet);
+    const auto asked = mavlink::decode<mavlink::MissionRequestInt>(packet);
+    const bool any = count || item || list || asked;
+    if (!any || (deaf_to_mission > 0 && deaf_to_mission-- > 0)) return;
+    const auto ask = [this](std::size_t seq) {
+      send(mavlink::MissionRequest{.seq = static_cast<std::uint16_t>(seq)});
+    };
+    if (count) {
+      mission.clear();
+      to_come_ = count->count;
+      ask(0);
+    } else if (item && item->seq == mission.size()) {
+      if (spoiled == mission.size()) item->x += 1000;
+      item->param2 = std::trunc(item->param2);
+      mission.push_back(*item);
+      if (mission.size() < to_come_) return ask(mission.size());
+      mavlink::MissionAck ack;
+      ack.type = mission_result;
+      send(ack);
+    } else if (list) {
+      send(mavlink::MissionCount{.count = static_cast<std::uint16_t>(mission.size())});
+    } else if (asked && asked->seq < mission.size()) {
+      send(mission[asked->seq]);
     }
   }
   /// Of one that it does not know it says nothing.
@@ -290,6 +323,7 @@ class AutopilotDouble {
   }
 
   Instant booted_;
+  std::size_t to_come_ = 0;  ///< items of a mission
   mavlink::Encoder encoder_{1, 1};
   mavlink::Parser parser_;
   std::map<std::uint32_t, Duration> intervals_{{0, std::chrono::seconds{1}}};

@@ -29,6 +29,7 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
+constexpr double kSinks_mps = 0.2;  ///< a point that does so faster comes down
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
@@ -122,7 +123,7 @@ void Companion::Impl::step(Instant now) {
       fly(now);
       break;
     case State::landing:
-      if (!entry_.mode_confirmed) ask_for_mode(land_mode(), now);
+      land(now);
       break;
     default:
       break;
@@ -132,6 +133,7 @@ void Companion::Impl::step(Instant now) {
   check_parameters(now);
   ask_others(now);
   keep_clock(now);
+  say_mission(now);
   if (now >= heartbeat_at_) {
     heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
     mavlink::Heartbeat heartbeat;
@@ -308,6 +310,11 @@ void Companion::Impl::fly(Instant now) {
   send_target(roll_target(bank_for(params_.vehicle, setpoint, state, sample->turn_ability)), now);
   set_speed(setpoint, sample->true_per_equivalent, now);
   set_height(setpoint, state, now);
+  if (setpoint.landing) {
+    prepare_landing(*setpoint.landing, now);
+  } else if (uploads_) {
+    forget_landing();
+  }
 }
 
 void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m,
@@ -320,8 +327,10 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
   } else if (now - *on_ground_since_ >= kLandAfter) {
     return fire(Event::may_land, now);
   }
-  if (point.z_m < home_z_m + kLandFrom_m) {
-    point.z_m = home_z_m + kLandFrom_m;
+  const bool sinks = point.vz_mps < -kSinks_mps || point.z_m <= home_z_m + kGround_m;
+  const double least_m = sinks ? kLandFrom_m : kHoverFrom_m;
+  if (point.z_m < home_z_m + least_m) {
+    point.z_m = home_z_m + least_m;
     point.vz_mps = 0.0;
     point.az_mps2 = 0.0;
   }
@@ -476,10 +485,12 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       if (from == State::arming) begin_climb(now);
       break;
     case State::landing:
+      told_too_low_ = false;
       say(false, {AutopilotNews::landing}, now);
       break;
     case State::flying:
       on_ground_since_.reset();
+      forget_landing();
       speed_sent_.reset();
       height_sent_.reset();
       height_at_.reset();

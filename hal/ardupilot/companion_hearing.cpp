@@ -63,6 +63,8 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
     parameters_.on_value(mavlink::text_of(parameter->param_id), parameter->param_value);
   } else if (const auto ack = mavlink::decode<mavlink::CommandAck>(packet)) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
+  } else {
+    upload_.on_packet(packet, now);
   }
 }
 
@@ -153,7 +155,7 @@ void Companion::Impl::on_mode(Instant now) {
     case State::landing:
       if (!armed_) {
         fire(Event::disarmed, now);
-      } else if (mode_ == land_mode()) {
+      } else if (mode_ == land_mode(params_.airframe)) {
         entry_.mode_confirmed = true;
       } else if (entry_.mode_confirmed || !guided()) {
         fire(Event::other_mode, now);
@@ -206,7 +208,7 @@ void Companion::Impl::on_check(Instant now) {
       // In GUIDED it has not heard of it: where the setpoint stays, it is told again.
       if (!armed_) {
         fire(Event::disarmed, now);
-      } else if (mode_ == land_mode()) {
+      } else if (mode_ == land_mode(params_.airframe)) {
         fire(Event::still_landing, now);
       } else {
         fire(guided() ? Event::guided : Event::other_mode, now);
@@ -288,6 +290,10 @@ void Companion::Impl::on_outcome(const Outcome& outcome, Instant now) {
   }
   if (command == Command::do_change_altitude && outcome.answer != Answer::accepted) {
     height_sent_.reset();
+  }
+  if (command == Command::do_set_mission_current) {
+    may_land_ = outcome.answer == Answer::accepted;
+    if (!may_land_) not_landed("the autopilot does not begin the mission", now);
   }
   if (command == Command::do_change_speed && outcome.answer == Answer::unanswered) {
     speed_sent_.reset();

@@ -11,6 +11,7 @@
 #include "command_desk.hpp"
 #include "custody.hpp"
 #include "flight_modes.hpp"
+#include "mission_upload.hpp"
 #include "parameter_check.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
@@ -89,7 +90,9 @@ class Companion::Impl {
   std::optional<Notice> poll_notice() { return notices_.pop(); }
   [[nodiscard]] std::optional<MotionSample> sample() const {
     auto sample = motion_.sample();
-    if (sample) sample->state.battery_percent = looked_at_.battery_percent();
+    if (!sample) return sample;
+    sample->state.battery_percent = looked_at_.battery_percent();
+    sample->state.phase = phase();
     return sample;
   }
   [[nodiscard]] const StateMachine<State, Event>& machine() const { return machine_; }
@@ -139,6 +142,12 @@ class Companion::Impl {
   void arm(Instant now);
   void ask_for_mode(std::uint32_t mode, Instant now);
   void fly(Instant now);
+  [[nodiscard]] FlightPhase phase() const;
+  void prepare_landing(const Landing& landing, Instant now);
+  void not_landed(std::string why, Instant now);
+  void land(Instant now);
+  void forget_landing();
+  void say_mission(Instant now);
   void fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m, Instant now);
   /// With the time and the autopilot's address in it, when one is due.
   template <class Message>
@@ -247,6 +256,12 @@ class Companion::Impl {
   Instant speed_at_;
   std::optional<double> height_sent_;
   std::optional<Instant> height_at_;
+  MissionUpload upload_;            ///< of a plane's landing
+  std::optional<Landing> uploads_;  ///< what that is of
+  bool told_upload_ = false;
+  bool may_land_ = false;    ///< the autopilot has the mission, and stands at its landing
+  Instant upload_again_at_;  ///< after one that failed
+  bool told_too_low_ = false;
   std::optional<Outcome> refusal_;
   Instant refusal_at_;
   std::optional<AutopilotNotice> said_refusal_;

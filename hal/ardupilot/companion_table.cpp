@@ -39,7 +39,8 @@ constexpr auto kOwn = state_table(
     from(State::flying, on(Event::other_mode, State::piloted),
          on(Event::disarmed, State::standing_by), on(Event::may_land, State::landing)),
     from(State::landing, on(Event::disarmed, State::standing_by),
-         on(Event::other_mode, State::piloted), on(Event::not_obeyed, State::piloted)),
+         on(Event::called_off, State::taking_over), on(Event::other_mode, State::piloted),
+         on(Event::not_obeyed, State::piloted)),
     from(State::piloted, on(Event::given_back, State::taking_over),
          on(Event::given_back_landed, State::standing_by)),
     from(State::lost, on(Event::packets_back, State::checking),
@@ -71,11 +72,12 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(State::count)> k
     "flying",    "landing", "piloted",   "lost",        "silent", "checking", "duplicated"};
 
 constexpr std::array<std::string_view, static_cast<std::size_t>(Event::count)> kEventNames{
-    "autopilot_found", "wrong_autopilot",   "ready",          "may_launch",       "armed",
-    "climbed",         "may_take",          "guided",         "may_land",         "other_mode",
-    "disarmed",        "not_obeyed",        "still_climbing", "still_landing",    "not_ours",
-    "given_back",      "given_back_landed", "link_lost",      "autopilot_silent", "packets_back",
-    "rebooted",        "duplicate"};
+    "autopilot_found", "wrong_autopilot",   "ready",         "may_launch",
+    "armed",           "climbed",           "may_take",      "guided",
+    "may_land",        "called_off",        "other_mode",    "disarmed",
+    "not_obeyed",      "still_climbing",    "still_landing", "not_ours",
+    "given_back",      "given_back_landed", "link_lost",     "autopilot_silent",
+    "packets_back",    "rebooted",          "duplicate"};
 
 }  // namespace
 

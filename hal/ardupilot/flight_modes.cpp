@@ -62,7 +62,10 @@ bool is_return(Airframe airframe, std::uint32_t mode) {
                                                : static_cast<std::uint32_t>(PlaneMode::rtl));
 }
 
-std::uint32_t land_mode() { return static_cast<std::uint32_t>(CopterMode::land); }
+std::uint32_t land_mode(Airframe airframe) {
+  return airframe == Airframe::copter ? static_cast<std::uint32_t>(CopterMode::land)
+                                      : static_cast<std::uint32_t>(PlaneMode::automatic);
+}
 
 std::string name_of_mode(Airframe airframe, std::uint32_t mode) {
   const std::span<const NamedMode> names = airframe == Airframe::copter

@@ -12,9 +12,8 @@ namespace skein::ardupilot {
 [[nodiscard]] std::uint32_t guided_mode(Airframe airframe);
 /// In which the aircraft leaves the ground.
 [[nodiscard]] std::uint32_t takeoff_mode(Airframe airframe);
-/// "GUIDED"; the number of one that has no name here.
-/// Of a copter: it comes down where it is.
-[[nodiscard]] std::uint32_t land_mode();
+/// A copter comes down where it is; a plane flies its mission.
+[[nodiscard]] std::uint32_t land_mode(Airframe airframe);
 /// RTL
 [[nodiscard]] bool is_return(Airframe airframe, std::uint32_t mode);
 [[nodiscard]] std::string name_of_mode(Airframe airframe, std::uint32_t mode);

@@ -8,6 +8,9 @@
 namespace skein::autopilot {
 namespace {
 
+// ArduPlane leaves a circle to a height so.
+constexpr double kAtHeight_m = 5.0;
+constexpr double kHeadsFor_rad = 0.1;
 constexpr double kTouched_m = 0.25;
 constexpr double kBounced_m = 1.5;
 constexpr double kTouchdownSink_mps = 0.7;
@@ -68,6 +71,19 @@ SurfaceCommand PlaneAutopilot::fly_mission(const Estimate& estimate, double seco
                    {.centre_m = goal, .radius_m = std::abs(radius), .clockwise = radius > 0.0},
                    item.height_m, seconds);
     }
+    case MissionItem::Kind::loiter_to_height: {
+      if (may_leave(estimate, item)) {
+        end_item();
+        break;
+      }
+      const double radius = item.radius_m == 0.0 ? params_.loiter_radius_m : item.radius_m;
+      return orbit(estimate,
+                   {.centre_m = goal, .radius_m = std::abs(radius), .clockwise = radius > 0.0},
+                   item.height_m, seconds);
+    }
+    case MissionItem::Kind::mark:
+      end_item();
+      break;
     case MissionItem::Kind::land:
       return land(estimate, item, seconds);
     case MissionItem::Kind::return_home:
@@ -80,6 +96,14 @@ SurfaceCommand PlaneAutopilot::fly_mission(const Estimate& estimate, double seco
   }
   // The item has just ended: this period goes straight on.
   return cruise(estimate, 0.0, estimate.height_m(), airspeed_mps_, seconds);
+}
+
+bool PlaneAutopilot::may_leave(const Estimate& estimate, const MissionItem& circle) const {
+  if (std::abs(estimate.height_m() - circle.height_m) > kAtHeight_m) return false;
+  if (item_ + 1 >= mission_.size()) return true;
+  const Vec2 way = place(mission_[item_ + 1]) - Vec2{estimate.position_m.head<2>()};
+  const double off_rad = wrap_pi(std::atan2(way.y(), way.x()) - estimate.course_rad());
+  return std::abs(off_rad) < kHeadsFor_rad;
 }
 
 SurfaceCommand PlaneAutopilot::land(const Estimate& estimate, const MissionItem& item,

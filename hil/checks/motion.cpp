@@ -100,6 +100,30 @@ const recording::PlanRecord* plan_in_force(const std::vector<recording::PlanReco
   return after == plans.begin() ? nullptr : &*std::prev(after);
 }
 
+namespace {
+
+/// Without its end for which that holds, where there is anything before it.
+template <class Ended>
+std::span<const recording::TrackPoint> before(const std::vector<recording::TrackPoint>& track,
+                                              Ended ended) {
+  std::size_t size = track.size();
+  while (size > 0 && ended(track[size - 1].state)) --size;
+  return size > 0 ? std::span{track}.first(size) : std::span{track};
+}
+
+}  // namespace
+
+std::span<const recording::TrackPoint> flown_part(const std::vector<recording::TrackPoint>& track) {
+  return before(track, [](const VehicleState& state) { return state.on_ground(); });
+}
+
+std::span<const recording::TrackPoint> planned_part(
+    const std::vector<recording::TrackPoint>& track) {
+  return before(track, [](const VehicleState& state) {
+    return state.on_ground() || state.phase == FlightPhase::landing;
+  });
+}
+
 std::optional<TrackPosition> track_at(const std::vector<recording::TrackPoint>& track, Instant time,
                                       double gap_s) {
   const std::size_t after = first_at(track, time);

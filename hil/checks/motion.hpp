@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,13 @@ void walk_plan(const TimedPath& plan, double from_m, double to_m, double step_m,
 /// What the vehicle was told to fly at that moment; null before its first plan.
 [[nodiscard]] const recording::PlanRecord* plan_in_force(
     const std::vector<recording::PlanRecord>& plans, Instant time);
+
+/// What of a track was flown: all before it stood on the ground for good. The second ends where its
+/// flight controller took it down there, from where on no plan tells where it is.
+[[nodiscard]] std::span<const recording::TrackPoint> flown_part(
+    const std::vector<recording::TrackPoint>& track);
+[[nodiscard]] std::span<const recording::TrackPoint> planned_part(
+    const std::vector<recording::TrackPoint>& track);
 
 /// Position of a track at a time, linear between its points; none outside it and in a gap.
 struct TrackPosition {

@@ -39,7 +39,7 @@ void judge_plan_turns(const Recording& recorded, const VehicleSpec& vehicle, Che
 /// The smallest flown radius over its limit, of one track.
 double judge_track_turns(const Recording& recorded, const VehicleSpec& vehicle,
                          const Limits& limits, CheckResult& result) {
-  const auto& track = recorded.track;
+  const auto track = planned_part(recorded.track);
   double tightest = 0.0;
   Instant when{};
   double turned = 0.0;  // over the window [first, i]

@@ -29,7 +29,7 @@ struct Gridded {
   std::vector<Sample> samples;
 };
 
-std::vector<Sample> on_grid(const std::vector<recording::TrackPoint>& track, Instant begin,
+std::vector<Sample> on_grid(std::span<const recording::TrackPoint> track, Instant begin,
                             std::size_t count, double gap_s) {
   std::vector<Sample> samples(count);
   std::size_t after = 0;
@@ -132,8 +132,8 @@ Grid grid_of(const RunRecord& record, const Limits& limits) {
   grid.count = static_cast<std::size_t>((end - grid.begin) / kStep) + 1;
   for (const auto& recorded : record.recordings) {
     if (recorded.track.empty()) continue;
-    grid.tracks.push_back(
-        {recorded.vehicle, on_grid(recorded.track, grid.begin, grid.count, limits.track_gap_s)});
+    grid.tracks.push_back({recorded.vehicle, on_grid(flown_part(recorded.track), grid.begin,
+                                                     grid.count, limits.track_gap_s)});
   }
   return grid;
 }

@@ -34,15 +34,17 @@ class Sum {
   std::size_t count_ = 0;
 };
 
+/// Before its flight controller takes it down.
 PlanErrors plan_errors(const std::vector<TrackPoint>& track,
-                       const std::vector<recording::PlanRecord>& plans, double height_m) {
+                       const std::vector<recording::PlanRecord>& plans, double height_m,
+                       Instant until) {
   Sum cross;
   Sum along;
   Sum height;
   bool joined = false;
   for (const TrackPoint& point : track) {
     const recording::PlanRecord* record = plan_in_force(plans, point.state.time);
-    if (record == nullptr) continue;
+    if (record == nullptr || point.state.time > until) continue;
     const TimedPath& plan = record->plan;
     const Pose2 pose = plan_pose(plan, plan_distance_m(plan, point.state.time));
     const Vec2 off = Vec2{point.state.x_m, point.state.y_m} - pose.position();
@@ -76,8 +78,11 @@ std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limit
     const Recording* believed = recording_of(record, truth.vehicle);
     const VehicleSpec* spec = spec_of(record, truth.vehicle);
     if (believed == nullptr || spec == nullptr) continue;
-    all.push_back({truth.vehicle, plan_errors(believed->track, believed->plans, spec->height_m),
-                   plan_errors(truth.track, believed->plans, spec->height_m),
+    const auto planned = planned_part(believed->track);
+    const Instant until = planned.empty() ? Instant::max() : planned.back().state.time;
+    all.push_back({truth.vehicle,
+                   plan_errors(believed->track, believed->plans, spec->height_m, until),
+                   plan_errors(truth.track, believed->plans, spec->height_m, until),
                    apart(believed->track, truth.track, limits.track_gap_s)});
   }
   return all;

@@ -183,6 +183,58 @@ TEST(CompanionAndEmulator, APlaneIsFlownInWindWithGusts) {
   EXPECT_EQ(bench.link().reassembly().broken(), 0U);
 }
 
+constexpr Landing kIntoWind{.x_m = 1000.0,
+                            .y_m = 2500.0,
+                            .heading_rad = 2.5,
+                            .approach_m = 600.0,
+                            .approach_height_m = 40.0,
+                            .radius_m = 165.0};
+
+TEST(CompanionAndEmulator, APlaneLandsByAMissionAndIsDisarmed) {
+  Bench bench{plane_in_wind()};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.setpoint.landing = kIntoWind;
+  ASSERT_TRUE(bench.run_until(State::landing, 5.0)) << bench.log();
+  double height_m = bench.state().z_m;
+  double sink_mps = 0.0;  // over the last second before it is on the ground
+  Vec2 touched = bench.state().position().horizontal();
+  for (int i = 0; i < 3000 && bench.companion().state() == State::landing; ++i) {
+    bench.run(0.1);
+    const VehicleState state = bench.state();
+    if (state.z_m > 1.0) {
+      sink_mps = (height_m - state.z_m) / 0.1;
+      touched = state.position().horizontal();
+    }
+    height_m = state.z_m;
+  }
+  EXPECT_EQ(bench.companion().state(), State::standing_by) << bench.log();
+  EXPECT_EQ(bench.state().phase, FlightPhase::disarmed);
+  EXPECT_LT(sink_mps, 2.0);
+  const Vec2 off = touched - Vec2{kIntoWind.x_m, kIntoWind.y_m};
+  const Vec2 forward = unit_vector(kIntoWind.heading_rad);
+  EXPECT_LT(std::abs(left_of(forward).dot(off)), 10.0) << bench.log();
+  EXPECT_LT(std::abs(forward.dot(off)), 200.0) << bench.log();
+  RecordProperty("sink_mps", std::to_string(sink_mps));
+  RecordProperty("along_m", std::to_string(forward.dot(off)));
+  RecordProperty("across_m", std::to_string(left_of(forward).dot(off)));
+}
+
+TEST(CompanionAndEmulator, APlaneThatLandsGoesAround) {
+  Bench bench{plane_in_wind()};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.setpoint.landing = kIntoWind;
+  ASSERT_TRUE(bench.run_until(State::landing, 5.0)) << bench.log();
+  for (int i = 0; i < 3000 && bench.state().z_m > 20.0; ++i) bench.run(0.1);
+  ASSERT_EQ(bench.companion().state(), State::landing) << bench.log();
+  bench.setpoint.landing.reset();
+  ASSERT_TRUE(bench.run_until(State::flying, 3.0)) << bench.log();
+  bench.run(40.0);
+  EXPECT_NEAR(bench.state().z_m, 300.0, 10.0) << bench.log();
+  EXPECT_EQ(bench.companion().state(), State::flying);
+}
+
 TEST(CompanionAndEmulator, PilotSilenceAndRestartAreNoticed) {
   Bench bench{plane_in_wind()};
   bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};

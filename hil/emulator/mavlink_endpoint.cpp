@@ -99,6 +99,7 @@ void MavlinkEndpoint::step(Instant now) {
   while (const auto notice = vehicle_.poll_notice()) {
     say(static_cast<mavlink::Severity>(notice->severity), notice->text);
   }
+  say_mission(now);
   for (Stream& stream : streams_) {
     if (stream.interval == Duration{} || now < stream.due) continue;
     stream.due = std::max(stream.due + stream.interval, now);
@@ -144,6 +145,21 @@ void MavlinkEndpoint::on_packet(const mavlink::Packet& packet, Instant now) {
     if (for_us(global->target_system, global->target_component)) {
       vehicle_.on_position_target(*global, now);
     }
+  } else if (mission_.on_packet(packet, vehicle_, now)) {
+    mission_system_ = packet.system;
+    mission_component_ = packet.component;
+  }
+}
+
+void MavlinkEndpoint::say_mission(Instant now) {
+  while (auto answer = mission_.poll(now)) {
+    std::visit(
+        [this](auto& said) {
+          said.target_system = mission_system_;
+          said.target_component = mission_component_;
+          send(encoder_.encode(said));
+        },
+        *answer);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "mission_store.hpp"
 #include "skein/dronecan/tunnel.hpp"
 #include "skein/hil/emulator_config.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -50,6 +51,7 @@ class MavlinkEndpoint {
   mavlink::CommandResult tell_interval(const mavlink::CommandInt& command);
   mavlink::CommandResult send_once(std::uint32_t id, Instant now);
   mavlink::CommandResult restart(const mavlink::CommandInt& command, Instant now);
+  void say_mission(Instant now);
   void tell_parameter(std::string_view name);
   void on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet, Instant now);
   [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const;
@@ -67,6 +69,9 @@ class MavlinkEndpoint {
   Instant booted_;
   mavlink::Parser parser_;
   mavlink::Encoder encoder_;
+  MissionStore mission_;
+  std::uint8_t mission_system_ = 0;  ///< who is answered about the mission
+  std::uint8_t mission_component_ = 0;
   std::vector<Stream> streams_;
   Instant timesync_at_;
   Instant refusal_told_at_;

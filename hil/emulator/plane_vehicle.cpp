@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/atmosphere.hpp"
@@ -62,6 +63,8 @@ autopilot::PlaneParams params_of(const EmulatorConfig& config) {
   p.tuning.airspeed_max_mps = config.airspeed_max_mps * true_per_equivalent;
   p.tuning.roll_max_rad = bank_limit_rad(config);
   p.loiter_radius_m = kLoiterRadii * config.turn_radius_m;
+  // As TECS_LAND_ARSPD -1.
+  p.approach_airspeed_mps = 0.5 * (p.tuning.airspeed_min_mps + p.tuning.airspeed_cruise_mps);
   p.companion_failsafe = config.companion_failsafe;
   return p;
 }
@@ -166,6 +169,9 @@ CommandResult PlaneVehicle::command(const mavlink::CommandInt& c) {
       return guided_height(c);
     case Command::guided_change_heading:
       return guided_heading(c);
+    case Command::do_set_mission_current:
+      if (!(c.param1 >= 0.0F && c.param1 < 1000.0F)) return CommandResult::denied;
+      return on_wire(autopilot_.set_mission_item(static_cast<std::size_t>(c.param1)));
     case Command::nav_loiter_unlim:
       return enter(PlaneMode::loiter);
     case Command::nav_return_to_launch:
@@ -262,6 +268,38 @@ CommandResult PlaneVehicle::guided_heading(const mavlink::CommandInt& c) {
   return on_wire(autopilot_.guided_heading(
       static_cast<autopilot::HeadingKind>(kind), radians(static_cast<double>(c.param2)),
       static_cast<double>(std::max(c.param3, kHeadingAccelerationLeast_mps2))));
+}
+
+/// The items that a landing is made of; of others it has no use.
+mavlink::MissionResult PlaneVehicle::load_mission(std::span<const mavlink::MissionItemInt> items) {
+  using Kind = autopilot::MissionItem::Kind;
+  using mavlink::Command;
+  std::vector<autopilot::MissionItem> flown;
+  for (const mavlink::MissionItemInt& item : items) {
+    const auto down = down_of(static_cast<double>(item.z), item.frame, earth_, report_.home_m);
+    if (!down) return mavlink::MissionResult::unsupported_frame;
+    const auto place = earth_.ned({item.x, item.y, earth_.origin_height_m() - *down});
+    if (!place) return mavlink::MissionResult::invalid;
+    autopilot::MissionItem& one = flown.emplace_back();
+    one.north_m = place->x();
+    one.east_m = place->y();
+    one.height_m = -*down;
+    const auto command = static_cast<Command>(item.command);
+    if (flown.size() == 1 || command == Command::do_land_start) {
+      one.kind = Kind::mark;
+    } else if (command == Command::nav_waypoint) {
+      one.kind = Kind::waypoint;
+    } else if (command == Command::nav_land) {
+      one.kind = Kind::land;
+    } else if (command == Command::nav_loiter_to_alt) {
+      one.kind = Kind::loiter_to_height;
+      one.radius_m = static_cast<double>(item.param2);
+    } else {
+      return mavlink::MissionResult::unsupported;
+    }
+  }
+  const bool taken = autopilot_.load_mission(flown) == autopilot::CommandResult::accepted;
+  return taken ? mavlink::MissionResult::accepted : mavlink::MissionResult::invalid;
 }
 
 void PlaneVehicle::on_attitude_target(const mavlink::SetAttitudeTarget& target, Instant now) {

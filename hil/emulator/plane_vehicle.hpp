@@ -32,6 +32,7 @@ class PlaneVehicle final : public AutopilotVehicle<autopilot::PlaneAutopilot> {
   void restart(Instant now) override;
   autopilot::CommandResult select_mode(std::uint32_t mode) override;
   mavlink::CommandResult command(const mavlink::CommandInt& command) override;
+  mavlink::MissionResult load_mission(std::span<const mavlink::MissionItemInt> items) override;
   void on_attitude_target(const mavlink::SetAttitudeTarget& target, Instant now) override;
   void on_position_target(const mavlink::SetPositionTargetLocalNed& target, Instant now) override;
   void on_position_target(const mavlink::SetPositionTargetGlobalInt& target, Instant now) override;

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "earth.hpp"
 #include "skein/autopilot/command.hpp"
 #include "skein/autopilot/estimate.hpp"
 #include "skein/mavlink/command.hpp"
 #include "skein/mavlink/enums.hpp"
+#include "skein/mavlink/mission.hpp"
 #include "skein/models/rigid_body.hpp"
 
 namespace skein::hil {
@@ -62,6 +64,10 @@ class Vehicle {
   virtual autopilot::CommandResult disarm(bool force) = 0;
   /// Commands that depend on the kind of vehicle; unsupported where it knows none.
   virtual mavlink::CommandResult command(const mavlink::CommandInt& command) = 0;
+  /// Takes the place of the one before; the first item is home.
+  virtual mavlink::MissionResult load_mission(std::span<const mavlink::MissionItemInt> /*items*/) {
+    return mavlink::MissionResult::unsupported;
+  }
   virtual void on_attitude_target(const mavlink::SetAttitudeTarget& target, Instant now) = 0;
   virtual void on_position_target(const mavlink::SetPositionTargetLocalNed& target,
                                   Instant now) = 0;

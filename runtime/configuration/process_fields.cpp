@@ -130,6 +130,26 @@ void pose_fields(FieldVisitor& v, Pose2& pose) {
   compass(v, {"heading_deg", "compass heading at the start", kRequired}, pose.heading_rad);
 }
 
+/// Steeper, a plane gains speed on its way down.
+constexpr double kDescentMax = 0.12;
+
+void landing_fields(FieldVisitor& v, LandingSpec& landing) {
+  v.number({"east_m", "touch-down; without both, the start"}, kMetres, landing.x_m);
+  v.number({"north_m", "touch-down"}, kMetres, landing.y_m);
+  v.require(landing.x_m.has_value() == landing.y_m.has_value(), "east_m",
+            "and north_m name a place together; give both, or none for the start");
+  compass(v,
+          {"heading_deg", "of a plane's final approach, into the wind; without, that of the start"},
+          landing.heading_rad);
+  v.number({"approach_m", "length of a plane's final approach"}, {50.0, 5000.0, "m"},
+           landing.approach_m);
+  v.number({"approach_height_m", "above home, where it begins"}, {5.0, 500.0, "m"},
+           landing.approach_height_m);
+  v.require(landing.approach_height_m <= kDescentMax * landing.approach_m, "approach_m",
+            "is a descent steeper than 12 in 100; raise it to approach_height_m / 0.12 or more, or "
+            "lower approach_height_m");
+}
+
 void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
   id(v, {"id", "number of the vehicle, its own in the fleet", kRequired}, spec.id);
   v.require(spec.id != mission::kSensors, "id", "is of the sensors; give the vehicle another");
@@ -175,6 +195,8 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
            spec.final_approach_m);
   v.number({"height_m", "the vehicle's layer, above the origin", kRequired}, {0.0, 10000.0, "m"},
            spec.height_m);
+  v.section({"landing", "where it lands, by the operator's order"},
+            [&spec](FieldVisitor& inner) { landing_fields(inner, spec.landing); });
 }
 
 void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix) {
@@ -188,6 +210,11 @@ void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& pre
   v.require(spec.is_copter() || unread || turn_mps2 <= kPlaneTurnMax_mps2, prefix + "turn_radius_m",
             "is less than cruise_speed_mps^2 / 59 m/s2, a turn of 6 g; raise it or lower "
             "cruise_speed_mps");
+  const bool lower = spec.landing.approach_height_m < spec.height_m;
+  const bool given = spec.landing.approach_height_m != LandingSpec{}.approach_height_m;
+  v.require(spec.is_copter() || lower || !given, prefix + "landing.approach_height_m",
+            "is not below height_m, from which a plane comes down to it; lower it or raise "
+            "height_m");
   v.require(!flies_plans || spec.height_m >= kCopterHeightMin_m, prefix + "height_m",
             "is below 5 m, and a copter takes off to it; raise it");
 }

@@ -121,6 +121,7 @@ std::string_view sentence_of(event::Trouble trouble) {
       "it is not where its route has it at this time: the route is not flown",
       "another vehicle uses this id; this one bids and leads no more",
       "it has started anew, and holds until it is told which orders stand",
+      "a hazard bars its way down: it orbits at home, and is to be landed otherwise",
       "its circles would have to be wider in this wind than there is room for: it flies off their "
       "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind"};
   return sentence_in(kSentences, trouble);
@@ -258,6 +259,10 @@ constexpr std::array kAutopilotNews{
     std::string_view{"the autopilot would not arm: {detail}"},
     std::string_view{"the autopilot is heard again; the pilot or a failsafe has it still, in "
                      "{detail}"},
+    std::string_view{"the landing is uploaded and read back: {detail}"},
+    std::string_view{"it is not landed, and flies on: {detail}"},
+    std::string_view{"the landing is called off; going around"},
+    std::string_view{"it is below {number} m: it lands, whatever was ordered since"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 
@@ -381,6 +386,9 @@ struct News {
         return who + " is silent";
       case event::FleetNews::heard_again:
         return fmt::format("{} is heard again after {} s", who,
+                           std::chrono::round<std::chrono::seconds>(e.silence).count());
+      case event::FleetNews::not_landed:
+        return fmt::format("{} has not landed {} s after its turn began; the next one lands", who,
                            std::chrono::round<std::chrono::seconds>(e.silence).count());
       case event::FleetNews::count:
         break;

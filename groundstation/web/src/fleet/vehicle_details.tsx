@@ -22,6 +22,9 @@ function Orders({ vehicle }: { vehicle: Vehicle }) {
       <HoldButton testid="vehicle-return" on_held={() => void give(command("return_home", id))}>
         Return
       </HoldButton>
+      <HoldButton testid="vehicle-land" on_held={() => void give(command("land", id))}>
+        Land
+      </HoldButton>
       {vehicle.flight_controller !== null && (
         <HoldButton testid="vehicle-give-back" on_held={() => void give(command("give_back", id))}>
           Give back

@@ -21,6 +21,9 @@ function ToAll() {
         <HoldButton testid="orders-return-all" on_held={() => void give(command("return_home", 0))}>
           Return all
         </HoldButton>
+        <HoldButton testid="orders-land-all" on_held={() => void give(command("land", 0))}>
+          Land all
+        </HoldButton>
       </div>
       <p class="muted">Orders to one vehicle: select it in the fleet or on the map.</p>
     </section>

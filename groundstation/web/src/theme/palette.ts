@@ -60,6 +60,8 @@ const activities: Record<string, string> = {
   forming: "#4a9ad4",
   en_route: "#d58a5e",
   standing_by: "#8c7fd1",
+  landing: "#c9b36a",
+  landed: "#7d8a6b",
 };
 
 export function activity_colour(activity: string | null): string {

@@ -359,7 +359,7 @@ export type FromServer = Hello | History | State | Events | Answer | Pong;
 
 export interface Command {
   kind: "command";
-  command: "hold" | "resume" | "return_home" | "give_back";
+  command: "hold" | "resume" | "return_home" | "give_back" | "land";
   /** 0: all. */
   vehicle: number;
 }

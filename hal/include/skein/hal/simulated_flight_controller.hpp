@@ -8,7 +8,8 @@
 namespace skein::hal {
 
 /// A flight controller with its fixed wing, in this process: models::HeadingDynamics, integrated up
-/// to `now` whenever it is asked. Until `from` it stays at its start.
+/// to `now` whenever it is asked. Until `from` it stays at its start. A setpoint with a landing
+/// brings it down where it flies, at 3 m/s, to the origin's height, where it stays for good.
 class SimulatedFlightController final : public FlightController {
  public:
   SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,
@@ -18,7 +19,7 @@ class SimulatedFlightController final : public FlightController {
   void command(const Demand& demand, Instant now) override;
   /// From mission time `from` on it flies for good.
   [[nodiscard]] Airborne airborne() const override {
-    return model_.state().time > from_ ? Airborne::yes : Airborne::no;
+    return !landed_ && model_.state().time > from_ ? Airborne::yes : Airborne::no;
   }
 
  private:
@@ -26,6 +27,8 @@ class SimulatedFlightController final : public FlightController {
 
   Instant from_;
   models::HeadingDynamics model_;
+  std::optional<Setpoint> landing_;
+  bool landed_ = false;
 };
 
 }  // namespace skein::hal

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -12,6 +13,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/task.hpp"
+#include "skein/idl/domain.hpp"
 
 namespace skein {
 
@@ -20,6 +22,16 @@ enum class Recovery : std::uint8_t { home, anywhere, count };
 
 /// What it flies as: a fixed wing, by heading and airspeed; or a multirotor, by position.
 enum class Airframe : std::uint8_t { plane, copter, count };
+
+/// Where a vehicle lands. What is not given is as it was at the start of its first flight plan: the
+/// place, and the heading, since who took off into the wind lands into it.
+struct LandingSpec {
+  std::optional<double> x_m{};  ///< touch-down, mission frame
+  std::optional<double> y_m{};
+  std::optional<double> heading_rad{};  ///< of the final approach
+  double approach_m = 600.0;            ///< its length over the ground; of planes
+  double approach_height_m = 40.0;      ///< above home, where it begins
+};
 
 /// What a vehicle is (Wang 2022, eq. 2-4).
 struct VehicleSpec {
@@ -45,6 +57,7 @@ struct VehicleSpec {
   double turn_radius_margin = 1.1;
   Airframe airframe = Airframe::plane;
   double acceleration_max_mps2 = 3.0;  ///< horizontal, of a copter; a plane's is in its turn radius
+  LandingSpec landing;
 
   [[nodiscard]] bool is_copter() const { return airframe == Airframe::copter; }
   [[nodiscard]] double planning_radius_m() const { return turn_radius_m * turn_radius_margin; }
@@ -68,6 +81,10 @@ struct VehicleState {
   double climb_mps = 0.0;  ///< of a multirotor; 0 where it is not known
   /// What its gauge says is left of a full battery; kBatteryNotTold where there is none.
   std::uint8_t battery_percent = kBatteryNotTold;
+  FlightPhase phase = FlightPhase::not_told;
+  [[nodiscard]] bool on_ground() const {
+    return phase == FlightPhase::landed || phase == FlightPhase::disarmed;
+  }
   [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
   [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
   /// Over the ground, mission frame.
@@ -82,6 +99,9 @@ struct Setpoint {
   double heading_rad = 0.0;  ///< commanded heading, see VehicleSpec::heading_gain_per_s
   double airspeed_mps = 0.0;
   double height_m = 0.0;
+  /// Where it is to come down to, as far as it can by itself; until it does, the rest is flown.
+  /// One without it, while it comes down, calls that off.
+  std::optional<Landing> landing{};
 };
 
 /// What control asks of the flight controller of a multirotor: to be where a moving point is.

@@ -10,6 +10,7 @@
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/ground_detections.hpp"
 #include "skein/mission/ground_hazards.hpp"
+#include "skein/mission/ground_landing.hpp"
 #include "skein/mission/ground_return.hpp"
 #include "skein/mission/ground_routes.hpp"
 #include "skein/mission/ground_sites.hpp"
@@ -49,7 +50,8 @@ class GroundNode {
   void speak() { setup_.say_at_once(); }
 
   /// As GroundAgent::command(). Fails also where those that are to return home are copters that fly
-  /// in a formation.
+  /// in a formation, and where those that are to land are in one or are not ordered home. Who lands
+  /// is told when its turn comes (GroundLanding).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
   // As of GroundSites, with the fleet as it is heard.
@@ -102,7 +104,7 @@ class GroundNode {
   [[nodiscard]] std::uint64_t dropped() const {
     return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
            tracks_.dropped() + sites_.dropped() + hazards_.dropped() + routes_.dropped() +
-           detections_.dropped() + returns_.dropped();
+           detections_.dropped() + returns_.dropped() + landings_.dropped();
   }
 
  private:
@@ -111,6 +113,8 @@ class GroundNode {
   void on_setup(const Setup& setup, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
+  Result<void> land(VehicleId vehicle, Instant now);
+  [[nodiscard]] std::optional<std::string> why_not_land(VehicleId vehicle) const;
   [[nodiscard]] std::vector<VehicleId> concerned(VehicleId vehicle) const;
 
   GroundAgent agent_;
@@ -124,6 +128,7 @@ class GroundNode {
   GroundRoutes routes_;
   GroundDetections detections_;
   GroundReturn returns_;
+  GroundLanding landings_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

@@ -70,7 +70,7 @@ class Companion {
     climbing,     ///< armed by the companion; the autopilot takes off
     taking_over,  ///< has asked for GUIDED
     flying,       ///< GUIDED: setpoints go out
-    landing,      ///< LAND, asked for by the companion, until the autopilot disarms
+    landing,      ///< a copter's LAND, a plane's mission in AUTO, until the autopilot disarms
     piloted,      ///< others have the aircraft until give_back(), whatever happens in between
     lost,         ///< no frame of the flight controller comes
     silent,       ///< frames come, MAVLink does not
@@ -84,10 +84,13 @@ class Companion {
     ready,       ///< the streams flow, and the parameters are good
     may_launch,  ///< on the ground, ready to arm, and that was asked for
     armed,
-    climbed,     ///< high enough to be taken
-    may_take,    ///< in the air, and the companion shall ask for it
-    guided,      ///< HEARTBEAT says GUIDED
-    may_land,    ///< the setpoint stays at the ground, and the copter is there
+    climbed,   ///< high enough to be taken
+    may_take,  ///< in the air, and the companion shall ask for it
+    guided,    ///< HEARTBEAT says GUIDED
+    /// The setpoint stays at the ground, and the copter is there; or it has a plane's landing, and
+    /// the autopilot has that for a mission, read back and compared.
+    may_land,
+    called_off,  ///< the setpoint of a plane that lands, still high enough, has no landing any more
     other_mode,  ///< HEARTBEAT says a mode that the companion did not ask for
     disarmed,
     not_obeyed,         ///< was asked several times, or does not climb
@@ -123,13 +126,19 @@ class Companion {
   void on_link_trouble(std::optional<AutopilotNotice> trouble);
 
   /// Flown while the state is `flying`; the last one stands until it is too old. A position is
-  /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kLandFrom_m
-  /// above home; where the point stays at home's height or below it for kLandAfter, and the copter
+  /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kHoverFrom_m
+  /// above home, and where it sinks no lower than kLandFrom_m: ArduCopter overshoots a point that
+  /// sinks. Now where the point stays at home's height or below it for kLandAfter, and the copter
   /// is within kLandWithin_m of it, the autopilot lands it there.
   void command(const Demand& demand, Instant now);
-  static constexpr double kLandFrom_m = 1.0;
+  static constexpr double kHoverFrom_m = 1.0;
+  static constexpr double kLandFrom_m = 3.0;
   static constexpr double kLandWithin_m = 2.0;  ///< horizontally
   static constexpr Duration kLandAfter = std::chrono::seconds{1};
+  /// A plane whose setpoint has a landing is given that as a mission, and flown by the rest of the
+  /// setpoint until the autopilot has it; then it is put into AUTO. A setpoint without one, while
+  /// the plane is no lower than that above home, has it go around: GUIDED again.
+  static constexpr double kGoAroundFrom_m = 10.0;
   /// The operator gives the aircraft (back) to the companion: in the air, to be flown; disarmed on
   /// the ground, to stand by and, where it takes off by itself, to be launched (again). False where
   /// it cannot be given, and where it was taken after the operator's word was `issued`. In

@@ -34,7 +34,16 @@ struct PlaneParams {
 
 /// Heights are above the mission's origin, as everywhere in this module.
 struct MissionItem {
-  enum class Kind : std::uint8_t { takeoff, waypoint, loiter, land, return_home, change_speed };
+  enum class Kind : std::uint8_t {
+    takeoff,
+    waypoint,
+    loiter,
+    loiter_to_height,  ///< until it is at that height and heads for the next item
+    land,
+    return_home,
+    change_speed,
+    mark,  ///< nothing is flown: home, DO_LAND_START
+  };
   Kind kind = Kind::waypoint;
   double north_m = 0.0;
   double east_m = 0.0;
@@ -146,6 +155,7 @@ class PlaneAutopilot {
   SurfaceCommand fly_guided(const Estimate& estimate, Instant now, double seconds);
   SurfaceCommand fly_mission(const Estimate& estimate, double seconds);
   SurfaceCommand take_off(const Estimate& estimate, double height_m, double seconds);
+  [[nodiscard]] bool may_leave(const Estimate& estimate, const MissionItem& circle) const;
   SurfaceCommand land(const Estimate& estimate, const MissionItem& item, double seconds);
   SurfaceCommand orbit(const Estimate& estimate, const Orbit& orbit, double height_m,
                        double seconds);

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+// The operator's order to land: on board, and whose turn it is.
+#include "landing.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "agent_parts_test.hpp"
+#include "skein/mission/ground_landing.hpp"
+#include "skein/mission/vehicle_agent.hpp"
+
+namespace skein::mission {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kStep_s = 0.5;
+
+VehicleAgentConfig lander() {
+  VehicleAgentConfig config = plane_config();
+  config.vehicle.height_m = 120.0;
+  config.search = {{900.0, 0.0}};
+  return config;
+}
+
+/// A plane that is exactly where its plan has it.
+class Flown {
+ public:
+  explicit Flown(const VehicleAgentConfig& config = lander())
+      : agent{config, Instant{}}, height_m_{config.vehicle.height_m} {
+    fly(0.0);
+  }
+  void fly(double seconds) {
+    for (const double end = now_s_ + seconds; now_s_ <= end; now_s_ += kStep_s) {
+      const Instant now = at_seconds(now_s_);
+      const Pose2 pose = plan.number > 0 ? plan.timed.pose_at(now) : Pose2{0.0, 0.0, 0.3};
+      state.time = now;
+      state.x_m = pose.x_m;
+      state.y_m = pose.y_m;
+      state.z_m = height_m_;
+      state.heading_rad = state.course_rad = pose.heading_rad;
+      state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
+      state.distance_flown_m += kTestSpeed_mps * kStep_s;
+      agent.on_state(state, now);
+      collect();
+    }
+  }
+  void order(CommandKind kind) {
+    Command command{.vehicle = {4}, .kind = kind};
+    set_number(command, ++orders_);
+    agent.on_message(command, kGroundStation, at_seconds(now_s_));
+    collect();
+  }
+
+  void tell(const Message& message) {
+    agent.on_message(message, kGroundStation, at_seconds(now_s_));
+    collect();
+  }
+
+  VehicleAgent agent;
+  FlightPlan plan;
+  VehicleState state;
+  std::vector<MissionEvent> events;
+
+ private:
+  void collect() {
+    while (auto next = agent.poll_guidance()) plan = std::get<FlightPlan>(*next);
+    while (auto event = agent.poll_event()) events.push_back(*event);
+    while (agent.poll_message()) {
+    }
+  }
+  double height_m_;
+  double now_s_ = 0.0;
+  std::uint64_t orders_ = 0;
+};
+
+TEST(LandingOrder, IsObeyedOnceTheVehicleIsAtHome) {
+  Flown vehicle;
+  vehicle.fly(20.0);
+  vehicle.order(CommandKind::return_home);
+  vehicle.order(CommandKind::land);
+  EXPECT_FALSE(vehicle.plan.lands) << "it is on its way";
+  EXPECT_EQ(vehicle.agent.activity(), Activity::holding);
+  vehicle.fly(120.0);
+  ASSERT_TRUE(vehicle.plan.lands);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::landing);
+  // Where and as it began.
+  EXPECT_NEAR(vehicle.plan.landing.x_m, 0.0, 1e-9);
+  EXPECT_NEAR(vehicle.plan.landing.heading_rad, 0.3, 1e-9);
+  EXPECT_EQ(vehicle.plan.landing.approach_m, 600.0);
+  vehicle.state.phase = FlightPhase::landed;
+  vehicle.fly(1.0);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::landed);
+}
+
+TEST(LandingOrder, GoesWhereTheConfigurationHasIt) {
+  VehicleAgentConfig config = lander();
+  config.vehicle.landing = {.x_m = 50.0, .y_m = -20.0, .heading_rad = 1.0};
+  Flown vehicle{config};
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  ASSERT_TRUE(vehicle.plan.lands);
+  EXPECT_EQ(vehicle.plan.landing.x_m, 50.0);
+  EXPECT_EQ(vehicle.plan.landing.y_m, -20.0);
+  EXPECT_EQ(vehicle.plan.landing.heading_rad, 1.0);
+}
+
+TEST(LandingOrder, AnyOtherOrderCallsItOff) {
+  for (const auto kind : {CommandKind::hold, CommandKind::return_home, CommandKind::resume}) {
+    Flown vehicle;
+    vehicle.order(CommandKind::land);
+    vehicle.fly(120.0);
+    ASSERT_TRUE(vehicle.plan.lands);
+    vehicle.order(kind);
+    vehicle.fly(60.0);
+    EXPECT_FALSE(vehicle.plan.lands) << to_string(kind);
+    EXPECT_NE(vehicle.agent.activity(), Activity::landing);
+  }
+}
+
+TEST(LandingOrder, AHazardOnTheApproachKeepsItInItsOrbitAndIsTold) {
+  VehicleAgentConfig config = lander();
+  config.hazards.push_back({{1}, {-400.0, -120.0}, 60.0});  // on the final approach
+  Flown vehicle{config};
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  EXPECT_FALSE(vehicle.plan.lands);
+  EXPECT_EQ(std::ranges::count_if(vehicle.events,
+                                  [](const MissionEvent& e) {
+                                    const auto* t = std::get_if<event::VehicleTrouble>(&e.body);
+                                    return t != nullptr &&
+                                           t->trouble == event::Trouble::landing_barred;
+                                  }),
+            1);
+}
+
+TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
+  Flown vehicle;
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  ASSERT_TRUE(vehicle.plan.lands);
+  vehicle.tell(HazardReport{{{1}, {-400.0, -120.0}, 60.0}});
+  vehicle.fly(60.0);
+  EXPECT_FALSE(vehicle.plan.lands);
+}
+
+TEST(LandingOrder, WhoHasLandedIsSentNowhere) {
+  Flown vehicle;
+  vehicle.order(CommandKind::land);
+  vehicle.fly(120.0);
+  vehicle.state.phase = FlightPhase::disarmed;
+  vehicle.fly(1.0);
+  for (const auto kind : {CommandKind::hold, CommandKind::return_home, CommandKind::resume}) {
+    vehicle.order(kind);
+    vehicle.fly(10.0);
+    EXPECT_EQ(vehicle.agent.activity(), Activity::landed) << to_string(kind);
+  }
+}
+
+TEST(LandingOrder, ACopterComesOverItsPlaceAndThenStraightDown) {
+  Descent descent{Landing{.x_m = 10.0, .y_m = 0.0}, 30.0, 0.0};
+  VehicleState state;
+  state.z_m = 30.0;
+  double sink_max_mps = 0.0;
+  for (int i = 0; i < 1200; ++i) {
+    state.time = at_seconds(0.1 * i);
+    descent.step(state, state.time);
+    const auto track = descent.poll_track();
+    if (!track) continue;
+    const auto moment = track->at(state.time);
+    state.x_m = moment.position_m.x();
+    state.z_m = moment.position_m.z();
+    sink_max_mps = std::max(sink_max_mps, -moment.velocity_mps.z());
+    if (state.z_m < 29.0) EXPECT_NEAR(state.x_m, 10.0, 1.0);
+  }
+  EXPECT_NEAR(state.z_m, 0.0, 0.1);
+  EXPECT_LE(sink_max_mps, 1.51);
+}
+
+class Turns : public testing::Test {
+ protected:
+  Turns() {
+    for (std::uint16_t id = 1; id <= 3; ++id) hear(id, Activity::holding);
+  }
+  void hear(std::uint16_t id, Activity activity) {
+    Telemetry telemetry;
+    telemetry.vehicle = {id};
+    telemetry.instance = {id};
+    telemetry.activity = activity;
+    telemetry.state.time = now;
+    telemetry.state.z_m = 200.0 - 20.0 * id;  // 3 is the lowest
+    fleet.on_message(telemetry, now);
+  }
+  Instant now = at_seconds(10.0);
+  Fleet fleet{{.expected = {{1}, {2}, {3}}}};
+  GroundLanding landings;
+};
+
+TEST_F(Turns, TheLowestLandsFirstAndTheNextWhenItIsDown) {
+  for (std::uint16_t id = 1; id <= 3; ++id) landings.add({id}, now);
+  EXPECT_EQ(landings.next(fleet, now), VehicleId{3});
+  EXPECT_EQ(landings.next(fleet, now), std::nullopt);
+  hear(3, Activity::landing);
+  EXPECT_EQ(landings.next(fleet, now), std::nullopt);
+  hear(3, Activity::landed);
+  EXPECT_EQ(landings.next(fleet, now), VehicleId{2});
+  landings.drop({2});  // it was told to hold
+  EXPECT_EQ(landings.next(fleet, now), VehicleId{1});
+  EXPECT_TRUE(landings.waiting().empty());
+  EXPECT_FALSE(landings.poll_event());
+}
+
+TEST_F(Turns, WhoDoesNotLandIsToldOfAndTheNextLands) {
+  landings.add({1}, now);
+  landings.add({2}, now);
+  EXPECT_EQ(landings.next(fleet, now), VehicleId{2});
+  now += GroundLanding::kSlot;
+  hear(1, Activity::holding);
+  hear(2, Activity::holding);
+  EXPECT_EQ(landings.next(fleet, now), VehicleId{1});
+  const auto told = landings.poll_event();
+  ASSERT_TRUE(told);
+  const auto* warning = std::get_if<event::FleetWarning>(&told->body);
+  ASSERT_NE(warning, nullptr);
+  EXPECT_EQ(warning->vehicle, VehicleId{2});
+  EXPECT_EQ(warning->news, event::FleetNews::not_landed);
+}
+
+TEST_F(Turns, WhoIsNotOnItsWayHomeIsRefusedWithWhatToDo) {
+  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::return_home, fleet), std::nullopt);
+  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::resume, fleet), std::nullopt)
+      << "its range is spent";
+  hear(2, Activity::searching);
+  const auto searching = GroundLanding::why_not({2}, CommandKind::resume, fleet);
+  ASSERT_TRUE(searching);
+  EXPECT_THAT(*searching, HasSubstr("order 'return 2' first"));
+  EXPECT_TRUE(GroundLanding::why_not({1}, CommandKind::hold, fleet));
+  hear(3, Activity::landed);
+  EXPECT_EQ(GroundLanding::why_not({3}, CommandKind::land, fleet), "vehicle 3 has landed");
+  EXPECT_TRUE(GroundLanding::why_not({9}, CommandKind::return_home, fleet));
+}
+
+}  // namespace
+}  // namespace skein::mission

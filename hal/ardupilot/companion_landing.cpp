@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <type_traits>
+#include <utility>
+
+#include "companion_impl.hpp"
+
+/// How a plane is landed, by a mission of the autopilot.
+namespace skein::ardupilot {
+namespace {
+
+constexpr Duration kUploadAgain = std::chrono::seconds{10};
+
+}  // namespace
+
+FlightPhase Companion::Impl::phase() const {
+  if (landed_state() == mavlink::LandedState::undefined) return FlightPhase::not_told;
+  if (!airborne()) return armed_ ? FlightPhase::landed : FlightPhase::disarmed;
+  return machine_.in(State::landing) ? FlightPhase::landing : FlightPhase::flying;
+}
+
+void Companion::Impl::forget_landing() {
+  upload_.clear();
+  uploads_.reset();
+  may_land_ = false;
+  told_upload_ = false;
+}
+
+void Companion::Impl::not_landed(std::string why, Instant now) {
+  forget_landing();
+  upload_again_at_ = now + kUploadAgain;
+  say(true, {.news = AutopilotNews::landing_not_uploaded, .detail = std::move(why)}, now);
+}
+
+/// The mission goes to the autopilot and back, is begun at its landing, and flown.
+void Companion::Impl::prepare_landing(const Landing& landing, Instant now) {
+  if (uploads_ != landing) {
+    if (now < upload_again_at_) return;
+    forget_landing();
+    uploads_ = landing;
+    upload_.begin(landing_mission(landing, origin_), now);
+  }
+  if (upload_.state() == MissionUpload::State::failed) return not_landed(upload_.why(), now);
+  if (upload_.state() != MissionUpload::State::verified) return;
+  if (!std::exchange(told_upload_, true)) {
+    say(false, {.news = AutopilotNews::landing_uploaded, .detail = "4 items"}, now);
+    ask(command_of(mavlink::Command::do_set_mission_current, kLandFromItem), {}, true);
+  }
+  if (may_land_) fire(Event::may_land, now);
+}
+
+void Companion::Impl::land(Instant now) {
+  const auto* setpoint = demand_ ? std::get_if<Setpoint>(&*demand_) : nullptr;
+  const bool fresh = now - demand_at_ <= params_.setpoint_age_max;
+  const bool called_off =
+      params_.airframe == Airframe::plane && setpoint != nullptr && fresh && !setpoint->landing;
+  if (called_off && airborne() && motion_.relative_height_m() >= kGoAroundFrom_m) {
+    say(false, {.news = AutopilotNews::going_around}, now);
+    return fire(Event::called_off, now);
+  }
+  if (called_off && airborne() && !std::exchange(told_too_low_, true)) {
+    say(true,
+        {.news = AutopilotNews::no_go_around,
+         .number = static_cast<std::uint16_t>(kGoAroundFrom_m)},
+        now);
+  }
+  if (!entry_.mode_confirmed) ask_for_mode(land_mode(params_.airframe), now);
+}
+
+void Companion::Impl::say_mission(Instant now) {
+  upload_.step(now);
+  while (auto message = upload_.poll()) {
+    std::visit(
+        [this](auto& said) {
+          said.target_system = system_;
+          said.target_component = mavlink::kComponentAutopilot;
+          send(said);
+        },
+        *message);
+  }
+}
+
+}  // namespace skein::ardupilot
