@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "companion_line.hpp"
+#include "mission_upload.hpp"
 
 namespace skein::ardupilot {
 namespace {
