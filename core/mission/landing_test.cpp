@@ -173,7 +173,9 @@ TEST(LandingOrder, ACopterComesOverItsPlaceAndThenStraightDown) {
     state.x_m = moment.position_m.x();
     state.z_m = moment.position_m.z();
     sink_max_mps = std::max(sink_max_mps, -moment.velocity_mps.z());
-    if (state.z_m < 29.0) EXPECT_NEAR(state.x_m, 10.0, 1.0);
+    if (state.z_m < 29.0) {
+      EXPECT_NEAR(state.x_m, 10.0, 1.0);
+    }
   }
   EXPECT_NEAR(state.z_m, 0.0, 0.1);
   EXPECT_LE(sink_max_mps, 1.51);
