@@ -238,6 +238,7 @@ class AutopilotDouble {
     }
   }
   void on_mission(const mavlink::Packet& packet) {
+    if (mavlink::decode<mavlink::MissionClearAll>(packet)) mission.clear();
     const auto count = mavlink::decode<mavlink::MissionCount>(packet);
     auto item = mavlink::decode<mavlink::MissionItemInt>(packet);
     const auto list = mavlink::decode<mavlink::MissionRequestList>(packet);

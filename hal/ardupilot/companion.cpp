@@ -418,6 +418,13 @@ void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
   if (from == State::preparing) {
     say(given() != Given::yes, {.news = AutopilotNews::ready, .given = given()}, now);
   } else if (event == Event::disarmed) {
+    // With a DO_LAND_START in its mission an ArduPlane does not arm again.
+    if (from == State::landing && params_.airframe == Airframe::plane) {
+      mavlink::MissionClearAll clear;
+      clear.target_system = system_;
+      clear.target_component = mavlink::kComponentAutopilot;
+      send(clear);
+    }
     say(false, {AutopilotNews::disarmed}, now);
   } else if (event == Event::not_obeyed) {
     say(true, {.news = AutopilotNews::not_armed, .given = given()}, now);

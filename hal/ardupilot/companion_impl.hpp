@@ -259,8 +259,8 @@ class Companion::Impl {
   MissionUpload upload_;            ///< of a plane's landing
   std::optional<Landing> uploads_;  ///< what that is of
   bool told_upload_ = false;
-  bool may_land_ = false;    ///< the autopilot has the mission, and stands at its landing
-  Instant upload_again_at_;  ///< after one that failed
+  bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
+  Instant upload_again_at_ = Instant::min();  ///< after one that failed
   bool told_too_low_ = false;
   std::optional<Outcome> refusal_;
   Instant refusal_at_;

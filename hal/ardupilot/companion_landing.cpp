@@ -15,7 +15,10 @@ constexpr Duration kUploadAgain = std::chrono::seconds{10};
 FlightPhase Companion::Impl::phase() const {
   if (landed_state() == mavlink::LandedState::undefined) return FlightPhase::not_told;
   if (!airborne()) return armed_ ? FlightPhase::landed : FlightPhase::disarmed;
-  return machine_.in(State::landing) ? FlightPhase::landing : FlightPhase::flying;
+  const bool is_lost =
+      machine_.in(State::lost) || machine_.in(State::silent) || machine_.in(State::checking);
+  const State state = is_lost ? before_loss_ : machine_.state();
+  return state == State::landing ? FlightPhase::landing : FlightPhase::flying;
 }
 
 void Companion::Impl::forget_landing() {

@@ -79,6 +79,7 @@ TEST(Landing, EndsLandedThenDisarmedAndIsNotLaunchedAgain) {
   line.run(1.0);
   EXPECT_EQ(line.companion.state(), State::standing_by);
   EXPECT_EQ(line.companion.sample()->state.phase, FlightPhase::disarmed);
+  EXPECT_TRUE(line.autopilot.mission.empty());  // with it an ArduPlane would not arm again
   line.run(10.0);
   EXPECT_EQ(line.companion.state(), State::standing_by);
   EXPECT_EQ(line.autopilot.count(Command::component_arm_disarm), 0);
