@@ -257,7 +257,9 @@ TEST(Codec, RefusesTruncatedAndOverlongSamples) {
 
 TEST(Codec, RefusesEnumeratorsThatDoNotExist) {
   Bytes command = encode(mission::Command{VehicleId{1}, 2, mission::CommandKind::resume}).value();
-  put<std::uint32_t>(command, 4 + 8, 4);  // after version, vehicle and number
+  put(command, 4 + 8,
+      static_cast<std::uint32_t>(
+          mission::CommandKind::count));  // after version, vehicle and number
   EXPECT_EQ(fault_of(Topic::command, command), Fault::unknown_kind);
   Bytes cancel = encode(coalition::Message{coalition::Cancel{}}).value();
   put<std::uint32_t>(cancel, 8, 99);  // the union's discriminator
