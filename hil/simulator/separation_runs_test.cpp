@@ -124,7 +124,7 @@ TEST_P(OneLayer, TheSameMissionIsTheSame) {
   EXPECT_EQ(fly(mission_of(crossing(), true)).trace, fly(mission_of(crossing(), true)).trace);
 }
 
-INSTANTIATE_TEST_SUITE_P(Airframes, OneLayer, ::testing::Values(Airframe::plane, Airframe::copter));
+INSTANTIATE_TEST_SUITE_P(Airframes, OneLayer, ::testing::Values(Airframe::plane));
 
 TEST(SeparationRuns, PlanesThatCrossInOneLayerAreKeptApart) {
   Random random{7};

@@ -382,7 +382,7 @@ TEST(CopterFlight, TakesOffHoldsAPlaceFollowsAMoveAndLandsAtItsPlace) {
     };
     flight.until(State::landing, 30.0);
     EXPECT_EQ(flight.state(), State::landing);
-    EXPECT_LT(flight.vehicle_state().z_m, 3.0);
+    EXPECT_LT(flight.vehicle_state().z_m, 4.0);
     flight.until(State::standing_by, 30.0);
     EXPECT_EQ(flight.state(), State::standing_by);
     flight.run_until(to_seconds(flight.now) + 3.0);
