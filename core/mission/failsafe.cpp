@@ -87,8 +87,8 @@ std::string_view to_string(Failsafe::Lead lead) {
 }
 
 std::string_view to_string(Failsafe::Manoeuvre manoeuvre) {
-  static constexpr std::array<std::string_view, 6> kNames{"none", "hold", "fly_home", "come_home",
-                                                          "land", "search"};
+  static constexpr std::array<std::string_view, 6> kNames{"none",      "hold", "fly_home",
+                                                          "come_home", "land", "search"};
   static_assert(kNames.size() == static_cast<std::size_t>(Failsafe::Manoeuvre::count));
   return kNames.at(static_cast<std::size_t>(manoeuvre));
 }

@@ -90,9 +90,9 @@ class Failsafe {
                                         Manoeuvre::fly_home};
   static constexpr Response kLand{"land", Reason::sent_home, true, Lead::put_off, Manoeuvre::land};
   static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
-  static constexpr std::array kResponses{kPathBarred,    kIdInUse,    kSetupDiffers,
-                                         kOrdersUnknown, kMayWork,    kRangeSpent,
-                                         kHold,          kReturnHome, kLand, kResume};
+  static constexpr std::array kResponses{kPathBarred, kIdInUse,    kSetupDiffers, kOrdersUnknown,
+                                         kMayWork,    kRangeSpent, kHold,         kReturnHome,
+                                         kLand,       kResume};
 
   /// One of these at a time.
   struct News {

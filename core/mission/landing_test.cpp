@@ -191,38 +191,38 @@ class Turns : public testing::Test {
     telemetry.vehicle = {id};
     telemetry.instance = {id};
     telemetry.activity = activity;
-    telemetry.state.time = now;
+    telemetry.state.time = now_;
     telemetry.state.z_m = 200.0 - 20.0 * id;  // 3 is the lowest
-    fleet.on_message(telemetry, now);
+    fleet_.on_message(telemetry, now_);
   }
-  Instant now = at_seconds(10.0);
-  Fleet fleet{{.expected = {{1}, {2}, {3}}}};
-  GroundLanding landings;
+  Instant now_ = at_seconds(10.0);
+  Fleet fleet_{{.expected = {{1}, {2}, {3}}}};
+  GroundLanding landings_;
 };
 
 TEST_F(Turns, TheLowestLandsFirstAndTheNextWhenItIsDown) {
-  for (std::uint16_t id = 1; id <= 3; ++id) landings.add({id}, now);
-  EXPECT_EQ(landings.next(fleet, now), VehicleId{3});
-  EXPECT_EQ(landings.next(fleet, now), std::nullopt);
+  for (std::uint16_t id = 1; id <= 3; ++id) landings_.add({id}, now_);
+  EXPECT_EQ(landings_.next(fleet_, now_), VehicleId{3});
+  EXPECT_EQ(landings_.next(fleet_, now_), std::nullopt);
   hear(3, Activity::landing);
-  EXPECT_EQ(landings.next(fleet, now), std::nullopt);
+  EXPECT_EQ(landings_.next(fleet_, now_), std::nullopt);
   hear(3, Activity::landed);
-  EXPECT_EQ(landings.next(fleet, now), VehicleId{2});
-  landings.drop({2});  // it was told to hold
-  EXPECT_EQ(landings.next(fleet, now), VehicleId{1});
-  EXPECT_TRUE(landings.waiting().empty());
-  EXPECT_FALSE(landings.poll_event());
+  EXPECT_EQ(landings_.next(fleet_, now_), VehicleId{2});
+  landings_.drop({2});  // it was told to hold
+  EXPECT_EQ(landings_.next(fleet_, now_), VehicleId{1});
+  EXPECT_TRUE(landings_.waiting().empty());
+  EXPECT_FALSE(landings_.poll_event());
 }
 
 TEST_F(Turns, WhoDoesNotLandIsToldOfAndTheNextLands) {
-  landings.add({1}, now);
-  landings.add({2}, now);
-  EXPECT_EQ(landings.next(fleet, now), VehicleId{2});
-  now += GroundLanding::kSlot;
+  landings_.add({1}, now_);
+  landings_.add({2}, now_);
+  EXPECT_EQ(landings_.next(fleet_, now_), VehicleId{2});
+  now_ += GroundLanding::kSlot;
   hear(1, Activity::holding);
   hear(2, Activity::holding);
-  EXPECT_EQ(landings.next(fleet, now), VehicleId{1});
-  const auto told = landings.poll_event();
+  EXPECT_EQ(landings_.next(fleet_, now_), VehicleId{1});
+  const auto told = landings_.poll_event();
   ASSERT_TRUE(told);
   const auto* warning = std::get_if<event::FleetWarning>(&told->body);
   ASSERT_NE(warning, nullptr);
@@ -231,17 +231,17 @@ TEST_F(Turns, WhoDoesNotLandIsToldOfAndTheNextLands) {
 }
 
 TEST_F(Turns, WhoIsNotOnItsWayHomeIsRefusedWithWhatToDo) {
-  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::return_home, fleet), std::nullopt);
-  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::resume, fleet), std::nullopt)
+  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::return_home, fleet_), std::nullopt);
+  EXPECT_EQ(GroundLanding::why_not({1}, CommandKind::resume, fleet_), std::nullopt)
       << "its range is spent";
   hear(2, Activity::searching);
-  const auto searching = GroundLanding::why_not({2}, CommandKind::resume, fleet);
+  const auto searching = GroundLanding::why_not({2}, CommandKind::resume, fleet_);
   ASSERT_TRUE(searching);
   EXPECT_THAT(*searching, HasSubstr("order 'return 2' first"));
-  EXPECT_TRUE(GroundLanding::why_not({1}, CommandKind::hold, fleet));
+  EXPECT_TRUE(GroundLanding::why_not({1}, CommandKind::hold, fleet_));
   hear(3, Activity::landed);
-  EXPECT_EQ(GroundLanding::why_not({3}, CommandKind::land, fleet), "vehicle 3 has landed");
-  EXPECT_TRUE(GroundLanding::why_not({9}, CommandKind::return_home, fleet));
+  EXPECT_EQ(GroundLanding::why_not({3}, CommandKind::land, fleet_), "vehicle 3 has landed");
+  EXPECT_TRUE(GroundLanding::why_not({9}, CommandKind::return_home, fleet_));
 }
 
 }  // namespace

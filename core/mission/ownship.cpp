@@ -19,7 +19,8 @@ constexpr double kAtRouteM = 50.0;
 /// A copter that is first seen so near to its height flies.
 constexpr double kStandsBelow_m = 4.0;
 
-/// Where that copter stands, above the origin; the origin's height where it is seen in the air first.
+/// Where that copter stands, above the origin; the origin's height where it is seen in the air
+/// first.
 double stands_m(const VehicleState& state, const VehicleSpec& vehicle) {
   const bool is_high = std::abs(state.z_m - vehicle.height_m) < kStandsBelow_m;
   return state.on_ground() || !is_high ? state.z_m : 0.0;

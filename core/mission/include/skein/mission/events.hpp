@@ -17,7 +17,8 @@ static_assert(std::variant_size_v<EventBody::variant> ==
 /// That alternative, with its defaults.
 [[nodiscard]] EventBody body_of(EventKind kind);
 
-/// Does it say that others fly the vehicle, or that its program may again? Nothing of both: nothing.
+/// Does it say that others fly the vehicle, or that its program may again? Nothing of both:
+/// nothing.
 [[nodiscard]] std::optional<bool> tells_piloted(const EventBody& news);
 
 /// Names as many of them as it can.

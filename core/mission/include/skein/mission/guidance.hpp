@@ -13,9 +13,9 @@
 
 namespace skein::mission {
 
-/// What control follows: a path at a speed, at the vehicle's height or what the plan says off it, or a point that moves, of one
-/// that is flown by its position. Each ends in a hold. A newer one replaces an
-/// older one of either kind. Trivially copyable.
+/// What control follows: a path at a speed, at the vehicle's height or what the plan says off it,
+/// or a point that moves, of one that is flown by its position. Each ends in a hold. A newer one
+/// replaces an older one of either kind. Trivially copyable.
 using Guidance = std::variant<FlightPlan, MotionTrack>;
 
 /// A plan's height changes at that rate, of every vehicle.
