@@ -63,7 +63,8 @@ TEST(GroundNode, ARefusalIsToldAsAWithdrawalForTheRestOfTheMissionAlsoAfterANewS
   ASSERT_TRUE(ground.agent().refuse(kSite, "Ada", at_seconds(2.0)).ok());
   const auto withdrawals = [](GroundNode& node, double from_s, double to_s, auto&& keep) {
     int said = 0;
-    for (double s = from_s; s < to_s; s += 0.5) {
+    for (int i = 0; from_s + 0.5 * i < to_s; ++i) {
+      const double s = from_s + 0.5 * i;
       node.on_timeout(at_seconds(s));
       while (const auto message = node.poll_message()) {
         keep(*message);

@@ -35,7 +35,7 @@ class Circling {
   int fly(double seconds, const Vec2& wind_mps, double gust_mps = 0.0, std::uint64_t seed = 1) {
     Random random{seed};
     int changes = 0;
-    for (double flown_s = 0.0; flown_s < seconds; flown_s += kStep_s) {
+    for (int i = 0; i * kStep_s < seconds; ++i) {
       time_ += from_seconds(kStep_s);
       course_rad_ += 0.3 * kStep_s;
       const Vec2 gust{gust_mps * random.uniform(-1.7, 1.7), gust_mps * random.uniform(-1.7, 1.7)};

@@ -79,9 +79,9 @@ class VehicleAgent::Impl {
   RelayOrbit relay_{ownship_};
   SeparationWatch separation_;
   CommandFilter commands_;
+  std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
   bool told_barred_ = false;                   ///< that a hazard keeps it from that
-  std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 

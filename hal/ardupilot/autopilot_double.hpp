@@ -244,7 +244,11 @@ class AutopilotDouble {
     const auto list = mavlink::decode<mavlink::MissionRequestList>(packet);
     const auto asked = mavlink::decode<mavlink::MissionRequestInt>(packet);
     const bool any = count || item || list || asked;
-    if (!any || (deaf_to_mission > 0 && deaf_to_mission-- > 0)) return;
+    if (!any) return;
+    if (deaf_to_mission > 0) {
+      --deaf_to_mission;
+      return;
+    }
     const auto ask = [this](std::size_t seq) {
       send(mavlink::MissionRequest{.seq = static_cast<std::uint16_t>(seq)});
     };
