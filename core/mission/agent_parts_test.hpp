@@ -8,6 +8,7 @@
 #include "outbox.hpp"
 #include "ownship.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/mission/vehicle_agent.hpp"
 
 namespace skein::mission {
 
@@ -41,6 +42,32 @@ inline constexpr double kTestSpeed_mps = 25.0;
   site.deliveries.push_back({kPi / 2.0, {}});
   return site;
 }
+
+/// An agent, what it flies, and what it has reported.
+struct HeardAgent {
+  HeardAgent(const VehicleAgentConfig& config, Instant now) : agent{config, now} {}
+
+  void see(const VehicleState& state) {
+    agent.on_state(state, state.time);
+    collect();
+  }
+  void tell(const Message& message, Instant now) {
+    agent.on_message(message, kGroundStation, now);
+    collect();
+  }
+
+  VehicleAgent agent;
+  FlightPlan plan;
+  std::vector<MissionEvent> events;
+
+ private:
+  void collect() {
+    while (auto next = agent.poll_guidance()) plan = std::get<FlightPlan>(*next);
+    while (auto event = agent.poll_event()) events.push_back(*event);
+    while (agent.poll_message()) {
+    }
+  }
+};
 
 /// What a part of an agent needs around it: a vehicle that is exactly where its plan has it.
 struct PartsBench {

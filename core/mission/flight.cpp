@@ -86,15 +86,14 @@ WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const H
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
                std::vector<Vec2> search)
+    : vehicle_{vehicle}, avoidance_{avoidance}, search_{std::move(search)} {}
 
-    : vehicle_{vehicle},
-      planning_radius_m_{vehicle.planning_radius_m()},
-      avoidance_{avoidance},
-      search_{std::move(search)} {}
+void Flight::set_planning_radius(double radius_m) {
+  vehicle_.turn_radius_margin = radius_m / vehicle_.turn_radius_m;
+}
 
 void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
                    Instant now) {
-  home_ = pose.position();
   first_pose_ = pose;
   TimedPath here;
   here.start_time = now;
@@ -106,7 +105,6 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double
 }
 
 void Flight::start_route(const TimedPath& route) {
-  home_ = route.path.start.position();
   first_pose_ = route.path.start;
   replace(route);
   en_route_ = true;
@@ -187,10 +185,10 @@ Vec2 orbit_centre(const Pose2& from, double radius_m) {
 }  // namespace
 
 Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const {
-  Orbit best{1.0 / planning_radius_m_, -std::numeric_limits<double>::infinity()};
+  Orbit best{1.0 / vehicle_.planning_radius_m(), -std::numeric_limits<double>::infinity()};
   for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
     for (const double side : {1.0, -1.0}) {
-      const double radius = factor * planning_radius_m_;
+      const double radius = factor * vehicle_.planning_radius_m();
       const Vec2 centre = orbit_centre(at, side * radius);
       double clearance = kHoldClearanceM;
       for (const Hazard& h : hazards) {
@@ -206,7 +204,7 @@ Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& haz
 }
 
 Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const {
-  const double planning_radius = planning_radius_m_;
+  const double planning_radius = vehicle_.planning_radius_m();
   Path path{from, {}};
   if (is_free(from, planning_radius, hazards)) return path;
   // What need not be entered is the planner's to find its way around.
@@ -234,12 +232,13 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
   double shortest_m = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kWaysOut; ++i) {
     const double heading = wrap_pi(from.heading_rad + i * kTwoPi / kWaysOut);
-    const Vec2 there = from.position() + kWayOutRadii * planning_radius_m_ * unit_vector(heading);
+    const Vec2 there =
+        from.position() + kWayOutRadii * vehicle_.planning_radius_m() * unit_vector(heading);
     const Pose2 to{there.x(), there.y(), heading};
     const Orbit room = best_orbit(to, hazards);
     if (room.clearance_m < kHoldClearanceM) continue;
     const auto leg =
-        planning::shortest_clear_path(avoidance_, from, to, planning_radius_m_, hazards);
+        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
     if (!leg || leg->length_m() >= shortest_m) continue;
     shortest_m = leg->length_m();
     way = *leg;
@@ -305,7 +304,7 @@ void Flight::search(const std::vector<Hazard>& hazards, double range_m, Instant 
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
-  follow({home_}, hazards, std::numeric_limits<double>::infinity(), now);
+  follow({home()}, hazards, std::numeric_limits<double>::infinity(), now);
   searching_ = false;
   homing_ = true;
   search_marks_.clear();
@@ -333,10 +332,10 @@ void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
 
 double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {
   if (vehicle_.recovery == Recovery::anywhere) return 0.0;
-  const Vec2 way = home_ - from.position();
+  const Vec2 way = home() - from.position();
   const double heading = way.norm() > 1.0 ? std::atan2(way.y(), way.x()) : from.heading_rad;
-  const Pose2 to{home_.x(), home_.y(), heading};
-  const double radius = planning_radius_m_;
+  const Pose2 to{first_pose_.x_m, first_pose_.y_m, heading};
+  const double radius = vehicle_.planning_radius_m();
   const auto clear = planning::shortest_clear_length(avoidance_, from, to, radius, hazards);
   return clear ? *clear : planning::shortest_dubins_length(from, to, radius);
 }
@@ -359,7 +358,7 @@ void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard
         along.norm() > 0.01 ? std::atan2(along.y(), along.x()) : from.heading_rad;
     const Pose2 to{waypoints[i].x(), waypoints[i].y(), heading};
     const auto leg =
-        planning::shortest_clear_path(avoidance_, from, to, planning_radius_m_, hazards);
+        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
     // A point that cannot be reached clear of hazards is left out; a full path ends in an orbit,
     // and the rest of the route is planned when that is resumed.
     if (!leg) {

@@ -35,7 +35,7 @@ class Flight {
 
   /// Of the turns of all plans from now on; the vehicle's own to begin with. Not below its turn
   /// radius.
-  void set_planning_radius(double radius_m) { planning_radius_m_ = radius_m; }
+  void set_planning_radius(double radius_m);
 
   /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`; at
   /// `speed_mps` over the ground, or at cruise speed. False, and nothing changed, when that has too
@@ -54,9 +54,9 @@ class Flight {
   /// The plan's height from now on goes to that, from the vehicle's layer; its path and times stay,
   /// and whatever is planned next is flown there, too.
   void change_height(double offset_m, Instant now);
-  [[nodiscard]] const Vec2& home() const { return home_; }
-  /// Where the first plan began.
+  /// Where the first plan began, which is home.
   [[nodiscard]] const Pose2& first_pose() const { return first_pose_; }
+  [[nodiscard]] Vec2 home() const { return first_pose_.position(); }
   /// It is in its orbit at home.
   [[nodiscard]] bool at_home(Instant t) const { return homing_ && t >= plan_.timed.end_time(); }
   /// The same plan, from which it lands.
@@ -112,12 +112,10 @@ class Flight {
   void pass_waypoints(Instant now);
 
   VehicleSpec vehicle_;
-  double planning_radius_m_ = 0.0;
   planning::AvoidanceParams avoidance_;
   std::vector<Vec2> search_;  ///< what is left of the route; its last point is never dropped
   std::vector<double>
       search_marks_;  ///< distances along the search plan at which a point is passed
-  Vec2 home_{0.0, 0.0};
   Pose2 first_pose_;
   FlightPlan plan_;
   bool searching_ = false;

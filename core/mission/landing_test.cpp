@@ -26,10 +26,11 @@ VehicleAgentConfig lander() {
 }
 
 /// A plane that is exactly where its plan has it.
-class Flown {
+class Flown : public HeardAgent {
  public:
   explicit Flown(const VehicleAgentConfig& config = lander())
-      : agent{config, Instant{}}, height_m_{config.vehicle.height_m} {
+
+      : HeardAgent{config, Instant{}}, height_m_{config.vehicle.height_m} {
     fly(0.0);
   }
   void fly(double seconds) {
@@ -43,34 +44,20 @@ class Flown {
       state.heading_rad = state.course_rad = pose.heading_rad;
       state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
       state.distance_flown_m += kTestSpeed_mps * kStep_s;
-      agent.on_state(state, now);
-      collect();
+      see(state);
     }
   }
   void order(CommandKind kind) {
     Command command{.vehicle = {4}, .kind = kind};
     set_number(command, ++orders_);
-    agent.on_message(command, kGroundStation, at_seconds(now_s_));
-    collect();
+    HeardAgent::tell(command, at_seconds(now_s_));
   }
 
-  void tell(const Message& message) {
-    agent.on_message(message, kGroundStation, at_seconds(now_s_));
-    collect();
-  }
+  void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
 
-  VehicleAgent agent;
-  FlightPlan plan;
   VehicleState state;
-  std::vector<MissionEvent> events;
 
  private:
-  void collect() {
-    while (auto next = agent.poll_guidance()) plan = std::get<FlightPlan>(*next);
-    while (auto event = agent.poll_event()) events.push_back(*event);
-    while (agent.poll_message()) {
-    }
-  }
   double height_m_;
   double now_s_ = 0.0;
   std::uint64_t orders_ = 0;

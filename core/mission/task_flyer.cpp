@@ -277,11 +277,12 @@ void TaskFlyer::commit_delivery(Instant now) {
 /// Straight on over the site, where no hazard is: the turn away, begun early, would be over it.
 void TaskFlyer::run_out(Path& path, double speed_mps) const {
   const double length_m = kRunOut * ownship_.config().turn_lead_s * speed_mps;
+  if (length_m <= 0.0) return;
+  const Segment straight{0.0, length_m};
   Path beyond{path.end(), {}};
-  (void)beyond.append(Segment{0.0, length_m});
-  if (length_m > 0.0 && planning::is_clear(beyond, ownship_.hazards())) {
-    (void)path.append(beyond);  // without room for it the turn follows at once
-  }
+  (void)beyond.append(straight);
+  if (!planning::is_clear(beyond, ownship_.hazards())) return;
+  (void)path.append(straight);  // without room for it the turn follows at once
 }
 
 void TaskFlyer::begin(Instant now) {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "agent_parts_test.hpp"
 #include "skein/base/angles.hpp"
-#include "skein/mission/vehicle_agent.hpp"
 #include "skein/planning/avoidance.hpp"
 
 namespace skein::mission {
@@ -45,9 +45,9 @@ VehicleAgentConfig on_route() {
 }
 
 /// A vehicle that is exactly where its newest plan has it, and what its agent said.
-class Flown {
+class Flown : public HeardAgent {
  public:
-  explicit Flown(const VehicleAgentConfig& config) : agent{config, at_seconds(-2.0)} {}
+  explicit Flown(const VehicleAgentConfig& config) : HeardAgent{config, at_seconds(-2.0)} {}
 
   void be_at(const Pose2& pose, double seconds) {
     state_.time = at_seconds(seconds);
@@ -55,8 +55,7 @@ class Flown {
     state_.y_m = pose.y_m;
     state_.heading_rad = state_.course_rad = pose.heading_rad;
     state_.groundspeed_mps = state_.airspeed_mps = kSpeed_mps;
-    agent.on_state(state_, state_.time);
-    collect();
+    see(state_);
   }
   /// Along its plans until that time.
   void fly_until(double seconds) {
@@ -68,10 +67,7 @@ class Flown {
       be_at(plan.timed.pose_at(at_seconds(t)), t);
     }
   }
-  void tell(const Message& message) {
-    agent.on_message(message, kGroundStation, state_.time);
-    collect();
-  }
+  void tell(const Message& message) { HeardAgent::tell(message, state_.time); }
   [[nodiscard]] bool said(EventKind kind) const {
     return std::any_of(events.begin(), events.end(),
                        [kind](const MissionEvent& event) { return event.kind() == kind; });
@@ -84,17 +80,7 @@ class Flown {
     return plan.timed.pose_at(at_seconds(seconds)).position();
   }
 
-  VehicleAgent agent;
-  FlightPlan plan;
-  std::vector<MissionEvent> events;
-
  private:
-  void collect() {
-    while (auto next = agent.poll_guidance()) plan = std::get<FlightPlan>(*next);
-    while (auto event = agent.poll_event()) events.push_back(*event);
-    while (agent.poll_message()) {
-    }
-  }
   VehicleState state_;
 };
 

@@ -16,6 +16,7 @@ namespace skein::ardupilot {
 [[nodiscard]] std::uint32_t land_mode(Airframe airframe);
 /// RTL
 [[nodiscard]] bool is_return(Airframe airframe, std::uint32_t mode);
+/// "GUIDED"; the number of one that has no name here.
 [[nodiscard]] std::string name_of_mode(Airframe airframe, std::uint32_t mode);
 /// Whether HEARTBEAT's `type` is of the airframe.
 [[nodiscard]] bool is_of(Airframe airframe, std::uint8_t vehicle_type);

@@ -65,17 +65,13 @@ SurfaceCommand PlaneAutopilot::fly_mission(const Estimate& estimate, double seco
       const double lateral = leg ? steer_to_line(estimate, leg_from_m_, goal, gain) : 0.0;
       return cruise(estimate, lateral, item.height_m, airspeed_mps_, seconds);
     }
-    case MissionItem::Kind::loiter: {
-      const double radius = item.radius_m == 0.0 ? params_.loiter_radius_m : item.radius_m;
-      return orbit(estimate,
-                   {.centre_m = goal, .radius_m = std::abs(radius), .clockwise = radius > 0.0},
-                   item.height_m, seconds);
-    }
-    case MissionItem::Kind::loiter_to_height: {
+    case MissionItem::Kind::loiter_to_height:
       if (may_leave(estimate, item)) {
         end_item();
         break;
       }
+      [[fallthrough]];
+    case MissionItem::Kind::loiter: {
       const double radius = item.radius_m == 0.0 ? params_.loiter_radius_m : item.radius_m;
       return orbit(estimate,
                    {.centre_m = goal, .radius_m = std::abs(radius), .clockwise = radius > 0.0},
