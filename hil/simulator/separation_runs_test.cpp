@@ -97,10 +97,12 @@ Watched fly(const TeamMission& team) {
 class OneLayer : public ::testing::TestWithParam<Airframe> {
  protected:
   [[nodiscard]] static std::vector<SimulatedVehicle> crossing() {
-    const bool copter = GetParam() == Airframe::copter;
-    const double half_m = copter ? 250.0 : 800.0;
-    return {towards(1, GetParam(), {-half_m, 0.0}, {half_m, 0.0}),
-            towards(2, GetParam(), {half_m, 3.0}, {-half_m, 3.0})};
+    if (GetParam() == Airframe::copter) {  // they leave their take-off to the east
+      return {towards(1, Airframe::copter, {-250.0, -40.0}, {600.0, 96.0}),
+              towards(2, Airframe::copter, {-250.0, 40.0}, {600.0, -96.0})};
+    }
+    return {towards(1, Airframe::plane, {-800.0, 0.0}, {800.0, 0.0}),
+            towards(2, Airframe::plane, {800.0, 3.0}, {-800.0, 3.0})};
   }
 };
 
@@ -124,7 +126,7 @@ TEST_P(OneLayer, TheSameMissionIsTheSame) {
   EXPECT_EQ(fly(mission_of(crossing(), true)).trace, fly(mission_of(crossing(), true)).trace);
 }
 
-INSTANTIATE_TEST_SUITE_P(Airframes, OneLayer, ::testing::Values(Airframe::plane));
+INSTANTIATE_TEST_SUITE_P(Airframes, OneLayer, ::testing::Values(Airframe::plane, Airframe::copter));
 
 TEST(SeparationRuns, PlanesThatCrossInOneLayerAreKeptApart) {
   Random random{7};
