@@ -191,7 +191,7 @@ TEST(SeparationWatch, InLayersThatAreApartNothingIsKnownOfOthers) {
 
 TEST(SeparationWatch, OnTheGroundNobodyIsWarned) {
   Sky sky{{Flyer{1, {0.0, 0.0}, 0.0, 0.0}, Flyer{2, {5.0, 0.0}, 0.0, 0.0}}};
-  for (double t = 0.0; t < 10.0; t += to_seconds(kTick)) {
+  for (int i = 0; i * to_seconds(kTick) < 10.0; ++i) {
     for (Flyer& flyer : sky.flyers) flyer.state.z_m = 0.3;
     sky.fly(to_seconds(kTick));
   }
@@ -294,7 +294,7 @@ TEST(SeparationWatch, AThirdInTheNextLayerIsPassedToo) {
 TEST(SeparationWatch, TwoThatCircleInOneLayerAreToldOfSeldom) {
   Sky sky{{Flyer{1, {0.0, 0.0}, 0.0, 25.0}, Flyer{2, {150.0, 0.0}, 1.0, 25.0}}};
   constexpr double kSeconds = 120.0;
-  for (double t = 0.0; t < kSeconds; t += to_seconds(kTick)) {
+  for (int i = 0; i * to_seconds(kTick) < kSeconds; ++i) {
     for (Flyer& flyer : sky.flyers) {
       flyer.state.heading_rad = flyer.state.course_rad =
           wrap_pi(flyer.state.course_rad + 25.0 / 100.0 * to_seconds(kTick));

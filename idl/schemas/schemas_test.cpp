@@ -29,14 +29,15 @@ TEST(Schemas, AStructIsItsFieldsAndWhatTheyAreMadeOf) {
   ASSERT_NE(command, nullptr);
   EXPECT_EQ(command->kind, -1);
   EXPECT_EQ(command->version, 9);
-  EXPECT_EQ(command->text,
-            "uint16 VERSION=9\n"
-            "uint16 version\n"
-            "uint16 vehicle\n"
-            "uint32 number\n"
-            "uint32 HOLD=0\nuint32 RESUME=1\nuint32 RETURN_HOME=2\nuint32 GIVE_BACK=3\n"
-            "uint32 kind\n"
-            "uint16 told_by\nuint32 number_high\n");
+  EXPECT_EQ(
+      command->text,
+      "uint16 VERSION=9\n"
+      "uint16 version\n"
+      "uint16 vehicle\n"
+      "uint32 number\n"
+      "uint32 HOLD=0\nuint32 RESUME=1\nuint32 RETURN_HOME=2\nuint32 GIVE_BACK=3\nuint32 LAND=4\n"
+      "uint32 kind\n"
+      "uint16 told_by\nuint32 number_high\n");
   const Schema* health = named("skein/msg/Health");
   ASSERT_NE(health, nullptr);
   EXPECT_THAT(std::string{health->text},

@@ -32,13 +32,14 @@ function fail(what) {
 const added = new Set(['version', 'size_bytes', 'kind'])
 
 // `ours` as our program says it in JSON (integers of 64 bits are strings, what is not there is
-// null), `theirs` as a library reads it from the bytes.
-function same(ours, theirs, constants, where) {
+// null), `theirs` as a library reads it from the bytes, `type` what the schema says of both: an
+// enumerator's number is that of its own message, and two enumerations may have one of a name.
+function same(ours, theirs, type, where) {
   ++compared
   if (Array.isArray(ours)) {
     const list = Array.from(theirs)
     if (ours.length !== list.length) fail(`${where}: ${ours.length} and ${list.length} elements`)
-    ours.forEach((one, i) => same(one, list[i], constants, `${where}[${i}]`))
+    ours.forEach((one, i) => same(one, list[i], type, `${where}[${i}]`))
   } else if (ours !== null && typeof ours === 'object') {
     const fields = Object.keys(theirs).filter(key => !added.has(key) || key in ours)
     const expected = Object.keys(ours).flatMap(key => `has_${key.replace(/_rad$/, '')}` in theirs
@@ -47,10 +48,10 @@ function same(ours, theirs, constants, where) {
     for (const key of Object.keys(ours)) {
       const flag = theirs[`has_${key.replace(/_rad$/, '')}`]
       if (flag !== undefined && flag !== (ours[key] !== null)) fail(`${where}.${key}: ${flag}`)
-      if (flag !== false) same(ours[key], theirs[key], constants, `${where}.${key}`)
+      if (flag !== false) same(ours[key], theirs[key], type.of(key), `${where}.${key}`)
     }
   } else if (typeof ours === 'string' && typeof theirs === 'number') {
-    if (constants.get(ours.toUpperCase()) !== theirs) fail(`${where}: ${ours} is not ${theirs}`)
+    if (type.constants.get(ours.toUpperCase()) !== theirs) fail(`${where}: ${ours} is not ${theirs}`)
   } else if (typeof theirs === 'bigint') {
     if (ours !== theirs.toString()) fail(`${where}: ${ours} and ${theirs}`)
   } else if (ours !== theirs) {
@@ -88,11 +89,19 @@ function decoderOf(schema) {
   if (decoders.has(schema.id)) return decoders.get(schema.id)
   if (schema.encoding !== 'ros2msg') fail(`${schema.name}: encoding ${schema.encoding}`)
   const definitions = parseRos(new TextDecoder().decode(schema.data), { ros2: true })
-  const constants = new Map(definitions.flatMap(d => d.definitions)
-    .filter(d => d.isConstant).map(d => [d.name, Number(d.value)]))
+  const types = new Map()
+  for (const { name, definitions: fields } of definitions) {
+    const complex = new Map(fields.filter(f => f.isComplex).map(f => [f.name, f.type]))
+    const described = {
+      constants: new Map(fields.filter(f => f.isConstant).map(f => [f.name, Number(f.value)])),
+      of: field => complex.has(field) ? types.get(complex.get(field)) : described
+    }
+    types.set(name, described)
+  }
   const type = typeOf(schema.name)
   const decoder = {
-    ros: new RosReader(definitions), idl: new IdlReader(`skein::wire::${type}`, idl), constants,
+    ros: new RosReader(definitions), idl: new IdlReader(`skein::wire::${type}`, idl),
+    described: types.get(definitions[0].name),
     union: withUnion.has(type)
   }
   decoders.set(schema.id, decoder)
@@ -133,7 +142,8 @@ for await (const message of reader.readMessages()) {
   const pairs = [[byRos, 'ros2msg'], [decoder.union ? inShapeOf(schema.name, byIdl) : byIdl, 'IDL']]
   for (const [theirs, by] of pairs) {
     const [mine, yours] = decoder.union ? branch_of(ours, theirs) : [ours, theirs]
-    same(mine, yours, decoder.constants, `${where}, by ${by}`)
+    const { described } = decoder
+    same(mine, yours, mine === ours.body ? described.of('body') : described, `${where}, by ${by}`)
   }
 }
 if (i !== lines.length) fail(`${i} of ${lines.length} records were read`)
