@@ -6,8 +6,8 @@ set -euo pipefail
 onboard=$1 fc=$2
 work=$(mktemp -d)
 fc_pid=
-# A bus of its own: others may run on this machine.
-bus=mcast:$((20 + BASHPID % 200))
+# A bus of its own: others may run on this machine. 50 to 99 are of team_preflight.sh, 100 on of can_tools.sh.
+bus=mcast:$((20 + BASHPID % 30))
 stop_fc() {
   [[ -z $fc_pid ]] || kill "$fc_pid" 2>/dev/null || true
   [[ -z $fc_pid ]] || wait "$fc_pid" || true

@@ -30,7 +30,7 @@ die() {
 # On a loaded machine all takes longer; on an idle one each is there after 1 to 5 s.
 readonly patience_ms=20000
 # Others may run on this machine.
-readonly bus=$((20 + 3 * (BASHPID % 60))) port=$((21000 + BASHPID % 9000))
+readonly bus=$((50 + 3 * (BASHPID % 16))) port=$((21000 + BASHPID % 9000))
 epoch=$(date +%s)000000000
 
 # start_fc N LINES ARGUMENT...: what is typed there comes from the file LINES
