@@ -6,7 +6,7 @@
 namespace skein::hal {
 namespace {
 
-constexpr double kSink_mps = 3.0;
+constexpr double kSink_mps = 5.0;
 constexpr double kGround_m = 0.0;      ///< the origin's height
 constexpr double kHeightTime_s = 3.0;  ///< the lag of the model's height
 constexpr Duration kSinkStep = std::chrono::milliseconds{20};

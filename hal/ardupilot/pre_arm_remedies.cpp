@@ -31,7 +31,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kRemedie
     {"hrottle", "transmitter on and its throttle down"},
     {"Radio", "switch the transmitter on"},
     {"RC", "switch the transmitter on; calibrate it"},
-    {"ence", "see FENCE_ENABLE and the fence's bounds"},
+    {"fence", "see FENCE_ENABLE and the fence's bounds"},
     {"ogging", "is its memory card there, and not full?"},
     {"errain", "wait for terrain, or set TERRAIN_ENABLE 0"},
     {"SERVO", "see SERVOn_FUNCTION, _MIN and _MAX"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -81,7 +82,9 @@ class PreArmTexts {
     return with_remedy(text.substr(kPrefix.size()), kBytesMax);
   }
   [[nodiscard]] static bool is_of_mode(std::string_view reason) {
-    return reason.find(kOfMode) != std::string_view::npos;
+    return std::ranges::any_of(kOfMode, [reason](std::string_view words) {
+      return reason.find(words) != std::string_view::npos;
+    });
   }
   /// True where it is news.
   bool add(std::string_view text, Instant now) {
@@ -109,7 +112,9 @@ class PreArmTexts {
  private:
   static constexpr std::string_view kPrefix = "PreArm: ";
   /// An autopilot tells why in words alone.
-  static constexpr std::string_view kOfMode = "mode not armable";
+  /// The second is said of who has landed by its mission.
+  static constexpr std::array<std::string_view, 2> kOfMode{"mode not armable",
+                                                           "In landing sequence"};
   std::vector<Text> texts_;
 };
 

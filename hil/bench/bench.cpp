@@ -22,9 +22,12 @@
 #include "flooder.hpp"
 #include "interrupt_watch.hpp"
 #include "link_listener.hpp"
+#include "mission_watch.hpp"
 #include "ports.hpp"
 #include "run_keys.hpp"
 #include "skein/configuration/deployment.hpp"
+#include "skein/groundstation/control_socket.hpp"
+#include "skein/groundstation/ground_process.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/hil/fault_timeline.hpp"
 #include "skein/hil/radio/link_table.hpp"
@@ -53,6 +56,10 @@ using std::chrono::system_clock;
 constexpr VehicleId kBench = mission::kSensors;
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
+/// How the operator of a scenario ends it that is to end on the ground.
+constexpr std::array kOrdersToLand{"return all", "land all"};
+constexpr auto kAnswerWithin = std::chrono::milliseconds{500};
+constexpr Duration kOrderAgain = std::chrono::seconds{2};
 constexpr auto kStopWithin = std::chrono::seconds{8};
 /// Node ids for them and their companions on one bus.
 constexpr std::size_t kCanVehiclesMax = 50;
@@ -83,7 +90,8 @@ class Bench {
         sensors_{scenario.sites, specs(scenario)},
         radio_{radio_params(scenario.radio)},
         mesh_{radio_.mesh ? std::optional<radio::Mesh>{*radio_.mesh} : std::nullopt},
-        timeline_{faults_of(scenario)} {
+        timeline_{faults_of(scenario)},
+        mission_{scenario} {
     progress_.now = Instant{Duration::min()};
   }
 
@@ -100,9 +108,6 @@ class Bench {
     table_.emplace(std::move(table).value());
     if (auto ready = prepare_floods(*base); !ready) return ready;
 
-    for (const auto& end : configuration::route_ends(scenario_)) {
-      routes_end_ = std::max(routes_end_, end.planned);
-    }
     if (!options_.links.empty()) {
       auto listener = LinkListener::start(options_.links, options_.run_folder / "links.log");
       if (!listener) return listener.error();
@@ -125,6 +130,7 @@ class Bench {
     if (external_.ground() != nullptr) {
       ground.network.transport_plugin = external_.ground()->radio_plugin;
     }
+    control_socket_ = groundstation::control_socket_of(ground);
     if (auto kept = keep_console_token(ground.recording_folder); !kept) return kept;
     // All of it before the first program runs, and wants the processor, too.
     std::ofstream{configuration_of(kGroundStation)} << configuration::to_yaml(ground);
@@ -161,6 +167,7 @@ class Bench {
         move_radio(now);
         flood();
         sense(now);
+        land_at_the_end(now);
       } else if (links_ && outcome_.all_heard_s) {
         move_radio(now);  // a real network needs a while to find its ways
       }
@@ -455,6 +462,7 @@ class Bench {
     while (const auto received = node_->poll()) {
       if (const auto* telemetry = std::get_if<mission::Telemetry>(&received->message)) {
         last_[telemetry->vehicle] = *telemetry;
+        mission_.on_telemetry(*telemetry);
         if (external_.has(telemetry->vehicle)) heard_at_[telemetry->vehicle] = steady_clock::now();
         progress_.vehicles_heard = last_.size();
         if (!outcome_.all_heard_s && last_.size() == scenario_.vehicles.size()) {
@@ -464,25 +472,11 @@ class Bench {
               seconds_text(*outcome_.all_heard_s) + " after the start; the mission begins at 0 s");
         }
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
-        if (event->kind() == mission::EventKind::site_done &&
-            sites_done_.insert(event->task.site).second) {
-          progress_.sites_done = sites_done_.size();
-        }
-        on_formation_event(*event);
+        (void)mission_.on_event(*event);
+        progress_.sites_done = mission_.sites_done();
         if (!options_.prompt) news(*event);  // the ground station tells of it there
       }
     }
-  }
-
-  void on_formation_event(const mission::MissionEvent& event) {
-    using mission::EventKind;
-    script_done_ = script_done_ || event.kind() == EventKind::script_done;
-    if (event.vehicle == kGroundStation) return;
-    if (event.kind() == EventKind::change_taken_up) {
-      changes_begun_ = true;
-      moving_.insert(event.vehicle);
-    }
-    if (event.kind() == EventKind::place_reached) moving_.erase(event.vehicle);
   }
 
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
@@ -574,6 +568,7 @@ class Bench {
     const auto fc = flight_controllers_.find(id);
     if (fc != flight_controllers_.end()) fc->second.signal(SIGKILL);
     outcome_.killed.push_back(id);
+    mission_.on_killed(id);
     say("fault: " + name_of(id) + " is killed");
   }
 
@@ -625,15 +620,23 @@ class Bench {
     }
   }
 
-  [[nodiscard]] bool mission_done() const {
-    if (!scenario_.flies_formation()) {
-      return sites_done_.size() == scenario_.sites.size() && progress_.now > routes_end_;
+  /// Where the scenario ends on the ground: the operator's orders, once the work is done.
+  void land_at_the_end(Instant now) {
+    if (scenario_.ends != configuration::Ending::landed || !mission_.work_done(now)) return;
+    if (next_order_ == kOrdersToLand.size() || now < order_again_at_) return;
+    const std::string order = kOrdersToLand.at(next_order_);
+    const auto answer = groundstation::ask(control_socket_, order, kAnswerWithin);
+    if (answer && answer->done) {
+      ++next_order_;
+      return say("the bench orders '" + order + "'");
     }
-    // Without a ground station the change that it has sent is flown to its end, and held.
-    const bool left_alone = killed_.contains(kGroundStation) && changes_begun_ &&
-                            std::all_of(moving_.begin(), moving_.end(),
-                                        [this](VehicleId id) { return killed_.contains(id); });
-    return script_done_ || left_alone;
+    order_again_at_ = now + kOrderAgain;
+    say("'" + order + "' was refused: " + (answer ? answer->text : answer.error().message));
+  }
+
+  [[nodiscard]] bool mission_done() const {
+    return mission_.work_done(progress_.now) &&
+           (scenario_.ends == configuration::Ending::in_the_air || mission_.all_landed());
   }
 
   [[nodiscard]] bool finished() {
@@ -751,11 +754,6 @@ class Bench {
   std::vector<VehicleId> nodes_;  ///< all of the radio
   std::map<VehicleId, mission::Telemetry> last_;
   std::map<VehicleId, steady_clock::time_point> heard_at_;  ///< external vehicles
-  std::set<SiteId> sites_done_;
-  Instant routes_end_ = Instant::min();  ///< the last planned one
-  bool script_done_ = false;             ///< of a formation
-  bool changes_begun_ = false;
-  std::set<VehicleId> moving_;  ///< in a change of the formation
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;
@@ -765,6 +763,10 @@ class Bench {
   std::vector<radio::Node> places_;  ///< of nodes_
   std::optional<Flooder> flooder_;   ///< where the scenario has floods
   FaultTimeline timeline_;
+  MissionWatch mission_;
+  std::string control_socket_;  ///< of the ground station
+  std::size_t next_order_ = 0;  ///< of kOrdersToLand
+  Instant order_again_at_{};
   std::optional<Instant> stop_at_;
   BenchProgress progress_;
   BenchOutcome outcome_;

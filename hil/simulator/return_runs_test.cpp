@@ -91,6 +91,38 @@ TEST(ReturnRuns, ATeamThatIsRecalledInItsMissionComesHomeApartAlsoWithLoss) {
   }
 }
 
+TEST(ReturnRuns, AMissionThatEndsLandedEndsWithAllOnTheGround) {
+  for (const std::string name : {"hil-planes-2", "mixed-6"}) {
+    SCOPED_TRACE(name);
+    const auto scenario = configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} +
+                                                       "/scenarios/" + name + ".yaml");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    TeamMission team = team_mission(*scenario);
+    team.ends_landed = true;
+    team.duration_max = std::chrono::seconds{900};
+    std::map<VehicleId, mission::Telemetry> last;
+    std::vector<VehicleId> landed;  // in their order
+    TeamObserver observer;
+    observer.message = [&](const mission::Message& message) {
+      const auto* t = std::get_if<mission::Telemetry>(&message);
+      if (t == nullptr) return;
+      const auto before = last.find(t->vehicle);
+      const bool down = t->activity == mission::Activity::landed;
+      if (down && (before == last.end() || before->second.activity != t->activity)) {
+        landed.push_back(t->vehicle);
+      }
+      last[t->vehicle] = *t;
+    };
+    const JudgedRun run = fly_judged(team, limits_of(scenario->expect), observer);
+    for (const auto& check : run.broken) ADD_FAILURE() << check.name << ": " << check.detail;
+    EXPECT_EQ(landed.size(), team.vehicles.size()) << "each once";
+    for (const auto& [id, telemetry] : last) {
+      EXPECT_EQ(telemetry.activity, mission::Activity::landed) << id.value;
+      EXPECT_LT(telemetry.state.z_m, 1.0) << id.value;
+    }
+  }
+}
+
 /// In a fan from a row of homes, all at one height: on their own ways home they would meet, and
 /// their orbits there overlap.
 TeamMission fan(std::uint64_t seed) {

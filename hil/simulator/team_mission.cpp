@@ -139,6 +139,7 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   team.faults = faults_of(scenario);
   team.wind = wind_params(scenario.wind, scenario.seed);
   team.duration_max = scenario.flies_formation() ? kLongest : scenario.duration_max;
+  team.ends_landed = scenario.ends == configuration::Ending::landed;
   team.seed = scenario.seed;
   return team;
 }

@@ -64,7 +64,7 @@ bool reads_plans(const TeamMission& mission) {
     const auto* order = std::get_if<Ordered>(&fault.what);
     return order != nullptr && order->kind == mission::CommandKind::return_home;
   };
-  return (mission.formation && mission.formation->planes) ||
+  return (mission.formation && mission.formation->planes) || mission.ends_landed ||
          std::ranges::any_of(mission.faults, is_return);
 }
 
@@ -152,7 +152,7 @@ class Team {
       if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
       if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now) &&
-          (!awaits_routes_ || ground_.routes_over())) {
+          (!awaits_routes_ || ground_.routes_over()) && landed_if_so(now)) {
         const Duration afterwards = mission_.sites.empty() ? Duration{} : kAfterwards;
         stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + afterwards);
       }
@@ -164,6 +164,18 @@ class Team {
   }
 
  private:
+  /// Where the mission ends on the ground, the operator orders it once the work is done.
+  bool landed_if_so(Instant now) {
+    if (!mission_.ends_landed) return true;
+    if (!std::exchange(told_to_land_, true)) {
+      ground_.command(kGroundStation, mission::CommandKind::return_home, now);
+      ground_.command(kGroundStation, mission::CommandKind::land, now);
+    }
+    return std::ranges::none_of(vehicles_, [](const Aircraft& v) {
+      return v.running() && v.activity() != mission::Activity::landed;
+    });
+  }
+
   [[nodiscard]] std::size_t ground_index() const { return vehicles_.size(); }
 
   // --- faults ---
@@ -606,7 +618,8 @@ class Team {
   std::vector<std::optional<Instant>> restart_at_;  ///< of each node
   std::vector<std::optional<Instant>> gone_at_;
   bool script_done_ = false;  ///< of the formation
-  Instant moved_at_{};        ///< it did, or was given an order
+  bool told_to_land_ = false;
+  Instant moved_at_{};  ///< it did, or was given an order
   TeamResult result_;
 };
 

@@ -619,6 +619,9 @@ TEST(ScenarioCheck, PlanesInFormationDoNothingElse) {
   with_sites.sites.emplace_back();
   EXPECT_NE(check(with_sites).error().message.find("planes in formation do no tasks"),
             std::string::npos);
+  Scenario landing = *s;
+  landing.ends = Ending::landed;
+  EXPECT_NE(check(landing).error().message.find("leave ends out"), std::string::npos);
   Scenario with_copter = *s;
   with_copter.vehicles[0].spec.airframe = Airframe::copter;
   EXPECT_NE(check(with_copter).error().message.find("vehicle 1 is a copter"), std::string::npos);

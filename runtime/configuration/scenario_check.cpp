@@ -84,6 +84,12 @@ class Check {
 
   /// A mission is of coalitions or of a formation.
   void check_formation() {
+    if (s_.flies_formation() && s_.ends == Ending::landed) {
+      problem(
+          "ends is landed, and vehicles fly in formation, which is not ordered home: copters end "
+          "on "
+          "the ground by 'land' in formation.script, planes by their pilots; leave ends out");
+    }
     if (s_.formation.planes) return check_planes();
     if (!s_.formation.tracks.empty()) {
       problem("multirotors fly along no tracks; give formation airframe: plane, or take them away");

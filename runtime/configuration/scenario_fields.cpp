@@ -230,6 +230,9 @@ void fields(FieldVisitor& v, Scenario& s) {
   operator_decisions_list(v, s.operator_decisions);
   formation_section(v, s.formation);
   routes_section(v, s.routes);
+  auto ends = static_cast<std::size_t>(s.ends);
+  v.choice({"ends", "where the work leaves everybody, or ordered home and landed"}, kEndings, ends);
+  s.ends = static_cast<Ending>(ends);
   v.list({"faults", "things that go wrong, on the time line"},
          groups_of(s.faults, kListMax, fault_fields));
   v.list({"reference", "published values, printed beside the run's"},

@@ -9,7 +9,7 @@ namespace skein::hal {
 
 /// A flight controller with its fixed wing, in this process: models::HeadingDynamics, integrated up
 /// to `now` whenever it is asked. Until `from` it stays at its start. A setpoint with a landing
-/// brings it down where it flies, at 3 m/s, to the origin's height, where it stays for good.
+/// brings it down where it flies, at 5 m/s, to the origin's height, where it stays for good.
 class SimulatedFlightController final : public FlightController {
  public:
   SimulatedFlightController(const VehicleSpec& vehicle, const Pose2& start,

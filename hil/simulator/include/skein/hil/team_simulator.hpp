@@ -64,6 +64,7 @@ struct TeamMission {
   models::WindParams wind;
   Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
   Duration duration_max = std::chrono::seconds{300};
+  bool ends_landed = false;  ///< then all are ordered home, and to land
   std::uint64_t seed = 1;
   std::vector<Fault> faults;  ///< of the scenario, and drawn ones
   /// With the script that is flown; there is one where some vehicle flies in formation.
@@ -146,9 +147,10 @@ struct TeamResult {
 /// Flies the mission with the production agents and ground station, guidance and vehicle models, in
 /// one thread and in virtual time. It ends at duration_max, or before it when all is done: the
 /// sites, by work or by the operator's refusal (and 5 s more, and not before the radio has healed);
-/// the formation's script (and 2 s of rest more; 30 s where it is not done, and nothing moves any
-/// more). Precondition: check_script(). Nothing in it reads a clock or an unseeded generator: the
-/// same mission gives the same calls, byte for byte.
+/// with ends_landed all that fly have landed then, too; the formation's script (and 2 s of rest
+/// more; 30 s where it is not done, and nothing moves any more). Precondition: check_script().
+/// Nothing in it reads a clock or an unseeded generator: the same mission gives the same calls,
+/// byte for byte.
 TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer);
 
 [[nodiscard]] std::string text_of(const FaultEvent& event);

@@ -101,6 +101,11 @@ struct Expectations {
   Capabilities copters_fly;                 ///< each of these kinds at least once
 };
 
+/// Where everybody is when a mission is over: where its work leaves them, or ordered home and
+/// landed.
+enum class Ending : std::uint8_t { in_the_air, landed };
+inline constexpr std::array<std::string_view, 2> kEndings{"in_the_air", "landed"};
+
 /// A mission: the fleet, the sites, the world and what must come out (docs/scenarios.md).
 struct Scenario {
   std::string title;
@@ -121,6 +126,7 @@ struct Scenario {
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
   RoutesConfig routes;
+  Ending ends = Ending::in_the_air;
   std::vector<Fault> faults;
   std::vector<ReferenceSite> reference;
   Expectations expect;
