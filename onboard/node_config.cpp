@@ -44,7 +44,8 @@ mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& co
   agent.route = route;
   agent.hazards = config.hazards;
   agent.turn_lead_s = config.flight_controller.follower().turn_lead_s;
-  agent.airspeed_change_mps2 = config.flight_controller.airspeed_change_mps2();
+  agent.heeds_wind =
+      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;
   return agent;
 }
 

@@ -29,7 +29,6 @@ constexpr std::int64_t kClocksApartMax_s = 1;
 constexpr std::uint16_t kFilterNeeds = 0x01 | 0x02 | 0x10;
 constexpr std::uint16_t kFilterWithout = 0x80 | 0x400;
 constexpr std::uint32_t kSensorFence = 0x100000;
-constexpr double kTakeoffShare = 0.9;  ///< of takeoff_height_m: there the companion takes it
 
 /// What is not known while it is not heard.
 constexpr std::array<std::pair<CheckGroup, const char*>, 14> kOfAutopilot{{
@@ -187,9 +186,10 @@ class Judge {
     const auto told = facts_.parameters.find("TKOFF_ALT");
     if (told == facts_.parameters.end()) return not_told("TKOFF_ALT", "PARAM_VALUE");
     const std::string found = fmt::format("{:g} m", told->second);
-    if (told->second >= kTakeoffShare * fc_.takeoff_height_m) return ok("TKOFF_ALT", found);
+    if (told->second >= ardupilot::taken_over_at_m(fc_.takeoff_height_m))
+      return ok("TKOFF_ALT", found);
     return fail("TKOFF_ALT", found,
-                fmt::format("the companion waits for nine tenths of takeoff_height_m {:g}: set "
+                fmt::format("the companion waits until it is near takeoff_height_m {:g}: set "
                             "TKOFF_ALT to that or more",
                             fc_.takeoff_height_m));
   }

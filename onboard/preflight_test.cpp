@@ -56,11 +56,8 @@ AutopilotFacts good() {
   f.landed.emplace();
   f.landed->landed_state = static_cast<std::uint8_t>(mavlink::LandedState::on_ground);
   f.safety = {{"FS_GCS_ENABL", 1.0, {}}, {"FS_LONG_ACTN", 1.0, {}}, {"SYSID_MYGCS", 1.0, {}}};
-  f.parameters = {{"ROLL_LIMIT_DEG", 45.0},
-                  {"AIRSPEED_MIN", 12.0},
-                  {"AIRSPEED_MAX", 30.0},
-                  {"AIRSPEED_CRUISE", 20.0},
-                  {"FENCE_ENABLE", 1.0}};
+  f.parameters = {{"ROLL_LIMIT_DEG", 45.0},  {"AIRSPEED_MIN", 12.0},  {"AIRSPEED_MAX", 30.0},
+                  {"AIRSPEED_CRUISE", 20.0}, {"TECS_SPDWEIGHT", 0.0}, {"FENCE_ENABLE", 1.0}};
   return f;
 }
 
@@ -112,6 +109,9 @@ TEST(Preflight, SpeedsBeyondTheAutopilotsFail) {
   EXPECT_THAT(check_of("AIRSPEED_MAX", facts).remedy, HasSubstr("speed_max_mps to 22 or less"));
   facts.parameters["AIRSPEED_CRUISE"] = 16.0;
   EXPECT_EQ(check_of("AIRSPEED_CRUISE", facts).verdict, Verdict::warn);
+  facts.parameters["TECS_SPDWEIGHT"] = 1.0;
+  EXPECT_EQ(check_of("TECS_SPDWEIGHT", facts).verdict, Verdict::warn);
+  EXPECT_THAT(check_of("TECS_SPDWEIGHT", facts).remedy, HasSubstr("set TECS_SPDWEIGHT to 0"));
 }
 
 TEST(Preflight, AModeThatForbidsArmingIsNoFaultWhereTheCompanionLaunches) {

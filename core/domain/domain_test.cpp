@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/random.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/site.hpp"
 
@@ -43,6 +44,95 @@ TEST(TimedPath, APieceOfItIsFlownTheSame) {
     EXPECT_NEAR(a.x_m, b.x_m, 1e-9);
     EXPECT_NEAR(a.y_m, b.y_m, 1e-9);
   }
+}
+
+/// Some lines and arcs, then an orbit, flown at 25 m/s in a wind of up to 7 m/s.
+TimedPath windy(Random& random) {
+  TimedPath plan;
+  plan.start_time = at_seconds(random.uniform(-5.0, 5.0));
+  plan.speed_mps = 25.0;
+  plan.tail_curvature_per_m = 1.0 / random.uniform(80.0, 200.0);
+  plan.path.start.heading_rad = random.uniform(-kPi, kPi);
+  const auto pieces = 1 + random.index(8);
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const double curvature = random.chance(0.5) ? 0.0 : random.uniform(-0.012, 0.012);
+    EXPECT_TRUE(plan.path.append(Segment{curvature, random.uniform(5.0, 700.0)}));
+  }
+  const Vec2 wind = random.uniform(0.5, 7.0) * unit_vector(random.uniform(-kPi, kPi));
+  plan.wind_east_mps = wind.x();
+  plan.wind_north_mps = wind.y();
+  return plan;
+}
+
+TEST(TimedPath, InWindTimesAndDistancesAgreeAndItIsWhereItIsToBeOnTime) {
+  Random random{1};
+  for (int i = 0; i < 300; ++i) {
+    TimedPath plan = windy(random);
+    const double length_m = plan.path.length_m();
+    if (random.chance(0.7)) plan.on_time_m = random.uniform(0.1, 1.0) * length_m;
+    double before_m = 0.0;
+    for (double distance_m = 1.0; distance_m < length_m + 1500.0; distance_m += 60.0) {
+      const Instant at = plan.time_at(distance_m);
+      EXPECT_NEAR(plan.distance_at(at), distance_m, 1e-4);
+      EXPECT_GT(at, plan.time_at(before_m));
+      const Instant soon = plan.time_at(distance_m + 0.01);
+      EXPECT_NEAR(0.01 / to_seconds(soon - at), plan.speed_at_distance(distance_m), 0.05);
+      before_m = distance_m;
+    }
+    EXPECT_EQ(plan.distance_at(plan.start_time - std::chrono::seconds{1}), 0.0);
+    EXPECT_NEAR(to_seconds(plan.time_at(plan.on_time_m) - plan.start_time), plan.on_time_m / 25.0,
+                1e-6);
+    const double lap_m = kTwoPi / plan.tail_curvature_per_m;
+    const Instant once = plan.time_at(length_m + lap_m / 3.0);
+    EXPECT_NEAR(to_seconds(plan.time_at(length_m + lap_m * 4.0 / 3.0) - once), lap_m / 25.0, 1e-6);
+  }
+}
+
+TEST(TimedPath, InWindItsAirspeedIsNearlyConstant) {
+  Random random{2};
+  for (int i = 0; i < 300; ++i) {
+    const TimedPath plan = windy(random);
+    const Vec2 wind{plan.wind_east_mps, plan.wind_north_mps};
+    const double share = wind.norm() / plan.speed_mps;
+    for (double at_m = 0.0; at_m < plan.path.length_m() + 1000.0; at_m += 25.0) {
+      const Vec2 ground =
+          plan.speed_at_distance(at_m) * unit_vector(plan.pose_at_distance(at_m).heading_rad);
+      const double airspeed_mps = (ground - wind).norm();
+      EXPECT_NEAR(airspeed_mps, plan.speed_mps, 1.5 * share * share * plan.speed_mps) << share;
+    }
+  }
+}
+
+TEST(TimedPath, WithPacesTheWindIsOfItsHold) {
+  Random random{3};
+  for (int i = 0; i < 100; ++i) {
+    TimedPath plan = windy(random);
+    TimedPath paced = plan;
+    paced.paces.push_back(random.uniform(0.8, 1.2));
+    while (paced.paces.size() <= paced.path.segments.size()) paced.paces.push_back(1.0);
+    const double length_m = plan.path.length_m();
+    plan.wind_east_mps = plan.wind_north_mps = 0.0;
+    plan.paces = paced.paces;
+    for (double at_m = 0.0; at_m < length_m; at_m += 50.0) {
+      EXPECT_EQ(paced.time_at(at_m), plan.time_at(at_m));
+      EXPECT_NEAR(paced.distance_at(paced.time_at(at_m)), at_m, 1e-4);
+    }
+    for (double at_m = length_m; at_m < length_m + 1500.0; at_m += 50.0) {
+      EXPECT_NEAR(paced.distance_at(paced.time_at(at_m)), at_m, 1e-4);
+      const double passes_s = to_seconds(paced.time_at(at_m + 0.01) - paced.time_at(at_m));
+      EXPECT_NEAR(0.01 / passes_s, paced.speed_at_distance(at_m + 0.005), 0.05);
+    }
+  }
+}
+
+TEST(TimedPath, AStrongerWindCountsAsAShareOfItsSpeed) {
+  TimedPath plan;
+  plan.speed_mps = 10.0;
+  plan.wind_east_mps = 30.0;
+  ASSERT_TRUE(plan.path.append(Segment{0.0, 100.0}));
+  EXPECT_NEAR(plan.speed_at_distance(50.0), 10.0 / (1.0 - TimedPath::kWindShare), 1e-9);
+  EXPECT_NEAR(to_seconds(plan.end_time() - plan.start_time), 10.0 * (1.0 - TimedPath::kWindShare),
+              1e-6);
 }
 
 TEST(Path, RefusesMoreSegmentsThanItHolds) {

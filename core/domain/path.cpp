@@ -5,6 +5,12 @@
 #include <cmath>
 
 namespace skein {
+namespace {
+
+constexpr double kSettled_m = 1e-6;
+constexpr int kStepsMax = 40;
+
+}  // namespace
 
 double Path::length_m() const {
   double sum = 0.0;
@@ -54,10 +60,41 @@ bool Path::append(const Path& next) {
                      [this](const Segment& s) { return append(s); });
 }
 
+Vec2 TimedPath::wind_per_speed() const {
+  const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / speed_mps;
+  return share * std::min(1.0, kWindShare / share.norm());
+}
+
+/// How much less far it would be flown in still air in the time that the way to there takes; with
+/// paces from the path's end on.
+double TimedPath::helped_m(double distance_m) const {
+  if (!paces.empty()) {
+    return wind_per_speed().dot(pose_at_distance(distance_m).position() - path.end().position());
+  }
+  const Vec2 from = pose_at_distance(distance_m <= on_time_m ? 0.0 : on_time_m).position();
+  Vec2 way = pose_at_distance(distance_m).position() - from;
+  if (distance_m <= on_time_m && on_time_m > 0.0) {
+    way -= distance_m / on_time_m * (pose_at_distance(on_time_m).position() - from);
+  }
+  return wind_per_speed().dot(way);
+}
+
+/// Where it is when it would be there in still air. A contraction, by twice kWindShare at most.
+double TimedPath::in_wind_m(double even_m) const {
+  double distance_m = even_m;
+  for (int step = 0; step < kStepsMax; ++step) {
+    const double next_m = std::max(0.0, even_m + helped_m(distance_m));
+    const bool settled = std::abs(next_m - distance_m) < kSettled_m;
+    distance_m = next_m;
+    if (settled) break;
+  }
+  return distance_m;
+}
+
 double TimedPath::distance_at(Instant t) const {
   // What would be flown at speed_mps.
   const double even_m = std::max(0.0, to_seconds(t - start_time) * speed_mps);
-  if (paces.empty()) return even_m;
+  if (paces.empty()) return has_wind() ? in_wind_m(even_m) : even_m;
   double left_m = even_m;
   double flown_m = 0.0;
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
@@ -67,12 +104,15 @@ double TimedPath::distance_at(Instant t) const {
     left_m -= length_m / pace(i);
     flown_m += length_m;
   }
-  return flown_m + left_m * pace(path.segments.size());
+  flown_m += left_m * pace(path.segments.size());
+  return has_wind() ? in_wind_m(flown_m) : flown_m;
 }
 
 Instant TimedPath::time_at(double distance_m) const {
-  if (paces.empty()) return start_time + from_seconds(distance_m / speed_mps);
-  double left_m = std::max(distance_m, 0.0);
+  const bool windward = has_wind() && (paces.empty() || distance_m > path.length_m());
+  const double still_m = windward ? distance_m - helped_m(distance_m) : distance_m;
+  if (paces.empty()) return start_time + from_seconds(still_m / speed_mps);
+  double left_m = std::max(still_m, 0.0);
   double even_m = 0.0;
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
     const double length_m = std::min(left_m, path.segments[i].length_m);
@@ -85,13 +125,19 @@ Instant TimedPath::time_at(double distance_m) const {
 }
 
 double TimedPath::speed_at_distance(double distance_m) const {
-  if (paces.empty()) return speed_mps;
+  if (paces.empty() && !has_wind()) return speed_mps;
   double left_m = std::max(distance_m, 0.0);
   std::size_t piece = 0;
   for (; piece < path.segments.size() && left_m >= path.segments[piece].length_m; ++piece) {
     left_m -= path.segments[piece].length_m;
   }
-  return speed_mps * pace(piece);
+  const double paced_mps = speed_mps * pace(piece);
+  if (!has_wind() || (!paces.empty() && piece < path.segments.size())) return paced_mps;
+  Vec2 along = unit_vector(pose_at_distance(distance_m).heading_rad);
+  if (paces.empty() && distance_m < on_time_m) {
+    along -= (pose_at_distance(on_time_m).position() - path.start.position()) / on_time_m;
+  }
+  return paced_mps / (1.0 - wind_per_speed().dot(along));
 }
 
 Pose2 TimedPath::pose_at_distance(double distance_m) const {

@@ -100,6 +100,8 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double
   here.speed_mps = vehicle_.cruise_speed_mps;
   here.path.start = pose;
   here.tail_curvature_per_m = 0.0;  // straight on until the first path begins
+  here.wind_east_mps = wind_mps_.x();
+  here.wind_north_mps = wind_mps_.y();
   replace(here);
   search(hazards, range_m, now);
 }
@@ -146,21 +148,25 @@ void Flight::change_height(double offset_m, Instant now) {
 }
 
 bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now,
-                           std::optional<double> speed_mps) {
+                           const std::optional<Pace>& pace) {
   SKEIN_ASSERT(started() && at >= now);
   const TimedPath& old = plan_.timed;
   const auto before = old.piece(old.distance_at(now), old.distance_at(at));
   if (!before) return false;
   TimedPath timed;
   timed.start_time = now;
-  timed.speed_mps = speed_mps.value_or(vehicle_.cruise_speed_mps);
-  // Where `next` begins it is on time.
-  if (timed.speed_mps != old.speed_mps) {
-    timed.start_time = at - from_seconds(before->length_m() / timed.speed_mps);
-  }
+  timed.speed_mps = pace ? pace->speed_mps : vehicle_.cruise_speed_mps;
   timed.tail_curvature_per_m = tail_curvature_per_m;
   timed.path = *before;
   if (!timed.path.append(next)) return false;
+  timed.wind_east_mps = wind_mps_.x();
+  timed.wind_north_mps = wind_mps_.y();
+  const double before_m = before->length_m();
+  if (pace && pace->on_time_m > 0.0) timed.on_time_m = before_m + pace->on_time_m;
+  // Where `next` begins it is on time.
+  if (timed.speed_mps != old.speed_mps || timed.has_wind() || old.has_wind()) {
+    timed.start_time = at - (timed.time_at(before_m) - now);
+  }
   if (searching_) pass_waypoints(now);
   searching_ = false;
   homing_ = false;
@@ -247,8 +253,12 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
   return path.append(way) ? curvature : here.curvature_per_m;
 }
 
+Instant Flight::handover(Instant now) const {
+  return now + (plan_.number == 1 ? std::max(lead_in_, kHandover) : kHandover);
+}
+
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
-  const Instant at = now + kHandover;
+  const Instant at = handover(now);
   Path way = forced_way(pose_at(at), hazards);
   const double tail = append_hold(way, hazards);
   continue_with(at, way, tail, now);
@@ -311,12 +321,33 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
 }
 
 bool Flight::return_along(const TimedPath& way, Instant now) {
-  if (!continue_with(way.start_time, way.path, way.tail_curvature_per_m, now, way.speed_mps)) {
-    return false;
-  }
+  const TimedPath old = plan_.timed;
+  const Vec2 wind = std::exchange(wind_mps_, {0.0, 0.0});  // the others count with these times
+  const Pace pace{way.speed_mps};
+  const bool follows = continue_with(way.start_time, way.path, way.tail_curvature_per_m, now, pace);
+  wind_mps_ = wind;
+  if (!follows) return false;
+  if (wind != Vec2{0.0, 0.0})
+    keep_pace_until(way.start_time, old.distance_at(way.start_time) - old.distance_at(now), now);
   homing_ = true;
   search_marks_.clear();
   return true;
+}
+
+/// The plan goes over that way until then: at the mean speed that its old times took there.
+void Flight::keep_pace_until(Instant then, double way_m, Instant now) {
+  TimedPath& timed = plan_.timed;
+  const double even_m = timed.speed_mps * to_seconds(then - now);
+  if (even_m <= 0.0 || way_m <= 0.0) return;
+  timed.start_time = now;
+  double begin_m = 0.0;
+  for (const Segment& segment : timed.path.segments) {
+    timed.paces.push_back(begin_m + kStepM < way_m ? way_m / even_m : 1.0);
+    begin_m += segment.length_m;
+  }
+  timed.paces.push_back(1.0);
+  timed.wind_east_mps = wind_mps_.x();  // for its hold
+  timed.wind_north_mps = wind_mps_.y();
 }
 
 void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
@@ -342,7 +373,7 @@ double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards)
 
 void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
                     double range_m, Instant now) {
-  const Instant at = now + kHandover;
+  const Instant at = handover(now);
   Path route = forced_way(pose_at(at), hazards);
   std::vector<double> marks;
   Pose2 from = route.end();

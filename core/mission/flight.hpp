@@ -37,11 +37,25 @@ class Flight {
   /// radius.
   void set_planning_radius(double radius_m);
 
+  /// Of all plans from now on but those that were planned by somebody else: their times count with
+  /// that wind (TimedPath::wind_east_mps).
+  void set_wind(const Vec2& wind_mps) { wind_mps_ = wind_mps; }
+
+  /// The first plan goes straight on for so long: an autopilot that circled while it waited levels
+  /// out and has turned to nothing yet.
+  void set_lead_in(Duration lead_in) { lead_in_ = lead_in; }
+
+  /// How a path is flown: `speed_mps` is over the ground as far as `on_time_m`, where it arrives as
+  /// if there were no wind; beyond it, where a wind is set, through the air.
+  struct Pace {
+    double speed_mps = 0.0;
+    double on_time_m = 0.0;  ///< along `next`
+  };
   /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`; at
-  /// `speed_mps` over the ground, or at cruise speed. False, and nothing changed, when that has too
-  /// many pieces.
+  /// cruise speed where no pace is given. False, and nothing changed, when that has too many
+  /// pieces.
   bool continue_with(Instant at, const Path& next, double tail_curvature_per_m, Instant now,
-                     std::optional<double> speed_mps = std::nullopt);
+                     const std::optional<Pace>& pace = std::nullopt);
   /// The same without a next path: an orbit from here on, or from where there is room for one.
   void hold(const std::vector<Hazard>& hazards, Instant now);
   /// Along what is left of the search route, as far as `range_m` lasts there and home again, then
@@ -106,10 +120,13 @@ class Flight {
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
   /// shortest. Empty elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
+  /// When a new path takes over from the present plan.
+  [[nodiscard]] Instant handover(Instant now) const;
   void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
               double range_m, Instant now);
   void replace(const TimedPath& timed);
   void pass_waypoints(Instant now);
+  void keep_pace_until(Instant then, double way_m, Instant now);
 
   VehicleSpec vehicle_;
   planning::AvoidanceParams avoidance_;
@@ -117,6 +134,8 @@ class Flight {
   std::vector<double>
       search_marks_;  ///< distances along the search plan at which a point is passed
   Pose2 first_pose_;
+  Vec2 wind_mps_{0.0, 0.0};
+  Duration lead_in_{};
   FlightPlan plan_;
   bool searching_ = false;
   bool homing_ = false;

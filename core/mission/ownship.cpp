@@ -14,6 +14,7 @@ namespace skein::mission {
 namespace {
 /// A task counts as flown when the vehicle is this close to where its plan has it.
 constexpr double kOnTrackM = 30.0;
+constexpr Duration kLeadIn = std::chrono::seconds{3};
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
 /// A copter that is first seen so near to its height flies.
@@ -36,11 +37,13 @@ VehicleAgentConfig with_margin(VehicleAgentConfig config) {
 Ownship::Ownship(const VehicleAgentConfig& config)
     : config_{with_margin(config)},
       range_{config.vehicle},
-      turn_room_{config.vehicle, config.airspeed_change_mps2},
+      turn_room_{config.vehicle, config.heeds_wind},
       take_off_{config.vehicle},
       flight_{config.vehicle, config_.planning.avoidance, config.search},
       hazards_{config.hazards},
-      loads_{config.vehicle.loads} {}
+      loads_{config.vehicle.loads} {
+  if (config.heeds_wind) flight_.set_lead_in(kLeadIn);
+}
 
 bool Ownship::on_state(const VehicleState& state, Instant now) {
   state_ = state;
@@ -56,7 +59,9 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
 }
 
 bool Ownship::measures_wind(const VehicleState& state) {
-  if (!turn_room_.on_state(state)) return false;
+  const bool is_news = turn_room_.on_state(state);
+  flight_.set_wind(turn_room_.wind_mps());
+  if (!is_news) return false;
   flight_.set_planning_radius(planning_radius_m());
   return true;
 }

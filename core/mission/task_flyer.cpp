@@ -176,7 +176,9 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
     tail = flight.orbit_after(path, plan->timed.tail_curvature_per_m, hazards);
     if (!tail) return Why{Reason::path_barred};
   }
-  if (!flight.continue_with(start, path, *tail, now, speed_mps)) return Why{Reason::path_too_long};
+  if (!flight.continue_with(start, path, *tail, now, Flight::Pace{speed_mps, plan->gate_m})) {
+    return Why{Reason::path_too_long};
+  }
   return task;
 }
 
@@ -265,11 +267,16 @@ void TaskFlyer::commit_delivery(Instant now) {
   Flight& flight = ownship_.flight();
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
-  auto rest = timed.piece(timed.distance_at(at), timed.path.length_m());
+  // The flight's own times count with the wind, the plan's do not.
+  const TimedPath& flown = flight.plan().timed;
+  const double to_gate_m = flown.path.length_m() - flown.distance_at(at);
+  auto rest = timed.piece(std::clamp(task_->plan.gate_m - to_gate_m, 0.0, task_->plan.gate_m),
+                          timed.path.length_m());
   if (!rest) return;
+  const double to_site_m = rest->length_m();
   run_out(*rest, timed.speed_mps);
   const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
-  if (flight.continue_with(at, *rest, tail, now, timed.speed_mps)) {
+  if (flight.continue_with(at, *rest, tail, now, Flight::Pace{timed.speed_mps, to_site_m})) {
     task_->fire(TaskFlight::Event::committed);
   }
 }

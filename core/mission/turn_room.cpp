@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "skein/planning/arrival_forecast.hpp"
 
@@ -12,7 +11,7 @@ namespace {
 
 constexpr double kMemory_s = 20.0;
 constexpr double kGap_s = 1.0;      ///< of states; a longer one counts as this
-constexpr double kTrusted_s = 5.0;  ///< of wind, before it widens a turn
+constexpr double kTrusted_s = 5.0;  ///< of wind, before it changes what is planned
 constexpr double kReserve = 1.05;   ///< of what the wind takes
 constexpr double kRelieved = 0.8;   ///< of the radius: then it is planned tighter again
 constexpr double kTight = 1.2;      ///< what is so much too tight is flown well off its line
@@ -32,30 +31,28 @@ double widest(const VehicleSpec& vehicle) {
 
 }  // namespace
 
-TurnRoom::TurnRoom(const VehicleSpec& vehicle, std::optional<double> airspeed_change_mps2)
+TurnRoom::TurnRoom(const VehicleSpec& vehicle, bool heeds_wind)
     : vehicle_{vehicle},
-      airspeed_change_mps2_{airspeed_change_mps2},
+      heeds_wind_{heeds_wind && !vehicle.is_copter()},
       widest_m_{widest(vehicle)},
       radius_m_{vehicle.planning_radius_m()} {}
 
 double TurnRoom::held_radius_m() const {
-  const double speed_mps = vehicle_.cruise_speed_mps;
-  const double left_mps = speed_mps - wind_mps();
-  if (left_mps <= 0.0) return std::numeric_limits<double>::infinity();
-  const double stretched = speed_mps / left_mps;
-  return std::max(vehicle_.turn_radius_m * stretched * stretched,
-                  wind_mps() * speed_mps / *airspeed_change_mps2_);
+  const double stretched = 1.0 + wind_mps_.norm() / vehicle_.cruise_speed_mps;
+  return vehicle_.turn_radius_m * stretched * stretched;
 }
 
 bool TurnRoom::on_state(const VehicleState& state) {
-  if (!airspeed_change_mps2_ || vehicle_.is_copter()) return false;
+  if (!heeds_wind_) return false;
   if (state.airspeed_mps < kFlying * vehicle_.speed_min_mps) return false;
-  const double since_s = last_ ? std::min(to_seconds(state.time - *last_), kGap_s) : 0.0;
+  const bool first = !last_;  // all there is to begin a flight with
+  const double since_s = first ? 0.0 : std::min(to_seconds(state.time - *last_), kGap_s);
   last_ = state.time;
-  if (since_s <= 0.0) return false;
+  if (!first && since_s <= 0.0) return false;
   heard_s_ = std::min(heard_s_ + since_s, kMemory_s);
-  wind_mps_ += since_s / heard_s_ * (planning::wind_of(state) - wind_mps_);
-  if (heard_s_ < kTrusted_s) return false;
+  const double weight = first ? 1.0 : since_s / heard_s_;
+  wind_mps_ += weight * (planning::wind_of(state) - wind_mps_);
+  if (!first && heard_s_ < kTrusted_s) return false;
 
   const double held_m = held_radius_m();
   const double stretched_m = std::min(kReserve * held_m, widest_m_);
@@ -63,8 +60,10 @@ bool TurnRoom::on_state(const VehicleState& state) {
   lacks_room_ = held_m > kTight * widest_m_;
   const bool wider = held_m > radius_m_ && wanted_m > kReserve * radius_m_;
   const bool tighter = held_m < kRelieved * radius_m_ && wanted_m < radius_m_ / kReserve;
-  if (!wider && !tighter) return false;
-  radius_m_ = wanted_m;
+  const bool other_wind = (wind_mps_ - planned_wind_mps_).norm() >= kWindChange_mps;
+  if (!wider && !tighter && !other_wind) return false;
+  if (wider || tighter) radius_m_ = wanted_m;
+  planned_wind_mps_ = wind_mps_;
   return true;
 }
 

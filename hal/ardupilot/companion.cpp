@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "companion_impl.hpp"
+#include "skein/ardupilot/flight_limits.hpp"
 #include "steering.hpp"
 
 namespace skein::ardupilot {
@@ -213,7 +214,7 @@ bool Companion::Impl::airborne() const {
 }
 
 bool Companion::Impl::high() const {
-  return motion_.relative_height_m() >= params_.takeoff_height_m * 0.9;
+  return motion_.relative_height_m() >= taken_over_at_m(params_.takeoff_height_m);
 }
 
 std::optional<bool> Companion::Impl::in_use() const {

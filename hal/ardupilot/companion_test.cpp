@@ -242,7 +242,10 @@ TEST(Companion, TakesOffWhereAsked) {
   line.run(2.0);
   EXPECT_EQ(line.companion.state(), State::climbing);
   fc.landed = 2;
-  fc.relative_height_m = 40.0;
+  fc.relative_height_m = 36.9;
+  line.run(2.0);
+  EXPECT_EQ(line.companion.state(), State::climbing) << "it would begin its plan too low";
+  fc.relative_height_m = 37.1;
   line.until(State::flying, 3.0);
   EXPECT_EQ(fc.mode, 15U);
   // Landed and disarmed, it stays there: once was asked for.

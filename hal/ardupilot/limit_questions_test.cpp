@@ -21,10 +21,11 @@ using ::testing::SizeIs;
 
 TEST(LimitCheck, AsksByBothNamesUntilItIsTold) {
   ParameterCheck check{limit_questions(test_vehicle(), Airframe::plane)};
-  EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(8));
+  EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(9));
   check.on_value("LIM_ROLL_CD", 6000.0F);
   check.on_value("AIRSPEED_MIN", 40.0F);
   check.on_value("AIRSPEED_MAX", 60.0F);
+  check.on_value("TECS_SPDWEIGHT", 1.0F);
   EXPECT_FALSE(check.good());
   EXPECT_THAT(check.due(at_seconds(1.0)), ElementsAre("AIRSPEED_CRUISE", "TRIM_ARSPD_CM"));
   check.on_value("TRIM_ARSPD_CM", 5000.0F);

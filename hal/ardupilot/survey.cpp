@@ -159,7 +159,7 @@ class Survey::Impl {
     for (const LimitParameter& limit : limit_parameters(params_.companion.airframe)) {
       if (is_told(limit)) continue;
       ask_parameter(limit.name);
-      ask_parameter(limit.older_name);
+      if (!limit.older_name.empty()) ask_parameter(limit.older_name);
     }
     if (others_asked_ < kOthersAsked) {
       ++others_asked_;

@@ -70,6 +70,8 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
 constexpr auto kExternalSilence = std::chrono::seconds{10};
+/// Where copters on a user's autopilots await their formation's orders.
+constexpr double kHover_m = 5.0;
 /// What starting a vehicle takes on a machine that is busy with other things, and where Fast DDS
 /// has a process of its own.
 constexpr double kLead_s = 0.3;
@@ -230,7 +232,7 @@ class Bench {
     double height_max_m = 0.0;
     for (const auto& vehicle : scenario_.vehicles) {
       if (!user_flown(vehicle.spec, vehicle.flight_controller)) continue;
-      height_max_m = std::max(height_max_m, vehicle.spec.height_m);
+      height_max_m = std::max({height_max_m, vehicle.spec.height_m, kHover_m});
     }
     return height_max_m > 0.0 ? lead_s + autopilot_lead_s(height_max_m) : lead_s;
   }
@@ -258,7 +260,8 @@ class Bench {
     for (auto& config : configs) {
       if (!user_flown(config.vehicle, config.flight_controller)) continue;
       config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
-      config.flight_controller.ardupilot.takeoff_height_m = config.vehicle.height_m;
+      config.flight_controller.ardupilot.takeoff_height_m =
+          configuration::flies_formation(config.vehicle) ? kHover_m : config.vehicle.height_m;
       if (!config.search.empty()) {
         config.search.insert(config.search.begin(), config.start.position());
       }
@@ -474,7 +477,10 @@ class Bench {
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
         (void)mission_.on_event(*event);
         progress_.sites_done = mission_.sites_done();
-        if (!options_.prompt) news(*event);  // the ground station tells of it there
+        // At its prompt the ground station tells of it.
+        if (!options_.prompt && is_news(event->kind())) {
+          say(seconds_text(to_seconds(event->time)) + "  " + wording::text_of(*event));
+        }
       }
     }
   }
@@ -693,27 +699,6 @@ class Bench {
     }
     remove_run_keys(options_.run_folder);
     return outcome_;
-  }
-
-  void news(const mission::MissionEvent& event) {
-    using mission::EventKind;
-    switch (event.kind()) {
-      case EventKind::site_detected:
-      case EventKind::survey_done:
-      case EventKind::coalition_formed:
-      case EventKind::monitoring:
-      case EventKind::authorisation_requested:
-      case EventKind::authorisation_late:
-      case EventKind::site_done:
-      case EventKind::change_begun:
-      case EventKind::formation_held:
-      case EventKind::script_done:
-      case EventKind::task_failed:
-        break;
-      default:
-        if (!mission::is_warning(event.kind())) return;
-    }
-    say(seconds_text(to_seconds(event.time)) + "  " + wording::text_of(event));
   }
 
   void say(const std::string& news) {

@@ -2,10 +2,27 @@
 #include "mission_watch.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "skein/configuration/deployment.hpp"
 
 namespace skein::hil {
+
+bool is_news(mission::EventKind kind) {
+  using mission::EventKind;
+  static constexpr std::array kNews{EventKind::site_detected,
+                                    EventKind::survey_done,
+                                    EventKind::coalition_formed,
+                                    EventKind::monitoring,
+                                    EventKind::authorisation_requested,
+                                    EventKind::authorisation_late,
+                                    EventKind::site_done,
+                                    EventKind::change_begun,
+                                    EventKind::formation_held,
+                                    EventKind::script_done,
+                                    EventKind::task_failed};
+  return std::ranges::find(kNews, kind) != kNews.end() || mission::is_warning(kind);
+}
 
 MissionWatch::MissionWatch(const configuration::Scenario& scenario) : scenario_{scenario} {
   for (const auto& end : configuration::route_ends(scenario)) {

@@ -10,6 +10,9 @@
 
 namespace skein::hil {
 
+/// Whoever watches a run wants to be told.
+[[nodiscard]] bool is_news(mission::EventKind kind);
+
 /// How far a mission is, by what is heard of it.
 class MissionWatch {
  public:

@@ -8,9 +8,9 @@ namespace {
 
 configuration::Scenario two_vehicles_one_site() {
   configuration::Scenario scenario;
-  for (const std::uint16_t id : {1, 2}) {
+  for (const VehicleId id : {VehicleId{1}, VehicleId{2}}) {
     scenario.vehicles.emplace_back();
-    scenario.vehicles.back().spec.id = {id};
+    scenario.vehicles.back().spec.id = id;
   }
   scenario.sites.emplace_back();
   scenario.sites.back().id = {7};

@@ -159,6 +159,8 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   // In turns it is raised by the root of the load factor (STALL_PREVENTION).
   set("AIRSPEED_MIN",
       std::floor(spec.speed_min_mps * std::sqrt(std::cos(radians(roll_limit_deg)))));
+  // Pitch keeps the height, and throttle the airspeed.
+  set("TECS_SPDWEIGHT", 0.0);
   set("WP_LOITER_RAD", std::ceil(spec.planning_radius_m()));
   return text;
 }

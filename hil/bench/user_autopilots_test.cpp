@@ -59,8 +59,8 @@ TEST(UserAutopilots, AreGivenWhatTheVehicleAsksOfThem) {
   for (const char* line :
        {"SYSID_THISMAV 9\n", "SYSID_MYGCS 9\n", "CAN_D1_UC_NODE 12\n", "CAN_D1_UC_S1_NOD 72\n",
         "FS_GCS_ENABL 1\n", "FS_LONG_ACTN 1\n", "TKOFF_ALT 300\n", "AIRSPEED_MIN 15\n",
-        "AIRSPEED_CRUISE 25\n", "AIRSPEED_MAX 30\n", "SIM_WIND_SPD 5\n", "SIM_WIND_DIR 240\n",
-        "SIM_WIND_TURB 1.5\n"}) {
+        "AIRSPEED_CRUISE 25\n", "TECS_SPDWEIGHT 0\n", "AIRSPEED_MAX 30\n", "SIM_WIND_SPD 5\n",
+        "SIM_WIND_DIR 240\n", "SIM_WIND_TURB 1.5\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
   // 25 m/s on 66 m: 44 degrees, and a reserve.

@@ -191,7 +191,7 @@ void judge_plan(const Recording& recorded, std::size_t index, const KnownHazard&
     return away - known.hazard.radius_m - kEdge;
   });
   if (!where) return;
-  const Instant when = plan.plan.start_time + from_seconds(*where / plan.plan.speed_mps);
+  const Instant when = plan.plan.time_at(*where);
   result.violations.push_back({recorded.vehicle, plan.since,
                                "plan " + std::to_string(plan.number) + " of " +
                                    vehicle_name(recorded.vehicle) + " leads " + at(when) + " " +

@@ -22,6 +22,33 @@ Pose2 along_piece(const Pose2& from, double curvature_per_m, double s) {
           from.heading_rad + 2.0 * half};
 }
 
+// A plan of constant airspeed: what is flown where `even` would be in still air, by bisection.
+double distance_in_wind(const TimedPath& plan, double even) {
+  const Vec2 wind{plan.wind_east_mps, plan.wind_north_mps};
+  const double share = std::min(wind.norm() / plan.speed_mps, TimedPath::kWindShare);
+  const auto place = [&](double at) { return plan_pose(plan, at).position(); };
+  const Vec2 mean = plan.on_time_m > 0.0
+                        ? Vec2{(place(plan.on_time_m) - place(0.0)) / plan.on_time_m}
+                        : Vec2{0.0, 0.0};
+  const double paced = plan.paces.empty() ? 0.0 : plan_length_m(plan);
+  const auto still_air = [&](double at) {
+    if (!plan.paces.empty()) {
+      return at - share * wind.normalized().dot(Vec2{place(at) - place(paced)});
+    }
+    const bool timed = at <= plan.on_time_m;
+    Vec2 way = place(at) - place(timed ? 0.0 : plan.on_time_m);
+    if (timed) way -= at * mean;
+    return at - share * wind.normalized().dot(way);
+  };
+  double low = paced;
+  double high = even / (1.0 - 2.0 * TimedPath::kWindShare);
+  while (high - low > 1e-4) {
+    const double middle = 0.5 * (low + high);
+    (still_air(middle) < even ? low : high) = middle;
+  }
+  return low;
+}
+
 template <class Items, class Key>
 auto find_by_id(const Items& items, Key key) -> decltype(items.data()) {
   const auto it = std::find_if(items.begin(), items.end(), key);
@@ -35,13 +62,17 @@ double plan_distance_m(const TimedPath& plan, Instant time) {
   double distance = 0.0;
   for (std::size_t i = 0; i < plan.paces.size(); ++i) {
     const double speed = plan.speed_mps * plan.paces[i];
-    if (i >= plan.path.segments.size()) return distance + seconds * speed;
+    if (i >= plan.path.segments.size()) {
+      distance += seconds * speed;
+      return plan.has_wind() ? distance_in_wind(plan, distance) : distance;
+    }
     const double takes = plan.path.segments[i].length_m / speed;
     if (seconds < takes) return distance + seconds * speed;
     seconds -= takes;
     distance += plan.path.segments[i].length_m;
   }
-  return distance + seconds * plan.speed_mps;
+  distance += seconds * plan.speed_mps;
+  return plan.paces.empty() && plan.has_wind() ? distance_in_wind(plan, distance) : distance;
 }
 
 double plan_length_m(const TimedPath& plan) {

@@ -65,6 +65,22 @@ TEST(PlanChecks, ATightFlownTurnIsFoundFromThreePerCent) {
   }
 }
 
+TEST(PlanChecks, AnAutopilotsTightTurnIsToldAndItsPlansAreJudged) {
+  RunRecord record = good_record();
+  recording::Recording truth;
+  truth.vehicle = kFromSouth;
+  record.truths.push_back(truth);
+  double heading = 0.0;
+  for (auto& point : of(record, kFromSouth).track) {
+    point.state.heading_rad = wrap_pi(heading);
+    heading += 1.25 / 150.0 * kSpeed * 0.05;
+  }
+  EXPECT_TRUE(check_turn_radius(record, {}).held());
+  EXPECT_THAT(check_turn_radius(record, {}).measured, HasSubstr("80.0 %"));
+  of(record, kFromSouth).plans.back().plan.tail_curvature_per_m = 1.0 / 100.0;
+  EXPECT_FALSE(check_turn_radius(record, {}).held());
+}
+
 TEST(PlanChecks, ACopterMayTurnOnTheSpotButItsPlansMayNot) {
   RunRecord record = good_record();
   spec(record, kFromSouth).airframe = Airframe::copter;

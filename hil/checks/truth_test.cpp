@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/checks/truth.hpp"
 
+#include "motion.hpp"
 #include "test_record.hpp"
 
 namespace skein::checks {
@@ -20,6 +21,27 @@ RunRecord one_beside(VehicleId vehicle, const Vec2& by, double higher_m) {
   for (auto& point : truth.track) point.state.z_m += higher_m;
   record.truths.push_back(truth);
   return record;
+}
+
+TEST(Motion, TheJudgesHaveAPlanOfOneAirspeedWhereItIs) {
+  TimedPath plan;
+  plan.start_time = at_seconds(3.0);
+  plan.speed_mps = 25.0;
+  plan.tail_curvature_per_m = -0.01;
+  plan.wind_east_mps = 4.0;
+  plan.wind_north_mps = -3.0;
+  ASSERT_TRUE(plan.path.append(Segment{0.0, 300.0}));
+  ASSERT_TRUE(plan.path.append(Segment{0.011, 400.0}));
+  for (const double on_time_m : {0.0, 250.0, 700.0}) {
+    plan.on_time_m = on_time_m;
+    for (double t_s = 0.0; t_s < 90.0; t_s += 1.7) {
+      EXPECT_NEAR(plan_distance_m(plan, at_seconds(t_s)), plan.distance_at(at_seconds(t_s)), 1e-3);
+    }
+  }
+  for (const double pace : {1.1, 0.9, 1.0}) plan.paces.push_back(pace);
+  for (double t_s = 0.0; t_s < 90.0; t_s += 1.7) {
+    EXPECT_NEAR(plan_distance_m(plan, at_seconds(t_s)), plan.distance_at(at_seconds(t_s)), 1e-3);
+  }
 }
 
 TEST(Truth, IsOfNobodyWhoseTruthIsNotKnown) {

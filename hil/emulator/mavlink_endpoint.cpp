@@ -290,7 +290,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
     mavlink::ParamType type = mavlink::ParamType::int8;
   };
   constexpr auto kReal = mavlink::ParamType::real32;
-  const std::array<Parameter, 8> parameters{{
+  const std::array<Parameter, 9> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -299,6 +299,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "AIRSPEED_MIN" : "", config_.airspeed_min_mps, kReal},
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
       {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
+      {is_plane ? "TECS_SPDWEIGHT" : "", 0.0, kReal},
   }};
   const auto known = std::ranges::find(parameters, name, &Parameter::name);
   if (name.empty() || known == parameters.end() ||

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "multirotor_body.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
@@ -85,6 +86,9 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   if (what_.flies_formation) config.formation = *mission_.formation;
   auto node = onboard::node_config(config, std::nullopt, instance(what_.spec.id, life_),
                                    "skein-hil simulate");
+  if (auto* agent = std::get_if<mission::VehicleAgentConfig>(&node.agent)) {
+    agent->heeds_wind = mission_.heeds_wind;
+  }
   // As a node in the field paces it where the air has its price; else as ever.
   if (!mission_.radio.bytes_per_s) node.telemetry = {kTelemetryPeriod, kTelemetryPeriod};
   node.setup.common.clear();  // of one configuration: only clocks can differ

@@ -39,9 +39,9 @@ class GroundStation {
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
-  /// Of the operator, who gives it while the program runs.
-  void command(VehicleId vehicle, mission::CommandKind kind, Instant now) {
-    if (node_) (void)node_->command(vehicle, kind, now + clock_);
+  /// Of the operator, who gives it while the program runs. False where it does not, or refuses.
+  bool command(VehicleId vehicle, mission::CommandKind kind, Instant now) {
+    return node_ && node_->command(vehicle, kind, now + clock_).ok();
   }
   [[nodiscard]] std::optional<mission::Message> poll_message(Instant now);
   [[nodiscard]] std::optional<mission::MissionEvent> poll_event();

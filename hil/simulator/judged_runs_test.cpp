@@ -55,6 +55,33 @@ TEST(JudgedRuns, TheJudgesHoldAMissionToTheScenariosLimits) {
   EXPECT_THAT(names(fly(scenario, 1)), ElementsAre("deliveries"));
 }
 
+TEST(JudgedRuns, MissionsOfOneAirspeedInWindHold) {
+  for (const std::string name : {"coalition-6", "hil-planes-2"}) {
+    auto scenario = configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/" +
+                                                 name + ".yaml");
+    ASSERT_TRUE(scenario) << scenario.error().message;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+      SCOPED_TRACE(name + ", seed " + std::to_string(seed));
+      auto mission = seeded_mission(*scenario, seed, "none");
+      ASSERT_TRUE(mission) << mission.error().message;
+      const double share = 0.04 * static_cast<double>(seed % 6);
+      mission->wind.steady_mps = share * scenario->vehicles.front().spec.cruise_speed_mps *
+                                 unit_vector(0.8 * static_cast<double>(seed));
+      mission->heeds_wind = true;
+      std::size_t windward = 0;
+      TeamObserver observer;
+      observer.plan = [&windward](VehicleId, const mission::FlightPlan& plan, Instant) {
+        windward += plan.timed.has_wind() ? 1 : 0;
+      };
+      const JudgedRun run = fly_judged(*mission, limits_of(scenario->expect), observer);
+      for (const auto& check : run.broken) {
+        ADD_FAILURE() << check.name << ": " << check.violations.front().sentence;
+      }
+      EXPECT_GT(windward, 0U);
+    }
+  }
+}
+
 TEST(JudgedRuns, ASeriesIsTheSameForAnyNumberOfThreads) {
   auto scenario = small();
   scenario.wind.gust_mps = 1.0;

@@ -114,7 +114,9 @@ TEST(ReturnRuns, AMissionThatEndsLandedEndsWithAllOnTheGround) {
       last[t->vehicle] = *t;
     };
     const JudgedRun run = fly_judged(team, limits_of(scenario->expect), observer);
-    for (const auto& check : run.broken) ADD_FAILURE() << check.name << ": " << check.detail;
+    for (const auto& check : run.broken) {
+      ADD_FAILURE() << check.name << ": " << check.violations.front().sentence;
+    }
     EXPECT_EQ(landed.size(), team.vehicles.size()) << "each once";
     for (const auto& [id, telemetry] : last) {
       EXPECT_EQ(telemetry.activity, mission::Activity::landed) << id.value;

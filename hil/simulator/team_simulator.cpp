@@ -167,9 +167,11 @@ class Team {
   /// Where the mission ends on the ground, the operator orders it once the work is done.
   bool landed_if_so(Instant now) {
     if (!mission_.ends_landed) return true;
-    if (!std::exchange(told_to_land_, true)) {
-      ground_.command(kGroundStation, mission::CommandKind::return_home, now);
-      ground_.command(kGroundStation, mission::CommandKind::land, now);
+    static constexpr std::array kOrders{mission::CommandKind::return_home,
+                                        mission::CommandKind::land};
+    if (orders_to_land_ < kOrders.size() &&
+        ground_.command(kGroundStation, kOrders.at(orders_to_land_), now)) {
+      ++orders_to_land_;
     }
     return std::ranges::none_of(vehicles_, [](const Aircraft& v) {
       return v.running() && v.activity() != mission::Activity::landed;
@@ -241,7 +243,7 @@ class Team {
       return done;
     }
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
-      ground_.command(order->vehicle, order->kind, now);
+      (void)ground_.command(order->vehicle, order->kind, now);
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
       return true;
     }
@@ -617,9 +619,9 @@ class Team {
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator
   std::vector<std::optional<Instant>> restart_at_;  ///< of each node
   std::vector<std::optional<Instant>> gone_at_;
-  bool script_done_ = false;  ///< of the formation
-  bool told_to_land_ = false;
-  Instant moved_at_{};  ///< it did, or was given an order
+  bool script_done_ = false;        ///< of the formation
+  std::size_t orders_to_land_ = 0;  ///< that were given
+  Instant moved_at_{};              ///< it did, or was given an order
   TeamResult result_;
 };
 

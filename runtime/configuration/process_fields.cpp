@@ -89,10 +89,6 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, A
   v.number({"airspeed_lead_s",
             "changes of airspeed are begun so much earlier: the time that a plane takes"},
            {0.0, 10.0, "s"}, fc.airspeed_lead_s);
-  v.number({"airspeed_change_mps2",
-            "what a plane's airspeed follows for long: turns are planned at the wind times the "
-            "cruise speed over it, or wider"},
-           {0.1, 20.0, "m/s2"}, fc.airspeed_change_mps2);
   v.require(!bus_required || config.kind != FlightControllerKind::ardupilot || !fc.can.empty(),
             "can", "an ardupilot needs a CAN bus; name one, such as can0 or mcast:0");
   v.require(fc.node_id != fc.companion_node_id, "companion_node_id",

@@ -29,9 +29,9 @@ struct Path {
 };
 
 /// A path flown from a start time at a ground speed that is constant, or constant on each of its
-/// segments. It never ends: after its last segment the vehicle orbits (`tail_curvature_per_m`),
-/// which is the hold pattern. So whoever follows it always knows what to do, also when nothing new
-/// ever arrives.
+/// segments; or, in a wind that is known, at an airspeed that is. It never ends: after its last
+/// segment the vehicle orbits (`tail_curvature_per_m`), which is the hold pattern. So whoever
+/// follows it always knows what to do, also when nothing new ever arrives.
 struct TimedPath {
   Instant start_time{};
   double speed_mps = 0.0;             ///< > 0, over the ground
@@ -39,7 +39,18 @@ struct TimedPath {
   Path path;
   /// The speed on each segment, and last on the tail, as a share of speed_mps; > 0. Empty: 1.
   StaticVector<double, kPacesMax> paces{};
+  /// The wind that its times count with, where that is known; with paces those of the hold alone.
+  /// At a constant airspeed v an infinitesimal way t ds, |t| = 1, takes ds / (v + w.t) or, to first
+  /// order in w/v, ds / v - w.(t ds) / v^2: so a way takes s / v - w.d / v^2, d being the straight
+  /// way that it leads to. Nowhere is it slower or faster than that by more than kWindShare.
+  double wind_east_mps = 0.0;
+  double wind_north_mps = 0.0;
+  /// As far as there speed_mps is the mean over the ground, so that it is there on time; beyond it,
+  /// the speed through the air.
+  double on_time_m = 0.0;
 
+  static constexpr double kWindShare = 0.3;  ///< of speed_mps: a stronger wind counts as that
+  [[nodiscard]] bool has_wind() const { return wind_east_mps != 0.0 || wind_north_mps != 0.0; }
   /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
   [[nodiscard]] double distance_at(Instant t) const;
   [[nodiscard]] Instant time_at(double distance_m) const;
@@ -53,6 +64,9 @@ struct TimedPath {
   [[nodiscard]] std::optional<Path> piece(double from_m, double to_m) const;
 
  private:
+  [[nodiscard]] Vec2 wind_per_speed() const;
+  [[nodiscard]] double helped_m(double distance_m) const;
+  [[nodiscard]] double in_wind_m(double even_m) const;
   [[nodiscard]] double pace(std::size_t piece) const {
     return piece < paces.size() ? paces[piece] : 1.0;
   }

@@ -24,9 +24,10 @@ struct VehicleAgentConfig {
   std::optional<TimedPath> route;  ///< flown first, to its end unless a task comes between
   std::vector<Hazard> hazards;     ///< known before the mission
   Duration status_period = std::chrono::seconds{1};
-  /// Of a fixed wing: how fast its airspeed changes in turns. Turns are planned so wide that the
-  /// wind takes no more. None: it follows at once, and turns are as the vehicle has them.
-  std::optional<double> airspeed_change_mps2{};
+  /// Of a fixed wing: its plans are of one airspeed in the wind that it measures, and its turns so
+  /// wide that they are held there. Else of one speed over the ground, as if its airspeed followed
+  /// whatever is asked of it at once.
+  bool heeds_wind = false;
   /// The follower begins turns so much before the path does: a delivery's run goes straight on for
   /// longer than that.
   double turn_lead_s = 0.0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -13,15 +14,25 @@ namespace skein::ardupilot {
 /// A parameter of an ArduPlane that limits what may be asked of it, in SI units but for degrees.
 struct LimitParameter {
   std::string_view name;
-  std::string_view older_name;
-  double older_unit = 1.0;  ///< what 1 of the older one is
+  std::string_view older_name;  ///< empty where it has always had that one
+  double older_unit = 1.0;      ///< what 1 of the older one is
 };
 inline constexpr LimitParameter kRollLimit{"ROLL_LIMIT_DEG", "LIM_ROLL_CD", 0.01};
 inline constexpr LimitParameter kAirspeedMin{"AIRSPEED_MIN", "ARSPD_FBW_MIN"};
 inline constexpr LimitParameter kAirspeedMax{"AIRSPEED_MAX", "ARSPD_FBW_MAX"};
 inline constexpr LimitParameter kAirspeedCruise{"AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 0.01};
+/// Of the energy between height and airspeed, which is pitch's to share out: 0 is height alone.
+inline constexpr LimitParameter kSpeedWeight{"TECS_SPDWEIGHT", ""};
 /// Those of an airframe: a copter has none.
 [[nodiscard]] std::span<const LimitParameter> limit_parameters(Airframe airframe);
+
+/// How high above the ground it is taken over on its way to that height: near enough to fly its
+/// plan, and below where a climb ends that levels out early.
+[[nodiscard]] constexpr double taken_over_at_m(double takeoff_height_m) {
+  constexpr double kShort_m = 3.0;
+  constexpr double kShare = 0.9;
+  return std::max(kShare * takeoff_height_m, takeoff_height_m - kShort_m);
+}
 
 /// What a vehicle's configuration asks of a parameter.
 struct LimitFinding {

@@ -35,7 +35,8 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_recordings(const RunRecord& record, const Limits& limits);
 
 /// Plans exactly: no segment and no hold turns tighter than the turn radius. Tracks of planes:
-/// heading change over air distance, within Limits::turn_share.
+/// heading change over air distance, within Limits::turn_share; of those that an autopilot flew,
+/// who rolls past its bank and back, it is measured only.
 [[nodiscard]] CheckResult check_turn_radius(const RunRecord& record, const Limits& limits);
 /// A plan starts where the one that it replaces is at that time; the first where the vehicle is.
 [[nodiscard]] CheckResult check_continuity(const RunRecord& record, const Limits& limits);

@@ -62,6 +62,7 @@ struct TeamMission {
   std::vector<mission::ScriptedDecision> decisions;
   radio::RadioParams radio;
   models::WindParams wind;
+  bool heeds_wind = false;  ///< planes plan as on an autopilot (mission::VehicleAgentConfig)
   Duration allocation_takes = std::chrono::milliseconds{50};  ///< in virtual time
   Duration duration_max = std::chrono::seconds{300};
   bool ends_landed = false;  ///< then all are ordered home, and to land

@@ -44,9 +44,8 @@ struct ArdupilotConfig {
   TakeOverKind take_over = TakeOverKind::when_guided;
   double takeoff_height_m = 40.0;
   double geoid_height_m = 0.0;
-  double turn_lead_s = 0.6;           ///< rolling into a turn takes so long
-  double airspeed_lead_s = 4.0;       ///< and a change of airspeed
-  double airspeed_change_mps2 = 0.9;  ///< that it follows for long; turns in wind are so wide
+  double turn_lead_s = 0.6;      ///< rolling into a turn takes so long
+  double airspeed_lead_s = 4.0;  ///< and a change of airspeed
 };
 
 struct FlightControllerConfig {
@@ -54,11 +53,6 @@ struct FlightControllerConfig {
   WindConfig wind;  ///< of the simulated flight controller
   ArdupilotConfig ardupilot;
 
-  /// The simulated one's airspeed is what it is asked for.
-  [[nodiscard]] std::optional<double> airspeed_change_mps2() const {
-    if (kind != FlightControllerKind::ardupilot) return std::nullopt;
-    return ardupilot.airspeed_change_mps2;
-  }
   /// Asked for more per radian, an ArduPlane that flies 25 m/s swings (docs/ardupilot.md).
   static constexpr double kHeadingGainMost_per_s = 0.8;
   /// How plans are followed on it; the simulated one needs no leads.
