@@ -23,7 +23,7 @@ constexpr double kBankReserve_deg = 5.0;
 constexpr double kBankMax_deg = 80.0;
 /// The autopilot returns home by itself at its own cruise airspeed.
 constexpr double kCruiseOff_mps = 2.0;
-/// ArduPlane 4.6, STALL_PREVENTION: it always leaves this much bank.
+/// ArduPlane, STALL_PREVENTION: it always leaves this much bank.
 constexpr double kBankAlways_deg = 25.0;
 
 /// In the unit of the name that the autopilot knows.
@@ -88,15 +88,14 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
                         vehicle.speed_min_mps, name, set(vehicle.speed_min_mps), si)};
   }
   if (parameter.name == kAirspeedMin.name) {
-    const double most_mps =
-        std::min(airspeed_min_most(vehicle.speed_min_mps, vehicle.turn_radius_m),
-                 airspeed_min_most(vehicle.cruise_speed_mps, vehicle.turn_radius_m));
-    if (si > most_mps * (1.0 + kSlack)) {
+    for (const double airspeed_mps : {vehicle.speed_min_mps, vehicle.cruise_speed_mps}) {
+      const double most_mps = airspeed_min_most(airspeed_mps, vehicle.turn_radius_m);
+      if (si <= most_mps * (1.0 + kSlack)) continue;
       return {Verdict::differs, found,
               fmt::format("while STALL_PREVENTION is 1 it banks no more than {:.0f} degrees at "
                           "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less",
-                          prevented_bank_deg(vehicle.speed_min_mps, si), vehicle.speed_min_mps,
-                          vehicle.turn_radius_m, name, std::floor(most_mps * 10.0) / 10.0)};
+                          prevented_bank_deg(airspeed_mps, si), airspeed_mps, vehicle.turn_radius_m,
+                          name, std::floor(most_mps * 10.0) / 10.0)};
     }
   }
   if (parameter.name == kAirspeedMax.name && si < vehicle.speed_max_mps * (1.0 - kSlack)) {

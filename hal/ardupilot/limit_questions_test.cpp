@@ -58,6 +58,7 @@ TEST(LimitCheck, StallPreventionLeavesLessBankNearTheLeastAirspeed) {
   const LimitFinding finding = judge(40.0);
   EXPECT_EQ(finding.verdict, LimitFinding::Verdict::differs);
   EXPECT_THAT(finding.remedy, HasSubstr("set AIRSPEED_MIN to 33.7 or less"));
+  EXPECT_THAT(finding.remedy, HasSubstr("no more than 28 degrees at 42.5 m/s"));
 }
 
 TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {

@@ -23,7 +23,7 @@ inline constexpr LimitParameter kAirspeedCruise{"AIRSPEED_CRUISE", "TRIM_ARSPD_C
 /// Those of an airframe: a copter has none.
 [[nodiscard]] std::span<const LimitParameter> limit_parameters(Airframe airframe);
 
-/// The bank that an ArduPlane's STALL_PREVENTION leaves (ArduPlane 4.6, update_load_factor): the
+/// The bank that an ArduPlane's STALL_PREVENTION leaves (Plane::update_load_factor): the
 /// load factor's root, 1 / sqrt(cos(bank)), is at most airspeed / AIRSPEED_MIN, but 25 degrees it
 /// leaves always. The limit by ROLL_LIMIT_DEG comes on top.
 [[nodiscard]] double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps);
