@@ -23,6 +23,8 @@ constexpr double kBankReserve_deg = 5.0;
 constexpr double kBankMax_deg = 80.0;
 /// The autopilot returns home by itself at its own cruise airspeed.
 constexpr double kCruiseOff_mps = 2.0;
+/// ArduPlane, STALL_PREVENTION: it always leaves this much bank.
+constexpr double kBankAlways_deg = 25.0;
 
 /// At 1 heights were off by 3.3 m rms in 5 m/s of wind, at 0 by 1.2 (docs/ardupilot.md).
 constexpr double kSpeedWeightMost = 0.5;
@@ -54,7 +56,21 @@ LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, doubl
                       number(kRollLimit, name, needed_deg), std::ceil(radius_m))};
 }
 
+/// The highest AIRSPEED_MIN with which stall prevention lets it turn within `radius_m`.
+double airspeed_min_most(double airspeed_mps, double radius_m) {
+  const double bank_rad = std::atan(airspeed_mps * airspeed_mps / (kGravity_mps2 * radius_m));
+  if (bank_rad <= radians(kBankAlways_deg)) return INFINITY;
+  return airspeed_mps * std::sqrt(std::cos(bank_rad));
+}
+
 }  // namespace
+
+double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps) {
+  const double least_mps = std::max(airspeed_min_mps, 1.0);
+  if (airspeed_mps <= least_mps) return kBankAlways_deg;
+  const double inverse = least_mps / airspeed_mps;
+  return std::max(kBankAlways_deg, degrees(std::acos(inverse * inverse)));
+}
 
 std::span<const LimitParameter> limit_parameters(Airframe airframe) {
   if (airframe == Airframe::plane) return kPlane;
@@ -73,6 +89,17 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
             fmt::format("the autopilot flies no slower, and speed_min_mps is {:g}: set {} to {} or "
                         "less, or speed_min_mps to {:g} or more",
                         vehicle.speed_min_mps, name, set(vehicle.speed_min_mps), si)};
+  }
+  if (parameter.name == kAirspeedMin.name) {
+    for (const double airspeed_mps : {vehicle.speed_min_mps, vehicle.cruise_speed_mps}) {
+      const double most_mps = airspeed_min_most(airspeed_mps, vehicle.turn_radius_m);
+      if (si <= most_mps * (1.0 + kSlack)) continue;
+      return {Verdict::differs, found,
+              fmt::format("while STALL_PREVENTION is 1 it banks no more than {:.0f} degrees at "
+                          "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less",
+                          prevented_bank_deg(airspeed_mps, si), airspeed_mps, vehicle.turn_radius_m,
+                          name, std::floor(most_mps * 10.0) / 10.0)};
+    }
   }
   if (parameter.name == kAirspeedMax.name && si < vehicle.speed_max_mps * (1.0 - kSlack)) {
     return {Verdict::refused, found,

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "companion_line.hpp"
 #include "parameter_check.hpp"
+#include "skein/ardupilot/flight_limits.hpp"
 
 namespace skein::ardupilot {
 namespace {
@@ -43,6 +45,21 @@ TEST(LimitCheck, WhatAFirmwareDoesNotKnowKeepsNobodyOnTheGround) {
   EXPECT_EQ(questions, 4);
   ParameterCheck copter{limit_questions(test_vehicle(), Airframe::copter)};
   EXPECT_TRUE(copter.good());
+}
+
+TEST(LimitCheck, StallPreventionLeavesLessBankNearTheLeastAirspeed) {
+  EXPECT_DOUBLE_EQ(prevented_bank_deg(20.0, 20.0), 25.0);
+  EXPECT_DOUBLE_EQ(prevented_bank_deg(20.5, 20.0), 25.0);
+  EXPECT_NEAR(prevented_bank_deg(20.0 * std::sqrt(2.0), 20.0), 60.0, 1e-9);
+  // 42.5 m/s within 150 m takes 50.8 degrees: 33.8 m/s at most.
+  const auto judge = [](double least_mps) {
+    return judge_limit(test_vehicle(), kAirspeedMin, "AIRSPEED_MIN", least_mps);
+  };
+  EXPECT_EQ(judge(33.7).verdict, LimitFinding::Verdict::good);
+  const LimitFinding finding = judge(40.0);
+  EXPECT_EQ(finding.verdict, LimitFinding::Verdict::differs);
+  EXPECT_THAT(finding.remedy, HasSubstr("set AIRSPEED_MIN to 33.7 or less"));
+  EXPECT_THAT(finding.remedy, HasSubstr("no more than 28 degrees at 42.5 m/s"));
 }
 
 TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {

@@ -33,6 +33,10 @@ inline constexpr LimitParameter kSpeedWeight{"TECS_SPDWEIGHT", ""};
   constexpr double kShare = 0.9;
   return std::max(kShare * takeoff_height_m, takeoff_height_m - kShort_m);
 }
+/// The bank that an ArduPlane's STALL_PREVENTION leaves (Plane::update_load_factor): the
+/// load factor's root, 1 / sqrt(cos(bank)), is at most airspeed / AIRSPEED_MIN, but 25 degrees it
+/// leaves always. The limit by ROLL_LIMIT_DEG comes on top.
+[[nodiscard]] double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps);
 
 /// What a vehicle's configuration asks of a parameter.
 struct LimitFinding {
