@@ -13,6 +13,30 @@ double within(double value, double limit) { return std::clamp(value, -limit, lim
 
 }  // namespace
 
+FixedWingTuning froude_scaled(const FixedWingTuning& tuning, double scale) {
+  SKEIN_ASSERT(scale > 0.0);
+  const double root = std::sqrt(scale);
+  FixedWingTuning t = tuning;
+  for (double* const speed : {&t.airspeed_min_mps, &t.airspeed_cruise_mps, &t.airspeed_max_mps,
+                              &t.reference_airspeed_mps, &t.climb_max_mps, &t.sink_max_mps}) {
+    *speed *= root;
+  }
+  for (double* const time :
+       {&t.roll.feedforward_s, &t.roll.proportional_s, &t.pitch.feedforward_s,
+        &t.pitch.proportional_s, &t.yaw_gain_s, &t.height_time_s, &t.airspeed_time_s}) {
+    *time *= root;
+  }
+  // Per time, per speed, or per specific power (a speed times an acceleration).
+  for (double* const rate :
+       {&t.roll_gain_per_s, &t.pitch_gain_per_s, &t.roll_rate_max_radps, &t.pitch_rate_max_radps,
+        &t.sideslip_gain_s_per_m, &t.throttle_per_mps, &t.throttle_per_power, &t.power_gain,
+        &t.balance_integral_per_s, &t.heading_gain_per_s}) {
+    *rate /= root;
+  }
+  t.power_integral_per_s /= scale;
+  return t;
+}
+
 double FixedWingLoops::bank_for(double lateral_mps2) const {
   return within(std::atan(lateral_mps2 / kGravity_mps2), tuning_.roll_max_rad);
 }

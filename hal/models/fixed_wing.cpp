@@ -144,6 +144,8 @@ FixedWingParams fast_fixed_wing() {
   return p;
 }
 
+FixedWingParams small_fixed_wing() { return froude_scaled(fast_fixed_wing(), 0.25); }
+
 AirData air_data(const RigidBodyState& state, const Vec3& wind_ned_mps) {
   const Vec3 air = state.velocity_mps - state.attitude.conjugate() * wind_ned_mps;
   const double speed = air.norm();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plane_airframe.hpp"
 #include "skein/autopilot/fixed_wing_loops.hpp"
 #include "skein/autopilot/hexarotor_loops.hpp"
 #include "skein/autopilot/modes.hpp"
@@ -22,15 +23,15 @@ double bank_of_circle(const EmulatorConfig& config) {
 }
 
 Result<void> check_plane(const EmulatorConfig& c) {
-  const autopilot::FixedWingTuning airframe;
-  if (!(c.airspeed_min_mps >= airframe.airspeed_min_mps && c.airspeed_min_mps <= c.airspeed_mps &&
-        c.airspeed_mps <= c.airspeed_max_mps && c.airspeed_max_mps <= airframe.airspeed_max_mps)) {
+  const PlaneAirframe* const found = airframe_for(c);
+  if (found == nullptr || !(c.airspeed_min_mps <= c.airspeed_mps) ||
+      !(c.airspeed_mps <= c.airspeed_max_mps)) {
     return Error{fmt::format(
-        "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {:g} to "
-        "{:g} m/s of the airframe",
-        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe.airspeed_min_mps,
-        airframe.airspeed_max_mps)};
+        "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {} m/s "
+        "of an airframe",
+        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe_speeds())};
   }
+  const autopilot::FixedWingTuning& airframe = found->tuning;
   if (!(c.turn_radius_m > 0.0) || bank_of_circle(c) > airframe.roll_max_rad) {
     const double least =
         c.airspeed_mps * c.airspeed_mps / (kGravity_mps2 * std::tan(airframe.roll_max_rad));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
 #include "skein/base/atmosphere.hpp"
 #include "skein/base/frames.hpp"
 
@@ -16,8 +17,6 @@ using autopilot::PlaneMode;
 using mavlink::CommandResult;
 
 constexpr Duration kModelStep = std::chrono::microseconds{2500};
-/// Of the wheels under the centre of mass, when parked.
-constexpr double kParkedHeight_m = 0.46;
 /// Circles that it flies by itself are wider than its tightest.
 constexpr double kLoiterRadii = 1.1;
 
@@ -34,12 +33,13 @@ constexpr std::uint8_t kPilotBase = mavlink::mode_custom_enabled | mavlink::mode
                                     mavlink::mode_manual_input_enabled;
 constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
 
-models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& trim) {
-  const models::FixedWingParams params = models::fast_fixed_wing();
+models::FixedWing at_start(const EmulatorConfig& config, const PlaneAirframe& airframe,
+                           const models::Trim& trim) {
+  const models::FixedWingParams& params = airframe.model;
   const double yaw = yaw_from_heading(config.start.heading_rad);
   models::RigidBodyState state;
   if (!config.airborne) {
-    state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, kParkedHeight_m});
+    state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, airframe.parked_height_m});
     state.attitude = attitude_from({.yaw_rad = yaw});
     return {params, state, {}};
   }
@@ -53,8 +53,11 @@ models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& tri
   return {params, state, trim.input};
 }
 
-autopilot::PlaneParams params_of(const EmulatorConfig& config) {
+autopilot::PlaneParams params_of(const EmulatorConfig& config, const PlaneAirframe& airframe) {
   autopilot::PlaneParams p;
+  p.tuning = airframe.tuning;
+  p.rotate_airspeed_mps = airframe.rotate_share * config.airspeed_min_mps;
+  p.flare_height_m = airframe.flare_height_m;
   // Its parameters are equivalent airspeeds, the loops of the model go by true ones.
   const double true_per_equivalent =
       true_per_equivalent_airspeed(config.origin.height_m + config.height_m);
@@ -73,16 +76,19 @@ autopilot::PlaneParams params_of(const EmulatorConfig& config) {
 
 Result<std::unique_ptr<Vehicle>> PlaneVehicle::make(const EmulatorConfig& config,
                                                     const Earth& earth, Instant now) {
-  const auto trim = models::trim(models::fast_fixed_wing(), {.airspeed_mps = config.airspeed_mps});
+  const PlaneAirframe* const airframe = airframe_for(config);
+  SKEIN_ASSERT(airframe != nullptr);
+  const auto trim = models::trim(airframe->model, {.airspeed_mps = config.airspeed_mps});
   if (!trim) return trim.error();
-  return std::unique_ptr<Vehicle>{std::make_unique<PlaneVehicle>(config, earth, *trim, now)};
+  return std::unique_ptr<Vehicle>{
+      std::make_unique<PlaneVehicle>(config, *airframe, earth, *trim, now)};
 }
 
-PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
-                           const models::Trim& trim, Instant now)
-    : AutopilotVehicle{config, earth, params_of(config), now},
-      aircraft_{at_start(config, trim)},
-      params_{params_of(config)},
+PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const PlaneAirframe& airframe,
+                           const Earth& earth, const models::Trim& trim, Instant now)
+    : AutopilotVehicle{config, earth, params_of(config, airframe), now},
+      aircraft_{at_start(config, airframe, trim)},
+      params_{params_of(config, airframe)},
       airspeed_min_mps_{config.airspeed_min_mps},
       airspeed_max_mps_{config.airspeed_max_mps} {
   sense(aircraft_);

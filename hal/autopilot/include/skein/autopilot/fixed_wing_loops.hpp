@@ -63,6 +63,10 @@ struct FixedWingTuning {
   double heading_gain_per_s = 1.2;  ///< course or heading error to turn rate
 };
 
+/// The tuning for an airframe that is `scale` times as long (models::froude_scaled): speeds and
+/// times go by the root, angles and accelerations stay. Precondition: scale > 0.
+[[nodiscard]] FixedWingTuning froude_scaled(const FixedWingTuning& tuning, double scale);
+
 /// What guidance asks for.
 struct FlightDemand {
   double lateral_mps2 = 0.0;  ///< positive to the right
