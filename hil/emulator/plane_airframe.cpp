@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "skein/base/angles.hpp"
+
 namespace skein::hil {
 namespace {
 
@@ -17,7 +19,8 @@ PlaneAirframe fast() {
           .tuning = {},
           .parked_height_m = 0.46,
           .rotate_share = 0.95,
-          .flare_height_m = 8.0};
+          .flare_height_m = 8.0,
+          .bank_reserve_rad = radians(5.0)};
 }
 
 PlaneAirframe small() {
@@ -25,7 +28,8 @@ PlaneAirframe small() {
                          .tuning = autopilot::froude_scaled({}, kSmallScale),
                          .parked_height_m = 0.46 * kSmallScale,
                          .rotate_share = 0.95,
-                         .flare_height_m = 4.0};
+                         .flare_height_m = 4.0,
+                         .bank_reserve_rad = radians(10.0)};
   autopilot::FixedWingTuning& t = airframe.tuning;
   t.airspeed_min_mps = 15.0;
   t.airspeed_max_mps = 35.0;
@@ -35,6 +39,11 @@ PlaneAirframe small() {
   t.pitch_gain_per_s = 4.0;
   t.roll_rate_max_radps = 1.57;
   t.pitch_rate_max_radps = 1.57;
+  // As ArduPlane by default (YAW2SRV_SLIP and YAW2SRV_DAMP are 0): nothing takes the slip out of
+  // its turns.
+  t.yaw_gain_s = 0.0;
+  t.sideslip_gain_s_per_m = 0.0;
+  t.slow_energy.emplace();
   return airframe;
 }
 

@@ -16,6 +16,7 @@ struct PlaneAirframe {
   double parked_height_m = 0.0;       ///< of the wheels under the centre of mass
   double rotate_share = 0.0;          ///< of its least airspeed, at which it lifts its nose
   double flare_height_m = 0.0;
+  double bank_reserve_rad = 0.0;  ///< of its limit, over the bank of the circle without slip
 };
 
 /// The airframe that flies all three airspeeds of the configuration, or nothing.

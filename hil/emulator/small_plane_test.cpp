@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "emulator_test.hpp"
+#include "skein/base/atmosphere.hpp"
 
 namespace skein::hil {
 namespace {
@@ -19,6 +20,18 @@ EmulatorConfig small_plane() {
   return config;
 }
 
+void watch(Companion& c) {
+  for (const std::uint32_t id :
+       {mavlink::Attitude::kDefinition.id, mavlink::GlobalPositionInt::kDefinition.id,
+        mavlink::VfrHud::kDefinition.id}) {
+    EXPECT_EQ(c.stream(id, 20.0), mavlink::CommandResult::accepted);
+  }
+  c.run(0.2);
+}
+
+constexpr std::uint8_t kRollAlone = mavlink::ignore_attitude | mavlink::ignore_thrust |
+                                    mavlink::ignore_pitch_rate | mavlink::ignore_body_yaw_rate;
+
 TEST(SmallPlane, FliesItsSpeedsAtItsHeight) {
   Companion companion{small_plane()};
   companion.run(15.0);
@@ -30,6 +43,120 @@ TEST(SmallPlane, FliesItsSpeedsAtItsHeight) {
     EXPECT_NEAR(hud.airspeed, wanted, 0.5);
     EXPECT_NEAR(hud.alt, 780.0F, 3.0);
   }
+}
+
+/// Held at a bank for as long; what it turns in the last half of that, in shares of g tan(bank) /
+/// V.
+double turn_share(Companion& c, double bank_rad, double seconds) {
+  const auto hold = [&](double for_s) {
+    for (double t = 0.0; t < for_s; t += 0.1) {
+      c.hold_roll(bank_rad, 0.0, kRollAlone);
+      c.run(0.1);
+    }
+  };
+  const auto course = [&] {
+    const auto p = c.last<mavlink::GlobalPositionInt>().value();
+    return std::atan2(p.vy, p.vx);
+  };
+  hold(seconds);
+  double turned = 0.0;
+  double bank = 0.0;
+  double airspeed = 0.0;
+  double before = course();
+  constexpr int kSamples = 50;
+  for (int i = 0; i < kSamples; ++i) {
+    hold(0.1);
+    turned += wrap_pi(course() - before);
+    before = course();
+    bank += std::tan(static_cast<double>(c.last<mavlink::Attitude>()->roll)) / kSamples;
+    airspeed += static_cast<double>(c.last<mavlink::VfrHud>()->airspeed) *
+                true_per_equivalent_airspeed(780.0) / kSamples;
+  }
+  return turned / (0.1 * kSamples) / (kGravity_mps2 * bank / airspeed);
+}
+
+TEST(SmallPlane, SlipsInTurnsAsArduPlaneDoes) {
+  for (const double bank_deg : {-40.0, 30.0, 45.0}) {
+    Companion c{small_plane()};
+    watch(c);
+    EXPECT_NEAR(turn_share(c, radians(bank_deg), 6.0), 0.73, 0.03) << bank_deg;
+  }
+}
+
+struct SpeedStep {
+  double half_way_s = 0.0;
+  double lowest_m = 0.0;  ///< of its height, off what it was told
+  double highest_m = 0.0;
+};
+
+/// Straight on at an airspeed for 40 s, then another is asked for.
+SpeedStep step_of(float from_mps, float to_mps) {
+  Companion c{small_plane()};
+  watch(c);
+  const auto straight = [&](double seconds, const auto& look) {
+    for (double t = 0.0; t < seconds; t += 0.1) {
+      c.hold_roll(0.0, 0.0, kRollAlone);
+      c.run(0.1);
+      look(t);
+    }
+  };
+  const auto ask = [&](float mps) {
+    EXPECT_EQ(c.command(mavlink::Command::do_change_speed, 0.0F, mps),
+              mavlink::CommandResult::accepted);
+  };
+  ask(from_mps);
+  straight(40.0, [](double) {});
+  ask(to_mps);
+  SpeedStep step;
+  const float middle = (from_mps + to_mps) / 2.0F;
+  straight(25.0, [&](double t) {
+    const auto hud = c.last<mavlink::VfrHud>().value();
+    const bool passed = to_mps > from_mps ? hud.airspeed > middle : hud.airspeed < middle;
+    if (passed && step.half_way_s == 0.0) step.half_way_s = t;
+    step.lowest_m = std::min(step.lowest_m, static_cast<double>(hud.alt) - 780.0);
+    step.highest_m = std::max(step.highest_m, static_cast<double>(hud.alt) - 780.0);
+  });
+  return step;
+}
+
+TEST(SmallPlane, FollowsAirspeedsLateAndAtTheCostOfHeight) {
+  // A ramp of 0.98 m/s^2 up and 0.7 m/s^2 down; what height gives helps the first along.
+  const SpeedStep faster = step_of(21.0F, 27.0F);
+  EXPECT_GT(faster.half_way_s, 2.5);
+  EXPECT_LT(faster.half_way_s, 5.5);
+  EXPECT_LT(faster.lowest_m, -2.5);
+  EXPECT_GT(faster.lowest_m, -8.0);
+  const SpeedStep slower = step_of(27.0F, 21.0F);
+  EXPECT_GT(slower.half_way_s, 4.5);
+  EXPECT_LT(slower.half_way_s, 7.5);
+  EXPECT_GT(slower.highest_m, 2.0);
+  EXPECT_LT(slower.highest_m, 8.0);
+}
+
+TEST(SmallPlane, ShortGustsAreThoseOfArduPilotsSimulator) {
+  EmulatorConfig config = small_plane();
+  config.turbulence_mps = 1.5;
+  Companion c{config};
+  watch(c);
+  c.run(10.0);
+  double sum = 0.0;
+  double square = 0.0;
+  double both = 0.0;
+  double before = 0.0;
+  constexpr int kSamples = 300;
+  for (int i = 0; i < kSamples; ++i) {
+    const double slow = static_cast<double>(c.last<mavlink::VfrHud>()->airspeed);
+    c.run(0.2);
+    const double change = static_cast<double>(c.last<mavlink::VfrHud>()->airspeed) - slow;
+    sum += change;
+    square += change * change;
+    both += change * before;
+    before = change;
+  }
+  // Changes of what has nothing in common with before: root two of it, half of it taken back next.
+  EXPECT_NEAR(std::sqrt(square / kSamples), std::sqrt(2.0) * 0.71, 0.2);
+  EXPECT_NEAR(both / square, -0.5, 0.12);
+  EXPECT_NEAR(sum / kSamples, 0.0, 0.05);
 }
 
 TEST(SmallPlane, TakesOff) {
