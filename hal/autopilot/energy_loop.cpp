@@ -20,6 +20,7 @@ EnergyLoop::State EnergyLoop::begun(const Estimate& estimate, const EnergyLimits
   State s;
   s.height_m = estimate.height_m();
   s.airspeed_mps = std::max(estimate.airspeed_mps, limits.airspeed_least_mps);
+  s.asked_mps = s.airspeed_mps;
   s.pitch_power = limits.pitch_trim_rad * kGravity_mps2 * s.airspeed_mps;
   s.pitch_rad = limits.pitch_trim_rad;
   s.throttle = limits.throttle_level;
@@ -36,8 +37,9 @@ PitchAndThrottle EnergyLoop::step(const Estimate& estimate, double height_m, dou
   const double climb_wanted =
       within((height_m - s.height_m) / t_.height_lag_s, t_.height_rate_max_mps);
   s.height_m += climb_wanted * seconds;
+  s.asked_mps += std::min(seconds / t_.airspeed_lag_s, 1.0) * (airspeed_mps - s.asked_mps);
   const double acceleration_wanted =
-      std::clamp((airspeed_mps - s.airspeed_mps) / seconds, -t_.slower_mps2, t_.faster_power / v);
+      std::clamp((s.asked_mps - s.airspeed_mps) / seconds, -t_.slower_mps2, t_.faster_power / v);
   s.airspeed_mps += acceleration_wanted * seconds;
   const double pitch = euler_angles(estimate.attitude).pitch_rad;
   s.acceleration_mps2 +=
@@ -66,9 +68,10 @@ PitchAndThrottle EnergyLoop::step(const Estimate& estimate, double height_m, dou
   }
   s.throttle += within(throttle - s.throttle, t_.throttle_rate_per_s * seconds);
 
-  const double share_error = height_error - speed_error;
-  const double share_power = height_power - speed_power + share_error / t_.time_s + s.pitch_power +
-                             t_.pitch_damping * (height_power_error - speed_power_error);
+  const double share_error = height_error - t_.speed_weight * speed_error;
+  const double share_power =
+      height_power - t_.speed_weight * speed_power + share_error / t_.time_s + s.pitch_power +
+      t_.pitch_damping * (height_power_error - t_.speed_weight * speed_power_error);
   const double wanted = share_power / (v * kGravity_mps2);
   const double limited = std::clamp(wanted, limits.pitch_min_rad, limits.pitch_max_rad);
   if ((wanted - limited) * share_error <= 0.0) {

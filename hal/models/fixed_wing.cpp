@@ -147,7 +147,7 @@ FixedWingParams fast_fixed_wing() {
 FixedWingParams small_fixed_wing() {
   FixedWingParams p = froude_scaled(fast_fixed_wing(), 0.25);
   p.propulsion.volts_max *= 1.3;
-  p.aero.cd_parasitic *= 3.2;
+  p.aero.cd_parasitic *= 1.9;
   p.aero.cy_aileron = 0.0;
   p.aero.cn_aileron = 0.0;
   p.aero.cn_beta = 0.03;

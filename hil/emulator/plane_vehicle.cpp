@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plane_vehicle.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -27,6 +29,9 @@ constexpr float kHeadingAccelerationLeast_mps2 = 0.05F;
 /// ArduPlane 4.6 with a rate for GUIDED_CHANGE_ALTITUDE hardly climbs: 0.1 m/s were measured where
 /// 3 m/s were asked for.
 constexpr double kAltitudeRateShare = 1.0 / 30.0;
+
+/// ArduPlane 4.6.3 was in the air (EXTENDED_SYS_STATE) on its wheels, at 5.3 m/s.
+constexpr double kRollsFrom_mps = 5.0;
 
 // HEARTBEAT, base_mode, as ArduPlane sends it.
 constexpr std::uint8_t kPilotBase = mavlink::mode_custom_enabled | mavlink::mode_stabilize_enabled |
@@ -138,6 +143,8 @@ void PlaneVehicle::tell() {
   report_.throttle = surfaces_.throttle;
   report_.armed = autopilot_.armed();
   report_.flying = status.flying;
+  report_.rolling = autopilot_.armed() && !status.flying && mode != PlaneMode::mission &&
+                    report_.estimate.groundspeed_mps() > kRollsFrom_mps;
   report_.mode_armable = autopilot_.mode_armable();
   report_.mode = static_cast<std::uint32_t>(mode);
   report_.base_mode =
@@ -224,7 +231,13 @@ CommandResult PlaneVehicle::change_speed(const mavlink::CommandInt& c) {
   if (c.param1 != kAirspeed) return CommandResult::failed;
   const auto wanted = true_airspeed(static_cast<double>(c.param2));
   if (!wanted) return CommandResult::failed;
-  return on_wire(autopilot_.change_speed(*wanted));
+  const auto result = autopilot_.change_speed(*wanted);
+  if (result == autopilot::CommandResult::accepted) {
+    // ArduPlane says so each time.
+    autopilot_.say(autopilot::Severity::info,
+                   fmt::format("Set airspeed {:.0f} m/s", static_cast<double>(c.param2)));
+  }
+  return on_wire(result);
 }
 
 std::optional<double> PlaneVehicle::true_airspeed(double equivalent_mps) const {

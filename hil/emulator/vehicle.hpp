@@ -23,6 +23,7 @@ struct FlightReport {
   double throttle = 0.0;  ///< [0, 1]
   bool armed = false;
   bool flying = false;
+  bool rolling = false;  ///< a plane on its take-off run: ArduPlane tells that it is in the air
   bool mode_armable = true;
   std::uint32_t mode = 0;          ///< custom_mode
   std::uint8_t base_mode = 0;      ///< without its bit for armed

@@ -19,16 +19,18 @@ struct PitchAndThrottle {
 struct SlowEnergyTuning {
   double height_lag_s = 3.0;         ///< TECS_HDEM_TCONST: heights asked for are followed by it
   double height_rate_max_mps = 5.0;  ///< TECS_CLMB_MAX, TECS_SINK_MAX
-  double faster_power = 24.5;        ///< m^2/s^3: an airspeed asked for rises by this / airspeed
-  double slower_mps2 = 0.70;         ///< and falls by this at most
+  double faster_power = 20.6;        ///< m^2/s^3: an airspeed asked for rises by this / airspeed
+  double slower_mps2 = 0.74;         ///< and falls by this at most
   double throttle_rate_per_s = 1.0;  ///< THR_SLEWRATE
   double vertical_acceleration_mps2 = 7.0;  ///< TECS_VERT_ACC: how the pitch asked for changes
   double time_s = 5.0;                      ///< what energy errors are taken back in
-  double power_range = 220.0;               ///< m^2/s^3 that all of the throttle is taken to give
-  double throttle_damping = 1.5;
-  double throttle_integral_per_s = 0.27;
-  double pitch_damping = 1.5;
-  double pitch_integral_per_s = 1.1;  ///< power per energy that is wrong, and second
+  double power_range = 167.0;               ///< m^2/s^3 that all of the throttle is taken to give
+  double throttle_damping = 0.7;
+  double throttle_integral_per_s = 0.3;
+  double pitch_damping = 1.2;
+  double airspeed_lag_s = 1.4;        ///< of the airspeed that is asked for
+  double speed_weight = 2.9;          ///< of the speed's error in the pitch; the height's has 1
+  double pitch_integral_per_s = 2.3;  ///< power per energy that is wrong, and second
 };
 
 /// What the airframe needs for level flight, and its limits.
@@ -55,9 +57,10 @@ class EnergyLoop {
 
  private:
   struct State {
-    double height_m = 0.0;  ///< asked for, as it is followed
-    double airspeed_mps = 0.0;
-    double pitch_power = 0.0;  ///< integral, m^2/s^3
+    double height_m = 0.0;      ///< asked for, as it is followed
+    double asked_mps = 0.0;     ///< airspeed, after its lag
+    double airspeed_mps = 0.0;  ///< and its ramp
+    double pitch_power = 0.0;   ///< integral, m^2/s^3
     double pitch_rad = 0.0;
     double throttle_integral = 0.0;
     double throttle = 0.0;

@@ -126,6 +126,8 @@ class PlaneAutopilot {
   [[nodiscard]] bool armed() const { return armed_; }
   [[nodiscard]] const PlaneStatus& status() const { return status_; }
   [[nodiscard]] const PlaneParams& params() const { return params_; }
+  /// For poll_notice(), too.
+  void say(Severity severity, std::string text);
   [[nodiscard]] std::optional<Notice> poll_notice() { return notices_.pop(); }
 
  private:
@@ -141,7 +143,6 @@ class PlaneAutopilot {
   enum class Landing : std::uint8_t { approach, flare, rollout };
 
   [[nodiscard]] ModeFacts facts() const;
-  void say(Severity severity, std::string text);
   /// Fires the event and prepares the new mode. False where the table has no way.
   bool change(PlaneEvent event);
   void enter();
