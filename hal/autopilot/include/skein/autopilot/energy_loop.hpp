@@ -13,9 +13,9 @@ struct PitchAndThrottle {
 };
 
 /// Height and airspeed as ArduPlane 4.6.3 in its simulator holds them: late, and at each other's
-/// cost. Limits, lags and rates are its parameters, or read from its log (TECS, 20 to 29 m/s); the
-/// six gains are fitted: with them a small_fixed_wing() that is given the airspeeds, heights and
-/// banks of two flights of three minutes has heights within 1.4 m rms of the logged ones.
+/// cost. The limits are its parameters, the rest is fitted to its log (TECS, 20 to 29 m/s): a
+/// small_fixed_wing() that is given the airspeeds, heights and banks of two flights of two minutes
+/// has the logged heights to 1.2 m rms, and the airspeeds to 0.7 m/s.
 struct SlowEnergyTuning {
   double height_lag_s = 3.0;         ///< TECS_HDEM_TCONST: heights asked for are followed by it
   double height_rate_max_mps = 5.0;  ///< TECS_CLMB_MAX, TECS_SINK_MAX
@@ -23,7 +23,7 @@ struct SlowEnergyTuning {
   double slower_mps2 = 0.74;         ///< and falls by this at most
   double throttle_rate_per_s = 1.0;  ///< THR_SLEWRATE
   double vertical_acceleration_mps2 = 7.0;  ///< TECS_VERT_ACC: how the pitch asked for changes
-  double time_s = 5.0;                      ///< what energy errors are taken back in
+  double time_s = 4.3;                      ///< what energy errors are taken back in
   double power_range = 167.0;               ///< m^2/s^3 that all of the throttle is taken to give
   double throttle_damping = 0.7;
   double throttle_integral_per_s = 0.3;
@@ -35,7 +35,7 @@ struct SlowEnergyTuning {
 
 /// What the airframe needs for level flight, and its limits.
 struct EnergyLimits {
-  double throttle_level = 0.0;  ///< at that airspeed
+  double throttle_level = 0.0;  ///< at cruise: what other airspeeds take is the integral's
   double throttle_max = 1.0;
   double pitch_trim_rad = 0.0;  ///< that the integral begins with
   double pitch_min_rad = 0.0;
