@@ -145,7 +145,7 @@ void PlaneVehicle::tell() {
   report_.flying = status.flying;
   report_.rolling = autopilot_.armed() && !status.flying && mode != PlaneMode::mission &&
                     report_.estimate.groundspeed_mps() > kRollsFrom_mps;
-  report_.mode_armable = autopilot_.mode_armable();
+  report_.mode_refusal = autopilot_.mode_refusal();
   report_.mode = static_cast<std::uint32_t>(mode);
   report_.base_mode =
       mode == PlaneMode::manual || mode == PlaneMode::fbwa ? kPilotBase : kGuidedBase;

@@ -45,11 +45,11 @@ TEST(SmallPlane, FliesItsSpeedsAtItsHeight) {
   }
 }
 
-/// Held at a bank for as long; what it turns in the last half of that, in shares of g tan(bank) /
-/// V.
-double turn_share(Companion& c, double bank_rad, double seconds) {
-  const auto hold = [&](double for_s) {
-    for (double t = 0.0; t < for_s; t += 0.1) {
+/// Held at a bank for so many tenths of a second; what it turns in the five seconds after, in
+/// shares of g tan(bank) / V.
+double turn_share(Companion& c, double bank_rad, int tenths) {
+  const auto hold = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
       c.hold_roll(bank_rad, 0.0, kRollAlone);
       c.run(0.1);
     }
@@ -58,14 +58,14 @@ double turn_share(Companion& c, double bank_rad, double seconds) {
     const auto p = c.last<mavlink::GlobalPositionInt>().value();
     return std::atan2(p.vy, p.vx);
   };
-  hold(seconds);
+  hold(tenths);
   double turned = 0.0;
   double bank = 0.0;
   double airspeed = 0.0;
   double before = course();
   constexpr int kSamples = 50;
   for (int i = 0; i < kSamples; ++i) {
-    hold(0.1);
+    hold(1);
     turned += wrap_pi(course() - before);
     before = course();
     bank += std::tan(static_cast<double>(c.last<mavlink::Attitude>()->roll)) / kSamples;
@@ -79,7 +79,7 @@ TEST(SmallPlane, SlipsInTurnsAsArduPlaneDoes) {
   for (const double bank_deg : {-40.0, 30.0, 45.0}) {
     Companion c{small_plane()};
     watch(c);
-    EXPECT_NEAR(turn_share(c, radians(bank_deg), 6.0), 0.73, 0.03) << bank_deg;
+    EXPECT_NEAR(turn_share(c, radians(bank_deg), 60), 0.73, 0.03) << bank_deg;
   }
 }
 
@@ -93,11 +93,11 @@ struct SpeedStep {
 SpeedStep step_of(float from_mps, float to_mps) {
   Companion c{small_plane()};
   watch(c);
-  const auto straight = [&](double seconds, const auto& look) {
-    for (double t = 0.0; t < seconds; t += 0.1) {
+  const auto straight = [&](int tenths, const auto& look) {
+    for (int i = 0; i < tenths; ++i) {
       c.hold_roll(0.0, 0.0, kRollAlone);
       c.run(0.1);
-      look(t);
+      look(0.1 * i);
     }
   };
   const auto ask = [&](float mps) {
@@ -105,11 +105,11 @@ SpeedStep step_of(float from_mps, float to_mps) {
               mavlink::CommandResult::accepted);
   };
   ask(from_mps);
-  straight(40.0, [](double) {});
+  straight(400, [](double) {});
   ask(to_mps);
   SpeedStep step;
   const float middle = (from_mps + to_mps) / 2.0F;
-  straight(25.0, [&](double t) {
+  straight(250, [&](double t) {
     const auto hud = c.last<mavlink::VfrHud>().value();
     const bool passed = to_mps > from_mps ? hud.airspeed > middle : hud.airspeed < middle;
     if (passed && step.half_way_s == 0.0) step.half_way_s = t;

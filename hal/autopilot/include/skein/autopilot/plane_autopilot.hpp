@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "skein/autopilot/command.hpp"
 #include "skein/autopilot/fixed_wing_loops.hpp"
@@ -95,8 +96,9 @@ class PlaneAutopilot {
 
   CommandResult select_mode(PlaneMode mode);
   CommandResult arm();
-  /// Not in RTL, where the failsafe puts an aircraft on the ground, too.
-  [[nodiscard]] bool mode_armable() const { return mode() != PlaneMode::rtl; }
+  /// Why it would not arm in its mode: not in RTL, where the failsafe puts an aircraft on the
+  /// ground, too.
+  [[nodiscard]] std::optional<std::string_view> mode_refusal() const;
   CommandResult disarm(bool force);
 
   CommandResult reposition(const Reposition& target);
