@@ -13,6 +13,34 @@ double within(double value, double limit) { return std::clamp(value, -limit, lim
 
 }  // namespace
 
+FixedWingTuning froude_scaled(const FixedWingTuning& tuning, double scale) {
+  SKEIN_ASSERT(scale > 0.0);
+  const double root = std::sqrt(scale);
+  FixedWingTuning t = tuning;
+  for (double* const speed : {&t.airspeed_min_mps, &t.airspeed_cruise_mps, &t.airspeed_max_mps,
+                              &t.reference_airspeed_mps, &t.climb_max_mps, &t.sink_max_mps}) {
+    *speed *= root;
+  }
+  for (double* const time :
+       {&t.roll.feedforward_s, &t.roll.proportional_s, &t.pitch.feedforward_s,
+        &t.pitch.proportional_s, &t.yaw_gain_s, &t.height_time_s, &t.airspeed_time_s}) {
+    *time *= root;
+  }
+  // Per time, per speed, or per specific power (a speed times an acceleration).
+  for (double* const rate :
+       {&t.roll_gain_per_s, &t.pitch_gain_per_s, &t.roll_rate_max_radps, &t.pitch_rate_max_radps,
+        &t.sideslip_gain_s_per_m, &t.throttle_per_mps, &t.throttle_per_power, &t.power_gain,
+        &t.balance_integral_per_s, &t.heading_gain_per_s}) {
+    *rate /= root;
+  }
+  t.power_integral_per_s /= scale;
+  return t;
+}
+
+FixedWingLoops::FixedWingLoops(const FixedWingTuning& tuning) : tuning_{tuning} {
+  if (tuning_.slow_energy) energy_loop_.emplace(*tuning_.slow_energy);
+}
+
 double FixedWingLoops::bank_for(double lateral_mps2) const {
   return within(std::atan(lateral_mps2 / kGravity_mps2), tuning_.roll_max_rad);
 }
@@ -25,13 +53,28 @@ SurfaceCommand FixedWingLoops::fly(const Estimate& estimate, const FlightDemand&
 
 SurfaceCommand FixedWingLoops::hold_roll(const Estimate& estimate, double roll_rad, double height_m,
                                          double airspeed_mps, double seconds) {
-  const PitchAndThrottle wanted = energy(estimate, height_m, airspeed_mps, seconds);
-  return hold_attitude(estimate, roll_rad, wanted.pitch_rad, wanted.throttle, seconds);
+  const PitchAndThrottle wanted = energy_loop_
+                                      ? slow_energy(estimate, height_m, airspeed_mps, seconds)
+                                      : energy(estimate, height_m, airspeed_mps, seconds);
+  return attitude(estimate, roll_rad, wanted.pitch_rad, wanted.throttle, seconds);
 }
 
-FixedWingLoops::PitchAndThrottle FixedWingLoops::energy(const Estimate& estimate, double height_m,
-                                                        double airspeed_wanted_mps,
-                                                        double seconds) {
+PitchAndThrottle FixedWingLoops::slow_energy(const Estimate& estimate, double height_m,
+                                             double airspeed_mps, double seconds) {
+  const FixedWingTuning& t = tuning_;
+  const double target = std::clamp(airspeed_mps, t.airspeed_min_mps, t.airspeed_max_mps);
+  return energy_loop_->step(estimate, height_m, target,
+                            {.throttle_level = t.throttle_level,
+                             .throttle_max = t.throttle_max,
+                             .pitch_trim_rad = t.alpha_zero_lift_rad + t.alpha_per_load_rad,
+                             .pitch_min_rad = t.pitch_min_rad,
+                             .pitch_max_rad = t.pitch_max_rad,
+                             .airspeed_least_mps = 0.5 * t.airspeed_min_mps},
+                            seconds);
+}
+
+PitchAndThrottle FixedWingLoops::energy(const Estimate& estimate, double height_m,
+                                        double airspeed_wanted_mps, double seconds) {
   SKEIN_ASSERT(seconds > 0.0);
   const FixedWingTuning& t = tuning_;
   const double airspeed = std::max(estimate.airspeed_mps, 0.5 * t.airspeed_min_mps);
@@ -103,6 +146,13 @@ double FixedWingLoops::surface(const RateGains& gains, double wanted, double rat
 
 SurfaceCommand FixedWingLoops::hold_attitude(const Estimate& estimate, double roll_rad,
                                              double pitch_rad, double throttle, double seconds) {
+  // Height and airspeed are another's for now: the loop begins anew with what they are then.
+  if (tuning_.slow_energy) energy_loop_.emplace(*tuning_.slow_energy);
+  return attitude(estimate, roll_rad, pitch_rad, throttle, seconds);
+}
+
+SurfaceCommand FixedWingLoops::attitude(const Estimate& estimate, double roll_rad, double pitch_rad,
+                                        double throttle, double seconds) {
   SKEIN_ASSERT(seconds > 0.0);
   const FixedWingTuning& t = tuning_;
   roll_demand_ = within(roll_rad, t.roll_max_rad);
@@ -119,11 +169,12 @@ SurfaceCommand FixedWingLoops::hold_attitude(const Estimate& estimate, double ro
       turn * std::tan(bank);
   const double yaw_rate = turn - t.sideslip_gain_s_per_m * estimate.specific_force_mps2.y();
   const double slower = t.reference_airspeed_mps / airspeed;
+  const double aileron =
+      surface(t.roll, roll_rate, estimate.rates_radps.x(), airspeed, roll_integral_, seconds);
   return {
       .elevator_rad = -surface(t.pitch, pitch_rate, estimate.rates_radps.y(), airspeed,
                                pitch_integral_, seconds),
-      .aileron_rad =
-          surface(t.roll, roll_rate, estimate.rates_radps.x(), airspeed, roll_integral_, seconds),
+      .aileron_rad = aileron,
       .rudder_rad = within(slower * slower * t.yaw_gain_s * (estimate.rates_radps.z() - yaw_rate),
                            t.surface_max_rad),
       .throttle = std::clamp(throttle, 0.0, t.throttle_max),

@@ -69,10 +69,16 @@ CommandResult PlaneAutopilot::select_mode(PlaneMode mode) {
   return CommandResult::failed;
 }
 
+std::optional<std::string_view> PlaneAutopilot::mode_refusal() const {
+  if (mode() == PlaneMode::rtl) return kRtlNotArmable;
+  const bool landing = mode() == PlaneMode::mission && item_ < mission_.size() &&
+                       mission_[item_].kind == MissionItem::Kind::land;
+  return landing ? std::optional{kLandingSequence} : std::nullopt;
+}
+
 CommandResult PlaneAutopilot::arm() {
   if (armed_) return CommandResult::accepted;
-  const auto refusal =
-      mode_armable() ? arming_refusal(health_) : std::optional<std::string_view>{kRtlNotArmable};
+  const auto refusal = mode_refusal() ? mode_refusal() : arming_refusal(health_);
   if (refusal) {
     say(Severity::critical, "Arm: " + std::string{*refusal});
     return CommandResult::failed;

@@ -146,6 +146,7 @@ TEST(PlaneAutopilot, FliesAMissionAndLands) {
       },
       150.0));
   EXPECT_TRUE(plane.said("Landed"));
+  EXPECT_EQ(plane.autopilot().mode_refusal(), kLandingSequence);
   EXPECT_TRUE(plane.flight().plane().on_ground());
   EXPECT_LT(hardest, 1.5);
   EXPECT_NEAR(plane.flight().plane().state().position_m.y(), 0.0, 15.0);

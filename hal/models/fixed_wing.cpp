@@ -144,6 +144,18 @@ FixedWingParams fast_fixed_wing() {
   return p;
 }
 
+FixedWingParams small_fixed_wing() {
+  FixedWingParams p = froude_scaled(fast_fixed_wing(), 0.25);
+  p.propulsion.volts_max *= 1.3;
+  p.aero.cd_parasitic *= 1.9;
+  p.aero.cy_aileron = 0.0;
+  p.aero.cn_aileron = 0.0;
+  p.aero.cn_beta = 0.03;
+  p.aero.cn_r = -0.163;
+  p.aero.cy_beta = -1.4;
+  return p;
+}
+
 AirData air_data(const RigidBodyState& state, const Vec3& wind_ned_mps) {
   const Vec3 air = state.velocity_mps - state.attitude.conjugate() * wind_ned_mps;
   const double speed = air.norm();

@@ -286,6 +286,16 @@ TEST(FastFixedWing, FliesTheSpeedsAndTurnsOfTheMissions) {
   EXPECT_TRUE(trim(params, {.airspeed_mps = 50.0, .climb_angle_rad = 0.1}).ok());
 }
 
+TEST(SmallFixedWing, FliesTheSpeedsAndTurnsOfSmallMissions) {
+  const FixedWingParams params = small_fixed_wing();
+  EXPECT_NEAR(params.mass.mass_kg(), 1.375, 1e-9);
+  for (const double airspeed : {15.5, 20.0, 25.0, 30.0, 34.0}) {
+    const Result<Trim> level = trim(params, {.airspeed_mps = airspeed});
+    EXPECT_TRUE(level.ok()) << level.error().message;
+  }
+  EXPECT_TRUE(trim(params, {.airspeed_mps = 25.0, .turn_rate_radps = 25.0 / 66}).ok());
+}
+
 TEST(FixedWing, LiftStallsIntoAFlatPlate) {
   const AerodynamicParams& aero = aerosonde().aero;
   EXPECT_NEAR(lift_coefficient(aero, 0.1), 0.23 + 0.561, 1e-6);

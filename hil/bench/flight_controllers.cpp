@@ -17,9 +17,6 @@ namespace {
 constexpr std::uint64_t kBuses = 256;
 /// A flight controller speaks ten times a second and more.
 constexpr auto kListen = std::chrono::milliseconds{300};
-/// skein-fc takes the wind at 6 m that makes the gusts; their deviation in flight is a tenth of it.
-constexpr double kGustsOfDeviation = 10.0;
-constexpr double kGustsMax_mps = 25.0;
 
 }  // namespace
 
@@ -80,7 +77,8 @@ std::vector<std::string> flight_controller_command(
           "--turn-radius", number(spec.turn_radius_m),
           "--wind-speed", number(wind.speed_mps),
           "--wind-from", number(compass_deg_from_heading(wind.from_rad)),
-          "--gusts", number(std::min(kGustsOfDeviation * wind.gust_mps, kGustsMax_mps)),
+          // The air of a user's own ArduPilot in its simulator, so that flights with either compare.
+          "--turbulence", number(wind.gust_mps),
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
   if (truth_port) command.insert(command.end(), {"--truth", std::to_string(*truth_port)});

@@ -47,7 +47,7 @@ TEST(FlightControllers, AreStartedWhereTheVehicleIs) {
   EXPECT_EQ(after("--heading").front(), "50");
   EXPECT_EQ(after("--hold-until").front(), "1795000000123456789");
   EXPECT_EQ(after("--wind-from").front(), "240");
-  EXPECT_EQ(after("--gusts").front(), "5");
+  EXPECT_EQ(after("--turbulence").front(), "0.5");
   EXPECT_EQ(after("--truth").front(), "5001");
 }
 

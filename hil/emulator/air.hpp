@@ -24,6 +24,9 @@ class Air {
   Vec3 steady_;
   models::DrydenGusts gusts_;
   bool gusty_;
+  double short_deviation_mps_;
+  Random random_;  ///< of the short gusts
+  Vec3 short_mps_ = Vec3::Zero();
   Vec3 wind_;
   Vec3 estimated_;
 };

@@ -138,7 +138,8 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed of a plane, m/s")
       ->capture_default_str();
   app.add_option("--turn-radius", c.turn_radius_m,
-                 "m, of a plane at cruise: the bank limit is that of this circle and 5 degrees")
+                 "m, of a plane at cruise: the bank limit is that of this circle and 5 "
+                 "degrees,\n10 of a small plane")
       ->capture_default_str();
   app.add_option("--battery", c.battery_mah,
                  "mAh of a full battery: it gives 0.5 A, and 60 A more at full throttle")
@@ -151,6 +152,9 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--gusts", c.gusts_wind_mps,
                  "Dryden gusts as a wind of this speed at 6 m makes them, m/s; their standard\n"
                  "deviation at 300 m is a tenth of it")
+      ->capture_default_str();
+  app.add_option("--turbulence", c.turbulence_mps,
+                 "Short gusts as ArduPilot's simulator makes them with this SIM_WIND_TURB, m/s")
       ->capture_default_str();
   app.add_option("--seed", c.seed, "Of gusts and sensor noise")->capture_default_str();
   app.add_flag("--no-noise", t.no_noise, "Sensors without noise");

@@ -240,6 +240,8 @@ void CopterVehicle::on_position_target(const mavlink::SetPositionTargetLocalNed&
 void CopterVehicle::on_position_target(const mavlink::SetPositionTargetGlobalInt& target,
                                        Instant now) {
   autopilot::PositionTarget wanted = motion_of(target);
+  // ArduCopter 4.6 heeds an acceleration with a local position only.
+  wanted.acceleration_mps2.reset();
   if ((target.type_mask & kIgnorePosition) == 0) {
     const auto down =
         down_of(static_cast<double>(target.alt), target.coordinate_frame, earth_, report_.home_m);

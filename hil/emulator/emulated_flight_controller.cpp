@@ -100,7 +100,7 @@ struct EmulatedFlightController::State {
 
   [[nodiscard]] std::optional<std::string> refusal() const {
     if (const auto reason = autopilot::arming_refusal(health)) return std::string{*reason};
-    if (!vehicle->report().mode_armable) return std::string{autopilot::kRtlNotArmable};
+    if (const auto& why = vehicle->report().mode_refusal) return std::string{*why};
     if (!duplicate.empty()) return duplicate;
     if (!reason_given.empty()) return reason_given;
     for (const dronecan::RemoteNode& other : link->node.others()) {

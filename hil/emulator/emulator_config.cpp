@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plane_airframe.hpp"
 #include "skein/autopilot/fixed_wing_loops.hpp"
 #include "skein/autopilot/hexarotor_loops.hpp"
 #include "skein/autopilot/modes.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
 
 namespace skein::hil {
 namespace {
-
-constexpr double kBankReserve_rad = radians(5.0);
 
 double bank_of_circle(const EmulatorConfig& config) {
   return std::atan(config.airspeed_mps * config.airspeed_mps /
@@ -22,15 +22,15 @@ double bank_of_circle(const EmulatorConfig& config) {
 }
 
 Result<void> check_plane(const EmulatorConfig& c) {
-  const autopilot::FixedWingTuning airframe;
-  if (!(c.airspeed_min_mps >= airframe.airspeed_min_mps && c.airspeed_min_mps <= c.airspeed_mps &&
-        c.airspeed_mps <= c.airspeed_max_mps && c.airspeed_max_mps <= airframe.airspeed_max_mps)) {
+  const PlaneAirframe* const found = airframe_for(c);
+  if (found == nullptr || !(c.airspeed_min_mps <= c.airspeed_mps) ||
+      !(c.airspeed_mps <= c.airspeed_max_mps)) {
     return Error{fmt::format(
-        "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {:g} to "
-        "{:g} m/s of the airframe",
-        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe.airspeed_min_mps,
-        airframe.airspeed_max_mps)};
+        "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {} m/s "
+        "of an airframe",
+        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe_speeds())};
   }
+  const autopilot::FixedWingTuning& airframe = found->tuning;
   if (!(c.turn_radius_m > 0.0) || bank_of_circle(c) > airframe.roll_max_rad) {
     const double least =
         c.airspeed_mps * c.airspeed_mps / (kGravity_mps2 * std::tan(airframe.roll_max_rad));
@@ -67,8 +67,10 @@ std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name
 }
 
 double bank_limit_rad(const EmulatorConfig& config) {
-  const autopilot::FixedWingTuning airframe;
-  return std::min(bank_of_circle(config) + kBankReserve_rad, airframe.roll_max_rad);
+  const PlaneAirframe* const airframe = airframe_for(config);
+  SKEIN_ASSERT(airframe != nullptr);
+  return std::min(bank_of_circle(config) + airframe->bank_reserve_rad,
+                  airframe->tuning.roll_max_rad);
 }
 
 Result<void> check(const EmulatorConfig& c) {
@@ -99,6 +101,9 @@ Result<void> check(const EmulatorConfig& c) {
       !(c.gusts_wind_mps >= 0.0 && c.gusts_wind_mps <= 25.0)) {
     return Error{fmt::format("wind {:g} m/s, gusts of {:g} m/s: 0 to 25 can be flown",
                              c.wind_mps.norm(), c.gusts_wind_mps)};
+  }
+  if (!(c.turbulence_mps >= 0.0 && c.turbulence_mps <= 20.0)) {
+    return Error{fmt::format("turbulence of {:g} m/s: 0 to 20 can be flown", c.turbulence_mps)};
   }
   if (auto origin = MissionOrigin::make(c.origin); !origin) return origin.error();
   if (c.airborne && !mode_named(c.airframe, c.mode)) {

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "plane_vehicle.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "skein/base/angles.hpp"
+#include "skein/base/assert.hpp"
 #include "skein/base/atmosphere.hpp"
 #include "skein/base/frames.hpp"
 
@@ -16,8 +19,6 @@ using autopilot::PlaneMode;
 using mavlink::CommandResult;
 
 constexpr Duration kModelStep = std::chrono::microseconds{2500};
-/// Of the wheels under the centre of mass, when parked.
-constexpr double kParkedHeight_m = 0.46;
 /// Circles that it flies by itself are wider than its tightest.
 constexpr double kLoiterRadii = 1.1;
 
@@ -29,17 +30,21 @@ constexpr float kHeadingAccelerationLeast_mps2 = 0.05F;
 /// 3 m/s were asked for.
 constexpr double kAltitudeRateShare = 1.0 / 30.0;
 
+/// ArduPlane 4.6.3 was in the air (EXTENDED_SYS_STATE) on its wheels, at 5.3 m/s.
+constexpr double kRollsFrom_mps = 5.0;
+
 // HEARTBEAT, base_mode, as ArduPlane sends it.
 constexpr std::uint8_t kPilotBase = mavlink::mode_custom_enabled | mavlink::mode_stabilize_enabled |
                                     mavlink::mode_manual_input_enabled;
 constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
 
-models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& trim) {
-  const models::FixedWingParams params = models::fast_fixed_wing();
+models::FixedWing at_start(const EmulatorConfig& config, const PlaneAirframe& airframe,
+                           const models::Trim& trim) {
+  const models::FixedWingParams& params = airframe.model;
   const double yaw = yaw_from_heading(config.start.heading_rad);
   models::RigidBodyState state;
   if (!config.airborne) {
-    state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, kParkedHeight_m});
+    state.position_m = ned_from_enu({config.start.x_m, config.start.y_m, airframe.parked_height_m});
     state.attitude = attitude_from({.yaw_rad = yaw});
     return {params, state, {}};
   }
@@ -53,8 +58,11 @@ models::FixedWing at_start(const EmulatorConfig& config, const models::Trim& tri
   return {params, state, trim.input};
 }
 
-autopilot::PlaneParams params_of(const EmulatorConfig& config) {
+autopilot::PlaneParams params_of(const EmulatorConfig& config, const PlaneAirframe& airframe) {
   autopilot::PlaneParams p;
+  p.tuning = airframe.tuning;
+  p.rotate_airspeed_mps = airframe.rotate_share * config.airspeed_min_mps;
+  p.flare_height_m = airframe.flare_height_m;
   // Its parameters are equivalent airspeeds, the loops of the model go by true ones.
   const double true_per_equivalent =
       true_per_equivalent_airspeed(config.origin.height_m + config.height_m);
@@ -73,16 +81,19 @@ autopilot::PlaneParams params_of(const EmulatorConfig& config) {
 
 Result<std::unique_ptr<Vehicle>> PlaneVehicle::make(const EmulatorConfig& config,
                                                     const Earth& earth, Instant now) {
-  const auto trim = models::trim(models::fast_fixed_wing(), {.airspeed_mps = config.airspeed_mps});
+  const PlaneAirframe* const airframe = airframe_for(config);
+  SKEIN_ASSERT(airframe != nullptr);
+  const auto trim = models::trim(airframe->model, {.airspeed_mps = config.airspeed_mps});
   if (!trim) return trim.error();
-  return std::unique_ptr<Vehicle>{std::make_unique<PlaneVehicle>(config, earth, *trim, now)};
+  return std::unique_ptr<Vehicle>{
+      std::make_unique<PlaneVehicle>(config, *airframe, earth, *trim, now)};
 }
 
-PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const Earth& earth,
-                           const models::Trim& trim, Instant now)
-    : AutopilotVehicle{config, earth, params_of(config), now},
-      aircraft_{at_start(config, trim)},
-      params_{params_of(config)},
+PlaneVehicle::PlaneVehicle(const EmulatorConfig& config, const PlaneAirframe& airframe,
+                           const Earth& earth, const models::Trim& trim, Instant now)
+    : AutopilotVehicle{config, earth, params_of(config, airframe), now},
+      aircraft_{at_start(config, airframe, trim)},
+      params_{params_of(config, airframe)},
       airspeed_min_mps_{config.airspeed_min_mps},
       airspeed_max_mps_{config.airspeed_max_mps} {
   sense(aircraft_);
@@ -132,7 +143,9 @@ void PlaneVehicle::tell() {
   report_.throttle = surfaces_.throttle;
   report_.armed = autopilot_.armed();
   report_.flying = status.flying;
-  report_.mode_armable = autopilot_.mode_armable();
+  report_.rolling = autopilot_.armed() && !status.flying && mode != PlaneMode::mission &&
+                    report_.estimate.groundspeed_mps() > kRollsFrom_mps;
+  report_.mode_refusal = autopilot_.mode_refusal();
   report_.mode = static_cast<std::uint32_t>(mode);
   report_.base_mode =
       mode == PlaneMode::manual || mode == PlaneMode::fbwa ? kPilotBase : kGuidedBase;
@@ -218,7 +231,13 @@ CommandResult PlaneVehicle::change_speed(const mavlink::CommandInt& c) {
   if (c.param1 != kAirspeed) return CommandResult::failed;
   const auto wanted = true_airspeed(static_cast<double>(c.param2));
   if (!wanted) return CommandResult::failed;
-  return on_wire(autopilot_.change_speed(*wanted));
+  const auto result = autopilot_.change_speed(*wanted);
+  if (result == autopilot::CommandResult::accepted) {
+    // ArduPlane says so each time.
+    autopilot_.say(autopilot::Severity::info,
+                   fmt::format("Set airspeed {:.0f} m/s", static_cast<double>(c.param2)));
+  }
+  return on_wire(result);
 }
 
 std::optional<double> PlaneVehicle::true_airspeed(double equivalent_mps) const {

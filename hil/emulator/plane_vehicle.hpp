@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "autopilot_vehicle.hpp"
+#include "plane_airframe.hpp"
 #include "skein/autopilot/plane_autopilot.hpp"
 #include "skein/base/result.hpp"
 #include "skein/hil/emulator_config.hpp"
@@ -12,14 +13,14 @@
 
 namespace skein::hil {
 
-/// models::fast_fixed_wing() under autopilot::PlaneAutopilot, answering as ArduPlane 4.6 does.
+/// An airframe of plane_airframe under autopilot::PlaneAutopilot, answering as ArduPlane 4.6 does.
 class PlaneVehicle final : public AutopilotVehicle<autopilot::PlaneAutopilot> {
  public:
   /// Precondition: check(config). Fails where the aircraft cannot fly level at its cruise airspeed.
   [[nodiscard]] static Result<std::unique_ptr<Vehicle>> make(const EmulatorConfig& config,
                                                              const Earth& earth, Instant now);
-  PlaneVehicle(const EmulatorConfig& config, const Earth& earth, const models::Trim& trim,
-               Instant now);
+  PlaneVehicle(const EmulatorConfig& config, const PlaneAirframe& airframe, const Earth& earth,
+               const models::Trim& trim, Instant now);
 
   [[nodiscard]] mavlink::VehicleType type() const override {
     return mavlink::VehicleType::fixed_wing;

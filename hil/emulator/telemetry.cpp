@@ -239,8 +239,8 @@ HomePosition home_position(const Situation& s) {
 }
 
 ExtendedSysState extended_state(const Situation& s) {
-  return {.landed_state = static_cast<std::uint8_t>(s.flight.flying ? LandedState::in_air
-                                                                    : LandedState::on_ground)};
+  return {.landed_state = static_cast<std::uint8_t>(
+              s.flight.flying || s.flight.rolling ? LandedState::in_air : LandedState::on_ground)};
 }
 
 struct Producer {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "earth.hpp"
 #include "skein/autopilot/command.hpp"
@@ -23,12 +24,13 @@ struct FlightReport {
   double throttle = 0.0;  ///< [0, 1]
   bool armed = false;
   bool flying = false;
-  bool mode_armable = true;
-  std::uint32_t mode = 0;          ///< custom_mode
-  std::uint8_t base_mode = 0;      ///< without its bit for armed
-  Vec3 home_m = Vec3::Zero();      ///< where it returns to
-  Vec3 goal_m = Vec3::Zero();      ///< what it flies to
-  double goal_airspeed_mps = 0.0;  ///< asked of the loops
+  bool rolling = false;  ///< a plane on its take-off run: ArduPlane tells that it is in the air
+  std::optional<std::string_view> mode_refusal;  ///< why it would not arm in its mode
+  std::uint32_t mode = 0;                        ///< custom_mode
+  std::uint8_t base_mode = 0;                    ///< without its bit for armed
+  Vec3 home_m = Vec3::Zero();                    ///< where it returns to
+  Vec3 goal_m = Vec3::Zero();                    ///< what it flies to
+  double goal_airspeed_mps = 0.0;                ///< asked of the loops
   double roll_demand_rad = 0.0;
   double pitch_demand_rad = 0.0;
 };

@@ -40,6 +40,8 @@ struct Health {
 [[nodiscard]] std::optional<std::string_view> arming_refusal(const Health& health);
 /// And of ArduPlane in RTL.
 inline constexpr std::string_view kRtlNotArmable = "RTL mode not armable";
+/// A plane that has landed by its mission, until its mode changes.
+inline constexpr std::string_view kLandingSequence = "In landing sequence";
 
 /// Counts the silence of the companion (the ground-station failsafe of ArduPilot: on where it is
 /// enabled and the companion has been heard once). Fires once for each silence.

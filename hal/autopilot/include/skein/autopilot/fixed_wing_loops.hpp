@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
+#include "skein/autopilot/energy_loop.hpp"
 #include "skein/autopilot/estimate.hpp"
 
 namespace skein::autopilot {
@@ -60,8 +63,15 @@ struct FixedWingTuning {
   double balance_gain = 0.3;             ///< climb angle per climb angle missing
   double balance_integral_per_s = 0.3;   ///< and per second
 
+  /// In place of the seven above: height and airspeed as ArduPlane holds them.
+  std::optional<SlowEnergyTuning> slow_energy;
+
   double heading_gain_per_s = 1.2;  ///< course or heading error to turn rate
 };
+
+/// The tuning for an airframe that is `scale` times as long (models::froude_scaled): speeds and
+/// times go by the root, angles and accelerations stay. Precondition: scale > 0.
+[[nodiscard]] FixedWingTuning froude_scaled(const FixedWingTuning& tuning, double scale);
 
 /// What guidance asks for.
 struct FlightDemand {
@@ -75,7 +85,7 @@ struct FlightDemand {
 /// to surfaces with gains that go down with dynamic pressure. Pure: the time step is an argument.
 class FixedWingLoops {
  public:
-  explicit FixedWingLoops(const FixedWingTuning& tuning) : tuning_{tuning} {}
+  explicit FixedWingLoops(const FixedWingTuning& tuning);
 
   /// Forgets the integrals, for a start on the ground or a change of hands.
   void reset() { *this = FixedWingLoops{tuning_}; }
@@ -98,10 +108,10 @@ class FixedWingLoops {
   [[nodiscard]] const FixedWingTuning& tuning() const { return tuning_; }
 
  private:
-  struct PitchAndThrottle {
-    double pitch_rad = 0.0;
-    double throttle = 0.0;
-  };
+  SurfaceCommand attitude(const Estimate& estimate, double roll_rad, double pitch_rad,
+                          double throttle, double seconds);
+  PitchAndThrottle slow_energy(const Estimate& estimate, double height_m, double airspeed_mps,
+                               double seconds);
   PitchAndThrottle energy(const Estimate& estimate, double height_m, double airspeed_mps,
                           double seconds);
   double surface(const RateGains& gains, double wanted, double rate, double airspeed_mps,
@@ -112,6 +122,7 @@ class FixedWingLoops {
   double pitch_integral_ = 0.0;
   double throttle_integral_ = 0.0;
   double balance_integral_ = 0.0;
+  std::optional<EnergyLoop> energy_loop_;
   double roll_demand_ = 0.0;
   double pitch_demand_ = 0.0;
 };

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "skein/autopilot/command.hpp"
 #include "skein/autopilot/fixed_wing_loops.hpp"
@@ -95,8 +96,9 @@ class PlaneAutopilot {
 
   CommandResult select_mode(PlaneMode mode);
   CommandResult arm();
-  /// Not in RTL, where the failsafe puts an aircraft on the ground, too.
-  [[nodiscard]] bool mode_armable() const { return mode() != PlaneMode::rtl; }
+  /// Why it would not arm in its mode: not in RTL, where the failsafe puts an aircraft on the
+  /// ground, too.
+  [[nodiscard]] std::optional<std::string_view> mode_refusal() const;
   CommandResult disarm(bool force);
 
   CommandResult reposition(const Reposition& target);
@@ -126,6 +128,8 @@ class PlaneAutopilot {
   [[nodiscard]] bool armed() const { return armed_; }
   [[nodiscard]] const PlaneStatus& status() const { return status_; }
   [[nodiscard]] const PlaneParams& params() const { return params_; }
+  /// For poll_notice(), too.
+  void say(Severity severity, std::string text);
   [[nodiscard]] std::optional<Notice> poll_notice() { return notices_.pop(); }
 
  private:
@@ -141,7 +145,6 @@ class PlaneAutopilot {
   enum class Landing : std::uint8_t { approach, flare, rollout };
 
   [[nodiscard]] ModeFacts facts() const;
-  void say(Severity severity, std::string text);
   /// Fires the event and prepares the new mode. False where the table has no way.
   bool change(PlaneEvent event);
   void enter();

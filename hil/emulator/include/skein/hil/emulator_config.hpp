@@ -49,6 +49,8 @@ struct EmulatorConfig {
 
   Vec2 wind_mps{0.0, 0.0};      ///< where the air moves to, mission frame
   double gusts_wind_mps = 0.0;  ///< Dryden gusts of a wind of this speed at 6 m; 0 for none
+  /// Short gusts as ArduPilot's simulator makes them with SIM_WIND_TURB at this, m/s.
+  double turbulence_mps = 0.0;
   bool noise = true;            ///< of the sensors
   std::uint64_t seed = 1;       ///< of gusts and noise
   std::int64_t unix_us = 0;     ///< system time at Instant{}: what its satellites tell
@@ -57,7 +59,8 @@ struct EmulatorConfig {
 /// ArduPilot's number of a mode, or nothing for one that is not emulated.
 [[nodiscard]] std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name);
 
-/// Of a plane: the bank that flies the circle of `turn_radius_m` at cruise, and five degrees.
+/// Of a plane: the bank that flies the circle of `turn_radius_m` at cruise, and five degrees, ten
+/// where it slips. Precondition: check(config).
 [[nodiscard]] double bank_limit_rad(const EmulatorConfig& config);
 
 /// Fails with one sentence for the first thing that cannot be.
