@@ -167,6 +167,9 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (timed.speed_mps != old.speed_mps || timed.has_wind() || old.has_wind()) {
     timed.start_time = at - (timed.time_at(before_m) - now);
   }
+  if (timed.has_wind() && pace && pace->on_time_at) {
+    timed.start_time += *pace->on_time_at - timed.time_at(timed.on_time_m);
+  }
   if (searching_) pass_waypoints(now);
   searching_ = false;
   homing_ = false;

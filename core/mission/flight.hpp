@@ -49,7 +49,8 @@ class Flight {
   /// if there were no wind; beyond it, where a wind is set, through the air.
   struct Pace {
     double speed_mps = 0.0;
-    double on_time_m = 0.0;  ///< along `next`
+    double on_time_m = 0.0;                  ///< along `next`
+    std::optional<Instant> on_time_at = {};  ///< then; without it as the mean speed has it
   };
   /// The present plan until `at`, then `next` (which starts at pose_at(at)), then `tail`; at
   /// cruise speed where no pace is given. False, and nothing changed, when that has too many

@@ -276,7 +276,8 @@ void TaskFlyer::commit_delivery(Instant now) {
   const double to_site_m = rest->length_m();
   run_out(*rest, timed.speed_mps);
   const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
-  if (flight.continue_with(at, *rest, tail, now, Flight::Pace{timed.speed_mps, to_site_m})) {
+  if (flight.continue_with(at, *rest, tail, now,
+                           Flight::Pace{timed.speed_mps, to_site_m, task_->assignment.time})) {
     task_->fire(TaskFlight::Event::committed);
   }
 }

@@ -104,16 +104,19 @@ double planned_airspeed(const TimedPath& plan, PlanPoses& poses, double distance
 }
 
 /// By how much the plan's airspeed rises until what is commanded now is flown: begun so much
-/// earlier, a change of it costs no way in the end. Not beyond where the plan is to be on time, nor
-/// into its hold, which is there for want of another plan.
+/// earlier, a change of it costs no way in the end. Beyond where the plan is to be on time it is
+/// taken to go straight on, as runs over a site do; and its hold, which is there for want of
+/// another plan, is not looked at.
 double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on_time_m,
                      const Vec2& wind_mps, double lead_s) {
   PlanPoses poses{plan, starts};
-  const double end_m = on_time_m < plan.on_time_m ? plan.on_time_m : starts.length_m();
-  const double lead_m = lead_s * plan.speed_at_distance(on_time_m);
-  const double soon_m = std::max(on_time_m, std::min(on_time_m + lead_m, end_m));
   const double now_mps = planned_airspeed(plan, poses, on_time_m, wind_mps);
-  return planned_airspeed(plan, poses, soon_m, wind_mps) - now_mps;
+  const double soon_m = on_time_m + lead_s * plan.speed_at_distance(on_time_m);
+  if (on_time_m < plan.on_time_m && soon_m > plan.on_time_m) {
+    return (plan.speed_mps * poses.at(plan.on_time_m).forward - wind_mps).norm() - now_mps;
+  }
+  const double seen_m = std::max(on_time_m, std::min(soon_m, starts.length_m()));
+  return planned_airspeed(plan, poses, seen_m, wind_mps) - now_mps;
 }
 
 }  // namespace
