@@ -267,11 +267,13 @@ void TaskFlyer::commit_delivery(Instant now) {
   Flight& flight = ownship_.flight();
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
+  double begin_m = timed.distance_at(at);
   // The flight's own times count with the wind, the plan's do not.
-  const TimedPath& flown = flight.plan().timed;
-  const double to_gate_m = flown.path.length_m() - flown.distance_at(at);
-  auto rest = timed.piece(std::clamp(task_->plan.gate_m - to_gate_m, 0.0, task_->plan.gate_m),
-                          timed.path.length_m());
+  if (const TimedPath& flown = flight.plan().timed; flown.has_wind()) {
+    const double to_gate_m = flown.path.length_m() - flown.distance_at(at);
+    begin_m = std::clamp(task_->plan.gate_m - to_gate_m, 0.0, task_->plan.gate_m);
+  }
+  auto rest = timed.piece(begin_m, timed.path.length_m());
   if (!rest) return;
   const double to_site_m = rest->length_m();
   run_out(*rest, timed.speed_mps);
