@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "told_at_once.hpp"
 
 namespace skein::mission {
@@ -23,6 +24,7 @@ constexpr int kRounds = 4;
 constexpr std::size_t kPlansMax = 1024;
 /// Two ways are one that come to the same places at the same times, to this.
 constexpr double kSamePlace_m = 5.0;
+constexpr double kSameHeading_rad = 0.05;
 
 Duration telling_takes(std::size_t vehicles) {
   return static_cast<std::int64_t>(vehicles / (kToldAtOnce + 1)) * kToldEvery;
@@ -31,7 +33,14 @@ Duration telling_takes(std::size_t vehicles) {
 bool same_way(const TimedPath& flies, const TimedPath& given) {
   const Instant end = given.end_time();
   const Instant begin = given.start_time;
-  const std::array<Instant, 4> when{begin, begin + (end - begin) / 2, end, end + kGatherFor};
+  // And then on the same orbit, whatever its times there.
+  const Pose2 ends = flies.path.end();
+  const Pose2 to_end = given.path.end();
+  if (flies.tail_curvature_per_m != given.tail_curvature_per_m ||
+      std::abs(wrap_pi(ends.heading_rad - to_end.heading_rad)) > kSameHeading_rad) {
+    return false;
+  }
+  const std::array<Instant, 3> when{begin, begin + (end - begin) / 2, end};
   return std::ranges::all_of(when, [&](Instant t) {
     return (flies.pose_at(t).position() - given.pose_at(t).position()).norm() <= kSamePlace_m;
   });

@@ -218,6 +218,10 @@ double Aircraft::battery_percent() const {
 void Aircraft::see_state(Instant now) {
   state_ = *body_->state(now);
   if (battery_) state_.battery_percent = static_cast<std::uint8_t>(battery_percent());
+  const bool is_of_coalition = !is_plane() && !what_.flies_formation;
+  if (is_of_coalition && plan() != nullptr && state_.z_m <= MultirotorBody::kAirborne_m) {
+    state_.phase = FlightPhase::disarmed;
+  }
 }
 
 bool Aircraft::control(Instant now) {

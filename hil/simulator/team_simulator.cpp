@@ -479,7 +479,7 @@ class Team {
     while (const auto guidance = v.node().poll_guidance()) {
       any = true;
       v.follow(*guidance);
-      tell_plan(v, now);
+      if (std::holds_alternative<mission::FlightPlan>(*guidance)) tell_plan(v, now);
     }
     while (const auto request = v.node().poll_planning_request()) {
       any = true;
@@ -585,6 +585,7 @@ class Team {
     end.barred = v.in_coalitions() && !v.takes_part();
     end.loads = v.loads_left();
     end.in_place = v.in_place();
+    end.landed = v.running() && v.activity() == mission::Activity::landed;
     if (v.flying()) {
       end.range_left_m = v.spec().range_m - v.state().distance_flown_m;
       end.position = v.state().position().horizontal();

@@ -127,6 +127,7 @@ struct VehicleEnd {
   std::uint8_t loads = 0;
   double range_left_m = 0.0;
   Vec2 position{0.0, 0.0};
+  bool landed = false;   ///< by the operator's order
   bool in_place = true;  ///< it has come to where its newest change of formation ends
 };
 
