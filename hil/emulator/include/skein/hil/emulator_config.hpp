@@ -30,12 +30,13 @@ struct EmulatorConfig {
   std::uint8_t system_id = 1;         ///< MAVLink
   std::uint8_t companion_system = 1;  ///< SYSID_MYGCS: whose heartbeat the failsafe waits for
   bool companion_failsafe = false;    ///< FS_GCS_ENABL and FS_LONG_ACTN; a companion needs them
+  bool airborne = false;              ///< starts in flight, armed, in `mode`; else on the ground
+  bool noise = true;                  ///< of the sensors
   std::vector<std::string> unknown_parameters;  ///< those that it says nothing of
 
   Wgs84 origin;                 ///< of the frame in which `start` is given
   Pose2 start;                  ///< mission frame
   double height_m = 0.0;        ///< above the origin, in flight
-  bool airborne = false;        ///< starts in flight, armed, in `mode`; else on the ground
   std::string mode = "GUIDED";  ///< at the start in flight, as ArduPilot names it
   /// In flight the aircraft stands still at its start until then.
   Instant hold_until{};
@@ -51,9 +52,8 @@ struct EmulatorConfig {
   double gusts_wind_mps = 0.0;  ///< Dryden gusts of a wind of this speed at 6 m; 0 for none
   /// Short gusts as ArduPilot's simulator makes them with SIM_WIND_TURB at this, m/s.
   double turbulence_mps = 0.0;
-  bool noise = true;            ///< of the sensors
-  std::uint64_t seed = 1;       ///< of gusts and noise
-  std::int64_t unix_us = 0;     ///< system time at Instant{}: what its satellites tell
+  std::uint64_t seed = 1;    ///< of gusts and noise
+  std::int64_t unix_us = 0;  ///< system time at Instant{}: what its satellites tell
 };
 
 /// ArduPilot's number of a mode, or nothing for one that is not emulated.
