@@ -85,8 +85,8 @@ bool has_sense(const ReturningVehicle& v) {
   if (v.flies) {
     const TimedPath& timed = *v.flies;
     return timed.tail_curvature_per_m != 0.0 && timed.speed_mps >= kSpeedMin_mps &&
-           timed.paces.empty() && timed.path.length_m() <= kFar_m && std::isfinite(v.height_m) &&
-           v.home.norm() <= kFar_m;
+           timed.paces.empty() && !timed.has_wind() && timed.path.length_m() <= kFar_m &&
+           std::isfinite(v.height_m) && v.home.norm() <= kFar_m;
   }
   const bool finite = std::isfinite(v.start.heading_rad) && std::isfinite(v.height_m) &&
                       std::isfinite(v.arrival_heading_rad.value_or(0.0)) &&

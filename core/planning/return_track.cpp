@@ -40,10 +40,8 @@ Ring ring_of(const Pose2& at, double curvature_per_m) {
 }
 
 ReturnTrack::ReturnTrack(const TimedPath& timed, Instant epoch)
-    : begin_s_{to_seconds(timed.start_time - epoch)},
-      speed_mps_{timed.speed_mps},
-      fastest_mps_{timed.speed_mps},
-      epoch_{epoch} {
+    : begin_s_{to_seconds(timed.start_time - epoch)}, speed_mps_{timed.speed_mps} {
+  SKEIN_ASSERT(timed.paces.empty());
   Pose2 from = timed.path.start;
   for (const Segment& s : timed.path.segments) {
     const Vec2 forward = unit_vector(from.heading_rad);
@@ -59,20 +57,10 @@ ReturnTrack::ReturnTrack(const TimedPath& timed, Instant epoch)
   if (pieces_.empty())
     pieces_.push_back({0.0, 0.0, from.position(), unit_vector(from.heading_rad)});
   ring_ = ring_of(from, timed.tail_curvature_per_m);
-  end_s_ = begin_s_ + length_m_ / speed_mps_;
-  if (!timed.has_wind() && timed.paces.empty()) return;
-  uneven_ = timed;
-  end_s_ = to_seconds(timed.end_time() - epoch);
-  for (const double pace : timed.paces) {
-    fastest_mps_ = std::max(fastest_mps_, pace * timed.speed_mps);
-  }
-  if (timed.has_wind()) fastest_mps_ /= 1.0 - 2.0 * TimedPath::kWindShare;
 }
 
 Vec2 ReturnTrack::position_at(double time_s) const {
-  const double flown_m = uneven_ ? uneven_->distance_at(epoch_ + from_seconds(time_s))
-                                 : (time_s - begin_s_) * speed_mps_;
-  const double at_m = std::clamp(flown_m, 0.0, length_m_);
+  const double at_m = std::clamp((time_s - begin_s_) * speed_mps_, 0.0, length_m_);
   std::size_t i = 0;
   while (i + 1 < pieces_.size() && pieces_[i + 1].begin_m <= at_m) ++i;
   const Piece& piece = pieces_[i];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "skein/base/geometry.hpp"
@@ -21,14 +20,13 @@ struct Ring {
 [[nodiscard]] Ring ring_of(const Pose2& at, double curvature_per_m);
 
 /// A way home as it is compared with others: where its pieces begin is worked out once. Times are
-/// seconds since `epoch`.
+/// seconds since `epoch`. Of one speed.
 class ReturnTrack {
  public:
   ReturnTrack(const TimedPath& timed, Instant epoch);
   [[nodiscard]] double begin_s() const { return begin_s_; }
-  [[nodiscard]] double end_s() const { return end_s_; }
-  /// It is nowhere faster.
-  [[nodiscard]] double speed_mps() const { return fastest_mps_; }
+  [[nodiscard]] double end_s() const { return begin_s_ + length_m_ / speed_mps_; }
+  [[nodiscard]] double speed_mps() const { return speed_mps_; }
   [[nodiscard]] const Ring& ring() const { return ring_; }
   /// Precondition: within [begin_s(), end_s()].
   [[nodiscard]] Vec2 position_at(double time_s) const;
@@ -42,10 +40,6 @@ class ReturnTrack {
   };
   double begin_s_;
   double speed_mps_;
-  double fastest_mps_;
-  double end_s_ = 0.0;
-  Instant epoch_;
-  std::optional<TimedPath> uneven_;  ///< one of several speeds
   double length_m_ = 0.0;
   std::vector<Piece> pieces_;
   Ring ring_;
