@@ -60,6 +60,16 @@ bool Path::append(const Path& next) {
                      [this](const Segment& s) { return append(s); });
 }
 
+bool TimedPath::append(const Segment& segment, double pace) {
+  if (segment.length_m <= 0.0) return true;
+  return path.append(segment) && paces.try_push_back(pace);
+}
+
+bool TimedPath::append(const Path& next, double pace) {
+  return std::ranges::all_of(next.segments,
+                             [this, pace](const Segment& s) { return append(s, pace); });
+}
+
 Vec2 TimedPath::wind_per_speed() const {
   const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / speed_mps;
   return share * std::min(1.0, kWindShare / share.norm());

@@ -128,16 +128,11 @@ Result<void> check_heights(const TrackRequest& request) {
   return {};
 }
 
-bool append_paced(TimedPath& timed, const Segment& segment, double pace) {
-  if (segment.length_m <= 0.0) return true;
-  return timed.path.append(segment) && timed.paces.try_push_back(pace);
-}
-
 bool append_placed(TimedPath& timed, const TimedPath& centre, const TrackPlace& place,
                    double centre_m) {
   const PlacedPath placed = placed_path(centre.path, centre.tail_curvature_per_m, place, centre_m);
   for (std::size_t i = 0; i < placed.path.segments.size(); ++i) {
-    if (!append_paced(timed, placed.path.segments[i], placed.paces[i])) return false;
+    if (!timed.append(placed.path.segments[i], placed.paces[i])) return false;
   }
   timed.tail_curvature_per_m = placed.tail_curvature_per_m;
   return timed.paces.try_push_back(placed.tail_pace);

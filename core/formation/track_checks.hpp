@@ -30,8 +30,6 @@ namespace skein::formation {
 /// Heights: below the ceiling, and others than those of silent planes.
 [[nodiscard]] Result<void> check_heights(const TrackRequest& request);
 
-/// False, and nothing added, when there is no room.
-[[nodiscard]] bool append_paced(TimedPath& timed, const Segment& segment, double pace);
 /// The place's way from where the centre has flown `centre_m` on.
 [[nodiscard]] bool append_placed(TimedPath& timed, const TimedPath& centre, const TrackPlace& place,
                                  double centre_m);

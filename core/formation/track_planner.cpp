@@ -198,9 +198,8 @@ class Planner {
       timed.speed_mps = request_.speed_mps;
       timed.path.start = way->start;
       const double pace = way->length_m() / seconds / request_.speed_mps;
-      bool fits = true;
-      for (const Segment& s : way->segments) fits = fits && append_paced(timed, s, pace);
-      if (!fits || !append_placed(timed, planned.centre, places_[i], entry_m_)) {
+      if (!timed.append(*way, pace) ||
+          !append_placed(timed, planned.centre, places_[i], entry_m_)) {
         return too_many_pieces();
       }
       if (auto held = check_way(planes()[i], rules_, timed); !held) return held.error();

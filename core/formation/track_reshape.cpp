@@ -177,11 +177,11 @@ class Reshape {
       const double end_m = passed_m + segment.length_m;
       const double length_m = std::min(to_m, end_m) - std::max(from_m, passed_m);
       passed_m = end_m;
-      fits = fits && append_paced(timed, {segment.curvature_per_m, length_m}, old.paces[k]);
+      fits = fits && timed.append(Segment{segment.curvature_per_m, length_m}, old.paces[k]);
     }
     const double pace = slide->speed_mps / centre_.speed_mps;
-    fits = fits && append_paced(timed, {slide->curvature_per_m, slide->length_m}, pace) &&
-           append_paced(timed, {-slide->curvature_per_m, slide->length_m}, pace) &&
+    fits = fits && timed.append(Segment{slide->curvature_per_m, slide->length_m}, pace) &&
+           timed.append(Segment{-slide->curvature_per_m, slide->length_m}, pace) &&
            append_placed(timed, centre_, then_[i], begin_m + slide_m);
     if (!fits) return too_many_pieces();
     return timed;

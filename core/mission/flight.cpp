@@ -95,15 +95,11 @@ void Flight::set_planning_radius(double radius_m) {
 void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
                    Instant now) {
   first_pose_ = pose;
-  TimedPath here;
-  here.start_time = now;
-  here.speed_mps = vehicle_.cruise_speed_mps;
+  // Straight on until the first path begins.
+  TimedPath here = begun(now, vehicle_.cruise_speed_mps, 0.0);
   here.path.start = pose;
-  here.tail_curvature_per_m = 0.0;  // straight on until the first path begins
-  here.wind_east_mps = wind_mps_.x();
-  here.wind_north_mps = wind_mps_.y();
   replace(here);
-  search(hazards, range_m, now);
+  search_from(now + std::max(lead_in_, kHandover), hazards, range_m, now);
 }
 
 void Flight::start_route(const TimedPath& route) {
@@ -153,14 +149,10 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   const TimedPath& old = plan_.timed;
   const auto before = old.piece(old.distance_at(now), old.distance_at(at));
   if (!before) return false;
-  TimedPath timed;
-  timed.start_time = now;
-  timed.speed_mps = pace ? pace->speed_mps : vehicle_.cruise_speed_mps;
-  timed.tail_curvature_per_m = tail_curvature_per_m;
+  TimedPath timed =
+      begun(now, pace ? pace->speed_mps : vehicle_.cruise_speed_mps, tail_curvature_per_m);
   timed.path = *before;
   if (!timed.path.append(next)) return false;
-  timed.wind_east_mps = wind_mps_.x();
-  timed.wind_north_mps = wind_mps_.y();
   const double before_m = before->length_m();
   if (pace && pace->on_time_m > 0.0) timed.on_time_m = before_m + pace->on_time_m;
   // Where `next` begins it is on time.
@@ -170,13 +162,40 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (timed.has_wind() && pace && pace->on_time_at) {
     timed.start_time += *pace->on_time_at - timed.time_at(timed.on_time_m);
   }
+  take_up(timed, now);
+  return true;
+}
+
+bool Flight::continue_as_told(const TimedPath& way, Instant now) {
+  const TimedPath& old = plan_.timed;
+  const auto before = old.piece(old.distance_at(now), old.distance_at(way.start_time));
+  if (!before) return false;
+  TimedPath timed = begun(now, way.speed_mps, way.tail_curvature_per_m);
+  timed.path.start = before->start;
+  const double even_m = way.speed_mps * to_seconds(way.start_time - now);
+  if (!timed.append(*before, before->length_m() / even_m) || !timed.append(way.path, 1.0)) {
+    return false;
+  }
+  timed.paces.push_back(1.0);
+  take_up(timed, now);
+  return true;
+}
+
+TimedPath Flight::begun(Instant start, double speed_mps, double tail_curvature_per_m) const {
+  TimedPath timed;
+  timed.start_time = start;
+  timed.speed_mps = speed_mps;
+  timed.tail_curvature_per_m = tail_curvature_per_m;
+  timed.wind_east_mps = wind_mps_.x();
+  timed.wind_north_mps = wind_mps_.y();
+  return timed;
+}
+
+void Flight::take_up(const TimedPath& timed, Instant now) {
   if (searching_) pass_waypoints(now);
-  searching_ = false;
-  homing_ = false;
-  en_route_ = false;
+  searching_ = homing_ = en_route_ = false;
   stands_by_.reset();
   replace(timed);
-  return true;
 }
 
 double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const {
@@ -256,12 +275,11 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
   return path.append(way) ? curvature : here.curvature_per_m;
 }
 
-Instant Flight::handover(Instant now) const {
-  return now + (plan_.number == 1 ? std::max(lead_in_, kHandover) : kHandover);
+void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
+  hold_from(now + kHandover, hazards, now);
 }
 
-void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
-  const Instant at = handover(now);
+void Flight::hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now) {
   Path way = forced_way(pose_at(at), hazards);
   const double tail = append_hold(way, hazards);
   continue_with(at, way, tail, now);
@@ -307,56 +325,42 @@ void Flight::pass_waypoints(Instant now) {
 }
 
 void Flight::search(const std::vector<Hazard>& hazards, double range_m, Instant now) {
+  search_from(now + kHandover, hazards, range_m, now);
+}
+
+void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double range_m,
+                         Instant now) {
   if (searching_) pass_waypoints(now);
   if (search_.empty()) {
-    hold(hazards, now);
+    hold_from(at, hazards, now);
   } else {
-    follow(search_, hazards, range_m, now);
+    follow(at, search_, hazards, range_m, now);
   }
   searching_ = true;
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
-  follow({home()}, hazards, std::numeric_limits<double>::infinity(), now);
+  follow(now + kHandover, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
   searching_ = false;
   homing_ = true;
   search_marks_.clear();
 }
 
 bool Flight::return_along(const TimedPath& way, Instant now) {
-  const TimedPath old = plan_.timed;
-  const Vec2 wind = std::exchange(wind_mps_, {0.0, 0.0});  // the others count with these times
-  const Pace pace{way.speed_mps};
-  const bool follows = continue_with(way.start_time, way.path, way.tail_curvature_per_m, now, pace);
-  wind_mps_ = wind;
+  const bool follows = wind_mps_ != Vec2{0.0, 0.0}
+                           ? continue_as_told(way, now)
+                           : continue_with(way.start_time, way.path, way.tail_curvature_per_m, now,
+                                           Pace{way.speed_mps});
   if (!follows) return false;
-  if (wind != Vec2{0.0, 0.0})
-    keep_pace_until(way.start_time, old.distance_at(way.start_time) - old.distance_at(now), now);
   homing_ = true;
   search_marks_.clear();
   return true;
 }
 
-/// The plan goes over that way until then: at the mean speed that its old times took there.
-void Flight::keep_pace_until(Instant then, double way_m, Instant now) {
-  TimedPath& timed = plan_.timed;
-  const double even_m = timed.speed_mps * to_seconds(then - now);
-  if (even_m <= 0.0 || way_m <= 0.0) return;
-  timed.start_time = now;
-  double begin_m = 0.0;
-  for (const Segment& segment : timed.path.segments) {
-    timed.paces.push_back(begin_m + kStepM < way_m ? way_m / even_m : 1.0);
-    begin_m += segment.length_m;
-  }
-  timed.paces.push_back(1.0);
-  timed.wind_east_mps = wind_mps_.x();  // for its hold
-  timed.wind_north_mps = wind_mps_.y();
-}
-
 void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
                       const std::vector<Hazard>& hazards, double range_m, Instant now) {
   if (place) {
-    follow({*place}, hazards, range_m, now);
+    follow(now + kHandover, {*place}, hazards, range_m, now);
     search_marks_.clear();
   } else {
     hold(hazards, now);
@@ -374,9 +378,8 @@ double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards)
   return clear ? *clear : planning::shortest_dubins_length(from, to, radius);
 }
 
-void Flight::follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
-                    double range_m, Instant now) {
-  const Instant at = handover(now);
+void Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
+                    const std::vector<Hazard>& hazards, double range_m, Instant now) {
   Path route = forced_way(pose_at(at), hazards);
   std::vector<double> marks;
   Pose2 from = route.end();

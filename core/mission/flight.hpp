@@ -121,13 +121,19 @@ class Flight {
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
   /// shortest. Empty elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
-  /// When a new path takes over from the present plan.
-  [[nodiscard]] Instant handover(Instant now) const;
-  void follow(const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
+  // The new path takes over from the present plan at `at`.
+  void hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now);
+  void search_from(Instant at, const std::vector<Hazard>& hazards, double range_m, Instant now);
+  void follow(Instant at, const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
               double range_m, Instant now);
+  /// The present plan until `way` begins, at its mean speed there, then `way`, over the ground at
+  /// its own times, with which others count: the wind is its hold's alone. As continue_with().
+  bool continue_as_told(const TimedPath& way, Instant now);
+  /// A plan without a path yet, in the wind that was set.
+  [[nodiscard]] TimedPath begun(Instant start, double speed_mps, double tail_curvature_per_m) const;
+  void take_up(const TimedPath& timed, Instant now);
   void replace(const TimedPath& timed);
   void pass_waypoints(Instant now);
-  void keep_pace_until(Instant then, double way_m, Instant now);
 
   VehicleSpec vehicle_;
   planning::AvoidanceParams avoidance_;

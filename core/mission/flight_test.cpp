@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <vector>
 
 #include "skein/base/angles.hpp"
@@ -121,6 +122,47 @@ TEST(Flight, ARouteGivenBeforeTheMissionIsFlownFirst) {
   flight.hold({}, Instant{} + 10s);
   EXPECT_FALSE(flight.en_route(Instant{} + 11s));
   EXPECT_NEAR(flight.way_home_m({100.0, 1200.0, -kPi / 2.0}, {}), 1000.0, 1e-6);
+}
+
+TEST(Flight, TheLeadInIsOfTheFirstSearchAndDelaysNothingElse) {
+  Flight searches{vehicle_with(Recovery::home), {}, {{0.0, 4000.0}}};
+  searches.set_lead_in(3s);
+  searches.start({0.0, 0.0, 0.0}, {}, 40'000.0, Instant{});
+  EXPECT_NEAR(searches.pose_at(Instant{} + 2900ms).y_m, 0.0, 1e-9) << "straight on";
+  EXPECT_GT(searches.pose_at(Instant{} + 4s).y_m, 1.0);
+  TimedPath route;
+  route.speed_mps = 50.0;
+  route.tail_curvature_per_m = 1.0 / 165.0;
+  ASSERT_TRUE(route.path.append(Segment{0.0, 2000.0}));
+  Flight flight{vehicle_with(Recovery::home), {}, {{4000.0, 200.0}}};
+  flight.set_lead_in(3s);
+  flight.start_route(route);
+  flight.hold({}, Instant{} + 10s);
+  EXPECT_GT(std::abs(flight.pose_at(Instant{} + 11s).heading_rad), 0.1) << "it turns at once";
+}
+
+TEST(Flight, AWayHomeIsFlownAtItsOwnTimesAlsoInWind) {
+  Flight flight{vehicle_with(Recovery::home), {}, {{2000.0, 0.0}}};
+  flight.set_wind({8.0, -6.0});
+  flight.start({0.0, 0.0, 0.0}, {}, 40'000.0, Instant{});
+  flight.fly_home({}, Instant{} + 30s);
+  const Pose2 before = flight.pose_at(Instant{} + 32s);
+  TimedPath way;
+  way.start_time = Instant{} + 40s;
+  way.speed_mps = 50.0;
+  way.path.start = flight.pose_at(way.start_time);
+  ASSERT_TRUE(way.path.append(Segment{0.0, 600.0}));
+  ASSERT_TRUE(way.path.append(Segment{1.0 / 165.0, 300.0}));
+  way.tail_curvature_per_m = 1.0 / 165.0;
+  ASSERT_TRUE(flight.return_along(way, Instant{} + 32s));
+  const auto apart_m = [&flight](const Pose2& pose, Instant t) {
+    return (flight.pose_at(t).position() - pose.position()).norm();
+  };
+  EXPECT_LT(apart_m(before, Instant{} + 32s), 1e-3) << "no jump";
+  for (Instant t = way.start_time; t <= way.end_time(); t += 1s) {
+    EXPECT_LT(apart_m(way.pose_at(t), t), 1e-3);
+  }
+  EXPECT_TRUE(flight.plan().timed.has_wind()) << "its hold is flown at one airspeed";
 }
 
 }  // namespace

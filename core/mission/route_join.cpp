@@ -42,13 +42,6 @@ std::optional<Approach> approach(const RouteJoin& join, const Pose2& from, const
   return Approach{*path, path->length_m() / seconds};
 }
 
-/// Adds what is flown at that share of the route's speed.
-bool add(TimedPath& timed, const Path& piece, double pace) {
-  if (!timed.path.append(piece)) return false;
-  while (timed.paces.size() < timed.path.segments.size()) timed.paces.push_back(pace);
-  return true;
-}
-
 std::optional<TimedPath> way_to(const RouteJoin& join, Instant at, Instant then, Instant now) {
   const TimedPath& flown = join.flown;
   const TimedPath& route = join.route;
@@ -67,8 +60,8 @@ std::optional<TimedPath> way_to(const RouteJoin& join, Instant at, Instant then,
   timed.tail_curvature_per_m = route.tail_curvature_per_m;
   timed.path.start = before->start;
   const double even_m = route.speed_mps * to_seconds(at - now);
-  if (!add(timed, *before, before->length_m() / even_m) ||
-      !add(timed, way->path, way->speed_mps / route.speed_mps) || !add(timed, *rest, 1.0)) {
+  if (!timed.append(*before, before->length_m() / even_m) ||
+      !timed.append(way->path, way->speed_mps / route.speed_mps) || !timed.append(*rest, 1.0)) {
     return std::nullopt;
   }
   timed.paces.push_back(1.0);

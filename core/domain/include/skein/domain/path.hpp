@@ -42,7 +42,7 @@ struct TimedPath {
   /// The wind that its times count with, where that is known; with paces those of the hold alone.
   /// At a constant airspeed v an infinitesimal way t ds, |t| = 1, takes ds / (v + w.t) or, to first
   /// order in w/v, ds / v - w.(t ds) / v^2: so a way takes s / v - w.d / v^2, d being the straight
-  /// way that it leads to. Nowhere is it slower or faster than that by more than kWindShare.
+  /// way that it leads to.
   double wind_east_mps = 0.0;
   double wind_north_mps = 0.0;
   /// As far as there speed_mps is the mean over the ground, so that it is there on time; beyond it,
@@ -50,6 +50,10 @@ struct TimedPath {
   double on_time_m = 0.0;
 
   static constexpr double kWindShare = 0.3;  ///< of speed_mps: a stronger wind counts as that
+  /// Adds what is flown at that share of speed_mps. False where there is no room for it. All pieces
+  /// are added so, and last the pace of the tail.
+  [[nodiscard]] bool append(const Segment& segment, double pace);
+  [[nodiscard]] bool append(const Path& next, double pace);
   [[nodiscard]] bool has_wind() const { return wind_east_mps != 0.0 || wind_north_mps != 0.0; }
   /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
   [[nodiscard]] double distance_at(Instant t) const;
