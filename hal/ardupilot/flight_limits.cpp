@@ -36,6 +36,11 @@ std::string number(const LimitParameter& parameter, std::string_view name, doubl
                      is_older && parameter.older_unit < 1.0 ? 0 : 1);
 }
 
+/// Of a circle in level flight, without slip.
+double bank_of_circle(double airspeed_mps, double radius_m) {
+  return std::atan(airspeed_mps * airspeed_mps / (kGravity_mps2 * radius_m));
+}
+
 LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, double limit_deg,
                         std::string found) {
   const double v2 = vehicle.cruise_speed_mps * vehicle.cruise_speed_mps;
@@ -46,7 +51,7 @@ LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, doubl
       fmt::format(": at {:g} m/s it turns within {:.0f} m", vehicle.cruise_speed_mps, radius_m);
   if (radius_m <= vehicle.turn_radius_m * (1.0 + kSlack)) return {Verdict::good, found, {}};
   const double needed_deg =
-      std::ceil(degrees(std::atan(v2 / (kGravity_mps2 * vehicle.turn_radius_m))));
+      std::ceil(degrees(bank_of_circle(vehicle.cruise_speed_mps, vehicle.turn_radius_m)));
   const double good_deg =
       std::max(needed_deg, std::min(kBankMax_deg, needed_deg + kBankReserve_deg));
   return {Verdict::refused, found,
@@ -58,7 +63,7 @@ LimitFinding judge_roll(const VehicleSpec& vehicle, std::string_view name, doubl
 
 /// The highest AIRSPEED_MIN with which stall prevention lets it turn within `radius_m`.
 double airspeed_min_most(double airspeed_mps, double radius_m) {
-  const double bank_rad = std::atan(airspeed_mps * airspeed_mps / (kGravity_mps2 * radius_m));
+  const double bank_rad = bank_of_circle(airspeed_mps, radius_m);
   if (bank_rad <= radians(kBankAlways_deg)) return INFINITY;
   return airspeed_mps * std::sqrt(std::cos(bank_rad));
 }

@@ -78,7 +78,8 @@ std::optional<std::string_view> PlaneAutopilot::mode_refusal() const {
 
 CommandResult PlaneAutopilot::arm() {
   if (armed_) return CommandResult::accepted;
-  const auto refusal = mode_refusal() ? mode_refusal() : arming_refusal(health_);
+  auto refusal = mode_refusal();
+  if (!refusal) refusal = arming_refusal(health_);
   if (refusal) {
     say(Severity::critical, "Arm: " + std::string{*refusal});
     return CommandResult::failed;

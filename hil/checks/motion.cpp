@@ -27,26 +27,37 @@ double distance_in_wind(const TimedPath& plan, double even) {
   const Vec2 wind{plan.wind_east_mps, plan.wind_north_mps};
   const double share = std::min(wind.norm() / plan.speed_mps, TimedPath::kWindShare);
   const auto place = [&](double at) { return plan_pose(plan, at).position(); };
-  const Vec2 mean = plan.on_time_m > 0.0
-                        ? Vec2{(place(plan.on_time_m) - place(0.0)) / plan.on_time_m}
-                        : Vec2{0.0, 0.0};
-  const double paced = plan.paces.empty() ? 0.0 : plan_length_m(plan);
+  const double timed_to = plan.paces.empty() ? plan.on_time_m : plan_length_m(plan);
+  const Vec2 begin = place(0.0);
+  const Vec2 free_from = place(timed_to);
+  const Vec2 mean = timed_to > 0.0 ? Vec2{(free_from - begin) / timed_to} : Vec2{0.0, 0.0};
   const auto still_air = [&](double at) {
-    if (!plan.paces.empty()) {
-      return at - share * wind.normalized().dot(Vec2{place(at) - place(paced)});
-    }
-    const bool timed = at <= plan.on_time_m;
-    Vec2 way = place(at) - place(timed ? 0.0 : plan.on_time_m);
-    if (timed) way -= at * mean;
+    const Vec2 way =
+        at <= timed_to ? Vec2{place(at) - begin - at * mean} : Vec2{place(at) - free_from};
     return at - share * wind.normalized().dot(way);
   };
-  double low = paced;
+  double low = 0.0;
   double high = even / (1.0 - 2.0 * TimedPath::kWindShare);
   while (high - low > 1e-4) {
     const double middle = 0.5 * (low + high);
     (still_air(middle) < even ? low : high) = middle;
   }
   return low;
+}
+
+// At the speed of each segment, in still air.
+double even_distance_m(const TimedPath& plan, Instant time) {
+  double seconds = std::max(0.0, to_seconds(time - plan.start_time));
+  double distance = 0.0;
+  for (std::size_t i = 0; i < plan.paces.size(); ++i) {
+    const double speed = plan.speed_mps * plan.paces[i];
+    if (i >= plan.path.segments.size()) return distance + seconds * speed;
+    const double takes = plan.path.segments[i].length_m / speed;
+    if (seconds < takes) return distance + seconds * speed;
+    seconds -= takes;
+    distance += plan.path.segments[i].length_m;
+  }
+  return distance + seconds * plan.speed_mps;
 }
 
 template <class Items, class Key>
@@ -58,21 +69,9 @@ auto find_by_id(const Items& items, Key key) -> decltype(items.data()) {
 }  // namespace
 
 double plan_distance_m(const TimedPath& plan, Instant time) {
-  double seconds = std::max(0.0, to_seconds(time - plan.start_time));
-  double distance = 0.0;
-  for (std::size_t i = 0; i < plan.paces.size(); ++i) {
-    const double speed = plan.speed_mps * plan.paces[i];
-    if (i >= plan.path.segments.size()) {
-      distance += seconds * speed;
-      return plan.has_wind() ? distance_in_wind(plan, distance) : distance;
-    }
-    const double takes = plan.path.segments[i].length_m / speed;
-    if (seconds < takes) return distance + seconds * speed;
-    seconds -= takes;
-    distance += plan.path.segments[i].length_m;
-  }
-  distance += seconds * plan.speed_mps;
-  return plan.paces.empty() && plan.has_wind() ? distance_in_wind(plan, distance) : distance;
+  const double even = even_distance_m(plan, time);
+  const bool windward = plan.paces.empty() || even > plan_length_m(plan);
+  return plan.has_wind() && windward ? distance_in_wind(plan, even) : even;
 }
 
 double plan_length_m(const TimedPath& plan) {

@@ -14,7 +14,7 @@
 /// The judges' own kinematics, apart from those that made the plans.
 namespace skein::checks {
 
-/// Distance from plan.start_time at its speed on each segment; 0 before.
+/// Distance from plan.start_time at its speed on each segment, or in its wind; 0 before.
 [[nodiscard]] double plan_distance_m(const TimedPath& plan, Instant time);
 [[nodiscard]] double plan_length_m(const TimedPath& plan);
 /// Beyond the end along the hold.
