@@ -191,7 +191,7 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
     const auto bid = bids_.find(a.vehicle);
     if (bid != bids_.end()) {
       entry->instance = bid->second.instance;
-      entry->begins = a.time - from_seconds(bid->second.final_approach_m / bid->second.speed_mps);
+      entry->begins = a.time - approach_time(bid->second);
     } else if (const auto elector = electors_.find(a.vehicle); elector != electors_.end()) {
       entry->instance = elector->second.instance;  // its plan goes on under this leader
     }

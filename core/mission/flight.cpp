@@ -14,8 +14,6 @@
 
 namespace skein::mission {
 namespace {
-/// A new path starts this far ahead: time for control to take it over before it turns.
-constexpr Duration kHandover = std::chrono::milliseconds{200};
 /// An orbit in wind is flown some metres off its circle.
 constexpr double kHoldClearanceM = 20.0;
 /// Where no orbit begun here keeps its distance: directions that are tried, and how far away.
@@ -99,7 +97,7 @@ void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double
   TimedPath here = begun(now, vehicle_.cruise_speed_mps, 0.0);
   here.path.start = pose;
   replace(here);
-  search_from(now + std::max(lead_in_, kHandover), hazards, range_m, now);
+  search_from(now + std::max(lead_in_, handover_), hazards, range_m, now);
 }
 
 void Flight::start_route(const TimedPath& route) {
@@ -171,6 +169,15 @@ bool Flight::continue_as_told(const TimedPath& way, Instant now) {
   const auto before = old.piece(old.distance_at(now), old.distance_at(way.start_time));
   if (!before) return false;
   TimedPath timed = begun(now, way.speed_mps, way.tail_curvature_per_m);
+  if (way.has_wind()) {
+    timed.wind_east_mps = way.wind_east_mps;
+    timed.wind_north_mps = way.wind_north_mps;
+    timed.path = *before;
+    if (!timed.path.append(way.path)) return false;
+    timed.start_time = way.start_time - (timed.time_at(before->length_m()) - now);
+    take_up(timed, now);
+    return true;
+  }
   timed.path.start = before->start;
   const double even_m = way.speed_mps * to_seconds(way.start_time - now);
   if (!timed.append(*before, before->length_m() / even_m) || !timed.append(way.path, 1.0)) {
@@ -276,7 +283,7 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
 }
 
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
-  hold_from(now + kHandover, hazards, now);
+  hold_from(now + handover_, hazards, now);
 }
 
 void Flight::hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now) {
@@ -325,7 +332,7 @@ void Flight::pass_waypoints(Instant now) {
 }
 
 void Flight::search(const std::vector<Hazard>& hazards, double range_m, Instant now) {
-  search_from(now + kHandover, hazards, range_m, now);
+  search_from(now + handover_, hazards, range_m, now);
 }
 
 void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double range_m,
@@ -340,14 +347,14 @@ void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double 
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
-  follow(now + kHandover, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
+  follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
   searching_ = false;
   homing_ = true;
   search_marks_.clear();
 }
 
 bool Flight::return_along(const TimedPath& way, Instant now) {
-  const bool follows = wind_mps_ != Vec2{0.0, 0.0}
+  const bool follows = way.has_wind() || wind_mps_ != Vec2{0.0, 0.0}
                            ? continue_as_told(way, now)
                            : continue_with(way.start_time, way.path, way.tail_curvature_per_m, now,
                                            Pace{way.speed_mps});
@@ -360,7 +367,7 @@ bool Flight::return_along(const TimedPath& way, Instant now) {
 void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
                       const std::vector<Hazard>& hazards, double range_m, Instant now) {
   if (place) {
-    follow(now + kHandover, {*place}, hazards, range_m, now);
+    follow(now + handover_, {*place}, hazards, range_m, now);
     search_marks_.clear();
   } else {
     hold(hazards, now);

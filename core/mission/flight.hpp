@@ -45,6 +45,10 @@ class Flight {
   /// out and has turned to nothing yet.
   void set_lead_in(Duration lead_in) { lead_in_ = lead_in; }
 
+  /// A new path starts so far ahead: time for control to take it over and to roll, before it turns.
+  void set_handover(Duration handover) { handover_ = handover; }
+  [[nodiscard]] Duration handover() const { return handover_; }
+
   /// How a path is flown: `speed_mps` is over the ground as far as `on_time_m`, where it arrives as
   /// if there were no wind; beyond it, where a wind is set, through the air.
   struct Pace {
@@ -126,8 +130,9 @@ class Flight {
   void search_from(Instant at, const std::vector<Hazard>& hazards, double range_m, Instant now);
   void follow(Instant at, const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
               double range_m, Instant now);
-  /// The present plan until `way` begins, at its mean speed there, then `way`, over the ground at
-  /// its own times, with which others count: the wind is its hold's alone. As continue_with().
+  /// The present plan until `way` begins, then `way` at its own times, with which others count: in
+  /// the wind that it was planned with; where with none, over the ground, from the present plan's
+  /// mean speed on, and the wind that was set is its hold's alone. As continue_with().
   bool continue_as_told(const TimedPath& way, Instant now);
   /// A plan without a path yet, in the wind that was set.
   [[nodiscard]] TimedPath begun(Instant start, double speed_mps, double tail_curvature_per_m) const;
@@ -142,6 +147,7 @@ class Flight {
       search_marks_;  ///< distances along the search plan at which a point is passed
   Pose2 first_pose_;
   Vec2 wind_mps_{0.0, 0.0};
+  Duration handover_ = std::chrono::milliseconds{200};
   Duration lead_in_{};
   FlightPlan plan_;
   bool searching_ = false;

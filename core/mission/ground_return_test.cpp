@@ -288,6 +288,21 @@ TEST_F(OnTheWay, AWayThatFitsIsTaken) {
   }
 }
 
+/// Its times are those of the wind that it was planned with, whatever the vehicle has seen since.
+TEST_F(OnTheWay, AWayInWindIsFlownAsItWasPlanned) {
+  way.wind_east_mps = 3.0;
+  way.wind_north_mps = -4.0;
+  flight.set_wind({5.0, 1.0});
+  ASSERT_TRUE(taken());
+  ASSERT_TRUE(flight.return_along(way, at_seconds(32.0)));
+  EXPECT_TRUE(flight.homing());
+  for (const double t : {40.0, 50.0, 80.0, 200.0}) {
+    const Vec2 off =
+        flight.pose_at(at_seconds(t)).position() - way.pose_at(at_seconds(t)).position();
+    EXPECT_LT(off.norm(), 1e-3) << t;
+  }
+}
+
 TEST_F(OnTheWay, WhatDoesNotFitIsNot) {
   EXPECT_FALSE(taken(500.0)) << "range";
   EXPECT_FALSE(taken(10'000.0, 40.0)) << "too late";

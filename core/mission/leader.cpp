@@ -30,10 +30,6 @@ std::uint64_t seed_of(const coalition::Round& round) {
       (std::uint64_t{round.coalition.leader.value} << 32U) | round.coalition.number;
   return (coalition << 8U) ^ round.number;
 }
-
-Duration final_approach_time(const coalition::Bid& bid) {
-  return from_seconds(bid.final_approach_m / bid.speed_mps);
-}
 }  // namespace
 
 using coalition::Reason;
@@ -201,7 +197,7 @@ void Leader::answer(const Initiator::AllocationWanted& wanted, Instant /*now*/) 
   problem.hazards = ownship_.hazards();
   problem.start = wanted.formed_at;
   Duration approach{};
-  for (const auto& bid : wanted.bids) approach = std::max(approach, final_approach_time(bid));
+  for (const auto& bid : wanted.bids) approach = std::max(approach, coalition::approach_time(bid));
   problem.earliest_delivery =
       wanted.formed_at + ownship_.config().protocol.authorisation_lead + kDecisionMargin + approach;
   // A task that is open in this round is not owned, so this looks at deliveries of others only.
@@ -296,11 +292,9 @@ void Leader::ask_operator(const Initiator::Formed& formed, Instant now) {
 /// has not heard the bids for it: its own final approach stands for the others'. Where that is too
 /// short they are late at the gate, and there is another round.
 Instant Leader::decide_by(const TaskAssignment& delivery) const {
-  const VehicleSpec& self = ownship_.spec();
   const auto bid = bids_.find(delivery.vehicle);
-  const Duration approach = bid != bids_.end()
-                                ? final_approach_time(bid->second)
-                                : from_seconds(self.final_approach_m / self.cruise_speed_mps);
+  const Duration approach =
+      bid != bids_.end() ? coalition::approach_time(bid->second) : ownship_.approach_time();
   return delivery.time - approach - kDecisionMargin;
 }
 

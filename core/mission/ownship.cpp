@@ -15,6 +15,7 @@ namespace {
 /// A task counts as flown when the vehicle is this close to where its plan has it.
 constexpr double kOnTrackM = 30.0;
 constexpr Duration kLeadIn = std::chrono::seconds{3};
+constexpr double kTurnFilter_s = 0.5;
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
 /// A copter that is first seen so near to its height flies.
@@ -43,9 +44,14 @@ Ownship::Ownship(const VehicleAgentConfig& config)
       hazards_{config.hazards},
       loads_{config.vehicle.loads} {
   if (config.heeds_wind) flight_.set_lead_in(kLeadIn);
+  flight_.set_handover(flight_.handover() + from_seconds(config.turn_lead_s));
 }
 
 bool Ownship::on_state(const VehicleState& state, Instant now) {
+  if (const double since_s = to_seconds(state.time - state_.time); since_s > 0.0) {
+    const double rate = wrap_pi(state.course_rad - state_.course_rad) / since_s;
+    turning_radps_ += std::min(1.0, since_s / kTurnFilter_s) * (rate - turning_radps_);
+  }
   state_ = state;
   if (descent_) descent_->step(state, now);
   if (!ground_m_) ground_m_ = stands_m(state, spec());
@@ -54,8 +60,15 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
     flight_.start_route(*config_.route);
     return true;
   }
-  flight_.start(state.pose(), hazards(), range_to_spend(now), now);
+  flight_.start(begins_at(state), hazards(), range_to_spend(now), now);
   return !config_.route || told_route_;
+}
+
+/// An aircraft that circled while it waited, its nose into the wind, rolls out first.
+Pose2 Ownship::begins_at(const VehicleState& state) const {
+  if (!config_.heeds_wind) return state.pose();
+  const double rolled_out = state.course_rad + config_.turn_lead_s * turning_radps_;
+  return {state.x_m, state.y_m, wrap_pi(rolled_out)};
 }
 
 bool Ownship::measures_wind(const VehicleState& state) {
@@ -206,6 +219,32 @@ planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
           vehicle.assess_radius_m,
           vehicle.capabilities,
           loads_};
+}
+
+Result<planning::TaskPlan> Ownship::plan_task(const planning::Candidate& self, Instant start,
+                                              const Site& site,
+                                              const TaskAssignment& assignment) const {
+  auto plan = planning::plan_task(config_.planning, self, start, site, assignment, hazards());
+  if (!plan || turn_room_.wind_mps() == Vec2{0.0, 0.0}) return plan;
+  const bool delivers = assignment.task.kind == TaskKind::deliver;
+  plan->timed = in_wind(plan->timed);
+  plan->timed.on_time_m = delivers ? plan->timed.path.length_m() : plan->gate_m;
+  return plan;
+}
+
+TimedPath Ownship::in_wind(TimedPath timed) const {
+  timed.wind_east_mps = turn_room_.wind_mps().x();
+  timed.wind_north_mps = turn_room_.wind_mps().y();
+  return timed;
+}
+
+/// Where the way there has gone with the wind, and the approach against it.
+Duration Ownship::approach_time() const {
+  const VehicleSpec& vehicle = spec();
+  TimedPath cruise;
+  cruise.speed_mps = vehicle.cruise_speed_mps;
+  const double longer = 1.0 + 2.0 * in_wind(cruise).wind_per_speed().norm();
+  return from_seconds(vehicle.final_approach_m / vehicle.cruise_speed_mps * longer);
 }
 
 Telemetry Ownship::telemetry() const {

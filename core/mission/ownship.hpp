@@ -101,14 +101,25 @@ class Ownship {
 
   /// For the planner: the vehicle as it will be at that pose and time.
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
+  /// Its times are those that are flown: in the wind there is, on time at the site, or where an arc
+  /// around it begins.
+  [[nodiscard]] Result<planning::TaskPlan> plan_task(const planning::Candidate& self, Instant start,
+                                                     const Site& site,
+                                                     const TaskAssignment& assignment) const;
+  /// As a path is flown that need not be anywhere on time.
+  [[nodiscard]] TimedPath in_wind(TimedPath timed) const;
+  /// That the final approach of a delivery takes at most.
+  [[nodiscard]] Duration approach_time() const;
   /// All but its activity.
   [[nodiscard]] Telemetry telemetry() const;
 
  private:
   [[nodiscard]] bool is_at_route() const;
+  [[nodiscard]] Pose2 begins_at(const VehicleState& state) const;
 
   VehicleAgentConfig config_;
   VehicleState state_;
+  double turning_radps_ = 0.0;  ///< of the course, filtered
   RangeBudget range_;
   TurnRoom turn_room_;
   TakeOff take_off_;

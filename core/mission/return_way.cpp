@@ -24,7 +24,8 @@ bool is_flyable(const TimedPath& way, const VehicleSpec& vehicle) {
   const double tail = std::abs(way.tail_curvature_per_m);
   return way.speed_mps >= vehicle.speed_min_mps && way.speed_mps <= vehicle.speed_max_mps &&
          tail * kLengthMax_m > 1.0 && tail <= tightest && way.paces.empty() &&
-         way.path.curvature_max_per_m() <= tightest && way.path.length_m() <= kLengthMax_m;
+         way.on_time_m == 0.0 && way.path.curvature_max_per_m() <= tightest &&
+         way.path.length_m() <= kLengthMax_m;
 }
 
 }  // namespace

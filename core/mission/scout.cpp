@@ -8,8 +8,6 @@
 
 namespace skein::mission {
 namespace {
-/// A new plan starts this far ahead, for control to take it over.
-constexpr Duration kLead = std::chrono::milliseconds{200};
 constexpr Duration kSurveyPeriod = std::chrono::seconds{5};  ///< between attempts to plan one
 constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for lost sites
 /// Who goes to lead a lost site goes around it at this times its planning radius at least.
@@ -142,7 +140,7 @@ void Scout::take_up_relief(Instant now) {
 /// plan from now on. It goes on circling the site on the same arc where hazards leave room for it.
 std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site& site, bool relief,
                                                                       Instant now) {
-  const Instant start = now + kLead;
+  const Instant start = now + ownship_.flight().handover();
   Flight& flight = ownship_.flight();
   VehicleSpec vehicle = ownship_.spec();
   vehicle.turn_radius_margin = ownship_.planning_radius_m() / vehicle.turn_radius_m;
@@ -150,9 +148,10 @@ std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site
     vehicle.sensor_radius_m =
         std::max(vehicle.sensor_radius_m, kReliefRadiusFactor * vehicle.planning_radius_m());
   }
-  const auto plan = planning::plan_survey(ownship_.config().planning, vehicle,
-                                          flight.pose_at(start), start, site, ownship_.hazards());
+  auto plan = planning::plan_survey(ownship_.config().planning, vehicle, flight.pose_at(start),
+                                    start, site, ownship_.hazards());
   if (!plan) return event::TaskFailed{TaskFailure::no_plan, {}, plan.error().message};
+  plan->timed = ownship_.in_wind(plan->timed);
   const Path& path = plan->timed.path;
   // Who is to lead there must also have the range to stay for some time.
   const double stay_m = relief ? path.length_m() : 0.0;
@@ -234,9 +233,7 @@ Instant Scout::unheard_since(Instant now) const {
   return now - config.protocol.cut_max - config.vehicle.id.value % kRanks * kStagger;
 }
 
-Instant Scout::arrival() const {
-  return plan_.timed.start_time + from_seconds(plan_.gate_m / plan_.timed.speed_mps);
-}
+Instant Scout::arrival() const { return plan_.timed.time_at(plan_.gate_m); }
 
 Instant Scout::next_timeout() const {
   if (!flying()) return Instant::max();

@@ -81,9 +81,7 @@ class TaskFlight {
 
   [[nodiscard]] bool is_delivery() const { return assignment.task.kind == TaskKind::deliver; }
   /// When the task's own run begins: the gate of a delivery, the entry of an arc.
-  [[nodiscard]] Instant begin_time() const {
-    return plan.timed.start_time + from_seconds(plan.gate_m / plan.timed.speed_mps);
-  }
+  [[nodiscard]] Instant begin_time() const { return plan.timed.time_at(plan.gate_m); }
   [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
 
  private:

@@ -17,14 +17,18 @@ namespace {
 constexpr Duration kCommitLead = std::chrono::seconds{1};
 /// Later than this before the gate control could no longer take the new plan over in time.
 constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
-/// A plan that starts now, for an award that came after the agreed moment, starts so late that
-/// control can take it over.
-constexpr Duration kLateStart = std::chrono::milliseconds{200};
 constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// Nearer to its time a new path would gain little.
 constexpr Duration kTimeLatest = std::chrono::seconds{5};
+
+/// Over that much of the plan from then until then. In still air its own speed does that.
+Flight::Pace pace_over(const TimedPath& plan, double length_m, Instant from, Instant until) {
+  const double takes_s = to_seconds(until - from);
+  const bool differs = plan.has_wind() && length_m > 0.0 && takes_s > 0.0;
+  return {differs ? length_m / takes_s : plan.speed_mps, length_m, until};
+}
 }  // namespace
 
 using coalition::Reason;
@@ -119,6 +123,7 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
   bid.assess_radius_m = self.assess_radius_m;
   bid.capabilities = self.capabilities;
   bid.loads = self.loads;
+  bid.approach = ownship_.approach_time();
   bid.eta = announcement.formed_at + from_seconds(way / vehicle.cruise_speed_mps);
   return bid;
 }
@@ -140,7 +145,8 @@ void TaskFlyer::answer_award(const Participant::AwardReceived& award, Instant no
     return;
   }
   // From the pose that was bid, or from where it is by now when the award came late.
-  const Instant start = now <= award.award.formed_at ? award.award.formed_at : now + kLateStart;
+  const Instant start =
+      now <= award.award.formed_at ? award.award.formed_at : now + ownship_.flight().handover();
   const auto outcome = set_out({award.award.round, award.award.site, mine},
                                ownship_.spec().cruise_speed_mps, start, now);
   if (const auto* why = std::get_if<Why>(&outcome)) return refuse(*why);
@@ -158,8 +164,7 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
   Flight& flight = ownship_.flight();
   auto self = ownship_.candidate(flight.pose_at(start), start);
   self.speed_mps = speed_mps;
-  auto plan = planning::plan_task(ownship_.config().planning, self, start, task.site,
-                                  task.assignment, hazards);
+  auto plan = ownship_.plan_task(self, start, task.site, task.assignment);
   if (!plan) return Why{Reason::no_path, {}, plan.error().message};
   Path path = plan->timed.path;
   if (path.length_m() + flight.way_home_m(path.end(), hazards) > ownship_.range_to_spend(start)) {
@@ -167,16 +172,18 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
   }
   task.plan = *plan;
   std::optional<double> tail;
+  Flight::Pace pace{speed_mps, plan->gate_m, {}};
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
     if (!to_gate) return Why{Reason::path_too_long};
     path = *to_gate;
+    pace = pace_over(plan->timed, plan->gate_m, start, plan->timed.time_at(plan->gate_m));
     tail = flight.hold_curvature(path.end(), hazards);
   } else {
     tail = flight.orbit_after(path, plan->timed.tail_curvature_per_m, hazards);
     if (!tail) return Why{Reason::path_barred};
   }
-  if (!flight.continue_with(start, path, *tail, now, Flight::Pace{speed_mps, plan->gate_m})) {
+  if (!flight.continue_with(start, path, *tail, now, pace)) {
     return Why{Reason::path_too_long};
   }
   return task;
@@ -214,7 +221,8 @@ void TaskFlyer::leave_site(SiteId site, Instant now) {
 
 bool TaskFlyer::detour(HazardId hazard, Instant now) {
   if (!task_ || task_->in_run()) return false;
-  const auto outcome = set_out(*task_, task_->plan.timed.speed_mps, now + kLateStart, now);
+  const auto outcome =
+      set_out(*task_, task_->plan.timed.speed_mps, now + ownship_.flight().handover(), now);
   const auto* task = std::get_if<TaskFlight>(&outcome);
   if (task == nullptr) return false;
   task_ = *task;
@@ -244,7 +252,7 @@ void TaskFlyer::keep_time(Instant now) {
   if (task_->in_run() || now < time_again_ || time - now < kTimeLatest) return;
   time_again_ = now + kTimePeriod;
   if (!is_untimely(ownship_, *task_, now)) return;
-  const Instant start = now + kLateStart;
+  const Instant start = now + ownship_.flight().handover();
   if (const auto speed_mps = timely_speed(ownship_, *task_, start)) {
     const auto outcome = set_out(*task_, *speed_mps, start, now);
     if (const auto* task = std::get_if<TaskFlight>(&outcome)) {
@@ -268,7 +276,7 @@ void TaskFlyer::commit_delivery(Instant now) {
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
   double begin_m = timed.distance_at(at);
-  // The flight's own times count with the wind, the plan's do not.
+  // The wind has changed since, and the flight's own times count with the mean as far as the gate.
   if (const TimedPath& flown = flight.plan().timed; flown.has_wind()) {
     const double to_gate_m = flown.path.length_m() - flown.distance_at(at);
     begin_m = std::clamp(task_->plan.gate_m - to_gate_m, 0.0, task_->plan.gate_m);
@@ -279,7 +287,7 @@ void TaskFlyer::commit_delivery(Instant now) {
   run_out(*rest, timed.speed_mps);
   const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
   if (flight.continue_with(at, *rest, tail, now,
-                           Flight::Pace{timed.speed_mps, to_site_m, task_->assignment.time})) {
+                           pace_over(timed, to_site_m, at, task_->assignment.time))) {
     task_->fire(TaskFlight::Event::committed);
   }
 }

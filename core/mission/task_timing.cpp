@@ -57,8 +57,7 @@ std::optional<double> timely_speed(const Ownship& ownship, const TaskFlight& tas
     const double share = static_cast<double>(i) / kSpeeds;
     for (const double end : {slowest, fastest}) {
       self.speed_mps = vehicle.cruise_speed_mps + share * (end - vehicle.cruise_speed_mps);
-      const auto plan = planning::plan_task(ownship.config().planning, self, start, task.site,
-                                            task.assignment, ownship.hazards());
+      const auto plan = ownship.plan_task(self, start, task.site, task.assignment);
       if (!plan) continue;
       const double error = error_s(careful, plan->timed, ahead_m, wind, start, time);
       if (error >= least_s) continue;

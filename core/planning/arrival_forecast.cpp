@@ -33,10 +33,15 @@ ArrivalForecast forecast_arrival(const PathFollowerParams& params, const Vehicle
       static_cast<int>(std::clamp(std::ceil(left_s / kStep_s), 1.0, double{kStepsMax}));
   const double step_s = left_s / steps;
   const double begin_m = plan.distance_at(now);
-  const double speed_mps = (plan.distance_at(until) - begin_m) / left_s;  // it may not have begun
+  const double mean_mps = (plan.distance_at(until) - begin_m) / left_s;  // it may not have begun
   ArrivalForecast forecast{along_m, std::abs(along_m)};
   for (int i = 0; i < steps; ++i) {
-    const double at_m = begin_m + i * step_s * speed_mps + forecast.along_m;
+    const double even_m = begin_m + i * step_s * mean_mps;
+    // With a wind the plan has its own speed everywhere.
+    const double planned_m =
+        plan.has_wind() ? plan.distance_at(now + from_seconds(i * step_s)) : even_m;
+    const double speed_mps = plan.has_wind() ? plan.speed_at_distance(planned_m) : mean_mps;
+    const double at_m = planned_m + forecast.along_m;
     const Vec2 forward = unit_vector(plan.pose_at_distance(at_m).heading_rad);
     const double wanted = speed_mps - params.along_track_gain_per_s * forecast.along_m;
     const double flown = std::clamp(wanted, ground_speed(vehicle.speed_min_mps, wind_mps, forward),

@@ -41,6 +41,7 @@ struct Way {
   Path first;
   Path rest;
   double length_m = 0.0;
+  double flown_s = 0.0;                ///< without laps
   std::vector<std::size_t> through{};  ///< whose places to wait it leads through
 };
 
@@ -85,16 +86,27 @@ bool has_sense(const ReturningVehicle& v) {
   if (v.flies) {
     const TimedPath& timed = *v.flies;
     return timed.tail_curvature_per_m != 0.0 && timed.speed_mps >= kSpeedMin_mps &&
-           timed.paces.empty() && !timed.has_wind() && timed.path.length_m() <= kFar_m &&
+           timed.paces.empty() && timed.on_time_m == 0.0 &&
+           std::isfinite(timed.wind_per_speed().norm()) && timed.path.length_m() <= kFar_m &&
            std::isfinite(v.height_m) && v.home.norm() <= kFar_m;
   }
   const bool finite = std::isfinite(v.start.heading_rad) && std::isfinite(v.height_m) &&
                       std::isfinite(v.arrival_heading_rad.value_or(0.0)) &&
-                      std::isfinite(v.range_left_m);
+                      std::isfinite(v.range_left_m) && std::isfinite(v.wind_mps.norm());
   // False for what is no number, too.
   return finite && v.start.position().norm() <= kFar_m && v.home.norm() <= kFar_m &&
          v.speed_mps >= kSpeedMin_mps && v.speed_mps <= kFar_m && v.speed_min_mps <= v.speed_mps &&
          v.turn_radius_m >= kRadiusMin_m && v.turn_radius_m <= kFar_m;
+}
+
+/// A path from its start on, as it flies.
+TimedPath timed_of(const ReturningVehicle& v) {
+  TimedPath timed;
+  timed.start_time = v.start_time;
+  timed.speed_mps = v.speed_mps;
+  timed.wind_east_mps = v.wind_mps.x();
+  timed.wind_north_mps = v.wind_mps.y();
+  return timed;
 }
 
 double lap_m(const ReturningVehicle& v) { return kTwoPi * v.turn_radius_m; }
@@ -175,7 +187,7 @@ class Planner {
   }
   [[nodiscard]] double direct_s(std::size_t i) const {
     const auto& ways = homecomings_[i].ways;
-    return start_s(i) + (ways.empty() ? 0.0 : ways.front().length_m / vehicles_[i].speed_mps);
+    return start_s(i) + (ways.empty() ? 0.0 : ways.front().flown_s);
   }
 
   // --- ways ---
@@ -309,7 +321,10 @@ class Planner {
     if (first.segments.size() + rest->segments.size() >= kPathSegmentsMax) return;
     const double length_m = first.length_m() + rest->length_m();
     if (length_m + lap_m(v) > v.range_left_m && !homecomings_[i].ways.empty()) return;
-    homecomings_[i].ways.push_back({first, *rest, length_m, leads_through(i, first, *rest)});
+    const Vec2 straight = rest->end().position() - v.start.position();
+    const double still_m = length_m - timed_of(v).wind_per_speed().dot(straight);
+    homecomings_[i].ways.push_back(
+        {first, *rest, length_m, still_m / v.speed_mps, leads_through(i, first, *rest)});
   }
 
   // --- one vehicle after those before it ---
@@ -402,9 +417,10 @@ class Planner {
       const double length_m = ways[w].length_m;
       const double slowest_s = length_m / std::max(v.speed_min_mps, kSpeedMin_mps);
       for (const double delay_s : delays) {
-        const double flown_s = length_m / v.speed_mps + delay_s;
+        const double flown_s = ways[w].flown_s + delay_s;
         const double extra_m = delay_s * v.speed_mps;
-        const bool slower = delay_s == 0.0 || (v.speed_min_mps > 0.0 && flown_s <= slowest_s);
+        const bool slower = delay_s == 0.0 || (v.speed_min_mps > 0.0 && flown_s <= slowest_s &&
+                                               v.wind_mps == Vec2{0.0, 0.0});
         const double needs_m = length_m + (slower ? 0.0 : extra_m);
         if (needs_m + lap_m(v) > v.range_left_m) break;  // later ones need as much or more
         if (!slower && extra_m < lap_m(v)) continue;
@@ -426,10 +442,8 @@ class Planner {
   [[nodiscard]] std::optional<TimedPath> timed_path(std::size_t i, const Candidate& what) const {
     const ReturningVehicle& v = vehicles_[i];
     const Way& way = homecomings_[i].ways[what.way];
-    TimedPath timed;
-    timed.start_time = v.start_time;
+    TimedPath timed = timed_of(v);
     timed.tail_curvature_per_m = homecomings_[i].hold.curvature_per_m;
-    timed.speed_mps = v.speed_mps;
     timed.path = way.first;
     if (what.lap_side != 0.0) {
       // As few laps as are wide enough turn to exactly that length, and to where they began.
@@ -437,7 +451,7 @@ class Planner {
       const double curvature = what.lap_side * kTwoPi * laps / what.extra_m;
       if (!keeps_clear(ring_of(way.first.end(), curvature))) return std::nullopt;
       if (!timed.path.append(Segment{curvature, what.extra_m})) return std::nullopt;
-    } else {
+    } else if (!timed.has_wind()) {
       const double flown_s = what.arrival_s - start_s(i);
       if (flown_s > 0.0) timed.speed_mps = std::min(v.speed_mps, way.length_m / flown_s);
       timed.speed_mps = std::max({timed.speed_mps, v.speed_min_mps, kSpeedMin_mps});

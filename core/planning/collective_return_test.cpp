@@ -290,6 +290,35 @@ TEST(CollectiveReturn, RandomWorldsHaveNoConflict) {
   EXPECT_LE(failed * 50, vehicles);
 }
 
+TEST(CollectiveReturn, InWindTheirTimesAreThoseOfOneAirspeed) {
+  std::size_t vehicles = 0;
+  std::size_t failed = 0;
+  for (std::uint64_t seed = 300; seed < 330; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random{seed};
+    World world = random_world(random, 2 + random.index(19));
+    const Vec2 wind = random.uniform(1.0, 7.0) * unit_vector(random.uniform(-kPi, kPi));
+    for (ReturningVehicle& v : world.vehicles) v.wind_mps = wind;
+    const auto plan = plan_return(world.params, world.vehicles, world.hazards);
+    expect_good(world, plan, 0.2);
+    for (const Flown& f : flown(world, plan)) {
+      const TimedPath& timed = f.flight->timed;
+      EXPECT_EQ(timed.start_time, f.vehicle->start_time);
+      EXPECT_EQ(timed.speed_mps, f.vehicle->speed_mps);
+      // What each does through the air: its own speed, to second order in the wind.
+      for (double s = 1.0; s < timed.path.length_m(); s += 40.0) {
+        const Vec2 over_ground =
+            timed.speed_at_distance(s) * unit_vector(timed.pose_at_distance(s).heading_rad);
+        EXPECT_NEAR((over_ground - wind).norm(), timed.speed_mps,
+                    1.5 * wind.squaredNorm() / timed.speed_mps);
+      }
+    }
+    vehicles += world.vehicles.size();
+    failed += plan.failures.size();
+  }
+  EXPECT_LE(failed * 50, vehicles);
+}
+
 TEST(CollectiveReturn, FiftyAtOneHeightWithHomesInARow) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -311,6 +340,8 @@ TEST(CollectiveReturn, WhoFliesAlreadyIsKeptClearOf) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random{seed};
     World world = random_world(random, 12);
+    const Vec2 wind = seed % 2 == 0 ? Vec2{0.0, 0.0} : Vec2{-3.0, 4.0};
+    for (ReturningVehicle& v : world.vehicles) v.wind_mps = wind;
     const auto first = plan_return(world.params, world.vehicles, world.hazards);
     // Every second one flies what it was given; the others are planned a second time.
     for (const ReturnFlight& f : first.flights) {

@@ -119,6 +119,15 @@ double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on
   return planned_airspeed(plan, poses, seen_m, wind_mps) - now_mps;
 }
 
+/// The most airspeed at that turn rate; cruise speed always may be flown.
+double turning_speed(const PathFollowerParams& params, const VehicleSpec& vehicle,
+                     double rate_radps) {
+  const double cruise = vehicle.cruise_speed_mps;
+  if (rate_radps == 0.0) return vehicle.speed_max_mps;
+  return std::max(
+      cruise, params.turn_share * cruise * cruise / (vehicle.turn_radius_m * std::abs(rate_radps)));
+}
+
 }  // namespace
 
 PieceStarts::PieceStarts(const Path& path) : length_m_{path.length_m()} {
@@ -156,8 +165,10 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
   if (air_mps < 1.0) return setpoint;
 
   const double rise_mps = airspeed_rise(plan, starts, at.on_time_m, wind, params.airspeed_lead_s);
-  setpoint.airspeed_mps =
-      std::clamp(air_mps + rise_mps, vehicle.speed_min_mps, vehicle.speed_max_mps);
+  const double most_mps =
+      std::min(vehicle.speed_max_mps,
+               turning_speed(params, vehicle, at.curvature_per_m * state.groundspeed_mps));
+  setpoint.airspeed_mps = std::clamp(air_mps + rise_mps, vehicle.speed_min_mps, most_mps);
   // The heading loop d heading/dt = W (commanded - heading) is inverted; its rate keeps within
   // what the turn radius allows.
   const double heading_rate = cross(through_air, wanted_rate) / (air_mps * air_mps);

@@ -11,6 +11,8 @@ namespace {
 
 /// Keeps the steps from becoming endlessly small.
 constexpr double kMargin_m = 1.0;
+/// In a wind places are found to this, which the margin has room for.
+constexpr double kSettled_m = 0.01;
 
 double square(double x) { return x * x; }
 
@@ -40,8 +42,10 @@ Ring ring_of(const Pose2& at, double curvature_per_m) {
 }
 
 ReturnTrack::ReturnTrack(const TimedPath& timed, Instant epoch)
-    : begin_s_{to_seconds(timed.start_time - epoch)}, speed_mps_{timed.speed_mps} {
-  SKEIN_ASSERT(timed.paces.empty());
+    : begin_s_{to_seconds(timed.start_time - epoch)},
+      speed_mps_{timed.speed_mps},
+      wind_share_{timed.wind_per_speed()} {
+  SKEIN_ASSERT(timed.paces.empty() && timed.on_time_m == 0.0);
   Pose2 from = timed.path.start;
   for (const Segment& s : timed.path.segments) {
     const Vec2 forward = unit_vector(from.heading_rad);
@@ -56,11 +60,28 @@ ReturnTrack::ReturnTrack(const TimedPath& timed, Instant epoch)
   }
   if (pieces_.empty())
     pieces_.push_back({0.0, 0.0, from.position(), unit_vector(from.heading_rad)});
+  const double helped_m = wind_share_.dot(from.position() - timed.path.start.position());
+  end_s_ = begin_s_ + (length_m_ - helped_m) / speed_mps_;
   ring_ = ring_of(from, timed.tail_curvature_per_m);
 }
 
 Vec2 ReturnTrack::position_at(double time_s) const {
-  const double at_m = std::clamp((time_s - begin_s_) * speed_mps_, 0.0, length_m_);
+  const double even_m = (time_s - begin_s_) * speed_mps_;
+  Vec2 at = position_at_distance(even_m);
+  if (wind_share_ == Vec2{0.0, 0.0}) return at;
+  // As TimedPath::distance_at(): a contraction, by kWindShare.
+  const Vec2 from = position_at_distance(0.0);
+  double last_m = even_m;
+  while (true) {
+    const double next_m = even_m + wind_share_.dot(at - from);
+    at = position_at_distance(next_m);
+    if (std::abs(next_m - last_m) < kSettled_m) return at;
+    last_m = next_m;
+  }
+}
+
+Vec2 ReturnTrack::position_at_distance(double distance_m) const {
+  const double at_m = std::clamp(distance_m, 0.0, length_m_);
   std::size_t i = 0;
   while (i + 1 < pieces_.size() && pieces_[i + 1].begin_m <= at_m) ++i;
   const Piece& piece = pieces_[i];
@@ -84,7 +105,7 @@ bool keeps_off(const Path& path, const Vec2& point, double apart_m) {
 }
 
 bool stay_apart(const ReturnTrack& a, const ReturnTrack& b, double apart_m) {
-  const double closing_mps = a.speed_mps() + b.speed_mps();
+  const double closing_mps = a.speed_max_mps() + b.speed_max_mps();
   const double last_s = std::max(a.end_s(), b.end_s());
   double time_s = std::max(a.begin_s(), b.begin_s());
   while (time_s < last_s) {

@@ -20,13 +20,15 @@ struct Ring {
 [[nodiscard]] Ring ring_of(const Pose2& at, double curvature_per_m);
 
 /// A way home as it is compared with others: where its pieces begin is worked out once. Times are
-/// seconds since `epoch`. Of one speed.
+/// seconds since `epoch`. Of one speed over the ground or, with a wind, through the air from its
+/// begin on.
 class ReturnTrack {
  public:
   ReturnTrack(const TimedPath& timed, Instant epoch);
   [[nodiscard]] double begin_s() const { return begin_s_; }
-  [[nodiscard]] double end_s() const { return begin_s_ + length_m_ / speed_mps_; }
-  [[nodiscard]] double speed_mps() const { return speed_mps_; }
+  [[nodiscard]] double end_s() const { return end_s_; }
+  /// The most over the ground.
+  [[nodiscard]] double speed_max_mps() const { return speed_mps_ / (1.0 - wind_share_.norm()); }
   [[nodiscard]] const Ring& ring() const { return ring_; }
   /// Precondition: within [begin_s(), end_s()].
   [[nodiscard]] Vec2 position_at(double time_s) const;
@@ -38,8 +40,12 @@ class ReturnTrack {
     Vec2 origin{0.0, 0.0};  ///< of a line its begin, of an arc its centre
     Vec2 vector{0.0, 0.0};  ///< the direction of a line; from the centre to the begin of an arc
   };
+  [[nodiscard]] Vec2 position_at_distance(double distance_m) const;
+
   double begin_s_;
+  double end_s_ = 0.0;
   double speed_mps_;
+  Vec2 wind_share_;  ///< TimedPath::wind_per_speed()
   double length_m_ = 0.0;
   std::vector<Piece> pieces_;
   Ring ring_;

@@ -68,14 +68,12 @@ PitchAndThrottle EnergyLoop::step(const Estimate& estimate, double height_m, dou
   }
   s.throttle += within(throttle - s.throttle, t_.throttle_rate_per_s * seconds);
 
-  const double share_error = height_error - t_.speed_weight * speed_error;
-  const double share_power =
-      height_power - t_.speed_weight * speed_power + share_error / t_.time_s + s.pitch_power +
-      t_.pitch_damping * (height_power_error - t_.speed_weight * speed_power_error);
-  const double wanted = share_power / (v * kGravity_mps2);
+  const double climb_power = height_power + height_error / t_.pitch_time_s + s.pitch_power +
+                             t_.pitch_damping * height_power_error;
+  const double wanted = climb_power / (v * kGravity_mps2);
   const double limited = std::clamp(wanted, limits.pitch_min_rad, limits.pitch_max_rad);
-  if ((wanted - limited) * share_error <= 0.0) {
-    s.pitch_power += t_.pitch_integral_per_s * share_error * seconds;
+  if ((wanted - limited) * height_error <= 0.0) {
+    s.pitch_power += t_.pitch_integral_per_s * height_error * seconds;
   }
   s.pitch_rad += within(limited - s.pitch_rad, t_.vertical_acceleration_mps2 / v * seconds);
   return {.pitch_rad = s.pitch_rad, .throttle = s.throttle};

@@ -774,7 +774,8 @@ Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOpt
   if (!external) return external.error();
   configuration::Scenario here = scenario;
   give_buses(here, *external);
-  auto autopilots = user_autopilots(options.autopilots, options.autopilot_parameters);
+  auto autopilots =
+      user_autopilots(options.autopilots, options.autopilot_parameters, options.autopilot_model);
   if (!autopilots) return autopilots.error();
   Bench bench{here, options, std::move(external).value(), std::move(autopilots).value(),
               on_progress};

@@ -90,8 +90,10 @@ void write_to(const char* file, const std::string& text) { std::ofstream{file} <
 }  // namespace
 
 Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
-                                       const std::vector<std::string>& parameters) {
+                                       const std::vector<std::string>& parameters,
+                                       const std::string& plane_model) {
   UserAutopilots all;
+  if (!plane_model.empty()) all.plane_model = plane_model;
   for (const std::string& text : programs) {
     const std::filesystem::path program = std::filesystem::absolute(text);
     const std::string name = program.filename().string();
@@ -196,7 +198,7 @@ Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopil
   return std::vector<std::string>{
       "/bin/sh", "-c", "cd \"$1\" && shift && exec \"$@\"", "sh", std::filesystem::absolute(folder).string(),
       program.string(),
-      "--model", spec.is_copter() ? "quad" : "plane",
+      "--model", spec.is_copter() ? "quad" : autopilots.plane_model,
       "--speedup", "1",
       "--instance", std::to_string(instance),
       "--home", fmt::format("{:.8f},{:.8f},{:.2f},{:.1f}", home.latitude_deg, home.longitude_deg,

@@ -23,6 +23,7 @@ struct UserAutopilots {
   std::optional<std::filesystem::path> plane;
   std::optional<std::filesystem::path> copter;
   std::vector<std::filesystem::path> parameters;  ///< files of its own, before those of the vehicle
+  std::string plane_model = "plane";              ///< which of its simulator's planes: --model
 
   [[nodiscard]] const std::filesystem::path* of(const VehicleSpec& vehicle) const {
     const auto& program = vehicle.is_copter() ? copter : plane;
@@ -32,7 +33,8 @@ struct UserAutopilots {
 /// Which of the two a program is, its name says: "arduplane", "arducopter". A file plane.parm or
 /// copter.parm beside it has the parameters of the simulated airframe.
 [[nodiscard]] Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
-                                                     const std::vector<std::string>& parameters);
+                                                     const std::vector<std::string>& parameters,
+                                                     const std::string& plane_model = {});
 
 /// What the vehicle asks of an ArduPilot's parameters, a line each ("NAME VALUE"): the bus, the
 /// serial port on it, what safety rests on, the speeds, the bank that its turn radius needs, the

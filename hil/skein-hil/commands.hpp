@@ -28,6 +28,7 @@ struct RunArguments {
   std::string can;      ///< bus of the flight controllers; empty: one each is looked for
   std::vector<std::string> autopilots;            ///< in place of skein-fc
   std::vector<std::string> autopilot_parameters;  ///< files
+  std::string autopilot_model;                    ///< of its simulator's planes
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
   bool dds = false;

@@ -57,6 +57,22 @@ void add_external(CLI::App& command, RunArguments& arguments) {
       ->needs(external);
 }
 
+void add_autopilot(CLI::App& command, RunArguments& arguments) {
+  auto* autopilot = command.add_option(
+      "--autopilot", arguments.autopilots,
+      "Your own ArduPilot for software in the loop, such as ~/ardupilot/build/sitl/bin/arduplane, "
+      "in place of skein-fc; arducopter for copters. It boots, arms, takes off and flies");
+  command
+      .add_option("--autopilot-parameters", arguments.autopilot_parameters,
+                  "Files of parameters for it (default: plane.parm or copter.parm beside it)")
+      ->needs(autopilot);
+  command
+      .add_option("--autopilot-model", arguments.autopilot_model,
+                  "Which plane its simulator flies, such as plane-jet for 40 to 70 m/s, with the "
+                  "parameters of that one (default: plane)")
+      ->needs(autopilot);
+}
+
 void add_run(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<RunArguments>();
   arguments->programs = std::filesystem::canonical("/proc/self/exe").parent_path();
@@ -83,14 +99,7 @@ void add_run(CLI::App& app, int& status) {
   command->add_option("--can", arguments->can,
                       "CAN bus of all flight controllers, such as vcan0 (default: multicast "
                       "buses of their own on loopback)");
-  auto* autopilot = command->add_option(
-      "--autopilot", arguments->autopilots,
-      "Your own ArduPilot for software in the loop, such as ~/ardupilot/build/sitl/bin/arduplane, "
-      "in place of skein-fc; arducopter for copters. It boots, arms, takes off and flies");
-  command
-      ->add_option("--autopilot-parameters", arguments->autopilot_parameters,
-                   "Files of parameters for it (default: plane.parm or copter.parm beside it)")
-      ->needs(autopilot);
+  add_autopilot(*command, *arguments);
   add_external(*command, *arguments);
   command->add_flag("--headless", arguments->headless, "No progress line; news only");
   command->add_flag("--prompt", arguments->prompt,

@@ -104,6 +104,7 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.can = arguments.can;
   options.autopilots = arguments.autopilots;
   options.autopilot_parameters = arguments.autopilot_parameters;
+  options.autopilot_model = arguments.autopilot_model;
   options.prompt = arguments.prompt;
   options.sealed = !arguments.clear;
   options.dds = arguments.dds;

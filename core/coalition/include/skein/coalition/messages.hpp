@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "skein/base/time.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
 #include "skein/idl/coalition.hpp"
@@ -18,6 +19,12 @@ namespace skein::coalition {
   constexpr double kSpeedMin_mps = 0.1;
   constexpr double kRadiusMin_m = 0.1;
   return bid.speed_mps >= kSpeedMin_mps && bid.planning_radius_m >= kRadiusMin_m;
+}
+
+/// What the bidder's final approach takes at most.
+[[nodiscard]] inline Duration approach_time(const Bid& bid) {
+  const Duration in_still_air = from_seconds(bid.final_approach_m / bid.speed_mps);
+  return bid.approach > in_still_air ? bid.approach : in_still_air;
 }
 
 /// Its times are in order, and it keeps nobody waiting for longer than a coalition takes to form.

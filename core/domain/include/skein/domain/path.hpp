@@ -54,6 +54,8 @@ struct TimedPath {
   /// are added so, and last the pace of the tail.
   [[nodiscard]] bool append(const Segment& segment, double pace);
   [[nodiscard]] bool append(const Path& next, double pace);
+  /// The wind as a share of speed_mps, kWindShare at most.
+  [[nodiscard]] Vec2 wind_per_speed() const;
   [[nodiscard]] bool has_wind() const { return wind_east_mps != 0.0 || wind_north_mps != 0.0; }
   /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
   [[nodiscard]] double distance_at(Instant t) const;
@@ -68,7 +70,6 @@ struct TimedPath {
   [[nodiscard]] std::optional<Path> piece(double from_m, double to_m) const;
 
  private:
-  [[nodiscard]] Vec2 wind_per_speed() const;
   [[nodiscard]] double helped_m(double distance_m) const;
   [[nodiscard]] double in_wind_m(double even_m) const;
   [[nodiscard]] double pace(std::size_t piece) const {

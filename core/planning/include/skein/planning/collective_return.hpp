@@ -21,15 +21,18 @@ namespace skein::planning {
 struct ReturningVehicle {
   VehicleId id;
   Pose2 start;
-  Instant start_time{};        ///< when it is there
-  double height_m = 0.0;       ///< that it keeps
-  double speed_mps = 0.0;      ///< over the ground; it flies no faster
-  double speed_min_mps = 0.0;  ///< it may fly the whole way at less, down to this
+  Instant start_time{};    ///< when it is there
+  double height_m = 0.0;   ///< that it keeps
+  double speed_mps = 0.0;  ///< over the ground, in a wind through the air; it flies no faster
+  /// It may fly the whole way at less, down to this; in a wind it does not.
+  double speed_min_mps = 0.0;
+  Vec2 wind_mps{0.0, 0.0};     ///< that its times count with
   double turn_radius_m = 0.0;  ///< of its paths, and of its orbit at home
   double range_left_m = 0.0;   ///< from the start: its way home and one lap there
   Vec2 home{0.0, 0.0};         ///< its orbit passes here, or as near as others leave room for
   std::optional<double> arrival_heading_rad = {};  ///< over home; none: any
-  /// It keeps to that, and the others keep clear of it. Of one speed, to an orbit. Nothing is
+  /// It keeps to that, and the others keep clear of it. Of one speed (over the ground, or in a wind
+  /// from its begin on), to an orbit. Nothing is
   /// planned for it, and of the rest its id, height and home alone are read.
   std::optional<TimedPath> flies = {};
 };

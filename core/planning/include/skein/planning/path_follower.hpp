@@ -18,6 +18,10 @@ struct PathFollowerParams {
   /// Errors of the heading are taken back at that rate, or at the vehicle's own if it is lower: an
   /// aircraft answers late, and one that is asked for more swings.
   double heading_gain_most_per_s = std::numeric_limits<double>::infinity();
+  /// An aircraft that banks turns at cruise_speed^2 / turn_radius at most, so the wider the faster
+  /// it is: in turns it gets no faster than where they take this share of that, to make up for time
+  /// later. Not of one whose turns have one radius at any speed.
+  double turn_share = std::numeric_limits<double>::infinity();
 };
 
 /// How the vehicle stands to its plan, for reports.

@@ -12,10 +12,9 @@ struct PitchAndThrottle {
   double throttle = 0.0;
 };
 
-/// Height and airspeed as ArduPlane 4.6.3 in its simulator holds them: late, and at each other's
-/// cost. The limits are its parameters, the rest is fitted to its log (TECS, 20 to 29 m/s): a
-/// small_fixed_wing() that is given the airspeeds, heights and banks of two flights of two minutes
-/// has the logged heights to 1.2 m rms, and the airspeeds to 0.7 m/s.
+/// Airspeed and height as ArduPlane 4.6.3 in its simulator holds them with TECS_SPDWEIGHT 0, as the
+/// bench gives it: airspeeds late, heights by pitch alone. Limits and gains of the pitch are its
+/// parameters or near them, those of airspeed and throttle fitted to its log (TECS, 20 to 29 m/s).
 struct SlowEnergyTuning {
   double height_lag_s = 3.0;         ///< TECS_HDEM_TCONST: heights asked for are followed by it
   double height_rate_max_mps = 5.0;  ///< TECS_CLMB_MAX, TECS_SINK_MAX
@@ -23,14 +22,14 @@ struct SlowEnergyTuning {
   double slower_mps2 = 0.74;         ///< and falls by this at most
   double throttle_rate_per_s = 1.0;  ///< THR_SLEWRATE
   double vertical_acceleration_mps2 = 7.0;  ///< TECS_VERT_ACC: how the pitch asked for changes
-  double time_s = 4.3;                      ///< what energy errors are taken back in
+  double time_s = 4.3;                      ///< what energy errors are taken back in by throttle
+  double pitch_time_s = 6.0;                ///< and by pitch: TECS_TIME_CONST is 5
   double power_range = 167.0;               ///< m^2/s^3 that all of the throttle is taken to give
   double throttle_damping = 0.7;
   double throttle_integral_per_s = 0.3;
-  double pitch_damping = 1.2;
+  double pitch_damping = 0.3;         ///< TECS_PTCH_DAMP
   double airspeed_lag_s = 1.4;        ///< of the airspeed that is asked for
-  double speed_weight = 2.9;          ///< of the speed's error in the pitch; the height's has 1
-  double pitch_integral_per_s = 2.3;  ///< power per energy that is wrong, and second
+  double pitch_integral_per_s = 0.4;  ///< TECS_INTEG_GAIN is 0.3
 };
 
 /// What the airframe needs for level flight, and its limits.
@@ -44,7 +43,7 @@ struct EnergyLimits {
 };
 
 /// Total energy control (Lambregts 1983) with errors of energy in place of rates: throttle for the
-/// sum of height's and speed's, pitch for their difference. There is no feedforward of the angle of
+/// sum of height's and speed's, pitch for the height's. There is no feedforward of the angle of
 /// attack, so that each change of speed or bank goes through the integral, and height swings.
 class EnergyLoop {
  public:

@@ -33,6 +33,7 @@ struct BenchOptions {
   /// in place of skein-fc; and files of parameters for them.
   std::vector<std::string> autopilots;
   std::vector<std::string> autopilot_parameters;
+  std::string autopilot_model;  ///< of its simulator's planes
   bool dds = false;  ///< Fast DDS, to each node by itself; else by the air
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.

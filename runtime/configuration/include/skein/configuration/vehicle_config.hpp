@@ -55,12 +55,15 @@ struct FlightControllerConfig {
 
   /// Asked for more per radian, an ArduPlane that flies 25 m/s swings (docs/ardupilot.md).
   static constexpr double kHeadingGainMost_per_s = 0.8;
+  /// The rest is for gusts, and to come back to the path.
+  static constexpr double kTurnShare = 0.85;
   /// How plans are followed on it; the simulated one needs no leads.
   [[nodiscard]] planning::PathFollowerParams follower() const {
     if (kind != FlightControllerKind::ardupilot) return {};
     return {.turn_lead_s = ardupilot.turn_lead_s,
             .airspeed_lead_s = ardupilot.airspeed_lead_s,
-            .heading_gain_most_per_s = kHeadingGainMost_per_s};
+            .heading_gain_most_per_s = kHeadingGainMost_per_s,
+            .turn_share = kTurnShare};
   }
 };
 
