@@ -11,6 +11,7 @@ ardupilot::CanLinkParams can_params(const configuration::VehicleConfig& config) 
   params.serial_id = fc.serial_id;
   ardupilot::CompanionParams& companion = params.companion;
   companion.vehicle = config.vehicle;
+  companion.fence = config.fence;
   companion.system_id = fc.system_id;
   companion.airframe = config.vehicle.airframe;
   switch (fc.take_over) {

@@ -43,6 +43,7 @@ mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& co
   agent.search = config.search;
   agent.route = route;
   agent.hazards = config.hazards;
+  agent.fence = config.fence;
   agent.turn_lead_s = config.flight_controller.follower().turn_lead_s;
   agent.heeds_wind =
       config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;

@@ -13,6 +13,7 @@
 namespace skein::mission {
 
 inline constexpr double kTestSpeed_mps = 25.0;
+inline constexpr double kFlownStep_s = 0.5;
 
 /// A plane that can do everything, near the origin, with much room and range.
 [[nodiscard]] inline VehicleAgentConfig plane_config() {
@@ -67,6 +68,43 @@ struct HeardAgent {
     while (agent.poll_message()) {
     }
   }
+};
+
+/// A plane that is exactly where its plan has it.
+class FlownAgent : public HeardAgent {
+ public:
+  explicit FlownAgent(const VehicleAgentConfig& config)
+      : HeardAgent{config, Instant{}}, height_m_{config.vehicle.height_m} {
+    fly(0.0);
+  }
+  void fly(double seconds) {
+    for (const double end = now_s_ + seconds; now_s_ <= end; now_s_ += kFlownStep_s) {
+      const Instant now = at_seconds(now_s_);
+      const Pose2 pose = plan.number > 0 ? plan.timed.pose_at(now) : Pose2{0.0, 0.0, 0.3};
+      state.time = now;
+      state.x_m = pose.x_m;
+      state.y_m = pose.y_m;
+      state.z_m = height_m_;
+      state.heading_rad = state.course_rad = pose.heading_rad;
+      state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
+      state.distance_flown_m += kTestSpeed_mps * kFlownStep_s;
+      see(state);
+    }
+  }
+  void order(CommandKind kind) {
+    Command command{.vehicle = {4}, .kind = kind};
+    set_number(command, ++orders_);
+    HeardAgent::tell(command, at_seconds(now_s_));
+  }
+
+  void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
+
+  VehicleState state;
+
+ private:
+  double height_m_;
+  double now_s_ = 0.0;
+  std::uint64_t orders_ = 0;
 };
 
 /// What a part of an agent needs around it: a vehicle that is exactly where its plan has it.

@@ -35,10 +35,15 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
   }
   if (news.bar) response = on_bar(*news.bar);
   if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
+  if (news.left_fence && !facts_.left_fence) {
+    facts_.left_fence = true;
+    if (!facts_.ordered) response = &kLeftFence;
+  }
   if (news.order) response = response_to(*news.order);
   if (response == &kHold || response == &kReturnHome || response == &kLand) facts_.ordered = true;
   if (response == &kResume) {
     facts_.ordered = false;
+    facts_.left_fence = false;
     if (barred() != nullptr) response = barred();
   }
   rule_ = nullptr;

@@ -30,6 +30,7 @@ class Failsafe {
     bool id_in_use = false;       ///< by another vehicle too
     bool setup_differs = false;   ///< from the ground station's
     bool orders_unknown = false;  ///< to a program that has started anew
+    bool left_fence = false;      ///< or would have, since the operator last told it to go on
     bool range_spent = false;     ///< what is left of its range is for the way home
     bool ordered = false;         ///< by the operator to hold, to come home or to land
   };
@@ -45,6 +46,7 @@ class Failsafe {
       Rule{"setup_differs", &Facts::setup_differs, Action::stay, coalition::Reason::setup_differs},
       Rule{"orders_unknown", &Facts::orders_unknown, Action::stay,
            coalition::Reason::orders_unknown},
+      Rule{"left_fence", &Facts::left_fence, Action::come_home, coalition::Reason::outside_fence},
       Rule{"range_spent", &Facts::range_spent, Action::come_home, coalition::Reason::out_of_range},
       Rule{"ordered", &Facts::ordered, Action::obey, coalition::Reason::held_by_operator},
   };
@@ -84,6 +86,8 @@ class Failsafe {
                                      Manoeuvre::search};
   static constexpr Response kRangeSpent{"range_spent", Reason::out_of_range, true, Lead::handed_on,
                                         Manoeuvre::come_home};
+  static constexpr Response kLeftFence{"left_fence", Reason::outside_fence, true, Lead::handed_on,
+                                       Manoeuvre::fly_home};
   static constexpr Response kHold{"hold", Reason::held_by_operator, true, Lead::put_off,
                                   Manoeuvre::hold};
   static constexpr Response kReturnHome{"return_home", Reason::sent_home, true, Lead::put_off,
@@ -91,12 +95,13 @@ class Failsafe {
   static constexpr Response kLand{"land", Reason::sent_home, true, Lead::put_off, Manoeuvre::land};
   static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
   static constexpr std::array kResponses{kPathBarred, kIdInUse,    kSetupDiffers, kOrdersUnknown,
-                                         kMayWork,    kRangeSpent, kHold,         kReturnHome,
-                                         kLand,       kResume};
+                                         kMayWork,    kRangeSpent, kLeftFence,    kHold,
+                                         kReturnHome, kLand,       kResume};
 
   /// One of these at a time.
   struct News {
     bool path_barred = false;     ///< by a hazard, and there is no other way to its task
+    bool left_fence = false;      ///< it is outside, or what it flies leads there soon
     bool id_in_use = false;       ///< another vehicle was heard under its number
     std::optional<Bar> bar = {};  ///< what keeps it from working with the others
     std::optional<double> spare_s =

@@ -26,6 +26,19 @@ TEST(Failsafe, LaterRulesTakePrecedence) {
   EXPECT_EQ(failsafe.action(), Action::come_home) << "the range stays spent";
 }
 
+TEST(Failsafe, AFenceThatIsLeftIsNewsOnceUntilItMayGoOn) {
+  Failsafe failsafe;
+  EXPECT_EQ(failsafe.update({}, {.left_fence = true}), &Failsafe::kLeftFence);
+  EXPECT_EQ(failsafe.action(), Action::come_home);
+  EXPECT_EQ(failsafe.reason(), coalition::Reason::outside_fence);
+  EXPECT_EQ(failsafe.update({}, {.left_fence = true}), nullptr);
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::resume}), &Failsafe::kResume);
+  EXPECT_EQ(failsafe.action(), Action::none);
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::hold}), &Failsafe::kHold);
+  EXPECT_EQ(failsafe.update({}, {.left_fence = true}), nullptr) << "it is held by order";
+  EXPECT_EQ(failsafe.action(), Action::obey);
+}
+
 TEST(Failsafe, EveryOrderIsObeyedAtOnce) {
   Failsafe failsafe;
   EXPECT_EQ(failsafe.update({}, {.order = CommandKind::hold}), &Failsafe::kHold);

@@ -16,8 +16,6 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kStep_s = 0.5;
-
 VehicleAgentConfig lander() {
   VehicleAgentConfig config = plane_config();
   config.vehicle.height_m = 120.0;
@@ -25,46 +23,13 @@ VehicleAgentConfig lander() {
   return config;
 }
 
-/// A plane that is exactly where its plan has it.
-class Flown : public HeardAgent {
- public:
-  explicit Flown(const VehicleAgentConfig& config = lander())
-
-      : HeardAgent{config, Instant{}}, height_m_{config.vehicle.height_m} {
-    fly(0.0);
-  }
-  void fly(double seconds) {
-    for (const double end = now_s_ + seconds; now_s_ <= end; now_s_ += kStep_s) {
-      const Instant now = at_seconds(now_s_);
-      const Pose2 pose = plan.number > 0 ? plan.timed.pose_at(now) : Pose2{0.0, 0.0, 0.3};
-      state.time = now;
-      state.x_m = pose.x_m;
-      state.y_m = pose.y_m;
-      state.z_m = height_m_;
-      state.heading_rad = state.course_rad = pose.heading_rad;
-      state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
-      state.distance_flown_m += kTestSpeed_mps * kStep_s;
-      see(state);
-    }
-  }
-  void order(CommandKind kind) {
-    Command command{.vehicle = {4}, .kind = kind};
-    set_number(command, ++orders_);
-    HeardAgent::tell(command, at_seconds(now_s_));
-  }
-
-  void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
-
-  VehicleState state;
-
- private:
-  double height_m_;
-  double now_s_ = 0.0;
-  std::uint64_t orders_ = 0;
+/// Of lander().
+struct Lander : FlownAgent {
+  explicit Lander(const VehicleAgentConfig& config = lander()) : FlownAgent{config} {}
 };
 
 TEST(LandingOrder, IsObeyedOnceTheVehicleIsAtHome) {
-  Flown vehicle;
+  Lander vehicle;
   vehicle.fly(20.0);
   vehicle.order(CommandKind::return_home);
   vehicle.order(CommandKind::land);
@@ -85,7 +50,7 @@ TEST(LandingOrder, IsObeyedOnceTheVehicleIsAtHome) {
 TEST(LandingOrder, GoesWhereTheConfigurationHasIt) {
   VehicleAgentConfig config = lander();
   config.vehicle.landing = {.x_m = 50.0, .y_m = -20.0, .heading_rad = 1.0};
-  Flown vehicle{config};
+  Lander vehicle{config};
   vehicle.order(CommandKind::land);
   vehicle.fly(120.0);
   ASSERT_TRUE(vehicle.plan.lands);
@@ -96,7 +61,7 @@ TEST(LandingOrder, GoesWhereTheConfigurationHasIt) {
 
 TEST(LandingOrder, AnyOtherOrderCallsItOff) {
   for (const auto kind : {CommandKind::hold, CommandKind::return_home, CommandKind::resume}) {
-    Flown vehicle;
+    Lander vehicle;
     vehicle.order(CommandKind::land);
     vehicle.fly(120.0);
     ASSERT_TRUE(vehicle.plan.lands);
@@ -110,7 +75,7 @@ TEST(LandingOrder, AnyOtherOrderCallsItOff) {
 TEST(LandingOrder, AHazardOnTheApproachKeepsItInItsOrbitAndIsTold) {
   VehicleAgentConfig config = lander();
   config.hazards.push_back({{1}, {-400.0, -120.0}, 60.0});  // on the final approach
-  Flown vehicle{config};
+  Lander vehicle{config};
   vehicle.order(CommandKind::land);
   vehicle.fly(120.0);
   EXPECT_FALSE(vehicle.plan.lands);
@@ -124,7 +89,7 @@ TEST(LandingOrder, AHazardOnTheApproachKeepsItInItsOrbitAndIsTold) {
 }
 
 TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
-  Flown vehicle;
+  Lander vehicle;
   vehicle.order(CommandKind::land);
   vehicle.fly(120.0);
   ASSERT_TRUE(vehicle.plan.lands);
@@ -134,7 +99,7 @@ TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
 }
 
 TEST(LandingOrder, WhoHasLandedIsSentNowhere) {
-  Flown vehicle;
+  Lander vehicle;
   vehicle.order(CommandKind::land);
   vehicle.fly(120.0);
   vehicle.state.phase = FlightPhase::disarmed;

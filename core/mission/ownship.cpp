@@ -15,7 +15,8 @@ namespace {
 /// A task counts as flown when the vehicle is this close to where its plan has it.
 constexpr double kOnTrackM = 30.0;
 constexpr Duration kLeadIn = std::chrono::seconds{3};
-constexpr double kTurnFilter_s = 0.5;
+/// In so much a plane has turned round.
+constexpr Duration kFenceAhead = std::chrono::seconds{8};
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
 /// A copter that is first seen so near to its height flies.
@@ -48,10 +49,6 @@ Ownship::Ownship(const VehicleAgentConfig& config)
 }
 
 bool Ownship::on_state(const VehicleState& state, Instant now) {
-  if (const double since_s = to_seconds(state.time - state_.time); since_s > 0.0) {
-    const double rate = wrap_pi(state.course_rad - state_.course_rad) / since_s;
-    turning_radps_ += std::min(1.0, since_s / kTurnFilter_s) * (rate - turning_radps_);
-  }
   state_ = state;
   if (descent_) descent_->step(state, now);
   if (!ground_m_) ground_m_ = stands_m(state, spec());
@@ -64,11 +61,9 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
   return !config_.route || told_route_;
 }
 
-/// An aircraft that circled while it waited, its nose into the wind, rolls out first.
+/// In wind an aircraft moves elsewhere than its nose points.
 Pose2 Ownship::begins_at(const VehicleState& state) const {
-  if (!config_.heeds_wind) return state.pose();
-  const double rolled_out = state.course_rad + config_.turn_lead_s * turning_radps_;
-  return {state.x_m, state.y_m, wrap_pi(rolled_out)};
+  return {state.x_m, state.y_m, config_.heeds_wind ? state.course_rad : state.heading_rad};
 }
 
 bool Ownship::measures_wind(const VehicleState& state) {
@@ -137,7 +132,7 @@ bool Ownship::land() {
 
 bool Ownship::return_along(const TimedPath& way, Instant now) {
   return is_way_home(way, spec(), flight_, hazards(), range_to_spend(now), now) &&
-         flight_.return_along(way, now);
+         stays_in_fence(way.path, way.tail_curvature_per_m) && flight_.return_along(way, now);
 }
 
 bool Ownship::keeps_clear(Instant now) {
@@ -161,6 +156,22 @@ bool Ownship::way_is_open(Instant now) const {
   const double ahead = timed.distance_at(now);
   const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
   return rest && planning::is_clear(*rest, hazards());
+}
+
+bool Ownship::stays_in_fence(const Path& way, double orbit_curvature_per_m) const {
+  if (!config_.fence.holds(way)) return false;
+  if (orbit_curvature_per_m == 0.0) return true;
+  Path lap{way.end(), {}};
+  (void)lap.append(Segment{orbit_curvature_per_m, kTwoPi / std::abs(orbit_curvature_per_m)});
+  return config_.fence.holds(lap);
+}
+
+bool Ownship::leaves_fence(Instant now) const {
+  if (!config_.fence.exists()) return false;
+  if (!in_fence({state_.x_m, state_.y_m}) || state_.z_m > config_.fence.height_max_m) return true;
+  const TimedPath& timed = flight_.plan().timed;
+  const auto soon = timed.piece(timed.distance_at(now), timed.distance_at(now + kFenceAhead));
+  return soon && !config_.fence.holds(*soon);
 }
 
 bool Ownship::on_track(const TimedPath& timed) const {

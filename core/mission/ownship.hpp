@@ -81,6 +81,14 @@ class Ownship {
   [[nodiscard]] bool keeps_clear(Instant now);
   /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near.
   [[nodiscard]] bool way_is_open(Instant now) const;
+  [[nodiscard]] bool in_fence(const Vec2& point) const {
+    return !config_.fence.exists() || config_.fence.inside_m(point) > 0.0;
+  }
+  /// Does neither that way leave the fence, nor a lap of the orbit at its end? Curvature 0: no
+  /// orbit.
+  [[nodiscard]] bool stays_in_fence(const Path& way, double orbit_curvature_per_m = 0.0) const;
+  /// It is outside of its fence, or what it flies leads there within seconds.
+  [[nodiscard]] bool leaves_fence(Instant now) const;
   /// Is it where that path has it? Then a task on it counts as flown.
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
 
@@ -119,7 +127,6 @@ class Ownship {
 
   VehicleAgentConfig config_;
   VehicleState state_;
-  double turning_radps_ = 0.0;  ///< of the course, filtered
   RangeBudget range_;
   TurnRoom turn_room_;
   TakeOff take_off_;

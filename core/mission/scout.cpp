@@ -165,6 +165,9 @@ std::variant<planning::TaskPlan, event::TaskFailed> Scout::fly_around(const Site
   if (!tail) {
     return event::TaskFailed{TaskFailure::no_plan, {}, "hazards leave no room for an orbit there"};
   }
+  if (!ownship_.stays_in_fence(way, *tail)) {
+    return event::TaskFailed{TaskFailure::no_plan, {}, "the way leads out of the fence"};
+  }
   if (!flight.continue_with(start, way, *tail, now)) {
     return event::TaskFailed{TaskFailure::path_too_long};
   }

@@ -112,6 +112,7 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
   auto self = ownship_.candidate(pose, announcement.formed_at);
   self.range_left_m = ownship_.range_for(announcement.site, announcement.formed_at);
   if (way > self.range_left_m) return Reason::out_of_range;
+  if (!ownship_.in_fence(announcement.site.position)) return Reason::outside_fence;
 
   coalition::Bid bid;
   bid.instance = ownship_.config().instance;
@@ -182,6 +183,9 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
   } else {
     tail = flight.orbit_after(path, plan->timed.tail_curvature_per_m, hazards);
     if (!tail) return Why{Reason::path_barred};
+  }
+  if (!ownship_.stays_in_fence(plan->timed.path) || !ownship_.stays_in_fence(path, *tail)) {
+    return Why{Reason::outside_fence};
   }
   if (!flight.continue_with(start, path, *tail, now, pace)) {
     return Why{Reason::path_too_long};

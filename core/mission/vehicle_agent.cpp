@@ -72,6 +72,7 @@ void VehicleAgent::Impl::step(Instant now) {
   if (const auto site = scout_.fly(now)) leader_.lead(*site, now);
   pump(now);
   watch_range(now);
+  watch_fence(now);
   idle(now);
   come_down(now);
   pump(now);
@@ -204,7 +205,7 @@ RouteStanding VehicleAgent::Impl::route_standing() const {
   const Failsafe::Facts& facts = failsafe_.facts();
   return {.orders_unknown = facts.orders_unknown,
           .setup_differs = facts.setup_differs,
-          .obeys_others = facts.ordered || facts.range_spent,
+          .obeys_others = facts.ordered || facts.range_spent || facts.left_fence,
           .has_task = flyer_.flying() || scout_.flying() || leader_.leading()};
 }
 
@@ -216,7 +217,7 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  const bool looks = separation_.watches() || lands_;
+  const bool looks = separation_.watches() || lands_ || ownship_.config().fence.exists();
   if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});

@@ -92,13 +92,23 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
 /// run that has begun is flown to its end: that was planned with the way home.
 void VehicleAgent::Impl::watch_range(Instant now) {
   // Who is on the way home leads as long as others fly what it awarded.
-  if (failsafe_.facts().range_spent) leader_.hand_on(coalition::Reason::out_of_range, now);
+  const Failsafe::Facts& facts = failsafe_.facts();
+  if (facts.range_spent) leader_.hand_on(coalition::Reason::out_of_range, now);
+  if (facts.left_fence) leader_.hand_on(coalition::Reason::outside_fence, now);
   say_last_words(now);
   if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
   const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});
   if (response == nullptr) return;
   outbox.report(ownship_.range_spent(now), {}, {}, now);
   respond(*response, now);
+}
+
+void VehicleAgent::Impl::watch_fence(Instant now) {
+  const bool known = failsafe_.facts().left_fence || ownship_.landing();
+  if (known || !ownship_.leaves_fence(now)) return;
+  const auto* response = failsafe_.update(now, {.left_fence = true});
+  outbox.report(event::VehicleTrouble{event::Trouble::left_fence}, {}, {}, now);
+  if (response != nullptr) respond(*response, now);
 }
 
 void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now) {

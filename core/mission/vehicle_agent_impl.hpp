@@ -67,6 +67,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] RouteStanding route_standing() const;
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
+  void watch_fence(Instant now);
   void watch_separation(Instant now);
   void respond(const Failsafe::Response& response, Instant now);
 

@@ -61,6 +61,7 @@ class AutopilotDouble {
       {"AIRSPEED_MAX", 100.0F}, {"AIRSPEED_CRUISE", 50.0F}, {"TECS_SPDWEIGHT", 0.0F}};
   int deaf_to_parameters = 0;  ///< so many questions get lost
   std::vector<mavlink::MissionItemInt> mission;
+  std::vector<mavlink::MissionItemInt> fence;
   int deaf_to_mission = 0;             ///< so many messages about it get lost
   std::uint8_t mission_result = 0;     ///< of MISSION_ACK
   std::optional<std::size_t> spoiled;  ///< that item is stored 11 m further north
@@ -249,25 +250,32 @@ class AutopilotDouble {
       --deaf_to_mission;
       return;
     }
-    const auto ask = [this](std::size_t seq) {
-      send(mavlink::MissionRequest{.seq = static_cast<std::uint16_t>(seq)});
+    const std::uint8_t kind = count  ? count->mission_type
+                              : item ? item->mission_type
+                              : list ? list->mission_type
+                                     : asked->mission_type;
+    auto& stored = kind == 1 ? fence : mission;
+    const auto ask = [this, kind](std::size_t seq) {
+      send(mavlink::MissionRequest{.seq = static_cast<std::uint16_t>(seq), .mission_type = kind});
     };
     if (count) {
-      mission.clear();
+      stored.clear();
       to_come_ = count->count;
       ask(0);
-    } else if (item && item->seq == mission.size()) {
-      if (spoiled == mission.size()) item->x += 1000;
+    } else if (item && item->seq == stored.size()) {
+      if (spoiled == stored.size()) item->x += 1000;
       item->param2 = std::trunc(item->param2);
-      mission.push_back(*item);
-      if (mission.size() < to_come_) return ask(mission.size());
+      stored.push_back(*item);
+      if (stored.size() < to_come_) return ask(stored.size());
       mavlink::MissionAck ack;
       ack.type = mission_result;
+      ack.mission_type = kind;
       send(ack);
     } else if (list) {
-      send(mavlink::MissionCount{.count = static_cast<std::uint16_t>(mission.size())});
-    } else if (asked && asked->seq < mission.size()) {
-      send(mission[asked->seq]);
+      send(mavlink::MissionCount{.count = static_cast<std::uint16_t>(stored.size()),
+                                 .mission_type = kind});
+    } else if (asked && asked->seq < stored.size()) {
+      send(stored[asked->seq]);
     }
   }
   /// Of one that it does not know it says nothing.

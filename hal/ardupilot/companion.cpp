@@ -134,7 +134,8 @@ void Companion::Impl::step(Instant now) {
   check_parameters(now);
   ask_others(now);
   keep_clock(now);
-  say_mission(now);
+  say_upload(fence_upload_, now);
+  say_upload(upload_, now);
   if (now >= heartbeat_at_) {
     heartbeat_at_ = std::max(heartbeat_at_ + kHeartbeatPeriod, now + kHeartbeatPeriod / 2);
     mavlink::Heartbeat heartbeat;
@@ -173,13 +174,17 @@ void Companion::Impl::prepare(Instant now) {
   for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
   const bool clock_known = clock_.synchronised() || now - *streams_asked_at_ >= kAskAgain / 2;
   const bool is_known = desk_.idle() && clock_known && looked_at_.health && motion_.sample();
-  if (is_known && parameters_.good()) fire(Event::ready, now);
+  const bool fenced = give_fence(now);
+  if (is_known && fenced && parameters_.good()) fire(Event::ready, now);
 }
 
 std::vector<ParameterQuestion> Companion::Impl::questions_of(const CompanionParams& params) {
   auto questions = safety_questions(params.airframe, params.system_id);
   for (ParameterQuestion& limit : limit_questions(params.vehicle, params.airframe)) {
     questions.push_back(std::move(limit));
+  }
+  for (ParameterQuestion& of_fence : fence_questions(params.vehicle, params.fence)) {
+    questions.push_back(std::move(of_fence));
   }
   return questions;
 }

@@ -65,6 +65,7 @@ void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
     if (const auto outcome = desk_.on_ack(*ack)) on_outcome(*outcome, now);
   } else {
     upload_.on_packet(packet, now);
+    fence_upload_.on_packet(packet, now);
   }
 }
 
@@ -368,6 +369,10 @@ void Companion::Impl::reset_link() {
   reasons_asked_at_.reset();
   looked_at_ = {};
   others_asked_ = 0;
+  fence_upload_.clear();
+  fence_again_at_ = Instant::min();
+  fence_failed_.clear();
+  told_fence_ = false;
 }
 
 }  // namespace skein::ardupilot

@@ -147,7 +147,9 @@ class Companion::Impl {
   void not_landed(std::string why, Instant now);
   void land(Instant now);
   void forget_landing();
-  void say_mission(Instant now);
+  /// True once the autopilot has it, or there is none.
+  bool give_fence(Instant now);
+  void say_upload(MissionUpload& upload, Instant now);
   void fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m, Instant now);
   /// With the time and the autopilot's address in it, when one is due.
   template <class Message>
@@ -256,8 +258,12 @@ class Companion::Impl {
   Instant speed_at_;
   std::optional<double> height_sent_;
   std::optional<Instant> height_at_;
-  MissionUpload upload_;            ///< of a plane's landing
-  std::optional<Landing> uploads_;  ///< what that is of
+  MissionUpload fence_upload_{MissionUpload::Kind::fence};
+  Instant fence_again_at_ = Instant::min();  ///< after one that failed
+  std::string fence_failed_;                 ///< why, while it is so
+  bool told_fence_ = false;
+  MissionUpload upload_{MissionUpload::Kind::mission};  ///< of a plane's landing
+  std::optional<Landing> uploads_;                      ///< what that is of
   bool told_upload_ = false;
   bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
   Instant upload_again_at_ = Instant::min();  ///< after one that failed

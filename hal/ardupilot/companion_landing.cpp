@@ -4,7 +4,7 @@
 
 #include "companion_impl.hpp"
 
-/// How a plane is landed, by a mission of the autopilot.
+/// What the autopilot is given to keep: its fence, and the mission by which a plane is landed.
 namespace skein::ardupilot {
 namespace {
 
@@ -69,9 +69,36 @@ void Companion::Impl::land(Instant now) {
   if (!entry_.mode_confirmed) ask_for_mode(land_mode(params_.airframe), now);
 }
 
-void Companion::Impl::say_mission(Instant now) {
-  upload_.step(now);
-  while (auto message = upload_.poll()) {
+bool Companion::Impl::give_fence(Instant now) {
+  if (!params_.fence.exists()) return true;
+  switch (fence_upload_.state()) {
+    case MissionUpload::State::verified:
+      if (!std::exchange(told_fence_, true)) {
+        fence_failed_.clear();
+        const auto corners = static_cast<std::uint16_t>(params_.fence.corners.size());
+        say(false, {.news = AutopilotNews::fence_uploaded, .number = corners}, now);
+      }
+      return true;
+    case MissionUpload::State::failed:
+      fence_failed_ = fence_upload_.why();
+      fence_again_at_ = now + kUploadAgain;
+      fence_upload_.clear();
+      break;
+    case MissionUpload::State::idle:
+      if (desk_.idle() && now >= fence_again_at_) {
+        fence_upload_.begin(fence_mission(params_.fence, origin_), now);
+      }
+      break;
+    case MissionUpload::State::sending:
+    case MissionUpload::State::reading:
+      break;
+  }
+  return false;
+}
+
+void Companion::Impl::say_upload(MissionUpload& upload, Instant now) {
+  upload.step(now);
+  while (auto message = upload.poll()) {
     std::visit(
         [this](auto& said) {
           said.target_system = system_;

@@ -46,6 +46,9 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
   for (std::string& finding : parameters_.findings()) {
     all.push_back({.news = parameter_news(), .detail = std::move(finding)});
   }
+  if (!fence_failed_.empty()) {
+    all.push_back({.news = AutopilotNews::fence_not_uploaded, .detail = fence_failed_});
+  }
   if (now - position_good_at_ >= kPatience) all.push_back({AutopilotNews::no_position});
   for (const auto& reason : pre_arm_.texts()) {
     all.push_back({.news = AutopilotNews::pre_arm, .detail = reason.text});

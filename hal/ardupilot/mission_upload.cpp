@@ -18,13 +18,6 @@ constexpr Duration kSayAgain = std::chrono::milliseconds{500};
 constexpr float kSameHeight_m = 0.02F;
 constexpr float kSameRadius_m = 0.5F;
 
-bool same(const MissionItemInt& a, const MissionItemInt& b) {
-  const auto turns = static_cast<std::uint16_t>(Command::nav_loiter_to_alt);
-  return a.seq == b.seq && a.command == b.command && a.frame == b.frame && a.x == b.x &&
-         a.y == b.y && std::abs(a.z - b.z) <= kSameHeight_m &&
-         (a.command != turns || std::abs(a.param2 - b.param2) <= kSameRadius_m);
-}
-
 }  // namespace
 
 std::vector<MissionItemInt> landing_mission(const Landing& landing, const MissionOrigin& origin) {
@@ -52,15 +45,41 @@ std::vector<MissionItemInt> landing_mission(const Landing& landing, const Missio
   return items;
 }
 
+std::vector<MissionItemInt> fence_mission(const Fence& fence, const MissionOrigin& origin) {
+  std::vector<MissionItemInt> items;
+  for (const Vec2& corner : fence.corners) {
+    const Wgs84 at = origin.to_wgs84({corner.x(), corner.y(), 0.0});
+    MissionItemInt& item = items.emplace_back();
+    item.seq = static_cast<std::uint16_t>(items.size() - 1);
+    item.command = static_cast<std::uint16_t>(Command::nav_fence_polygon_vertex_inclusion);
+    item.param1 = static_cast<float>(fence.corners.size());
+    item.x = static_cast<std::int32_t>(std::lround(at.latitude_deg * 1e7));
+    item.y = static_cast<std::int32_t>(std::lround(at.longitude_deg * 1e7));
+    item.mission_type = static_cast<std::uint8_t>(MissionUpload::Kind::fence);
+  }
+  return items;
+}
+
+/// Of a fence it keeps neither heights nor frames.
+bool MissionUpload::same(const MissionItemInt& a, const MissionItemInt& b) const {
+  const bool there = a.seq == b.seq && a.command == b.command && a.x == b.x && a.y == b.y;
+  if (!there || kind_ == Kind::fence) return there && a.param1 == b.param1;
+  const auto turns = static_cast<std::uint16_t>(Command::nav_loiter_to_alt);
+  return a.frame == b.frame && std::abs(a.z - b.z) <= kSameHeight_m &&
+         (a.command != turns || std::abs(a.param2 - b.param2) <= kSameRadius_m);
+}
+
 void MissionUpload::begin(std::vector<MissionItemInt> items, Instant now) {
   clear();
   items_ = std::move(items);
   state_ = State::sending;
   go_on(now);
-  say(mavlink::MissionCount{.count = static_cast<std::uint16_t>(items_.size())}, now);
+  say(mavlink::MissionCount{.count = static_cast<std::uint16_t>(items_.size()),
+                            .mission_type = type()},
+      now);
 }
 
-void MissionUpload::clear() { *this = {}; }
+void MissionUpload::clear() { *this = MissionUpload{kind_}; }
 
 void MissionUpload::say(const Message& message, Instant now) {
   out_.push_back(message);
@@ -74,15 +93,15 @@ void MissionUpload::fail(std::string why) {
 
 void MissionUpload::on_packet(const mavlink::Packet& packet, Instant now) {
   if (const auto asked = mavlink::decode<mavlink::MissionRequest>(packet)) {
-    if (asked->mission_type == 0) on_request(asked->seq, now);
+    if (asked->mission_type == type()) on_request(asked->seq, now);
   } else if (const auto as_int = mavlink::decode<mavlink::MissionRequestInt>(packet)) {
-    if (as_int->mission_type == 0) on_request(as_int->seq, now);
+    if (as_int->mission_type == type()) on_request(as_int->seq, now);
   } else if (const auto ack = mavlink::decode<mavlink::MissionAck>(packet)) {
-    if (ack->mission_type == 0) on_ack(*ack, now);
+    if (ack->mission_type == type()) on_ack(*ack, now);
   } else if (const auto count = mavlink::decode<mavlink::MissionCount>(packet)) {
-    if (count->mission_type == 0) on_count(*count, now);
+    if (count->mission_type == type()) on_count(*count, now);
   } else if (const auto item = mavlink::decode<MissionItemInt>(packet)) {
-    if (item->mission_type == 0) on_item(*item, now);
+    if (item->mission_type == type()) on_item(*item, now);
   }
 }
 
@@ -96,7 +115,8 @@ void MissionUpload::on_request(std::uint16_t seq, Instant now) {
 void MissionUpload::on_ack(const mavlink::MissionAck& ack, Instant now) {
   if (state_ != State::sending) return;
   if (ack.type != static_cast<std::uint8_t>(mavlink::MissionResult::accepted)) {
-    return fail("the autopilot refuses the mission (MISSION_ACK " + std::to_string(ack.type) + ")");
+    return fail("the autopilot refuses the " + name() + " (MISSION_ACK " +
+                std::to_string(ack.type) + ")");
   }
   if (!requested_) return;  // of something else
   state_ = State::reading;
@@ -106,9 +126,9 @@ void MissionUpload::on_ack(const mavlink::MissionAck& ack, Instant now) {
 
 void MissionUpload::read(Instant now) {
   if (counted_) {
-    say(mavlink::MissionRequestInt{.seq = next_}, now);
+    say(mavlink::MissionRequestInt{.seq = next_, .mission_type = type()}, now);
   } else {
-    say(mavlink::MissionRequestList{}, now);
+    say(mavlink::MissionRequestList{.mission_type = type()}, now);
   }
 }
 
@@ -119,7 +139,7 @@ void MissionUpload::on_count(const mavlink::MissionCount& count, Instant now) {
                 std::to_string(items_.size()));
   }
   counted_ = true;
-  next_ = 1;  // the first is the autopilot's home
+  next_ = kind_ == Kind::mission ? 1 : 0;  // the first of a mission is the autopilot's home
   go_on(now);
   read(now);
 }
@@ -132,20 +152,22 @@ void MissionUpload::on_item(const MissionItemInt& item, Instant now) {
   }
   go_on(now);
   if (++next_ < items_.size()) return read(now);
-  say(mavlink::MissionAck{}, now);
+  say(mavlink::MissionAck{.mission_type = type()}, now);
   state_ = State::verified;
 }
 
 void MissionUpload::step(Instant now) {
   if (state_ != State::sending && state_ != State::reading) return;
   if (now - progress_at_ > kPatience) {
-    return fail("the autopilot does not answer about its mission");
+    return fail("the autopilot does not answer about its " + name());
   }
   if (now < again_at_) return;
   if (state_ == State::reading) return read(now);
   // Once it asks, it asks again for what it has not got.
   if (!requested_) {
-    say(mavlink::MissionCount{.count = static_cast<std::uint16_t>(items_.size())}, now);
+    say(mavlink::MissionCount{.count = static_cast<std::uint16_t>(items_.size()),
+                              .mission_type = type()},
+        now);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/idl/domain.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -24,8 +25,12 @@ inline constexpr std::uint16_t kLandFromItem = 2;
 [[nodiscard]] std::vector<mavlink::MissionItemInt> landing_mission(const Landing& landing,
                                                                    const MissionOrigin& origin);
 
-/// Gives an autopilot a mission, reads it back and compares. What is lost is said again; where
-/// nothing goes on for kPatience, it has failed. https://mavlink.io/en/services/mission.html
+/// A fence's corners, for the autopilot to stay within (NAV_FENCE_POLYGON_VERTEX_INCLUSION).
+[[nodiscard]] std::vector<mavlink::MissionItemInt> fence_mission(const Fence& fence,
+                                                                 const MissionOrigin& origin);
+
+/// Gives an autopilot a mission or a fence, reads it back and compares. What is lost is said again;
+/// where nothing goes on for kPatience, it has failed. https://mavlink.io/en/services/mission.html
 class MissionUpload {
  public:
   enum class State : std::uint8_t { idle, sending, reading, verified, failed };
@@ -33,7 +38,9 @@ class MissionUpload {
       std::variant<mavlink::MissionCount, mavlink::MissionItemInt, mavlink::MissionRequestList,
                    mavlink::MissionRequestInt, mavlink::MissionAck>;
   static constexpr Duration kPatience = std::chrono::seconds{5};
+  enum class Kind : std::uint8_t { mission = 0, fence = 1 };  ///< MAV_MISSION_TYPE
 
+  explicit MissionUpload(Kind kind) : kind_{kind} {}
   void begin(std::vector<mavlink::MissionItemInt> items, Instant now);
   void clear();
   void on_packet(const mavlink::Packet& packet, Instant now);
@@ -55,6 +62,12 @@ class MissionUpload {
   void on_item(const mavlink::MissionItemInt& item, Instant now);
   void read(Instant now);
 
+  [[nodiscard]] std::uint8_t type() const { return static_cast<std::uint8_t>(kind_); }
+  [[nodiscard]] std::string name() const { return kind_ == Kind::fence ? "fence" : "mission"; }
+  [[nodiscard]] bool same(const mavlink::MissionItemInt& read,
+                          const mavlink::MissionItemInt& said) const;
+
+  Kind kind_;
   State state_ = State::idle;
   std::vector<mavlink::MissionItemInt> items_;
   bool requested_ = false;  ///< the autopilot asks for items, and asks again by itself

@@ -71,6 +71,41 @@ std::vector<ParameterQuestion> safety_questions(Airframe airframe, std::uint8_t 
   return questions;
 }
 
+std::vector<ParameterQuestion> fence_questions(const VehicleSpec& vehicle, const Fence& fence) {
+  if (!fence.exists()) return {};
+  struct Wanted {
+    std::string_view name;
+    std::function<bool(double)> is_good;
+    std::string why;
+    std::string good;
+  };
+  const double least_m = vehicle.height_m;
+  const double most_m = fence.height_max_m;
+  // Bits of FENCE_TYPE: 0 is the greatest height, 2 polygons.
+  constexpr int kTypes = 5;
+  const std::array wanted{
+      Wanted{"FENCE_ENABLE", [](double v) { return v == 1.0; }, "the autopilot keeps no fence",
+             "1"},
+      Wanted{"FENCE_ACTION", [](double v) { return v >= 1.0; }, "it only tells what it leaves",
+             "1"},
+      Wanted{"FENCE_TYPE",
+             [](double v) { return v >= 0.0 && (static_cast<int>(v) & kTypes) == kTypes; },
+             "it does not keep both polygon and height", "5"},
+      Wanted{"FENCE_ALT_MAX", [=](double v) { return v > least_m && v <= most_m; },
+             fmt::format("the fence's height is {:g} m, and the vehicle's {:g} m", most_m, least_m),
+             fmt::format("{:g}", most_m)}};
+  std::vector<ParameterQuestion> questions;
+  for (const Wanted& w : wanted) {
+    const auto judge = [w](std::string_view name, float value) -> std::optional<std::string> {
+      if (w.is_good(static_cast<double>(value))) return std::nullopt;
+      return fmt::format("{} is {:g}, so {}; set it to {}", name, value, w.why, w.good);
+    };
+    questions.push_back(
+        {w.name, "", judge, fmt::format("it does not tell {}, which must be {}", w.name, w.good)});
+  }
+  return questions;
+}
+
 std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle, Airframe airframe) {
   std::vector<ParameterQuestion> questions;
   for (const LimitParameter& parameter : limit_parameters(airframe)) {

@@ -11,6 +11,7 @@
 
 #include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/vehicle.hpp"
 
 namespace skein::ardupilot {
@@ -37,6 +38,9 @@ struct ParameterQuestion {
 };
 [[nodiscard]] std::vector<ParameterQuestion> safety_questions(Airframe airframe,
                                                               std::uint8_t system_id);
+/// Of the autopilot's own fence; none where there is none.
+[[nodiscard]] std::vector<ParameterQuestion> fence_questions(const VehicleSpec& vehicle,
+                                                             const Fence& fence);
 /// Of what limits the vehicle (flight_limits.hpp).
 [[nodiscard]] std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle,
                                                              Airframe airframe);

@@ -30,6 +30,14 @@ constexpr Duration kReasonsWithin = milliseconds{1500};
 constexpr std::array<std::string_view, 3> kOthers{"FENCE_ENABLE", "ARMING_CHECK", "TKOFF_ALT"};
 constexpr int kOthersAsked = 4;
 
+std::vector<ParameterQuestion> asked_before_flights(const CompanionParams& params) {
+  auto questions = safety_questions(params.airframe, params.system_id);
+  for (auto& of_fence : fence_questions(params.vehicle, params.fence)) {
+    questions.push_back(std::move(of_fence));
+  }
+  return questions;
+}
+
 }  // namespace
 
 class Survey::Impl {
@@ -39,7 +47,7 @@ class Survey::Impl {
         bus_{std::move(bus)},
         begun_{now},
         watch_{link_ids(params, bus_->name()), now, kWatchPatience},
-        parameters_{safety_questions(params.companion.airframe, params.companion.system_id)},
+        parameters_{asked_before_flights(params.companion)},
         encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer} {}
 
   bool step(Instant now) {

@@ -81,6 +81,9 @@ std::vector<std::string> flight_controller_command(
           "--turbulence", number(wind.gust_mps),
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
+  if (vehicle.fence.exists()) {
+    command.insert(command.end(), {"--fence-height", number(vehicle.fence.height_max_m)});
+  }
   if (truth_port) command.insert(command.end(), {"--truth", std::to_string(*truth_port)});
   for (const configuration::Fault& fault : faults) {
     if (fault.kind != configuration::FaultKind::battery || fault.vehicle != spec.id) continue;

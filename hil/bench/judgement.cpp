@@ -27,6 +27,7 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
   }
   record.sites = scenario.sites;
   for (const auto& h : scenario.hazards) record.hazards.push_back({h.hazard, h.known_from});
+  record.fence = scenario.fence;
   for (const auto& v : scenario.vehicles) record.vehicles.push_back(v.spec);
   record.lost = killed;
   auto recordings = recording::read_run(run_folder);

@@ -145,6 +145,12 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   set("SIM_WIND_SPD", wind.speed_mps);
   set("SIM_WIND_DIR", compass_deg_from_heading(wind.from_rad));
   set("SIM_WIND_TURB", wind.gust_mps);
+  if (vehicle.fence.exists()) {
+    set("FENCE_ENABLE", 1);
+    set("FENCE_ACTION", 1);
+    set("FENCE_TYPE", 5);  // greatest height, and polygons
+    set("FENCE_ALT_MAX", vehicle.fence.height_max_m);
+  }
   if (spec.is_copter()) {
     set("FS_GCS_ENABLE", 1);
     return text;

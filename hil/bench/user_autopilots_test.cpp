@@ -67,6 +67,15 @@ TEST(UserAutopilots, AreGivenWhatTheVehicleAsksOfThem) {
   EXPECT_THAT(text, HasSubstr("ROLL_LIMIT_DEG 54\n"));
 }
 
+TEST(UserAutopilots, KeepTheFenceOfTheTeam) {
+  configuration::VehicleConfig fenced = vehicle();
+  fenced.fence.corners = {{-100.0, -100.0}, {500.0, -100.0}, {0.0, 500.0}};
+  fenced.fence.height_max_m = 350.0;
+  EXPECT_THAT(autopilot_parameters(fenced),
+              HasSubstr("FENCE_ENABLE 1\nFENCE_ACTION 1\nFENCE_TYPE 5\nFENCE_ALT_MAX 350\n"));
+  EXPECT_THAT(autopilot_parameters(vehicle()), testing::Not(HasSubstr("FENCE_")));
+}
+
 TEST(UserAutopilots, StartWhereTheVehicleDoesWithParametersOfItsAirframe) {
   const auto autopilots = user_autopilots({program("arduplane")}, {});
   ASSERT_TRUE(autopilots);

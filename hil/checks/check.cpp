@@ -62,6 +62,7 @@ std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
         check_deliveries, check_surveys, check_assessments}) {
     results.push_back(check(record, limits));
   }
+  if (auto fence = check_fence(record)) results.push_back(*std::move(fence));
   return results;
 }
 

@@ -280,4 +280,30 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
   return result;
 }
 
+std::optional<CheckResult> check_fence(const RunRecord& record) {
+  if (!record.fence.exists()) return std::nullopt;
+  CheckResult result{"fence", "nobody is outside of the fence", 0, "tracks", "", {}};
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Recording& recorded : record.recordings) {
+    ++result.judged;
+    const recording::TrackPoint* worst = nullptr;
+    double deepest_m = 0.0;
+    for (const auto& sample : recorded.track) {
+      const VehicleState& s = sample.state;
+      const double inside_m =
+          std::min(record.fence.inside_m({s.x_m, s.y_m}), record.fence.height_max_m - s.z_m);
+      least_m = std::min(least_m, inside_m);
+      if (inside_m >= deepest_m) continue;
+      deepest_m = inside_m;
+      worst = &sample;
+    }
+    if (worst == nullptr) continue;
+    result.violations.push_back({recorded.vehicle, worst->state.time,
+                                 vehicle_name(recorded.vehicle) + " was " + fixed(-deepest_m, 1) +
+                                     " m outside of the fence " + at(worst->state.time)});
+  }
+  if (std::isfinite(least_m)) result.measured = "least distance to it " + fixed(least_m, 1) + " m";
+  return result;
+}
+
 }  // namespace skein::checks

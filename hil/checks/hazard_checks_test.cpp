@@ -34,6 +34,21 @@ TEST(HazardChecks, AHazardBesideTheWayIsNone) {
   EXPECT_EQ(result.measured, "least clearance flown 1.0 m");
 }
 
+TEST(HazardChecks, WhoIsOutsideOfTheFenceIsFound) {
+  RunRecord record = good_record();
+  EXPECT_FALSE(check_fence(record)) << "there is none";
+  record.fence.corners = {{-4e4, -4e4}, {4e4, -4e4}, {4e4, 4e4}, {-4e4, 4e4}};
+  record.fence.height_max_m = 1000.0;
+  EXPECT_TRUE(check_fence(record)->held());
+  auto& track = of(record, kSurveyor).track;
+  track[track.size() / 2].state.z_m = 1010.0;
+  const auto above = check_fence(record);
+  ASSERT_EQ(above->violations.size(), 1U);
+  EXPECT_THAT(above->violations[0].sentence, HasSubstr("10.0 m outside of the fence"));
+  track[track.size() / 2].state.x_m = 4.1e4;
+  EXPECT_THAT(check_fence(record)->violations[0].sentence, HasSubstr("1000.0 m outside"));
+}
+
 TEST(HazardChecks, TheHoldIsJudgedToo) {
   RunRecord record = good_record();
   auto& plan = of(record, kSurveyor).plans.front().plan;

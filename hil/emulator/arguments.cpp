@@ -156,6 +156,10 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--turbulence", c.turbulence_mps,
                  "Short gusts as ArduPilot's simulator makes them with this SIM_WIND_TURB, m/s")
       ->capture_default_str();
+  app.add_option("--fence-height", c.fence_height_m,
+                 "It keeps a fence: FENCE_ALT_MAX, m above home, and the polygon that it is given;\n"
+                 "beyond it returns (RTL). 0: FENCE_ENABLE is 0")
+      ->capture_default_str();
   app.add_option("--seed", c.seed, "Of gusts and sensor noise")->capture_default_str();
   app.add_flag("--no-noise", t.no_noise, "Sensors without noise");
   app.add_option("--truth", a.truth_port,

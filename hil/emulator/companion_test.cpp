@@ -56,12 +56,28 @@ class WireBus final : public can::Bus {
 
 class Bench {
  public:
-  explicit Bench(const EmulatorConfig& config) : Bench{config, config} {}
+  static ardupilot::CanLinkParams params(const EmulatorConfig& config) {
+    const bool plane = config.airframe == Airframe::plane;
+    ardupilot::CanLinkParams p;
+    p.companion.airframe = plane ? ardupilot::Airframe::plane : ardupilot::Airframe::copter;
+    p.companion.take_over = ardupilot::TakeOver::in_flight;
+    VehicleSpec& spec = p.companion.vehicle;
+    spec.id = VehicleId{1};
+    spec.cruise_speed_mps = config.airspeed_mps;
+    spec.speed_min_mps = plane ? 42.5 : 0.0;
+    spec.speed_max_mps = plane ? 57.5 : 10.0;
+    spec.turn_radius_m = plane ? config.turn_radius_m : 20.0;
+    spec.heading_gain_per_s = 1.5;
+    spec.height_m = config.height_m;
+    return p;
+  }
+
+  explicit Bench(const EmulatorConfig& config) : Bench{config, params(config)} {}
   /// With a companion that looks for another one.
-  Bench(const EmulatorConfig& config, const EmulatorConfig& expected)
+  Bench(const EmulatorConfig& config, const ardupilot::CanLinkParams& expected)
       : controller_{EmulatedFlightController::make(config, Instant{}).value()},
-        link_{std::make_unique<WireBus>(up_, down_), params(expected),
-              MissionOrigin::make(kOrigin).value(), Instant{}} {}
+        link_{std::make_unique<WireBus>(up_, down_), expected, MissionOrigin::make(kOrigin).value(),
+              Instant{}} {}
 
   void run(double seconds) {
     const Instant end = now_ + from_seconds(seconds);
@@ -85,22 +101,6 @@ class Bench {
   Setpoint setpoint;
 
  private:
-  static ardupilot::CanLinkParams params(const EmulatorConfig& config) {
-    const bool plane = config.airframe == Airframe::plane;
-    ardupilot::CanLinkParams p;
-    p.companion.airframe = plane ? ardupilot::Airframe::plane : ardupilot::Airframe::copter;
-    p.companion.take_over = ardupilot::TakeOver::in_flight;
-    VehicleSpec& spec = p.companion.vehicle;
-    spec.id = VehicleId{1};
-    spec.cruise_speed_mps = config.airspeed_mps;
-    spec.speed_min_mps = plane ? 42.5 : 0.0;
-    spec.speed_max_mps = plane ? 57.5 : 10.0;
-    spec.turn_radius_m = plane ? config.turn_radius_m : 20.0;
-    spec.heading_gain_per_s = 1.5;
-    spec.height_m = config.height_m;
-    return p;
-  }
-
   void tick() {
     now_ += std::chrono::milliseconds{5};
     if (++ticks_ % 4 == 0) companion().command(setpoint, now_);
@@ -189,6 +189,24 @@ constexpr Landing kIntoWind{.x_m = 1000.0,
                             .approach_m = 600.0,
                             .approach_height_m = 40.0,
                             .radius_m = 165.0};
+
+TEST(CompanionAndEmulator, BeyondItsFenceTheAutopilotReturnsAndIsNotTakenBack) {
+  EmulatorConfig config = plane_in_wind();
+  config.fence_height_m = 400.0;
+  ardupilot::CanLinkParams companion = Bench::params(config);
+  companion.companion.fence.corners = {{0.0, 0.0}, {2000.0, 0.0}, {2000.0, 2600.0}, {0.0, 2600.0}};
+  companion.companion.fence.height_max_m = 400.0;
+  Bench bench{config, companion};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  EXPECT_NE(bench.log().find("has the fence: 4 corners"), std::string::npos) << bench.log();
+  ASSERT_TRUE(bench.run_until(State::piloted, 20.0)) << "600 m to the north at 50 m/s";
+  EXPECT_NEAR(bench.state().y_m, 2600.0, 40.0);
+  EXPECT_NE(bench.log().find("Polygon fence breached"), std::string::npos) << bench.log();
+  bench.run(20.0);
+  EXPECT_LT(bench.state().y_m, 2600.0) << "by the autopilot itself";
+  EXPECT_EQ(bench.companion().state(), State::piloted);
+}
 
 TEST(CompanionAndEmulator, APlaneLandsByAMissionAndIsDisarmed) {
   Bench bench{plane_in_wind()};
@@ -310,7 +328,7 @@ class NothingIsSilent : public ::testing::TestWithParam<Misfit> {};
 TEST_P(NothingIsSilent, ItIsToldWithinFiveSecondsWithItsRemedyAndOnceAMinute) {
   EmulatorConfig config = plane_in_wind();
   GetParam().make(config);
-  Bench bench{config, {}};
+  Bench bench{config, Bench::params({})};
   bench.run(5.0);
   EXPECT_EQ(count(bench.log(), GetParam().said), 1) << bench.log();
   ASSERT_FALSE(bench.companion().troubles().empty());

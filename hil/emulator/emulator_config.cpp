@@ -102,6 +102,9 @@ Result<void> check(const EmulatorConfig& c) {
     return Error{fmt::format("wind {:g} m/s, gusts of {:g} m/s: 0 to 25 can be flown",
                              c.wind_mps.norm(), c.gusts_wind_mps)};
   }
+  if (!(c.fence_height_m >= 0.0 && c.fence_height_m <= 10'000.0)) {
+    return Error{fmt::format("a fence of {:g} m: 0 to 10000 can be kept", c.fence_height_m)};
+  }
   if (!(c.turbulence_mps >= 0.0 && c.turbulence_mps <= 20.0)) {
     return Error{fmt::format("turbulence of {:g} m/s: 0 to 20 can be flown", c.turbulence_mps)};
   }

@@ -73,6 +73,9 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
       port_{port},
       booted_{booted},
       encoder_{config.system_id, mavlink::kComponentAutopilot},
+      fence_{config.fence_height_m},
+      mission_{0, [this](auto items) { return vehicle_.load_mission(items); }},
+      fence_store_{1, [this](auto items) { return fence_.load(items, earth_); }},
       timesync_at_{now + kTimesyncInterval},
       refusal_told_at_{now} {
   for (const std::uint32_t id : telemetry_ids()) {
@@ -99,7 +102,12 @@ void MavlinkEndpoint::step(Instant now) {
   while (const auto notice = vehicle_.poll_notice()) {
     say(static_cast<mavlink::Severity>(notice->severity), notice->text);
   }
-  say_mission(now);
+  say_mission(mission_, now);
+  say_mission(fence_store_, now);
+  if (const auto breach = fence_.news(vehicle_.report())) {
+    say(mavlink::Severity::notice, std::string{*breach});
+    (void)vehicle_.select_mode(mode_named(config_.airframe, "RTL").value());
+  }
   for (Stream& stream : streams_) {
     if (stream.interval == Duration{} || now < stream.due) continue;
     stream.due = std::max(stream.due + stream.interval, now);
@@ -145,14 +153,14 @@ void MavlinkEndpoint::on_packet(const mavlink::Packet& packet, Instant now) {
     if (for_us(global->target_system, global->target_component)) {
       vehicle_.on_position_target(*global, now);
     }
-  } else if (mission_.on_packet(packet, vehicle_, now)) {
+  } else if (mission_.on_packet(packet, now) || fence_store_.on_packet(packet, now)) {
     mission_system_ = packet.system;
     mission_component_ = packet.component;
   }
 }
 
-void MavlinkEndpoint::say_mission(Instant now) {
-  while (auto answer = mission_.poll(now)) {
+void MavlinkEndpoint::say_mission(MissionStore& store, Instant now) {
+  while (auto answer = store.poll(now)) {
     std::visit(
         [this](auto& said) {
           said.target_system = mission_system_;
@@ -290,7 +298,8 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
     mavlink::ParamType type = mavlink::ParamType::int8;
   };
   constexpr auto kReal = mavlink::ParamType::real32;
-  const std::array<Parameter, 9> parameters{{
+  const bool fenced = fence_.enabled();
+  const std::array<Parameter, 13> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -300,6 +309,10 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
       {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
       {is_plane ? "TECS_SPDWEIGHT" : "", 0.0, kReal},
+      {"FENCE_ENABLE", fenced ? 1.0 : 0.0},
+      {"FENCE_ACTION", 1.0},
+      {"FENCE_TYPE", 5.0},
+      {"FENCE_ALT_MAX", config_.fence_height_m, kReal},
   }};
   const auto known = std::ranges::find(parameters, name, &Parameter::name);
   if (name.empty() || known == parameters.end() ||

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fence_keeper.hpp"
 #include "mission_store.hpp"
 #include "skein/dronecan/tunnel.hpp"
 #include "skein/hil/emulator_config.hpp"
@@ -51,7 +52,7 @@ class MavlinkEndpoint {
   mavlink::CommandResult tell_interval(const mavlink::CommandInt& command);
   mavlink::CommandResult send_once(std::uint32_t id, Instant now);
   mavlink::CommandResult restart(const mavlink::CommandInt& command, Instant now);
-  void say_mission(Instant now);
+  void say_mission(MissionStore& store, Instant now);
   void tell_parameter(std::string_view name);
   void on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet, Instant now);
   [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const;
@@ -69,7 +70,9 @@ class MavlinkEndpoint {
   Instant booted_;
   mavlink::Parser parser_;
   mavlink::Encoder encoder_;
+  FenceKeeper fence_;
   MissionStore mission_;
+  MissionStore fence_store_;
   std::uint8_t mission_system_ = 0;  ///< who is answered about the mission
   std::uint8_t mission_component_ = 0;
   std::vector<Stream> streams_;

@@ -281,6 +281,17 @@ TEST(ScenarioFile, LowerLevelsOfTheFleetOverrideHigherOnes) {
   EXPECT_EQ(s.vehicles[2].type, "carrier");
 }
 
+TEST(ScenarioFile, AFenceIsAPolygonWithoutCrossings) {
+  const auto with = [](const std::string& corners) {
+    return scenario_error("hazards:", "fence: {corners: " + corners + "}\nhazards:");
+  };
+  EXPECT_NE(with("[[0, 0], [1, 0]]").find("has fewer than three corners"), std::string::npos);
+  EXPECT_NE(with("[[0, 0], [9, 9], [9, 0], [0, 9]]").find("crosses or touches itself"),
+            std::string::npos);
+  EXPECT_NE(with("[[0, 0], [9, 9]").find("s.yaml"), std::string::npos);
+  EXPECT_EQ(with("[[-100, -100], [3000, -100], [3000, 3000], [-100, 3000]]"), "no error");
+}
+
 TEST(ScenarioFile, HoldsSitesAndFaults) {
   const Scenario s = scenario();
   const Site& site = s.sites.at(0);
@@ -379,6 +390,15 @@ TEST(ScenarioCheck, SaysWhyAMissionIsImpossible) {
        "the final approach to site 1 on bearing 30 deg crosses hazard 1; move one of them or "
        "change "
        "the bearing"},
+      {"hazards:",
+       "fence: {corners: [[-100, -100], [3000, -100], [3000, 1900], [-100, 1900]], height_max_m: 500}\nhazards:",
+       "site 1 is outside the fence; move it, or widen fence.corners"},
+      {"hazards:",
+       "fence: {corners: [[100, -100], [3000, -100], [3000, 3000], [100, 3000]], height_max_m: "
+       "115}\nhazards:",
+       "vehicle 1 starts outside the fence; move it, or widen fence.corners\n"
+       "vehicle 2 starts outside the fence; move it, or widen fence.corners\n"
+       "vehicle 3 flies at 120 m, fence.height_max_m is 115 m; lower its height_m or raise that"},
       {"sensor_radius_m: 300", "sensor_radius_m: 160",
        "vehicle 1 cannot fly circles of its sensor_radius_m 160 m: it turns on 165 m "
        "(turn_radius_m "

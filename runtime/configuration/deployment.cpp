@@ -93,6 +93,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     for (const ScenarioHazard& hazard : scenario.hazards) {
       if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
     }
+    config.fence = scenario.fence;
     config.formation = scenario.formation;
     config.formation.script.clear();
     config.time = deployment.time;

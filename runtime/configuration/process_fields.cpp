@@ -221,6 +221,37 @@ void search_list(FieldVisitor& v, std::vector<Vec2>& search) {
                  [](FieldVisitor& inner, Vec2& point) { inner.point({}, kMetres, point); }));
 }
 
+void fence_section(FieldVisitor& v, Fence& fence) {
+  v.section({"fence", "where vehicles may be; what happens at it: docs/protocol.md"},
+            [&fence](FieldVisitor& inner) {
+              inner.list(
+                  {"corners", "of a polygon whose edges do not cross; none: no fence"},
+                  list_of(fence.corners, Fence::kCornersMax, [](FieldVisitor& point, Vec2& corner) {
+                    point.point({}, kMetres, corner);
+                  }));
+              inner.number({"height_max_m", "above the origin"}, {10.0, 10'000.0, "m"},
+                           fence.height_max_m);
+              inner.require(fence.corners.empty() || fence.corners.size() >= 3, "corners",
+                            "has fewer than three corners; give the polygon's, or none");
+              inner.require(fence.corners.size() < 3 || is_simple_polygon(fence.corners), "corners",
+                            "crosses or touches itself; give its corners in the order in which one "
+                            "walks around it");
+            });
+}
+
+/// What lies outside the fence is a mistake of the file.
+void fence_rules(FieldVisitor& v, const VehicleConfig& config) {
+  const Fence& fence = config.fence;
+  if (fence.corners.size() < 3) return;
+  v.require(fence.inside_m(config.start.position()) > 0.0, "start",
+            "is outside the fence; move it, or widen fence.corners");
+  const auto inside = [&fence](const Vec2& point) { return fence.inside_m(point) > 0.0; };
+  v.require(std::ranges::all_of(config.search, inside), "search",
+            "has a point outside the fence; move it, or widen fence.corners");
+  v.require(config.vehicle.height_m < fence.height_max_m, "vehicle.height_m",
+            "is not below fence.height_max_m; lower it or raise that");
+}
+
 void hazard_fields(FieldVisitor& v, Hazard& hazard) {
   id(v, {"id", "number of the hazard, its own", kRequired}, hazard.id);
   v.number({"east_m", "centre", kRequired}, kMetres, hazard.centre.x());
@@ -596,6 +627,8 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
+  fence_section(v, config.fence);
+  fence_rules(v, config);
   v.section({"detections", "what detectors on this machine tell"}, [&config](FieldVisitor& inner) {
     inner.text({"socket",
                 "path of the Unix datagram socket where they tell it (docs/detections.md), such as "

@@ -30,6 +30,8 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec);
 /// What turns may take of a plane, and turns and height of a copter that takes tasks; after spec
 /// and flight controller.
 void turn_rules(FieldVisitor& v, const VehicleSpec& spec, const std::string& prefix);
+/// Of the whole team.
+void fence_section(FieldVisitor& v, Fence& fence);
 void search_list(FieldVisitor& v, std::vector<Vec2>& search);
 void hazard_fields(FieldVisitor& v, Hazard& hazard);
 void site_fields(FieldVisitor& v, Site& site);

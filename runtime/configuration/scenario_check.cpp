@@ -170,6 +170,7 @@ class Check {
               " m/s with gusts reaches its speed_min_mps " + rounded(spec.speed_min_mps) +
               " m/s; lower the wind");
     }
+    if (s_.fence.exists()) check_in_fence(v);
     for (const ScenarioHazard& h : s_.hazards) {
       if ((v.start.position() - h.hazard.centre).norm() < h.hazard.radius_m) {
         problem(name(v) + " starts inside " + name(h) + "; move one of them");
@@ -180,6 +181,21 @@ class Check {
                   ", " + rounded(point.y()) + "] inside " + name(h) + "; move one of them");
         }
       }
+    }
+  }
+
+  void check_in_fence(const ScenarioVehicle& v) {
+    if (s_.fence.inside_m(v.start.position()) <= 0.0) {
+      problem(name(v) + " starts outside the fence; move it, or widen fence.corners");
+    }
+    for (const Vec2& point : v.search) {
+      if (s_.fence.inside_m(point) > 0.0) continue;
+      problem("the search route of " + name(v) + " has the point [" + rounded(point.x()) + ", " +
+              rounded(point.y()) + "] outside the fence; move it, or widen fence.corners");
+    }
+    if (v.spec.height_m >= s_.fence.height_max_m) {
+      problem(name(v) + " flies at " + rounded(v.spec.height_m) + " m, fence.height_max_m is " +
+              rounded(s_.fence.height_max_m) + " m; lower its height_m or raise that");
     }
   }
 
@@ -261,6 +277,9 @@ class Check {
               counted(either, "vehicle", "vehicles") + " can do either; add vehicles");
     }
     check_hazards_of(site);
+    if (s_.fence.exists() && s_.fence.inside_m(site.position) <= 0.0) {
+      problem(name(site) + " is outside the fence; move it, or widen fence.corners");
+    }
   }
 
   void check_hazards_of(const Site& site) {

@@ -227,6 +227,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   v.list({"hazards", "circles to keep out of"},
          unique_groups_of(s.hazards, kListMax, scenario_hazard_fields, "hazard",
                           [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));
+  fence_section(v, s.fence);
   operator_decisions_list(v, s.operator_decisions);
   formation_section(v, s.formation);
   routes_section(v, s.routes);

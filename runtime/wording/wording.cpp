@@ -89,6 +89,7 @@ constexpr std::array kReasons{
     std::string_view{"its setup is not the ground station's"},
     std::string_view{"it has started anew and does not know which orders stand"},
     std::string_view{"the operator has withdrawn the site"},
+    std::string_view{"the fence is in the way"},
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 
@@ -123,7 +124,8 @@ std::string_view sentence_of(event::Trouble trouble) {
       "it has started anew, and holds until it is told which orders stand",
       "a hazard bars its way down: it orbits at home, and is to be landed otherwise",
       "its circles would have to be wider in this wind than there is room for: it flies off their "
-      "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind"};
+      "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind",
+      "it has left its fence, or would soon: it flies home; 'resume' when it may go on"};
   return sentence_in(kSentences, trouble);
 }
 
@@ -263,6 +265,8 @@ constexpr std::array kAutopilotNews{
     std::string_view{"it is not landed, and flies on: {detail}"},
     std::string_view{"the landing is called off; going around"},
     std::string_view{"it is below {number} m: it lands, whatever was ordered since"},
+    std::string_view{"the autopilot has the fence: {number} corners, read back"},
+    std::string_view{"nothing is flown, as the fence is not the autopilot's: {detail}"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 

@@ -8,6 +8,7 @@
 
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/onboard_agent.hpp"
@@ -23,6 +24,7 @@ struct VehicleAgentConfig {
   std::vector<Vec2> search;  ///< waypoints of the search route; the vehicle orbits the last one
   std::optional<TimedPath> route;  ///< flown first, to its end unless a task comes between
   std::vector<Hazard> hazards;     ///< known before the mission
+  Fence fence;
   Duration status_period = std::chrono::seconds{1};
   /// Of a fixed wing: its plans are of one airspeed in the wind that it measures, and its turns so
   /// wide that they are held there. Else of one speed over the ground, as if its airspeed followed

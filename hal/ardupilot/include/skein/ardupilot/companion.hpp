@@ -16,6 +16,7 @@
 #include "skein/base/state_table.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/autopilot_notice.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -36,6 +37,7 @@ enum class TakeOver : std::uint8_t {
 
 struct CompanionParams {
   VehicleSpec vehicle;
+  Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself
   Airframe airframe = Airframe::plane;
   TakeOver take_over = TakeOver::when_guided;
   std::uint8_t system_id = 1;      ///< of the autopilot: SYSID_THISMAV; others are not heeded

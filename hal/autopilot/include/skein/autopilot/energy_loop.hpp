@@ -23,13 +23,13 @@ struct SlowEnergyTuning {
   double throttle_rate_per_s = 1.0;  ///< THR_SLEWRATE
   double vertical_acceleration_mps2 = 7.0;  ///< TECS_VERT_ACC: how the pitch asked for changes
   double time_s = 4.3;                      ///< what energy errors are taken back in by throttle
-  double pitch_time_s = 6.0;                ///< and by pitch: TECS_TIME_CONST is 5
+  double pitch_time_s = 10.0;               ///< and by pitch: TECS_TIME_CONST is 5
   double power_range = 167.0;               ///< m^2/s^3 that all of the throttle is taken to give
   double throttle_damping = 0.7;
   double throttle_integral_per_s = 0.3;
   double pitch_damping = 0.3;         ///< TECS_PTCH_DAMP
   double airspeed_lag_s = 1.4;        ///< of the airspeed that is asked for
-  double pitch_integral_per_s = 0.4;  ///< TECS_INTEG_GAIN is 0.3
+  double pitch_integral_per_s = 0.2;  ///< TECS_INTEG_GAIN is 0.3
 };
 
 /// What the airframe needs for level flight, and its limits.

@@ -19,7 +19,7 @@ enum class Command : std::uint16_t {
   run_prearm_checks = 401,
   get_home_position = 410, get_message_interval = 510, set_message_interval = 511,
   request_message = 512, request_autopilot_capabilities = 520, preflight_reboot_shutdown = 246,
-  do_set_mission_current = 224,
+  do_set_mission_current = 224, nav_fence_polygon_vertex_inclusion = 5001,
   guided_change_speed = 43000,     ///< ArduPilot
   guided_change_altitude = 43001,  ///< ArduPilot
   guided_change_heading = 43002,   ///< ArduPilot

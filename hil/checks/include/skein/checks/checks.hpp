@@ -49,6 +49,9 @@ struct CheckResult {
 /// excuse nothing.
 [[nodiscard]] CheckResult check_hazards(const RunRecord& record, const Limits& limits);
 
+/// Nobody is outside of the fence, to its side or above, until it lands. No result without a fence.
+[[nodiscard]] std::optional<CheckResult> check_fence(const RunRecord& record);
+
 /// Survey before deliveries before assessments, with the site's wait between the last two (eq. 14).
 [[nodiscard]] CheckResult check_precedence(const RunRecord& record, const Limits& limits);
 /// Tasks are leased and flown only by vehicles that can do their kind.

@@ -8,6 +8,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
@@ -49,6 +50,7 @@ struct RouteEnd {
 struct RunRecord {
   std::vector<Site> sites;
   std::vector<KnownHazard> hazards;
+  Fence fence = {};
   std::vector<VehicleSpec> vehicles;
   std::vector<recording::Recording> recordings;   ///< of vehicles, in any order
   std::vector<recording::Recording> truths = {};  ///< what simulated aircraft really did: tracks

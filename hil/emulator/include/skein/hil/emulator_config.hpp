@@ -46,6 +46,8 @@ struct EmulatorConfig {
   double airspeed_max_mps = 70.0;
   double turn_radius_m = 150.0;  ///< at cruise, that the bank limit must allow
 
+  double fence_height_m = 0.0;  ///< FENCE_ALT_MAX, with RTL beyond the fence; 0: FENCE_ENABLE 0
+
   double battery_mah = 16000.0;  ///< BATT_CAPACITY; 60 A at full throttle and 0.5 A besides
 
   Vec2 wind_mps{0.0, 0.0};      ///< where the air moves to, mission frame

@@ -21,6 +21,7 @@
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/site_config.hpp"
 #include "skein/configuration/vehicle_config.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -123,6 +124,7 @@ struct Scenario {
   std::vector<Site> sites;
   std::vector<SiteTemplate> site_templates;  ///< for the ground station
   std::vector<ScenarioHazard> hazards;
+  Fence fence;
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
   RoutesConfig routes;

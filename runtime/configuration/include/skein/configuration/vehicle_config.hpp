@@ -16,6 +16,7 @@
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/routes_config.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
@@ -83,6 +84,7 @@ struct VehicleConfig {
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
   std::vector<Hazard> hazards;    ///< known before the mission
+  Fence fence;                    ///< of the whole team
   FormationConfig formation;      ///< of a vehicle that flies in formation
   std::string detections_socket;  ///< path, where detectors tell of sites; empty: nowhere
   TimeConfig time;

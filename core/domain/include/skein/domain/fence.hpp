@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "skein/base/geometry.hpp"
+#include "skein/domain/path.hpp"
+
+namespace skein {
+
+/// Where vehicles may be: inside a polygon without crossings, and below a height. Mission frame, m.
+struct Fence {
+  static constexpr std::size_t kCornersMax = 32;
+
+  std::vector<Vec2> corners;    ///< in either sense; none: there is no fence
+  double height_max_m = 120.0;  ///< above the mission's origin
+
+  [[nodiscard]] bool exists() const { return !corners.empty(); }
+  /// How far a point is from the nearest edge; negative outside. Precondition: exists().
+  [[nodiscard]] double inside_m(const Vec2& point) const;
+  /// Is no point of the path outside? To kFenceStep_m. True where there is no fence.
+  [[nodiscard]] bool holds(const Path& path) const;
+
+  bool operator==(const Fence&) const = default;
+};
+
+/// Do no two edges of the polygon meet but at their common corner? Precondition: three corners.
+[[nodiscard]] bool is_simple_polygon(const std::vector<Vec2>& corners);
+
+}  // namespace skein
