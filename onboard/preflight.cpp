@@ -30,8 +30,13 @@ Checks check_bus(const configuration::VehicleConfig& config) {
                     {fail("CAN bus", "cannot be opened", std::move(bus).error().message)});
   }
   const auto begun = std::chrono::steady_clock::now();
+  auto params = can_params(config, unix_ns() / 1000);
+  if (!params) {
+    return in_group(CheckGroup::bus,
+                    {fail("MAVLink signing", "no key", std::move(params).error().message)});
+  }
   const auto now = [begun] { return Instant{std::chrono::steady_clock::now() - begun}; };
-  ardupilot::Survey survey{std::move(bus).value(), can_params(config), now()};
+  ardupilot::Survey survey{std::move(bus).value(), *params, now()};
   while (!survey.step(now())) {
     constexpr int kTick_ms = 5;
     pollfd item{survey.bus().descriptor(), POLLIN, 0};

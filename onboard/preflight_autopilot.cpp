@@ -78,6 +78,11 @@ class Judge {
           AutopilotNews::no_serial_port);
     layer(all, facts_.serial_heard, facts_.heartbeat.has_value(), "HEARTBEAT", "heard",
           "none heard", AutopilotNews::no_heartbeat);
+    const bool is_unsigned = facts_.trouble && facts_.trouble->news == AutopilotNews::not_signed;
+    if (!fc_.signing_key.empty()) {
+      layer(all, facts_.heartbeat.has_value() || is_unsigned, !is_unsigned, "MAVLink signing",
+            "signed with our key", "not signed with our key", AutopilotNews::not_signed);
+    }
     const bool other = facts_.trouble && facts_.trouble->news == AutopilotNews::other_system;
     layer(all, facts_.heartbeat.has_value() || other, !other, "system id",
           fmt::format("{}", fc_.system_id),

@@ -60,10 +60,12 @@ Result<FlightControllers> flight_controllers(const configuration::VehicleConfig&
   if (config.flight_controller.kind == configuration::FlightControllerKind::ardupilot) {
     auto origin = MissionOrigin::make(config.origin);
     if (!origin) return origin.error();
+    const auto params = can_params(config, config.time.epoch_unix_ns / 1000);
+    if (!params) return params.error();
     auto bus = can::open(config.flight_controller.ardupilot.can);
     if (!bus) return bus.error();
-    auto controller = std::make_unique<CanFlightController>(std::move(bus).value(),
-                                                            can_params(config), *origin, now);
+    auto controller =
+        std::make_unique<CanFlightController>(std::move(bus).value(), *params, *origin, now);
     made.on_can = controller.get();
     made.any = std::move(controller);
     return made;

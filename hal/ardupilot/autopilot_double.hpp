@@ -75,6 +75,12 @@ class AutopilotDouble {
   std::vector<Instant> target_times;
   int heartbeats = 0;
 
+  /// From now on it signs, and heeds nothing that is not signed.
+  void sign_with(const mavlink::SigningKey& key, mavlink::SigningTime time) {
+    parser_ = mavlink::Parser{{.key = key, .now = time, .accept_unsigned = false}};
+    encoder_.sign_with({key, 0, time});
+  }
+  [[nodiscard]] std::uint64_t bad_signatures() const { return parser_.statistics().bad_signature; }
   void hear(std::span<const std::uint8_t> bytes, Instant now) {
     parser_.parse(bytes, [this, now](const mavlink::Packet& packet) { on_packet(packet, now); });
   }

@@ -98,6 +98,7 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
 
 void Companion::Impl::step(Instant now) {
   watch_silence(now);
+  if (encoder_) sign_at(params_.signing, *encoder_, parser_, now);
   while (const auto outcome = desk_.give_up(now)) on_outcome(*outcome, now);
   if (refusal_ && now - refusal_at_ > kReasonWithin) report_refusal(now);
   switch (machine_.state()) {

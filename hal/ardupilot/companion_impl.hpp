@@ -47,6 +47,7 @@ class Companion::Impl {
   Impl(const CompanionParams& params, const MissionOrigin& origin, Instant now)
       : params_{params},
         origin_{origin},
+        parser_{parser_params(params.signing, now)},
         motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
         parameters_{questions_of(params)},
         frame_heard_{now},
@@ -131,6 +132,11 @@ class Companion::Impl {
   void watch_troubles(Instant now);
   [[nodiscard]] std::vector<AutopilotNotice> troubles_now(Instant now) const;
   [[nodiscard]] std::string not_told() const;
+  /// It hears packets, but none that are signed with its key.
+  [[nodiscard]] bool hears_unsigned() const {
+    return system_ == 0 && parser_.statistics().bad_signature > 0 &&
+           parser_.statistics().packets == 0;
+  }
   [[nodiscard]] bool fails_pre_arm() const;
   /// For the pilot, the operator, or what is missing, on the ground or in the air.
   [[nodiscard]] bool waits() const {

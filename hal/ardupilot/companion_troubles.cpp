@@ -36,7 +36,11 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
     return {{.news = AutopilotNews::duplicate_node, .number = duplicate_node_}};
   }
   std::vector<AutopilotNotice> all;
-  if (link_trouble_) all.push_back(*link_trouble_);
+  if (hears_unsigned()) {
+    all.push_back({AutopilotNews::not_signed});
+  } else if (link_trouble_) {
+    all.push_back(*link_trouble_);
+  }
   if (machine_.in(State::refused) && wrong_) all.push_back(*wrong_);
   if (machine_.in(State::preparing) && now - entry_.at >= kPatience) {
     if (auto missing = not_told(); !missing.empty()) {

@@ -48,7 +48,8 @@ class Survey::Impl {
         begun_{now},
         watch_{link_ids(params, bus_->name()), now, kWatchPatience},
         parameters_{asked_before_flights(params.companion)},
-        encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer} {}
+        encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer},
+        parser_{parser_params(params.companion.signing, now)} {}
 
   bool step(Instant now) {
     receive(now);
@@ -63,6 +64,7 @@ class Survey::Impl {
     }
     if (facts_.heartbeat && now >= ask_at_) {
       ask_at_ = now + kAskPeriod;
+      sign_at(params_.companion.signing, encoder_, parser_, now);
       ask(now);
     }
     transmit(now);
@@ -211,6 +213,9 @@ class Survey::Impl {
     facts_.nodes.assign(nodes_.begin(), nodes_.end());
     facts_.node_heard = nodes_.contains(params_.node_id);
     if (!facts_.heartbeat) facts_.trouble = watch_.trouble(now);
+    if (!facts_.heartbeat && parser_.statistics().bad_signature > 0) {
+      facts_.trouble = AutopilotNotice{AutopilotNews::not_signed};
+    }
     if (facts_.heartbeat) facts_.safety = parameters_.tested();
     for (const auto& reason : reasons_.texts()) facts_.pre_arm.push_back(reason.text);
     return true;

@@ -4,6 +4,8 @@
 #include <nettle/sha2.h>
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
 namespace skein::mavlink {
 namespace {
@@ -35,6 +37,26 @@ SigningKey key_of(std::string_view passphrase) {
   SigningKey key{};
   sha256_digest(&context, key.size(), key.data());
   return key;
+}
+
+Result<SigningKey> key_from_text(std::string_view text) {
+  constexpr std::string_view kWhite = " \t\r\n";
+  const std::size_t begin = text.find_first_not_of(kWhite);
+  if (begin == std::string_view::npos) return Error{"is empty"};
+  text = text.substr(begin, text.find_last_not_of(kWhite) + 1 - begin);
+  SigningKey key{};
+  if (text.size() != 2 * key.size()) return key_of(text);
+  for (std::size_t i = 0; i < key.size(); ++i) {
+    const char* at = text.data() + 2 * i;
+    const auto [end, failed] = std::from_chars(at, at + 2, key[i], 16);
+    if (failed != std::errc{} || end != at + 2) return key_of(text);
+  }
+  return key;
+}
+
+SigningTime signing_time(std::int64_t unix_us) {
+  constexpr std::int64_t kBegin_us = 1'420'070'400'000'000;  // 2015-01-01
+  return static_cast<SigningTime>(std::max<std::int64_t>(unix_us - kBegin_us, 0) / 10) & kTimeMask;
 }
 
 void Signer::sign(WireBytes& packet) {

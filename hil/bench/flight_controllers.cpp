@@ -81,6 +81,7 @@ std::vector<std::string> flight_controller_command(
           "--turbulence", number(wind.gust_mps),
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
+  if (!fc.signing_key.empty()) command.insert(command.end(), {"--signing-key", fc.signing_key});
   if (vehicle.fence.exists()) {
     command.insert(command.end(), {"--fence-height", number(vehicle.fence.height_max_m)});
   }

@@ -58,6 +58,17 @@ PlanErrors plan_errors(const std::vector<TrackPoint>& track,
   return {cross.count(), cross.spread(), along.spread(), height.spread()};
 }
 
+/// Its plans are tracks of its place; how far it was from them is recorded.
+std::optional<Spread> off_place(const Recording& believed) {
+  if (!believed.plans.empty()) return std::nullopt;
+  Sum sum;
+  for (const TrackPoint& point : believed.track) {
+    if (point.plan_number > 0) sum.add(point.cross_error_m);
+  }
+  if (sum.count() == 0) return std::nullopt;
+  return sum.spread();
+}
+
 Spread apart(const std::vector<TrackPoint>& believed, const std::vector<TrackPoint>& truly,
              double gap_s) {
   Sum sum;
@@ -83,7 +94,7 @@ std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limit
     all.push_back({truth.vehicle,
                    plan_errors(believed->track, believed->plans, spec->height_m, until),
                    plan_errors(truth.track, believed->plans, spec->height_m, until),
-                   apart(believed->track, truth.track, limits.track_gap_s)});
+                   off_place(*believed), apart(believed->track, truth.track, limits.track_gap_s)});
   }
   return all;
 }

@@ -23,6 +23,25 @@ RunRecord one_beside(VehicleId vehicle, const Vec2& by, double higher_m) {
   return record;
 }
 
+TEST(Truth, OfACopterInFormationItIsHowFarItWasFromItsPlace) {
+  RunRecord record = one_beside(kFromWest, {3.0, 0.0}, 2.0);
+  EXPECT_FALSE(flown_truly(record, {})[0].off_place_m) << "it has plans";
+  auto& believed = of(record, kFromWest);
+  believed.plans.clear();
+  for (auto& point : believed.track) {
+    point.plan_number = 3;
+    point.cross_error_m = 0.3;
+  }
+  believed.track.front().cross_error_m = 0.9;
+  believed.track.back() = believed.track.front();
+  believed.track.back().plan_number = 0;  // not yet in formation
+  believed.track.back().cross_error_m = 50.0;
+  const auto flown = flown_truly(record, {});
+  ASSERT_TRUE(flown[0].off_place_m);
+  EXPECT_EQ(flown[0].off_place_m->most, 0.9);
+  EXPECT_NEAR(flown[0].off_place_m->rms, 0.3, 0.01);
+}
+
 TEST(Motion, TheJudgesHaveAPlanOfOneAirspeedWhereItIs) {
   TimedPath plan;
   plan.start_time = at_seconds(3.0);

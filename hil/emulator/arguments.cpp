@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "skein/base/angles.hpp"
+#include "skein/mavlink/signing.hpp"
 #include "skein/version/version.hpp"
 
 namespace skein::hil {
@@ -77,8 +80,24 @@ struct Texts {
   std::string airframe = "plane";
   std::optional<double> speed_mps;
   bool no_noise = false;
+  std::string signing_key;
   std::vector<std::string> at;
 };
+
+/// False where it cannot be read: that has been said.
+bool read_signing_key(const std::string& file, EmulatorConfig& config) {
+  if (file.empty()) return true;
+  std::ifstream in{file};
+  const std::string text{std::istreambuf_iterator<char>{in}, {}};
+  const auto key = in ? mavlink::key_from_text(text) : Error{"cannot be read"};
+  if (!key) {
+    std::fprintf(stderr, "skein-fc: --signing-key %s: %s\n", file.c_str(),
+                 key.error().message.c_str());
+    return false;
+  }
+  config.signing_key = *key;
+  return true;
+}
 
 /// How it is reached.
 void add_link_options(CLI::App& app, FcArguments& a, Texts& t) {
@@ -105,6 +124,10 @@ void add_link_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--companion-system", t.companion_system,
                  "MAVLink system whose heartbeat the failsafe waits for (default: its own)")
       ->check(CLI::Range(1, 255));
+  app.add_option(
+      "--signing-key", t.signing_key,
+      "File with the key of MAVLink's signatures, 64 hexadecimal digits or a passphrase:\n"
+      "it signs, and heeds nothing unsigned");
   app.add_flag("--failsafe", c.companion_failsafe,
                "RTL 5 s after the last heartbeat of the companion");
   app.add_option("--without", c.unknown_parameters,
@@ -156,9 +179,10 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--turbulence", c.turbulence_mps,
                  "Short gusts as ArduPilot's simulator makes them with this SIM_WIND_TURB, m/s")
       ->capture_default_str();
-  app.add_option("--fence-height", c.fence_height_m,
-                 "It keeps a fence: FENCE_ALT_MAX, m above home, and the polygon that it is given;\n"
-                 "beyond it returns (RTL). 0: FENCE_ENABLE is 0")
+  app.add_option(
+         "--fence-height", c.fence_height_m,
+         "It keeps a fence: FENCE_ALT_MAX, m above home, and the polygon that it is given;\n"
+         "beyond it returns (RTL). 0: FENCE_ENABLE is 0")
       ->capture_default_str();
   app.add_option("--seed", c.seed, "Of gusts and sensor noise")->capture_default_str();
   app.add_flag("--no-noise", t.no_noise, "Sensors without noise");
@@ -201,6 +225,7 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   c.height_m = texts.start[2];
   c.wind_mps = -texts.wind_mps * unit_vector(heading_from_compass_deg(texts.wind_from_deg));
   c.noise = !texts.no_noise;
+  if (!read_signing_key(texts.signing_key, c)) return kExitBadInput;
   for (const std::string& text : texts.at) {
     const auto line = timed_line(text);
     if (!line) {

@@ -208,6 +208,21 @@ TEST(CompanionAndEmulator, BeyondItsFenceTheAutopilotReturnsAndIsNotTakenBack) {
   EXPECT_EQ(bench.companion().state(), State::piloted);
 }
 
+TEST(CompanionAndEmulator, WithAKeyBothSignAndNobodyElseIsHeeded) {
+  EmulatorConfig config = plane_in_wind();
+  config.unix_us = 1'764'000'000'000'000;
+  config.signing_key = mavlink::key_of("ours");
+  ardupilot::CanLinkParams companion = Bench::params(config);
+  companion.companion.signing = ardupilot::Signing{*config.signing_key, config.unix_us};
+  Bench bench{config, companion};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.interfere("reboot");
+  bench.run(1.0);
+  EXPECT_TRUE(bench.run_until(State::piloted, 15.0)) << "it is heard after a new start, in LOITER";
+  Bench unsigned_one{config, Bench::params(config)};
+  EXPECT_FALSE(unsigned_one.run_until(State::flying, 10.0)) << "it is not heeded";
+}
+
 TEST(CompanionAndEmulator, APlaneLandsByAMissionAndIsDisarmed) {
   Bench bench{plane_in_wind()};
   bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 50.0, .height_m = 300.0};

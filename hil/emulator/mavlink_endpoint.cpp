@@ -72,6 +72,9 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
       battery_{battery},
       port_{port},
       booted_{booted},
+      parser_{{.key = config.signing_key,
+               .now = signing_time_at(now),
+               .accept_unsigned = !config.signing_key}},
       encoder_{config.system_id, mavlink::kComponentAutopilot},
       fence_{config.fence_height_m},
       mission_{0, [this](auto items) { return vehicle_.load_mission(items); }},
@@ -81,6 +84,7 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
   for (const std::uint32_t id : telemetry_ids()) {
     streams_.push_back({id, default_interval(id), now});
   }
+  if (config.signing_key) encoder_.sign_with({*config.signing_key, 0, signing_time_at(now)});
   std::array<std::uint8_t, kGreeting.size()> greeting{};
   std::copy(kGreeting.begin(), kGreeting.end(), greeting.begin());
   (void)port_.write(greeting);
@@ -93,7 +97,15 @@ Duration MavlinkEndpoint::default_interval(std::uint32_t id) const {
   return vehicle_.streams_unasked() && is_streamed_unasked(id) ? kStreamInterval : Duration{};
 }
 
+mavlink::SigningTime MavlinkEndpoint::signing_time_at(Instant now) const {
+  return mavlink::signing_time(config_.unix_us +
+                               now.time_since_epoch() / std::chrono::microseconds{1});
+}
+
 void MavlinkEndpoint::step(Instant now) {
+  if (auto* signer = encoder_.signer()) {
+    signer->advance_to(std::max(signing_time_at(now), parser_.newest_signature()));
+  }
   std::array<std::uint8_t, 256> bytes{};
   while (const std::size_t size = port_.read(bytes)) {
     parser_.parse(std::span{bytes}.first(size),

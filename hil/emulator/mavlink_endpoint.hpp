@@ -57,6 +57,7 @@ class MavlinkEndpoint {
   void on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet, Instant now);
   [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const;
   [[nodiscard]] Situation situation(Instant now) const;
+  [[nodiscard]] mavlink::SigningTime signing_time_at(Instant now) const;
   [[nodiscard]] Duration default_interval(std::uint32_t id) const;
   Stream* find_stream(std::uint32_t id);
   void send(const mavlink::WireBytes& bytes) { (void)port_.write(bytes); }

@@ -34,9 +34,14 @@ TruthTable::Row row_of(std::string who, std::string which, const checks::Deliver
 TruthTable truth_table(const checks::RunRecord& record, const checks::Limits& limits) {
   TruthTable table;
   for (const auto& flown : checks::flown_truly(record, limits)) {
-    table.rows.push_back(
-        row_of(fmt::format("vehicle {}", flown.vehicle.value), "believed", flown.believed));
-    table.rows.push_back(row_of("", "true", flown.truly));
+    const std::string who = fmt::format("vehicle {}", flown.vehicle.value);
+    if (flown.off_place_m) {
+      table.rows.push_back(
+          {who, "believed", metres(*flown.off_place_m) + " from its place", "", ""});
+    } else {
+      table.rows.push_back(row_of(who, "believed", flown.believed));
+      table.rows.push_back(row_of("", "true", flown.truly));
+    }
     table.rows.push_back({"", "apart", metres(flown.apart_m), "", ""});
   }
   for (const auto& delivery : checks::deliveries_truly(record, limits)) {

@@ -74,12 +74,18 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, A
         {1.0, 255.0}, fc.system_id);
   whole(v, {"serial_id", "of the tunnel: the autopilot's CAN_D1_UC_S1_IDX"}, {0.0, 15.0},
         fc.serial_id);
+  v.text(
+      {"signing_key",
+       "path of the file with the key of MAVLink's signatures: 64 hexadecimal digits, or the "
+       "passphrase that a ground station was given; its mode 600 or 400. Packets are signed, and "
+       "unsigned ones not heeded. Empty: neither"},
+      fc.signing_key);
   choice_of(v,
             {"take_over",
              "when the companion takes the aircraft: once its pilot switches to GUIDED; once it is "
              "in the air; or it arms and takes off itself"},
             kTakeOvers, fc.take_over);
-  v.number({"takeoff_height_m", "above the ground, from_ground"}, {5.0, 500.0, "m"},
+  v.number({"takeoff_height_m", "above the ground, from_ground"}, {5.0, 1000.0, "m"},
            fc.takeoff_height_m);
   v.number({"geoid_height_m",
             "of the geoid above the ellipsoid at the origin: autopilots count heights from it"},

@@ -267,6 +267,10 @@ constexpr std::array kAutopilotNews{
     std::string_view{"it is below {number} m: it lands, whatever was ordered since"},
     std::string_view{"the autopilot has the fence: {number} corners, read back"},
     std::string_view{"nothing is flown, as the fence is not the autopilot's: {detail}"},
+    std::string_view{
+        "its packets are not signed with the key of flight_controller.signing_key, and "
+        "are not heeded: give the autopilot that key (MAVLink signing, at a ground "
+        "station over USB), or leave signing_key out"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 

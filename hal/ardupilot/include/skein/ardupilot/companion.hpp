@@ -12,6 +12,7 @@
 
 #include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/ardupilot/motion.hpp"
+#include "skein/ardupilot/signing.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/base/state_table.hpp"
 #include "skein/base/time.hpp"
@@ -37,6 +38,7 @@ enum class TakeOver : std::uint8_t {
 
 struct CompanionParams {
   VehicleSpec vehicle;
+  std::optional<Signing> signing = {};  ///< none: packets are not signed, and any are heeded
   Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself
   Airframe airframe = Airframe::plane;
   TakeOver take_over = TakeOver::when_guided;

@@ -49,6 +49,8 @@ class Parser {
   }
 
   [[nodiscard]] const ParserStatistics& statistics() const { return statistics_; }
+  /// Of the genuine signatures; 0 without a key.
+  [[nodiscard]] SigningTime newest_signature() const { return checker_ ? checker_->newest() : 0; }
 
  private:
   enum class Verdict : std::uint8_t { wait, not_a_packet, packet, skip };

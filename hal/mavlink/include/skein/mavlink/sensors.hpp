@@ -185,12 +185,11 @@ struct SimState {
   std::int32_t lat_int = 0;      ///< degE7
   std::int32_t lon_int = 0;      ///< degE7
 
-  static constexpr auto kDefinition =
-      define(108, "SIM_STATE",
-             SKEIN_MAVLINK_FIELDS(SimState, q1, q2, q3, q4, roll, pitch, yaw, xacc, yacc, zacc,
-                                  xgyro, ygyro, zgyro, lat, lon, alt, std_dev_horz, std_dev_vert,
-                                  vn, ve, vd),
-             SKEIN_MAVLINK_FIELDS(SimState, lat_int, lon_int));
+  static constexpr auto kDefinition = define(
+      108, "SIM_STATE",
+      SKEIN_MAVLINK_FIELDS(SimState, q1, q2, q3, q4, roll, pitch, yaw, xacc, yacc, zacc, xgyro,
+                           ygyro, zgyro, lat, lon, alt, std_dev_horz, std_dev_vert, vn, ve, vd),
+      SKEIN_MAVLINK_FIELDS(SimState, lat_int, lon_int));
 };
 
 /// Software in the loop only: the truth.

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <map>
 #include <span>
+#include <string_view>
 #include <tuple>
 
+#include "skein/base/result.hpp"
 #include "skein/mavlink/packet.hpp"
 
 /// Signatures of MAVLink 2 packets (mavlink.io/en/guide/message_signing.html): link id, 48-bit
@@ -22,8 +24,12 @@ inline constexpr std::size_t kSignatureSize = 13;
 /// A stream that is first heard may be this much behind the newest time seen (a minute).
 inline constexpr SigningTime kSigningTimeSlack = 6'000'000;
 
+[[nodiscard]] SigningTime signing_time(std::int64_t unix_us);
+
 /// The key that ground stations make of a passphrase: its SHA-256.
 [[nodiscard]] SigningKey key_of(std::string_view passphrase);
+/// The key of a file: 64 hexadecimal digits, or a passphrase. White space around it does not count.
+[[nodiscard]] Result<SigningKey> key_from_text(std::string_view text);
 
 class Signer {
  public:
@@ -52,6 +58,7 @@ class SignatureChecker {
   /// stream (system, component, link) had before.
   [[nodiscard]] bool accept(std::span<const std::uint8_t> packet, std::uint8_t system,
                             std::uint8_t component);
+  [[nodiscard]] SigningTime newest() const { return newest_; }
 
  private:
   using Stream = std::tuple<std::uint8_t, std::uint8_t, std::uint8_t>;

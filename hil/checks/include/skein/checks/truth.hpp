@@ -32,6 +32,9 @@ struct FlownTruly {
   VehicleId vehicle;
   PlanErrors believed;
   PlanErrors truly;
+  /// Of a copter in formation, from where control wanted it at that moment, in space, as believed:
+  /// while it holds its place and while that moves. Where it is to be is in no plan.
+  std::optional<Spread> off_place_m;
   Spread apart_m;  ///< what was believed from what was true at the same time, in space
 };
 /// Of those whose truth is known.

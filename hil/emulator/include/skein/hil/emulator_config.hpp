@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -47,6 +48,9 @@ struct EmulatorConfig {
   double turn_radius_m = 150.0;  ///< at cruise, that the bank limit must allow
 
   double fence_height_m = 0.0;  ///< FENCE_ALT_MAX, with RTL beyond the fence; 0: FENCE_ENABLE 0
+
+  /// It signs what it says, and heeds nothing that is not signed with it.
+  std::optional<std::array<std::uint8_t, 32>> signing_key;
 
   double battery_mah = 16000.0;  ///< BATT_CAPACITY; 60 A at full throttle and 0.5 A besides
 

@@ -42,6 +42,7 @@ struct ArdupilotConfig {
   std::uint8_t companion_node_id = 42;
   std::uint8_t system_id = 1;
   std::int8_t serial_id = 0;
+  std::string signing_key;  ///< path of its file; empty: MAVLink is not signed
   TakeOverKind take_over = TakeOverKind::when_guided;
   double takeoff_height_m = 40.0;
   double geoid_height_m = 0.0;
