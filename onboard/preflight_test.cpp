@@ -3,11 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <random>
 
+#include "link_params.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/mavlink/enums.hpp"
@@ -16,6 +19,7 @@ namespace skein::onboard {
 namespace {
 
 using ardupilot::AutopilotFacts;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr std::int64_t kNow_s = 1'760'000'000;
@@ -87,6 +91,51 @@ TEST(Preflight, ATurnThatTheBankLimitForbidsFailsAndNamesBothNumbers) {
   EXPECT_THAT(roll.remedy,
               HasSubstr("turn_radius_m is 60: set ROLL_LIMIT_DEG to 40.0 (35.0 at least)"));
   EXPECT_THAT(roll.remedy, HasSubstr("turn_radius_m to 71 or more"));
+}
+
+TEST(Preflight, WithAKeySignaturesAreLookedAt) {
+  configuration::VehicleConfig c = config();
+  c.flight_controller.ardupilot.signing_key = "/etc/skein/mavlink.key";
+  EXPECT_EQ(check_of("MAVLink signing", good(), c).verdict, Verdict::ok);
+  AutopilotFacts facts = good();
+  facts.heartbeat.reset();
+  facts.trouble = AutopilotNotice{AutopilotNews::not_signed};
+  const Check check = check_of("MAVLink signing", facts, c);
+  EXPECT_EQ(check.verdict, Verdict::fail);
+  EXPECT_THAT(check.remedy, HasSubstr("give the autopilot that key"));
+}
+
+class SigningKeyFile : public testing::Test {
+ protected:
+  SigningKeyFile() { c.flight_controller.ardupilot.signing_key = file; }
+  ~SigningKeyFile() override { std::filesystem::remove(file); }
+  void write(const std::string& text, std::filesystem::perms mode) const {
+    std::ofstream{file} << text;
+    std::filesystem::permissions(file, mode);
+  }
+  static constexpr auto kOwn = std::filesystem::perms::owner_read;
+
+  std::string file = testing::TempDir() + "skein-signing-" + std::to_string(::getpid());
+  configuration::VehicleConfig c = config();
+};
+
+TEST_F(SigningKeyFile, IsReadWhereNobodyElseMay) {
+  write("open sesame\n", kOwn);
+  const auto params = can_params(c, 5);
+  ASSERT_TRUE(params) << params.error().message;
+  ASSERT_TRUE(params->companion.signing);
+  EXPECT_EQ(params->companion.signing->key, mavlink::key_of("open sesame"));
+  EXPECT_EQ(params->companion.signing->unix_us, 5);
+}
+
+TEST_F(SigningKeyFile, IsRefusedWithItsNameAndWhatToDo) {
+  EXPECT_THAT(can_params(c, 0).error().message,
+              AllOf(HasSubstr("flight_controller.signing_key"), HasSubstr(file)));
+  write("open sesame", kOwn | std::filesystem::perms::group_read);
+  EXPECT_THAT(can_params(c, 0).error().message, HasSubstr("chmod 600 " + file));
+  std::filesystem::remove(file);
+  write(" \n", kOwn);
+  EXPECT_THAT(can_params(c, 0).error().message, HasSubstr("is empty"));
 }
 
 TEST(Preflight, AnOlderNameIsToldInItsOwnUnit) {
