@@ -332,7 +332,7 @@ TEST(Companion, FliesACopterToAPoint) {
   EXPECT_EQ(target.type_mask, 0x800);  // all but the rate of yaw
   EXPECT_EQ(target.coordinate_frame, 5);
   EXPECT_LT((line.sent().metres() - line.point->position_m()).norm(), 0.03);
-  EXPECT_EQ(target.vx, 2.0F);
+  EXPECT_NEAR(target.vx, 2.0 + 0.7 / 2.0, 1e-5);  // and what asks for the acceleration
   EXPECT_EQ(target.vy, 1.0F);
   EXPECT_EQ(target.vz, 0.5F);
   EXPECT_EQ(target.afx, 0.7F);

@@ -14,6 +14,9 @@ constexpr double kBankMax_rad = radians(70.0);
 /// Of the least turn radius: an aircraft rolls past the bank that is asked for before it settles.
 constexpr double kRollReserve = 1.05;
 constexpr double kClimbGain_per_s = 1.0;
+/// PSC_VELXY_P of an ArduCopter, by default: what an error of the velocity accelerates it by. It
+/// drops the acceleration of a global position, so that the velocity has to ask for it.
+constexpr double kVelocityGain_per_s = 2.0;
 constexpr double kClimbMax_mps = 3.0;
 
 /// ArduPlane turns the mask over and then takes roll where bit 0 or bit 7 is set, pitch where bit 1
@@ -71,7 +74,9 @@ mavlink::SetPositionTargetGlobalInt point_target(const PositionSetpoint& setpoin
   target.lat_int = static_cast<std::int32_t>(std::lround(place.latitude_deg * 1e7));
   target.lon_int = static_cast<std::int32_t>(std::lround(place.longitude_deg * 1e7));
   target.alt = static_cast<float>(place.height_m - geoid_height_m);
-  const Eigen::Vector3f velocity = ned_from_enu(setpoint.velocity_mps()).cast<float>();
+  Eigen::Vector3d ahead = setpoint.velocity_mps();
+  ahead.head<2>() += setpoint.acceleration_mps2().head<2>() / kVelocityGain_per_s;
+  const Eigen::Vector3f velocity = ned_from_enu(ahead).cast<float>();
   target.vx = velocity.x();
   target.vy = velocity.y();
   target.vz = velocity.z();

@@ -24,7 +24,8 @@ namespace skein::ardupilot {
 [[nodiscard]] mavlink::SetPositionTargetLocalNed velocity_target(const Setpoint& setpoint,
                                                                  const VehicleState& state);
 
-/// The point of a copter's setpoint, with its velocity and acceleration. It goes by latitude,
+/// The point of a copter's setpoint, with its acceleration and a velocity that asks for that: its
+/// own, and what its change takes in the copter's velocity loop. It goes by latitude,
 /// longitude and height above the sea: a local position counts from where the autopilot's filter
 /// began, which the mission does not know.
 [[nodiscard]] mavlink::SetPositionTargetGlobalInt point_target(const PositionSetpoint& setpoint,

@@ -11,7 +11,6 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/configuration/deployment.hpp"
-#include "skein/configuration/experiment.hpp"
 #include "skein/configuration/reference.hpp"
 #include "skein/configuration/setup_params.hpp"
 
@@ -391,7 +390,8 @@ TEST(ScenarioCheck, SaysWhyAMissionIsImpossible) {
        "change "
        "the bearing"},
       {"hazards:",
-       "fence: {corners: [[-100, -100], [3000, -100], [3000, 1900], [-100, 1900]], height_max_m: 500}\nhazards:",
+       "fence: {corners: [[-100, -100], [3000, -100], [3000, 1900], [-100, 1900]], height_max_m: "
+       "500}\nhazards:",
        "site 1 is outside the fence; move it, or widen fence.corners"},
       {"hazards:",
        "fence: {corners: [[100, -100], [3000, -100], [3000, 3000], [100, 3000]], height_max_m: "
@@ -745,69 +745,6 @@ void expect_page(const std::filesystem::path& file, const std::string& page) {
 TEST(ReferencePages, AreWhatTheTablesPrint) {
   expect_page(kSource / "docs" / "scenarios.md", scenario_reference());
   expect_page(kSource / "docs" / "configuration.md", configuration_reference());
-}
-
-constexpr auto kExperiment = R"(
-version: 1
-title: Try
-scenario: s.yaml
-runs: 3
-axes:
-  - name: range
-    points:
-      - {label: near, radio_range_m: 1000}
-      - {label: far, radio_range_m: 2500, allocation: greedy}
-)";
-
-std::string experiment_error(const std::string& from, const std::string& to) {
-  const auto result = parse_experiment(replaced(kExperiment, from, to), "e.yaml");
-  return result.ok() ? "no error" : result.error().message;
-}
-
-TEST(ExperimentFile, IsReadAndWrittenAlike) {
-  const auto read = parse_experiment(kExperiment, "e.yaml");
-  ASSERT_TRUE(read.ok()) << read.error().message;
-  ASSERT_EQ(read->axes.size(), 1U);
-  ASSERT_EQ(read->axes[0].points.size(), 2U);
-  EXPECT_EQ(read->axes[0].points[1].settings.radio_range_m, 2500.0);
-  EXPECT_EQ(read->axes[0].points[1].settings.allocation, planning::AllocationMethod::greedy);
-  EXPECT_FALSE(read->axes[0].points[0].settings.allocation.has_value());
-  EXPECT_FALSE(read->team.has_value());
-  const auto again = parse_experiment(to_yaml(*read), "again.yaml");
-  ASSERT_TRUE(again.ok()) << again.error().message;
-  EXPECT_EQ(to_yaml(*again), to_yaml(*read));
-}
-
-TEST(ExperimentFile, SaysWhereItIsWrongAndWhatToDo) {
-  EXPECT_THAT(
-      experiment_error("greedy", "greddy"),
-      ::testing::HasSubstr("e.yaml:10: axes[1].points[2].allocation: is \"greddy\", not one of"));
-  EXPECT_THAT(experiment_error("runs: 3", "runs: 0"),
-              ::testing::HasSubstr("e.yaml:5: runs: is 0, outside 1"));
-  EXPECT_THAT(experiment_error("radio_range_m: 1000", "radio_rang_m: 1000"),
-              ::testing::HasSubstr("did you mean radio_range_m?"));
-  EXPECT_THAT(experiment_error("label: far", "label: near"),
-              ::testing::HasSubstr("has a label twice"));
-  EXPECT_THAT(experiment_error("scenario: s.yaml\n", ""),
-              ::testing::HasSubstr("scenario: is missing"));
-  EXPECT_THAT(experiment_error("runs: 3",
-                               "runs: 3\nrandom_team: [{west_m: 5, east_m: 1, south_m: 0, "
-                               "north_m: 1}]"),
-              ::testing::HasSubstr("random_team[1].east_m: must be greater than west_m"));
-}
-
-TEST(ExperimentFile, ThoseThatAreShippedAreGoodAndNameTheirScenario) {
-  std::size_t files = 0;
-  const std::filesystem::path folder =
-      std::filesystem::path{SKEIN_SOURCE_DIR} / "scenarios" / "experiments";
-  for (const auto& entry : std::filesystem::directory_iterator{folder}) {
-    const auto experiment = load_experiment(entry.path());
-    ASSERT_TRUE(experiment.ok()) << experiment.error().message;
-    const auto scenario = load_scenario(folder / experiment->scenario);
-    EXPECT_TRUE(scenario.ok()) << scenario.error().message;
-    ++files;
-  }
-  EXPECT_GE(files, 3U);
 }
 
 }  // namespace
