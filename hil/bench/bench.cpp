@@ -252,8 +252,7 @@ class Bench {
            autopilots_.of(spec) != nullptr && external_.host_of(spec.id) == nullptr;
   }
 
-  /// A user's autopilot flies from the ground, and when the mission begins it waits near its start,
-  /// over which it goes first.
+  /// A user's autopilot flies from the ground, and when the mission begins it waits near its start.
   [[nodiscard]] std::vector<configuration::VehicleConfig> vehicle_configs(
       const configuration::Deployment& deployment) const {
     auto configs = configuration::vehicle_configs(scenario_, deployment);
@@ -262,9 +261,6 @@ class Bench {
       config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
       config.flight_controller.ardupilot.takeoff_height_m =
           configuration::flies_formation(config.vehicle) ? kHover_m : config.vehicle.height_m;
-      if (!config.search.empty()) {
-        config.search.insert(config.search.begin(), config.start.position());
-      }
     }
     return configs;
   }
