@@ -107,21 +107,21 @@ TEST(Preflight, WithAKeySignaturesAreLookedAt) {
 
 class SigningKeyFile : public testing::Test {
  protected:
-  SigningKeyFile() { c.flight_controller.ardupilot.signing_key = file; }
-  ~SigningKeyFile() override { std::filesystem::remove(file); }
+  SigningKeyFile() { c_.flight_controller.ardupilot.signing_key = file_; }
+  ~SigningKeyFile() override { std::filesystem::remove(file_); }
   void write(const std::string& text, std::filesystem::perms mode) const {
-    std::ofstream{file} << text;
-    std::filesystem::permissions(file, mode);
+    std::ofstream{file_} << text;
+    std::filesystem::permissions(file_, mode);
   }
   static constexpr auto kOwn = std::filesystem::perms::owner_read;
 
-  std::string file = testing::TempDir() + "skein-signing-" + std::to_string(::getpid());
-  configuration::VehicleConfig c = config();
+  std::string file_ = testing::TempDir() + "skein-signing-" + std::to_string(::getpid());
+  configuration::VehicleConfig c_ = config();
 };
 
 TEST_F(SigningKeyFile, IsReadWhereNobodyElseMay) {
   write("open sesame\n", kOwn);
-  const auto params = can_params(c, 5);
+  const auto params = can_params(c_, 5);
   ASSERT_TRUE(params) << params.error().message;
   ASSERT_TRUE(params->companion.signing);
   EXPECT_EQ(params->companion.signing->key, mavlink::key_of("open sesame"));
@@ -129,13 +129,13 @@ TEST_F(SigningKeyFile, IsReadWhereNobodyElseMay) {
 }
 
 TEST_F(SigningKeyFile, IsRefusedWithItsNameAndWhatToDo) {
-  EXPECT_THAT(can_params(c, 0).error().message,
-              AllOf(HasSubstr("flight_controller.signing_key"), HasSubstr(file)));
+  EXPECT_THAT(can_params(c_, 0).error().message,
+              AllOf(HasSubstr("flight_controller.signing_key"), HasSubstr(file_)));
   write("open sesame", kOwn | std::filesystem::perms::group_read);
-  EXPECT_THAT(can_params(c, 0).error().message, HasSubstr("chmod 600 " + file));
-  std::filesystem::remove(file);
+  EXPECT_THAT(can_params(c_, 0).error().message, HasSubstr("chmod 600 " + file_));
+  std::filesystem::remove(file_);
   write(" \n", kOwn);
-  EXPECT_THAT(can_params(c, 0).error().message, HasSubstr("is empty"));
+  EXPECT_THAT(can_params(c_, 0).error().message, HasSubstr("is empty"));
 }
 
 TEST(Preflight, AnOlderNameIsToldInItsOwnUnit) {

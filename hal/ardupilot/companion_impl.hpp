@@ -265,11 +265,11 @@ class Companion::Impl {
   std::optional<double> height_sent_;
   std::optional<Instant> height_at_;
   MissionUpload fence_upload_{MissionUpload::Kind::fence};
-  Instant fence_again_at_ = Instant::min();  ///< after one that failed
-  std::string fence_failed_;                 ///< why, while it is so
-  bool told_fence_ = false;
+  Instant fence_again_at_ = Instant::min();             ///< after one that failed
+  std::string fence_failed_;                            ///< why, while it is so
   MissionUpload upload_{MissionUpload::Kind::mission};  ///< of a plane's landing
   std::optional<Landing> uploads_;                      ///< what that is of
+  bool told_fence_ = false;
   bool told_upload_ = false;
   bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
   Instant upload_again_at_ = Instant::min();  ///< after one that failed

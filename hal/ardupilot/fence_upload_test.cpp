@@ -82,16 +82,18 @@ TEST(FenceUpload, AnAutopilotThatHasStartedAnewIsGivenItAgain) {
 }
 
 TEST(FenceUpload, ItsParametersAreLookedAtFirst) {
-  const struct {
+  struct Mistake {
     const char* name;
     float value;
     const char* told;
-  } kWrong[] = {{"FENCE_ENABLE", 0.0F, "FENCE_ENABLE is 0, so the autopilot keeps no fence"},
-                {"FENCE_ACTION", 0.0F, "FENCE_ACTION is 0, so it only tells what it leaves"},
-                {"FENCE_TYPE", 1.0F, "FENCE_TYPE is 1, so it does not keep both"},
-                {"FENCE_ALT_MAX", 500.0F, "FENCE_ALT_MAX is 500, so the fence's height is 400 m"},
-                {"FENCE_ALT_MAX", 250.0F, "set it to 400"}};
-  for (const auto& wrong : kWrong) {
+  };
+  const std::vector<Mistake> mistakes{
+      {"FENCE_ENABLE", 0.0F, "FENCE_ENABLE is 0, so the autopilot keeps no fence"},
+      {"FENCE_ACTION", 0.0F, "FENCE_ACTION is 0, so it only tells what it leaves"},
+      {"FENCE_TYPE", 1.0F, "FENCE_TYPE is 1, so it does not keep both"},
+      {"FENCE_ALT_MAX", 500.0F, "FENCE_ALT_MAX is 500, so the fence's height is 400 m"},
+      {"FENCE_ALT_MAX", 250.0F, "set it to 400"}};
+  for (const Mistake& wrong : mistakes) {
     Fenced line;
     line.autopilot.parameters[wrong.name] = wrong.value;
     line.run(6.0);

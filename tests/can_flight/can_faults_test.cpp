@@ -4,12 +4,9 @@
 // wrong between them. Prints how long each fault took to be noticed and to be over.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -17,17 +14,15 @@
 #include <fstream>
 #include <memory>
 #include <optional>
-#include <random>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "operator_desk.hpp"
 #include "skein/can/bus.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/hil/child_process.hpp"
-#include "skein/network/node.hpp"
-#include "skein/process/mission_network.hpp"
 
 namespace skein {
 namespace {
@@ -45,26 +40,6 @@ constexpr const char* kFlying = "flying the companion's setpoints";
 constexpr const char* kLost = "no frame comes from the flight controller";
 constexpr const char* kPiloted = "the mode was changed to RTL by the pilot";
 constexpr const char* kRebooted = "the autopilot has rebooted";
-
-/// p so that p and p + 1 are free, below those that the kernel hands out by itself.
-std::uint16_t free_port_pair() {
-  const auto free = [](int port) {
-    const int s = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(static_cast<std::uint16_t>(port));
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    const bool bound = ::bind(s, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-    ::close(s);
-    return bound;
-  };
-  std::random_device device;
-  std::uniform_int_distribution<int> half{5000, 15999};
-  while (true) {
-    const int port = 2 * half(device);
-    if (free(port) && free(port + 1)) return static_cast<std::uint16_t>(port);
-  }
-}
 
 class CanFaults : public ::testing::Test {
  protected:
@@ -89,7 +64,8 @@ class CanFaults : public ::testing::Test {
     // A shell, so that it reads what the pilot types from a pipe with a name.
     const std::string command =
         "exec '" SKEIN_FC "' --bus " + bus_ +
-        " --failsafe --airborne --mode LOITER --start 0 0 300 --origin 31.5 105 480 <'" + fifo() + "'";
+        " --failsafe --airborne --mode LOITER --start 0 0 300 --origin 31.5 105 480 <'" + fifo() +
+        "'";
     auto started = hil::ChildProcess::start({"/bin/sh", "-c", command}, folder_ / "fc", {});
     ASSERT_TRUE(started.ok());
     flight_controller_ = std::make_unique<hil::ChildProcess>(std::move(started).value());
@@ -118,7 +94,7 @@ class CanFaults : public ::testing::Test {
     config.flight_controller.kind = configuration::FlightControllerKind::ardupilot;
     config.flight_controller.ardupilot.can = bus_;
     config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::in_flight;
-    config.network = network_of(kVehicle);
+    config.network = operator_.network_of(kVehicle);
     config.time.epoch_unix_ns = std::chrono::nanoseconds{epoch_.time_since_epoch()}.count();
     std::ofstream{folder_ / "v.yaml"} << to_yaml(config);
     auto started = hil::ChildProcess::start({SKEIN_ONBOARD, "--config", folder_ / "v.yaml"},
@@ -126,33 +102,6 @@ class CanFaults : public ::testing::Test {
     ASSERT_TRUE(started.ok());
     vehicle_ = std::make_unique<hil::ChildProcess>(std::move(started).value());
   }
-  [[nodiscard]] configuration::NetworkConfig network_of(VehicleId self) const {
-    const bool ground = self == kGroundStation;
-    configuration::NetworkConfig network;
-    network.port = ground ? ground_port_ : vehicle_port_;
-    network.peers.push_back(
-        {.id = ground ? kVehicle : kGroundStation, .port = ground ? vehicle_port_ : ground_port_});
-    return network;
-  }
-  void start_operator() {
-    const auto start = process::start_node(network_of(kGroundStation), kGroundStation);
-    ASSERT_TRUE(start.ok()) << start.error().message;
-    auto opened =
-        network::Node::open(process::node_config(network_of(kGroundStation), *start, [] {}));
-    ASSERT_TRUE(opened.ok()) << opened.error().message;
-    operator_ = std::move(opened).value();
-  }
-  /// Answers what was said at that mission time, by a clock that may be a little behind the
-  /// vehicle's.
-  void give_back(double answers_s) {
-    mission::Command command;
-    command.vehicle = kVehicle;
-    const double issued_s = std::max(now_s(), answers_s + 1e-3);
-    command.number = static_cast<std::uint32_t>(1e3 * issued_s) + 1;  // tells when it was issued
-    command.kind = mission::CommandKind::give_back;
-    operator_->publish(mission::Message{command});
-  }
-
   [[nodiscard]] std::string log() const {
     std::ifstream file{folder_ / "log"};
     return {std::istreambuf_iterator<char>{file}, {}};
@@ -173,7 +122,7 @@ class CanFaults : public ::testing::Test {
         read_ = colon;
         return std::stod(text.substr(at + label.size()));
       }
-      while (operator_ && operator_->poll()) continue;
+      operator_.hear();
       std::this_thread::sleep_for(2ms);
     }
     ADD_FAILURE() << "never said: " << words;
@@ -192,18 +141,16 @@ class CanFaults : public ::testing::Test {
   /// Not one of the first, which others use.
   std::string bus_ = "mcast:" + std::to_string(128 + ::getpid() % 127);
   system_clock::time_point epoch_ = system_clock::now();
-  std::uint16_t vehicle_port_ = free_port_pair();
-  std::uint16_t ground_port_ = free_port_pair();
   int input_ = -1;
   std::size_t read_ = 0;
   std::unique_ptr<hil::ChildProcess> flight_controller_;
   std::unique_ptr<hil::ChildProcess> vehicle_;
-  std::unique_ptr<network::Node> operator_;
+  OperatorDesk operator_{kVehicle, epoch_};
 };
 
 TEST_F(CanFaults, AreNoticedAndFlownOnFrom) {
   if (const auto bus = can::open(bus_); !bus) GTEST_SKIP() << bus.error().message;
-  start_operator();
+  operator_.open();
   start_flight_controller();
   start_vehicle();
   ASSERT_TRUE(wait_for(kFlying));
@@ -230,7 +177,7 @@ TEST_F(CanFaults, AreNoticedAndFlownOnFrom) {
   pilot("mode RTL");
   const double piloted = noticed_within(kPiloted, begin);
   if (HasFailure()) return;  // nothing to answer
-  give_back(begin + piloted);
+  operator_.give_back(begin + piloted);
   begin = now_s();
   print("the pilot switches to RTL", piloted, noticed_within(kFlying, begin), "it is given back");
 

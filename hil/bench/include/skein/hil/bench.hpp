@@ -34,7 +34,7 @@ struct BenchOptions {
   std::vector<std::string> autopilots;
   std::vector<std::string> autopilot_parameters;
   std::string autopilot_model;  ///< of its simulator's planes
-  bool dds = false;  ///< Fast DDS, to each node by itself; else by the air
+  bool dds = false;             ///< Fast DDS, to each node by itself; else by the air
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.
   std::string links;
