@@ -108,7 +108,7 @@ TEST(Preflight, WithAKeySignaturesAreLookedAt) {
 class SigningKeyFile : public testing::Test {
  protected:
   SigningKeyFile() { c_.flight_controller.ardupilot.signing_key = file_; }
-  ~SigningKeyFile() override { std::filesystem::remove(file_); }
+  void TearDown() override { std::filesystem::remove(file_); }
   void write(const std::string& text, std::filesystem::perms mode) const {
     std::ofstream{file_} << text;
     std::filesystem::permissions(file_, mode);

@@ -33,13 +33,15 @@ Landing landing_of(const VehicleSpec& vehicle, const Pose2& start) {
   return landing;
 }
 
-bool is_open(const Landing& landing, const std::vector<Hazard>& hazards, double margin_m) {
+bool is_open(const Landing& landing, const std::vector<Hazard>& hazards, double margin_m,
+             const Fence& fence) {
   std::vector<Hazard> wide = hazards;
   for (Hazard& hazard : wide) hazard.radius_m += margin_m;
   const Vec2 begin = approach_begin(landing);
   Path down{{begin.x(), begin.y(), landing.heading_rad}, {}};
   return down.append(Segment{1.0 / landing.radius_m, kTwoPi * landing.radius_m}) &&
-         down.append(Segment{0.0, landing.approach_m}) && planning::is_clear(down, wide);
+         down.append(Segment{0.0, landing.approach_m}) && planning::is_clear(down, wide) &&
+         fence.holds(down);
 }
 
 void Descent::begin(const Vec3& from, Instant now) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/landing.hpp"
 #include "skein/domain/motion_track.hpp"
@@ -15,9 +16,10 @@ namespace skein::mission {
 /// Where a vehicle lands whose first flight plan began there.
 [[nodiscard]] Landing landing_of(const VehicleSpec& vehicle, const Pose2& start);
 
-/// Does a plane's way down, the circle and the final approach, keep `margin_m` from the hazards?
+/// Does a plane's way down, the circle and the final approach, keep `margin_m` from the hazards and
+/// within the fence?
 [[nodiscard]] bool is_open(const Landing& landing, const std::vector<Hazard>& hazards,
-                           double margin_m);
+                           double margin_m, const Fence& fence);
 
 /// How a copter comes down: at its height over the place, then straight down to it. Who does not
 /// follow, since it was still moving or a pilot has it, begins anew from where it is then.

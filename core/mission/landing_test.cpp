@@ -98,6 +98,25 @@ TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
   EXPECT_FALSE(vehicle.plan.lands);
 }
 
+TEST(LandingOrder, AnApproachFromBeyondTheFenceIsNotFlown) {
+  VehicleAgentConfig config = lander();
+  config.vehicle.landing.approach_m = 600.0;  // to the west of the start
+  config.fence.corners = {{-500.0, -1500.0}, {1500.0, -1500.0}, {1500.0, 1500.0}, {-500.0, 1500.0}};
+  config.fence.height_max_m = 200.0;
+  Lander vehicle{config};
+  vehicle.fly(5.0);
+  vehicle.order(CommandKind::land);
+  vehicle.fly(150.0);
+  EXPECT_FALSE(vehicle.plan.lands);
+  EXPECT_EQ(std::ranges::count_if(vehicle.events,
+                                  [](const MissionEvent& e) {
+                                    const auto* t = std::get_if<event::VehicleTrouble>(&e.body);
+                                    return t != nullptr &&
+                                           t->trouble == event::Trouble::landing_barred;
+                                  }),
+            1);
+}
+
 TEST(LandingOrder, WhoHasLandedIsSentNowhere) {
   Lander vehicle;
   vehicle.order(CommandKind::land);

@@ -125,7 +125,8 @@ bool Ownship::land() {
     descent_.emplace(landing, spec().height_m, ground_m_.value_or(0.0));
     return true;
   }
-  if (!is_open(landing, hazards(), config_.planning.avoidance.margin_m)) return false;
+  if (!is_open(landing, hazards(), config_.planning.avoidance.margin_m, config_.fence))
+    return false;
   flight_.land(landing);
   return true;
 }
@@ -137,7 +138,8 @@ bool Ownship::return_along(const TimedPath& way, Instant now) {
 
 bool Ownship::keeps_clear(Instant now) {
   const FlightPlan& plan = flight_.plan();
-  if (plan.lands && !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m)) {
+  if (plan.lands &&
+      !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m, config_.fence)) {
     fly_home(now);  // it goes around
   }
   if (flight_.keeps_clear(hazards(), now)) return true;

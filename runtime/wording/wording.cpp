@@ -122,7 +122,7 @@ std::string_view sentence_of(event::Trouble trouble) {
       "it is not where its route has it at this time: the route is not flown",
       "another vehicle uses this id; this one bids and leads no more",
       "it has started anew, and holds until it is told which orders stand",
-      "a hazard bars its way down: it orbits at home, and is to be landed otherwise",
+      "a hazard or the fence bars its way down: it orbits at home, and is to be landed otherwise",
       "its circles would have to be wider in this wind than there is room for: it flies off their "
       "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind",
       "it has left its fence, or would soon: it flies home; 'resume' when it may go on"};
