@@ -270,6 +270,22 @@ class ArdupilotFaults : public ::testing::Test {
                 1e-3 * static_cast<double>(length.count()), 1e3 * noticed_s, 1e3 * over_s, ends);
   }
 
+  /// A third of each second there is no link.
+  void give_back_on_a_flapping_link() {
+    const double begin_s = now_s();
+    give_back();
+    const auto flies = [this] { return log().find(kFlying, read_) != std::string::npos; };
+    for (int i = 0; i < 20 && !flies(); ++i) {
+      bridge_->lose(1.0);
+      std::this_thread::sleep_for(300ms);
+      bridge_->lose(0.0);
+      std::this_thread::sleep_for(700ms);
+      give_back();
+    }
+    std::printf("given back on a flapping link: flown on after %.1f s\n",
+                wait_for(kFlying) - begin_s);
+  }
+
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
                                   ("skein-ardupilot-faults-" + std::to_string(::getpid()));
   std::size_t read_ = 0;
@@ -323,18 +339,7 @@ TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
   bridge_->lose(0.0);
   EXPECT_TRUE(stays_unsaid(kFlying, 3s)) << "the link is back, and the aircraft its pilot's";
 
-  // A third of each second there is no link.
-  begin = now_s();
-  give_back();
-  const auto flies = [this] { return log().find(kFlying, read_) != std::string::npos; };
-  for (int i = 0; i < 20 && !flies(); ++i) {
-    bridge_->lose(1.0);
-    std::this_thread::sleep_for(300ms);
-    bridge_->lose(0.0);
-    std::this_thread::sleep_for(700ms);
-    give_back();
-  }
-  std::printf("given back on a flapping link: flown on after %.1f s\n", wait_for(kFlying) - begin);
+  give_back_on_a_flapping_link();
 
   pilot_->set_parameter("SIM_GPS_DISABLE", 1.0F);
   EXPECT_TRUE(stays_unsaid("the mode was changed", 10s));
