@@ -45,7 +45,6 @@ Result<ardupilot::CanLinkParams> can_params(const configuration::VehicleConfig& 
   companion.vehicle = config.vehicle;
   companion.fence = config.fence;
   companion.system_id = fc.system_id;
-  companion.airframe = config.vehicle.airframe;
   switch (fc.take_over) {
     case configuration::TakeOverKind::in_flight:
       companion.take_over = ardupilot::TakeOver::in_flight;

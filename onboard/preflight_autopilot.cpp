@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "check_makers.hpp"
+#include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/firmware.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
 #include "skein/mavlink/enums.hpp"
@@ -56,7 +57,10 @@ Check not_told(std::string what, std::string_view message) {
 class Judge {
  public:
   Judge(const configuration::VehicleConfig& config, const AutopilotFacts& facts)
-      : config_{config}, fc_{config.flight_controller.ardupilot}, facts_{facts} {}
+      : config_{config},
+        fc_{config.flight_controller.ardupilot},
+        traits_{ardupilot::traits_of(config.vehicle.airframe)},
+        facts_{facts} {}
 
   [[nodiscard]] Checks link() const {
     Checks all;
@@ -96,10 +100,10 @@ class Judge {
     Checks all = in_group(CheckGroup::firmware, {make(), airframe(), firmware()});
     Checks parameters;
     for (const auto& parameter : facts_.safety) parameters.push_back(safety(parameter));
-    for (const auto& limit : ardupilot::limit_parameters(config_.vehicle.airframe)) {
+    for (const auto& limit : traits_.limits) {
       parameters.push_back(of_limit(limit));
     }
-    if (fc_.take_over == configuration::TakeOverKind::from_ground && !config_.vehicle.is_copter()) {
+    if (fc_.take_over == configuration::TakeOverKind::from_ground && !traits_.is_lifted) {
       parameters.push_back(takeoff_height());
     }
     append(all, in_group(CheckGroup::parameters, std::move(parameters)));
@@ -148,9 +152,9 @@ class Judge {
         wording::text_of(AutopilotNotice{.news = AutopilotNews::wrong_make, .number = number}));
   }
   [[nodiscard]] Check airframe() const {
-    const char* const wanted = config_.vehicle.is_copter() ? "copter" : "plane";
+    const std::string wanted{to_string(config_.vehicle.airframe)};
     const auto type = facts_.heartbeat->type;
-    if (ardupilot::is_of_airframe(config_.vehicle.airframe, *facts_.heartbeat)) {
+    if (traits_.is_of(type)) {
       return ok("airframe", fmt::format("{} (MAV_TYPE {})", wanted, type));
     }
     return fail("airframe", fmt::format("MAV_TYPE {}", type),
@@ -281,7 +285,7 @@ class Judge {
     return (facts_.heartbeat->base_mode & mavlink::mode_safety_armed) != 0;
   }
   [[nodiscard]] Check mode() const {
-    const std::string mode = ardupilot::mode_of(config_.vehicle.airframe, *facts_.heartbeat);
+    const std::string mode = traits_.name_of(facts_.heartbeat->custom_mode);
     if (mode == "GUIDED" && fc_.take_over == configuration::TakeOverKind::when_guided &&
         !is_armed()) {
       return warn(
@@ -329,6 +333,7 @@ class Judge {
 
   const configuration::VehicleConfig& config_;
   const configuration::ArdupilotConfig& fc_;
+  const ardupilot::AirframeTraits& traits_;
   const AutopilotFacts& facts_;
 };
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "flight_modes.hpp"
+#include "skein/mavlink/enums.hpp"
 #include "troubles.hpp"
 
 namespace skein::ardupilot {
@@ -42,13 +42,6 @@ std::uint8_t AutopilotFacts::battery_percent() const {
 
 bool AutopilotFacts::only_mode_forbids_arming() const {
   return !pre_arm.empty() && std::ranges::all_of(pre_arm, PreArmTexts::is_of_mode);
-}
-
-std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
-  return name_of_mode(airframe, heartbeat.custom_mode);
-}
-bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat) {
-  return is_of(airframe, heartbeat.type);
 }
 
 }  // namespace skein::ardupilot

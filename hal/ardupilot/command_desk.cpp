@@ -12,12 +12,13 @@ using mavlink::Command;
 
 constexpr std::size_t kWaitingMax = 32;
 
-constexpr std::array<std::pair<Command, const char*>, 7> kCommandNames{{
+constexpr std::array<std::pair<Command, const char*>, 8> kCommandNames{{
     {Command::do_set_mode, "DO_SET_MODE"},
     {Command::component_arm_disarm, "COMPONENT_ARM_DISARM"},
     {Command::nav_takeoff, "NAV_TAKEOFF"},
     {Command::do_change_speed, "DO_CHANGE_SPEED"},
     {Command::do_change_altitude, "DO_CHANGE_ALTITUDE"},
+    {Command::do_reposition, "DO_REPOSITION"},
     {Command::set_message_interval, "SET_MESSAGE_INTERVAL"},
     {Command::request_message, "REQUEST_MESSAGE"},
 }};

@@ -119,7 +119,7 @@ void Companion::Impl::step(Instant now) {
       }
       break;
     case State::taking_over:
-      ask_for_mode(guided_mode(params_.airframe), now);
+      ask_for_mode(traits_.guided_mode, now);
       break;
     case State::flying:
       fly(now);
@@ -145,7 +145,7 @@ void Companion::Impl::step(Instant now) {
     heartbeat.system_status = static_cast<std::uint8_t>(mavlink::SystemState::active);
     send(heartbeat);
   }
-  while (const auto command = desk_.next(now)) send(*command);
+  while (const auto command = desk_.next(now)) send_command(*command);
 }
 
 void Companion::Impl::watch_silence(Instant now) {
@@ -180,12 +180,9 @@ void Companion::Impl::prepare(Instant now) {
 }
 
 std::vector<ParameterQuestion> Companion::Impl::questions_of(const CompanionParams& params) {
-  auto questions = safety_questions(params.airframe, params.system_id);
-  for (ParameterQuestion& limit : limit_questions(params.vehicle, params.airframe)) {
+  auto questions = safety_questions(params.vehicle, params.system_id, params.fence);
+  for (ParameterQuestion& limit : limit_questions(params.vehicle)) {
     questions.push_back(std::move(limit));
-  }
-  for (ParameterQuestion& of_fence : fence_questions(params.vehicle, params.fence)) {
-    questions.push_back(std::move(of_fence));
   }
   return questions;
 }
@@ -214,9 +211,8 @@ bool Companion::Impl::airborne() const {
   if (landed != mavlink::LandedState::undefined) return landed != mavlink::LandedState::on_ground;
   const auto sample = motion_.sample();
   if (!sample) return false;
-  return params_.airframe == Airframe::copter
-             ? motion_.relative_height_m() > 2.0
-             : sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
+  return traits_.flies_to_points ? motion_.relative_height_m() > 2.0
+                                 : sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
 }
 
 bool Companion::Impl::high() const {
@@ -260,18 +256,17 @@ void Companion::Impl::stand_by(Instant now) {
 /// An autopilot that has waited for its companion may have begun to return home without having left
 /// it. It is not fit to be armed until it is in another mode.
 void Companion::Impl::leave_return_on_ground(Instant now) {
-  if (!is_return(params_.airframe, mode_) || now < entry_.retry_at) return;
+  if (!traits_.is_return(mode_) || now < entry_.retry_at) return;
   entry_.retry_at = now + kRetryPeriod;
-  ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod}, true);
+  ask(command_of(Command::do_set_mode, 1, traits_.takeoff_mode), {1, kRetryPeriod}, true);
 }
 
 void Companion::Impl::arm(Instant now) {
   if (now < entry_.retry_at) return;
   if (entry_.retries++ >= kArmRetries) return fire(Event::not_obeyed, now);
   entry_.retry_at = now + kRetryPeriod;
-  if (mode_ != takeoff_mode(params_.airframe)) {
-    ask(command_of(Command::do_set_mode, 1, takeoff_mode(params_.airframe)), {1, kRetryPeriod},
-        true);
+  if (mode_ != traits_.takeoff_mode) {
+    ask(command_of(Command::do_set_mode, 1, traits_.takeoff_mode), {1, kRetryPeriod}, true);
   } else {
     entry_.arm_asked = true;
     ask(command_of(Command::component_arm_disarm, 1), {1, kRetryPeriod}, true);
@@ -310,7 +305,7 @@ void Companion::Impl::fly(Instant now) {
     return;
   }
   const auto& setpoint = std::get<Setpoint>(*demand_);
-  if (params_.airframe == Airframe::copter) {
+  if (traits_.flies_to_points) {
     send_target(velocity_target(setpoint, state), now);
     return;
   }
@@ -396,6 +391,26 @@ void Companion::Impl::ask(const mavlink::CommandLong& command, const Patience& p
   desk_.ask(addressed, patience, latest);
 }
 
+/// ArduPlane takes a place as COMMAND_INT alone, and none of latitude and longitude 0: it is where
+/// the aircraft is.
+void Companion::Impl::send_command(const mavlink::CommandLong& command) {
+  if (command.command != static_cast<std::uint16_t>(Command::do_reposition)) return send(command);
+  mavlink::CommandInt place;
+  place.target_system = command.target_system;
+  place.target_component = command.target_component;
+  if (const auto sample = motion_.sample()) {
+    const Wgs84 here = origin_.to_wgs84(sample->state.position());
+    place.x = static_cast<std::int32_t>(std::lround(here.latitude_deg * 1e7));
+    place.y = static_cast<std::int32_t>(std::lround(here.longitude_deg * 1e7));
+  }
+  place.command = command.command;
+  place.frame = static_cast<std::uint8_t>(mavlink::Frame::global_relative_alt);
+  place.param1 = command.param1;
+  place.param2 = command.param2;
+  place.z = command.param7;
+  send(place);
+}
+
 // --- changes of state ----------------------------------------------------------------------------
 
 void Companion::Impl::fire(Event event, Instant now) {
@@ -426,7 +441,7 @@ void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
     say(given() != Given::yes, {.news = AutopilotNews::ready, .given = given()}, now);
   } else if (event == Event::disarmed) {
     // With a DO_LAND_START in its mission an ArduPlane does not arm again.
-    if (from == State::landing && params_.airframe == Airframe::plane) {
+    if (from == State::landing && traits_.touch_down) {
       mavlink::MissionClearAll clear;
       clear.target_system = system_;
       clear.target_component = mavlink::kComponentAutopilot;
@@ -444,10 +459,19 @@ void Companion::Impl::begin_climb(Instant now) {
   custody_.fire(Custody::Event::launched);
   climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
   say(false, {AutopilotNews::taking_off}, now);
-  if (params_.airframe != Airframe::copter) return;
+  if (!traits_.is_lifted) return;
   mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
   takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
   ask(takeoff, {}, true);
+}
+
+/// A place to fly to, which may be where it is, is flown to on its wings.
+void Companion::Impl::leave_hover() {
+  constexpr double kNoSpeed = -1.0;
+  constexpr double kInGuided = 1.0;
+  mavlink::CommandLong place = command_of(Command::do_reposition, kNoSpeed, kInGuided);
+  place.param7 = static_cast<float>(motion_.relative_height_m());
+  ask(place, {}, true);
 }
 
 void Companion::Impl::enter_piloted(State from, Event event, Instant now) {
@@ -511,6 +535,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       height_error_.reset();
       flown_at_.reset();
       target_at_ = now;
+      if (traits_.hovers_first) leave_hover();
       say(false, {AutopilotNews::flying}, now);
       break;
     case State::piloted:

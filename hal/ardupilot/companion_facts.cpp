@@ -25,7 +25,7 @@ void Companion::Impl::look_at(const mavlink::Packet& packet, Instant now) {
       return name == limit.name || name == limit.older_name;
     };
     if (std::ranges::find(kOthers, name) != kOthers.end() ||
-        std::ranges::any_of(limit_parameters(params_.airframe), is_limit)) {
+        std::ranges::any_of(traits_.limits, is_limit)) {
       looked_at_.parameters[name] = static_cast<double>(parameter->param_value);
     }
   }
@@ -73,7 +73,7 @@ std::optional<AutopilotFacts> Companion::Impl::facts(Instant now) const {
         AutopilotNotice{.news = AutopilotNews::duplicate_node, .number = duplicate_node_};
   }
   if (facts.trouble) facts.heartbeat.reset();
-  const auto safety = safety_parameters(params_.airframe).size();
+  const auto safety = traits_.safety.size();
   facts.safety = parameters_.tested();
   facts.safety.resize(std::min(safety, facts.safety.size()));
   for (const auto& reason : pre_arm_.texts()) facts.pre_arm.push_back(reason.text);

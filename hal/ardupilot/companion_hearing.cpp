@@ -99,10 +99,10 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
     std::optional<AutopilotNotice> wrong;
     if (heartbeat.autopilot != static_cast<std::uint8_t>(mavlink::Autopilot::ardupilotmega)) {
       wrong = {.news = AutopilotNews::wrong_make, .number = heartbeat.autopilot};
-    } else if (!is_of(params_.airframe, heartbeat.type)) {
+    } else if (!traits_.is_of(heartbeat.type)) {
       wrong = {.news = AutopilotNews::wrong_airframe,
                .number = heartbeat.type,
-               .detail = params_.airframe == Airframe::copter ? "copter" : "plane"};
+               .detail = std::string{to_string(params_.vehicle.airframe)}};
     }
     if (!wrong) {
       system_ = packet.system;
@@ -123,18 +123,18 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
 void Companion::Impl::on_mode(Instant now) {
   switch (machine_.state()) {
     case State::arming:
-      if (armed_ && entry_.arm_asked && mode_ == takeoff_mode(params_.airframe)) {
+      if (armed_ && entry_.arm_asked && mode_ == traits_.takeoff_mode) {
         fire(Event::armed, now);
       } else if (armed_ || airborne() || mode_changed(entry_.mode)) {
         fire(Event::other_mode, now);
-      } else if (mode_ == takeoff_mode(params_.airframe)) {
+      } else if (mode_ == traits_.takeoff_mode) {
         entry_.mode_confirmed = true;
       }
       break;
     case State::climbing:
       if (!armed_) {
         fire(Event::disarmed, now);
-      } else if (mode_ != takeoff_mode(params_.airframe)) {
+      } else if (mode_ != traits_.takeoff_mode) {
         fire(Event::other_mode, now);
       }
       break;
@@ -157,7 +157,7 @@ void Companion::Impl::on_mode(Instant now) {
     case State::landing:
       if (!armed_) {
         fire(Event::disarmed, now);
-      } else if (mode_ == land_mode(params_.airframe)) {
+      } else if (mode_ == traits_.land_mode) {
         entry_.mode_confirmed = true;
       } else if (entry_.mode_confirmed || !guided()) {
         fire(Event::other_mode, now);
@@ -178,7 +178,7 @@ void Companion::Impl::on_mode(Instant now) {
 }
 
 bool Companion::Impl::mode_changed(std::uint32_t before) const {
-  return mode_ != takeoff_mode(params_.airframe) && (entry_.mode_confirmed || mode_ != before);
+  return mode_ != traits_.takeoff_mode && (entry_.mode_confirmed || mode_ != before);
 }
 
 void Companion::Impl::on_check(Instant now) {
@@ -202,7 +202,7 @@ void Companion::Impl::on_check(Instant now) {
       if (!armed_) {
         fire(Event::disarmed, now);
       } else {
-        const bool still = mode_ == takeoff_mode(params_.airframe);
+        const bool still = mode_ == traits_.takeoff_mode;
         fire(still ? Event::still_climbing : Event::other_mode, now);
       }
       break;
@@ -210,7 +210,7 @@ void Companion::Impl::on_check(Instant now) {
       // In GUIDED it has not heard of it: where the setpoint stays, it is told again.
       if (!armed_) {
         fire(Event::disarmed, now);
-      } else if (mode_ == land_mode(params_.airframe)) {
+      } else if (mode_ == traits_.land_mode) {
         fire(Event::still_landing, now);
       } else {
         fire(guided() ? Event::guided : Event::other_mode, now);

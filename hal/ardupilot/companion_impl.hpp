@@ -10,9 +10,9 @@
 #include "boot_clock.hpp"
 #include "command_desk.hpp"
 #include "custody.hpp"
-#include "flight_modes.hpp"
 #include "mission_upload.hpp"
 #include "parameter_check.hpp"
+#include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "status_text.hpp"
@@ -46,9 +46,10 @@ class Companion::Impl {
  public:
   Impl(const CompanionParams& params, const MissionOrigin& origin, Instant now)
       : params_{params},
+        traits_{traits_of(params.vehicle.airframe)},
         origin_{origin},
         parser_{parser_params(params.signing, now)},
-        motion_{origin, params.geoid_height_m, params.airframe == Airframe::copter},
+        motion_{origin, params.geoid_height_m, traits_.flies_to_points},
         parameters_{questions_of(params)},
         frame_heard_{now},
         packet_heard_{now},
@@ -67,7 +68,7 @@ class Companion::Impl {
   }
   [[nodiscard]] std::optional<bool> in_use() const;
   [[nodiscard]] std::string mode() const {
-    return system_ == 0 ? std::string{} : name_of_mode(params_.airframe, mode_);
+    return system_ == 0 ? std::string{} : traits_.name_of(mode_);
   }
   void on_reboot(Instant now);
   void on_duplicate(std::uint8_t node_id, Instant now);
@@ -80,7 +81,7 @@ class Companion::Impl {
   [[nodiscard]] std::optional<Heard> other_heartbeat() const { return other_heartbeat_; }
   void command(const Demand& demand, Instant now) {
     const auto* point = std::get_if<PositionSetpoint>(&demand);
-    if (point != nullptr && (params_.airframe != Airframe::copter || !point->finite())) return;
+    if (point != nullptr && (!traits_.flies_to_points || !point->finite())) return;
     demand_ = demand;
     demand_at_ = now;
   }
@@ -171,6 +172,7 @@ class Companion::Impl {
   void entered(State from, Event event, Instant now);
   void enter_standing_by(State from, Event event, Instant now);
   void begin_climb(Instant now);
+  void leave_hover();
   void enter_piloted(State from, Event event, Instant now);
   void enter_loss(State from, std::uint32_t mode_before, Instant now);
   void reset_link();
@@ -186,9 +188,10 @@ class Companion::Impl {
            (looked_at_.health->onboard_control_sensors_enabled &
             looked_at_.health->onboard_control_sensors_health & kNavigation) == kNavigation;
   }
-  [[nodiscard]] bool guided() const { return mode_ == guided_mode(params_.airframe); }
+  [[nodiscard]] bool guided() const { return mode_ == traits_.guided_mode; }
   void ask_parameter(std::string_view name);
   void ask(const mavlink::CommandLong& command, const Patience& patience, bool latest);
+  void send_command(const mavlink::CommandLong& command);
   template <class Message>
   void send(const Message& message) {
     if (encoder_) packets_.push(encoder_->encode(message));
@@ -198,6 +201,7 @@ class Companion::Impl {
   }
 
   CompanionParams params_;
+  const AirframeTraits& traits_;
   MissionOrigin origin_;
   StateMachine<State, Event> machine_{Companion::table(), State::searching};
   mavlink::Parser parser_;

@@ -40,7 +40,7 @@ void Companion::Impl::prepare_landing(const Landing& landing, Instant now) {
     if (now < upload_again_at_) return;
     forget_landing();
     uploads_ = landing;
-    upload_.begin(landing_mission(landing, origin_), now);
+    upload_.begin(landing_mission(landing, *traits_.touch_down, origin_), now);
   }
   if (upload_.state() == MissionUpload::State::failed) return not_landed(upload_.why(), now);
   if (upload_.state() != MissionUpload::State::verified) return;
@@ -54,8 +54,7 @@ void Companion::Impl::prepare_landing(const Landing& landing, Instant now) {
 void Companion::Impl::land(Instant now) {
   const auto* setpoint = demand_ ? std::get_if<Setpoint>(&*demand_) : nullptr;
   const bool fresh = now - demand_at_ <= params_.setpoint_age_max;
-  const bool called_off =
-      params_.airframe == Airframe::plane && setpoint != nullptr && fresh && !setpoint->landing;
+  const bool called_off = traits_.touch_down && setpoint != nullptr && fresh && !setpoint->landing;
   if (called_off && airborne() && motion_.relative_height_m() >= kGoAroundFrom_m) {
     say(false, {.news = AutopilotNews::going_around}, now);
     return fire(Event::called_off, now);
@@ -66,7 +65,7 @@ void Companion::Impl::land(Instant now) {
          .number = static_cast<std::uint16_t>(kGoAroundFrom_m)},
         now);
   }
-  if (!entry_.mode_confirmed) ask_for_mode(land_mode(params_.airframe), now);
+  if (!entry_.mode_confirmed) ask_for_mode(traits_.land_mode, now);
 }
 
 bool Companion::Impl::give_fence(Instant now) {

@@ -12,8 +12,9 @@
 
 namespace skein::ardupilot {
 
-inline VehicleSpec test_vehicle() {
+inline VehicleSpec test_vehicle(Airframe airframe = Airframe::plane) {
   VehicleSpec v;
+  v.airframe = airframe;
   v.id = {7};
   v.cruise_speed_mps = 50.0;
   v.speed_min_mps = 42.5;
@@ -27,9 +28,8 @@ inline VehicleSpec test_vehicle() {
 inline CompanionParams params(TakeOver take_over = TakeOver::in_flight,
                               Airframe airframe = Airframe::plane) {
   CompanionParams p;
-  p.vehicle = test_vehicle();
+  p.vehicle = test_vehicle(airframe);
   p.take_over = take_over;
-  p.airframe = airframe;
   return p;
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "skein/base/angles.hpp"
@@ -15,7 +14,6 @@ namespace {
 
 using Verdict = LimitFinding::Verdict;
 
-constexpr std::array kPlane{kRollLimit, kAirspeedMin, kAirspeedMax, kAirspeedCruise, kSpeedWeight};
 /// Parameters are floats, and people round.
 constexpr double kSlack = 1e-3;
 /// Of bank, over that of a steady turn: an aircraft slips, and rolls past before it settles.
@@ -23,6 +21,8 @@ constexpr double kBankReserve_deg = 5.0;
 constexpr double kBankMax_deg = 80.0;
 /// The autopilot returns home by itself at its own cruise airspeed.
 constexpr double kCruiseOff_mps = 2.0;
+/// Of a quadplane's least airspeed: gusts shall not start its rotors.
+constexpr double kAssistBelow_mps = 2.0;
 /// ArduPlane, STALL_PREVENTION: it always leaves this much bank.
 constexpr double kBankAlways_deg = 25.0;
 
@@ -77,11 +77,6 @@ double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps) {
   return std::max(kBankAlways_deg, degrees(std::acos(inverse * inverse)));
 }
 
-std::span<const LimitParameter> limit_parameters(Airframe airframe) {
-  if (airframe == Airframe::plane) return kPlane;
-  return {};
-}
-
 LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& parameter,
                          std::string_view name, double value) {
   const std::string found = fmt::format("{} is {:g}", name, value);
@@ -122,6 +117,13 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
   if (parameter.name == kSpeedWeight.name && si > kSpeedWeightMost) {
     return {Verdict::differs, found,
             fmt::format("height swings by metres while the airspeed changes: set {} to 0", name)};
+  }
+  if (parameter.name == kAssistSpeed.name && si >= vehicle.speed_min_mps) {
+    return {
+        Verdict::differs, found,
+        fmt::format("its rotors run in flight, since speed_min_mps is {:g}: set {} to {} or "
+                    "less",
+                    vehicle.speed_min_mps, name, set(vehicle.speed_min_mps - kAssistBelow_mps))};
   }
   return {Verdict::good, found, {}};
 }

@@ -55,7 +55,7 @@ TEST(Landing, IsUploadedReadBackAndFlownInAuto) {
 
 TEST(Landing, ThePlacesOfItsItemsAreThoseOfTheLanding) {
   const auto origin = MissionOrigin::make(kTestOrigin).value();
-  const auto items = landing_mission(kLanding, origin);
+  const auto items = landing_mission(kLanding, mavlink::Command::nav_land, origin);
   const auto at = [&](std::size_t item) {
     return origin
         .to_enu({static_cast<double>(items[item].x) * 1e-7,

@@ -22,7 +22,7 @@ using ::testing::SizeIs;
 // test_vehicle(): 50 m/s within 150 m takes 59.5 degrees; 42.5 to 57.5 m/s.
 
 TEST(LimitCheck, AsksByBothNamesUntilItIsTold) {
-  ParameterCheck check{limit_questions(test_vehicle(), Airframe::plane)};
+  ParameterCheck check{limit_questions(test_vehicle())};
   EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(9));
   check.on_value("LIM_ROLL_CD", 6000.0F);
   check.on_value("AIRSPEED_MIN", 40.0F);
@@ -36,14 +36,14 @@ TEST(LimitCheck, AsksByBothNamesUntilItIsTold) {
 }
 
 TEST(LimitCheck, WhatAFirmwareDoesNotKnowKeepsNobodyOnTheGround) {
-  ParameterCheck check{limit_questions(test_vehicle(), Airframe::plane)};
+  ParameterCheck check{limit_questions(test_vehicle())};
   int questions = 0;
   for (double t = 0.0; !check.good(); t += 0.1) {
     questions += check.due(at_seconds(t)).empty() ? 0 : 1;
     ASSERT_LT(t, 5.0);
   }
   EXPECT_EQ(questions, 4);
-  ParameterCheck copter{limit_questions(test_vehicle(), Airframe::copter)};
+  ParameterCheck copter{limit_questions(test_vehicle(Airframe::copter))};
   EXPECT_TRUE(copter.good());
 }
 
@@ -63,7 +63,7 @@ TEST(LimitCheck, StallPreventionLeavesLessBankNearTheLeastAirspeed) {
 }
 
 TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {
-  ParameterCheck check{limit_questions(test_vehicle(), Airframe::plane)};
+  ParameterCheck check{limit_questions(test_vehicle())};
   check.on_value("ROLL_LIMIT_DEG", 45.0F);
   EXPECT_EQ(check.poll_finding(at_seconds(0.0)),
             "ROLL_LIMIT_DEG is 45: at 50 m/s it turns within 255 m; turn_radius_m is 150: set "

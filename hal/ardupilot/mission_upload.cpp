@@ -20,7 +20,8 @@ constexpr float kSameRadius_m = 0.5F;
 
 }  // namespace
 
-std::vector<MissionItemInt> landing_mission(const Landing& landing, const MissionOrigin& origin) {
+std::vector<MissionItemInt> landing_mission(const Landing& landing, Command touch_down_by,
+                                            const MissionOrigin& origin) {
   std::vector<MissionItemInt> items;
   const auto add = [&](Command command, const Vec2& place, double height_m) -> MissionItemInt& {
     const Wgs84 at = origin.to_wgs84({place.x(), place.y(), 0.0});
@@ -41,7 +42,7 @@ std::vector<MissionItemInt> landing_mission(const Landing& landing, const Missio
       add(Command::nav_loiter_to_alt, descent_centre(landing), landing.approach_height_m);
   circle.param2 = -static_cast<float>(std::round(landing.radius_m));  // to the left
   circle.param4 = 1.0F;                                               // leaves it on its tangent
-  add(Command::nav_land, touch_down, 0.0);
+  add(touch_down_by, touch_down, 0.0);
   return items;
 }
 

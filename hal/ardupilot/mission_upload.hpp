@@ -21,8 +21,9 @@ inline constexpr std::uint16_t kLandFromItem = 2;
 
 /// A plane's landing as a mission: home (which the autopilot puts there itself), DO_LAND_START, the
 /// circle on which it comes down to its approach's height (NAV_LOITER_TO_ALT, to the left), and
-/// NAV_LAND. Heights are above home.
+/// what sets it down: NAV_LAND, or NAV_VTOL_LAND on rotors. Heights are above home.
 [[nodiscard]] std::vector<mavlink::MissionItemInt> landing_mission(const Landing& landing,
+                                                                   mavlink::Command touch_down_by,
                                                                    const MissionOrigin& origin);
 
 /// A fence's corners, for the autopilot to stay within (NAV_FENCE_POLYGON_VERTEX_INCLUSION).

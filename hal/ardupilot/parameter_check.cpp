@@ -22,93 +22,62 @@ constexpr int kUnansweredAfter = 5;  ///< questions
 constexpr int kUnknownAfter = 4;     ///< questions
 constexpr Duration kTellAgain = seconds{60};
 
-// ArduPlane 4.6, FS_GCS_ENABL: 1 heartbeat, 2 heartbeat and REMRSSI; 3 is for AUTO alone.
-constexpr std::array kPlaneFailsafe{1, 2};
-constexpr std::array kPlaneAction{1};  // RTL; 0 flies on in GUIDED
-// ArduCopter 4.6, FS_GCS_ENABLE: RTL, SmartRTL or RTL, SmartRTL or land, land, AUTO's landing or
-// RTL, brake or land; 0 is off, 2 was taken away.
-constexpr std::array kCopterFailsafe{1, 3, 4, 5, 6, 7};
-
-constexpr std::string_view kFliesOn = "the autopilot flies on when the companion falls silent";
-constexpr std::string_view kHearsOther = "the autopilot waits for another's heartbeat";
-
-constexpr std::array kPlane{
-    SafetyParameter{"FS_GCS_ENABL", "", kPlaneFailsafe, kFliesOn},
-    SafetyParameter{"FS_LONG_ACTN", "", kPlaneAction, kFliesOn},
-    SafetyParameter{"SYSID_MYGCS", "MAV_GCS_SYSID", {}, kHearsOther},
-};
-constexpr std::array kCopter{
-    SafetyParameter{"FS_GCS_ENABLE", "", kCopterFailsafe, kFliesOn},
-    SafetyParameter{"SYSID_MYGCS", "MAV_GCS_SYSID", {}, kHearsOther},
-};
-
-}  // namespace
-
-std::span<const SafetyParameter> safety_parameters(Airframe airframe) {
-  if (airframe == Airframe::copter) return kCopter;
-  return kPlane;
-}
-
-std::vector<ParameterQuestion> safety_questions(Airframe airframe, std::uint8_t system_id) {
-  std::vector<ParameterQuestion> questions;
-  for (const SafetyParameter& parameter : safety_parameters(airframe)) {
-    const std::string wanted = parameter.good.empty()
-                                   ? std::to_string(system_id)
-                                   : fmt::format("{}", fmt::join(parameter.good, " or "));
-    const auto judge = [parameter, system_id, wanted](std::string_view name,
-                                                      float value) -> std::optional<std::string> {
-      const auto is = [value](int good) { return value == static_cast<float>(good); };
-      if (parameter.good.empty() ? is(system_id) : std::ranges::any_of(parameter.good, is)) {
-        return std::nullopt;
-      }
-      return fmt::format("{} is {:g}, so {}; set it to {}", name, value, parameter.why, wanted);
-    };
-    questions.push_back(
-        {parameter.name, parameter.later_name, judge,
-         fmt::format("it does not tell {}, which must be {}", parameter.name, wanted),
-         parameter.good.empty()});
-  }
-  return questions;
-}
-
-std::vector<ParameterQuestion> fence_questions(const VehicleSpec& vehicle, const Fence& fence) {
-  if (!fence.exists()) return {};
-  struct Wanted {
-    std::string_view name;
-    std::function<bool(double)> is_good;
-    std::string why;
-    std::string good;
+/// A value that has to be good, told or not.
+ParameterQuestion question(std::string_view name, std::string_view other_name, std::string wanted,
+                           std::string why, std::function<bool(double)> is_good) {
+  std::string untold = fmt::format("it does not tell {}, which must be {}", name, wanted);
+  auto judge = [wanted = std::move(wanted), why = std::move(why), is_good = std::move(is_good)](
+                   std::string_view told, float value) -> std::optional<std::string> {
+    if (is_good(static_cast<double>(value))) return std::nullopt;
+    return fmt::format("{} is {:g}, so {}; set it to {}", told, value, why, wanted);
   };
+  return {name, other_name, std::move(judge), std::move(untold)};
+}
+
+void add_fence_questions(std::vector<ParameterQuestion>& questions, const VehicleSpec& vehicle,
+                         const Fence& fence) {
+  if (!fence.exists()) return;
   const double least_m = vehicle.height_m;
   const double most_m = fence.height_max_m;
   // Bits of FENCE_TYPE: 0 is the greatest height, 2 polygons.
   constexpr int kTypes = 5;
-  const std::array wanted{
-      Wanted{"FENCE_ENABLE", [](double v) { return v == 1.0; }, "the autopilot keeps no fence",
-             "1"},
-      Wanted{"FENCE_ACTION", [](double v) { return v >= 1.0; }, "it only tells what it leaves",
-             "1"},
-      Wanted{"FENCE_TYPE",
-             [](double v) { return v >= 0.0 && (static_cast<int>(v) & kTypes) == kTypes; },
-             "it does not keep both polygon and height", "5"},
-      Wanted{"FENCE_ALT_MAX", [=](double v) { return v > least_m && v <= most_m; },
-             fmt::format("the fence's height is {:g} m, and the vehicle's {:g} m", most_m, least_m),
-             fmt::format("{:g}", most_m)}};
+  questions.push_back(question("FENCE_ENABLE", "", "1", "the autopilot keeps no fence",
+                               [](double v) { return v == 1.0; }));
+  questions.push_back(question("FENCE_ACTION", "", "1", "it only tells what it leaves",
+                               [](double v) { return v >= 1.0; }));
+  questions.push_back(
+      question("FENCE_TYPE", "", "5", "it does not keep both polygon and height",
+               [](double v) { return v >= 0.0 && (static_cast<int>(v) & kTypes) == kTypes; }));
+  questions.push_back(question(
+      "FENCE_ALT_MAX", "", fmt::format("{:g}", most_m),
+      fmt::format("the fence's height is {:g} m, and the vehicle's {:g} m", most_m, least_m),
+      [=](double v) { return v > least_m && v <= most_m; }));
+}
+
+}  // namespace
+
+std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle, std::uint8_t system_id,
+                                                const Fence& fence) {
   std::vector<ParameterQuestion> questions;
-  for (const Wanted& w : wanted) {
-    const auto judge = [w](std::string_view name, float value) -> std::optional<std::string> {
-      if (w.is_good(static_cast<double>(value))) return std::nullopt;
-      return fmt::format("{} is {:g}, so {}; set it to {}", name, value, w.why, w.good);
-    };
-    questions.push_back(
-        {w.name, "", judge, fmt::format("it does not tell {}, which must be {}", w.name, w.good)});
+  for (const SafetyParameter& parameter : traits_of(vehicle.airframe).safety) {
+    const bool of_own_id = parameter.good.empty();
+    const std::vector<int> good =
+        of_own_id ? std::vector<int>{system_id}
+                  : std::vector<int>{parameter.good.begin(), parameter.good.end()};
+    auto& added = questions.emplace_back(question(
+        parameter.name, parameter.later_name, fmt::format("{}", fmt::join(good, " or ")),
+        std::string{parameter.why}, [good](double v) {
+          return std::ranges::any_of(good, [v](int one) { return v == static_cast<double>(one); });
+        }));
+    added.of_own_id = of_own_id;
   }
+  add_fence_questions(questions, vehicle, fence);
   return questions;
 }
 
-std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle, Airframe airframe) {
+std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle) {
   std::vector<ParameterQuestion> questions;
-  for (const LimitParameter& parameter : limit_parameters(airframe)) {
+  for (const LimitParameter& parameter : traits_of(vehicle.airframe).limits) {
     const auto judge = [vehicle, parameter](std::string_view name,
                                             float value) -> std::optional<std::string> {
       const auto judged = judge_limit(vehicle, parameter, name, static_cast<double>(value));

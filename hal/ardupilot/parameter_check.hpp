@@ -9,22 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/vehicle.hpp"
 
 namespace skein::ardupilot {
-
-/// A parameter of the autopilot that the safety of a flight rests on.
-struct SafetyParameter {
-  std::string_view name;        ///< of 4.5 and 4.6
-  std::string_view later_name;  ///< of later releases, where they have another; else empty
-  std::span<const int> good;    ///< what it may be; empty: the autopilot's own system
-  std::string_view why;         ///< what is lost without
-};
-/// Those of an airframe; docs/ardupilot.md is printed from it.
-[[nodiscard]] std::span<const SafetyParameter> safety_parameters(Airframe airframe);
 
 /// A parameter that an autopilot is asked for, and what is made of its answer.
 struct ParameterQuestion {
@@ -36,14 +27,12 @@ struct ParameterQuestion {
   std::string untold;
   bool of_own_id = false;  ///< what is good is the autopilot's own system id
 };
-[[nodiscard]] std::vector<ParameterQuestion> safety_questions(Airframe airframe,
-                                                              std::uint8_t system_id);
-/// Of the autopilot's own fence; none where there is none.
-[[nodiscard]] std::vector<ParameterQuestion> fence_questions(const VehicleSpec& vehicle,
-                                                             const Fence& fence);
+/// What the safety of a flight rests on, and the autopilot's own fence where there is one.
+[[nodiscard]] std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle,
+                                                              std::uint8_t system_id,
+                                                              const Fence& fence);
 /// Of what limits the vehicle (flight_limits.hpp).
-[[nodiscard]] std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle,
-                                                             Airframe airframe);
+[[nodiscard]] std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle);
 
 /// Asks an autopilot for parameters, and judges its answers. Whoever may fly waits until all are
 /// good; what is wrong is asked for again, so that setting it is enough.

@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 TEST(ParameterCheck, AsksUntilEachIsGood) {
-  ParameterCheck check{safety_questions(Airframe::plane, 7)};
+  ParameterCheck check{safety_questions(test_vehicle(), 7, {})};
   EXPECT_THAT(check.due(at_seconds(0.0)),
               ElementsAre("FS_GCS_ENABL", "FS_LONG_ACTN", "SYSID_MYGCS", "MAV_GCS_SYSID"));
   EXPECT_THAT(check.due(at_seconds(0.1)), IsEmpty());
@@ -40,7 +40,7 @@ TEST(ParameterCheck, AsksUntilEachIsGood) {
 }
 
 TEST(ParameterCheck, SaysWhatIsWrongAndWhatToSet) {
-  ParameterCheck check{safety_questions(Airframe::plane, 7)};
+  ParameterCheck check{safety_questions(test_vehicle(), 7, {})};
   check.on_value("FS_GCS_ENABL", 0.0F);
   check.on_value("FS_LONG_ACTN", 1.0F);
   check.on_value("SYSID_MYGCS", 255.0F);
@@ -54,7 +54,7 @@ TEST(ParameterCheck, SaysWhatIsWrongAndWhatToSet) {
 }
 
 TEST(ParameterCheck, NoAnswerIsSaidAfterSeveralQuestions) {
-  ParameterCheck check{safety_questions(Airframe::copter, 1)};
+  ParameterCheck check{safety_questions(test_vehicle(Airframe::copter), 1, {})};
   check.on_value("SYSID_MYGCS", 1.0F);
   double t = 0.0;
   for (; !check.poll_finding(at_seconds(t)); t += 0.1) {
@@ -65,7 +65,7 @@ TEST(ParameterCheck, NoAnswerIsSaidAfterSeveralQuestions) {
 }
 
 TEST(ParameterCheck, TakesAnyBytesForWhatTheyAre) {
-  ParameterCheck check{safety_questions(Airframe::copter, 1)};
+  ParameterCheck check{safety_questions(test_vehicle(Airframe::copter), 1, {})};
   check.on_value("", 1.0F);
   check.on_value("FS_GCS_ENABLEX", 1.0F);
   check.on_value("SYSID_MYGCS", 1.0F);
@@ -120,16 +120,15 @@ TEST(ParameterCheck, IsInTheDocument) {
   std::ifstream file{SKEIN_SOURCE_DIR "/docs/ardupilot.md"};
   std::stringstream document;
   document << file.rdbuf();
-  for (const auto& [airframe, name] :
-       {std::pair{Airframe::plane, "plane"}, std::pair{Airframe::copter, "copter"}}) {
-    for (const SafetyParameter& parameter : safety_parameters(airframe)) {
+  for (const Airframe airframe : {Airframe::plane, Airframe::copter, Airframe::quadplane}) {
+    for (const SafetyParameter& parameter : traits_of(airframe).safety) {
       const std::string good = parameter.good.empty()
                                    ? "the vehicle's own SYSID_THISMAV"
                                    : fmt::format("{}", fmt::join(parameter.good, " or "));
       const std::string later =
           parameter.later_name.empty() ? "" : fmt::format(" (later {})", parameter.later_name);
-      const std::string row = fmt::format("| {} | {}{} | {} | {} |\n", name, parameter.name, later,
-                                          good, parameter.why);
+      const std::string row = fmt::format("| {} | {}{} | {} | {} |\n", to_string(airframe),
+                                          parameter.name, later, good, parameter.why);
       EXPECT_NE(document.str().find(row), std::string::npos) << "docs/ardupilot.md lacks:\n" << row;
     }
   }

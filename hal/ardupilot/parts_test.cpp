@@ -6,7 +6,7 @@
 
 #include "boot_clock.hpp"
 #include "command_desk.hpp"
-#include "flight_modes.hpp"
+#include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/motion.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/atmosphere.hpp"
@@ -373,15 +373,25 @@ TEST(SteadyError, GoesAwayAndStaysWithinItsLimit) {
   EXPECT_EQ(error.step(0.0, 0.04), 0.0);
 }
 
-TEST(FlightModes, AreThoseOfTheAirframe) {
-  EXPECT_EQ(guided_mode(Airframe::plane), 15U);
-  EXPECT_EQ(guided_mode(Airframe::copter), 4U);
-  EXPECT_EQ(name_of_mode(Airframe::copter, 4), "GUIDED");
-  EXPECT_EQ(name_of_mode(Airframe::plane, 4), "ACRO");
-  EXPECT_EQ(name_of_mode(Airframe::plane, 77), "mode 77");
-  EXPECT_TRUE(is_of(Airframe::plane, 1));
-  EXPECT_FALSE(is_of(Airframe::plane, 13));
-  EXPECT_TRUE(is_of(Airframe::copter, 13));
+TEST(Airframes, HaveTheirModesAndTypes) {
+  const AirframeTraits& plane = traits_of(Airframe::plane);
+  const AirframeTraits& copter = traits_of(Airframe::copter);
+  const AirframeTraits& quadplane = traits_of(Airframe::quadplane);
+  EXPECT_EQ(plane.guided_mode, 15U);
+  EXPECT_EQ(copter.guided_mode, 4U);
+  EXPECT_EQ(copter.name_of(4), "GUIDED");
+  EXPECT_EQ(plane.name_of(4), "ACRO");
+  EXPECT_EQ(plane.name_of(77), "mode 77");
+  EXPECT_EQ(quadplane.name_of(21), "QRTL");
+  EXPECT_TRUE(quadplane.is_return(21));
+  EXPECT_TRUE(quadplane.is_return(11));
+  EXPECT_FALSE(plane.is_return(21));
+  EXPECT_TRUE(plane.is_of(1));
+  EXPECT_FALSE(plane.is_of(13));
+  EXPECT_TRUE(copter.is_of(13));
+  EXPECT_TRUE(quadplane.is_of(22));
+  EXPECT_TRUE(quadplane.is_of(1));
+  EXPECT_FALSE(quadplane.is_of(2));
 }
 
 }  // namespace

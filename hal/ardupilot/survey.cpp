@@ -9,7 +9,7 @@
 #include "can_link_parts.hpp"
 #include "link_watch.hpp"
 #include "parameter_check.hpp"
-#include "skein/ardupilot/flight_limits.hpp"
+#include "skein/ardupilot/airframe.hpp"
 #include "skein/dronecan/node.hpp"
 #include "skein/dronecan/tunnel.hpp"
 #include "status_text.hpp"
@@ -30,14 +30,6 @@ constexpr Duration kReasonsWithin = milliseconds{1500};
 constexpr std::array<std::string_view, 3> kOthers{"FENCE_ENABLE", "ARMING_CHECK", "TKOFF_ALT"};
 constexpr int kOthersAsked = 4;
 
-std::vector<ParameterQuestion> asked_before_flights(const CompanionParams& params) {
-  auto questions = safety_questions(params.airframe, params.system_id);
-  for (auto& of_fence : fence_questions(params.vehicle, params.fence)) {
-    questions.push_back(std::move(of_fence));
-  }
-  return questions;
-}
-
 }  // namespace
 
 class Survey::Impl {
@@ -47,7 +39,8 @@ class Survey::Impl {
         bus_{std::move(bus)},
         begun_{now},
         watch_{link_ids(params, bus_->name()), now, kWatchPatience},
-        parameters_{asked_before_flights(params.companion)},
+        parameters_{safety_questions(params.companion.vehicle, params.companion.system_id,
+                                     params.companion.fence)},
         encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer},
         parser_{parser_params(params.companion.signing, now)} {}
 
@@ -166,7 +159,7 @@ class Survey::Impl {
     want(facts_.time);
     want(facts_.landed);
     for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
-    for (const LimitParameter& limit : limit_parameters(params_.companion.airframe)) {
+    for (const LimitParameter& limit : traits_of(params_.companion.vehicle.airframe).limits) {
       if (is_told(limit)) continue;
       ask_parameter(limit.name);
       if (!limit.older_name.empty()) ask_parameter(limit.older_name);
@@ -188,7 +181,7 @@ class Survey::Impl {
            facts_.parameters.contains(std::string{limit.older_name});
   }
   [[nodiscard]] bool has_all(Instant now) const {
-    const auto limits = limit_parameters(params_.companion.airframe);
+    const auto limits = traits_of(params_.companion.vehicle.airframe).limits;
     const bool told = parameters_.all_told() && others_asked_ == kOthersAsked &&
                       std::ranges::all_of(limits, [this](const auto& l) { return is_told(l); });
     const bool reasons =

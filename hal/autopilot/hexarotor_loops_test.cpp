@@ -18,7 +18,7 @@ TEST(Mixer, GivesTheAskedForceAndMoment) {
   const HexarotorTuning tuning;
   const models::HexarotorParams params = models::firefly();
   const Vec3 moment{0.1, -0.2, 0.02};
-  const RotorCommand command = mix(tuning, 16.0, moment);
+  const RotorCommand command = mix(tuning, {16.0, moment});
   const models::Wrench wrench =
       models::hexarotor_wrench(params, {}, TestHover::speeds(command), Vec3::Zero());
   EXPECT_NEAR(wrench.force_n.z(), -16.0, 0.05);  // the rotors' greatest thrust is 6.003 N
@@ -28,7 +28,7 @@ TEST(Mixer, GivesTheAskedForceAndMoment) {
 TEST(Mixer, KeepsRollAndPitchWhereItCannotHaveAll) {
   const HexarotorTuning tuning;
   for (const double thrust : {0.0, 18.0, 36.0}) {
-    const RotorCommand command = mix(tuning, thrust, {0.3, 0.0, 5.0});
+    const RotorCommand command = mix(tuning, {thrust, {0.3, 0.0, 5.0}});
     double roll = 0.0;
     for (std::size_t i = 0; i < RotorCommand::kRotors; ++i) {
       EXPECT_GE(command.thrust[i], 0.0);

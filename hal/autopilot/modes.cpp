@@ -21,6 +21,9 @@ constexpr std::array kPlane{
     Named<PlaneMode, PlaneEvent>{PlaneMode::loiter, PlaneEvent::select_loiter, "LOITER"},
     Named<PlaneMode, PlaneEvent>{PlaneMode::takeoff, PlaneEvent::select_takeoff, "TAKEOFF"},
     Named<PlaneMode, PlaneEvent>{PlaneMode::guided, PlaneEvent::select_guided, "GUIDED"},
+    Named<PlaneMode, PlaneEvent>{PlaneMode::q_loiter, PlaneEvent::select_q_loiter, "QLOITER"},
+    Named<PlaneMode, PlaneEvent>{PlaneMode::q_land, PlaneEvent::select_q_land, "QLAND"},
+    Named<PlaneMode, PlaneEvent>{PlaneMode::q_rtl, PlaneEvent::select_q_rtl, "QRTL"},
 };
 constexpr std::array kCopter{
     Named<CopterMode, CopterEvent>{CopterMode::stabilize, CopterEvent::select_stabilize,

@@ -8,12 +8,13 @@
 namespace skein::autopilot {
 namespace {
 
-constexpr std::array kAllPlane{PlaneMode::manual, PlaneMode::fbwa,   PlaneMode::mission,
-                               PlaneMode::rtl,    PlaneMode::loiter, PlaneMode::takeoff,
-                               PlaneMode::guided};
+constexpr std::array kAllPlane{PlaneMode::manual, PlaneMode::fbwa,     PlaneMode::mission,
+                               PlaneMode::rtl,    PlaneMode::loiter,   PlaneMode::takeoff,
+                               PlaneMode::guided, PlaneMode::q_loiter, PlaneMode::q_land,
+                               PlaneMode::q_rtl};
 constexpr std::array kAllCopter{CopterMode::stabilize, CopterMode::guided, CopterMode::loiter,
                                 CopterMode::rtl, CopterMode::land};
-constexpr ModeFacts kGood{.position = true, .mission = true};
+constexpr ModeFacts kGood{.position = true, .mission = true, .rotors = true};
 
 TEST(Modes, EveryModeCanBeSelectedFromEveryMode) {
   for (const PlaneMode from : kAllPlane) {
@@ -68,13 +69,22 @@ TEST(Modes, ALostCompanionReturnsWhatFliesByItself) {
   EXPECT_FALSE(pilot.fire(CopterEvent::position_lost, {}));
 }
 
+TEST(Modes, WithoutRotorsNobodyHovers) {
+  constexpr ModeFacts kPlane{.position = true, .mission = true};
+  for (const PlaneMode to : {PlaneMode::q_loiter, PlaneMode::q_land, PlaneMode::q_rtl}) {
+    ModeMachine<PlaneMode, PlaneEvent> machine{kPlaneModes, PlaneMode::loiter};
+    EXPECT_FALSE(machine.fire(selection_of(to), kPlane)) << to_string(to);
+  }
+}
+
 TEST(Modes, NumbersAndNamesAreArduPilots) {
   for (const PlaneMode mode : kAllPlane) {
     EXPECT_EQ(plane_mode(static_cast<std::uint32_t>(mode)), mode);
   }
   EXPECT_EQ(plane_mode(15), PlaneMode::guided);
   EXPECT_EQ(plane_mode(10), PlaneMode::mission);
-  EXPECT_EQ(plane_mode(19), std::nullopt);
+  EXPECT_EQ(plane_mode(21), PlaneMode::q_rtl);
+  EXPECT_EQ(plane_mode(24), std::nullopt);
   EXPECT_EQ(copter_mode(4), CopterMode::guided);
   EXPECT_EQ(copter_mode(3), std::nullopt);
   EXPECT_EQ(to_string(PlaneMode::mission), "AUTO");

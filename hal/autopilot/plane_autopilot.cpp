@@ -13,6 +13,8 @@ namespace {
 /// Below this share of the least airspeed, or height above home, it does not fly.
 constexpr double kFlyingAirspeedShare = 0.7;
 constexpr double kFlyingHeight_m = 3.0;
+/// A quadplane on its rotors.
+constexpr double kLifted_m = 0.5;
 
 double clamped_steer(double lateral_mps2, double limit_mps2) {
   return limit_mps2 > 0.0 ? std::clamp(lateral_mps2, -limit_mps2, limit_mps2) : lateral_mps2;
@@ -30,10 +32,12 @@ PlaneAutopilot::PlaneAutopilot(const PlaneParams& params)
     : params_{params},
       loops_{params.tuning},
       companion_{params.companion_failsafe, params.companion_timeout},
-      airspeed_mps_{params.tuning.airspeed_cruise_mps} {}
+      airspeed_mps_{params.tuning.airspeed_cruise_mps} {
+  if (params.vtol) vtol_.emplace(*params.vtol);
+}
 
 ModeFacts PlaneAutopilot::facts() const {
-  return {.position = health_.position, .mission = !mission_.empty()};
+  return {.position = health_.position, .mission = !mission_.empty(), .rotors = vtol_.has_value()};
 }
 
 void PlaneAutopilot::say(Severity severity, std::string text) {
@@ -58,6 +62,7 @@ void PlaneAutopilot::enter() {
   attitude_.reset();
   takeoff_course_rad_ = euler_angles(estimate_.attitude).yaw_rad;
   if (mode() == PlaneMode::rtl) orbit_.centre_m = home_m_;
+  if (vtol_) enter_vtol();
   if (mode() == PlaneMode::mission) begin_item();
 }
 
@@ -72,7 +77,8 @@ CommandResult PlaneAutopilot::select_mode(PlaneMode mode) {
 std::optional<std::string_view> PlaneAutopilot::mode_refusal() const {
   if (mode() == PlaneMode::rtl) return kRtlNotArmable;
   const bool landing = mode() == PlaneMode::mission && item_ < mission_.size() &&
-                       mission_[item_].kind == MissionItem::Kind::land;
+                       (mission_[item_].kind == MissionItem::Kind::land ||
+                        mission_[item_].kind == MissionItem::Kind::vtol_land);
   return landing ? std::optional{kLandingSequence} : std::nullopt;
 }
 
@@ -98,6 +104,7 @@ CommandResult PlaneAutopilot::disarm(bool force) {
   if (!armed_) return CommandResult::accepted;
   if (flying_ && !force) return CommandResult::failed;
   armed_ = false;
+  if (vtol_) vtol_->stop();
   say(Severity::info, "Throttle disarmed");
   return CommandResult::accepted;
 }
@@ -122,6 +129,7 @@ CommandResult PlaneAutopilot::reposition(const Reposition& target) {
             .radius_m = target.radius_m > 0.0 ? target.radius_m : params_.loiter_radius_m,
             .clockwise = target.clockwise};
   if (target.height_m) height_m_ = *target.height_m;
+  if (vtol_) vtol_->fly_on_wings(estimate_);
   if (target.airspeed_mps) airspeed_mps_ = *target.airspeed_mps;
   return CommandResult::accepted;
 }
@@ -200,7 +208,9 @@ CommandResult PlaneAutopilot::set_mission_item(std::size_t index) {
 
 void PlaneAutopilot::watch_flight(const Estimate& estimate) {
   const double above_m = estimate.height_m() - home_height_m_;
-  if (!flying_) {
+  if (vtol_ && vtol_->carries()) {
+    flying_ = flying_ || above_m > kLifted_m;
+  } else if (!flying_) {
     flying_ = estimate.airspeed_mps > kFlyingAirspeedShare * params_.tuning.airspeed_min_mps &&
               above_m > kFlyingHeight_m;
   } else if (above_m < kFlyingHeight_m && estimate.groundspeed_mps() < 3.0) {
@@ -232,6 +242,16 @@ SurfaceCommand PlaneAutopilot::step(const Estimate& estimate, Instant now) {
 }
 
 SurfaceCommand PlaneAutopilot::fly_mode(const Estimate& estimate, Instant now, double seconds) {
+  if (vtol_ && vtol_->carries()) {
+    const SurfaceCommand command = vtol_->step(estimate, loops_, seconds);
+    if (vtol_->touched_down()) {
+      flying_ = false;
+      say(Severity::info, "Land complete");
+      (void)disarm(false);
+    }
+    return command;
+  }
+  if (vtol_) vtol_->fade(seconds);
   switch (mode()) {
     case PlaneMode::manual:
     case PlaneMode::fbwa:
@@ -244,6 +264,11 @@ SurfaceCommand PlaneAutopilot::fly_mode(const Estimate& estimate, Instant now, d
       return orbit(estimate, orbit_, height_m_, seconds);
     case PlaneMode::rtl:
       return orbit(estimate, orbit_, home_height_m_ + params_.rtl_height_m, seconds);
+    case PlaneMode::q_rtl:
+      return set_down(estimate, home_m_, home_height_m_, seconds);
+    case PlaneMode::q_loiter:
+    case PlaneMode::q_land:
+      break;
     case PlaneMode::takeoff: {
       const double height_m = home_height_m_ + params_.takeoff_height_m;
       if (!flying_ || estimate.height_m() < height_m - 5.0) {

@@ -25,6 +25,7 @@ void PlaneAutopilot::begin_item() {
   leg_from_m_ = estimate_.position_m.head<2>();
   takeoff_course_rad_ = euler_angles(estimate_.attitude).yaw_rad;
   landing_ = Landing::approach;
+  if (mission_[item_].kind == MissionItem::Kind::vtol_land) height_m_ = estimate_.height_m();
 }
 
 void PlaneAutopilot::end_item() {
@@ -82,6 +83,8 @@ SurfaceCommand PlaneAutopilot::fly_mission(const Estimate& estimate, double seco
       break;
     case MissionItem::Kind::land:
       return land(estimate, item, seconds);
+    case MissionItem::Kind::vtol_land:
+      return set_down(estimate, goal, item.height_m, seconds);
     case MissionItem::Kind::return_home:
       (void)change(PlaneEvent::mission_ended);
       break;

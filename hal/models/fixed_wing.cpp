@@ -17,6 +17,13 @@ Eigen::Matrix3d inertia(double jx, double jy, double jz, double jxz) {
   return j;
 }
 
+RotorShares shares(const RotorShares& wanted) {
+  RotorShares limited{};
+  std::transform(wanted.begin(), wanted.end(), limited.begin(),
+                 [](double share) { return std::clamp(share, 0.0, 1.0); });
+  return limited;
+}
+
 FixedWingInput limited(const FixedWingInput& input, double surface_max_rad) {
   const auto surface = [&](double rad) {
     return std::clamp(rad, -surface_max_rad, surface_max_rad);
@@ -24,14 +31,33 @@ FixedWingInput limited(const FixedWingInput& input, double surface_max_rad) {
   return {.elevator_rad = surface(input.elevator_rad),
           .aileron_rad = surface(input.aileron_rad),
           .rudder_rad = surface(input.rudder_rad),
-          .throttle = std::clamp(input.throttle, 0.0, 1.0)};
+          .throttle = std::clamp(input.throttle, 0.0, 1.0),
+          .rotors = shares(input.rotors)};
 }
 
-constexpr int kActuators = 4;
+constexpr int kServos = 4;
+constexpr int kActuators = kServos + static_cast<int>(kLiftRotors);
+using Actuators = Eigen::Matrix<double, kActuators, 1>;
 using StateVector = Eigen::Matrix<double, kRigidBodySize + kActuators, 1>;
 
-FixedWingInput actuators_of(const StateVector& x) {
-  return {x[kRigidBodySize], x[kRigidBodySize + 1], x[kRigidBodySize + 2], x[kRigidBodySize + 3]};
+Actuators to_actuators(const FixedWingInput& input) {
+  Actuators a;
+  a << input.elevator_rad, input.aileron_rad, input.rudder_rad, input.throttle,
+      Eigen::Map<const Eigen::Matrix<double, kLiftRotors, 1>>{input.rotors.data()};
+  return a;
+}
+
+FixedWingInput input_of(const Actuators& a) {
+  FixedWingInput input{a[0], a[1], a[2], a[3]};
+  std::copy(a.data() + kServos, a.data() + kActuators, input.rotors.begin());
+  return input;
+}
+
+Actuators lags_s(const FixedWingParams& p) {
+  Actuators lags = Actuators::Constant(p.lift ? p.lift->time_s : 1.0);
+  lags.head<3>().setConstant(p.servo_time_s);
+  lags[3] = p.throttle_time_s;
+  return lags;
 }
 
 }  // namespace
@@ -156,6 +182,20 @@ FixedWingParams small_fixed_wing() {
   return p;
 }
 
+FixedWingParams small_quadplane() {
+  constexpr double kArm_m = 0.25;
+  constexpr double kThrustPerWeight = 1.9;
+  FixedWingParams p = small_fixed_wing();
+  const double each_n =
+      kThrustPerWeight * p.mass.mass_kg() * kGravity_mps2 / static_cast<double>(kLiftRotors);
+  p.lift = LiftRotorParams{.arm_forward_m = kArm_m,
+                           .arm_right_m = kArm_m,
+                           .thrust_max_n = each_n,
+                           .torque_per_lift_m = 0.02,
+                           .time_s = 0.04};
+  return p;
+}
+
 AirData air_data(const RigidBodyState& state, const Vec3& wind_ned_mps) {
   const Vec3 air = state.velocity_mps - state.attitude.conjugate() * wind_ned_mps;
   const double speed = air.norm();
@@ -219,9 +259,13 @@ Wrench fixed_wing_wrench(const FixedWingParams& params, const RigidBodyState& st
 
   const double lift =
       pressure * (lift_coefficient(c, alpha) + c.cl_elevator * input.elevator_rad) + c.cl_q * q;
-  const double linear = c.cl0 + c.cl_alpha * alpha;
+  // Beyond the stall, as far as backwards, the flow is off: a plate's drag, and no more moment.
+  const double attached = std::clamp(alpha, -c.stall_rad, c.stall_rad);
+  const double plate = 2.0 * (std::pow(std::sin(alpha), 2) - std::pow(std::sin(attached), 2));
+  const double linear = c.cl0 + c.cl_alpha * attached;
   const double aspect = params.span_m * params.span_m / params.wing_area_m2;
-  const double cd = c.cd_parasitic + linear * linear / (kPi * c.oswald * aspect);
+  const double cd =
+      c.cd_parasitic + linear * linear / (kPi * c.oswald * aspect) + std::max(0.0, plate);
   const double drag = pressure * (cd + c.cd_elevator * input.elevator_rad) + c.cd_q * q;
   const auto lateral = [&](double c0, double c_beta, double c_p, double c_r, double c_a,
                            double c_r_surface) {
@@ -244,7 +288,7 @@ Wrench fixed_wing_wrench(const FixedWingParams& params, const RigidBodyState& st
                               c.croll_rudder) -
           prop.torque_nm,
       params.chord_m *
-          (pressure * (c.cm0 + c.cm_alpha * alpha + c.cm_elevator * input.elevator_rad) +
+          (pressure * (c.cm0 + c.cm_alpha * attached + c.cm_elevator * input.elevator_rad) +
            c.cm_q * q),
       params.span_m * lateral(c.cn0, c.cn_beta, c.cn_p, c.cn_r, c.cn_aileron, c.cn_rudder),
   };
@@ -261,29 +305,27 @@ Wrench FixedWing::wrench(const RigidBodyState& state, const FixedWingInput& actu
                          const Vec3& wind_ned_mps) const {
   Wrench sum = fixed_wing_wrench(params_, state, actuators, wind_ned_mps);
   sum += ground_wrench(params_.ground, state);
+  if (params_.lift) sum += lift_wrench(*params_.lift, actuators.rotors);
   return sum;
 }
 
 void FixedWing::step(const FixedWingInput& command, const Vec3& wind_ned_mps, double seconds) {
   SKEIN_ASSERT(seconds > 0.0);
-  const FixedWingInput goal = limited(command, params_.surface_max_rad);
+  const Actuators goal = to_actuators(limited(command, params_.surface_max_rad));
+  const Actuators lags = lags_s(params_);
   StateVector x;
-  x << to_vector(state_), actuators_.elevator_rad, actuators_.aileron_rad, actuators_.rudder_rad,
-      actuators_.throttle;
+  x << to_vector(state_), to_actuators(actuators_);
   x = runge_kutta_step(x, seconds, [&](const StateVector& at) {
     const RigidBodyState state = from_vector(at.head<kRigidBodySize>());
-    const FixedWingInput now = actuators_of(at);
+    const Actuators now = at.tail<kActuators>();
     StateVector rate;
-    rate << rigid_body_derivative(state, wrench(state, now, wind_ned_mps), params_.mass),
-        (goal.elevator_rad - now.elevator_rad) / params_.servo_time_s,
-        (goal.aileron_rad - now.aileron_rad) / params_.servo_time_s,
-        (goal.rudder_rad - now.rudder_rad) / params_.servo_time_s,
-        (goal.throttle - now.throttle) / params_.throttle_time_s;
+    rate << rigid_body_derivative(state, wrench(state, input_of(now), wind_ned_mps), params_.mass),
+        (goal - now).cwiseQuotient(lags);
     return rate;
   });
   state_ = from_vector(x.head<kRigidBodySize>());
   state_.attitude.normalize();
-  actuators_ = actuators_of(x);
+  actuators_ = input_of(x.tail<kActuators>());
 }
 
 Vec3 FixedWing::specific_force(const Vec3& wind_ned_mps) const {

@@ -64,7 +64,7 @@ std::vector<std::string> flight_controller_command(
           "--companion", std::to_string(fc.companion_node_id),
           "--system", std::to_string(fc.system_id),
           "--serial", std::to_string(fc.serial_id),
-          "--airframe", spec.is_copter() ? "copter" : "plane",
+          "--airframe", std::string{to_string(spec.airframe)},
           "--origin", number(vehicle.origin.latitude_deg), number(vehicle.origin.longitude_deg),
           number(vehicle.origin.height_m - fc.geoid_height_m),
           "--failsafe", "--airborne", "--mode", "LOITER",

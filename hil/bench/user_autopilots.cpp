@@ -36,6 +36,8 @@ constexpr double kReady_s = 60.0;
 constexpr double kClimb_mps = 3.0;
 /// TKOFF_DIST: a plane that takes off waits so far ahead of where it stood.
 constexpr double kTakeoffDistance_m = 200.0;
+/// Q_ASSIST_SPEED below the least airspeed: gusts shall not start a quadplane's rotors.
+constexpr double kAssistBelow_mps = 4.0;
 /// An aircraft slips in its turns, and rolls past the bank that is asked for.
 constexpr double kBankReserve_deg = 10.0;
 constexpr double kBankMax_deg = 65.0;
@@ -83,6 +85,20 @@ Result<bool> speaks_on_bus(const std::string& name, std::uint8_t node_id,
       if (node_id == kAnyNode || (frame->id & kNodeMask) == node_id) return true;
     }
   }
+}
+
+/// As its simulator calls it.
+std::string model_of(Airframe airframe, const UserAutopilots& autopilots) {
+  switch (airframe) {
+    case Airframe::copter:
+      return "quad";
+    case Airframe::quadplane:
+      return "quadplane";
+    case Airframe::plane:
+    case Airframe::count:
+      break;
+  }
+  return autopilots.plane_model;
 }
 
 void write_to(const char* file, const std::string& text) { std::ofstream{file} << text; }
@@ -155,6 +171,10 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
     set("FS_GCS_ENABLE", 1);
     return text;
   }
+  if (spec.airframe == Airframe::quadplane) {
+    set("Q_ENABLE", 1);
+    set("Q_ASSIST_SPEED", std::max(1.0, std::floor(spec.speed_min_mps - kAssistBelow_mps)));
+  }
   set("FS_GCS_ENABL", 1);
   set("FS_LONG_ACTN", 1);
   set("TKOFF_ALT", fc.takeoff_height_m);
@@ -189,14 +209,14 @@ Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopil
   const auto add = [&defaults](const std::filesystem::path& file) {
     defaults += (defaults.empty() ? "" : ",") + file.string();
   };
-  const auto beside = program.parent_path() / (spec.is_copter() ? "copter.parm" : "plane.parm");
+  const auto beside = program.parent_path() / (std::string{to_string(spec.airframe)} + ".parm");
   if (std::filesystem::exists(beside)) add(beside);
   for (const auto& file : autopilots.parameters) add(file);
   add(own);
 
   const auto origin = MissionOrigin::make(vehicle.origin);
   if (!origin) return origin.error();
-  const double run_m = spec.is_copter() ? 0.0 : kTakeoffDistance_m;
+  const double run_m = spec.lifts_off() ? 0.0 : kTakeoffDistance_m;
   const Vec2 start = vehicle.start.position() - run_m * unit_vector(vehicle.start.heading_rad);
   const Wgs84 home = origin->to_wgs84({start.x(), start.y(), 0.0});
   const double height_m = home.height_m - vehicle.flight_controller.ardupilot.geoid_height_m;
@@ -204,7 +224,7 @@ Result<std::vector<std::string>> autopilot_command(const UserAutopilots& autopil
   return std::vector<std::string>{
       "/bin/sh", "-c", "cd \"$1\" && shift && exec \"$@\"", "sh", std::filesystem::absolute(folder).string(),
       program.string(),
-      "--model", spec.is_copter() ? "quad" : autopilots.plane_model,
+      "--model", model_of(spec.airframe, autopilots),
       "--speedup", "1",
       "--instance", std::to_string(instance),
       "--home", fmt::format("{:.8f},{:.8f},{:.2f},{:.1f}", home.latitude_deg, home.longitude_deg,

@@ -30,8 +30,8 @@ struct UserAutopilots {
     return program ? &*program : nullptr;
   }
 };
-/// Which of the two a program is, its name says: "arduplane", "arducopter". A file plane.parm or
-/// copter.parm beside it has the parameters of the simulated airframe.
+/// Which of the two a program is, its name says: "arduplane", "arducopter". A file plane.parm,
+/// copter.parm or quadplane.parm beside it has the parameters of the simulated airframe.
 [[nodiscard]] Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
                                                      const std::vector<std::string>& parameters,
                                                      const std::string& plane_model = {});

@@ -67,6 +67,20 @@ TEST(UserAutopilots, AreGivenWhatTheVehicleAsksOfThem) {
   EXPECT_THAT(text, HasSubstr("ROLL_LIMIT_DEG 54\n"));
 }
 
+TEST(UserAutopilots, OfAQuadplaneIsAnArduplaneWithRotorsThatStandStillInFlight) {
+  configuration::VehicleConfig quadplane = vehicle();
+  quadplane.vehicle.airframe = Airframe::quadplane;
+  EXPECT_THAT(autopilot_parameters(quadplane),
+              HasSubstr("Q_ENABLE 1\nQ_ASSIST_SPEED 16\nFS_GCS_ENABL 1\n"));
+  const auto autopilots = user_autopilots({program("arduplane")}, {});
+  ASSERT_TRUE(autopilots);
+  const auto folder = std::filesystem::path{testing::TempDir()} / "user_autopilots" / "fc-5";
+  const auto command = autopilot_command(*autopilots, quadplane, 2, 5001, folder);
+  ASSERT_TRUE(command) << command.error().message;
+  EXPECT_THAT(*command, Contains("quadplane"));
+  EXPECT_THAT(*command, Contains("31.50000000,105.00000000,480.00,50.0")) << "where it starts";
+}
+
 TEST(UserAutopilots, KeepTheFenceOfTheTeam) {
   configuration::VehicleConfig fenced = vehicle();
   fenced.fence.corners = {{-100.0, -100.0}, {500.0, -100.0}, {0.0, 500.0}};

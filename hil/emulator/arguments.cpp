@@ -33,11 +33,14 @@ constexpr const char* kFooter =
     "      on the ground, disarmed, in MANUAL\n"
     "  skein-fc --airframe copter\n"
     "      a hexarotor on the ground, in STABILIZE\n"
+    "  skein-fc --airframe quadplane --speed 25 --speed-min 18 --speed-max 30 --turn-radius 100\n"
+    "      a plane with four rotors that lift it off and set it down\n"
     "  skein-fc --airborne --at '30 mode RTL' --at '60 silent on'\n"
     "      the pilot takes over after 30 s, and after 60 s nothing more is heard of it\n"
     "\n"
     "Standard input takes what the companion cannot do, a line each:\n"
-    "  mode NAME             the pilot's switch. Plane: MANUAL FBWA RTL LOITER TAKEOFF GUIDED;\n"
+    "  mode NAME             the pilot's switch. Plane: MANUAL FBWA RTL LOITER TAKEOFF GUIDED,\n"
+    "                        quadplane: QLOITER QLAND QRTL, too;\n"
     "                        copter: STABILIZE GUIDED LOITER RTL LAND\n"
     "  arm, disarm           the pilot's sticks; disarm works in flight, too\n"
     "  reboot                the autopilot restarts: 1.2 s off the bus, MAVLink after 5.2 s;\n"
@@ -83,6 +86,19 @@ struct Texts {
   std::string signing_key;
   std::vector<std::string> at;
 };
+
+std::vector<std::string> airframe_names() {
+  std::vector<std::string> names;
+  for (std::uint8_t i = 0; i < static_cast<std::uint8_t>(Airframe::count); ++i) {
+    names.emplace_back(to_string(static_cast<Airframe>(i)));
+  }
+  return names;
+}
+/// Precondition: it is one of airframe_names().
+Airframe airframe_named(const std::string& name) {
+  const auto names = airframe_names();
+  return static_cast<Airframe>(std::ranges::find(names, name) - names.begin());
+}
 
 /// False where it cannot be read: that has been said.
 bool read_signing_key(const std::string& file, EmulatorConfig& config) {
@@ -139,7 +155,7 @@ void add_link_options(CLI::App& app, FcArguments& a, Texts& t) {
 void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   EmulatorConfig& c = a.config;
   app.add_option("--airframe", t.airframe, "The kind of aircraft")
-      ->check(CLI::IsMember({"plane", "copter"}))
+      ->check(CLI::IsMember(airframe_names()))
       ->capture_default_str();
   app.add_option("--origin", t.origin, "LATITUDE LONGITUDE HEIGHT: degrees, m above the ellipsoid")
       ->capture_default_str();
@@ -217,7 +233,7 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   c.serial_id = static_cast<std::int8_t>(texts.serial);
   c.system_id = static_cast<std::uint8_t>(texts.system);
   c.companion_system = static_cast<std::uint8_t>(texts.companion_system.value_or(texts.system));
-  c.airframe = texts.airframe == "copter" ? Airframe::copter : Airframe::plane;
+  c.airframe = airframe_named(texts.airframe);
   if (c.airframe == Airframe::copter) c.airspeed_mps = kCopterSpeed_mps;
   c.airspeed_mps = texts.speed_mps.value_or(c.airspeed_mps);
   c.origin = {texts.origin[0], texts.origin[1], texts.origin[2]};

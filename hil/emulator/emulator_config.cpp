@@ -28,7 +28,7 @@ Result<void> check_plane(const EmulatorConfig& c) {
     return Error{fmt::format(
         "airspeeds least {:g}, cruise {:g}, greatest {:g} m/s: they must rise, within the {} m/s "
         "of an airframe",
-        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe_speeds())};
+        c.airspeed_min_mps, c.airspeed_mps, c.airspeed_max_mps, airframe_speeds(c.airframe))};
   }
   const autopilot::FixedWingTuning& airframe = found->tuning;
   if (!(c.turn_radius_m > 0.0) || bank_of_circle(c) > airframe.roll_max_rad) {
@@ -55,7 +55,7 @@ Result<void> check_copter(const EmulatorConfig& c) {
 std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name) {
   constexpr std::uint32_t kNumbers = 32;
   for (std::uint32_t number = 0; number < kNumbers; ++number) {
-    if (airframe == Airframe::plane) {
+    if (airframe != Airframe::copter) {
       const auto mode = autopilot::plane_mode(number);
       if (mode && autopilot::to_string(*mode) == name) return number;
     } else {
@@ -112,7 +112,7 @@ Result<void> check(const EmulatorConfig& c) {
   if (c.airborne && !mode_named(c.airframe, c.mode)) {
     return Error{fmt::format("mode '{}': the emulated autopilot has none of that name", c.mode)};
   }
-  return c.airframe == Airframe::plane ? check_plane(c) : check_copter(c);
+  return c.airframe == Airframe::copter ? check_copter(c) : check_plane(c);
 }
 
 }  // namespace skein::hil

@@ -43,7 +43,12 @@ bool has_place(std::uint16_t command) {
          static_cast<Command>(command) == Command::do_set_home;
 }
 
-/// ArduPilot turns every COMMAND_LONG to a COMMAND_INT; places lose precision in the floats.
+/// ArduPlane 4.6.3 called DO_REPOSITION as COMMAND_LONG unsupported.
+bool may_be_floats(std::uint16_t command, Airframe airframe) {
+  return airframe == Airframe::copter || static_cast<Command>(command) != Command::do_reposition;
+}
+
+/// ArduPilot turns every other COMMAND_LONG to a COMMAND_INT; places lose precision in the floats.
 mavlink::CommandInt as_int(const mavlink::CommandLong& c) {
   const double unit = has_place(c.command) ? 1e7 : 1.0;
   mavlink::CommandInt out;
@@ -144,9 +149,15 @@ void MavlinkEndpoint::on_packet(const mavlink::Packet& packet, Instant now) {
   if (packet.id == mavlink::Heartbeat::kDefinition.id) {
     if (packet.system == config_.companion_system) vehicle_.companion_heard(now);
   } else if (const auto command = mavlink::decode<mavlink::CommandInt>(packet)) {
-    on_command(*command, packet, now);
+    if (for_us(command->target_system, command->target_component)) {
+      acknowledge(*command, obey(*command, now), packet);
+    }
   } else if (const auto floats = mavlink::decode<mavlink::CommandLong>(packet)) {
-    on_command(as_int(*floats), packet, now);
+    if (for_us(floats->target_system, floats->target_component)) {
+      const mavlink::CommandInt whole = as_int(*floats);
+      const bool known = may_be_floats(floats->command, config_.airframe);
+      acknowledge(whole, known ? obey(whole, now) : CommandResult::unsupported, packet);
+    }
   } else if (const auto asked = mavlink::decode<mavlink::ParamRequestRead>(packet)) {
     if (for_us(asked->target_system, asked->target_component)) {
       tell_parameter(mavlink::text_of(asked->param_id));
@@ -188,12 +199,11 @@ bool MavlinkEndpoint::for_us(std::uint8_t system, std::uint8_t component) const 
          (component == 0 || component == mavlink::kComponentAutopilot);
 }
 
-void MavlinkEndpoint::on_command(const mavlink::CommandInt& command, const mavlink::Packet& packet,
-                                 Instant now) {
-  if (!for_us(command.target_system, command.target_component)) return;
+void MavlinkEndpoint::acknowledge(const mavlink::CommandInt& command, CommandResult result,
+                                  const mavlink::Packet& packet) {
   mavlink::CommandAck ack;
   ack.command = command.command;
-  ack.result = static_cast<std::uint8_t>(obey(command, now));
+  ack.result = static_cast<std::uint8_t>(result);
   ack.target_system = packet.system;
   ack.target_component = packet.component;
   send(encoder_.encode(ack));
@@ -302,7 +312,7 @@ CommandResult MavlinkEndpoint::restart(const mavlink::CommandInt& command, Insta
 
 /// Those that it keeps to; of others it says nothing, as ArduPilot of those that it does not know.
 void MavlinkEndpoint::tell_parameter(std::string_view name) {
-  const bool is_plane = config_.airframe == Airframe::plane;
+  const bool is_plane = config_.airframe != Airframe::copter;
   const double failsafe = config_.companion_failsafe ? 1.0 : 0.0;
   struct Parameter {
     std::string_view name;
@@ -311,7 +321,8 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
   };
   constexpr auto kReal = mavlink::ParamType::real32;
   const bool fenced = fence_.enabled();
-  const std::array<Parameter, 13> parameters{{
+  const bool is_quadplane = config_.airframe == Airframe::quadplane;
+  const std::array<Parameter, 15> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -321,6 +332,8 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
       {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
       {is_plane ? "TECS_SPDWEIGHT" : "", 0.0, kReal},
+      {is_quadplane ? "Q_ENABLE" : "", 1.0},
+      {is_quadplane ? "Q_ASSIST_SPEED" : "", -1.0, kReal},  // off
       {"FENCE_ENABLE", fenced ? 1.0 : 0.0},
       {"FENCE_ACTION", 1.0},
       {"FENCE_TYPE", 5.0},

@@ -44,7 +44,8 @@ class MavlinkEndpoint {
   };
 
   void on_packet(const mavlink::Packet& packet, Instant now);
-  void on_command(const mavlink::CommandInt& command, const mavlink::Packet& packet, Instant now);
+  void acknowledge(const mavlink::CommandInt& command, mavlink::CommandResult result,
+                   const mavlink::Packet& packet);
   mavlink::CommandResult obey(const mavlink::CommandInt& command, Instant now);
   mavlink::CommandResult set_mode(const mavlink::CommandInt& command);
   mavlink::CommandResult arm_or_disarm(const mavlink::CommandInt& command);

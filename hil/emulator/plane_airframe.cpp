@@ -47,24 +47,48 @@ PlaneAirframe small() {
   return airframe;
 }
 
-const std::array<PlaneAirframe, 2>& airframes() {
-  static const std::array<PlaneAirframe, 2> all{small(), fast()};
+PlaneAirframe small_vtol() {
+  PlaneAirframe airframe = small();
+  airframe.model = models::small_quadplane();
+  const models::LiftRotorParams& rotors = *airframe.model.lift;
+  autopilot::VtolParams& vtol = airframe.vtol.emplace();
+  vtol.tuning.mass_kg = airframe.model.mass.mass_kg();
+  vtol.tuning.inertia_kgm2 = airframe.model.mass.inertia_kgm2().diagonal();
+  // Q_WP_SPD_UP and Q_WP_SPD_DN; a wing stalls in what a multirotor would tilt by.
+  vtol.tuning.climb_max_mps = 2.5;
+  vtol.tuning.sink_max_mps = 1.5;
+  vtol.tuning.tilt_max_rad = 0.4;
+  vtol.tuning.acceleration_max_mps2 = 2.0;
+  vtol.arm_forward_m = rotors.arm_forward_m;
+  vtol.arm_right_m = rotors.arm_right_m;
+  vtol.rotor_thrust_max_n = rotors.thrust_max_n;
+  vtol.torque_per_lift_m = rotors.torque_per_lift_m;
+  return airframe;
+}
+
+const std::array<PlaneAirframe, 3>& airframes() {
+  static const std::array<PlaneAirframe, 3> all{small(), fast(), small_vtol()};
   return all;
+}
+
+bool is_of(Airframe kind, const PlaneAirframe& airframe) {
+  return airframe.vtol.has_value() == (kind == Airframe::quadplane);
 }
 
 }  // namespace
 
 const PlaneAirframe* airframe_for(const EmulatorConfig& config) {
   const auto found = std::find_if(airframes().begin(), airframes().end(), [&](const auto& a) {
-    return config.airspeed_min_mps >= a.tuning.airspeed_min_mps &&
+    return is_of(config.airframe, a) && config.airspeed_min_mps >= a.tuning.airspeed_min_mps &&
            config.airspeed_max_mps <= a.tuning.airspeed_max_mps;
   });
   return found == airframes().end() ? nullptr : &*found;
 }
 
-std::string airframe_speeds() {
+std::string airframe_speeds(Airframe kind) {
   std::string text;
   for (const PlaneAirframe& a : airframes()) {
+    if (!is_of(kind, a)) continue;
     text += fmt::format("{}{:g} to {:g}", text.empty() ? "" : " or ", a.tuning.airspeed_min_mps,
                         a.tuning.airspeed_max_mps);
   }

@@ -72,6 +72,8 @@ autopilot::PlaneParams params_of(const EmulatorConfig& config, const PlaneAirfra
   p.tuning.roll_max_rad = bank_limit_rad(config);
   p.loiter_radius_m = kLoiterRadii * config.turn_radius_m;
   // As TECS_LAND_ARSPD -1.
+  p.vtol = airframe.vtol;
+  if (p.vtol) p.vtol->wings_from_mps = p.tuning.airspeed_min_mps;
   p.approach_airspeed_mps = 0.5 * (p.tuning.airspeed_min_mps + p.tuning.airspeed_cruise_mps);
   p.companion_failsafe = config.companion_failsafe;
   return p;
@@ -118,7 +120,7 @@ void PlaneVehicle::restart(Instant now) { start_autopilot(now, PlaneMode::loiter
 
 void PlaneVehicle::coast(Instant now) {
   const models::FixedWingInput input{surfaces_.elevator_rad, surfaces_.aileron_rad,
-                                     surfaces_.rudder_rad, surfaces_.throttle};
+                                     surfaces_.rudder_rad, surfaces_.throttle, autopilot_.rotors()};
   fly_until(now, kModelStep, [&](double seconds) {
     air_.step(aircraft_.state(), seconds);
     aircraft_.step(input, air_.wind_ned_mps(), seconds);
@@ -189,7 +191,8 @@ CommandResult PlaneVehicle::command(const mavlink::CommandInt& c) {
       return enter(PlaneMode::loiter);
     case Command::nav_return_to_launch:
       return enter(PlaneMode::rtl);
-    case Command::nav_takeoff:    // of a quadplane
+    case Command::nav_takeoff:
+      return on_wire(autopilot_.lift_off(static_cast<double>(c.z)));
     case Command::do_land_start:  // of a mission with a landing
       return CommandResult::failed;
     default:
@@ -207,9 +210,8 @@ CommandResult PlaneVehicle::enter(PlaneMode mode) {
 CommandResult PlaneVehicle::reposition(const mavlink::CommandInt& c) {
   const auto down = down_of(static_cast<double>(c.z), c.frame, earth_, report_.home_m);
   if (!down) return CommandResult::denied;
-  auto place = earth_.ned({c.x, c.y, earth_.origin_height_m() - *down});
-  if (!place) return CommandResult::denied;
-  if (c.x == 0 && c.y == 0) place->head<2>() = report_.estimate.position_m.head<2>();
+  const auto place = earth_.ned({c.x, c.y, earth_.origin_height_m() - *down});
+  if (!place || (c.x == 0 && c.y == 0)) return CommandResult::denied;
   const bool change_mode =
       c.param2 > 0.0F && c.param2 < 256.0F && (static_cast<unsigned>(c.param2) & kChangeMode) != 0;
   if (!change_mode && !guided()) return CommandResult::failed;
@@ -310,6 +312,8 @@ mavlink::MissionResult PlaneVehicle::load_mission(std::span<const mavlink::Missi
       one.kind = Kind::waypoint;
     } else if (command == Command::nav_land) {
       one.kind = Kind::land;
+    } else if (command == Command::nav_vtol_land && params_.vtol) {
+      one.kind = Kind::vtol_land;
     } else if (command == Command::nav_loiter_to_alt) {
       one.kind = Kind::loiter_to_height;
       one.radius_m = static_cast<double>(item.param2);

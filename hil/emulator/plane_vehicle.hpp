@@ -22,6 +22,7 @@ class PlaneVehicle final : public AutopilotVehicle<autopilot::PlaneAutopilot> {
   PlaneVehicle(const EmulatorConfig& config, const PlaneAirframe& airframe, const Earth& earth,
                const models::Trim& trim, Instant now);
 
+  /// ArduPlane calls a quadplane so, too, unless Q_MAV_TYPE says otherwise.
   [[nodiscard]] mavlink::VehicleType type() const override {
     return mavlink::VehicleType::fixed_wing;
   }

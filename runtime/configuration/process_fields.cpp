@@ -19,8 +19,11 @@ constexpr std::array<std::string_view, static_cast<std::size_t>(FlightController
     kFlightControllers{"simulated", "ardupilot"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Recovery::count)> kRecoveries{
     "home", "anywhere"};
-constexpr std::array<std::string_view, static_cast<std::size_t>(Airframe::count)> kAirframes{
-    "plane", "copter"};
+constexpr std::array kAirframes{to_string(Airframe::plane), to_string(Airframe::copter),
+                                to_string(Airframe::quadplane)};
+static_assert(kAirframes.size() == static_cast<std::size_t>(Airframe::count));
+/// Of formations: a quadplane flies in those of planes.
+constexpr std::array kFormationAirframes{to_string(Airframe::plane), to_string(Airframe::copter)};
 constexpr std::array<std::string_view, static_cast<std::size_t>(TakeOverKind::count)> kTakeOvers{
     "when_guided", "in_flight", "from_ground"};
 constexpr std::array<std::string_view, 2> kDecisions{"refuse", "grant"};
@@ -61,7 +64,8 @@ void flight_controller_fields(FieldVisitor& v, FlightControllerConfig& config, A
       v,
       {"airframe",
        "plane: a fixed wing; copter: a multirotor, which takes off to its height_m and does what "
-       "its capabilities say; without any it flies in formations"},
+       "its capabilities say; without any it flies in formations; quadplane: a plane that rotors "
+       "lift off and set down"},
       kAirframes, airframe);
   v.text({"can", bus_required ? "bus of an ardupilot: can0, vcan0, mcast:0"
                               : "bus of an ardupilot: vcan0, mcast:0; empty: the bench chooses bus "
@@ -347,7 +351,7 @@ void formation_fields(FieldVisitor& v, FormationConfig& f) {
             "what flies it: multirotors, from place to place; or planes, along tracks: of them "
             "the keys rally, speeds and accelerations, reserve_m, assignment and avoidance are not "
             "read"},
-           kAirframes, planes);
+           kFormationAirframes, planes);
   f.planes = planes == 0;
   v.section({"rally", "where vehicles gather, and wait that have no place"},
             [&f](FieldVisitor& inner) { rally_fields(inner, f.rally); });

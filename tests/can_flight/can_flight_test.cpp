@@ -297,7 +297,7 @@ struct CopterFlight : Flight {
 
   static hil::EmulatorConfig config(std::uint64_t seed) {
     hil::EmulatorConfig c;
-    c.airframe = hil::Airframe::copter;
+    c.airframe = Airframe::copter;
     c.companion_failsafe = true;
     c.origin = kOrigin;
     c.start = kPad;
@@ -309,7 +309,7 @@ struct CopterFlight : Flight {
   }
   static ardupilot::CanLinkParams params() {
     ardupilot::CanLinkParams p;
-    p.companion.airframe = ardupilot::Airframe::copter;
+    p.companion.vehicle.airframe = Airframe::copter;
     p.companion.take_over = ardupilot::TakeOver::from_ground;
     p.companion.takeoff_height_m = 10.0;
     return p;

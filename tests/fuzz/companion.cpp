@@ -38,8 +38,9 @@ void run(Input input) {
   params.vehicle.speed_min_mps = 40.0;
   params.vehicle.speed_max_mps = 60.0;
   params.vehicle.turn_radius_m = 150.0;
-  params.airframe = (flags & 1U) != 0 ? ardupilot::Airframe::copter : ardupilot::Airframe::plane;
-  params.take_over = static_cast<ardupilot::TakeOver>((flags >> 1U) % 3U);
+  constexpr auto kAirframes = static_cast<unsigned>(Airframe::count);
+  params.vehicle.airframe = static_cast<Airframe>(flags % kAirframes);
+  params.take_over = static_cast<ardupilot::TakeOver>(flags / kAirframes % 3U);
   const bool may_arm = params.take_over == ardupilot::TakeOver::from_ground;
   Instant now{std::chrono::seconds{-20}};
   Companion companion{params, MissionOrigin::make({31.5, 105.0, 480.0}).value(), now};

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 
 #include "skein/base/frames.hpp"
@@ -20,8 +23,15 @@ namespace skein {
 /// Where a vehicle ends its flight: at its start, for which it keeps the range, or where it is.
 enum class Recovery : std::uint8_t { home, anywhere, count };
 
-/// What it flies as: a fixed wing, by heading and airspeed; or a multirotor, by position.
-enum class Airframe : std::uint8_t { plane, copter, count };
+/// What it flies as. plane: a fixed wing, by heading and airspeed; copter: a multirotor, by
+/// position; quadplane: a plane in all but that rotors lift it off and set it down.
+enum class Airframe : std::uint8_t { plane, copter, quadplane, count };
+/// "plane"
+[[nodiscard]] constexpr std::string_view to_string(Airframe airframe) {
+  constexpr std::array<std::string_view, static_cast<std::size_t>(Airframe::count)> kNames{
+      "plane", "copter", "quadplane"};
+  return kNames.at(static_cast<std::size_t>(airframe));
+}
 
 /// Where a vehicle lands. What is not given is as it was at the start of its first flight plan: the
 /// place, and the heading, since who took off into the wind lands into it.
@@ -60,6 +70,8 @@ struct VehicleSpec {
   LandingSpec landing;
 
   [[nodiscard]] bool is_copter() const { return airframe == Airframe::copter; }
+  /// It leaves the ground where it stands.
+  [[nodiscard]] bool lifts_off() const { return airframe != Airframe::plane; }
   [[nodiscard]] double planning_radius_m() const { return turn_radius_m * turn_radius_margin; }
 };
 

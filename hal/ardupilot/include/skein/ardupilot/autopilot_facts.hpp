@@ -54,8 +54,5 @@ struct AutopilotFacts {
   /// It would arm in another mode, into which a companion that launches it puts it.
   [[nodiscard]] bool only_mode_forbids_arming() const;
 };
-/// "LOITER".
-[[nodiscard]] std::string mode_of(Airframe airframe, const mavlink::Heartbeat& heartbeat);
-[[nodiscard]] bool is_of_airframe(Airframe airframe, const mavlink::Heartbeat& heartbeat);
 
 }  // namespace skein::ardupilot

@@ -24,8 +24,6 @@
 
 namespace skein::ardupilot {
 
-using skein::Airframe;
-
 /// When the companion takes the aircraft. It arms and takes off only where that is asked for.
 enum class TakeOver : std::uint8_t {
   when_guided,  ///< once the pilot has armed it, has it in the air and switches to GUIDED
@@ -40,7 +38,6 @@ struct CompanionParams {
   VehicleSpec vehicle;
   std::optional<Signing> signing = {};  ///< none: packets are not signed, and any are heeded
   Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself
-  Airframe airframe = Airframe::plane;
   TakeOver take_over = TakeOver::when_guided;
   std::uint8_t system_id = 1;      ///< of the autopilot: SYSID_THISMAV; others are not heeded
   double takeoff_height_m = 40.0;  ///< above the ground, where the companion takes it

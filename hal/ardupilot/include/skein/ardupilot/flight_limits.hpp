@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -23,8 +22,8 @@ inline constexpr LimitParameter kAirspeedMax{"AIRSPEED_MAX", "ARSPD_FBW_MAX"};
 inline constexpr LimitParameter kAirspeedCruise{"AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 0.01};
 /// Of the energy between height and airspeed, which is pitch's to share out: 0 is height alone.
 inline constexpr LimitParameter kSpeedWeight{"TECS_SPDWEIGHT", ""};
-/// Those of an airframe: a copter has none.
-[[nodiscard]] std::span<const LimitParameter> limit_parameters(Airframe airframe);
+/// Of a quadplane: slower than that its rotors carry, too, and it banks no more than they may.
+inline constexpr LimitParameter kAssistSpeed{"Q_ASSIST_SPEED", ""};
 
 /// How high above the ground it is taken over on its way to that height: near enough to fly its
 /// plan, and below where a climb ends that levels out early.

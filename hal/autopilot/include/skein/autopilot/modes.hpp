@@ -10,7 +10,7 @@
 namespace skein::autopilot {
 
 /// What a change of mode requires.
-enum class Needs : std::uint8_t { nothing, position, mission };
+enum class Needs : std::uint8_t { nothing, position, mission, rotors };
 
 /// One line of a mode table. No `from`: from every mode.
 template <class Mode, class Event>
@@ -24,6 +24,7 @@ struct ModeRule {
 struct ModeFacts {
   bool position = false;  ///< the position estimate is good
   bool mission = false;   ///< a mission is loaded
+  bool rotors = false;    ///< it has some to hover on
 };
 
 /// A mode, and the only way to change it: the first rule of the table that fits the mode, the event
@@ -57,6 +58,8 @@ class ModeMachine {
         return facts.position;
       case Needs::mission:
         return facts.mission && facts.position;
+      case Needs::rotors:
+        return facts.rotors && facts.position;
       case Needs::nothing:
         break;
     }
@@ -67,7 +70,8 @@ class ModeMachine {
   Mode mode_;
 };
 
-/// The modes of a fixed wing, with the numbers that ArduPilot's Plane gives them.
+/// The modes of a fixed wing, with the numbers that ArduPilot's Plane gives them; the last three
+/// are a quadplane's.
 enum class PlaneMode : std::uint8_t {
   manual = 0,
   fbwa = 5,
@@ -76,6 +80,9 @@ enum class PlaneMode : std::uint8_t {
   loiter = 12,
   takeoff = 13,
   guided = 15,
+  q_loiter = 19,
+  q_land = 20,
+  q_rtl = 21,
 };
 /// The modes of a multirotor, with the numbers that ArduPilot's Copter gives them.
 enum class CopterMode : std::uint8_t { stabilize = 0, guided = 4, loiter = 5, rtl = 6, land = 9 };
@@ -88,6 +95,9 @@ enum class PlaneEvent : std::uint8_t {
   select_loiter,
   select_takeoff,
   select_guided,
+  select_q_loiter,
+  select_q_land,
+  select_q_rtl,
   companion_lost,
   mission_ended,
 };
@@ -116,6 +126,11 @@ inline constexpr std::array kPlaneModes{
         {}, PlaneEvent::select_takeoff, PlaneMode::takeoff, Needs::position},
     ModeRule<PlaneMode, PlaneEvent>{
         {}, PlaneEvent::select_guided, PlaneMode::guided, Needs::position},
+    ModeRule<PlaneMode, PlaneEvent>{
+        {}, PlaneEvent::select_q_loiter, PlaneMode::q_loiter, Needs::rotors},
+    ModeRule<PlaneMode, PlaneEvent>{
+        {}, PlaneEvent::select_q_land, PlaneMode::q_land, Needs::rotors},
+    ModeRule<PlaneMode, PlaneEvent>{{}, PlaneEvent::select_q_rtl, PlaneMode::q_rtl, Needs::rotors},
     ModeRule<PlaneMode, PlaneEvent>{PlaneMode::guided, PlaneEvent::companion_lost, PlaneMode::rtl,
                                     Needs::position},
     ModeRule<PlaneMode, PlaneEvent>{PlaneMode::mission, PlaneEvent::companion_lost, PlaneMode::rtl,

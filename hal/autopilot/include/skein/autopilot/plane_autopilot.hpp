@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 #include "skein/autopilot/guidance.hpp"
 #include "skein/autopilot/modes.hpp"
 #include "skein/autopilot/sticks.hpp"
+#include "skein/autopilot/vtol_flight.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/static_vector.hpp"
 
@@ -31,6 +33,7 @@ struct PlaneParams {
   bool companion_failsafe = false;  ///< FS_GCS_ENABL
   Duration companion_timeout = std::chrono::seconds{5};
   Duration setpoint_timeout = std::chrono::seconds{3};  ///< of attitude targets
+  std::optional<VtolParams> vtol = {};                  ///< of a quadplane
 };
 
 /// Heights are above the mission's origin, as everywhere in this module.
@@ -41,6 +44,7 @@ struct MissionItem {
     loiter,
     loiter_to_height,  ///< until it is at that height and heads for the next item
     land,
+    vtol_land,  ///< on rotors
     return_home,
     change_speed,
     mark,  ///< nothing is flown: home, DO_LAND_START
@@ -102,6 +106,9 @@ class PlaneAutopilot {
   CommandResult disarm(bool force);
 
   CommandResult reposition(const Reposition& target);
+  /// Of a quadplane, armed and in GUIDED: straight up so far, where it hovers until it is given
+  /// another place or mode.
+  CommandResult lift_off(double up_m);
   /// Failed outside GUIDED. `lateral_mps2` limits the turn; 0 for what the bank limit gives.
   CommandResult guided_heading(HeadingKind kind, double from_north_rad, double lateral_mps2);
   /// Failed outside GUIDED, denied outside the airspeed limits. Slews at `acceleration_mps2`; 0 for
@@ -123,6 +130,11 @@ class PlaneAutopilot {
 
   /// One period of control, 2 to 100 ms after the last.
   SurfaceCommand step(const Estimate& estimate, Instant now);
+
+  /// What the rotors of a quadplane give, as shares; none where it has none.
+  [[nodiscard]] std::array<double, VtolFlight::kRotors> rotors() const {
+    return vtol_ ? vtol_->rotors() : std::array<double, VtolFlight::kRotors>{};
+  }
 
   [[nodiscard]] PlaneMode mode() const { return machine_.mode(); }
   [[nodiscard]] bool armed() const { return armed_; }
@@ -160,6 +172,10 @@ class PlaneAutopilot {
   SurfaceCommand take_off(const Estimate& estimate, double height_m, double seconds);
   [[nodiscard]] bool may_leave(const Estimate& estimate, const MissionItem& circle) const;
   SurfaceCommand land(const Estimate& estimate, const MissionItem& item, double seconds);
+  /// On its wings to where it can stop, then on its rotors to the place and down.
+  SurfaceCommand set_down(const Estimate& estimate, const Vec2& place_m, double ground_m,
+                          double seconds);
+  void enter_vtol();
   SurfaceCommand orbit(const Estimate& estimate, const Orbit& orbit, double height_m,
                        double seconds);
   SurfaceCommand cruise(const Estimate& estimate, double lateral_mps2, double height_m,
@@ -196,6 +212,7 @@ class PlaneAutopilot {
   bool armed_ = false;
   bool flying_ = false;
   Landing landing_ = Landing::approach;
+  std::optional<VtolFlight> vtol_;
 };
 
 }  // namespace skein::autopilot

@@ -14,6 +14,7 @@ namespace skein::mavlink {
 enum class Command : std::uint16_t {
   nav_waypoint = 16, nav_loiter_unlim = 17, nav_loiter_turns = 18, nav_loiter_time = 19,
   nav_return_to_launch = 20, nav_land = 21, nav_takeoff = 22, nav_loiter_to_alt = 31,
+  nav_vtol_land = 85,
   do_set_mode = 176, do_change_speed = 178, do_set_home = 179, do_change_altitude = 186,
   do_land_start = 189, do_reposition = 192, mission_start = 300, component_arm_disarm = 400,
   run_prearm_checks = 401,
@@ -62,7 +63,7 @@ enum class SystemState : std::uint8_t {
 enum class PlaneMode : std::uint32_t {
   manual = 0, circle = 1, stabilize = 2, training = 3, acro = 4, fly_by_wire_a = 5,
   fly_by_wire_b = 6, cruise = 7, autotune = 8, automatic = 10, rtl = 11, loiter = 12, takeoff = 13,
-  guided = 15, initialising = 16,
+  guided = 15, initialising = 16, q_loiter = 19, q_land = 20, q_rtl = 21,
 };
 
 /// HEARTBEAT: `custom_mode` of ArduCopter.

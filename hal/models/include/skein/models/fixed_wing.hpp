@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "skein/models/ground_contact.hpp"
+#include "skein/models/lift_rotors.hpp"
 #include "skein/models/rigid_body.hpp"
 
 namespace skein::models {
@@ -46,6 +49,7 @@ struct FixedWingParams {
   double throttle_time_s = 0.0;  ///< and of the motor's voltage, > 0
   double surface_max_rad = 0.0;
   GroundContactParams ground;
+  std::optional<LiftRotorParams> lift = {};  ///< of a quadplane
 };
 
 /// The Aerosonde: tables E.1-E.3 of Beard and McLain, 11 kg, 2.9 m span, 25 m/s. Their table gives
@@ -69,6 +73,10 @@ struct FixedWingParams {
 /// degrees and turns at 0.73 of what its bank should give; twice the drag, and the motor for it.
 [[nodiscard]] FixedWingParams small_fixed_wing();
 
+/// small_fixed_wing() with four rotors that lift 1.9 times its weight, a quarter of a metre ahead,
+/// behind and to the sides.
+[[nodiscard]] FixedWingParams small_quadplane();
+
 /// Deflections in rad; positive elevator is trailing edge down (nose down), positive aileron rolls
 /// right, positive rudder yaws left.
 struct FixedWingInput {
@@ -76,6 +84,7 @@ struct FixedWingInput {
   double aileron_rad = 0.0;
   double rudder_rad = 0.0;
   double throttle = 0.0;  ///< [0, 1]
+  RotorShares rotors{};   ///< of a quadplane
 };
 
 struct AirData {
@@ -101,7 +110,7 @@ struct Propulsion {
 [[nodiscard]] Wrench fixed_wing_wrench(const FixedWingParams& params, const RigidBodyState& state,
                                        const FixedWingInput& input, const Vec3& wind_ned_mps);
 
-/// The vehicle with its servos. Deterministic; allocates nothing.
+/// The vehicle with its servos and motors. Deterministic; allocates nothing.
 class FixedWing {
  public:
   FixedWing(const FixedWingParams& params, const RigidBodyState& state,

@@ -12,10 +12,9 @@
 #include "skein/base/geometry.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/vehicle.hpp"
 
 namespace skein::hil {
-
-enum class Airframe : std::uint8_t { plane, copter };
 
 /// A flight controller on a bus, with its aircraft. The defaults are those of ArduPilot where it
 /// has them.
