@@ -181,7 +181,10 @@ class Judge {
     for (const std::string_view name : {limit.name, limit.older_name}) {
       const auto told = facts_.parameters.find(std::string{name});
       if (told == facts_.parameters.end()) continue;
-      auto finding = ardupilot::judge_limit(config_.vehicle, limit, name, told->second);
+      const auto stall = facts_.parameters.find(std::string{ardupilot::kStallPrevention.name});
+      auto finding = ardupilot::judge_limit(
+          config_.vehicle, limit, name, told->second,
+          stall == facts_.parameters.end() ? std::nullopt : std::optional{stall->second});
       using Finding = ardupilot::LimitFinding::Verdict;
       const Verdict verdict = finding.verdict == Finding::refused   ? Verdict::fail
                               : finding.verdict == Finding::differs ? Verdict::warn

@@ -61,7 +61,8 @@ AutopilotFacts good() {
   f.landed->landed_state = static_cast<std::uint8_t>(mavlink::LandedState::on_ground);
   f.safety = {{"FS_GCS_ENABL", 1.0, {}}, {"FS_LONG_ACTN", 1.0, {}}, {"SYSID_MYGCS", 1.0, {}}};
   f.parameters = {{"ROLL_LIMIT_DEG", 45.0},  {"AIRSPEED_MIN", 12.0},  {"AIRSPEED_MAX", 30.0},
-                  {"AIRSPEED_CRUISE", 20.0}, {"TECS_SPDWEIGHT", 0.0}, {"FENCE_ENABLE", 1.0}};
+                  {"AIRSPEED_CRUISE", 20.0}, {"TECS_SPDWEIGHT", 0.0}, {"STALL_PREVENTION", 0.0},
+                  {"FENCE_ENABLE", 1.0}};
   return f;
 }
 

@@ -66,10 +66,10 @@ constexpr std::array kQuadplaneSafety{
     kPlaneHeartbeat, kPlaneLong, kGroundStation,
     SafetyParameter{"Q_ENABLE", "", kOn, "it has no rotors to take off and to land on"}};
 
-constexpr std::array kPlaneLimits{kRollLimit, kAirspeedMin, kAirspeedMax, kAirspeedCruise,
-                                  kSpeedWeight};
-constexpr std::array kQuadplaneLimits{kRollLimit,      kAirspeedMin, kAirspeedMax,
-                                      kAirspeedCruise, kSpeedWeight, kAssistSpeed};
+constexpr std::array kPlaneLimits{kRollLimit,      kAirspeedMin, kAirspeedMax,
+                                  kAirspeedCruise, kSpeedWeight, kStallPrevention};
+constexpr std::array kQuadplaneLimits{kRollLimit,   kAirspeedMin,     kAirspeedMax, kAirspeedCruise,
+                                      kSpeedWeight, kStallPrevention, kAssistSpeed};
 
 constexpr AirframeTraits kPlane{.modes = kPlaneModes,
                                 .vehicle_types = kPlaneTypes,

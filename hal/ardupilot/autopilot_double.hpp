@@ -55,10 +55,11 @@ class AutopilotDouble {
   };
   std::map<std::uint16_t, Refusal> refuses;  ///< by command
   std::map<std::uint16_t, int> deaf_to;      ///< by command: so many of them get lost
-  std::map<std::string, float> parameters{
-      {"FS_GCS_ENABL", 1.0F},   {"FS_GCS_ENABLE", 1.0F},    {"FS_LONG_ACTN", 1.0F},
-      {"SYSID_MYGCS", 1.0F},    {"ROLL_LIMIT_DEG", 75.0F},  {"AIRSPEED_MIN", 10.0F},
-      {"AIRSPEED_MAX", 100.0F}, {"AIRSPEED_CRUISE", 50.0F}, {"TECS_SPDWEIGHT", 0.0F}};
+  std::map<std::string, float> parameters{{"FS_GCS_ENABL", 1.0F},    {"FS_GCS_ENABLE", 1.0F},
+                                          {"FS_LONG_ACTN", 1.0F},    {"SYSID_MYGCS", 1.0F},
+                                          {"ROLL_LIMIT_DEG", 75.0F}, {"AIRSPEED_MIN", 10.0F},
+                                          {"AIRSPEED_MAX", 100.0F},  {"AIRSPEED_CRUISE", 50.0F},
+                                          {"TECS_SPDWEIGHT", 0.0F},  {"STALL_PREVENTION", 0.0F}};
   int deaf_to_parameters = 0;  ///< so many questions get lost
   std::vector<mavlink::MissionItemInt> mission;
   std::vector<mavlink::MissionItemInt> fence;

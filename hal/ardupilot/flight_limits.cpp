@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/attitude.hpp"
@@ -68,6 +69,24 @@ double airspeed_min_most(double airspeed_mps, double radius_m) {
   return airspeed_mps * std::sqrt(std::cos(bank_rad));
 }
 
+/// Of an AIRSPEED_MIN that is low enough to be flown at. Plans turn at cruise, and at less to be on
+/// time.
+LimitFinding judge_bank(const VehicleSpec& vehicle, std::string_view name, double least_mps,
+                        std::optional<double> stall_prevention, const std::string& found) {
+  if (stall_prevention == 0.0) return {Verdict::good, found, {}};
+  for (const double airspeed_mps : {vehicle.cruise_speed_mps, vehicle.speed_min_mps}) {
+    const double most_mps = airspeed_min_most(airspeed_mps, vehicle.turn_radius_m);
+    if (least_mps <= most_mps * (1.0 + kSlack)) continue;
+    const bool refused = stall_prevention && airspeed_mps == vehicle.cruise_speed_mps;
+    return {refused ? Verdict::refused : Verdict::differs, found,
+            fmt::format("while STALL_PREVENTION is 1 it banks no more than {:.0f} degrees at "
+                        "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less",
+                        prevented_bank_deg(airspeed_mps, least_mps), airspeed_mps,
+                        vehicle.turn_radius_m, name, std::floor(most_mps * 10.0) / 10.0)};
+  }
+  return {Verdict::good, found, {}};
+}
+
 }  // namespace
 
 double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps) {
@@ -78,7 +97,8 @@ double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps) {
 }
 
 LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& parameter,
-                         std::string_view name, double value) {
+                         std::string_view name, double value,
+                         std::optional<double> stall_prevention) {
   const std::string found = fmt::format("{} is {:g}", name, value);
   const double si = name == parameter.older_name ? value * parameter.older_unit : value;
   const auto set = [&](double wanted) { return number(parameter, name, wanted); };
@@ -90,17 +110,8 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
                         "less, or speed_min_mps to {:g} or more",
                         vehicle.speed_min_mps, name, set(vehicle.speed_min_mps), si)};
   }
-  if (parameter.name == kAirspeedMin.name) {
-    for (const double airspeed_mps : {vehicle.speed_min_mps, vehicle.cruise_speed_mps}) {
-      const double most_mps = airspeed_min_most(airspeed_mps, vehicle.turn_radius_m);
-      if (si <= most_mps * (1.0 + kSlack)) continue;
-      return {Verdict::differs, found,
-              fmt::format("while STALL_PREVENTION is 1 it banks no more than {:.0f} degrees at "
-                          "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less",
-                          prevented_bank_deg(airspeed_mps, si), airspeed_mps, vehicle.turn_radius_m,
-                          name, std::floor(most_mps * 10.0) / 10.0)};
-    }
-  }
+  if (parameter.name == kAirspeedMin.name)
+    return judge_bank(vehicle, name, si, stall_prevention, found);
   if (parameter.name == kAirspeedMax.name && si < vehicle.speed_max_mps * (1.0 - kSlack)) {
     return {Verdict::refused, found,
             fmt::format("the autopilot flies no faster, and speed_max_mps is {:g}: set {} to {} or "

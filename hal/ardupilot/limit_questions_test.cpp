@@ -23,11 +23,12 @@ using ::testing::SizeIs;
 
 TEST(LimitCheck, AsksByBothNamesUntilItIsTold) {
   ParameterCheck check{limit_questions(test_vehicle())};
-  EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(9));
+  EXPECT_THAT(check.due(at_seconds(0.0)), SizeIs(10));
   check.on_value("LIM_ROLL_CD", 6000.0F);
   check.on_value("AIRSPEED_MIN", 40.0F);
   check.on_value("AIRSPEED_MAX", 60.0F);
   check.on_value("TECS_SPDWEIGHT", 1.0F);
+  check.on_value("STALL_PREVENTION", 0.0F);
   EXPECT_FALSE(check.good());
   EXPECT_THAT(check.due(at_seconds(1.0)), ElementsAre("AIRSPEED_CRUISE", "TRIM_ARSPD_CM"));
   check.on_value("TRIM_ARSPD_CM", 5000.0F);
@@ -52,14 +53,32 @@ TEST(LimitCheck, StallPreventionLeavesLessBankNearTheLeastAirspeed) {
   EXPECT_DOUBLE_EQ(prevented_bank_deg(20.5, 20.0), 25.0);
   EXPECT_NEAR(prevented_bank_deg(20.0 * std::sqrt(2.0), 20.0), 60.0, 1e-9);
   // 42.5 m/s within 150 m takes 50.8 degrees: 33.8 m/s at most.
-  const auto judge = [](double least_mps) {
-    return judge_limit(test_vehicle(), kAirspeedMin, "AIRSPEED_MIN", least_mps);
+  // 50 m/s within it takes 59.5 degrees: 35.6 m/s.
+  const auto judge = [](double least_mps, std::optional<double> prevented = 1.0) {
+    return judge_limit(test_vehicle(), kAirspeedMin, "AIRSPEED_MIN", least_mps, prevented);
   };
-  EXPECT_EQ(judge(33.7).verdict, LimitFinding::Verdict::good);
+  using Verdict = LimitFinding::Verdict;
+  EXPECT_EQ(judge(33.7).verdict, Verdict::good);
+  const LimitFinding late = judge(34.5);
+  EXPECT_EQ(late.verdict, Verdict::differs) << "it can turn, but not while it waits";
+  EXPECT_THAT(late.remedy, HasSubstr("set AIRSPEED_MIN to 33.7 or less"));
+  EXPECT_THAT(late.remedy, HasSubstr("degrees at 42.5 m/s"));
   const LimitFinding finding = judge(40.0);
-  EXPECT_EQ(finding.verdict, LimitFinding::Verdict::differs);
-  EXPECT_THAT(finding.remedy, HasSubstr("set AIRSPEED_MIN to 33.7 or less"));
-  EXPECT_THAT(finding.remedy, HasSubstr("no more than 28 degrees at 42.5 m/s"));
+  EXPECT_EQ(finding.verdict, Verdict::refused);
+  EXPECT_THAT(finding.remedy, HasSubstr("set AIRSPEED_MIN to 35.6 or less"));
+  EXPECT_THAT(finding.remedy, HasSubstr("no more than 50 degrees at 50 m/s"));
+  EXPECT_EQ(judge(40.0, 0.0).verdict, Verdict::good);
+  EXPECT_EQ(judge(40.0, std::nullopt).verdict, Verdict::differs) << "it may not have it";
+}
+
+TEST(LimitCheck, StallPreventionThatIsSwitchedOffIsEnough) {
+  ParameterCheck check{limit_questions(test_vehicle())};
+  check.on_value("AIRSPEED_MIN", 40.0F);
+  EXPECT_THAT(check.findings(), IsEmpty());
+  check.on_value("STALL_PREVENTION", 1.0F);
+  EXPECT_THAT(check.findings(), ElementsAre(HasSubstr("set AIRSPEED_MIN to 35.6 or less")));
+  check.on_value("STALL_PREVENTION", 0.0F);
+  EXPECT_THAT(check.findings(), IsEmpty());
 }
 
 TEST(LimitCheck, RefusesWhatCannotBeFlownOnceAMinute) {

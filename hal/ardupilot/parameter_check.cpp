@@ -27,7 +27,8 @@ ParameterQuestion question(std::string_view name, std::string_view other_name, s
                            std::string why, std::function<bool(double)> is_good) {
   std::string untold = fmt::format("it does not tell {}, which must be {}", name, wanted);
   auto judge = [wanted = std::move(wanted), why = std::move(why), is_good = std::move(is_good)](
-                   std::string_view told, float value) -> std::optional<std::string> {
+                   std::string_view told, float value,
+                   const Told& /*others*/) -> std::optional<std::string> {
     if (is_good(static_cast<double>(value))) return std::nullopt;
     return fmt::format("{} is {:g}, so {}; set it to {}", told, value, why, wanted);
   };
@@ -78,9 +79,10 @@ std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle, std:
 std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle) {
   std::vector<ParameterQuestion> questions;
   for (const LimitParameter& parameter : traits_of(vehicle.airframe).limits) {
-    const auto judge = [vehicle, parameter](std::string_view name,
-                                            float value) -> std::optional<std::string> {
-      const auto judged = judge_limit(vehicle, parameter, name, static_cast<double>(value));
+    const auto judge = [vehicle, parameter](std::string_view name, float value,
+                                            const Told& told) -> std::optional<std::string> {
+      const auto judged = judge_limit(vehicle, parameter, name, static_cast<double>(value),
+                                      told(kStallPrevention.name));
       if (judged.verdict != LimitFinding::Verdict::refused) return std::nullopt;
       return judged.found + "; " + judged.remedy;
     };
@@ -120,9 +122,21 @@ void ParameterCheck::on_value(std::string_view name, float value) {
     if (entry.value != value) entry.told_at.reset();
     entry.name = name == question.name ? question.name : question.other_name;
     entry.value = value;
-    entry.wrong = question.judge(entry.name, value);
     entry.asked = 0;
   }
+  // One may be wrong by what another is.
+  for (Entry& entry : entries_) {
+    if (!entry.value) continue;
+    entry.wrong = entry.question.judge(entry.name, *entry.value,
+                                       [this](std::string_view other) { return told(other); });
+  }
+}
+
+std::optional<double> ParameterCheck::told(std::string_view name) const {
+  const auto found = std::ranges::find_if(
+      entries_, [name](const Entry& entry) { return entry.question.name == name; });
+  if (found == entries_.end() || !found->value) return std::nullopt;
+  return static_cast<double>(*found->value);
 }
 
 bool ParameterCheck::good() const {

@@ -17,12 +17,16 @@
 
 namespace skein::ardupilot {
 
+/// The value of a parameter by its first name; nothing where it has not been told.
+using Told = std::function<std::optional<double>(std::string_view name)>;
+
 /// A parameter that an autopilot is asked for, and what is made of its answer.
 struct ParameterQuestion {
   std::string_view name;
   std::string_view other_name;  ///< of other releases; may be empty
   /// What is wrong with a value, told by one of the names, as a sentence with its remedy.
-  std::function<std::optional<std::string>(std::string_view name, float value)> judge;
+  std::function<std::optional<std::string>(std::string_view name, float value, const Told& told)>
+      judge;
   /// What is wrong where none is told. Empty: nothing; its firmware has no such parameter then.
   std::string untold;
   bool of_own_id = false;  ///< what is good is the autopilot's own system id
@@ -69,6 +73,8 @@ class ParameterCheck {
   };
   /// There is nothing to ask any more.
   [[nodiscard]] static bool is_settled(const Entry& entry);
+  /// By its first name.
+  [[nodiscard]] std::optional<double> told(std::string_view name) const;
   /// Null where nothing is wrong, or not known to be.
   [[nodiscard]] static const std::string* finding(const Entry& entry);
 

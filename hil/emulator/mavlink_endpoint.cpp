@@ -322,7 +322,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
   constexpr auto kReal = mavlink::ParamType::real32;
   const bool fenced = fence_.enabled();
   const bool is_quadplane = config_.airframe == Airframe::quadplane;
-  const std::array<Parameter, 15> parameters{{
+  const std::array<Parameter, 16> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -332,6 +332,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
       {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
       {is_plane ? "TECS_SPDWEIGHT" : "", 0.0, kReal},
+      {is_plane ? "STALL_PREVENTION" : "", 0.0},  // nor does it
       {is_quadplane ? "Q_ENABLE" : "", 1.0},
       {is_quadplane ? "Q_ASSIST_SPEED" : "", -1.0, kReal},  // off
       {"FENCE_ENABLE", fenced ? 1.0 : 0.0},

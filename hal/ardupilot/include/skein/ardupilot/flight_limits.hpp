@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -22,6 +23,8 @@ inline constexpr LimitParameter kAirspeedMax{"AIRSPEED_MAX", "ARSPD_FBW_MAX"};
 inline constexpr LimitParameter kAirspeedCruise{"AIRSPEED_CRUISE", "TRIM_ARSPD_CM", 0.01};
 /// Of the energy between height and airspeed, which is pitch's to share out: 0 is height alone.
 inline constexpr LimitParameter kSpeedWeight{"TECS_SPDWEIGHT", ""};
+/// Where it is 1, AIRSPEED_MIN limits the bank, too.
+inline constexpr LimitParameter kStallPrevention{"STALL_PREVENTION", ""};
 /// Of a quadplane: slower than that its rotors carry, too, and it banks no more than they may.
 inline constexpr LimitParameter kAssistSpeed{"Q_ASSIST_SPEED", ""};
 
@@ -44,9 +47,11 @@ struct LimitFinding {
   std::string found;   ///< what the autopilot has
   std::string remedy;  ///< which number to change, and to what; empty where it is good
 };
-/// `name` is the one that the autopilot answered by, `value` as it told it. A circle is flown where
-/// V^2 / (g tan(roll limit)) is no more than its radius.
+/// `name` is the one that the autopilot answered by, `value` as it told it, and what
+/// STALL_PREVENTION is, where that is told. A circle is flown where V^2 / (g tan(bank)) is no more
+/// than its radius, by the bank that ROLL_LIMIT_DEG and stall prevention leave.
 [[nodiscard]] LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& parameter,
-                                       std::string_view name, double value);
+                                       std::string_view name, double value,
+                                       std::optional<double> stall_prevention);
 
 }  // namespace skein::ardupilot
