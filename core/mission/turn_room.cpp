@@ -12,10 +12,13 @@ namespace {
 constexpr double kMemory_s = 20.0;
 constexpr double kGap_s = 1.0;      ///< of states; a longer one counts as this
 constexpr double kTrusted_s = 5.0;  ///< of wind, before it changes what is planned
-constexpr double kReserve = 1.05;   ///< of what the wind takes
-constexpr double kRelieved = 0.8;   ///< of the radius: then it is planned tighter again
-constexpr double kTight = 1.2;      ///< what is so much too tight is flown well off its line
-constexpr double kFlying = 0.8;     ///< of the least airspeed: slower, it tells nothing of the wind
+/// Of what the wind takes: none is left there by a bank that is used up, and gusts take some.
+constexpr double kReserve = 1.15;
+constexpr double kLeast = 1.05;    ///< of it: with less, turns are planned wider
+constexpr double kStep = 1.05;     ///< less changes nothing
+constexpr double kRelieved = 0.8;  ///< of the radius: then it is planned tighter again
+constexpr double kTight = 1.2;     ///< what is so much too tight is flown well off its line
+constexpr double kFlying = 0.8;    ///< of the least airspeed: slower, it tells nothing of the wind
 
 /// No wider than what its sensors take it around a site on.
 double widest(const VehicleSpec& vehicle) {
@@ -58,8 +61,8 @@ bool TurnRoom::on_state(const VehicleState& state) {
   const double stretched_m = std::min(kReserve * held_m, widest_m_);
   const double wanted_m = std::max(stretched_m, vehicle_.planning_radius_m());
   lacks_room_ = held_m > kTight * widest_m_;
-  const bool wider = held_m > radius_m_ && wanted_m > kReserve * radius_m_;
-  const bool tighter = held_m < kRelieved * radius_m_ && wanted_m < radius_m_ / kReserve;
+  const bool wider = kLeast * held_m > radius_m_ && wanted_m > kStep * radius_m_;
+  const bool tighter = held_m < kRelieved * radius_m_ && wanted_m < radius_m_ / kStep;
   const bool other_wind = (wind_mps_ - planned_wind_mps_).norm() >= kWindChange_mps;
   if (!wider && !tighter && !other_wind) return false;
   if (wider || tighter) radius_m_ = wanted_m;

@@ -9,8 +9,9 @@ namespace skein::mission {
 
 /// The wind there is, and how wide a fixed wing's turns are planned in it. A plan has one airspeed
 /// v, so before the wind w it is v + w fast over the ground, and circles that can be held there
-/// have at least r_min ((v + w) / v)^2. Never tighter than the configuration has it, nor wider than
-/// the arcs that the vehicle's sensors leave around a site, or kWidest times its turn radius.
+/// have at least r_min ((v + w) / v)^2 and a reserve. Never tighter than the configuration has it,
+/// nor wider than the arcs that the vehicle's sensors leave around a site, or kWidest times its
+/// turn radius.
 class TurnRoom {
  public:
   static constexpr double kWidest = 3.0;

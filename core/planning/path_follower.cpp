@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the vehicle is sought
 constexpr int kNearestSteps = 4;
+constexpr double kBefore_m = 1e-3;   ///< there the plan's speed steps to what follows
 constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the search
 
 /// Where the vehicle is on its path.
@@ -104,18 +105,17 @@ double planned_airspeed(const TimedPath& plan, PlanPoses& poses, double distance
 }
 
 /// By how much the plan's airspeed rises until what is commanded now is flown: begun so much
-/// earlier, a change of it costs no way in the end. Beyond where the plan is to be on time it is
-/// taken to go straight on, as runs over a site do; and its hold, which is there for want of
-/// another plan, is not looked at.
+/// earlier, a change of it costs no way in the end. Nothing is seen beyond where the plan is to be
+/// on time, from where another leads on (a run from a gate, a way from a site), nor of its hold,
+/// which is there for want of another plan.
 double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on_time_m,
                      const Vec2& wind_mps, double lead_s) {
   PlanPoses poses{plan, starts};
   const double now_mps = planned_airspeed(plan, poses, on_time_m, wind_mps);
   const double soon_m = on_time_m + lead_s * plan.speed_at_distance(on_time_m);
-  if (on_time_m < plan.on_time_m && soon_m > plan.on_time_m) {
-    return (plan.speed_mps * poses.at(plan.on_time_m).forward - wind_mps).norm() - now_mps;
-  }
-  const double seen_m = std::max(on_time_m, std::min(soon_m, starts.length_m()));
+  const bool is_timed = on_time_m < plan.on_time_m;
+  const double end_m = is_timed ? plan.on_time_m - kBefore_m : starts.length_m();
+  const double seen_m = std::max(on_time_m, std::min(soon_m, end_m));
   return planned_airspeed(plan, poses, seen_m, wind_mps) - now_mps;
 }
 

@@ -14,7 +14,9 @@ constexpr Duration kUploadAgain = std::chrono::seconds{10};
 
 FlightPhase Companion::Impl::phase() const {
   if (landed_state() == mavlink::LandedState::undefined) return FlightPhase::not_told;
-  if (!airborne()) return armed_ ? FlightPhase::landed : FlightPhase::disarmed;
+  // A quadplane that has landed and disarmed tells for seconds that it is in the air.
+  if (!armed_) return FlightPhase::disarmed;
+  if (!airborne()) return FlightPhase::landed;
   const bool is_lost =
       machine_.in(State::lost) || machine_.in(State::silent) || machine_.in(State::checking);
   const State state = is_lost ? before_loss_ : machine_.state();
