@@ -249,7 +249,7 @@ Wrench fixed_wing_wrench(const FixedWingParams& params, const RigidBodyState& st
   const AirData air = air_data(state, wind_ned_mps);
   const double v = air.airspeed_mps;
   const double alpha = air.alpha_rad;
-  const double beta = air.beta_rad;
+  const double beta = std::clamp(air.beta_rad, -c.stall_rad, c.stall_rad);
   const double pressure = 0.5 * params.air_density_kgpm3 * v * v * params.wing_area_m2;
   // Dynamic pressure times length / (2 V), without dividing by an airspeed that may be 0.
   const double rate = 0.25 * params.air_density_kgpm3 * v * params.wing_area_m2;
@@ -259,7 +259,8 @@ Wrench fixed_wing_wrench(const FixedWingParams& params, const RigidBodyState& st
 
   const double lift =
       pressure * (lift_coefficient(c, alpha) + c.cl_elevator * input.elevator_rad) + c.cl_q * q;
-  // Beyond the stall, as far as backwards, the flow is off: a plate's drag, and no more moment.
+  // Beyond the stall, as far as backwards, the flow is off: a plate's drag, and no more moment or
+  // side force than there.
   const double attached = std::clamp(alpha, -c.stall_rad, c.stall_rad);
   const double plate = 2.0 * (std::pow(std::sin(alpha), 2) - std::pow(std::sin(attached), 2));
   const double linear = c.cl0 + c.cl_alpha * attached;

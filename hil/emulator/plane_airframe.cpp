@@ -58,7 +58,7 @@ PlaneAirframe small_vtol() {
   vtol.tuning.climb_max_mps = 2.5;
   vtol.tuning.sink_max_mps = 1.5;
   vtol.tuning.tilt_max_rad = 0.4;
-  vtol.tuning.acceleration_max_mps2 = 2.0;
+  vtol.tuning.acceleration_max_mps2 = 3.0;
   vtol.arm_forward_m = rotors.arm_forward_m;
   vtol.arm_right_m = rotors.arm_right_m;
   vtol.rotor_thrust_max_n = rotors.thrust_max_n;

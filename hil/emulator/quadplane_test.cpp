@@ -19,7 +19,7 @@ EmulatorConfig quadplane() {
   config.airspeed_min_mps = 17.5;
   config.airspeed_max_mps = 30.0;
   config.turn_radius_m = 80.0;
-  config.wind_mps = {3.0, -2.0};
+  config.wind_mps = {4.0, -3.0};
   config.turbulence_mps = 1.0;
   return config;
 }
@@ -69,8 +69,12 @@ TEST(Quadplane, IsLiftedOffWhereItStandsAndFlownOnItsWings) {
   }
 }
 
-TEST(Quadplane, IsSetDownOnItsRotorsAndDisarmed) {
+/// Whichever way the wind comes to its hover.
+class SetDown : public testing::TestWithParam<double> {};
+
+TEST_P(SetDown, OnItsRotorsAndDisarmed) {
   EmulatorConfig config = quadplane();
+  config.wind_mps = 6.0 * unit_vector(radians(GetParam()));
   config.airborne = true;
   config.height_m = 100.0;
   Bench bench{config};
@@ -93,6 +97,8 @@ TEST(Quadplane, IsSetDownOnItsRotorsAndDisarmed) {
   const Vec2 off = bench.state().position().horizontal() - Vec2{kPlace.x_m, kPlace.y_m};
   EXPECT_LT(off.norm(), 2.0) << bench.log();
 }
+
+INSTANTIATE_TEST_SUITE_P(Winds, SetDown, testing::Values(0.0, 80.0, 150.0, 240.0, 300.0));
 
 TEST(Quadplane, ThatIsSetDownGoesAroundAndFliesOn) {
   EmulatorConfig config = quadplane();
