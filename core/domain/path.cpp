@@ -70,30 +70,38 @@ bool TimedPath::append(const Path& next, double pace) {
                              [this, pace](const Segment& s) { return append(s, pace); });
 }
 
-Vec2 TimedPath::wind_per_speed() const {
-  const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / speed_mps;
+Vec2 TimedPath::wind_per_speed() const { return wind_per(speed_mps); }
+
+Vec2 TimedPath::wind_per(double airspeed_mps) const {
+  const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / airspeed_mps;
   return share * std::min(1.0, kWindShare / share.norm());
 }
 
-/// How much less far it would be flown in still air in the time that the way to there takes; with
-/// paces from the path's end on.
-double TimedPath::helped_m(double distance_m) const {
-  if (!paces.empty()) {
-    return wind_per_speed().dot(pose_at_distance(distance_m).position() - path.end().position());
+/// What its times count with there; with paces, beyond the path's end.
+TimedPath::Airing TimedPath::airing(bool is_timed) const {
+  if (!paces.empty()) return {path.end().position(), wind_per_speed(), speed_mps};
+  if (!is_timed) {
+    const double from_m = on_time_m > 0.0 ? on_time_m : 0.0;
+    return {pose_at_distance(from_m).position(), wind_per_speed(), speed_mps};
   }
-  const Vec2 from = pose_at_distance(distance_m <= on_time_m ? 0.0 : on_time_m).position();
-  Vec2 way = pose_at_distance(distance_m).position() - from;
-  if (distance_m <= on_time_m && on_time_m > 0.0) {
-    way -= distance_m / on_time_m * (pose_at_distance(on_time_m).position() - from);
-  }
-  return wind_per_speed().dot(way);
+  const Vec2 from = path.start.position();
+  const Vec2 straight = (pose_at_distance(on_time_m).position() - from) / on_time_m;
+  const double with_mps = Vec2{wind_east_mps, wind_north_mps}.dot(straight);
+  const double airspeed_mps = std::max(speed_mps - with_mps, kLeastShare * speed_mps);
+  const Vec2 share = wind_per(airspeed_mps);
+  return {from, share, speed_mps * (1.0 - share.dot(straight))};
+}
+
+/// How much less far it would be flown in still air in the time that the way to there takes.
+double TimedPath::helped_m(const Airing& airing, double distance_m) const {
+  return airing.wind_share.dot(pose_at_distance(distance_m).position() - airing.from_m);
 }
 
 /// Where it is when it would be there in still air. A contraction, by twice kWindShare at most.
-double TimedPath::in_wind_m(double even_m) const {
+double TimedPath::in_wind_m(const Airing& airing, double even_m) const {
   double distance_m = even_m;
   for (int step = 0; step < kStepsMax; ++step) {
-    const double next_m = std::max(0.0, even_m + helped_m(distance_m));
+    const double next_m = std::max(0.0, even_m + helped_m(airing, distance_m));
     const bool settled = std::abs(next_m - distance_m) < kSettled_m;
     distance_m = next_m;
     if (settled) break;
@@ -104,7 +112,11 @@ double TimedPath::in_wind_m(double even_m) const {
 double TimedPath::distance_at(Instant t) const {
   // What would be flown at speed_mps.
   const double even_m = std::max(0.0, to_seconds(t - start_time) * speed_mps);
-  if (paces.empty()) return has_wind() ? in_wind_m(even_m) : even_m;
+  if (paces.empty()) {
+    if (!has_wind()) return even_m;
+    const Airing air = airing(even_m < on_time_m);
+    return in_wind_m(air, even_m * air.even_mps / speed_mps);
+  }
   double left_m = even_m;
   double flown_m = 0.0;
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
@@ -115,13 +127,17 @@ double TimedPath::distance_at(Instant t) const {
     flown_m += length_m;
   }
   flown_m += left_m * pace(path.segments.size());
-  return has_wind() ? in_wind_m(flown_m) : flown_m;
+  return has_wind() ? in_wind_m(airing(false), flown_m) : flown_m;
 }
 
 Instant TimedPath::time_at(double distance_m) const {
-  const bool windward = has_wind() && (paces.empty() || distance_m > path.length_m());
-  const double still_m = windward ? distance_m - helped_m(distance_m) : distance_m;
-  if (paces.empty()) return start_time + from_seconds(still_m / speed_mps);
+  if (paces.empty()) {
+    if (!has_wind()) return start_time + from_seconds(distance_m / speed_mps);
+    const Airing air = airing(distance_m < on_time_m);
+    return start_time + from_seconds((distance_m - helped_m(air, distance_m)) / air.even_mps);
+  }
+  const bool windward = has_wind() && distance_m > path.length_m();
+  const double still_m = windward ? distance_m - helped_m(airing(false), distance_m) : distance_m;
   double left_m = std::max(still_m, 0.0);
   double even_m = 0.0;
   for (std::size_t i = 0; i < path.segments.size(); ++i) {
@@ -143,11 +159,9 @@ double TimedPath::speed_at_distance(double distance_m) const {
   }
   const double paced_mps = speed_mps * pace(piece);
   if (!has_wind() || (!paces.empty() && piece < path.segments.size())) return paced_mps;
-  Vec2 along = unit_vector(pose_at_distance(distance_m).heading_rad);
-  if (paces.empty() && distance_m < on_time_m) {
-    along -= (pose_at_distance(on_time_m).position() - path.start.position()) / on_time_m;
-  }
-  return paced_mps / (1.0 - wind_per_speed().dot(along));
+  const Airing air = airing(distance_m < on_time_m);
+  const Vec2 along = unit_vector(pose_at_distance(distance_m).heading_rad);
+  return air.even_mps * pace(piece) / (1.0 - air.wind_share.dot(along));
 }
 
 Pose2 TimedPath::pose_at_distance(double distance_m) const {

@@ -121,9 +121,13 @@ struct PartsBench {
     const Pose2 pose = ownship.flight().started() ? ownship.flight().pose_at(now) : Pose2{};
     state.x_m = pose.x_m;
     state.y_m = pose.y_m;
-    state.heading_rad = state.course_rad = pose.heading_rad;
-    state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
+    const Vec2 through_air = kTestSpeed_mps * unit_vector(pose.heading_rad) - wind_mps;
+    state.course_rad = pose.heading_rad;
+    state.heading_rad = std::atan2(through_air.y(), through_air.x());
+    state.groundspeed_mps = kTestSpeed_mps;
+    state.airspeed_mps = through_air.norm();
     state.distance_flown_m = seconds * kTestSpeed_mps;
+    (void)ownship.measures_wind(state);
     ownship.on_state(state, now);
   }
 
@@ -144,6 +148,7 @@ struct PartsBench {
     return found;
   }
 
+  Vec2 wind_mps{0.0, 0.0};
   Instant now{};
   Ownship ownship;
   Outbox outbox;

@@ -7,6 +7,7 @@
 
 #include "return_way.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/base/shortened.hpp"
 #include "skein/planning/avoidance.hpp"
 #include "skein/planning/path_follower.hpp"
 
@@ -249,6 +250,15 @@ TimedPath Ownship::in_wind(TimedPath timed) const {
   timed.wind_east_mps = turn_room_.wind_mps().x();
   timed.wind_north_mps = turn_room_.wind_mps().y();
   return timed;
+}
+
+double Ownship::even_speed_mps(const Vec2& from, const Vec2& to, double seconds) const {
+  const double cruise_mps = spec().cruise_speed_mps;
+  if (seconds <= 0.0) return cruise_mps;
+  const Vec2 through_air = (to - from) / (cruise_mps * seconds);
+  TimedPath cruise;
+  cruise.speed_mps = cruise_mps;
+  return cruise_mps * (1.0 + in_wind(cruise).wind_per_speed().dot(shortened(through_air, 1.0)));
 }
 
 /// Where the way there has gone with the wind, and the approach against it.

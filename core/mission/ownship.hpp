@@ -109,6 +109,9 @@ class Ownship {
 
   /// For the planner: the vehicle as it will be at that pose and time.
   [[nodiscard]] planning::Candidate candidate(const Pose2& pose, Instant at) const;
+  /// The mean over the ground of a way between two places that takes so long and is flown at cruise
+  /// speed through the air, in the wind there is (TimedPath).
+  [[nodiscard]] double even_speed_mps(const Vec2& from, const Vec2& to, double seconds) const;
   /// Its times are those that are flown: in the wind there is, on time at the site, or where an arc
   /// around it begins.
   [[nodiscard]] Result<planning::TaskPlan> plan_task(const planning::Candidate& self, Instant start,

@@ -117,7 +117,10 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
   coalition::Bid bid;
   bid.instance = ownship_.config().instance;
   bid.pose_at_formation = pose;
-  bid.speed_mps = self.speed_mps;
+  // Against the wind it takes longer; with it, it can wait.
+  bid.speed_mps =
+      std::min(self.speed_mps, ownship_.even_speed_mps(pose.position(), announcement.site.position,
+                                                       way / vehicle.cruise_speed_mps));
   bid.planning_radius_m = self.planning_radius_m;
   bid.range_left_m = self.range_left_m;
   bid.final_approach_m = self.final_approach_m;
@@ -125,7 +128,7 @@ std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(
   bid.capabilities = self.capabilities;
   bid.loads = self.loads;
   bid.approach = ownship_.approach_time();
-  bid.eta = announcement.formed_at + from_seconds(way / vehicle.cruise_speed_mps);
+  bid.eta = announcement.formed_at + from_seconds(way / bid.speed_mps);
   return bid;
 }
 
@@ -148,8 +151,14 @@ void TaskFlyer::answer_award(const Participant::AwardReceived& award, Instant no
   // From the pose that was bid, or from where it is by now when the award came late.
   const Instant start =
       now <= award.award.formed_at ? award.award.formed_at : now + ownship_.flight().handover();
-  const auto outcome = set_out({award.award.round, award.award.site, mine},
-                               ownship_.spec().cruise_speed_mps, start, now);
+  const TaskFlight awarded{award.award.round, award.award.site, mine};
+  const double even_mps =
+      ownship_.even_speed_mps(ownship_.flight().pose_at(start).position(), awarded.site.position,
+                              to_seconds(mine.time - start));
+  auto outcome = set_out(awarded, even_mps, start, now);
+  if (std::holds_alternative<Why>(outcome)) {
+    outcome = set_out(awarded, ownship_.spec().cruise_speed_mps, start, now);
+  }
   if (const auto* why = std::get_if<Why>(&outcome)) return refuse(*why);
   task_ = std::get<TaskFlight>(outcome);
   outbox_.report(event::Confirmed{mine.time}, task_->round, mine.task, now);

@@ -15,6 +15,7 @@ const coalition::Round kRound{{{7}, {1}, 1}, 1};
 
 /// A member, and the words of a leader to it.
 struct Flying : PartsBench {
+  using PartsBench::PartsBench;
   void hear(const coalition::Message& message, Reason otherwise_engaged = Reason::none) {
     flyer.on_message(message, now);
     while (const auto output = flyer.poll_output()) {
@@ -125,6 +126,36 @@ TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
   EXPECT_EQ(f.reported(EventKind::task_done), 1);
   EXPECT_FALSE(f.flyer.flying());
   EXPECT_EQ(f.ownship.loads(), 0);
+}
+
+/// The way there, timed as its plan has it, takes no more of the airspeed in one wind than in
+/// another.
+TEST(TaskFlyer, InWindItBidsAndPlansAtCruiseSpeedThroughTheAir) {
+  VehicleAgentConfig config = plane_config();
+  config.heeds_wind = true;
+  double earliest_s = 1e3;
+  double latest_s = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    Flying f{config};
+    f.wind_mps = 5.0 * unit_vector(kPi / 4.0 * i);
+    f.be_at(0.1);
+    f.call();
+    const auto told = f.outbox.events.pop();
+    ASSERT_TRUE(told && told->kind() == EventKind::bid_sent);
+    const double eta_s = to_seconds(std::get<event::BidSent>(told->body).eta);
+    earliest_s = std::min(earliest_s, eta_s);
+    latest_s = std::max(latest_s, eta_s);
+    f.award(70.0, 120.0);
+    ASSERT_TRUE(f.flyer.flying());
+    const TimedPath& plan = f.ownship.flight().plan().timed;
+    for (double m = 0.0; m < plan.on_time_m; m += 20.0) {
+      const Vec2 over_ground =
+          plan.speed_at_distance(m) * unit_vector(plan.pose_at_distance(m).heading_rad);
+      EXPECT_NEAR((over_ground - f.wind_mps).norm(), kTestSpeed_mps, 0.08 * kTestSpeed_mps)
+          << "wind " << i << ", at " << m;
+    }
+  }
+  EXPECT_LT(earliest_s, 0.95 * latest_s) << "against the wind it takes longer";
 }
 
 TEST(TaskFlyer, AGrantIsOfItsVehicleTimeAndBearingUntilItsEnd) {

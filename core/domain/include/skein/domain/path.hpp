@@ -45,11 +45,12 @@ struct TimedPath {
   /// way that it leads to.
   double wind_east_mps = 0.0;
   double wind_north_mps = 0.0;
-  /// As far as there speed_mps is the mean over the ground, so that it is there on time; beyond it,
-  /// the speed through the air.
+  /// As far as there speed_mps is the mean over the ground, so that it is there on time: v is what
+  /// the wind leaves of it along the straight way there, S - w.d / s, and times are stretched by
+  /// what the first order leaves out. Beyond it, speed_mps is v.
   double on_time_m = 0.0;
 
-  static constexpr double kWindShare = 0.3;  ///< of speed_mps: a stronger wind counts as that
+  static constexpr double kWindShare = 0.3;  ///< of v: a stronger wind counts as that
   /// Adds what is flown at that share of speed_mps. False where there is no room for it. All pieces
   /// are added so, and last the pace of the tail.
   [[nodiscard]] bool append(const Segment& segment, double pace);
@@ -70,8 +71,17 @@ struct TimedPath {
   [[nodiscard]] std::optional<Path> piece(double from_m, double to_m) const;
 
  private:
-  [[nodiscard]] double helped_m(double distance_m) const;
-  [[nodiscard]] double in_wind_m(double even_m) const;
+  /// A stretch of the plan on which times count in one way.
+  struct Airing {
+    Vec2 from_m;                ///< where it begins
+    Vec2 wind_share{0.0, 0.0};  ///< of v
+    double even_mps = 0.0;      ///< over the ground, where the wind is abeam
+  };
+  static constexpr double kLeastShare = 0.5;  ///< of speed_mps, that v is at least
+  [[nodiscard]] Vec2 wind_per(double airspeed_mps) const;
+  [[nodiscard]] Airing airing(bool is_timed) const;
+  [[nodiscard]] double helped_m(const Airing& airing, double distance_m) const;
+  [[nodiscard]] double in_wind_m(const Airing& airing, double even_m) const;
   [[nodiscard]] double pace(std::size_t piece) const {
     return piece < paces.size() ? paces[piece] : 1.0;
   }
