@@ -71,7 +71,7 @@ bool TimedPath::append(const Path& next, double pace) {
 }
 
 Vec2 TimedPath::wind_per_speed() const {
-  const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / speed_mps;
+  const Vec2 share = wind_mps() / speed_mps;
   return share * std::min(1.0, kWindShare / share.norm());
 }
 

@@ -72,8 +72,7 @@ TEST(Motion, TheJudgesHaveAPlanOfOneAirspeedWhereItIs) {
   plan.start_time = at_seconds(3.0);
   plan.speed_mps = 25.0;
   plan.tail_curvature_per_m = -0.01;
-  plan.wind_east_mps = 4.0;
-  plan.wind_north_mps = -3.0;
+  plan.set_wind({4.0, -3.0});
   ASSERT_TRUE(plan.path.append(Segment{0.0, 300.0}));
   ASSERT_TRUE(plan.path.append(Segment{0.011, 400.0}));
   for (const double on_time_m : {0.0, 250.0, 700.0}) {
