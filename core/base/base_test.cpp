@@ -132,6 +132,16 @@ TEST(Geometry, AdvanceAgreesWithSmallSteps) {
   }
 }
 
+TEST(Geometry, DistanceToASegmentIsToItsNearestPoint) {
+  const Vec2 a{1.0, 1.0};
+  const Vec2 b{5.0, 1.0};
+  EXPECT_EQ(distance_to_segment({3.0, -1.0}, a, b), 2.0);
+  EXPECT_EQ(distance_to_segment({3.0, 1.0}, a, b), 0.0);
+  EXPECT_EQ(distance_to_segment({8.0, 5.0}, a, b), 5.0) << "beyond its end";
+  EXPECT_EQ(distance_to_segment({-2.0, -3.0}, a, b), 5.0);
+  EXPECT_EQ(distance_to_segment({4.0, 5.0}, a, a), 5.0) << "a point";
+}
+
 TEST(Geometry, DistanceToPieceAgreesWithSampling) {
   Random random{5};
   for (int i = 0; i < 500; ++i) {

@@ -21,6 +21,13 @@ Pose2 advance(const Pose2& from, double curvature_per_m, double distance_m) {
           wrap_pi(from.heading_rad + turn)};
 }
 
+double distance_to_segment(const Vec2& point, const Vec2& a, const Vec2& b) {
+  const Vec2 way = b - a;
+  const double length2 = way.squaredNorm();
+  const double share = length2 > 0.0 ? std::clamp((point - a).dot(way) / length2, 0.0, 1.0) : 0.0;
+  return (point - a - share * way).norm();
+}
+
 double distance_to_piece(const Vec2& point, const Pose2& from, double curvature_per_m,
                          double length_m) {
   SKEIN_ASSERT(length_m >= 0.0);

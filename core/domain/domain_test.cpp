@@ -58,9 +58,7 @@ TimedPath windy(Random& random) {
     const double curvature = random.chance(0.5) ? 0.0 : random.uniform(-0.012, 0.012);
     EXPECT_TRUE(plan.path.append(Segment{curvature, random.uniform(5.0, 700.0)}));
   }
-  const Vec2 wind = random.uniform(0.5, 7.0) * unit_vector(random.uniform(-kPi, kPi));
-  plan.wind_east_mps = wind.x();
-  plan.wind_north_mps = wind.y();
+  plan.set_wind(random.uniform(0.5, 7.0) * unit_vector(random.uniform(-kPi, kPi)));
   return plan;
 }
 
@@ -92,7 +90,7 @@ TEST(TimedPath, InWindItsAirspeedIsNearlyConstant) {
   Random random{2};
   for (int i = 0; i < 300; ++i) {
     const TimedPath plan = windy(random);
-    const Vec2 wind{plan.wind_east_mps, plan.wind_north_mps};
+    const Vec2 wind = plan.wind_mps();
     const double share = wind.norm() / plan.speed_mps;
     for (double at_m = 0.0; at_m < plan.path.length_m() + 1000.0; at_m += 25.0) {
       const Vec2 ground =
@@ -111,7 +109,7 @@ TEST(TimedPath, WithPacesTheWindIsOfItsHold) {
     paced.paces.push_back(random.uniform(0.8, 1.2));
     while (paced.paces.size() <= paced.path.segments.size()) paced.paces.push_back(1.0);
     const double length_m = plan.path.length_m();
-    plan.wind_east_mps = plan.wind_north_mps = 0.0;
+    plan.set_wind({0.0, 0.0});
     plan.paces = paced.paces;
     for (double at_m = 0.0; at_m < length_m; at_m += 50.0) {
       EXPECT_EQ(paced.time_at(at_m), plan.time_at(at_m));
@@ -128,7 +126,7 @@ TEST(TimedPath, WithPacesTheWindIsOfItsHold) {
 TEST(TimedPath, AStrongerWindCountsAsAShareOfItsSpeed) {
   TimedPath plan;
   plan.speed_mps = 10.0;
-  plan.wind_east_mps = 30.0;
+  plan.set_wind({30.0, 0.0});
   ASSERT_TRUE(plan.path.append(Segment{0.0, 100.0}));
   EXPECT_NEAR(plan.speed_at_distance(50.0), 10.0 / (1.0 - TimedPath::kWindShare), 1e-9);
   EXPECT_NEAR(to_seconds(plan.end_time() - plan.start_time), 10.0 * (1.0 - TimedPath::kWindShare),

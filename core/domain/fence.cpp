@@ -12,13 +12,6 @@ namespace {
 /// At least, from one point of a path to the next that is looked at.
 constexpr double kFenceStep_m = 0.5;
 
-double distance_m(const Vec2& point, const Vec2& a, const Vec2& b) {
-  const Vec2 edge = b - a;
-  const double length2 = edge.squaredNorm();
-  const double share = length2 > 0.0 ? std::clamp((point - a).dot(edge) / length2, 0.0, 1.0) : 0.0;
-  return (point - a - share * edge).norm();
-}
-
 /// Of which side of the line from a to b: 1, -1, or 0 on it.
 int side(const Vec2& a, const Vec2& b, const Vec2& point) {
   const double turn = cross(b - a, point - a);
@@ -28,7 +21,7 @@ int side(const Vec2& a, const Vec2& b, const Vec2& point) {
 bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
   const bool crosses = side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
   const auto lies_on = [](const Vec2& point, const Vec2& from, const Vec2& to) {
-    return distance_m(point, from, to) == 0.0;
+    return distance_to_segment(point, from, to) == 0.0;
   };
   return crosses || lies_on(c, a, b) || lies_on(d, a, b) || lies_on(a, c, d) || lies_on(b, c, d);
 }
@@ -41,7 +34,7 @@ double Fence::inside_m(const Vec2& point) const {
   bool inside = false;
   Vec2 a = corners.back();
   for (const Vec2& b : corners) {
-    nearest_m = std::min(nearest_m, distance_m(point, a, b));
+    nearest_m = std::min(nearest_m, distance_to_segment(point, a, b));
     // A ray to the east crosses the edges around an inner point an odd number of times.
     if ((a.y() > point.y()) != (b.y() > point.y())) {
       const double east = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());

@@ -73,7 +73,7 @@ bool TimedPath::append(const Path& next, double pace) {
 Vec2 TimedPath::wind_per_speed() const { return wind_per(speed_mps); }
 
 Vec2 TimedPath::wind_per(double airspeed_mps) const {
-  const Vec2 share = Vec2{wind_east_mps, wind_north_mps} / airspeed_mps;
+  const Vec2 share = wind_mps() / airspeed_mps;
   return share * std::min(1.0, kWindShare / share.norm());
 }
 
@@ -86,7 +86,7 @@ TimedPath::Airing TimedPath::airing(bool is_timed) const {
   }
   const Vec2 from = path.start.position();
   const Vec2 straight = (pose_at_distance(on_time_m).position() - from) / on_time_m;
-  const double with_mps = Vec2{wind_east_mps, wind_north_mps}.dot(straight);
+  const double with_mps = wind_mps().dot(straight);
   const double airspeed_mps = std::max(speed_mps - with_mps, kLeastShare * speed_mps);
   const Vec2 share = wind_per(airspeed_mps);
   return {from, share, speed_mps * (1.0 - share.dot(straight))};

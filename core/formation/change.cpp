@@ -29,14 +29,6 @@ double full_turn(double angle_rad) {
   return wrapped < -kNone ? wrapped + 2.0 * kPi : std::max(0.0, wrapped);
 }
 
-double distance_to_segment(const Vec2& point, const Vec2& from, const Vec2& to) {
-  const Vec2 way = to - from;
-  const double squared = way.squaredNorm();
-  const double share =
-      squared > 0.0 ? std::clamp((point - from).dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (from + share * way - point).norm();
-}
-
 }  // namespace
 
 std::optional<std::size_t> mover_of(const Change& change, VehicleId vehicle) {

@@ -17,10 +17,7 @@ constexpr Duration kSample = std::chrono::milliseconds{100};
 
 /// The distance of two points that move straight from one pair of positions to the next.
 double apart_between(const Vec2& begin, const Vec2& end) {
-  const Vec2 way = end - begin;
-  const double squared = way.squaredNorm();
-  const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (begin + share * way).norm();
+  return distance_to_segment({0.0, 0.0}, begin, end);
 }
 
 }  // namespace

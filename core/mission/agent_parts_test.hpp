@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "outbox.hpp"
@@ -42,6 +44,15 @@ inline constexpr double kFlownStep_s = 0.5;
   site.survey.dwell = std::chrono::seconds{4};
   site.deliveries.push_back({kPi / 2.0, {}});
   return site;
+}
+
+/// How often that was told.
+[[nodiscard]] inline std::ptrdiff_t count_trouble(const std::vector<MissionEvent>& events,
+                                                  event::Trouble trouble) {
+  return std::ranges::count_if(events, [trouble](const MissionEvent& e) {
+    const auto* body = std::get_if<event::VehicleTrouble>(&e.body);
+    return body != nullptr && body->trouble == trouble;
+  });
 }
 
 /// An agent, what it flies, and what it has reported.

@@ -27,10 +27,7 @@ VehicleAgentConfig fenced(const Fence& within = fence()) {
 }
 
 std::ptrdiff_t told(const HeardAgent& vehicle) {
-  return std::ranges::count_if(vehicle.events, [](const MissionEvent& e) {
-    const auto* body = std::get_if<event::VehicleTrouble>(&e.body);
-    return body != nullptr && body->trouble == event::Trouble::left_fence;
-  });
+  return count_trouble(vehicle.events, event::Trouble::left_fence);
 }
 
 TEST(FenceWatch, AVehicleTurnsForHomeBeforeItsPlanLeadsOut) {

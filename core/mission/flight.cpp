@@ -170,8 +170,7 @@ bool Flight::continue_as_told(const TimedPath& way, Instant now) {
   if (!before) return false;
   TimedPath timed = begun(now, way.speed_mps, way.tail_curvature_per_m);
   if (way.has_wind()) {
-    timed.wind_east_mps = way.wind_east_mps;
-    timed.wind_north_mps = way.wind_north_mps;
+    timed.set_wind(way.wind_mps());
     timed.path = *before;
     if (!timed.path.append(way.path)) return false;
     timed.start_time = way.start_time - (timed.time_at(before->length_m()) - now);
@@ -193,8 +192,7 @@ TimedPath Flight::begun(Instant start, double speed_mps, double tail_curvature_p
   timed.start_time = start;
   timed.speed_mps = speed_mps;
   timed.tail_curvature_per_m = tail_curvature_per_m;
-  timed.wind_east_mps = wind_mps_.x();
-  timed.wind_north_mps = wind_mps_.y();
+  timed.set_wind(wind_mps_);
   return timed;
 }
 

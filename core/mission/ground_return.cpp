@@ -147,7 +147,7 @@ planning::ReturningVehicle GroundReturn::vehicle_of(VehicleId vehicle, const Hom
   v.start = timed.pose_at(start);
   v.start_time = start;
   v.speed_mps = timed.speed_mps;
-  v.wind_mps = {timed.wind_east_mps, timed.wind_north_mps};
+  v.wind_mps = timed.wind_mps();
   v.speed_min_mps = timed.speed_mps;  // what is below it is for keeping its times in wind
   v.turn_radius_m = 1.0 / std::abs(timed.tail_curvature_per_m);
   const double until_then_s = std::max(0.0, to_seconds(start - telemetry.state.time));

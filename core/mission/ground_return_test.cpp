@@ -290,8 +290,7 @@ TEST_F(OnTheWay, AWayThatFitsIsTaken) {
 
 /// Its times are those of the wind that it was planned with, whatever the vehicle has seen since.
 TEST_F(OnTheWay, AWayInWindIsFlownAsItWasPlanned) {
-  way.wind_east_mps = 3.0;
-  way.wind_north_mps = -4.0;
+  way.set_wind({3.0, -4.0});
   flight.set_wind({5.0, 1.0});
   ASSERT_TRUE(taken());
   ASSERT_TRUE(flight.return_along(way, at_seconds(32.0)));

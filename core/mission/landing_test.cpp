@@ -79,13 +79,7 @@ TEST(LandingOrder, AHazardOnTheApproachKeepsItInItsOrbitAndIsTold) {
   vehicle.order(CommandKind::land);
   vehicle.fly(120.0);
   EXPECT_FALSE(vehicle.plan.lands);
-  EXPECT_EQ(std::ranges::count_if(vehicle.events,
-                                  [](const MissionEvent& e) {
-                                    const auto* t = std::get_if<event::VehicleTrouble>(&e.body);
-                                    return t != nullptr &&
-                                           t->trouble == event::Trouble::landing_barred;
-                                  }),
-            1);
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::landing_barred), 1);
 }
 
 TEST(LandingOrder, AHazardOnTheApproachThatIsToldOfLaterCallsItOff) {
@@ -108,13 +102,7 @@ TEST(LandingOrder, AnApproachFromBeyondTheFenceIsNotFlown) {
   vehicle.order(CommandKind::land);
   vehicle.fly(150.0);
   EXPECT_FALSE(vehicle.plan.lands);
-  EXPECT_EQ(std::ranges::count_if(vehicle.events,
-                                  [](const MissionEvent& e) {
-                                    const auto* t = std::get_if<event::VehicleTrouble>(&e.body);
-                                    return t != nullptr &&
-                                           t->trouble == event::Trouble::landing_barred;
-                                  }),
-            1);
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::landing_barred), 1);
 }
 
 TEST(LandingOrder, WhoHasLandedIsSentNowhere) {

@@ -247,8 +247,7 @@ Result<planning::TaskPlan> Ownship::plan_task(const planning::Candidate& self, I
 }
 
 TimedPath Ownship::in_wind(TimedPath timed) const {
-  timed.wind_east_mps = turn_room_.wind_mps().x();
-  timed.wind_north_mps = turn_room_.wind_mps().y();
+  timed.set_wind(turn_room_.wind_mps());
   return timed;
 }
 

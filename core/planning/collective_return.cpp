@@ -104,8 +104,7 @@ TimedPath timed_of(const ReturningVehicle& v) {
   TimedPath timed;
   timed.start_time = v.start_time;
   timed.speed_mps = v.speed_mps;
-  timed.wind_east_mps = v.wind_mps.x();
-  timed.wind_north_mps = v.wind_mps.y();
+  timed.set_wind(v.wind_mps);
   return timed;
 }
 

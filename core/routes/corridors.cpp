@@ -49,13 +49,6 @@ struct Line {
   double length_m = 0.0;
 };
 
-double distance_to_line(const Vec2& point, const Vec2& a, const Vec2& b) {
-  const Vec2 d = b - a;
-  const double length_sq = d.squaredNorm();
-  const double share = length_sq > 0.0 ? std::clamp((point - a).dot(d) / length_sq, 0.0, 1.0) : 0.0;
-  return (point - a - share * d).norm();
-}
-
 class Search {
  public:
   Search(const CorridorEnds& ends, std::span<const Disc> discs) : ends_{ends} {
@@ -138,7 +131,7 @@ class Search {
     const Vec2 from = a.point_at(line.heading_rad);
     const Vec2 to = b.point_at(line.heading_rad);
     line.open = std::all_of(discs_.begin(), discs_.end(), [&](const Disc& disc) {
-      return distance_to_line(disc.centre, from, to) >= disc.radius_m - kTouch_m;
+      return distance_to_segment(disc.centre, from, to) >= disc.radius_m - kTouch_m;
     });
   }
   [[nodiscard]] bool arc_is_open(std::size_t circle, double heading_rad, double turn_rad) const {

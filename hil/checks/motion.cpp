@@ -24,7 +24,7 @@ Pose2 along_piece(const Pose2& from, double curvature_per_m, double s) {
 
 // A plan of constant airspeed: what is flown where `even` would be in still air, by bisection.
 double distance_in_wind(const TimedPath& plan, double even) {
-  const Vec2 wind{plan.wind_east_mps, plan.wind_north_mps};
+  const Vec2 wind = plan.wind_mps();
   const double share = std::min(wind.norm() / plan.speed_mps, TimedPath::kWindShare);
   const auto place = [&](double at) { return plan_pose(plan, at).position(); };
   const double timed_to = plan.paces.empty() ? plan.on_time_m : plan_length_m(plan);

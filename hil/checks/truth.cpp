@@ -7,6 +7,7 @@
 
 #include "motion.hpp"
 #include "skein/base/geometry.hpp"
+#include "skein/checks/formation_changes.hpp"
 
 namespace skein::checks {
 namespace {
@@ -26,6 +27,9 @@ class Sum {
   [[nodiscard]] Spread spread() const {
     if (count_ == 0) return {};
     return {std::sqrt(squares_ / static_cast<double>(count_)), most_};
+  }
+  [[nodiscard]] std::optional<Spread> known() const {
+    return count_ == 0 ? std::nullopt : std::optional{spread()};
   }
 
  private:
@@ -58,15 +62,56 @@ PlanErrors plan_errors(const std::vector<TrackPoint>& track,
   return {cross.count(), cross.spread(), along.spread(), height.spread()};
 }
 
-/// Its plans are tracks of its place; how far it was from them is recorded.
-std::optional<Spread> off_place(const Recording& believed) {
-  if (!believed.plans.empty()) return std::nullopt;
-  Sum sum;
-  for (const TrackPoint& point : believed.track) {
-    if (point.plan_number > 0) sum.add(point.cross_error_m);
+/// Who is faster than that on the mean of a second moves.
+constexpr double kMoves_mps = 0.25;
+constexpr Duration kMeanHalf = std::chrono::milliseconds{500};
+/// A motion goes on for that long before and after: it sets out slowly, overshoots and turns back.
+constexpr Duration kAround = std::chrono::seconds{1};
+
+/// Which points are within kAround of one where so much was moved, by a measure of two states.
+template <class Measure>
+std::vector<bool> moving(const std::vector<TrackPoint>& track, Measure moved_m) {
+  std::vector<bool> moves(track.size(), false);
+  std::size_t marked = 0;  // before it all is said
+  for (const TrackPoint& point : track) {
+    const Instant now = point.state.time;
+    const VehicleState& from = track[first_at(track, now - kMeanHalf)].state;
+    const VehicleState& to =
+        track[std::min(first_at(track, now + kMeanHalf), track.size() - 1)].state;
+    if (moved_m(from, to) <= kMoves_mps * to_seconds(to.time - from.time)) continue;
+    const std::size_t end = first_at(track, now + kAround);
+    for (marked = std::max(marked, first_at(track, now - kAround)); marked < end; ++marked) {
+      moves[marked] = true;
+    }
   }
-  if (sum.count() == 0) return std::nullopt;
-  return sum.spread();
+  return moves;
+}
+
+bool holds(const std::vector<FormationChange>& changes, Instant time) {
+  return std::ranges::any_of(changes, [time](const FormationChange& change) {
+    return change.held && *change.held <= time && time < change.until;
+  });
+}
+
+/// Its plans are tracks of its place; how far it was from them is recorded.
+OffPlace off_place(const Recording& believed, const std::vector<FormationChange>& changes) {
+  if (!believed.plans.empty()) return {};
+  const auto climbs = moving(believed.track, [](const VehicleState& a, const VehicleState& b) {
+    return std::abs(b.z_m - a.z_m);
+  });
+  const auto travels = moving(believed.track, [](const VehicleState& a, const VehicleState& b) {
+    return std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+  });
+  Sum in_place;
+  Sum level;
+  Sum climbing;
+  for (std::size_t i = 0; i < flown_part(believed.track).size(); ++i) {
+    const TrackPoint& point = believed.track[i];
+    if (point.plan_number == 0) continue;
+    const bool stands = holds(changes, point.state.time) || (!climbs[i] && !travels[i]);
+    (stands ? in_place : climbs[i] ? climbing : level).add(point.cross_error_m);
+  }
+  return {in_place.known(), level.known(), climbing.known()};
 }
 
 Spread apart(const std::vector<TrackPoint>& believed, const std::vector<TrackPoint>& truly,
@@ -84,6 +129,7 @@ Spread apart(const std::vector<TrackPoint>& believed, const std::vector<TrackPoi
 }  // namespace
 
 std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limits) {
+  const auto changes = formation_changes(record);
   std::vector<FlownTruly> all;
   for (const Recording& truth : record.truths) {
     const Recording* believed = recording_of(record, truth.vehicle);
@@ -91,10 +137,10 @@ std::vector<FlownTruly> flown_truly(const RunRecord& record, const Limits& limit
     if (believed == nullptr || spec == nullptr) continue;
     const auto planned = planned_part(believed->track);
     const Instant until = planned.empty() ? Instant::max() : planned.back().state.time;
-    all.push_back({truth.vehicle,
-                   plan_errors(believed->track, believed->plans, spec->height_m, until),
-                   plan_errors(truth.track, believed->plans, spec->height_m, until),
-                   off_place(*believed), apart(believed->track, truth.track, limits.track_gap_s)});
+    all.push_back(
+        {truth.vehicle, plan_errors(believed->track, believed->plans, spec->height_m, until),
+         plan_errors(truth.track, believed->plans, spec->height_m, until),
+         off_place(*believed, changes), apart(believed->track, truth.track, limits.track_gap_s)});
   }
   return all;
 }

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
@@ -152,6 +153,27 @@ TEST(Report, TheMapStandsAlone) {
 TEST(Report, LongTracksAreThinned) {
   Contents contents = small_contents();
   EXPECT_LT(html(contents).size(), 60'000U);  // 4000 track points
+}
+
+/// A copter in formation, which stands until 50 s and then climbs.
+TEST(Report, HowFarCoptersWereFromTheirPlacesIsToldByWhatTheyDid) {
+  Contents contents = small_contents();
+  auto& flown = contents.record.recordings[1];
+  for (auto& point : flown.track) {
+    const double climbs_s = std::max(0.0, to_seconds(point.state.time) - 50.0);
+    point.state.x_m = 0.0;
+    point.state.z_m = climbs_s;
+    point.plan_number = 1;
+    point.cross_error_m = climbs_s > 0.0 ? 0.75 : 0.05;
+  }
+  contents.record.truths = {flown};
+  const std::string text = truth_text(contents.record, contents.limits);
+  EXPECT_THAT(text, HasSubstr("vehicle 12                  in place  0.05 / 0.05 m from its place\n"
+                              "                            climbing  0.7"));
+  EXPECT_THAT(text, Not(HasSubstr("level")));
+  const std::string page = html(contents);
+  EXPECT_EQ(fault_of_tags(page), "");
+  EXPECT_THAT(page, HasSubstr("<td>0.05 / 0.05 m from its place</td>"));
 }
 
 TEST(Story, TellsWhoWorkedForWhomWhen) {

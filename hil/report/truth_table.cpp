@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <utility>
+
 #include "skein/base/angles.hpp"
 #include "skein/checks/truth.hpp"
 #include "skein/report/report.hpp"
@@ -29,15 +32,25 @@ TruthTable::Row row_of(std::string who, std::string which, const checks::Deliver
           fmt::format("{:+.1f} deg", degrees(flown.bearing_error_rad))};
 }
 
+void add_rows(TruthTable& table, std::string who, const checks::OffPlace& off) {
+  const auto add = [&](const char* which, const std::optional<checks::Spread>& spread) {
+    if (!spread) return;
+    table.rows.push_back(
+        {std::exchange(who, ""), which, metres(*spread) + " from its place", "", ""});
+  };
+  add("in place", off.in_place);
+  add("level", off.level);
+  add("climbing", off.climbing);
+}
+
 }  // namespace
 
 TruthTable truth_table(const checks::RunRecord& record, const checks::Limits& limits) {
   TruthTable table;
   for (const auto& flown : checks::flown_truly(record, limits)) {
     const std::string who = fmt::format("vehicle {}", flown.vehicle.value);
-    if (flown.off_place_m) {
-      table.rows.push_back(
-          {who, "believed", metres(*flown.off_place_m) + " from its place", "", ""});
+    if (flown.off_place_m.known()) {
+      add_rows(table, who, flown.off_place_m);
     } else {
       table.rows.push_back(row_of(who, "believed", flown.believed));
       table.rows.push_back(row_of("", "true", flown.truly));

@@ -17,19 +17,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <span>
 #include <string>
 #include <thread>
 #include <utility>
 
-#include "operator_desk.hpp"
+#include "onboard_test.hpp"
 #include "skein/base/random.hpp"
 #include "skein/can/bus.hpp"
-#include "skein/configuration/vehicle_config.hpp"
 #include "skein/hil/bench.hpp"
-#include "skein/hil/child_process.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/messages.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -39,17 +36,11 @@ namespace skein {
 namespace {
 
 using std::chrono::steady_clock;
-using std::chrono::system_clock;
 using namespace std::chrono_literals;
 
 constexpr const char* kCompanionBus = "mcast:77";
-constexpr const char* kFlying = "flying the companion's setpoints";
-/// Said of a cut: frames end with it, or the autopilot's bytes did a moment before.
-constexpr const char* kLost = "no frame comes from the flight controller";
-constexpr const char* kSilent = "the autopilot is silent";
 constexpr const char* kPiloted = "the mode was changed to RTL by the pilot or a failsafe";
 constexpr const char* kWouldNotArm = "the autopilot would not arm: ";
-constexpr const char* kRebooted = "the autopilot has rebooted";
 constexpr const char* kTakesOff = "taking off";
 constexpr VehicleId kVehicle{1};
 constexpr double kNoticed_s = 2.0;  // 0.1 s and what a loaded machine takes
@@ -163,68 +154,39 @@ class Pilot {
   mavlink::Encoder encoder_{255, 190};
 };
 
-configuration::VehicleConfig plane(const OperatorDesk& desk, system_clock::time_point epoch) {
-  configuration::VehicleConfig config;
-  config.vehicle.id = kVehicle;
-  config.vehicle.cruise_speed_mps = 25.0;
-  config.vehicle.speed_min_mps = 20.0;
-  config.vehicle.speed_max_mps = 30.0;
-  config.vehicle.turn_radius_m = 100.0;
-  config.vehicle.range_m = 40000.0;
-  config.vehicle.capabilities.add(TaskKind::survey);
-  config.vehicle.sensor_radius_m = 130.0;
-  config.vehicle.height_m = 100.0;
-  config.origin = {31.522062, 105.044327, 480.0};
-  config.search = {{0.0, 800.0}};
-  config.flight_controller.kind = configuration::FlightControllerKind::ardupilot;
-  config.flight_controller.ardupilot.can = hil::kAutopilotBus;
-  config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
-  config.network = desk.network_of(kVehicle);
-  config.time.epoch_unix_ns = std::chrono::nanoseconds{epoch.time_since_epoch()}.count();
-  return config;
-}
-
-class ArdupilotFaults : public ::testing::Test {
+class ArdupilotFaults : public OnboardTest {
  protected:
-  void TearDown() override {
-    if (HasFailure()) std::printf("%s\n", log().c_str());
-    vehicle_.reset();
-    bridge_.reset();
-    autopilot_.reset();
-    std::filesystem::remove_all(folder_);
+  ArdupilotFaults() : OnboardTest{kVehicle, "ardupilot-faults"} {
+    VehicleSpec& plane = config_.vehicle;
+    plane.cruise_speed_mps = 25.0;
+    plane.speed_min_mps = 20.0;
+    plane.speed_max_mps = 30.0;
+    plane.turn_radius_m = 100.0;
+    plane.sensor_radius_m = 130.0;
+    plane.height_m = 100.0;
+    config_.origin = {31.522062, 105.044327, 480.0};
+    config_.search = {{0.0, 800.0}};
+    config_.flight_controller.ardupilot.can = hil::kAutopilotBus;
+    config_.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
   }
   void boot(const char* program) {
-    std::filesystem::create_directories(folder_);
     pilot_ = std::make_unique<Pilot>();
-    auto config = plane(operator_, epoch_);
     auto a = can::open(hil::kAutopilotBus);
     auto b = can::open(kCompanionBus);
     ASSERT_TRUE(a.ok() && b.ok());
     hil::UserAutopilots autopilots;
     autopilots.plane = std::filesystem::absolute(program);
     const auto command =
-        hil::autopilot_command(autopilots, config, 1, pilot_->port(), folder_ / "fc");
+        hil::autopilot_command(autopilots, config_, 1, pilot_->port(), folder_ / "fc");
     ASSERT_TRUE(command.ok()) << command.error().message;
-    auto started = hil::ChildProcess::start(*command, folder_ / "fc.log", {});
-    ASSERT_TRUE(started.ok());
-    autopilot_ = std::make_unique<hil::ChildProcess>(std::move(started).value());
-    const auto up = hil::await_autopilot(config, *autopilot_, folder_ / "fc.log");
+    autopilot_ = start(*command, "fc.log");
+    ASSERT_TRUE(autopilot_);
+    const auto up = hil::await_autopilot(config_, *autopilot_, folder_ / "fc.log");
     ASSERT_TRUE(up.ok()) << up.error().message;
     bridge_ = std::make_unique<Bridge>(std::move(a).value(), std::move(b).value());
-    config.flight_controller.ardupilot.can = kCompanionBus;
-    std::ofstream{folder_ / "v.yaml"} << to_yaml(config);
-    auto vehicle = hil::ChildProcess::start({SKEIN_ONBOARD, "--config", folder_ / "v.yaml"},
-                                            folder_ / "log", {});
-    ASSERT_TRUE(vehicle.ok());
+    config_.flight_controller.ardupilot.can = kCompanionBus;
     operator_.open();
-    vehicle_ = std::make_unique<hil::ChildProcess>(std::move(vehicle).value());
-  }
-  [[nodiscard]] std::string log() const {
-    std::ifstream file{folder_ / "log"};
-    return {std::istreambuf_iterator<char>{file}, {}};
-  }
-  [[nodiscard]] double now_s() const {
-    return std::chrono::duration<double>(system_clock::now() - epoch_).count();
+    start_vehicle();
   }
   /// When the vehicle says that, mission time, after what was waited for before.
   double wait_for(const std::string& words, std::chrono::seconds patience = 60s,
@@ -286,14 +248,8 @@ class ArdupilotFaults : public ::testing::Test {
                 wait_for(kFlying) - begin_s);
   }
 
-  std::filesystem::path folder_ = std::filesystem::temp_directory_path() /
-                                  ("skein-ardupilot-faults-" + std::to_string(::getpid()));
-  std::size_t read_ = 0;
-  system_clock::time_point epoch_ = system_clock::now();
-  OperatorDesk operator_{kVehicle, epoch_};
   std::unique_ptr<Pilot> pilot_;  ///< in the autopilot's network
-  std::unique_ptr<hil::ChildProcess> autopilot_;
-  std::unique_ptr<hil::ChildProcess> vehicle_;
+  Process autopilot_;
   std::unique_ptr<Bridge> bridge_;
 };
 

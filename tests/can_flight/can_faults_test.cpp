@@ -10,25 +10,17 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
-#include "operator_desk.hpp"
+#include "onboard_test.hpp"
 #include "skein/can/bus.hpp"
-#include "skein/configuration/vehicle_config.hpp"
-#include "skein/hil/child_process.hpp"
 
 namespace skein {
 namespace {
 
 using std::chrono::steady_clock;
-using std::chrono::system_clock;
 using namespace std::chrono_literals;
 
 constexpr auto kPatience = 60s;  // for each wait, on a loaded machine
@@ -36,32 +28,30 @@ constexpr auto kPatience = 60s;  // for each wait, on a loaded machine
 constexpr double kLoadedMachine_s = 5.0;
 constexpr VehicleId kVehicle{7};
 
-constexpr const char* kFlying = "flying the companion's setpoints";
-/// Said where frames end: of them or, where the autopilot's last bytes came a moment before the
-/// last frame, of these.
-constexpr const char* kLost = "no frame comes from the flight controller";
-constexpr const char* kSilent = "the autopilot is silent";
 constexpr const char* kPiloted = "the mode was changed to RTL by the pilot";
-constexpr const char* kRebooted = "the autopilot has rebooted";
 
-class CanFaults : public ::testing::Test {
+class CanFaults : public OnboardTest {
  protected:
-  CanFaults() {
-    std::filesystem::create_directories(folder_);
+  CanFaults() : OnboardTest{kVehicle, "can-faults"} {
     EXPECT_EQ(::mkfifo(fifo().c_str(), 0600), 0);
+    VehicleSpec& plane = config_.vehicle;
+    plane.cruise_speed_mps = 50.0;
+    plane.speed_min_mps = 40.0;
+    plane.speed_max_mps = 70.0;
+    plane.turn_radius_m = 150.0;
+    plane.sensor_radius_m = 300.0;
+    plane.height_m = 300.0;
+    config_.origin = {31.5, 105.0, 480.0};
+    config_.search = {{0.0, 1500.0}};
+    config_.flight_controller.ardupilot.can = bus_;
+    config_.flight_controller.ardupilot.take_over = configuration::TakeOverKind::in_flight;
   }
   void TearDown() override {
     if (input_ >= 0) ::close(input_);
-    if (HasFailure()) std::printf("%s\n", log().c_str());
-    flight_controller_.reset();
-    vehicle_.reset();
-    std::filesystem::remove_all(folder_);
+    OnboardTest::TearDown();
   }
 
   [[nodiscard]] std::string fifo() const { return folder_ / "pilot"; }
-  [[nodiscard]] double now_s() const {
-    return std::chrono::duration<double>(system_clock::now() - epoch_).count();
-  }
 
   void start_flight_controller() {
     // A shell, so that it reads what the pilot types from a pipe with a name.
@@ -69,9 +59,8 @@ class CanFaults : public ::testing::Test {
         "exec '" SKEIN_FC "' --bus " + bus_ +
         " --failsafe --airborne --mode LOITER --start 0 0 300 --origin 31.5 105 480 <'" + fifo() +
         "'";
-    auto started = hil::ChildProcess::start({"/bin/sh", "-c", command}, folder_ / "fc", {});
-    ASSERT_TRUE(started.ok());
-    flight_controller_ = std::make_unique<hil::ChildProcess>(std::move(started).value());
+    flight_controller_ = start({"/bin/sh", "-c", command}, "fc");
+    ASSERT_TRUE(flight_controller_);
     if (input_ >= 0) ::close(input_);
     input_ = ::open(fifo().c_str(), O_WRONLY | O_CLOEXEC);
     ASSERT_GE(input_, 0);
@@ -81,34 +70,6 @@ class CanFaults : public ::testing::Test {
     ASSERT_EQ(::write(input_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
   }
 
-  void start_vehicle() {
-    configuration::VehicleConfig config;
-    config.vehicle.id = kVehicle;
-    config.vehicle.cruise_speed_mps = 50.0;
-    config.vehicle.speed_min_mps = 40.0;
-    config.vehicle.speed_max_mps = 70.0;
-    config.vehicle.turn_radius_m = 150.0;
-    config.vehicle.range_m = 40000.0;
-    config.vehicle.capabilities.add(TaskKind::survey);
-    config.vehicle.sensor_radius_m = 300.0;
-    config.vehicle.height_m = 300.0;
-    config.origin = {31.5, 105.0, 480.0};
-    config.search = {{0.0, 1500.0}};
-    config.flight_controller.kind = configuration::FlightControllerKind::ardupilot;
-    config.flight_controller.ardupilot.can = bus_;
-    config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::in_flight;
-    config.network = operator_.network_of(kVehicle);
-    config.time.epoch_unix_ns = std::chrono::nanoseconds{epoch_.time_since_epoch()}.count();
-    std::ofstream{folder_ / "v.yaml"} << to_yaml(config);
-    auto started = hil::ChildProcess::start({SKEIN_ONBOARD, "--config", folder_ / "v.yaml"},
-                                            folder_ / "log", {});
-    ASSERT_TRUE(started.ok());
-    vehicle_ = std::make_unique<hil::ChildProcess>(std::move(started).value());
-  }
-  [[nodiscard]] std::string log() const {
-    std::ifstream file{folder_ / "log"};
-    return {std::istreambuf_iterator<char>{file}, {}};
-  }
   /// When the flight controller's next word with that beginning was said, mission time. Words
   /// before it are over then.
   std::optional<double> wait_for(const std::string& words) {
@@ -141,16 +102,10 @@ class CanFaults : public ::testing::Test {
     return taken;
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::temp_directory_path() / ("skein-can-faults-" + std::to_string(::getpid()));
   /// Not one of the first, which others use.
   std::string bus_ = "mcast:" + std::to_string(128 + ::getpid() % 127);
-  system_clock::time_point epoch_ = system_clock::now();
   int input_ = -1;
-  std::size_t read_ = 0;
-  std::unique_ptr<hil::ChildProcess> flight_controller_;
-  std::unique_ptr<hil::ChildProcess> vehicle_;
-  OperatorDesk operator_{kVehicle, epoch_};
+  Process flight_controller_;
 };
 
 TEST_F(CanFaults, AreNoticedAndFlownOnFrom) {

@@ -27,6 +27,7 @@
 #include "skein/process/mission_network.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/recording/reader.hpp"
+#include "two_nodes.hpp"
 
 namespace skein {
 namespace {
@@ -64,16 +65,6 @@ class HeldPort {
   bool held_ = false;
 };
 
-/// p so that p and p + 1 are free, below those that the kernel hands out by itself.
-std::uint16_t free_port_pair() {
-  std::random_device device;
-  std::uniform_int_distribution<int> half{5000, 15999};
-  while (true) {
-    const auto port = static_cast<std::uint16_t>(2 * half(device));
-    if (HeldPort{port}.held() && HeldPort{static_cast<std::uint16_t>(port + 1)}.held()) return port;
-  }
-}
-
 /// A mission network of two, the folder for their files, and this test as one of the two nodes.
 class Programs : public ::testing::Test {
  protected:
@@ -84,15 +75,6 @@ class Programs : public ::testing::Test {
     std::filesystem::create_directories(folder_);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] configuration::NetworkConfig network_of(VehicleId self) const {
-    const bool ground = self == kGroundStation;
-    configuration::NetworkConfig network;
-    network.port = ground ? ground_port_ : vehicle_port_;
-    network.peers.push_back(
-        {.id = ground ? kVehicle : kGroundStation, .port = ground ? vehicle_port_ : ground_port_});
-    return network;
-  }
 
   [[nodiscard]] configuration::VehicleConfig vehicle() const {
     configuration::VehicleConfig config;
@@ -107,14 +89,14 @@ class Programs : public ::testing::Test {
     config.vehicle.sensor_radius_m = 300.0;
     config.vehicle.height_m = 100.0;
     config.search = {{2000.0, 0.0}};
-    config.network = network_of(kVehicle);
+    config.network = nodes_.network_of(kVehicle);
     config.recording_folder = folder_ / "vehicle";
     return config;
   }
   [[nodiscard]] configuration::GroundConfig ground() const {
     configuration::GroundConfig config;
     config.time.epoch_unix_ns = unix_ns_in({});
-    config.network = network_of(kGroundStation);
+    config.network = nodes_.network_of(kGroundStation);
     config.vehicles = {kVehicle};
     config.recording_folder = folder_ / "ground";
     return config;
@@ -135,10 +117,10 @@ class Programs : public ::testing::Test {
   }
 
   void open_node(VehicleId self) {
-    const auto start = process::start_node(network_of(self), self);
+    const auto start = process::start_node(nodes_.network_of(self), self);
     ASSERT_TRUE(start.ok()) << start.error().message;
     auto opened = network::Node::open(
-        process::node_config(network_of(self), *start, [this] { wake_.notify(); }));
+        process::node_config(nodes_.network_of(self), *start, [this] { wake_.notify(); }));
     ASSERT_TRUE(opened.ok()) << opened.error().message;
     node_ = std::move(opened).value();
   }
@@ -158,8 +140,7 @@ class Programs : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  std::uint16_t vehicle_port_ = free_port_pair();
-  std::uint16_t ground_port_ = free_port_pair();
+  TwoNodes nodes_{kVehicle};
   process::Wake wake_;
   std::unique_ptr<network::Node> node_;
 };
@@ -331,7 +312,7 @@ class Told : public Programs {
   /// Another vehicle besides, 1 km to the north.
   void fly_two() {
     constexpr VehicleId kOther{8};
-    const std::uint16_t port = free_port_pair();
+    const std::uint16_t port = network::free_port_pairs(1).front();
     auto plane = vehicle();
     plane.time.rate = kRate;
     auto station = station_of(plane);
@@ -342,7 +323,7 @@ class Told : public Programs {
     other.search = {{2000.0, 1000.0}};
     other.recording_folder = folder_ / "other";
     other.network.port = port;
-    other.network.peers.push_back({.id = kVehicle, .port = vehicle_port_});
+    other.network.peers.push_back({.id = kVehicle, .port = nodes_.vehicle_port()});
     plane.network.peers.push_back({.id = kOther, .port = port});
     station.network.peers.push_back({.id = kOther, .port = port});
     station.vehicles.push_back(kOther);
@@ -358,7 +339,7 @@ class Told : public Programs {
     station.time = plane.time;
     station.origin = plane.origin;
     station.console.port = 0;
-    station.control_socket = "skein-told-" + std::to_string(ground_port_);
+    station.control_socket = "skein-told-" + std::to_string(nodes_.ground_port());
     return station;
   }
   /// Whether the answer to that line comes to have those words.
@@ -505,13 +486,13 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& param_info) { return param_info.param.name; });
 
 TEST_F(Programs, APortInUseIsNamed) {
-  const HeldPort held{vehicle_port_};
+  const HeldPort held{nodes_.vehicle_port()};
   ASSERT_TRUE(held.held());
   auto child = start({SKEIN_ONBOARD, "--config", write("v.yaml", to_yaml(vehicle()))});
   ASSERT_TRUE(child.wait(kPatience));
   EXPECT_EQ(child.ended(), "exit status 3");
   EXPECT_THAT(text_of("log"), HasSubstr("cannot join the mission network"));
-  EXPECT_THAT(text_of("log"), HasSubstr(std::to_string(vehicle_port_)));
+  EXPECT_THAT(text_of("log"), HasSubstr(std::to_string(nodes_.vehicle_port())));
 }
 
 }  // namespace

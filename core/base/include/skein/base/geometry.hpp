@@ -32,6 +32,9 @@ struct Pose2 {
 /// Exact for any distance, also negative; well-conditioned as the curvature goes to 0.
 [[nodiscard]] Pose2 advance(const Pose2& from, double curvature_per_m, double distance_m);
 
+/// The least distance from `point` to the straight way from `a` to `b`, which may be the same.
+[[nodiscard]] double distance_to_segment(const Vec2& point, const Vec2& a, const Vec2& b);
+
 /// The least distance from `point` to the piece of line or circle that starts at `from`.
 /// Precondition: length_m >= 0.
 [[nodiscard]] double distance_to_piece(const Vec2& point, const Pose2& from, double curvature_per_m,

@@ -57,6 +57,11 @@ struct TimedPath {
   [[nodiscard]] bool append(const Path& next, double pace);
   /// The wind as a share of speed_mps, kWindShare at most.
   [[nodiscard]] Vec2 wind_per_speed() const;
+  [[nodiscard]] Vec2 wind_mps() const { return {wind_east_mps, wind_north_mps}; }
+  void set_wind(const Vec2& mps) {
+    wind_east_mps = mps.x();
+    wind_north_mps = mps.y();
+  }
   [[nodiscard]] bool has_wind() const { return wind_east_mps != 0.0 || wind_north_mps != 0.0; }
   /// Distance flown at `t`; grows without limit in the hold. 0 before start_time.
   [[nodiscard]] double distance_at(Instant t) const;

@@ -27,14 +27,23 @@ struct PlanErrors {
 };
 inline constexpr double kJoined_m = 10.0;
 
+/// How far a copter in formation was from where control wanted it at that moment, in space, as it
+/// believed; none of what it did not do. Where it is to be is in no plan, so what it did is told by
+/// what it flew.
+struct OffPlace {
+  std::optional<Spread> in_place;  ///< while the formation holds, or it stands
+  std::optional<Spread> level;     ///< while it moves and keeps its height
+  std::optional<Spread> climbing;  ///< or sinking: take-off, landing, another height
+
+  [[nodiscard]] bool known() const { return in_place || level || climbing; }
+};
+
 /// One aircraft.
 struct FlownTruly {
   VehicleId vehicle;
   PlanErrors believed;
   PlanErrors truly;
-  /// Of a copter in formation, from where control wanted it at that moment, in space, as believed:
-  /// while it holds its place and while that moves. Where it is to be is in no plan.
-  std::optional<Spread> off_place_m;
+  OffPlace off_place_m;
   Spread apart_m;  ///< what was believed from what was true at the same time, in space
 };
 /// Of those whose truth is known.
