@@ -101,6 +101,22 @@ TEST(TimedPath, InWindItsAirspeedIsNearlyConstant) {
   }
 }
 
+TEST(TimedPath, OnTimeItsAirspeedIsNearlyWhatTheWindLeavesOfItsMean) {
+  Random random{4};
+  for (int i = 0; i < 300; ++i) {
+    TimedPath plan = windy(random);
+    plan.on_time_m = plan.path.length_m();
+    const Vec2 straight = plan.path.end().position() - plan.path.start.position();
+    const double v_mps = plan.speed_mps - plan.wind_mps().dot(straight) / plan.on_time_m;
+    const double share = plan.wind_mps().norm() / v_mps;
+    for (double at_m = 0.0; at_m < plan.on_time_m; at_m += 25.0) {
+      const Vec2 ground =
+          plan.speed_at_distance(at_m) * unit_vector(plan.pose_at_distance(at_m).heading_rad);
+      EXPECT_NEAR((ground - plan.wind_mps()).norm(), v_mps, 2.0 * share * share * v_mps) << share;
+    }
+  }
+}
+
 TEST(TimedPath, WithPacesTheWindIsOfItsHold) {
   Random random{3};
   for (int i = 0; i < 100; ++i) {

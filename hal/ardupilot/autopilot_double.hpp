@@ -70,6 +70,7 @@ class AutopilotDouble {
   std::set<std::uint32_t> refuses_streams;
 
   std::vector<mavlink::CommandLong> commands;
+  std::vector<mavlink::CommandInt> places;
   std::vector<mavlink::SetAttitudeTarget> attitudes;
   std::vector<mavlink::SetPositionTargetLocalNed> velocities;
   std::vector<mavlink::SetPositionTargetGlobalInt> points;
@@ -236,6 +237,12 @@ class AutopilotDouble {
       target_times.push_back(now);
     }
     if (const auto command = mavlink::decode<mavlink::CommandLong>(packet)) obey(*command, now);
+    if (const auto place = mavlink::decode<mavlink::CommandInt>(packet)) {
+      places.push_back(*place);
+      mavlink::CommandAck ack;
+      ack.command = place->command;
+      send(ack);
+    }
     on_mission(packet);
     if (const auto asked = mavlink::decode<mavlink::ParamRequestRead>(packet)) {
       if (deaf_to_parameters > 0) {

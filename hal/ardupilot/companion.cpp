@@ -36,7 +36,10 @@ constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
 constexpr Duration kSpeedPeriod = milliseconds{500};
 constexpr double kHeightStep_m = 0.5;
-constexpr double kHeartbeat_hz = 20.0;  ///< it tells of the pilot's switch
+/// Of the least airspeed: a quadplane that is slower is on its rotors, wind and all.
+constexpr double kHoverShare = 0.7;
+constexpr Duration kLeaveAgain = seconds{10};  ///< its wings take that long
+constexpr double kHeartbeat_hz = 20.0;         ///< it tells of the pilot's switch
 constexpr double kHud_hz = 10.0;
 constexpr double kHealth_hz = 2.0;
 constexpr double kLook_hz = 1.0;
@@ -309,6 +312,7 @@ void Companion::Impl::fly(Instant now) {
     send_target(velocity_target(setpoint, state), now);
     return;
   }
+  leave_hover(state, now);
   send_target(roll_target(bank_for(params_.vehicle, setpoint, state, sample->turn_ability)), now);
   set_speed(setpoint, sample->true_per_equivalent, now);
   set_height(setpoint, state, now);
@@ -466,7 +470,11 @@ void Companion::Impl::begin_climb(Instant now) {
 }
 
 /// A place to fly to, which may be where it is, is flown to on its wings.
-void Companion::Impl::leave_hover() {
+void Companion::Impl::leave_hover(const VehicleState& state, Instant now) {
+  const bool hovers =
+      traits_.hovers_first && state.airspeed_mps < kHoverShare * params_.vehicle.speed_min_mps;
+  if (!hovers || (hover_left_at_ && now - *hover_left_at_ < kLeaveAgain)) return;
+  hover_left_at_ = now;
   constexpr double kNoSpeed = -1.0;
   constexpr double kInGuided = 1.0;
   mavlink::CommandLong place = command_of(Command::do_reposition, kNoSpeed, kInGuided);
@@ -535,7 +543,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       height_error_.reset();
       flown_at_.reset();
       target_at_ = now;
-      if (traits_.hovers_first) leave_hover();
+      hover_left_at_.reset();
       say(false, {AutopilotNews::flying}, now);
       break;
     case State::piloted:

@@ -172,7 +172,7 @@ class Companion::Impl {
   void entered(State from, Event event, Instant now);
   void enter_standing_by(State from, Event event, Instant now);
   void begin_climb(Instant now);
-  void leave_hover();
+  void leave_hover(const VehicleState& state, Instant now);
   void enter_piloted(State from, Event event, Instant now);
   void enter_loss(State from, std::uint32_t mode_before, Instant now);
   void reset_link();
@@ -263,7 +263,8 @@ class Companion::Impl {
   Instant target_at_;
   std::optional<Instant> on_ground_since_;  ///< the point that is flown
   SteadyError height_error_{{}};
-  std::optional<Instant> flown_at_;  ///< when a plane was last told what to fly
+  std::optional<Instant> hover_left_at_;  ///< when a quadplane was last told to
+  std::optional<Instant> flown_at_;       ///< when a plane was last told what to fly
   std::optional<double> speed_sent_;
   Instant speed_at_;
   std::optional<double> height_sent_;
