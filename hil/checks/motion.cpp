@@ -22,19 +22,25 @@ Pose2 along_piece(const Pose2& from, double curvature_per_m, double s) {
           from.heading_rad + 2.0 * half};
 }
 
-// A plan of constant airspeed: what is flown where `even` would be in still air, by bisection.
+// A plan of constant airspeed: what is flown where `even` would be in still air, by bisection. As
+// far as it is on time, the airspeed is what the wind along the straight way leaves of the speed.
 double distance_in_wind(const TimedPath& plan, double even) {
   const Vec2 wind = plan.wind_mps();
-  const double share = std::min(wind.norm() / plan.speed_mps, TimedPath::kWindShare);
+  const Vec2 downwind = wind.normalized();
+  const auto share_of = [&](double airspeed) {
+    return std::min(wind.norm() / airspeed, TimedPath::kWindShare);
+  };
   const auto place = [&](double at) { return plan_pose(plan, at).position(); };
   const double timed_to = plan.paces.empty() ? plan.on_time_m : plan_length_m(plan);
   const Vec2 begin = place(0.0);
   const Vec2 free_from = place(timed_to);
   const Vec2 mean = timed_to > 0.0 ? Vec2{(free_from - begin) / timed_to} : Vec2{0.0, 0.0};
+  const double timed_share =
+      share_of(std::max(plan.speed_mps - wind.dot(mean), 0.5 * plan.speed_mps));
   const auto still_air = [&](double at) {
-    const Vec2 way =
-        at <= timed_to ? Vec2{place(at) - begin - at * mean} : Vec2{place(at) - free_from};
-    return at - share * wind.normalized().dot(way);
+    if (at > timed_to) return at - share_of(plan.speed_mps) * downwind.dot(place(at) - free_from);
+    return (at - timed_share * downwind.dot(place(at) - begin)) /
+           (1.0 - timed_share * downwind.dot(mean));
   };
   double low = 0.0;
   double high = even / (1.0 - 2.0 * TimedPath::kWindShare);

@@ -33,7 +33,7 @@ constexpr const char* kFooter =
     "      on the ground, disarmed, in MANUAL\n"
     "  skein-fc --airframe copter\n"
     "      a hexarotor on the ground, in STABILIZE\n"
-    "  skein-fc --airframe quadplane --speed 25 --speed-min 18 --speed-max 30 --turn-radius 100\n"
+    "  skein-fc --airframe quadplane\n"
     "      a plane with four rotors that lift it off and set it down\n"
     "  skein-fc --airborne --at '30 mode RTL' --at '60 silent on'\n"
     "      the pilot takes over after 30 s, and after 60 s nothing more is heard of it\n"
@@ -56,6 +56,11 @@ constexpr const char* kFooter =
 
 /// A copter's speed, where none is said.
 constexpr double kCopterSpeed_mps = 10.0;
+// Of a quadplane: ArduPilot's simulated one flies so.
+constexpr double kQuadplaneSpeed_mps = 25.0;
+constexpr double kQuadplaneSpeedMin_mps = 18.0;
+constexpr double kQuadplaneSpeedMax_mps = 30.0;
+constexpr double kQuadplaneTurn_m = 100.0;
 
 /// "30 mode RTL".
 std::optional<TimedLine> timed_line(const std::string& text) {
@@ -98,6 +103,19 @@ std::vector<std::string> airframe_names() {
 Airframe airframe_named(const std::string& name) {
   const auto names = airframe_names();
   return static_cast<Airframe>(std::ranges::find(names, name) - names.begin());
+}
+
+/// What is not given, where the airframe does not fly a plane's defaults.
+void set_defaults(const CLI::App& app, EmulatorConfig& c) {
+  const auto set = [&app](const char* option, double& value, double otherwise) {
+    if (app.count(option) == 0) value = otherwise;
+  };
+  if (c.airframe == Airframe::copter) set("--speed", c.airspeed_mps, kCopterSpeed_mps);
+  if (c.airframe != Airframe::quadplane) return;
+  set("--speed", c.airspeed_mps, kQuadplaneSpeed_mps);
+  set("--speed-min", c.airspeed_min_mps, kQuadplaneSpeedMin_mps);
+  set("--speed-max", c.airspeed_max_mps, kQuadplaneSpeedMax_mps);
+  set("--turn-radius", c.turn_radius_m, kQuadplaneTurn_m);
 }
 
 /// False where it cannot be read: that has been said.
@@ -171,7 +189,8 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
                  "In flight it stands still at its start until that system time, ns since 1970")
       ->needs(airborne);
   app.add_option("--speed", t.speed_mps,
-                 "Cruise airspeed of a plane (default: 50), greatest speed of a copter (10), m/s");
+                 "Cruise airspeed of a plane (default: 50; of a quadplane 25, with least and "
+                 "greatest 18 and\n30), greatest speed of a copter (10), m/s");
   app.add_option("--speed-min", c.airspeed_min_mps, "Least airspeed of a plane, m/s")
       ->capture_default_str();
   app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed of a plane, m/s")
@@ -234,8 +253,8 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   c.system_id = static_cast<std::uint8_t>(texts.system);
   c.companion_system = static_cast<std::uint8_t>(texts.companion_system.value_or(texts.system));
   c.airframe = airframe_named(texts.airframe);
-  if (c.airframe == Airframe::copter) c.airspeed_mps = kCopterSpeed_mps;
   c.airspeed_mps = texts.speed_mps.value_or(c.airspeed_mps);
+  set_defaults(app, c);
   c.origin = {texts.origin[0], texts.origin[1], texts.origin[2]};
   c.start = {texts.start[0], texts.start[1], heading_from_compass_deg(texts.heading_deg)};
   c.height_m = texts.start[2];
