@@ -61,16 +61,18 @@ std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle, std:
                                                 const Fence& fence) {
   std::vector<ParameterQuestion> questions;
   for (const SafetyParameter& parameter : traits_of(vehicle.airframe).safety) {
+    std::string wanted = fmt::format("{}", fmt::join(parameter.good, " or "));
+    std::function<bool(double)> is_good = [good = parameter.good](double v) {
+      return std::ranges::any_of(good, [v](int one) { return v == static_cast<double>(one); });
+    };
     const bool of_own_id = parameter.good.empty();
-    const std::vector<int> good =
-        of_own_id ? std::vector<int>{system_id}
-                  : std::vector<int>{parameter.good.begin(), parameter.good.end()};
-    auto& added = questions.emplace_back(question(
-        parameter.name, parameter.later_name, fmt::format("{}", fmt::join(good, " or ")),
-        std::string{parameter.why}, [good](double v) {
-          return std::ranges::any_of(good, [v](int one) { return v == static_cast<double>(one); });
-        }));
-    added.of_own_id = of_own_id;
+    if (of_own_id) {
+      wanted = std::to_string(system_id);
+      is_good = [system_id](double v) { return v == static_cast<double>(system_id); };
+    }
+    questions.push_back(question(parameter.name, parameter.later_name, std::move(wanted),
+                                 std::string{parameter.why}, std::move(is_good)));
+    questions.back().of_own_id = of_own_id;
   }
   add_fence_questions(questions, vehicle, fence);
   return questions;

@@ -23,7 +23,8 @@ constexpr double kAccelerates_rad = 0.02;  ///< the nose, on the way to the wing
 
 VtolFlight::VtolFlight(const VtolParams& params) : params_{params}, loops_{params.tuning} {}
 
-void VtolFlight::hover(const Estimate& estimate, std::optional<Vec2> place_m, double height_m) {
+void VtolFlight::hover(const Estimate& estimate, const std::optional<Vec2>& place_m,
+                       double height_m) {
   const bool fast = estimate.airspeed_mps > params_.brakes_until_mps;
   if (!carries()) {
     loops_.reset();
@@ -37,7 +38,8 @@ void VtolFlight::hover(const Estimate& estimate, std::optional<Vec2> place_m, do
   height_m_ = height_m;
 }
 
-void VtolFlight::set_down(const Estimate& estimate, std::optional<Vec2> place_m, double ground_m) {
+void VtolFlight::set_down(const Estimate& estimate, const std::optional<Vec2>& place_m,
+                          double ground_m) {
   hover(estimate, place_m, estimate.height_m());
   sets_down_ = true;
   ground_m_ = ground_m;

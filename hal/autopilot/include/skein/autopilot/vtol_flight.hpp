@@ -39,9 +39,9 @@ class VtolFlight {
 
   /// To a place, {north, east}, at the climb and sink rates of the tuning; none: where it comes to
   /// a stop.
-  void hover(const Estimate& estimate, std::optional<Vec2> place_m, double height_m);
+  void hover(const Estimate& estimate, const std::optional<Vec2>& place_m, double height_m);
   /// To the place at the height that it has, and down there.
-  void set_down(const Estimate& estimate, std::optional<Vec2> place_m, double ground_m);
+  void set_down(const Estimate& estimate, const std::optional<Vec2>& place_m, double ground_m);
   /// On the wings: at once where it is fast enough.
   void fly_on_wings(const Estimate& estimate);
   /// The rotors stand.
