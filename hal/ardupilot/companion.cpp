@@ -296,6 +296,7 @@ void Companion::Impl::send_target(Message target, Instant now) {
 
 void Companion::Impl::fly(Instant now) {
   const auto sample = motion_.sample();
+  if (sample) leave_hover(sample->state, now);
   if (!demand_ || now - demand_at_ > params_.setpoint_age_max || !sample ||
       now - sample->state.time > kSampleAgeMax) {
     on_ground_since_.reset();
@@ -312,7 +313,6 @@ void Companion::Impl::fly(Instant now) {
     send_target(velocity_target(setpoint, state), now);
     return;
   }
-  leave_hover(state, now);
   send_target(roll_target(bank_for(params_.vehicle, setpoint, state, sample->turn_ability)), now);
   set_speed(setpoint, sample->true_per_equivalent, now);
   set_height(setpoint, state, now);

@@ -43,6 +43,7 @@ TEST(CompanionQuadplane, IsToldToLeaveItsHoverUntilItFliesOnItsWings) {
   line.until(State::flying, 10.0);
   ASSERT_EQ(line.companion.state(), State::flying);
   const VehicleState truth = line.autopilot.truth;
+  line.commands = false;  // as before the mission
   line.run(25.0);
   ASSERT_EQ(line.autopilot.places.size(), 3U) << "at once, and each ten seconds";
   const mavlink::CommandInt& place = line.autopilot.places.front();
