@@ -169,6 +169,10 @@ class ArdupilotFaults : public OnboardTest {
     config_.flight_controller.ardupilot.can = hil::kAutopilotBus;
     config_.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
   }
+  void TearDown() override {
+    autopilot_.reset();
+    OnboardTest::TearDown();
+  }
   void boot(const char* program) {
     pilot_ = std::make_unique<Pilot>();
     auto a = can::open(hil::kAutopilotBus);

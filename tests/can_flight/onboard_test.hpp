@@ -45,13 +45,10 @@ class OnboardTest : public ::testing::Test {
     config_.network = operator_.network_of(vehicle);
     config_.time.epoch_unix_ns = std::chrono::nanoseconds{epoch_.time_since_epoch()}.count();
   }
-  ~OnboardTest() override {
-    vehicle_.reset();
-    std::filesystem::remove_all(folder_);
-  }
   void TearDown() override {
     if (HasFailure()) std::printf("%s\n", log().c_str());
     vehicle_.reset();
+    std::filesystem::remove_all(folder_);
   }
 
   /// Null where it does not start. What it says goes to a file in the folder.
