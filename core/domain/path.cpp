@@ -80,7 +80,7 @@ Vec2 TimedPath::wind_per(double airspeed_mps) const {
 /// What its times count with there; with paces, beyond the path's end.
 TimedPath::Airing TimedPath::airing(bool is_timed) const {
   if (!paces.empty()) return {path.end().position(), wind_per_speed(), speed_mps};
-  if (!is_timed) {
+  if (!is_timed || on_time_m <= 0.0) {
     const double from_m = on_time_m > 0.0 ? on_time_m : 0.0;
     return {pose_at_distance(from_m).position(), wind_per_speed(), speed_mps};
   }
@@ -97,7 +97,7 @@ double TimedPath::helped_m(const Airing& airing, double distance_m) const {
   return airing.wind_share.dot(pose_at_distance(distance_m).position() - airing.from_m);
 }
 
-/// Where it is when it would be there in still air. A contraction, by twice kWindShare at most.
+/// Where it is when it would be there in still air. A contraction, by kWindShare at most.
 double TimedPath::in_wind_m(const Airing& airing, double even_m) const {
   double distance_m = even_m;
   for (int step = 0; step < kStepsMax; ++step) {

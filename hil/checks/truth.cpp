@@ -105,7 +105,8 @@ OffPlace off_place(const Recording& believed, const std::vector<FormationChange>
   Sum in_place;
   Sum level;
   Sum climbing;
-  for (std::size_t i = 0; i < flown_part(believed.track).size(); ++i) {
+  const std::size_t flown = flown_part(believed.track).size();
+  for (std::size_t i = 0; i < flown; ++i) {
     const TrackPoint& point = believed.track[i];
     if (point.plan_number == 0) continue;
     const bool stands = holds(changes, point.state.time) || (!climbs[i] && !travels[i]);

@@ -103,8 +103,7 @@ std::string truth_section(const Contents& contents) {
   std::string html =
       "<h2>Planned, believed, true</h2><p>Of aircraft in a simulator: how far from its plan each "
       "believed it was and really was; root mean square / most. Of copters in formation: how far "
-      "each "
-      "believed it was from its place, in place, moving in level flight, and climbing or "
+      "each believed it was from its place, in place, moving in level flight, and climbing or "
       "sinking.</p><div class=\"wide\"><table>"
       "<thead><tr>";
   for (const std::string& cell : table.head) html += "<th>" + escaped(cell) + "</th>";
