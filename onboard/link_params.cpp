@@ -62,7 +62,7 @@ Result<ardupilot::CanLinkParams> can_params(const configuration::VehicleConfig& 
   if (!fc.signing_key.empty()) {
     const auto key = read_signing_key(fc.signing_key);
     if (!key) return key.error();
-    companion.signing = ardupilot::Signing{*key, unix_us};
+    companion.signing = mavlink::Signing{*key, unix_us};
   }
   return params;
 }

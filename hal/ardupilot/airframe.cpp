@@ -52,6 +52,7 @@ constexpr std::array kPlaneAction{1};  // RTL; 0 flies on in GUIDED
 // RTL, brake or land; 0 is off, 2 was taken away.
 constexpr std::array kCopterFailsafe{1, 3, 4, 5, 6, 7};
 constexpr std::array kOn{1};
+constexpr std::array kOff{0};
 
 constexpr std::string_view kFliesOn = "the autopilot flies on when the companion falls silent";
 constexpr std::string_view kHearsOther = "the autopilot waits for another's heartbeat";
@@ -64,7 +65,9 @@ constexpr std::array kCopterSafety{SafetyParameter{"FS_GCS_ENABLE", "", kCopterF
                                    kGroundStation};
 constexpr std::array kQuadplaneSafety{
     kPlaneHeartbeat, kPlaneLong, kGroundStation,
-    SafetyParameter{"Q_ENABLE", "", kOn, "it has no rotors to take off and to land on"}};
+    SafetyParameter{"Q_ENABLE", "", kOn, "it has no rotors (0), or flies its approach on them (2)"},
+    SafetyParameter{"Q_GUIDED_MODE", "", kOff,
+                    "it hovers in GUIDED, and is not flown on its wings"}};
 
 constexpr std::array kPlaneLimits{kRollLimit,      kAirspeedMin, kAirspeedMax,
                                   kAirspeedCruise, kSpeedWeight, kStallPrevention};

@@ -41,6 +41,7 @@ class AutopilotDouble {
   std::uint32_t mode = 12;  ///< LOITER
   bool armed = true;
   std::uint8_t landed = 2;  ///< in the air
+  std::uint8_t vtol = 0;    ///< not told
   double relative_height_m = 300.0;
   std::uint8_t maker = 3;
   std::uint8_t type = 1;
@@ -96,7 +97,7 @@ class AutopilotDouble {
       due(74, now, [&] { return hud(); });
       due(1, now, [&] { return status(); });
       due(245, now,
-          [&] { return mavlink::ExtendedSysState{.vtol_state = 0, .landed_state = landed}; });
+          [&] { return mavlink::ExtendedSysState{.vtol_state = vtol, .landed_state = landed}; });
       due(mavlink::GpsRawInt::kDefinition.id, now, [] {
         mavlink::GpsRawInt gnss;
         gnss.fix_type = 3;

@@ -36,9 +36,10 @@ constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
 constexpr Duration kSpeedPeriod = milliseconds{500};
 constexpr double kHeightStep_m = 0.5;
-/// Of the least airspeed: a quadplane that is slower is on its rotors, wind and all.
+/// Of the least airspeed: a quadplane that is slower, and does not tell, is on its rotors.
 constexpr double kHoverShare = 0.7;
 constexpr Duration kLeaveAgain = seconds{10};  ///< its wings take that long
+constexpr double kLifted_m = 2.0;              ///< what hovers there is in the air
 constexpr double kHeartbeat_hz = 20.0;         ///< it tells of the pilot's switch
 constexpr double kHud_hz = 10.0;
 constexpr double kHealth_hz = 2.0;
@@ -77,6 +78,9 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
     refusal.refusal = GiveBackRefusal::no_position;
   } else if (!in_flight && !waits_landed) {
     refusal.refusal = GiveBackRefusal::not_flying;
+  } else if (in_flight && hovers_low()) {
+    refusal.refusal = GiveBackRefusal::hovers_low;
+    refusal.number = taken_over_at();
   }
   if (refusal.refusal != GiveBackRefusal::none) {
     say(true, std::move(refusal), now);
@@ -101,7 +105,7 @@ bool Companion::Impl::give_back(Instant now, Instant issued) {
 
 void Companion::Impl::step(Instant now) {
   watch_silence(now);
-  if (encoder_) sign_at(params_.signing, *encoder_, parser_, now);
+  if (encoder_) mavlink::sign_at(params_.signing, *encoder_, parser_, now);
   while (const auto outcome = desk_.give_up(now)) on_outcome(*outcome, now);
   if (refusal_ && now - refusal_at_ > kReasonWithin) report_refusal(now);
   switch (machine_.state()) {
@@ -214,12 +218,25 @@ bool Companion::Impl::airborne() const {
   if (landed != mavlink::LandedState::undefined) return landed != mavlink::LandedState::on_ground;
   const auto sample = motion_.sample();
   if (!sample) return false;
-  return traits_.flies_to_points ? motion_.relative_height_m() > 2.0
-                                 : sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
+  if (traits_.is_lifted && motion_.relative_height_m() > kLifted_m) return true;
+  return !traits_.flies_to_points &&
+         sample->state.airspeed_mps > params_.vehicle.speed_min_mps / 2.0;
 }
 
 bool Companion::Impl::high() const {
   return motion_.relative_height_m() >= taken_over_at_m(params_.takeoff_height_m);
+}
+
+bool Companion::Impl::hovers() const {
+  if (!traits_.hovers_first) return false;
+  using mavlink::VtolState;
+  const auto told = looked_at_.landed ? static_cast<VtolState>(looked_at_.landed->vtol_state)
+                                      : VtolState::undefined;
+  if (told != VtolState::undefined) {
+    return told == VtolState::on_rotors || told == VtolState::to_rotors;
+  }
+  const auto sample = motion_.sample();
+  return sample && sample->state.airspeed_mps < kHoverShare * params_.vehicle.speed_min_mps;
 }
 
 std::optional<bool> Companion::Impl::in_use() const {
@@ -237,7 +254,7 @@ void Companion::Impl::stand_by(Instant now) {
       if (in_flight && guided()) fire(Event::guided, now);
       break;
     case TakeOver::in_flight:
-      if (in_flight) fire(guided() ? Event::guided : Event::may_take, now);
+      if (in_flight && !hovers_low()) fire(guided() ? Event::guided : Event::may_take, now);
       break;
     case TakeOver::from_ground: {
       if (custody_.own_flight() && in_flight && high()) {
@@ -296,9 +313,9 @@ void Companion::Impl::send_target(Message target, Instant now) {
 
 void Companion::Impl::fly(Instant now) {
   const auto sample = motion_.sample();
-  if (sample) leave_hover(sample->state, now);
-  if (!demand_ || now - demand_at_ > params_.setpoint_age_max || !sample ||
-      now - sample->state.time > kSampleAgeMax) {
+  const bool fresh = sample && now - sample->state.time <= kSampleAgeMax;
+  if (fresh) leave_hover(now);
+  if (!fresh || !demand_ || now - demand_at_ > params_.setpoint_age_max) {
     on_ground_since_.reset();
     return;
   }
@@ -469,15 +486,19 @@ void Companion::Impl::begin_climb(Instant now) {
   ask(takeoff, {}, true);
 }
 
-/// A place to fly to, which may be where it is, is flown to on its wings.
-void Companion::Impl::leave_hover(const VehicleState& state, Instant now) {
-  const bool hovers =
-      traits_.hovers_first && state.airspeed_mps < kHoverShare * params_.vehicle.speed_min_mps;
-  if (!hovers || (hover_left_at_ && now - *hover_left_at_ < kLeaveAgain)) return;
+/// A place to fly to, which may be where it is, is flown to on its wings. In GUIDED alone: the mode
+/// may have become its pilot's.
+void Companion::Impl::leave_hover(Instant now) {
+  if (!hovers() || !high()) return leaves_hover_since_.reset();
+  if (!leaves_hover_since_) {
+    leaves_hover_since_ = now;
+  } else if (now - *hover_left_at_ < kLeaveAgain) {
+    return;
+  }
   hover_left_at_ = now;
   constexpr double kNoSpeed = -1.0;
-  constexpr double kInGuided = 1.0;
-  mavlink::CommandLong place = command_of(Command::do_reposition, kNoSpeed, kInGuided);
+  constexpr double kWithoutChangeOfMode = 0.0;
+  mavlink::CommandLong place = command_of(Command::do_reposition, kNoSpeed, kWithoutChangeOfMode);
   place.param7 = static_cast<float>(motion_.relative_height_m());
   ask(place, {}, true);
 }
@@ -543,7 +564,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       height_error_.reset();
       flown_at_.reset();
       target_at_ = now;
-      hover_left_at_.reset();
+      leaves_hover_since_.reset();
       say(false, {AutopilotNews::flying}, now);
       break;
     case State::piloted:

@@ -107,7 +107,7 @@ void Companion::Impl::on_heartbeat(const mavlink::Heartbeat& heartbeat,
     if (!wrong) {
       system_ = packet.system;
       encoder_.emplace(system_, mavlink::kComponentOnboardComputer);
-      sign_at(params_.signing, *encoder_, parser_, now);
+      mavlink::sign_at(params_.signing, *encoder_, parser_, now);
       fire(Event::autopilot_found, now);
     } else if (machine_.in(State::searching)) {
       fire(Event::wrong_autopilot, now);

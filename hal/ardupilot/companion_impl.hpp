@@ -3,6 +3,7 @@
 
 #include <array>
 #include <bitset>
+#include <cmath>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "parameter_check.hpp"
 #include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/companion.hpp"
+#include "skein/ardupilot/flight_limits.hpp"
 #include "skein/base/bounded_queue.hpp"
 #include "status_text.hpp"
 #include "steady_error.hpp"
@@ -48,7 +50,7 @@ class Companion::Impl {
       : params_{params},
         traits_{traits_of(params.vehicle.airframe)},
         origin_{origin},
-        parser_{parser_params(params.signing, now)},
+        parser_{mavlink::parser_params(params.signing, now)},
         motion_{origin, params.geoid_height_m, traits_.flies_to_points},
         parameters_{questions_of(params)},
         frame_heard_{now},
@@ -172,7 +174,7 @@ class Companion::Impl {
   void entered(State from, Event event, Instant now);
   void enter_standing_by(State from, Event event, Instant now);
   void begin_climb(Instant now);
-  void leave_hover(const VehicleState& state, Instant now);
+  void leave_hover(Instant now);
   void enter_piloted(State from, Event event, Instant now);
   void enter_loss(State from, std::uint32_t mode_before, Instant now);
   void reset_link();
@@ -182,6 +184,14 @@ class Companion::Impl {
   }
   [[nodiscard]] bool airborne() const;
   [[nodiscard]] bool high() const;
+  /// A quadplane that its rotors carry.
+  [[nodiscard]] bool hovers() const;
+  /// So low that it is not flown on its wings from there: on the way to them it sinks.
+  [[nodiscard]] bool hovers_low() const { return hovers() && !high(); }
+  [[nodiscard]] std::uint16_t taken_over_at() const {
+    return static_cast<std::uint16_t>(std::lround(taken_over_at_m(params_.takeoff_height_m)));
+  }
+  [[nodiscard]] std::optional<AutopilotNotice> hover_trouble(Instant now) const;
   [[nodiscard]] bool navigation_healthy() const {
     // An ArduPilot without a GNSS does not count it among what is enabled.
     return looked_at_.health &&
@@ -263,8 +273,9 @@ class Companion::Impl {
   Instant target_at_;
   std::optional<Instant> on_ground_since_;  ///< the point that is flown
   SteadyError height_error_{{}};
-  std::optional<Instant> hover_left_at_;  ///< when a quadplane was last told to
-  std::optional<Instant> flown_at_;       ///< when a plane was last told what to fly
+  std::optional<Instant> leaves_hover_since_;  ///< a quadplane was told to, and still hovers
+  std::optional<Instant> hover_left_at_;       ///< when it was last told to
+  std::optional<Instant> flown_at_;            ///< when a plane was last told what to fly
   std::optional<double> speed_sent_;
   Instant speed_at_;
   std::optional<double> height_sent_;

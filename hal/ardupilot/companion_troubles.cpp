@@ -8,6 +8,7 @@ namespace {
 constexpr Duration kLookPeriod = std::chrono::milliseconds{250};
 constexpr Duration kPatience = std::chrono::seconds{4};  ///< with what ought to come at once
 constexpr Duration kReasonsAgain = std::chrono::seconds{30};
+constexpr Duration kPassesOverWithin = std::chrono::seconds{25};  ///< it was told three times
 
 }  // namespace
 
@@ -54,10 +55,26 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
     all.push_back({.news = AutopilotNews::fence_not_uploaded, .detail = fence_failed_});
   }
   if (now - position_good_at_ >= kPatience) all.push_back({AutopilotNews::no_position});
+  if (auto hover = hover_trouble(now)) all.push_back(*std::move(hover));
   for (const auto& reason : pre_arm_.texts()) {
     all.push_back({.news = AutopilotNews::pre_arm, .detail = reason.text});
   }
   return all;
+}
+
+/// Of a quadplane that is to be flown on its wings, and is on its rotors.
+std::optional<AutopilotNotice> Companion::Impl::hover_trouble(Instant now) const {
+  const bool is_wanted = machine_.in(State::standing_by) && armed_ && airborne() &&
+                         !custody_.by_others() && params_.take_over == TakeOver::in_flight;
+  if ((is_wanted || machine_.in(State::flying)) && hovers_low()) {
+    return AutopilotNotice{.news = AutopilotNews::hovers_low, .number = taken_over_at()};
+  }
+  if (!machine_.in(State::flying) || !leaves_hover_since_) return std::nullopt;
+  if (now - *leaves_hover_since_ < kPassesOverWithin) return std::nullopt;
+  return AutopilotNotice{
+      .news = AutopilotNews::stays_in_hover,
+      .number = static_cast<std::uint16_t>(
+          std::chrono::duration_cast<std::chrono::seconds>(kPassesOverWithin).count())};
 }
 
 std::string Companion::Impl::not_told() const {

@@ -80,7 +80,8 @@ LimitFinding judge_bank(const VehicleSpec& vehicle, std::string_view name, doubl
     const bool refused = stall_prevention && airspeed_mps == vehicle.cruise_speed_mps;
     return {refused ? Verdict::refused : Verdict::differs, found,
             fmt::format("while STALL_PREVENTION is 1 it banks no more than {:.0f} degrees at "
-                        "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less",
+                        "{:g} m/s, too little for turn_radius_m {:g}: set {} to {:.1f} or less, or "
+                        "STALL_PREVENTION to 0",
                         prevented_bank_deg(airspeed_mps, least_mps), airspeed_mps,
                         vehicle.turn_radius_m, name, std::floor(most_mps * 10.0) / 10.0)};
   }

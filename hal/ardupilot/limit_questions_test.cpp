@@ -76,7 +76,9 @@ TEST(LimitCheck, StallPreventionThatIsSwitchedOffIsEnough) {
   check.on_value("AIRSPEED_MIN", 40.0F);
   EXPECT_THAT(check.findings(), IsEmpty());
   check.on_value("STALL_PREVENTION", 1.0F);
-  EXPECT_THAT(check.findings(), ElementsAre(HasSubstr("set AIRSPEED_MIN to 35.6 or less")));
+  EXPECT_THAT(check.findings(),
+              ElementsAre(HasSubstr("set AIRSPEED_MIN to 35.6 or less, or STALL_PREVENTION to 0")));
+  EXPECT_THAT(check.due(at_seconds(0.0)), Contains("STALL_PREVENTION"));
   check.on_value("STALL_PREVENTION", 0.0F);
   EXPECT_THAT(check.findings(), IsEmpty());
 }

@@ -102,9 +102,12 @@ void ParameterCheck::begin() {
 }
 
 std::vector<std::string_view> ParameterCheck::due(Instant now) {
+  // What is wrong may be so by another, which is good: both are asked for until none is.
+  const bool none_wrong =
+      std::ranges::none_of(entries_, [](const Entry& entry) { return entry.wrong.has_value(); });
   std::vector<std::string_view> names;
   for (Entry& entry : entries_) {
-    if (is_settled(entry)) continue;
+    if (is_settled(entry) && (none_wrong || !entry.value)) continue;
     const Duration pause = entry.value ? kAskWrong : kAskUnanswered;
     if (entry.asked_at && now - *entry.asked_at < pause) continue;
     entry.asked_at = now;

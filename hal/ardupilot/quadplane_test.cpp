@@ -14,6 +14,7 @@ using ::testing::HasSubstr;
 void be_quadplane(AutopilotDouble& autopilot) {
   autopilot.type = 22;  // a VTOL
   autopilot.parameters["Q_ENABLE"] = 1.0F;
+  autopilot.parameters["Q_GUIDED_MODE"] = 0.0F;
 }
 
 TEST(CompanionQuadplane, IsLiftedOffInGuided) {
@@ -51,9 +52,69 @@ TEST(CompanionQuadplane, IsToldToLeaveItsHoverUntilItFliesOnItsWings) {
   const auto there = origin.to_enu({place.x * 1e-7, place.y * 1e-7, kTestOrigin.height_m});
   EXPECT_LT((there.horizontal() - truth.position().horizontal()).norm(), 1.0) << "where it is";
   EXPECT_NEAR(place.z, 300.0F, 0.5F);
+  EXPECT_EQ(place.param2, 0.0F) << "its mode is its pilot's to change";
+  line.run(3.0);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("it hovers on, 25 s after it was told")));
   line.autopilot.truth.airspeed_mps = 50.0;
   line.run(15.0);
   EXPECT_EQ(line.autopilot.places.size(), 3U);
+  EXPECT_TRUE(line.companion.troubles().empty());
+}
+
+TEST(CompanionQuadplane, ThatTellsWhatCarriesItIsBelievedWhateverTheWindIs) {
+  Line line{params(TakeOver::in_flight, Airframe::quadplane)};
+  be_quadplane(line.autopilot);
+  line.autopilot.vtol = static_cast<std::uint8_t>(mavlink::VtolState::on_rotors);
+  line.until(State::flying, 10.0);
+  ASSERT_EQ(line.companion.state(), State::flying);
+  line.run(1.0);
+  EXPECT_EQ(line.autopilot.places.size(), 1U) << "in a wind of 50 m/s";
+  line.autopilot.vtol = static_cast<std::uint8_t>(mavlink::VtolState::on_wings);
+  line.autopilot.truth.airspeed_mps = 4.0;
+  line.run(15.0);
+  EXPECT_EQ(line.autopilot.places.size(), 1U);
+}
+
+TEST(CompanionQuadplane, ThatHoversLowIsNotTakenAndNotGivenBack) {
+  Line line{params(TakeOver::in_flight, Airframe::quadplane)};
+  be_quadplane(line.autopilot);
+  line.autopilot.vtol = static_cast<std::uint8_t>(mavlink::VtolState::on_rotors);
+  line.autopilot.mode = 19;  // QLOITER
+  line.autopilot.relative_height_m = 20.0;
+  line.run(10.0);
+  EXPECT_EQ(line.companion.state(), State::standing_by);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("it hovers below 37 m")));
+  EXPECT_FALSE(line.companion.give_back(line.now, line.now));
+  line.run(0.1);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("cannot be given to the companion: it hovers")));
+  line.autopilot.relative_height_m = 45.0;
+  line.until(State::flying, 10.0);
+  EXPECT_EQ(line.companion.state(), State::flying);
+}
+
+TEST(CompanionQuadplane, InGuidedByItsPilotAndLowStaysInItsHover) {
+  Line line{params(TakeOver::when_guided, Airframe::quadplane)};
+  be_quadplane(line.autopilot);
+  line.autopilot.vtol = static_cast<std::uint8_t>(mavlink::VtolState::on_rotors);
+  line.autopilot.mode = 15;
+  line.autopilot.relative_height_m = 20.0;
+  line.until(State::flying, 10.0);
+  line.run(15.0);
+  ASSERT_EQ(line.companion.state(), State::flying);
+  EXPECT_TRUE(line.autopilot.places.empty());
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("it hovers below 37 m")));
+  line.autopilot.relative_height_m = 45.0;
+  line.run(2.0);
+  EXPECT_EQ(line.autopilot.places.size(), 1U);
+}
+
+TEST(CompanionQuadplane, IsRefusedWhereItsGuidedHovers) {
+  Line line{params(TakeOver::in_flight, Airframe::quadplane)};
+  be_quadplane(line.autopilot);
+  line.autopilot.parameters["Q_GUIDED_MODE"] = 1.0F;
+  line.run(8.0);
+  EXPECT_EQ(line.companion.state(), State::preparing);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("Q_GUIDED_MODE is 1, so it hovers in GUIDED")));
 }
 
 TEST(CompanionQuadplane, WithoutItsRotorsNothingIsFlown) {

@@ -15,7 +15,7 @@ constexpr std::int64_t kUnix_us = 1'764'000'000'000'000;
 
 CompanionParams with_key(const char* passphrase, std::int64_t unix_us = kUnix_us) {
   CompanionParams p = params();
-  p.signing = Signing{mavlink::key_of(passphrase), unix_us};
+  p.signing = mavlink::Signing{mavlink::key_of(passphrase), unix_us};
   return p;
 }
 

@@ -42,7 +42,7 @@ class Survey::Impl {
         parameters_{safety_questions(params.companion.vehicle, params.companion.system_id,
                                      params.companion.fence)},
         encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer},
-        parser_{parser_params(params.companion.signing, now)} {}
+        parser_{mavlink::parser_params(params.companion.signing, now)} {}
 
   bool step(Instant now) {
     receive(now);
@@ -57,7 +57,7 @@ class Survey::Impl {
     }
     if (facts_.heartbeat && now >= ask_at_) {
       ask_at_ = now + kAskPeriod;
-      sign_at(params_.companion.signing, encoder_, parser_, now);
+      mavlink::sign_at(params_.companion.signing, encoder_, parser_, now);
       ask(now);
     }
     transmit(now);

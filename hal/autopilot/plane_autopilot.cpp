@@ -69,13 +69,18 @@ void PlaneAutopilot::enter() {
 CommandResult PlaneAutopilot::select_mode(PlaneMode mode) {
   if (mode == machine_.mode()) return CommandResult::accepted;
   if (change(selection_of(mode))) return CommandResult::accepted;
-  say(Severity::warning, "Flight mode change failed: " + std::string{to_string(mode)} +
-                             (health_.position ? " needs a mission" : " requires position"));
+  const std::string_view why = needs_rotors(mode) && !vtol_ ? " needs Q_ENABLE"
+                               : health_.position           ? " needs a mission"
+                                                            : " requires position";
+  say(Severity::warning,
+      "Flight mode change failed: " + std::string{to_string(mode)} + std::string{why});
   return CommandResult::failed;
 }
 
 std::optional<std::string_view> PlaneAutopilot::mode_refusal() const {
   if (mode() == PlaneMode::rtl) return kRtlNotArmable;
+  if (mode() == PlaneMode::q_rtl) return kQrtlNotArmable;
+  if (mode() == PlaneMode::q_land) return kQlandNotArmable;
   const bool landing = mode() == PlaneMode::mission && item_ < mission_.size() &&
                        (mission_[item_].kind == MissionItem::Kind::land ||
                         mission_[item_].kind == MissionItem::Kind::vtol_land);
@@ -129,7 +134,7 @@ CommandResult PlaneAutopilot::reposition(const Reposition& target) {
             .radius_m = target.radius_m > 0.0 ? target.radius_m : params_.loiter_radius_m,
             .clockwise = target.clockwise};
   if (target.height_m) height_m_ = *target.height_m;
-  if (vtol_) vtol_->fly_on_wings(estimate_);
+  if (vtol_ && flying_) vtol_->fly_on_wings(estimate_);
   if (target.airspeed_mps) airspeed_mps_ = *target.airspeed_mps;
   return CommandResult::accepted;
 }
@@ -265,6 +270,7 @@ SurfaceCommand PlaneAutopilot::fly_mode(const Estimate& estimate, Instant now, d
     case PlaneMode::rtl:
       return orbit(estimate, orbit_, home_height_m_ + params_.rtl_height_m, seconds);
     case PlaneMode::q_rtl:
+      if (!flying_) break;
       return set_down(estimate, home_m_, home_height_m_, seconds);
     case PlaneMode::q_loiter:
     case PlaneMode::q_land:

@@ -7,7 +7,7 @@
 namespace skein::autopilot {
 
 void PlaneAutopilot::enter_vtol() {
-  if (!flying_) return vtol_->stop();
+  if (!flying_ || mode() == PlaneMode::manual) return vtol_->stop();
   if (mode() == PlaneMode::q_loiter) {
     vtol_->hover(estimate_, {}, estimate_.height_m());
   } else if (mode() == PlaneMode::q_land) {
@@ -19,7 +19,7 @@ void PlaneAutopilot::enter_vtol() {
 
 CommandResult PlaneAutopilot::lift_off(double up_m) {
   const bool may = vtol_ && armed_ && !flying_ && mode() == PlaneMode::guided;
-  if (!may || !(up_m > 0.0)) return CommandResult::failed;
+  if (!may || !(up_m > 0.0) || !std::isfinite(up_m)) return CommandResult::failed;
   vtol_->hover(estimate_, estimate_.position_m.head<2>(), estimate_.height_m() + up_m);
   return CommandResult::accepted;
 }

@@ -174,10 +174,11 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   if (spec.airframe == Airframe::quadplane) {
     set("Q_ENABLE", 1);
     set("Q_ASSIST_SPEED", std::max(1.0, std::floor(spec.speed_min_mps - kAssistBelow_mps)));
+  } else {
+    set("TKOFF_ALT", fc.takeoff_height_m);
   }
   set("FS_GCS_ENABL", 1);
   set("FS_LONG_ACTN", 1);
-  set("TKOFF_ALT", fc.takeoff_height_m);
   set("AIRSPEED_CRUISE", spec.cruise_speed_mps);
   set("AIRSPEED_MAX", std::ceil(spec.speed_max_mps));
   const double bank_deg = degrees(std::atan(spec.cruise_speed_mps * spec.cruise_speed_mps /

@@ -11,6 +11,7 @@
 namespace skein::hil {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 
@@ -71,7 +72,8 @@ TEST(UserAutopilots, OfAQuadplaneIsAnArduplaneWithRotorsThatStandStillInFlight) 
   configuration::VehicleConfig quadplane = vehicle();
   quadplane.vehicle.airframe = Airframe::quadplane;
   EXPECT_THAT(autopilot_parameters(quadplane),
-              HasSubstr("Q_ENABLE 1\nQ_ASSIST_SPEED 16\nFS_GCS_ENABL 1\n"));
+              AllOf(HasSubstr("Q_ENABLE 1\nQ_ASSIST_SPEED 16\nFS_GCS_ENABL 1\n"),
+                    testing::Not(HasSubstr("TKOFF_ALT"))));
   const auto autopilots = user_autopilots({program("arduplane")}, {});
   ASSERT_TRUE(autopilots);
   const auto folder = std::filesystem::path{testing::TempDir()} / "user_autopilots" / "fc-5";

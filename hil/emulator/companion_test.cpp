@@ -97,7 +97,7 @@ TEST(CompanionAndEmulator, WithAKeyBothSignAndNobodyElseIsHeeded) {
   config.unix_us = 1'764'000'000'000'000;
   config.signing_key = mavlink::key_of("ours");
   ardupilot::CanLinkParams companion = Bench::params(config);
-  companion.companion.signing = ardupilot::Signing{*config.signing_key, config.unix_us};
+  companion.companion.signing = mavlink::Signing{*config.signing_key, config.unix_us};
   Bench bench{config, companion};
   ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
   bench.interfere("reboot");

@@ -57,7 +57,9 @@ std::optional<std::uint32_t> mode_named(Airframe airframe, std::string_view name
   for (std::uint32_t number = 0; number < kNumbers; ++number) {
     if (airframe != Airframe::copter) {
       const auto mode = autopilot::plane_mode(number);
-      if (mode && autopilot::to_string(*mode) == name) return number;
+      const bool flown =
+          mode && (airframe == Airframe::quadplane || !autopilot::needs_rotors(*mode));
+      if (flown && autopilot::to_string(*mode) == name) return number;
     } else {
       const auto mode = autopilot::copter_mode(number);
       if (mode && autopilot::to_string(*mode) == name) return number;

@@ -66,6 +66,11 @@ mavlink::CommandInt as_int(const mavlink::CommandLong& c) {
   return out;
 }
 
+std::optional<mavlink::Signing> signing_of(const EmulatorConfig& config) {
+  if (!config.signing_key) return std::nullopt;
+  return mavlink::Signing{*config.signing_key, config.unix_us};
+}
+
 }  // namespace
 
 MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& earth, Vehicle& vehicle,
@@ -77,9 +82,8 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
       battery_{battery},
       port_{port},
       booted_{booted},
-      parser_{{.key = config.signing_key,
-               .now = signing_time_at(now),
-               .accept_unsigned = !config.signing_key}},
+      signing_{signing_of(config)},
+      parser_{mavlink::parser_params(signing_, now)},
       encoder_{config.system_id, mavlink::kComponentAutopilot},
       fence_{config.fence_height_m},
       mission_{0, [this](auto items) { return vehicle_.load_mission(items); }},
@@ -89,7 +93,7 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
   for (const std::uint32_t id : telemetry_ids()) {
     streams_.push_back({id, default_interval(id), now});
   }
-  if (config.signing_key) encoder_.sign_with({*config.signing_key, 0, signing_time_at(now)});
+  mavlink::sign_at(signing_, encoder_, parser_, now);
   std::array<std::uint8_t, kGreeting.size()> greeting{};
   std::copy(kGreeting.begin(), kGreeting.end(), greeting.begin());
   (void)port_.write(greeting);
@@ -102,15 +106,8 @@ Duration MavlinkEndpoint::default_interval(std::uint32_t id) const {
   return vehicle_.streams_unasked() && is_streamed_unasked(id) ? kStreamInterval : Duration{};
 }
 
-mavlink::SigningTime MavlinkEndpoint::signing_time_at(Instant now) const {
-  return mavlink::signing_time(config_.unix_us +
-                               now.time_since_epoch() / std::chrono::microseconds{1});
-}
-
 void MavlinkEndpoint::step(Instant now) {
-  if (auto* signer = encoder_.signer()) {
-    signer->advance_to(std::max(signing_time_at(now), parser_.newest_signature()));
-  }
+  mavlink::sign_at(signing_, encoder_, parser_, now);
   std::array<std::uint8_t, 256> bytes{};
   while (const std::size_t size = port_.read(bytes)) {
     parser_.parse(std::span{bytes}.first(size),
@@ -322,7 +319,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
   constexpr auto kReal = mavlink::ParamType::real32;
   const bool fenced = fence_.enabled();
   const bool is_quadplane = config_.airframe == Airframe::quadplane;
-  const std::array<Parameter, 16> parameters{{
+  const std::array<Parameter, 17> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -334,6 +331,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "TECS_SPDWEIGHT" : "", 0.0, kReal},
       {is_plane ? "STALL_PREVENTION" : "", 0.0},  // nor does it
       {is_quadplane ? "Q_ENABLE" : "", 1.0},
+      {is_quadplane ? "Q_GUIDED_MODE" : "", 0.0},
       {is_quadplane ? "Q_ASSIST_SPEED" : "", -1.0, kReal},  // off
       {"FENCE_ENABLE", fenced ? 1.0 : 0.0},
       {"FENCE_ACTION", 1.0},

@@ -12,6 +12,7 @@
 #include "skein/dronecan/tunnel.hpp"
 #include "skein/hil/emulator_config.hpp"
 #include "skein/mavlink/parser.hpp"
+#include "skein/mavlink/signed_link.hpp"
 #include "telemetry.hpp"
 #include "vehicle.hpp"
 
@@ -58,7 +59,6 @@ class MavlinkEndpoint {
   void on_timesync(const mavlink::Timesync& question, const mavlink::Packet& packet, Instant now);
   [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const;
   [[nodiscard]] Situation situation(Instant now) const;
-  [[nodiscard]] mavlink::SigningTime signing_time_at(Instant now) const;
   [[nodiscard]] Duration default_interval(std::uint32_t id) const;
   Stream* find_stream(std::uint32_t id);
   void send(const mavlink::WireBytes& bytes) { (void)port_.write(bytes); }
@@ -70,6 +70,7 @@ class MavlinkEndpoint {
   const Battery& battery_;
   dronecan::TunnelPort& port_;
   Instant booted_;
+  std::optional<mavlink::Signing> signing_;
   mavlink::Parser parser_;
   mavlink::Encoder encoder_;
   FenceKeeper fence_;

@@ -38,6 +38,23 @@ constexpr std::uint8_t kPilotBase = mavlink::mode_custom_enabled | mavlink::mode
                                     mavlink::mode_manual_input_enabled;
 constexpr std::uint8_t kGuidedBase = kPilotBase | mavlink::mode_guided_enabled;
 
+/// As ArduPlane tells it.
+mavlink::VtolState on_wire(std::optional<autopilot::VtolFlight::Carried> by) {
+  using Carried = autopilot::VtolFlight::Carried;
+  if (!by) return mavlink::VtolState::undefined;
+  switch (*by) {
+    case Carried::by_rotors:
+      return mavlink::VtolState::on_rotors;
+    case Carried::to_wings:
+      return mavlink::VtolState::to_wings;
+    case Carried::to_rotors:
+      return mavlink::VtolState::to_rotors;
+    case Carried::by_wings:
+      break;
+  }
+  return mavlink::VtolState::on_wings;
+}
+
 models::FixedWing at_start(const EmulatorConfig& config, const PlaneAirframe& airframe,
                            const models::Trim& trim) {
   const models::FixedWingParams& params = airframe.model;
@@ -71,9 +88,9 @@ autopilot::PlaneParams params_of(const EmulatorConfig& config, const PlaneAirfra
   p.tuning.airspeed_max_mps = config.airspeed_max_mps * true_per_equivalent;
   p.tuning.roll_max_rad = bank_limit_rad(config);
   p.loiter_radius_m = kLoiterRadii * config.turn_radius_m;
-  // As TECS_LAND_ARSPD -1.
   p.vtol = airframe.vtol;
   if (p.vtol) p.vtol->wings_from_mps = p.tuning.airspeed_min_mps;
+  // As TECS_LAND_ARSPD -1.
   p.approach_airspeed_mps = 0.5 * (p.tuning.airspeed_min_mps + p.tuning.airspeed_cruise_mps);
   p.companion_failsafe = config.companion_failsafe;
   return p;
@@ -145,6 +162,7 @@ void PlaneVehicle::tell() {
   report_.throttle = surfaces_.throttle;
   report_.armed = autopilot_.armed();
   report_.flying = status.flying;
+  report_.vtol = on_wire(autopilot_.carried());
   report_.rolling = autopilot_.armed() && !status.flying && mode != PlaneMode::mission &&
                     report_.estimate.groundspeed_mps() > kRollsFrom_mps;
   report_.mode_refusal = autopilot_.mode_refusal();

@@ -139,5 +139,39 @@ TEST(Quadplane, ItsPilotHoversAndReturnsOnRotors) {
   EXPECT_EQ(bench.state().phase, FlightPhase::disarmed) << bench.state().z_m;
 }
 
+TEST(Quadplane, WhosePilotSwitchesToManualInHoverFallsOffItsRotors) {
+  EmulatorConfig config = quadplane();
+  config.airborne = true;
+  config.height_m = 100.0;
+  Bench bench{config};
+  bench.setpoint = {.heading_rad = kPi / 2.0, .airspeed_mps = 25.0, .height_m = 100.0};
+  ASSERT_TRUE(bench.run_until(State::flying, 10.0)) << bench.log();
+  bench.interfere("mode QLOITER");
+  bench.run(40.0);
+  EXPECT_NEAR(bench.state().z_m, 100.0, 2.0);
+  bench.interfere("mode MANUAL");
+  bench.run(3.0);
+  EXPECT_LT(bench.state().z_m, 90.0);
+}
+
+TEST(Quadplane, DoesNotArmInAModeThatBringsItDown) {
+  auto controller = EmulatedFlightController::make(quadplane(), Instant{}).value();
+  controller.step(at_seconds(12.0));
+  ASSERT_TRUE(controller.interfere("mode QRTL", at_seconds(12.0)));
+  EXPECT_FALSE(controller.interfere("arm", at_seconds(12.0)));
+  ASSERT_TRUE(controller.interfere("mode QLOITER", at_seconds(12.0)));
+  EXPECT_TRUE(controller.interfere("arm", at_seconds(12.0)));
+}
+
+TEST(Quadplane, AloneIsStartedInAModeOfItsRotors) {
+  EmulatorConfig config = quadplane();
+  config.airborne = true;
+  config.height_m = 100.0;
+  config.mode = "QLOITER";
+  EXPECT_TRUE(check(config));
+  config.airframe = Airframe::plane;
+  EXPECT_FALSE(check(config));
+}
+
 }  // namespace
 }  // namespace skein::hil

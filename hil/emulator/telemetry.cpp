@@ -239,8 +239,10 @@ HomePosition home_position(const Situation& s) {
 }
 
 ExtendedSysState extended_state(const Situation& s) {
-  return {.landed_state = static_cast<std::uint8_t>(
-              s.flight.flying || s.flight.rolling ? LandedState::in_air : LandedState::on_ground)};
+  const bool in_air = s.flight.flying || s.flight.rolling;
+  return {.vtol_state = static_cast<std::uint8_t>(s.flight.vtol),
+          .landed_state =
+              static_cast<std::uint8_t>(in_air ? LandedState::in_air : LandedState::on_ground)};
 }
 
 struct Producer {

@@ -24,6 +24,7 @@ struct FlightReport {
   double throttle = 0.0;  ///< [0, 1]
   bool armed = false;
   bool flying = false;
+  mavlink::VtolState vtol = mavlink::VtolState::undefined;
   bool rolling = false;  ///< a plane on its take-off run: ArduPlane tells that it is in the air
   std::optional<std::string_view> mode_refusal;  ///< why it would not arm in its mode
   std::uint32_t mode = 0;                        ///< custom_mode

@@ -196,6 +196,9 @@ std::string sentence_of(GiveBackRefusal why, const AutopilotNotice& notice) {
       return "it does not know where it is";
     case GiveBackRefusal::not_flying:
       return "it is not armed and in the air";
+    case GiveBackRefusal::hovers_low:
+      return fmt::format("it hovers below {} m, too low to pass over to its wings: climb first",
+                         notice.number);
     case GiveBackRefusal::none:
     case GiveBackRefusal::count:
       break;
@@ -271,6 +274,10 @@ constexpr std::array kAutopilotNews{
         "its packets are not signed with the key of flight_controller.signing_key, and "
         "are not heeded: give the autopilot that key (MAVLink signing, at a ground "
         "station over USB), or leave signing_key out"},
+    std::string_view{"it hovers below {number} m, too low to pass over to its wings: its pilot has "
+                     "to climb"},
+    std::string_view{"it hovers on, {number} s after it was told to fly on its wings: its pilot "
+                     "has to take it"},
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 

@@ -12,7 +12,6 @@
 
 #include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/ardupilot/motion.hpp"
-#include "skein/ardupilot/signing.hpp"
 #include "skein/base/frames.hpp"
 #include "skein/base/state_table.hpp"
 #include "skein/base/time.hpp"
@@ -21,6 +20,7 @@
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
+#include "skein/mavlink/signed_link.hpp"
 
 namespace skein::ardupilot {
 
@@ -36,7 +36,8 @@ enum class TakeOver : std::uint8_t {
 
 struct CompanionParams {
   VehicleSpec vehicle;
-  std::optional<Signing> signing = {};  ///< none: packets are not signed, and any are heeded
+  std::optional<mavlink::Signing> signing =
+      {};       ///< none: packets are not signed, and any are heeded
   Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself
   TakeOver take_over = TakeOver::when_guided;
   std::uint8_t system_id = 1;      ///< of the autopilot: SYSID_THISMAV; others are not heeded

@@ -38,8 +38,10 @@ struct Health {
 };
 /// Why arming is refused, in the autopilot's words, or nothing.
 [[nodiscard]] std::optional<std::string_view> arming_refusal(const Health& health);
-/// And of ArduPlane in RTL.
+/// And of ArduPlane in these.
 inline constexpr std::string_view kRtlNotArmable = "RTL mode not armable";
+inline constexpr std::string_view kQrtlNotArmable = "QRTL mode not armable";
+inline constexpr std::string_view kQlandNotArmable = "QLAND mode not armable";
 /// A plane that has landed by its mission, until its mode changes.
 inline constexpr std::string_view kLandingSequence = "In landing sequence";
 

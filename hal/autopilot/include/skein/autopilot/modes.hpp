@@ -171,6 +171,10 @@ inline constexpr std::array kCopterModes{
 /// The mode of a number on the wire, or none of ours.
 [[nodiscard]] std::optional<PlaneMode> plane_mode(std::uint32_t number);
 [[nodiscard]] std::optional<CopterMode> copter_mode(std::uint32_t number);
+/// Those of a quadplane alone.
+[[nodiscard]] constexpr bool needs_rotors(PlaneMode mode) {
+  return mode == PlaneMode::q_loiter || mode == PlaneMode::q_land || mode == PlaneMode::q_rtl;
+}
 /// The event by which an operator or companion asks for a mode.
 [[nodiscard]] PlaneEvent selection_of(PlaneMode mode);
 [[nodiscard]] CopterEvent selection_of(CopterMode mode);

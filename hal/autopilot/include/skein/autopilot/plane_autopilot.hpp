@@ -136,6 +136,10 @@ class PlaneAutopilot {
     return vtol_ ? vtol_->rotors() : std::array<double, VtolFlight::kRotors>{};
   }
 
+  /// Nothing of a plane without rotors.
+  [[nodiscard]] std::optional<VtolFlight::Carried> carried() const {
+    return vtol_ ? std::optional{vtol_->carried()} : std::nullopt;
+  }
   [[nodiscard]] PlaneMode mode() const { return machine_.mode(); }
   [[nodiscard]] bool armed() const { return armed_; }
   [[nodiscard]] const PlaneStatus& status() const { return status_; }

@@ -42,13 +42,19 @@ class VtolFlight {
   void hover(const Estimate& estimate, const std::optional<Vec2>& place_m, double height_m);
   /// To the place at the height that it has, and down there.
   void set_down(const Estimate& estimate, const std::optional<Vec2>& place_m, double ground_m);
-  /// On the wings: at once where it is fast enough.
+  /// On the wings, once it is fast enough for them.
   void fly_on_wings(const Estimate& estimate);
   /// The rotors stand.
   void stop();
 
   /// The rotors carry it: step() flies it. Else its wings do.
   [[nodiscard]] bool carries() const { return phase_ != Phase::wings; }
+  enum class Carried : std::uint8_t { by_wings, to_wings, to_rotors, by_rotors };
+  [[nodiscard]] Carried carried() const {
+    if (phase_ == Phase::wings) return Carried::by_wings;
+    if (phase_ == Phase::transition) return Carried::to_wings;
+    return phase_ == Phase::brake ? Carried::to_rotors : Carried::by_rotors;
+  }
   /// On the ground after set_down().
   [[nodiscard]] bool touched_down() const { return rested_s_ >= kRested_s; }
   /// From there on it has to brake to be over a place.

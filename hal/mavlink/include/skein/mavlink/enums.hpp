@@ -101,6 +101,12 @@ enum class LandedState : std::uint8_t {
   undefined = 0, on_ground = 1, in_air = 2, takeoff = 3, landing = 4,
 };
 
+/// EXTENDED_SYS_STATE: `vtol_state`. An ArduPlane that is carried by its rotors and its wings at
+/// once, on the way or as gusts want it, says to_wings.
+enum class VtolState : std::uint8_t {
+  undefined = 0, to_wings = 1, to_rotors = 2, on_rotors = 3, on_wings = 4,
+};
+
 /// GPS_RAW_INT: `fix_type`.
 enum class GpsFix : std::uint8_t {
   no_gps = 0, no_fix = 1, fix_2d = 2, fix_3d = 3, dgps = 4, rtk_float = 5, rtk_fixed = 6,

@@ -9,33 +9,33 @@
 #include "skein/base/time.hpp"
 #include "skein/mavlink/parser.hpp"
 
-namespace skein::ardupilot {
+namespace skein::mavlink {
 
-/// What a companion signs its packets with, and demands of its autopilot's (MAVLink 2). It signs no
-/// earlier than the newest genuine packet that it has heard, so that a clock that was set back does
-/// not make it mute.
+/// What one end of a link signs its packets with, and demands of the other's. It signs no earlier
+/// than the newest genuine packet that it has heard, so that a clock that was set back does not
+/// make it mute.
 struct Signing {
-  mavlink::SigningKey key{};
+  SigningKey key{};
   std::int64_t unix_us = 0;  ///< system time at Instant{}
 
-  [[nodiscard]] mavlink::SigningTime at(Instant now) const {
-    return mavlink::signing_time(unix_us + now.time_since_epoch() / std::chrono::microseconds{1});
+  [[nodiscard]] SigningTime at(Instant now) const {
+    return signing_time(unix_us + now.time_since_epoch() / std::chrono::microseconds{1});
   }
 };
 
-[[nodiscard]] inline mavlink::ParserParams parser_params(const std::optional<Signing>& signing,
-                                                         Instant now) {
+[[nodiscard]] inline ParserParams parser_params(const std::optional<Signing>& signing,
+                                                Instant now) {
   if (!signing) return {};
   return {.key = signing->key, .now = signing->at(now), .accept_unsigned = false};
 }
 
 /// To be called once before anything is sent, and again as time goes on.
-inline void sign_at(const std::optional<Signing>& signing, mavlink::Encoder& encoder,
-                    const mavlink::Parser& parser, Instant now) {
+inline void sign_at(const std::optional<Signing>& signing, Encoder& encoder, const Parser& parser,
+                    Instant now) {
   if (!signing) return;
   const auto time = std::max(signing->at(now), parser.newest_signature());
   if (encoder.signer() == nullptr) encoder.sign_with({signing->key, 0, time});
   encoder.signer()->advance_to(time);
 }
 
-}  // namespace skein::ardupilot
+}  // namespace skein::mavlink

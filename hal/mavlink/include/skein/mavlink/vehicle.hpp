@@ -112,8 +112,8 @@ struct HomePosition {
 
 /// On the ground, in the air, taking off, landing.
 struct ExtendedSysState {
-  std::uint8_t vtol_state = 0;
-  std::uint8_t landed_state = 0;
+  std::uint8_t vtol_state = 0;    ///< VtolState
+  std::uint8_t landed_state = 0;  ///< LandedState
 
   static constexpr auto kDefinition = define(
       245, "EXTENDED_SYS_STATE", SKEIN_MAVLINK_FIELDS(ExtendedSysState, vtol_state, landed_state));
