@@ -45,8 +45,10 @@ mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& co
   agent.hazards = config.hazards;
   agent.fence = config.fence;
   agent.turn_lead_s = config.flight_controller.follower().turn_lead_s;
+  // In still air a simulated plane is where its plan has it at once, and needs no lead.
   agent.heeds_wind =
-      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;
+      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot ||
+      config.flight_controller.wind.speed_mps > 0.0;
   return agent;
 }
 

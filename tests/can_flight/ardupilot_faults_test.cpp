@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// A vehicle with a user's own ArduPlane, which SKEIN_ARDUPLANE names: what goes wrong between
-// them in the air, one thing after another in one flight. Prints how each was noticed, and how it
-// ended. The autopilot speaks on mcast:0, so it gets a network of its own.
+// A vehicle with a user's own ArduPlane or ArduCopter, which SKEIN_ARDUPLANE and SKEIN_ARDUCOPTER
+// name: what goes wrong between them in the air, one thing after another in one flight. Prints how
+// each was noticed, and how it ended. The autopilot speaks on mcast:0, so it gets a network of its
+// own.
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
@@ -40,11 +41,28 @@ using namespace std::chrono_literals;
 
 constexpr const char* kCompanionBus = "mcast:77";
 constexpr const char* kPiloted = "the mode was changed to RTL by the pilot or a failsafe";
+constexpr const char* kLands = "the mode was changed to LAND by the pilot or a failsafe";
 constexpr const char* kWouldNotArm = "the autopilot would not arm: ";
 constexpr const char* kTakesOff = "taking off";
 constexpr VehicleId kVehicle{1};
 constexpr double kNoticed_s = 2.0;  // 0.1 s and what a loaded machine takes
-constexpr float kRtl = 11.0F;
+
+struct Craft {
+  const char* variable;  ///< of the environment
+  Airframe airframe;
+  float rtl;
+  double speed_mps;
+  double turn_radius_m;
+  /// Said within 20 s without GNSS, and the aircraft is its pilot's; else it is flown on for 10 s,
+  /// by what its filter makes of its airspeed.
+  const char* without_gnss;
+};
+constexpr Craft kPlane{"SKEIN_ARDUPLANE", Airframe::plane, 11.0F, 25.0, 100.0, nullptr};
+constexpr Craft kCopter{"SKEIN_ARDUCOPTER", Airframe::copter, 6.0F, 7.0, 30.0, kLands};
+
+std::string name_of(const testing::TestParamInfo<Craft>& craft) {
+  return std::string{to_string(craft.param.airframe)};
+}
 
 /// Carries frames between the autopilot's bus and the companion's: all, none, or a share.
 class Bridge {
@@ -154,16 +172,17 @@ class Pilot {
   mavlink::Encoder encoder_{255, 190};
 };
 
-class ArdupilotFaults : public OnboardTest {
+class ArdupilotFaults : public OnboardTest, public testing::WithParamInterface<Craft> {
  protected:
   ArdupilotFaults() : OnboardTest{kVehicle, "ardupilot-faults"} {
-    VehicleSpec& plane = config_.vehicle;
-    plane.cruise_speed_mps = 25.0;
-    plane.speed_min_mps = 20.0;
-    plane.speed_max_mps = 30.0;
-    plane.turn_radius_m = 100.0;
-    plane.sensor_radius_m = 130.0;
-    plane.height_m = 100.0;
+    VehicleSpec& vehicle = config_.vehicle;
+    vehicle.airframe = GetParam().airframe;
+    vehicle.cruise_speed_mps = GetParam().speed_mps;
+    vehicle.speed_min_mps = 0.8 * GetParam().speed_mps;
+    vehicle.speed_max_mps = 1.2 * GetParam().speed_mps;
+    vehicle.turn_radius_m = GetParam().turn_radius_m;
+    vehicle.sensor_radius_m = 1.3 * GetParam().turn_radius_m;
+    vehicle.height_m = 100.0;
     config_.origin = {31.522062, 105.044327, 480.0};
     config_.search = {{0.0, 800.0}};
     config_.flight_controller.ardupilot.can = hil::kAutopilotBus;
@@ -179,7 +198,8 @@ class ArdupilotFaults : public OnboardTest {
     auto b = can::open(kCompanionBus);
     ASSERT_TRUE(a.ok() && b.ok());
     hil::UserAutopilots autopilots;
-    autopilots.plane = std::filesystem::absolute(program);
+    (GetParam().airframe == Airframe::copter ? autopilots.copter : autopilots.plane) =
+        std::filesystem::absolute(program);
     const auto command =
         hil::autopilot_command(autopilots, config_, 1, pilot_->port(), folder_ / "fc");
     ASSERT_TRUE(command.ok()) << command.error().message;
@@ -252,16 +272,42 @@ class ArdupilotFaults : public OnboardTest {
                 wait_for(kFlying) - begin_s);
   }
 
+  void lose_gnss() {
+    const double begin_s = now_s();
+    pilot_->set_parameter("SIM_GPS_DISABLE", 1.0F);
+    if (GetParam().without_gnss != nullptr) {
+      std::printf("no GNSS: %s after %.1f s\n", GetParam().without_gnss,
+                  wait_for(GetParam().without_gnss, 20s) - begin_s);
+      pilot_->set_parameter("SIM_GPS_DISABLE", 0.0F);
+      give_back_until(kFlying);
+      return;
+    }
+    EXPECT_TRUE(stays_unsaid("the mode was changed", 10s));
+    pilot_->set_parameter("SIM_GPS_DISABLE", 0.0F);
+    std::printf("no GNSS for 10 s: flown on\n");
+  }
+  /// It is refused until the filter knows again where it is.
+  void give_back_until(const char* words) {
+    const double begin_s = now_s();
+    const auto said = [this, words] { return log().find(words, read_) != std::string::npos; };
+    for (int i = 0; i < 30 && !said(); ++i) {
+      give_back();
+      (void)stays_unsaid(words, 1s);
+    }
+    std::printf("given back: flown on after %.1f s\n", wait_for(words) - begin_s);
+  }
+
   std::unique_ptr<Pilot> pilot_;  ///< in the autopilot's network
   Process autopilot_;
   std::unique_ptr<Bridge> bridge_;
 };
 
-TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
+TEST_P(ArdupilotFaults, EndAsTheDocumentSays) {
   // One thread yet. NOLINTNEXTLINE(concurrency-mt-unsafe)
-  const char* program = std::getenv("SKEIN_ARDUPLANE");
+  const char* program = std::getenv(GetParam().variable);
   if (program == nullptr) {
-    GTEST_SKIP() << "no ArduPilot: set SKEIN_ARDUPLANE=/path/to/arduplane (docs/ardupilot.md)";
+    GTEST_SKIP() << "no ArduPilot: set " << GetParam().variable
+                 << " to the path of one (docs/ardupilot.md)";
   }
   const auto kept = hil::keep_autopilots_on_loopback(false);
   ASSERT_TRUE(kept.ok()) << kept.error().message;
@@ -282,7 +328,7 @@ TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
   read_ = log().size();  // it was silent and heard again many times
   std::printf("5 %% of the frames lost for 10 s: flown on\n");
 
-  // FS_LONG_TIMEOUT is 5 s: the autopilot returns by itself.
+  // FS_LONG_TIMEOUT and FS_GCS_TIMEOUT are 5 s: the autopilot returns by itself.
   cut_for(6s, kPiloted);
   EXPECT_TRUE(stays_unsaid(kFlying, 2s));
   double begin = now_s();
@@ -290,7 +336,7 @@ TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
   std::printf("given back: flown on after %.0f ms\n", 1e3 * (wait_for(kFlying) - begin));
 
   begin = now_s();
-  pilot_->order(mavlink::Command::do_set_mode, 1.0F, kRtl);
+  pilot_->order(mavlink::Command::do_set_mode, 1.0F, GetParam().rtl);
   const double piloted_s = wait_for(kPiloted) - begin;
   EXPECT_LE(piloted_s, kNoticed_s);
   std::printf("the pilot switches to RTL: noticed after %.0f ms\n", 1e3 * piloted_s);
@@ -301,10 +347,7 @@ TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
 
   give_back_on_a_flapping_link();
 
-  pilot_->set_parameter("SIM_GPS_DISABLE", 1.0F);
-  EXPECT_TRUE(stays_unsaid("the mode was changed", 10s));
-  pilot_->set_parameter("SIM_GPS_DISABLE", 0.0F);
-  std::printf("no GNSS for 10 s: flown on\n");
+  lose_gnss();
 
   begin = now_s();
   pilot_->set_parameter("BATT_CAPACITY", 100.0F);
@@ -317,6 +360,8 @@ TEST_F(ArdupilotFaults, EndAsTheDocumentSays) {
   std::printf("reboot: noticed after %.1f s\n", wait_for(kRebooted) - begin);
   EXPECT_TRUE(stays_unsaid(kTakesOff, 40s)) << "nobody launches it a second time";
 }
+
+INSTANTIATE_TEST_SUITE_P(Crafts, ArdupilotFaults, testing::Values(kPlane, kCopter), name_of);
 
 }  // namespace
 }  // namespace skein
