@@ -40,9 +40,14 @@ class Senses {
                                double airspeed_mps, double seconds);
 
  private:
+  /// How far off it believes to be, a period later.
+  const Vec3& drift(double seconds);
+
   bool noise_;
   models::Imu imu_;
   Random random_;
+  Random drift_random_;
+  Vec3 drift_m_ = Vec3::Zero();
 };
 
 }  // namespace skein::hil
