@@ -4,6 +4,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/domain/path.hpp"
+#include "skein/domain/set_down.hpp"
 #include "skein/domain/site.hpp"
 
 namespace skein {
@@ -175,6 +176,22 @@ TEST(Capabilities, BitsSurviveARoundTripAndNothingElseDoes) {
   EXPECT_FALSE(c.has(TaskKind::assess));
   EXPECT_EQ(Capabilities::from_bits(c.bits()), c);
   EXPECT_EQ(Capabilities::from_bits(0xF8).bits(), 0);
+}
+
+TEST(SetDown, ACopterIsLedDownWithoutAStepAndStopsAboveTheGround) {
+  constexpr double kRate_mps = -2.0;
+  constexpr double kStep_s = 1e-3;
+  Climb before = led_down({10.0 - kRate_mps * kStep_s, kRate_mps, 0.0});
+  for (double height_m = 10.0; height_m > 0.0; height_m += kRate_mps * kStep_s) {
+    const Climb led = led_down({height_m, kRate_mps, 0.0});
+    EXPECT_GE(led.height_m, std::max(height_m, kSetDownFrom_m));
+    EXPECT_LE(led.rate_mps, 0.0);
+    EXPECT_NEAR(led.height_m - before.height_m, before.rate_mps * kStep_s, 2e-3 * kStep_s);
+    EXPECT_LE(std::abs(led.rate_mps - before.rate_mps), 0.7 * kStep_s) << "at 0.67 m/s^2";
+    before = led;
+  }
+  EXPECT_DOUBLE_EQ(led_down({0.0, 0.0, 0.0}).height_m, kSetDownFrom_m);
+  EXPECT_DOUBLE_EQ(led_down({-1.0, kRate_mps, 0.0}).rate_mps, 0.0);
 }
 
 }  // namespace

@@ -4,10 +4,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "skein/domain/set_down.hpp"
+
 namespace skein::mission {
 namespace {
 
 using formation::Change;
+
+/// Places no higher than that are on the ground.
+constexpr double kGround_m = 0.05;
 
 Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m}; }
 
@@ -134,7 +139,14 @@ double FormationAgent::off_m(Instant now) const {
   if (!change_ || !state_) return 0.0;
   // Where it was when the state was measured.
   const Instant then = std::min(now, std::max(state_->time, now - formation::kSlot));
-  return (here(*state_) - execution_->reference(then).position_m).norm();
+  Vec3 place = execution_->reference(then).position_m;
+  const auto self = formation::mover_of(*change_, config_.vehicle);
+  if (self && change_->movers[*self].points.back().z() <= kGround_m) {
+    // On its way down: as its autopilot leads it, or as its place sinks.
+    const double led_m = led_down({.height_m = place.z()}).height_m;
+    place.z() = std::clamp(state_->z_m, place.z(), std::max(place.z(), led_m));
+  }
+  return (here(*state_) - place).norm();
 }
 
 void FormationAgent::step(Instant now) {

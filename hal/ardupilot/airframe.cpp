@@ -73,6 +73,7 @@ constexpr std::array kPlaneLimits{kRollLimit,      kAirspeedMin, kAirspeedMax,
                                   kAirspeedCruise, kSpeedWeight, kStallPrevention};
 constexpr std::array kQuadplaneLimits{kRollLimit,   kAirspeedMin,     kAirspeedMax, kAirspeedCruise,
                                       kSpeedWeight, kStallPrevention, kAssistSpeed};
+constexpr std::array kCopterLimits{kClimbSpeed, kSinkSpeed};
 
 constexpr AirframeTraits kPlane{.modes = kPlaneModes,
                                 .vehicle_types = kPlaneTypes,
@@ -93,7 +94,7 @@ constexpr AirframeTraits kCopter{.modes = kCopterModes,
                                  .is_lifted = true,
                                  .touch_down = {},
                                  .safety = kCopterSafety,
-                                 .limits = {}};
+                                 .limits = kCopterLimits};
 constexpr AirframeTraits kQuadplane{.modes = kPlaneModes,
                                     .vehicle_types = kQuadplaneTypes,
                                     .guided_mode = number(PlaneMode::guided),

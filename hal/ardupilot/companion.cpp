@@ -7,6 +7,7 @@
 
 #include "companion_impl.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
+#include "skein/domain/set_down.hpp"
 #include "steering.hpp"
 
 namespace skein::ardupilot {
@@ -30,7 +31,8 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
-constexpr double kSinks_mps = 0.2;  ///< a point that does so faster comes down
+constexpr double kSinks_mps = 0.2;                   ///< a point that does so faster comes down
+constexpr Duration kStillSinks = milliseconds{500};  ///< while it slows down
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
 constexpr double kSpeedStep_mps = 0.2;
@@ -350,13 +352,16 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
   } else if (now - *on_ground_since_ >= kLandAfter) {
     return fire(Event::may_land, now);
   }
-  const bool sinks = point.vz_mps < -kSinks_mps || point.z_m <= home_z_m + kGround_m;
-  const double least_m = sinks ? kLandFrom_m : kHoverFrom_m;
-  if (point.z_m < home_z_m + least_m) {
-    point.z_m = home_z_m + least_m;
-    point.vz_mps = 0.0;
-    point.az_mps2 = 0.0;
+  Climb led{point.z_m - home_z_m, point.vz_mps, point.az_mps2};
+  if (point.vz_mps < -kSinks_mps || led.height_m <= kGround_m) sank_at_ = now;
+  if (sank_at_ && now - *sank_at_ < kStillSinks && point.vz_mps <= kSinks_mps) {
+    led = led_down(led);
+  } else if (led.height_m < kHoverFrom_m) {
+    led = {.height_m = kHoverFrom_m};
   }
+  point.z_m = home_z_m + led.height_m;
+  point.vz_mps = led.rate_mps;
+  point.az_mps2 = led.acceleration_mps2;
   send_target(point_target(point, origin_, params_.geoid_height_m), now);
 }
 
@@ -557,6 +562,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       break;
     case State::flying:
       on_ground_since_.reset();
+      sank_at_.reset();
       forget_landing();
       speed_sent_.reset();
       height_sent_.reset();

@@ -88,6 +88,22 @@ LimitFinding judge_bank(const VehicleSpec& vehicle, std::string_view name, doubl
   return {Verdict::good, found, {}};
 }
 
+/// Places of a formation climb and sink as fast as they move: without tasks of its own it flies
+/// those. In a coalition it is where it is, and its plan waits.
+LimitFinding judge_vertical(const VehicleSpec& vehicle, const LimitParameter& parameter,
+                            std::string_view name, double limit_mps, const std::string& found) {
+  const bool flies_places = vehicle.capabilities == Capabilities{};
+  if (!flies_places || limit_mps >= vehicle.cruise_speed_mps * (1.0 - kSlack)) {
+    return {Verdict::good, found, {}};
+  }
+  return {Verdict::refused, found,
+          fmt::format("it {} at {:g} m/s at most, and its places at up to cruise_speed_mps, {:g}: "
+                      "set {} to {} or more, or cruise_speed_mps to {:g} or less",
+                      parameter.name == kClimbSpeed.name ? "climbs" : "sinks", limit_mps,
+                      vehicle.cruise_speed_mps, name,
+                      number(parameter, name, vehicle.cruise_speed_mps), limit_mps)};
+}
+
 }  // namespace
 
 double prevented_bank_deg(double airspeed_mps, double airspeed_min_mps) {
@@ -105,6 +121,8 @@ LimitFinding judge_limit(const VehicleSpec& vehicle, const LimitParameter& param
   const auto set = [&](double wanted) { return number(parameter, name, wanted); };
   if (!std::isfinite(si)) return {Verdict::refused, found, fmt::format("set {} anew", name)};
   if (parameter.name == kRollLimit.name) return judge_roll(vehicle, name, si, found);
+  if (parameter.name == kClimbSpeed.name || parameter.name == kSinkSpeed.name)
+    return judge_vertical(vehicle, parameter, name, si, found);
   if (parameter.name == kAirspeedMin.name && si > vehicle.speed_min_mps * (1.0 + kSlack)) {
     return {Verdict::refused, found,
             fmt::format("the autopilot flies no slower, and speed_min_mps is {:g}: set {} to {} or "

@@ -44,8 +44,30 @@ TEST(LimitCheck, WhatAFirmwareDoesNotKnowKeepsNobodyOnTheGround) {
     ASSERT_LT(t, 5.0);
   }
   EXPECT_EQ(questions, 4);
-  ParameterCheck copter{limit_questions(test_vehicle(Airframe::copter))};
-  EXPECT_TRUE(copter.good());
+}
+
+TEST(LimitCheck, ACopterClimbsAndSinksAsFastAsThePlacesOfAFormation) {
+  VehicleSpec copter = test_vehicle(Airframe::copter);
+  copter.cruise_speed_mps = 3.0;
+  copter.capabilities = {};
+  ParameterCheck check{limit_questions(copter)};
+  check.on_value("WPNAV_SPEED_UP", 250.0F);
+  check.on_value("WP_SPD_DN", 1.5F);
+  EXPECT_THAT(
+      check.findings(),
+      ElementsAre("WPNAV_SPEED_UP is 250; it climbs at 2.5 m/s at most, and its places at up to "
+                  "cruise_speed_mps, 3: set WPNAV_SPEED_UP to 300 or more, or cruise_speed_mps to "
+                  "2.5 or less",
+                  HasSubstr("it sinks at 1.5 m/s at most, and its places at up to "
+                            "cruise_speed_mps, 3: set WP_SPD_DN to 3.0 or more")));
+  check.on_value("WPNAV_SPEED_UP", 300.0F);
+  check.on_value("WP_SPD_DN", 3.0F);
+  EXPECT_TRUE(check.good());
+  copter.capabilities.add(TaskKind::survey);
+  ParameterCheck of_a_coalition{limit_questions(copter)};
+  of_a_coalition.on_value("WPNAV_SPEED_UP", 250.0F);
+  of_a_coalition.on_value("WPNAV_SPEED_DN", 150.0F);
+  EXPECT_TRUE(of_a_coalition.good());
 }
 
 TEST(LimitCheck, StallPreventionLeavesLessBankNearTheLeastAirspeed) {

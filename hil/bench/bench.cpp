@@ -70,8 +70,10 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
 constexpr auto kExternalSilence = std::chrono::seconds{10};
-/// Where copters on a user's autopilots await their formation's orders.
+/// Where copters on autopilots await their formation's orders.
 constexpr double kHover_m = 5.0;
+/// What an emulated copter takes to boot, to be armed and to get there.
+constexpr double kEmulatedTakeOff_s = 25.0;
 /// What starting a vehicle takes on a machine that is busy with other things, and where Fast DDS
 /// has a process of its own.
 constexpr double kLead_s = 0.3;
@@ -230,11 +232,16 @@ class Bench {
     double lead_s = 3.0 + each_s * static_cast<double>(scenario_.vehicles.size());
     if (!external_.empty()) lead_s += kExternalLead_s;
     double height_max_m = 0.0;
+    bool emulated = false;
     for (const auto& vehicle : scenario_.vehicles) {
-      if (!user_flown(vehicle.spec, vehicle.flight_controller)) continue;
-      height_max_m = std::max({height_max_m, vehicle.spec.height_m, kHover_m});
+      if (user_flown(vehicle.spec, vehicle.flight_controller)) {
+        height_max_m = std::max({height_max_m, vehicle.spec.height_m, kHover_m});
+      } else if (from_ground(vehicle.spec, vehicle.flight_controller)) {
+        emulated = true;
+      }
     }
-    return height_max_m > 0.0 ? lead_s + autopilot_lead_s(height_max_m) : lead_s;
+    if (height_max_m > 0.0) return lead_s + autopilot_lead_s(height_max_m);
+    return emulated ? lead_s + kEmulatedTakeOff_s : lead_s;
   }
 
   void begin_in(double lead_s, configuration::Deployment& deployment) {
@@ -252,12 +259,20 @@ class Bench {
            autopilots_.of(spec) != nullptr && external_.host_of(spec.id) == nullptr;
   }
 
-  /// A user's autopilot flies from the ground, and when the mission begins it waits near its start.
+  /// A user's autopilot begins there, and a copter that flies in formation.
+  [[nodiscard]] bool from_ground(const VehicleSpec& spec,
+                                 const configuration::FlightControllerConfig& controller) const {
+    return user_flown(spec, controller) ||
+           (controller.kind == configuration::FlightControllerKind::ardupilot &&
+            configuration::flies_formation(spec));
+  }
+
+  /// Who begins on the ground is taken off before the mission, and waits near its start.
   [[nodiscard]] std::vector<configuration::VehicleConfig> vehicle_configs(
       const configuration::Deployment& deployment) const {
     auto configs = configuration::vehicle_configs(scenario_, deployment);
     for (auto& config : configs) {
-      if (!user_flown(config.vehicle, config.flight_controller)) continue;
+      if (!from_ground(config.vehicle, config.flight_controller)) continue;
       config.flight_controller.ardupilot.take_over = configuration::TakeOverKind::from_ground;
       config.flight_controller.ardupilot.takeoff_height_m =
           configuration::flies_formation(config.vehicle) ? kHover_m : config.vehicle.height_m;

@@ -10,6 +10,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/can/bus.hpp"
+#include "user_autopilots.hpp"
 
 namespace skein::hil {
 namespace {
@@ -50,6 +51,18 @@ Result<std::vector<std::string>> quiet_buses(std::size_t count, std::uint64_t se
   return names;
 }
 
+namespace {
+
+/// Cruise of a plane; a copter may be faster than its plan, to be where that is, as far as the
+/// emulated one flies.
+double emulated_speed_mps(const VehicleSpec& spec) {
+  constexpr double kCopterMost_mps = 10.0;
+  if (!spec.is_copter()) return spec.cruise_speed_mps;
+  return std::max(spec.cruise_speed_mps, std::min(spec.speed_max_mps, kCopterMost_mps));
+}
+
+}  // namespace
+
 std::vector<std::string> flight_controller_command(
     const std::filesystem::path& programs, const configuration::VehicleConfig& vehicle,
     std::optional<std::uint16_t> truth_port, const std::vector<configuration::Fault>& faults) {
@@ -67,11 +80,10 @@ std::vector<std::string> flight_controller_command(
           "--airframe", std::string{to_string(spec.airframe)},
           "--origin", number(vehicle.origin.latitude_deg), number(vehicle.origin.longitude_deg),
           number(vehicle.origin.height_m - fc.geoid_height_m),
-          "--failsafe", "--airborne", "--mode", "LOITER",
+          "--failsafe",
           "--start", number(vehicle.start.x_m), number(vehicle.start.y_m), number(spec.height_m),
           "--heading", number(compass_deg_from_heading(vehicle.start.heading_rad)),
-          "--hold-until", std::to_string(vehicle.time.epoch_unix_ns),
-          "--speed", number(spec.cruise_speed_mps),
+          "--speed", number(emulated_speed_mps(spec)),
           "--speed-min", number(spec.speed_min_mps),
           "--speed-max", number(spec.speed_max_mps),
           "--turn-radius", number(spec.turn_radius_m),
@@ -81,6 +93,12 @@ std::vector<std::string> flight_controller_command(
           "--turbulence", number(wind.gust_mps),
           "--seed", std::to_string(vehicle.seed)};
   // clang-format on
+  if (configuration::flies_formation(spec)) {
+    command.insert(command.end(), {"--climb", number(climb_needed_mps(spec))});
+  } else {
+    command.insert(command.end(), {"--airborne", "--mode", "LOITER", "--hold-until",
+                                   std::to_string(vehicle.time.epoch_unix_ns)});
+  }
   if (!fc.signing_key.empty()) command.insert(command.end(), {"--signing-key", fc.signing_key});
   if (vehicle.fence.exists()) {
     command.insert(command.end(), {"--fence-height", number(vehicle.fence.height_max_m)});

@@ -38,6 +38,10 @@ constexpr double kClimb_mps = 3.0;
 constexpr double kTakeoffDistance_m = 200.0;
 /// Q_ASSIST_SPEED below the least airspeed: gusts shall not start a quadplane's rotors.
 constexpr double kAssistBelow_mps = 4.0;
+/// Over that of the places, to catch up with them.
+constexpr double kClimbReserve = 1.2;
+/// WPNAV_ACCEL_Z: ArduCopter's own 1 m/s^2 is late for places that gain speed at 2.
+constexpr double kVerticalAcceleration_mps2 = 2.5;
 /// An aircraft slips in its turns, and rolls past the bank that is asked for.
 constexpr double kBankReserve_deg = 10.0;
 constexpr double kBankMax_deg = 65.0;
@@ -137,6 +141,10 @@ Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
   return all;
 }
 
+double climb_needed_mps(const VehicleSpec& copter) {
+  return kClimbReserve * copter.cruise_speed_mps;
+}
+
 std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   const VehicleSpec& spec = vehicle.vehicle;
   const configuration::ArdupilotConfig& fc = vehicle.flight_controller.ardupilot;
@@ -169,6 +177,12 @@ std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {
   }
   if (spec.is_copter()) {
     set("FS_GCS_ENABLE", 1);
+    if (configuration::flies_formation(spec)) {
+      const double climb_cmps = std::ceil(100.0 * climb_needed_mps(spec));
+      set("WPNAV_SPEED_UP", climb_cmps);
+      set("WPNAV_SPEED_DN", climb_cmps);
+      set("WPNAV_ACCEL_Z", 100.0 * kVerticalAcceleration_mps2);
+    }
     return text;
   }
   if (spec.airframe == Airframe::quadplane) {

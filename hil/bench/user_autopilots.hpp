@@ -36,6 +36,9 @@ struct UserAutopilots {
                                                      const std::vector<std::string>& parameters,
                                                      const std::string& plane_model = {});
 
+/// How fast a copter that flies places of a formation has to climb and sink to be where they are.
+[[nodiscard]] double climb_needed_mps(const VehicleSpec& copter);
+
 /// What the vehicle asks of an ArduPilot's parameters, a line each ("NAME VALUE"): the bus, the
 /// serial port on it, what safety rests on, the speeds, the bank that its turn radius needs, the
 /// wind of the simulator.

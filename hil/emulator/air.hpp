@@ -46,6 +46,7 @@ class Senses {
   bool noise_;
   models::Imu imu_;
   Random random_;
+  bool drifts_;
   Random drift_random_;
   Vec3 drift_m_ = Vec3::Zero();
 };

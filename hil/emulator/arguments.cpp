@@ -191,6 +191,7 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
   app.add_option("--speed", t.speed_mps,
                  "Cruise airspeed of a plane (default: 50; of a quadplane 25, with least and "
                  "greatest 18 and\n30), greatest speed of a copter (10), m/s");
+  app.add_option("--climb", c.climb_mps, "Of a copter, up and down, m/s")->capture_default_str();
   app.add_option("--speed-min", c.airspeed_min_mps, "Least airspeed of a plane, m/s")
       ->capture_default_str();
   app.add_option("--speed-max", c.airspeed_max_mps, "Greatest airspeed of a plane, m/s")

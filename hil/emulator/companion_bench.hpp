@@ -63,7 +63,7 @@ class Bench {
     VehicleSpec& spec = p.companion.vehicle;
     spec.id = VehicleId{1};
     spec.airframe = config.airframe;
-    spec.cruise_speed_mps = config.airspeed_mps;
+    spec.cruise_speed_mps = copter ? config.climb_mps : config.airspeed_mps;
     spec.speed_min_mps = copter ? 0.0 : config.airspeed_min_mps + 2.5;
     spec.speed_max_mps = copter ? 10.0 : 1.15 * config.airspeed_mps;
     spec.turn_radius_m = copter ? 20.0 : config.turn_radius_m;

@@ -50,6 +50,7 @@ models::Hexarotor at_start(const EmulatorConfig& config) {
 autopilot::CopterParams params_of(const EmulatorConfig& config) {
   autopilot::CopterParams p;
   p.speed_mps = config.airspeed_mps;
+  p.tuning.climb_max_mps = p.tuning.sink_max_mps = config.climb_mps;
   p.companion_failsafe = config.companion_failsafe;
   return p;
 }

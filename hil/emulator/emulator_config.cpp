@@ -21,6 +21,9 @@ double bank_of_circle(const EmulatorConfig& config) {
                    (kGravity_mps2 * config.turn_radius_m));
 }
 
+/// Its rotors lift more than twice its weight.
+constexpr double kCopterClimbMost_mps = 5.0;
+
 Result<void> check_plane(const EmulatorConfig& c) {
   const PlaneAirframe* const found = airframe_for(c);
   if (found == nullptr || !(c.airspeed_min_mps <= c.airspeed_mps) ||
@@ -46,6 +49,10 @@ Result<void> check_copter(const EmulatorConfig& c) {
   if (!(c.airspeed_mps >= 1.0 && c.airspeed_mps <= airframe.speed_max_mps)) {
     return Error{fmt::format("speed {:g} m/s: the copter flies at 1 to {:g}", c.airspeed_mps,
                              airframe.speed_max_mps)};
+  }
+  if (!(c.climb_mps >= 0.5 && c.climb_mps <= kCopterClimbMost_mps)) {
+    return Error{fmt::format("climb {:g} m/s: the copter climbs and sinks at 0.5 to {:g}",
+                             c.climb_mps, kCopterClimbMost_mps)};
   }
   return {};
 }

@@ -319,11 +319,13 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
   constexpr auto kReal = mavlink::ParamType::real32;
   const bool fenced = fence_.enabled();
   const bool is_quadplane = config_.airframe == Airframe::quadplane;
-  const std::array<Parameter, 17> parameters{{
+  const std::array<Parameter, 19> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
       {is_plane ? "FS_LONG_ACTN" : "", failsafe},  // RTL, or none
+      {is_plane ? "" : "WPNAV_SPEED_UP", 100.0 * config_.climb_mps, kReal},
+      {is_plane ? "" : "WPNAV_SPEED_DN", 100.0 * config_.climb_mps, kReal},
       {is_plane ? "ROLL_LIMIT_DEG" : "", degrees(bank_limit_rad(config_)), kReal},
       {is_plane ? "AIRSPEED_MIN" : "", config_.airspeed_min_mps, kReal},
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},

@@ -129,12 +129,11 @@ class Companion {
 
   /// Flown while the state is `flying`; the last one stands until it is too old. A position is
   /// flown by a copter, and has no effect on a plane. GUIDED flies it no lower than kHoverFrom_m
-  /// above home, and where it sinks no lower than kLandFrom_m: ArduCopter overshoots a point that
-  /// sinks. Now where the point stays at home's height or below it for kLandAfter, and the copter
+  /// above home, and where it sinks to the ground no lower than led_down() has it. Now where the
+  /// point stays at home's height or below it for kLandAfter, and the copter
   /// is within kLandWithin_m of it, the autopilot lands it there.
   void command(const Demand& demand, Instant now);
   static constexpr double kHoverFrom_m = 1.0;
-  static constexpr double kLandFrom_m = 3.0;
   static constexpr double kLandWithin_m = 2.0;  ///< horizontally
   static constexpr Duration kLandAfter = std::chrono::seconds{1};
   /// A plane whose setpoint has a landing is given that as a mission, and flown by the rest of the

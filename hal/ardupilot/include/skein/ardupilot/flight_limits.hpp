@@ -11,7 +11,7 @@
 
 namespace skein::ardupilot {
 
-/// A parameter of an ArduPlane that limits what may be asked of it, in SI units but for degrees.
+/// A parameter of an ArduPilot that limits what may be asked of it, in SI units but for degrees.
 struct LimitParameter {
   std::string_view name;
   std::string_view older_name;  ///< empty where it has always had that one
@@ -27,6 +27,9 @@ inline constexpr LimitParameter kSpeedWeight{"TECS_SPDWEIGHT", ""};
 inline constexpr LimitParameter kStallPrevention{"STALL_PREVENTION", ""};
 /// Of a quadplane: slower than that its rotors carry, too, and it banks no more than they may.
 inline constexpr LimitParameter kAssistSpeed{"Q_ASSIST_SPEED", ""};
+/// Of a copter, how fast GUIDED lets it climb and sink: a place that does so faster it is late at.
+inline constexpr LimitParameter kClimbSpeed{"WP_SPD_UP", "WPNAV_SPEED_UP", 0.01};
+inline constexpr LimitParameter kSinkSpeed{"WP_SPD_DN", "WPNAV_SPEED_DN", 0.01};
 
 /// How high above the ground it is taken over on its way to that height: near enough to fly its
 /// plan, and below where a climb ends that levels out early.

@@ -42,6 +42,7 @@ struct EmulatorConfig {
   Instant hold_until{};
 
   double airspeed_mps = 50.0;  ///< cruise; of a copter the greatest speed
+  double climb_mps = 3.0;      ///< of a copter, up and down: WPNAV_SPEED_UP, WPNAV_SPEED_DN
   double airspeed_min_mps = 40.0;
   double airspeed_max_mps = 70.0;
   double turn_radius_m = 150.0;  ///< at cruise, that the bank limit must allow

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace skein {
+
+/// An autopilot sets a copter down by itself, by its LAND, from here above the ground on: an
+/// ArduCopter in GUIDED overshoots a point that sinks, by 2.5 m where it stops at once.
+inline constexpr double kSetDownFrom_m = 3.0;
+
+/// A height, its rate of change and that one's, all up.
+struct Climb {
+  double height_m = 0.0;
+  double rate_mps = 0.0;
+  double acceleration_mps2 = 0.0;
+};
+
+/// Where a copter is led whose point sinks to the ground, by where that is above it: as the point
+/// down to twice kSetDownFrom_m, from there slower, and when the point is on the ground at rest in
+/// kSetDownFrom_m. A parabola of the point's height, which meets it without a step in the rate.
+[[nodiscard]] constexpr Climb led_down(const Climb& point) {
+  constexpr double kBend_m = 2.0 * kSetDownFrom_m;
+  if (point.height_m >= kBend_m) return point;
+  const double above_m = point.height_m > 0.0 ? point.height_m : 0.0;
+  const double slope = above_m / kBend_m;
+  return {kSetDownFrom_m + 0.5 * slope * above_m, slope * point.rate_mps,
+          slope * point.acceleration_mps2 + point.rate_mps * point.rate_mps / kBend_m};
+}
+
+}  // namespace skein
