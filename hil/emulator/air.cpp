@@ -15,19 +15,28 @@ constexpr double kWindFilterTime_s = 10.0;
 constexpr double kShortShare = 0.47;
 constexpr double kShortTime_s = 0.04;
 constexpr std::uint64_t kShortSeed = 3;
-// Standard deviations of a filter's output, m/s and m.
-constexpr double kVelocityNoise_mps = 0.05;
-constexpr double kClimbNoise_mps = 0.1;
-constexpr double kHorizontalNoise_m = 0.1;
-constexpr double kHeightNoise_m = 0.2;
+/// Standard deviations of what a filter tells, m/s and m, and of how far it drifts off what is
+/// true.
+struct FilterErrors {
+  double velocity_mps;
+  double climb_mps;
+  double horizontal_m;
+  double height_m;
+  double drift_horizontal_m;
+  double drift_height_m;
+};
+/// Of two aircraft on ArduPlane 4.6.3, in 105 s each: drifts of 0.40 to 0.46 m rms along each
+/// horizontal axis and 0.31 to 0.52 m in height, of which 0.26 and 0.66 were left after 5 s.
+constexpr FilterErrors kPlane{0.05, 0.1, 0.1, 0.2, 0.43, 0.42};
+/// Four on ArduCopter, which bank little and not for long, were off by 0.06 m in all.
+constexpr FilterErrors kCopter{0.02, 0.02, 0.03, 0.03, 0.02, 0.02};
 constexpr double kAirspeedNoise_mps = 0.2;
-// What it believes and what is true drift apart: of two aircraft on ArduPlane 4.6.3, in 105 s each,
-// by 0.40 to 0.46 m rms along each horizontal axis and 0.31 to 0.52 m in height, of which 0.26 and
-// 0.66 were left after 5 s. Four on ArduCopter, which did not turn and bank for long, had 0.06 m.
-constexpr double kDriftHorizontal_m = 0.43;
-constexpr double kDriftHeight_m = 0.42;
 constexpr double kDriftTime_s = 6.0;
 constexpr std::uint64_t kDriftSeed = 4;
+
+constexpr const FilterErrors& errors_of(Airframe airframe) {
+  return airframe == Airframe::copter ? kCopter : kPlane;
+}
 
 }  // namespace
 
@@ -58,14 +67,16 @@ Senses::Senses(const EmulatorConfig& config)
     : noise_{config.noise},
       imu_{{}, config.seed + 1},
       random_{config.seed + 2},
-      drifts_{config.airframe != Airframe::copter},
+      airframe_{config.airframe},
       drift_random_{config.seed + kDriftSeed} {}
 
 const Vec3& Senses::drift(double seconds) {
   const double keep = std::exp(-seconds / kDriftTime_s);
   const double fresh = std::sqrt(1.0 - keep * keep);
   const auto next = [&](double deviation) { return drift_random_.normal(0.0, deviation * fresh); };
-  const Vec3 news{next(kDriftHorizontal_m), next(kDriftHorizontal_m), next(kDriftHeight_m)};
+  const FilterErrors& errors = errors_of(airframe_);
+  const Vec3 news{next(errors.drift_horizontal_m), next(errors.drift_horizontal_m),
+                  next(errors.drift_height_m)};
   drift_m_ = keep * drift_m_ + news;
   return drift_m_;
 }
@@ -84,16 +95,17 @@ autopilot::Estimate Senses::estimate(const models::RigidBodyState& state,
   const models::ImuSample sample = imu_.sample(state, specific_force_mps2, seconds);
   e.rates_radps = sample.rates_radps - imu_.gyro_bias_radps();
   e.specific_force_mps2 = sample.specific_force_mps2;
-  if (drifts_) e.position_m += drift(seconds);
+  e.position_m += drift(seconds);
+  const FilterErrors& errors = errors_of(airframe_);
   const auto add = [this](double& value, double deviation) {
     value += random_.normal(0.0, deviation);
   };
-  add(e.velocity_mps.x(), kVelocityNoise_mps);
-  add(e.velocity_mps.y(), kVelocityNoise_mps);
-  add(e.velocity_mps.z(), kClimbNoise_mps);
-  add(e.position_m.x(), kHorizontalNoise_m);
-  add(e.position_m.y(), kHorizontalNoise_m);
-  add(e.position_m.z(), kHeightNoise_m);
+  add(e.velocity_mps.x(), errors.velocity_mps);
+  add(e.velocity_mps.y(), errors.velocity_mps);
+  add(e.velocity_mps.z(), errors.climb_mps);
+  add(e.position_m.x(), errors.horizontal_m);
+  add(e.position_m.y(), errors.horizontal_m);
+  add(e.position_m.z(), errors.height_m);
   add(e.airspeed_mps, kAirspeedNoise_mps);
   return e;
 }

@@ -46,7 +46,7 @@ class Senses {
   bool noise_;
   models::Imu imu_;
   Random random_;
-  bool drifts_;
+  Airframe airframe_;
   Random drift_random_;
   Vec3 drift_m_ = Vec3::Zero();
 };

@@ -326,7 +326,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {is_plane ? "FS_LONG_ACTN" : "", failsafe},  // RTL, or none
       {is_plane ? "" : "WPNAV_SPEED_UP", 100.0 * config_.climb_mps, kReal},
       {is_plane ? "" : "WPNAV_SPEED_DN", 100.0 * config_.climb_mps, kReal},
-      {is_plane ? "ROLL_LIMIT_DEG" : "", degrees(bank_limit_rad(config_)), kReal},
+      {is_plane ? "ROLL_LIMIT_DEG" : "", is_plane ? degrees(bank_limit_rad(config_)) : 0.0, kReal},
       {is_plane ? "AIRSPEED_MIN" : "", config_.airspeed_min_mps, kReal},
       {is_plane ? "AIRSPEED_MAX" : "", config_.airspeed_max_mps, kReal},
       {is_plane ? "AIRSPEED_CRUISE" : "", config_.airspeed_mps, kReal},
