@@ -81,7 +81,7 @@ struct HeardAgent {
   }
 };
 
-/// A plane that is exactly where its plan has it.
+/// A plane that is exactly where its plan has it, or so far beside.
 class FlownAgent : public HeardAgent {
  public:
   explicit FlownAgent(const VehicleAgentConfig& config)
@@ -93,8 +93,8 @@ class FlownAgent : public HeardAgent {
       const Instant now = at_seconds(now_s_);
       const Pose2 pose = plan.number > 0 ? plan.timed.pose_at(now) : Pose2{0.0, 0.0, 0.3};
       state.time = now;
-      state.x_m = pose.x_m;
-      state.y_m = pose.y_m;
+      state.x_m = pose.x_m + beside_m.x();
+      state.y_m = pose.y_m + beside_m.y();
       state.z_m = height_m_;
       state.heading_rad = state.course_rad = pose.heading_rad;
       state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
@@ -111,6 +111,7 @@ class FlownAgent : public HeardAgent {
   void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
 
   VehicleState state;
+  Vec2 beside_m{0.0, 0.0};
 
  private:
   double height_m_;

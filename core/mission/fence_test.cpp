@@ -11,7 +11,7 @@
 namespace skein::mission {
 namespace {
 
-/// Around the start and the test's site; the search leads out of it to the east.
+/// Around the start and the test's site; the point of the search lies outside, to the east.
 Fence fence() {
   Fence fence;
   fence.corners = {{-500.0, -500.0}, {1000.0, -500.0}, {1000.0, 900.0}, {-500.0, 900.0}};
@@ -30,28 +30,53 @@ std::ptrdiff_t told(const HeardAgent& vehicle) {
   return count_trouble(vehicle.events, event::Trouble::left_fence);
 }
 
-TEST(FenceWatch, AVehicleTurnsForHomeBeforeItsPlanLeadsOut) {
+TEST(FenceWatch, WhoIsBlownOutComesHome) {
+  VehicleAgentConfig config = fenced();
+  config.search = {{900.0, 0.0}, {900.0, 700.0}};
+  FlownAgent vehicle{config};
+  vehicle.fly(20.0);
+  EXPECT_EQ(told(vehicle), 0);
+  vehicle.beside_m = {600.0, 0.0};
+  vehicle.fly(0.5);
+  EXPECT_EQ(told(vehicle), 1);
+  vehicle.beside_m = {0.0, 0.0};
+  vehicle.fly(100.0);
+  EXPECT_LT(vehicle.plan.timed.path.end().position().norm(), 200.0) << "it is at home";
+  vehicle.order(CommandKind::resume);
+  vehicle.fly(1.0);
+  EXPECT_GT(vehicle.plan.timed.path.end().position().x(), 700.0) << "it may search on";
+  vehicle.beside_m = {1200.0, 0.0};
+  vehicle.fly(1.0);
+  EXPECT_EQ(told(vehicle), 2) << "and comes home again";
+}
+
+TEST(FenceWatch, WhereEveryTurnLeadsOutItIsToldBeforeTheVehicleIsOut) {
+  Fence narrow = fence();
+  narrow.corners[1].x() = narrow.corners[2].x() = 30.0;
+  narrow.corners[0].x() = narrow.corners[3].x() = -30.0;
+  FlownAgent vehicle{fenced(narrow)};
+  EXPECT_GT(narrow.inside_m({vehicle.state.x_m, vehicle.state.y_m}), 0.0);
+  vehicle.fly(0.5);
+  EXPECT_EQ(told(vehicle), 1);
+}
+
+TEST(FenceWatch, APointOutsideIsLeftOut) {
   FlownAgent vehicle{fenced()};
   for (int i = 0; i < 300; ++i) {
     vehicle.fly(0.5);
     ASSERT_GT(fence().inside_m({vehicle.state.x_m, vehicle.state.y_m}), 0.0) << i;
   }
-  EXPECT_EQ(told(vehicle), 1);
-  const Vec2 end = vehicle.plan.timed.path.end().position();
-  EXPECT_LT(end.norm(), 200.0) << "it is at home";
-  vehicle.order(CommandKind::resume);
-  vehicle.fly(1.0);
-  EXPECT_GT(vehicle.plan.timed.path.end().position().x(), 1500.0) << "it may search on";
-  vehicle.fly(100.0);
-  EXPECT_EQ(told(vehicle), 2) << "and comes home again";
+  EXPECT_EQ(told(vehicle), 0);
 }
 
 TEST(FenceWatch, WhatItIsOrderedComesFirst) {
   FlownAgent vehicle{fenced()};
   vehicle.fly(10.0);
   vehicle.order(CommandKind::hold);
+  vehicle.beside_m = {1200.0, 0.0};
   vehicle.fly(60.0);
-  EXPECT_EQ(told(vehicle), 0);
+  EXPECT_EQ(told(vehicle), 1);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::holding);
 }
 
 TEST(FenceWatch, AboveItIsOutside) {
@@ -66,6 +91,7 @@ TEST(FenceWatch, AboveItIsOutside) {
 TEST(FenceWatch, WithoutAFenceNothingIsWatched) {
   FlownAgent vehicle{fenced({})};
   vehicle.fly(200.0);
+  EXPECT_GT(vehicle.state.x_m, 1500.0);
   EXPECT_EQ(told(vehicle), 0);
 }
 

@@ -26,6 +26,7 @@ constexpr double kStraightMaxM = 400.0;
 constexpr double kStepM = 1.0;
 /// A turn that keeps less than this from a hazard counts as none that misses it.
 constexpr double kEdgeM = 5.0;
+constexpr double kRoundingM = 1e-6;
 
 /// Is the vehicle outside all hazards, and headed so that it need not enter one? A hazard that is
 /// two radii away is missed by a turn.
@@ -207,7 +208,6 @@ double Flight::hold_curvature(const Pose2& at, const std::vector<Hazard>& hazard
   return best_orbit(at, hazards).curvature_per_m;
 }
 
-/// The first orbit that keeps its distance; where none does, the one that keeps most.
 namespace {
 
 /// `radius_m` is positive to the left.
@@ -217,13 +217,14 @@ Vec2 orbit_centre(const Pose2& from, double radius_m) {
 
 }  // namespace
 
+/// The first orbit that keeps its distance; where none does, the one that keeps most.
 Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const {
   Orbit best{1.0 / vehicle_.planning_radius_m(), -std::numeric_limits<double>::infinity()};
   for (const double factor : {1.0, 1.5, 2.5, 4.0}) {
     for (const double side : {1.0, -1.0}) {
       const double radius = factor * vehicle_.planning_radius_m();
       const Vec2 centre = orbit_centre(at, side * radius);
-      double clearance = kHoldClearanceM;
+      double clearance = std::min(kHoldClearanceM, fence_room_m(fence_, centre, radius));
       for (const Hazard& h : hazards) {
         const double d = (h.centre - centre).norm();
         const double outside = d - radius - h.radius_m;
@@ -273,6 +274,7 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
     const auto leg =
         planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
     if (!leg || leg->length_m() >= shortest_m) continue;
+    if (fence_room_m(fence_, *leg) < std::min(0.0, here.clearance_m)) continue;
     shortest_m = leg->length_m();
     way = *leg;
     curvature = room.curvature_per_m;
@@ -292,7 +294,12 @@ void Flight::hold_from(Instant at, const std::vector<Hazard>& hazards, Instant n
 
 std::optional<double> Flight::orbit_after(Path& path, double arc_curvature_per_m,
                                           const std::vector<Hazard>& hazards) const {
-  if (orbit_keeps_clear(path.end(), arc_curvature_per_m, hazards)) return arc_curvature_per_m;
+  const double radius_m = 1.0 / arc_curvature_per_m;
+  const Vec2 centre = orbit_centre(path.end(), radius_m);
+  const bool stays_in = fence_room_m(fence_, centre, std::abs(radius_m)) >= 0.0;
+  if (stays_in && orbit_keeps_clear(path.end(), arc_curvature_per_m, hazards)) {
+    return arc_curvature_per_m;
+  }
   const double curvature = append_hold(path, hazards);
   if (!orbit_keeps_clear(path.end(), curvature, hazards)) return std::nullopt;
   return curvature;
@@ -375,6 +382,10 @@ void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
 
 double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {
   if (vehicle_.recovery == Recovery::anywhere) return 0.0;
+  if (fence_.exists()) {
+    const auto way = way_to(from, home(), std::nullopt, hazards);
+    if (way) return way->path.length_m();
+  }
   const Vec2 way = home() - from.position();
   const double heading = way.norm() > 1.0 ? std::atan2(way.y(), way.x()) : from.heading_rad;
   const Pose2 to{first_pose_.x_m, first_pose_.y_m, heading};
@@ -383,35 +394,58 @@ double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards)
   return clear ? *clear : planning::shortest_dubins_length(from, to, radius);
 }
 
-void Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
-                    const std::vector<Hazard>& hazards, double range_m, Instant now) {
-  Path route = forced_way(pose_at(at), hazards);
-  std::vector<double> marks;
-  Pose2 from = route.end();
-  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+std::optional<FenceWay> Flight::way_to(const Pose2& from, const Vec2& point,
+                                       const std::optional<Vec2>& next,
+                                       const std::vector<Hazard>& hazards) const {
+  std::vector<Vec2> points = corners_between(fence_, from.position(), point);
+  points.push_back(point);
+  FenceWay all{{from, {}}, from, kFenceRoom_m};
+  for (std::size_t i = 0; i < points.size(); ++i) {
     // Each point is passed in the direction between those of arriving and leaving.
-    const Vec2 in = waypoints[i] - from.position();
-    Vec2 along = in.norm() > 1.0 ? Vec2{in.normalized()} : unit_vector(from.heading_rad);
-    if (i + 1 < waypoints.size()) {
-      const Vec2 out = waypoints[i + 1] - waypoints[i];
+    const Vec2 in = points[i] - all.end.position();
+    Vec2 along = in.norm() > 1.0 ? Vec2{in.normalized()} : unit_vector(all.end.heading_rad);
+    if (const auto on = i + 1 < points.size() ? points[i + 1] : next) {
+      const Vec2 out = *on - points[i];
       if (out.norm() > 1.0) along += out.normalized();
     }
     const double heading =
-        along.norm() > 0.01 ? std::atan2(along.y(), along.x()) : from.heading_rad;
-    const Pose2 to{waypoints[i].x(), waypoints[i].y(), heading};
+        along.norm() > 0.01 ? std::atan2(along.y(), along.x()) : all.end.heading_rad;
+    const Pose2 to{points[i].x(), points[i].y(), heading};
     const auto leg =
-        planning::shortest_clear_path(avoidance_, from, to, vehicle_.planning_radius_m(), hazards);
-    // A point that cannot be reached clear of hazards is left out; a full path ends in an orbit,
-    // and the rest of the route is planned when that is resumed.
-    if (!leg) {
+        way_within(fence_, {avoidance_, vehicle_.planning_radius_m()}, all.end, to, hazards);
+    if (!leg || !all.path.append(leg->path)) return std::nullopt;
+    all.end = leg->end;
+    all.room_m = std::min(all.room_m, leg->room_m);
+  }
+  return all;
+}
+
+/// From where every turn leads out, or outside, any way is better than none.
+bool Flight::stays_in(const FenceWay& way) const {
+  return way.room_m >= -kRoundingM ||
+         fence_room_m(fence_, way.path.start, vehicle_.planning_radius_m()) < 0.0;
+}
+
+void Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
+                    const std::vector<Hazard>& hazards, double range_m, Instant now) {
+  Path route = forced_way(pose_at(at), hazards);
+  const bool homeward = std::isinf(range_m);
+  std::vector<double> marks;
+  Pose2 from = route.end();
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    const auto next = i + 1 < waypoints.size() ? std::optional{waypoints[i + 1]} : std::nullopt;
+    const auto leg = way_to(from, waypoints[i], next, hazards);
+    // A point that cannot be reached clear of hazards and within the fence is left out; a full path
+    // ends in an orbit, and the rest of the route is planned when that is resumed.
+    if (!leg || (!homeward && !stays_in(*leg))) {
       marks.push_back(route.length_m());
       continue;
     }
-    const bool homeward = std::isinf(range_m);
-    if (!homeward && route.length_m() + leg->length_m() + way_home_m(to, hazards) > range_m) break;
-    if (!route.append(*leg)) break;
+    const double length_m = route.length_m() + leg->path.length_m();
+    if (!homeward && length_m + way_home_m(leg->end, hazards) > range_m) break;
+    if (!route.append(leg->path)) break;
     marks.push_back(route.length_m());
-    from = to;
+    from = leg->end;
   }
   const double tail = append_hold(route, hazards);
   if (!continue_with(at, route, tail, now)) return;

@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "fence_way.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -36,6 +38,9 @@ class Flight {
   /// Of the turns of all plans from now on; the vehicle's own to begin with. Not below its turn
   /// radius.
   void set_planning_radius(double radius_m);
+
+  /// Searches, holds and ways home keep within it where they can; there is none to begin with.
+  void set_fence(const Fence& fence) { fence_ = fence; }
 
   /// Of all plans from now on but those that were planned by somebody else: their times count with
   /// that wind (TimedPath::wind_east_mps).
@@ -89,16 +94,17 @@ class Flight {
   [[nodiscard]] bool homing() const { return homing_; }
   /// The site that stand_by() was told of, while that is flown.
   [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
-  /// The length of the way from there to where the first plan began, clear of hazards where it can
-  /// be; 0 where the vehicle needs not come home.
+  /// The length of the way from there to where the first plan began, clear of hazards and within
+  /// the fence where it can be; 0 where the vehicle needs not come home.
   [[nodiscard]] double way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const;
 
-  /// The curvature of an orbit at that pose that keeps its distance from the hazards, to the left
-  /// where it can.
+  /// The curvature of an orbit at that pose that keeps its distance from the hazards and the fence,
+  /// to the left where it can; where none does, of the one that keeps most, or leads out least.
   [[nodiscard]] double hold_curvature(const Pose2& at, const std::vector<Hazard>& hazards) const;
 
-  /// The curvature of the orbit after an arc around a site: the arc's own where hazards leave room
-  /// for a whole lap on it, else one that `path` is led on to; none where there is room for none.
+  /// The curvature of the orbit after an arc around a site: the arc's own where hazards and the
+  /// fence leave room for a whole lap on it, else one that `path` is led on to; none where hazards
+  /// leave room for none.
   [[nodiscard]] std::optional<double> orbit_after(Path& path, double arc_curvature_per_m,
                                                   const std::vector<Hazard>& hazards) const;
 
@@ -112,7 +118,7 @@ class Flight {
  private:
   struct Orbit {
     double curvature_per_m = 0.0;
-    double clearance_m = 0.0;  ///< from the nearest hazard, as far as it matters
+    double clearance_m = 0.0;  ///< from the nearest hazard or the fence, as far as it matters
   };
   /// Does an orbit of that curvature from there stay outside the safety circles of the hazards?
   [[nodiscard]] bool orbit_keeps_clear(const Pose2& from, double curvature_per_m,
@@ -125,6 +131,12 @@ class Flight {
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
   /// shortest. Empty elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
+  /// To that point, around corners of the fence where it must, passing on in the direction of
+  /// `next`. None where hazards leave no way.
+  [[nodiscard]] std::optional<FenceWay> way_to(const Pose2& from, const Vec2& point,
+                                               const std::optional<Vec2>& next,
+                                               const std::vector<Hazard>& hazards) const;
+  [[nodiscard]] bool stays_in(const FenceWay& way) const;
   // The new path takes over from the present plan at `at`.
   void hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now);
   void search_from(Instant at, const std::vector<Hazard>& hazards, double range_m, Instant now);
@@ -142,6 +154,7 @@ class Flight {
 
   VehicleSpec vehicle_;
   planning::AvoidanceParams avoidance_;
+  Fence fence_;
   std::vector<Vec2> search_;  ///< what is left of the route; its last point is never dropped
   std::vector<double>
       search_marks_;  ///< distances along the search plan at which a point is passed

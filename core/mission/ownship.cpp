@@ -46,6 +46,7 @@ Ownship::Ownship(const VehicleAgentConfig& config)
       hazards_{config.hazards},
       loads_{config.vehicle.loads} {
   if (config.heeds_wind) flight_.set_lead_in(kLeadIn);
+  flight_.set_fence(config.fence);
   flight_.set_handover(flight_.handover() + from_seconds(config.turn_lead_s));
 }
 

@@ -193,7 +193,9 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
     tail = flight.orbit_after(path, plan->timed.tail_curvature_per_m, hazards);
     if (!tail) return Why{Reason::path_barred};
   }
-  if (!ownship_.stays_in_fence(plan->timed.path) || !ownship_.stays_in_fence(path, *tail)) {
+  const Path& whole = plan->timed.path;
+  const double beyond = task.is_delivery() ? flight.hold_curvature(whole.end(), hazards) : 0.0;
+  if (!ownship_.stays_in_fence(whole, beyond) || !ownship_.stays_in_fence(path, *tail)) {
     return Why{Reason::outside_fence};
   }
   if (!flight.continue_with(start, path, *tail, now, pace)) {
