@@ -84,6 +84,7 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
   } else {
     node.formation = formation_ground(config.formation, config.vehicles);
   }
+  node.fence = node.formation.fence = node.tracks.fence = config.fence;
   return node;
 }
 

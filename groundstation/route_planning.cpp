@@ -88,6 +88,9 @@ Result<PlannedRoutes> plan_routes(const Scenario& scenario,
   planned.plan = *std::move(plan);
   planned.check = routes::check_routes(planned.problem, planned.plan);
   planned.file = file_of(scenario, planned.problem, planned.plan);
+  for (auto& out : configuration::outside_fence(planned.file, scenario)) {
+    planned.check.violations.push_back(std::move(out));
+  }
   return planned;
 }
 

@@ -92,6 +92,23 @@ TEST(RoutePlanning, APlanForOthersIsRefused) {
   EXPECT_THAT(refused.error().message, HasSubstr("vehicle 77 has a route, and is not in"));
 }
 
+TEST(RoutePlanning, APlanThatLeadsOutOfTheFenceIsRefused) {
+  auto scenario = routes_3();
+  const auto good = plan_routes(scenario)->file;
+  const Vec2 bend = good.routes[1].route.waypoints[1];
+  const Vec2 start = good.routes[1].route.waypoints[0];
+  const double edge = start.x() + 0.5 * (bend.x() - start.x());
+  const double far = bend.x() > start.x() ? -1e5 : 1e5;
+  scenario.fence.corners = {{edge, -1e5}, {far, -1e5}, {far, 1e5}, {edge, 1e5}};
+  const auto planned = plan_routes(scenario);
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_FALSE(planned->check.ok());
+  EXPECT_THAT(routes_text(*planned), HasSubstr("leads out of the fence at ["));
+  const auto refused = configuration::give_routes(good, scenario);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("leads out of the fence at ["));
+}
+
 TEST(RoutePlanning, AMissionWithoutRoutesIsRefusedInASentence) {
   const auto refused = plan_routes({});
   ASSERT_FALSE(refused.ok());

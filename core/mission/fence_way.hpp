@@ -11,9 +11,10 @@
 
 namespace skein::mission {
 
-/// Of which nobody asks for more to the fence: an aircraft in wind is flown some metres off its
-/// path.
+/// Of which nobody asks for more to the fence.
 inline constexpr double kFenceRoom_m = 20.0;
+/// That an aircraft in wind is flown off its path: with less nothing is taken up that need not be.
+inline constexpr double kFlownOff_m = 5.0;
 
 /// How far inside of the fence all of it is, to kFenceRoom_m at most; negative: how far it leads
 /// out. Paths are looked at every metre, orbits are exact. kFenceRoom_m where there is no fence.

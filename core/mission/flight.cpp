@@ -296,7 +296,7 @@ std::optional<double> Flight::orbit_after(Path& path, double arc_curvature_per_m
                                           const std::vector<Hazard>& hazards) const {
   const double radius_m = 1.0 / arc_curvature_per_m;
   const Vec2 centre = orbit_centre(path.end(), radius_m);
-  const bool stays_in = fence_room_m(fence_, centre, std::abs(radius_m)) >= 0.0;
+  const bool stays_in = fence_room_m(fence_, centre, std::abs(radius_m)) >= kFlownOff_m;
   if (stays_in && orbit_keeps_clear(path.end(), arc_curvature_per_m, hazards)) {
     return arc_curvature_per_m;
   }

@@ -9,6 +9,7 @@
 #include "names.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/base/shortened.hpp"
+#include "skein/planning/fence_check.hpp"
 
 namespace skein::mission {
 namespace {
@@ -135,6 +136,30 @@ Result<void> FormationGround::within_heights(const std::vector<Transfer>& transf
   return {};
 }
 
+/// Nobody is led out of the fence, or further out where it is outside already.
+Result<void> FormationGround::within_fence(const Change& change) const {
+  const Fence& fence = config_.fence;
+  if (!fence.exists()) return {};
+  for (const formation::Mover& mover : change.movers) {
+    for (std::size_t i = 0; i + 1 < mover.points.size(); ++i) {
+      const Vec3& from = mover.points[i];
+      const Vec3& to = mover.points[i + 1];
+      if (to.z() > std::max(fence.height_max_m, from.z())) {
+        return Error{name_of(mover.vehicle) + " would be " + metres_of(to.z()) +
+                     " high, and the fence ends at " + metres_of(fence.height_max_m) +
+                     "; ask for a lower place"};
+      }
+      const double from_m = fence.inside_m(from.head<2>());
+      if (from_m < 0.0 && fence.inside_m(to.head<2>()) >= from_m) continue;
+      const auto out = planning::first_outside(fence, Vec2{from.head<2>()}, Vec2{to.head<2>()});
+      if (!out) continue;
+      return Error{"the way of " + name_of(mover.vehicle) + " leads out of the fence at " +
+                   planning::place_text(*out) + "; order it elsewhere, or smaller"};
+    }
+  }
+  return {};
+}
+
 Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
                                                std::vector<Transfer> transfers) const {
   formation::ChangeRequest request;
@@ -155,6 +180,7 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   request.keep_outs = keep_outs();
   auto planned = formation::plan_change(request);
   if (!planned) return planned.error();
+  if (auto inside = within_fence(planned->change); !inside) return inside.error();
   return FormationPreview{order, std::move(*planned), std::move(lost)};
 }
 

@@ -20,7 +20,8 @@ using ::testing::HasSubstr;
 /// by what each is pushed aside.
 class Team {
  public:
-  explicit Team(std::vector<Vec3> starts) : ground_{config_of(starts.size()), Instant{}} {
+  explicit Team(std::vector<Vec3> starts, const Fence& fence = {})
+      : ground_{config_of(starts.size(), fence), Instant{}} {
     for (std::size_t i = 0; i < starts.size(); ++i) {
       const VehicleId id{static_cast<std::uint16_t>(i + 1)};
       FormationAgentConfig config;
@@ -89,8 +90,9 @@ class Team {
     FormationAgent agent;
     bool lost = false;
   };
-  static FormationGroundConfig config_of(std::size_t vehicles) {
+  static FormationGroundConfig config_of(std::size_t vehicles, const Fence& fence) {
     FormationGroundConfig config;
+    config.fence = fence;
     for (std::size_t i = 0; i < vehicles; ++i) {
       config.vehicles.push_back({static_cast<std::uint16_t>(i + 1)});
     }
@@ -127,6 +129,46 @@ TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
   const auto low = team.ground().preview(order);
   ASSERT_FALSE(low.ok());
   EXPECT_THAT(low.error().message, HasSubstr("1.0 m below the ground"));
+}
+
+TEST(FormationGround, LeadsNobodyOutOfTheFence) {
+  const Fence fence{{{-40.0, -40.0}, {40.0, -40.0}, {40.0, 40.0}, {-40.0, 40.0}}, 50.0};
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}, fence};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  FormationOrder order;
+  order.kind = OrderKind::form;
+  order.shape.spacing_m = 6.0;
+  order.shape.centre = {15.0, 0.0, 20.0};
+  const auto good = team.ground().preview(order);
+  EXPECT_TRUE(good.ok()) << good.error().message;
+  order.shape.centre.x() = 50.0;
+  const auto out = team.ground().preview(order);
+  ASSERT_FALSE(out.ok());
+  EXPECT_THAT(out.error().message, HasSubstr("the way of vehicle "));
+  EXPECT_THAT(out.error().message, HasSubstr(" leads out of the fence at [4"));
+  EXPECT_FALSE(team.command(order).ok());
+  order.shape.centre = {15.0, 0.0, 60.0};
+  const auto high = team.ground().preview(order);
+  ASSERT_FALSE(high.ok());
+  EXPECT_THAT(high.error().message, HasSubstr("60.0 m high, and the fence ends at 50.0 m"));
+}
+
+TEST(FormationGround, WhoIsOutsideOfTheFenceMayLandAndComeIn) {
+  const Fence fence{{{10.0, -20.0}, {50.0, -20.0}, {50.0, 20.0}, {10.0, 20.0}}, 50.0};
+  Team team{{{0.0, 0.0, 0.0}}, fence};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 1; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  FormationOrder order;
+  order.kind = OrderKind::land;
+  EXPECT_TRUE(team.ground().preview(order).ok());
+  order.kind = OrderKind::form;
+  order.shape.centre = {30.0, 0.0, 10.0};
+  EXPECT_TRUE(team.ground().preview(order).ok());
+  order.shape.centre.x() = -5.0;
+  EXPECT_FALSE(team.ground().preview(order).ok());
 }
 
 TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {

@@ -26,6 +26,7 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       setup_{config.setup, kGroundStation, config.instance, now},
       knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now},
       hazards_{config.hazards},
+      routes_{config.fence},
       detections_{config.detections},
       returns_{config.returns} {}
 

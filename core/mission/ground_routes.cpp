@@ -9,6 +9,7 @@
 #include "names.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
+#include "skein/planning/fence_check.hpp"
 #include "told_at_once.hpp"
 
 namespace skein::mission {
@@ -54,7 +55,7 @@ Path with_way_on(const TimedPath& timed) {
 std::string whole(double metres) { return std::to_string(std::lround(metres)); }
 
 Result<void> check_one(VehicleId id, const TimedPath& timed, const std::vector<Hazard>& hazards,
-                       const Fleet& fleet, Instant now) {
+                       const Fence& fence, const Fleet& fleet, Instant now) {
   const auto known = fleet.vehicles().find(id);
   if (known == fleet.vehicles().end() || !known->second.expected) {
     return Error{name_of(id) + " has a route, and is not in the fleet"};
@@ -76,6 +77,10 @@ Result<void> check_one(VehicleId id, const TimedPath& timed, const std::vector<H
   if (const Hazard* hazard = planning::first_entered(path, hazards)) {
     return Error{"the route of " + name_of(id) + " enters hazard " +
                  std::to_string(hazard->id.value) + "; plan it anew"};
+  }
+  if (const auto out = planning::first_outside(fence, path)) {
+    return Error{"the route of " + name_of(id) + " leads out of the fence at " +
+                 planning::place_text(*out) + "; plan it anew"};
   }
   const Vec2 at{telemetry.state.x_m, telemetry.state.y_m};
   const double away_m = (at - timed.path.start.position()).norm();
@@ -158,7 +163,7 @@ Result<void> GroundRoutes::check(const Routes& routes, const std::vector<Hazard>
                  " are not over; 'withdraw routes' calls them off"};
   }
   for (const auto& [id, timed] : routes) {
-    if (auto good = check_one(id, timed, hazards, fleet, now); !good) return good;
+    if (auto good = check_one(id, timed, hazards, fence_, fleet, now); !good) return good;
   }
   return {};
 }

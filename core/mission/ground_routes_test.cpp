@@ -218,6 +218,11 @@ TEST_F(GroundRoutesTest, RefusesWhatItKnowsToBeWrong) {
   EXPECT_THAT(refusal({{kOne, north(0.0, 130.0)}}, {{{4}, {0.0, 500.0}, 50.0}}),
               HasSubstr("enters hazard 4"));
   EXPECT_THAT(refusal({{kOne, north(2000.0, 130.0)}}), HasSubstr("cannot be there in time"));
+  const GroundRoutes fenced{{{{-400, -400}, {400, -400}, {400, 600}, {-400, 600}}, 120.0}};
+  const auto out = fenced.check({{kOne, north(0.0, 130.0)}}, {}, fleet, now);
+  ASSERT_FALSE(out.ok());
+  EXPECT_THAT(out.error().message,
+              HasSubstr("the route of vehicle 1 leads out of the fence at [0, 600]"));
   heard[kOne].range_left_m = 900.0;
   hear(kOne);
   EXPECT_THAT(refusal({{kOne, north(0.0, 130.0)}}), HasSubstr("left of its range"));

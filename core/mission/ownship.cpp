@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "fence_way.hpp"
 #include "return_way.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/shortened.hpp"
@@ -163,11 +164,15 @@ bool Ownship::way_is_open(Instant now) const {
 }
 
 bool Ownship::stays_in_fence(const Path& way, double orbit_curvature_per_m) const {
-  if (!config_.fence.holds(way)) return false;
+  const Fence& fence = config_.fence;
+  if (!fence.exists()) return true;
+  const double wanted_m = std::clamp(fence.inside_m(way.start.position()), 0.0, kFlownOff_m);
+  if (fence_room_m(fence, way) < wanted_m) return false;
   if (orbit_curvature_per_m == 0.0) return true;
-  Path lap{way.end(), {}};
-  (void)lap.append(Segment{orbit_curvature_per_m, kTwoPi / std::abs(orbit_curvature_per_m)});
-  return config_.fence.holds(lap);
+  const Pose2 end = way.end();
+  const double radius_m = 1.0 / orbit_curvature_per_m;
+  const Vec2 centre = end.position() + radius_m * left_of(unit_vector(end.heading_rad));
+  return fence_room_m(fence, centre, std::abs(radius_m)) >= wanted_m;
 }
 
 bool Ownship::leaves_fence(Instant now) const {

@@ -84,8 +84,8 @@ class Ownship {
   [[nodiscard]] bool in_fence(const Vec2& point) const {
     return !config_.fence.exists() || config_.fence.inside_m(point) > 0.0;
   }
-  /// Does neither that way leave the fence, nor a lap of the orbit at its end? Curvature 0: no
-  /// orbit.
+  /// Does neither that way come nearer to the fence than an aircraft is flown off its path, or than
+  /// the way begins, nor a lap of the orbit at its end? Curvature 0: no orbit.
   [[nodiscard]] bool stays_in_fence(const Path& way, double orbit_curvature_per_m = 0.0) const;
   /// It is outside of its fence, or what it flies leads there within seconds.
   [[nodiscard]] bool leaves_fence(Instant now) const;

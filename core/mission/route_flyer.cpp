@@ -7,6 +7,7 @@
 #include "route_join.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/planning/avoidance.hpp"
+#include "skein/planning/fence_check.hpp"
 
 namespace skein::mission {
 namespace {
@@ -118,9 +119,16 @@ RouteObstacle RouteFlyer::obstacle(const RouteStanding& standing, Instant at, In
   if (left_m >= end_m) return RouteObstacle::out_of_reach;
   const auto ahead = route_->piece(left_m, end_m + lap_m);
   if (!ahead) return RouteObstacle::no_route;
-  if (!planning::is_clear(*ahead, ownship_.hazards())) return RouteObstacle::into_hazard;
+  if (!planning::is_clear(*ahead, ownship_.hazards()) ||
+      planning::first_outside(ownship_.config().fence, *ahead)) {
+    return RouteObstacle::into_hazard;
+  }
   if (ownship_.range_for_route(*route_, now) < end_m - left_m) return RouteObstacle::out_of_range;
-  if (ownship_.flight().started() && !way(at, now)) return RouteObstacle::out_of_reach;
+  if (!ownship_.flight().started()) return RouteObstacle::nothing;
+  const auto there = way(at, now);
+  if (!there) return RouteObstacle::out_of_reach;
+  if (planning::first_outside(ownship_.config().fence, there->path))
+    return RouteObstacle::into_hazard;
   return RouteObstacle::nothing;
 }
 

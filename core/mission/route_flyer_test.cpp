@@ -21,6 +21,7 @@ TimedPath route(double begins_s) {
 }
 
 struct RouteFlyerTest : ::testing::Test {
+  explicit RouteFlyerTest(const VehicleAgentConfig& config = plane_config()) : bench{config} {}
   void hear(RouteStep step, const TimedPath& timed, std::uint32_t plan = 1) {
     flyer.on_route({{4}, plan, step, timed}, standing, bench.now);
     answer = bench.sent<RouteStatus>();
@@ -103,6 +104,23 @@ TEST_F(RouteFlyerTest, RefusesByItsOwnConfigurationWhateverWasPlanned) {
   standing.orders_unknown = true;
   hear(RouteStep::offer, route(120.0), 50);
   EXPECT_FALSE(answer) << "it is told again";
+}
+
+struct FencedRouteFlyerTest : RouteFlyerTest {
+  static VehicleAgentConfig fenced() {
+    VehicleAgentConfig config = plane_config();
+    config.fence = {{{-3000, -3000}, {3200, -3000}, {3200, 3000}, {-3000, 3000}}, 150.0};
+    return config;
+  }
+  FencedRouteFlyerTest() : RouteFlyerTest{fenced()} {}
+};
+
+TEST_F(FencedRouteFlyerTest, RefusesWhatLeadsOutOfItsFence) {
+  bench.be_at(10.0);
+  EXPECT_EQ(refusal(route(120.0)), RouteObstacle::nothing);
+  TimedPath timed = route(120.0);
+  timed.path.segments[2].length_m = 2000.0;
+  EXPECT_EQ(refusal(timed), RouteObstacle::into_hazard);
 }
 
 TEST_F(RouteFlyerTest, GivesUpWhatItIsNotToldToFly) {

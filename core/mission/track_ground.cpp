@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "names.hpp"
+#include "skein/planning/fence_check.hpp"
 #include "told_at_once.hpp"
 
 namespace skein::mission {
@@ -78,6 +79,18 @@ PlannedTrack TrackGround::present() const {
   return now;
 }
 
+/// Nobody is led out of the fence, the orbit after the track included.
+Result<void> TrackGround::within_fence(const PlannedTrack& planned) const {
+  for (const auto& flight : planned.flights) {
+    const std::string name = name_of(flight.plane.spec.id);
+    if (const auto out = planning::first_outside(config_.fence, flight.timed)) {
+      return Error{"the way of " + name + " leads out of the fence at " +
+                   planning::place_text(*out) + "; take another track, or a smaller shape"};
+    }
+  }
+  return {};
+}
+
 Result<TrackPreview> TrackGround::preview(const TrackOrder& order, Instant now) const {
   if (const auto why = barred_.why()) return Error{*why};
   const auto request = request_of(order, now);
@@ -91,6 +104,7 @@ Result<TrackPreview> TrackGround::preview(const TrackOrder& order, Instant now) 
   auto planned =
       reshapes ? formation::plan_reshape(present(), *request) : formation::plan_track(*request);
   if (!planned) return planned.error();
+  if (auto inside = within_fence(*planned); !inside) return inside.error();
   TrackPreview preview{order, *std::move(planned), {}};
   for (const auto& plane : request->silent) preview.lost.push_back(plane.spec.id);
   return preview;

@@ -20,8 +20,9 @@ using ::testing::HasSubstr;
 /// A ground station and planes that hear each other at once and are where their plans have them.
 class Team {
  public:
-  explicit Team(std::size_t n) {
+  explicit Team(std::size_t n, const Fence& fence = {}) {
     TrackGroundConfig config;
+    config.fence = fence;
     for (std::size_t i = 0; i < n; ++i) {
       VehicleSpec spec;
       spec.id = {static_cast<std::uint16_t>(i + 1)};
@@ -147,6 +148,21 @@ TEST(TrackGround, LeadsAFormationAlongATrackAndIntoAnotherShape) {
   EXPECT_LT(team.now, slides->planned.ends);
   ASSERT_TRUE(team.until([&] { return !team.ground->on_track(team.now); }, 600.0));
   EXPECT_FALSE(team.told(event::FormationNews::not_begun));
+}
+
+TEST(TrackGround, LeadsNoPlaneOutOfTheFence) {
+  Fence fence{{{-900, -900}, {2900, -900}, {2900, 2900}, {-900, 2900}}, 400.0};
+  Team wide{3, fence};
+  wide.run(3.0);
+  const auto good = wide.ground->preview(along(), wide.now);
+  EXPECT_TRUE(good.ok()) << good.error().message;
+  fence.corners[1].x() = fence.corners[2].x() = 1990.0;  // the track's corners are at 2000
+  Team narrow{3, fence};
+  narrow.run(3.0);
+  const auto out = narrow.ground->command(along(), narrow.now);
+  ASSERT_FALSE(out.ok());
+  EXPECT_THAT(out.error().message, HasSubstr("the way of vehicle "));
+  EXPECT_THAT(out.error().message, HasSubstr("leads out of the fence at [199"));
 }
 
 TEST(TrackGround, SaysWhyItGivesNoOrder) {

@@ -83,6 +83,7 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   config.protocol = mission_.protocol;
   config.planning = mission_.planning;
   config.hazards = hazards;
+  config.fence = mission_.fence;
   if (what_.flies_formation) config.formation = *mission_.formation;
   auto node = onboard::node_config(config, std::nullopt, instance(what_.spec.id, life_),
                                    "skein-hil simulate");

@@ -44,6 +44,7 @@ mission::GroundNodeConfig node_config(const TeamMission& mission) {
   } else if (mission.formation) {
     node.formation = groundstation::formation_ground(*mission.formation, formation_of(mission));
   }
+  node.fence = node.formation.fence = node.tracks.fence = mission.fence;
   return node;
 }
 

@@ -132,6 +132,7 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   if (scenario.formation.planes) team.place_rms_m = scenario.expect.place_rms_m;
   team.sites = scenario.sites;
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
+  team.fence = scenario.fence;
   team.protocol = scenario.protocol;
   team.planning = scenario.planning;
   team.decisions = scripted_decisions(scenario.operator_decisions);

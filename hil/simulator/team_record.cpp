@@ -11,6 +11,7 @@ TeamRecorder::TeamRecorder(const TeamMission& mission, const TeamObserver& watch
     : watcher_{watcher}, healing_{healing_of(mission.faults)} {
   record_.sites = mission.sites;
   for (const auto& h : mission.hazards) record_.hazards.push_back({h.hazard, h.known_from});
+  record_.fence = mission.fence;
   for (const auto& v : mission.vehicles) {
     record_.vehicles.push_back(v.spec);
     index_.emplace(v.spec.id, record_.recordings.size());

@@ -291,6 +291,41 @@ TEST(ScenarioFile, AFenceIsAPolygonWithoutCrossings) {
   EXPECT_EQ(with("[[-100, -100], [3000, -100], [3000, 3000], [-100, 3000]]"), "no error");
 }
 
+TEST(ScenarioFile, ASearchIntoACornerOfTheFenceIsRefused) {
+  const std::string fence =
+      "fence: {corners: [[-500, -500], [3000, -500], [3000, 3000], [-500, 3000]], height_max_m: "
+      "500}\n";
+  const auto with = [&fence](const std::string& search) {
+    const std::string text = replaced(replaced(kScenario, "hazards:", fence + "hazards:"),
+                                      "height_m: 100}", "height_m: 100, search: [" + search + "]}");
+    const auto s = parse_scenario(text, "s.yaml");
+    EXPECT_TRUE(s.ok()) << s.error().message;
+    const auto good = check(*s);
+    return good ? std::string{"good"} : good.error().message;
+  };
+  EXPECT_EQ(with("[2995, 1000]"), "good") << "along an edge";
+  EXPECT_EQ(with("[2900, 2900]"), "good");
+  EXPECT_EQ(with("[2990, 2980]"),
+            "the search route of vehicle 1 has the point [2990, 2980] in a corner of the fence, "
+            "where it cannot turn on 165 m (turn_radius_m * turn_radius_margin) within it; move "
+            "it, or widen fence.corners");
+}
+
+TEST(VehicleConfigFile, ASearchIntoACornerOfTheFenceIsRefused) {
+  const auto with = [](const std::string& search) {
+    const auto config = parse_vehicle_config(
+        std::string{kVehicle} + "search: [" + search +
+            "]\nfence: {corners: [[-500, -500], [3000, -500], [3000, 3000], [-500, 3000]], "
+            "height_max_m: 500}\n",
+        "v.yaml");
+    return config ? std::string{"good"} : config.error().message;
+  };
+  EXPECT_EQ(with("[2900, 2900]"), "good");
+  EXPECT_NE(with("[100, 100], [2990, 2980]").find("v.yaml:19: search: has a point in a corner"),
+            std::string::npos)
+      << with("[100, 100], [2990, 2980]");
+}
+
 TEST(ScenarioFile, HoldsSitesAndFaults) {
   const Scenario s = scenario();
   const Site& site = s.sites.at(0);
@@ -558,7 +593,12 @@ TEST(Deployment, GivesEveryNodeItsPortItsPeersAndItsSeed) {
   deployment.recording_folder = "/tmp/run \"1\"";
   deployment.dds = true;
   const auto vehicles = vehicle_configs(s, deployment);
+  s.fence.corners = {{-100.0, -100.0}, {3000.0, -100.0}, {0.0, 3000.0}};
   const GroundConfig ground = ground_config(s, deployment);
+  EXPECT_EQ(ground.fence, s.fence);
+  const auto read = parse_ground_config(to_yaml(ground), "g.yaml");
+  ASSERT_TRUE(read) << read.error().message;
+  EXPECT_EQ(read->fence, s.fence);
   ASSERT_EQ(vehicles.size(), 3U);
   EXPECT_EQ(ground.network.port, 17400);
   EXPECT_EQ(ground.network.peers.size(), 3U);

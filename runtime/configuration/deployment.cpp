@@ -119,6 +119,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   for (const ScenarioHazard& hazard : scenario.hazards) {
     if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
   }
+  config.fence = scenario.fence;
   config.console.port = deployment.console_port;
   config.op = deployment.op;
   config.formation = scenario.formation;

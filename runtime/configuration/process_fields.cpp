@@ -9,6 +9,7 @@
 
 #include "skein/formation/change.hpp"
 #include "skein/mission/may_say.hpp"
+#include "skein/planning/fence_check.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -258,6 +259,19 @@ void fence_rules(FieldVisitor& v, const VehicleConfig& config) {
   const auto inside = [&fence](const Vec2& point) { return fence.inside_m(point) > 0.0; };
   v.require(std::ranges::all_of(config.search, inside), "search",
             "has a point outside the fence; move it, or widen fence.corners");
+  const double radius_m = config.vehicle.planning_radius_m();
+  const auto flown_over = [&](const Vec2& point) {
+    return planning::can_be_flown_over(fence, point, radius_m);
+  };
+  v.require(
+      !std::ranges::all_of(config.search, inside) || std::ranges::all_of(config.search, flown_over),
+      "search",
+      "has a point in a corner of the fence where the vehicle cannot turn within it "
+      "(vehicle.turn_radius_m * turn_radius_margin); move it, or widen fence.corners");
+  const auto route = timed_path(config.route, config.vehicle);
+  v.require(!route || !*route || !planning::first_outside(fence, **route), "route",
+            "leads out of the fence, the circle beyond its end included; plan it anew, or widen "
+            "fence.corners");
   v.require(config.vehicle.height_m < fence.height_max_m, "vehicle.height_m",
             "is not below fence.height_max_m; lower it or raise that");
 }
@@ -660,6 +674,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   v.list({"hazards", "known before the mission, for the map"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
+  fence_section(v, config.fence);
   site_templates_list(v, config.site_templates);
   v.section({"detections", "of sites, by detectors on board"},
             [&config](FieldVisitor& inner) { detections_fields(inner, config.detections); });

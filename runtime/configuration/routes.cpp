@@ -5,6 +5,7 @@
 
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/planning/fence_check.hpp"
 #include "skein/routes/fly_by.hpp"
 #include "skein/routes/route_check.hpp"
 
@@ -158,13 +159,29 @@ Result<void> judge(const RoutePlan& plan, const routes::RouteProblem& problem,
     route.arrival_s = planned->arrival_s;
     flown.routes.push_back(std::move(route));
   }
-  const auto report = routes::check_routes(problem, flown);
+  auto report = routes::check_routes(problem, flown);
+  for (auto& out : outside_fence(plan, scenario)) report.violations.push_back(std::move(out));
   if (report.ok()) return {};
   return Error{"the plan breaks a rule of the mission: " + name_of(report.violations[0].vehicle) +
                ": " + report.violations[0].message + "; plan it anew"};
 }
 
 }  // namespace
+
+std::vector<routes::Violation> outside_fence(const RoutePlan& plan, const Scenario& scenario) {
+  std::vector<routes::Violation> violations;
+  for (const VehicleRoute& planned : plan.routes) {
+    const auto vehicle = vehicle_of(scenario.vehicles, planned.vehicle);
+    if (vehicle == scenario.vehicles.end()) continue;
+    const auto timed = timed_path(planned.route, vehicle->spec);
+    if (!timed || !*timed) continue;
+    if (const auto out = planning::first_outside(scenario.fence, **timed)) {
+      violations.push_back(
+          {planned.vehicle, "leads out of the fence at " + planning::place_text(*out)});
+    }
+  }
+  return violations;
+}
 
 Result<void> give_routes(const RoutePlan& plan, Scenario& scenario) {
   const routes::RouteProblem problem = route_problem(scenario);

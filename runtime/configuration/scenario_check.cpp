@@ -9,6 +9,7 @@
 #include "number_text.hpp"
 #include "skein/base/geometry.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/planning/fence_check.hpp"
 
 namespace skein::configuration {
 namespace {
@@ -189,9 +190,16 @@ class Check {
       problem(name(v) + " starts outside the fence; move it, or widen fence.corners");
     }
     for (const Vec2& point : v.search) {
-      if (s_.fence.inside_m(point) > 0.0) continue;
-      problem("the search route of " + name(v) + " has the point [" + rounded(point.x()) + ", " +
-              rounded(point.y()) + "] outside the fence; move it, or widen fence.corners");
+      const std::string it = "the search route of " + name(v) + " has the point [" +
+                             rounded(point.x()) + ", " + rounded(point.y()) + "] ";
+      const double radius_m = v.spec.planning_radius_m();
+      if (s_.fence.inside_m(point) <= 0.0) {
+        problem(it + "outside the fence; move it, or widen fence.corners");
+      } else if (!planning::can_be_flown_over(s_.fence, point, radius_m)) {
+        problem(it + "in a corner of the fence, where it cannot turn on " + rounded(radius_m) +
+                " m (turn_radius_m * turn_radius_margin) within it; move it, or widen "
+                "fence.corners");
+      }
     }
     if (v.spec.height_m >= s_.fence.height_max_m) {
       problem(name(v) + " flies at " + rounded(v.spec.height_m) + " m, fence.height_max_m is " +

@@ -143,7 +143,7 @@ std::string_view sentence_of(mission::RouteObstacle why) {
       "",
       "its arcs are tighter than this vehicle's paths are planned",
       "its speed is none that this vehicle flies",
-      "it leads into a hazard",
+      "it leads into a hazard, or out of the fence",
       "not enough range for it",
       "it is not where the route has it, and cannot be there in time",
       "it is told to hold or to come home, or its range is spent",

@@ -11,6 +11,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/formation/change_planner.hpp"
 #include "skein/formation/place_assignment.hpp"
 #include "skein/formation/shapes.hpp"
@@ -30,6 +31,7 @@ struct FormationGroundConfig {
   double tracking_m = 0.5;             ///< how far a vehicle may be from its reference
   double reserve_m = 1.0;              ///< see formation::ChangeRequest
   double ceiling_m = 120.0;
+  Fence fence{};
   double place_tolerance_m = 0.3;             ///< to be in place
   Duration settle = std::chrono::seconds{1};  ///< in place for so long, all: the formation holds
   Duration lead = std::chrono::seconds{1};    ///< from an order to the start of its change
@@ -100,6 +102,7 @@ class FormationGround {
   [[nodiscard]] formation::Separation separation() const;
   [[nodiscard]] Result<void> within_heights(
       const std::vector<formation::Transfer>& transfers) const;
+  [[nodiscard]] Result<void> within_fence(const formation::Change& change) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,

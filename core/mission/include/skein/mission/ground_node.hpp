@@ -25,6 +25,7 @@ struct GroundNodeConfig {
   FormationGroundConfig formation;
   TrackGroundConfig tracks{};     ///< of planes in formation; without planes it does nothing
   std::vector<Hazard> hazards{};  ///< known before the mission
+  Fence fence{};                  ///< of the team, for routes
   GroundDetectionsConfig detections{};
   GroundReturnConfig returns{};
   SetupParams setup{};

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/mission/fleet.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -49,6 +51,9 @@ class GroundRoutes {
 
   static constexpr std::size_t kVehiclesMax = 1024;
 
+  /// No route that leads out of that fence is given.
+  explicit GroundRoutes(Fence fence = {}) : fence_{std::move(fence)} {}
+
   void recall(const Message& message, VehicleId sender, Instant at);
   void on_message(const Message& message, Instant now);
   void on_timeout(const Fleet& fleet, Instant now);
@@ -85,6 +90,7 @@ class GroundRoutes {
   bool tell(const Fleet& fleet, Instant now);
   void report(EventBody body, Instant now);
 
+  Fence fence_;
   std::optional<GivenRoutes> given_;
   Instant next_ = Instant::max();
   Instant tell_at_{};

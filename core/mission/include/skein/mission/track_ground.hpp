@@ -9,6 +9,7 @@
 
 #include "skein/base/bounded_queue.hpp"
 #include "skein/base/result.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/formation/track_planner.hpp"
 #include "skein/mission/barred_vehicles.hpp"
@@ -20,6 +21,7 @@ namespace skein::mission {
 struct TrackGroundConfig {
   std::vector<VehicleSpec> planes;
   formation::TrackRules rules;  ///< with the hazards that are known before the mission
+  Fence fence{};
   double place_tolerance_m = 8.0;
   Duration settle = std::chrono::seconds{1};  ///< in place for so long, all: the formation holds
   Duration lead = std::chrono::seconds{3};    ///< from an order to when it is begun
@@ -81,6 +83,7 @@ class TrackGround {
  private:
   [[nodiscard]] Result<formation::TrackRequest> request_of(const TrackOrder& order,
                                                            Instant now) const;
+  [[nodiscard]] Result<void> within_fence(const formation::PlannedTrack& planned) const;
   /// What planes fly of what this ground station has ordered: not all may have heard of the newest.
   [[nodiscard]] formation::PlannedTrack present() const;
   void begin(TrackPreview preview, Instant now);

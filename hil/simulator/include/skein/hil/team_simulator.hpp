@@ -14,6 +14,7 @@
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/vehicle.hpp"
@@ -57,6 +58,7 @@ struct TeamMission {
   /// can survey and is searching.
   std::map<SiteId, Instant> reported;
   std::vector<TimedHazard> hazards;
+  Fence fence{};
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
   std::vector<mission::ScriptedDecision> decisions;

@@ -13,6 +13,7 @@
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/site_config.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
@@ -51,6 +52,7 @@ struct GroundConfig {
   /// Empty: the operator types at the prompt.
   std::vector<OperatorDecision> operator_decisions;
   std::vector<Hazard> hazards;  ///< known before the mission
+  Fence fence;                  ///< of the whole team
   std::vector<SiteTemplate> site_templates;
   DetectionsConfig detections;
   FormationConfig formation;

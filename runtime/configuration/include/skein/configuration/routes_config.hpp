@@ -14,6 +14,7 @@
 #include "skein/base/result.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
+#include "skein/routes/route_check.hpp"
 #include "skein/routes/route_problem.hpp"
 
 namespace skein::configuration {
@@ -77,6 +78,11 @@ struct RoutePlan {
 /// may enter to all as hazards. Fails for a plan that breaks a rule of the scenario as it is now,
 /// or leads into a hazard beyond the site, and for vehicles that have no route or cannot fly it.
 [[nodiscard]] Result<void> give_routes(const RoutePlan& plan, Scenario& scenario);
+
+/// What of the plan leads out of the scenario's fence, the way on beyond the site and a lap of the
+/// hold included: of each vehicle the first.
+[[nodiscard]] std::vector<routes::Violation> outside_fence(const RoutePlan& plan,
+                                                           const Scenario& scenario);
 
 /// When and how the vehicles that were given routes are to pass over the site.
 struct RouteEnd {
