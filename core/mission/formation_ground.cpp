@@ -33,6 +33,10 @@ constexpr Duration kTryAgain = std::chrono::seconds{5};
 constexpr double kAstray_m = 5.0;
 /// Where a silent vehicle may be is looked at in such steps.
 constexpr double kLook_m = 0.5;
+/// Lower than this nobody is flown to the side, unless the rally is lower still.
+constexpr double kSidewaysAbove_m = 2.0;
+/// What a vehicle is off a vertical may be corrected at any height.
+constexpr double kBeside_m = 0.5;
 /// Drift is what is left of gusts over so long.
 constexpr double kDriftTime_s = 5.0;
 constexpr Duration kDriftKnownAfter = std::chrono::seconds{10};
@@ -96,6 +100,7 @@ Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& o
   if (auto done = assign(config_.rally, wanted, transfers.size() - wanted); !done)
     return done.error();
   if (auto low_enough = within_heights(transfers); !low_enough) return low_enough.error();
+  if (auto high_enough = above_ground(transfers); !high_enough) return high_enough.error();
   return transfers;
 }
 
@@ -155,6 +160,25 @@ Result<void> FormationGround::within_fence(const Change& change) const {
       if (!out) continue;
       return Error{"the way of " + name_of(mover.vehicle) + " leads out of the fence at " +
                    planning::place_text(*out) + "; order it elsewhere, or smaller"};
+    }
+  }
+  return {};
+}
+
+/// Nobody is flown to the side near the ground: what stands there, and who, is not known.
+Result<void> FormationGround::above_ground(const std::vector<Transfer>& transfers) const {
+  const double least_m = std::min(kSidewaysAbove_m, config_.rally.centre.z());
+  for (const Transfer& transfer : transfers) {
+    const bool sideways = (transfer.to - transfer.from).head<2>().norm() > kBeside_m;
+    if (!sideways) continue;
+    const std::string why = ", and nobody is flown to the side below " + metres_of(least_m);
+    if (transfer.from.z() < least_m) {
+      return Error{name_of(transfer.vehicle) + " is " + metres_of(transfer.from.z()) + " high" +
+                   why + "; order 'take-off' first"};
+    }
+    if (transfer.to.z() < least_m) {
+      return Error{"the place of " + name_of(transfer.vehicle) + " is " +
+                   metres_of(transfer.to.z()) + " high" + why + "; ask for a higher one"};
     }
   }
   return {};

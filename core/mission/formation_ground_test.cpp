@@ -171,6 +171,34 @@ TEST(FormationGround, WhoIsOutsideOfTheFenceMayLandAndComeIn) {
   EXPECT_FALSE(team.ground().preview(order).ok());
 }
 
+TEST(FormationGround, FliesNobodyToTheSideFromTheGroundOrNearIt) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  FormationOrder order;
+  order.kind = OrderKind::form;
+  order.shape.kind = formation::ShapeKind::wedge;
+  order.shape.spacing_m = 6.0;
+  order.shape.centre = {24.0, 0.0, 10.0};
+  const auto from_ground = team.command(order);
+  ASSERT_FALSE(from_ground.ok());
+  EXPECT_THAT(from_ground.error().message, HasSubstr("is 0.0 m high"));
+  EXPECT_THAT(from_ground.error().message, HasSubstr("order 'take-off' first"));
+  for (int i = 0; i < 200; ++i) team.step();
+  EXPECT_EQ(team.position(0).z(), 0.0) << "nobody has moved";
+  order.kind = OrderKind::rally;
+  EXPECT_FALSE(team.ground().preview(order).ok());
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  order.kind = OrderKind::form;
+  order.shape.centre.z() = 1.0;
+  const auto low = team.ground().preview(order);
+  ASSERT_FALSE(low.ok());
+  EXPECT_THAT(low.error().message,
+              HasSubstr("1.0 m high, and nobody is flown to the side below 2.0 m"));
+  order.shape.centre.z() = 10.0;
+  EXPECT_TRUE(team.command(order).ok());
+}
+
 TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));

@@ -63,8 +63,8 @@ class FormationGround {
  public:
   FormationGround(const FormationGroundConfig& config, Instant now);
 
-  /// Fails with a reason where the order cannot be flown safely, where vehicles still move, or none
-  /// is heard.
+  /// Fails with a reason where the order cannot be flown safely (which is to the side near the
+  /// ground, among others), where vehicles still move, or none is heard.
   [[nodiscard]] Result<FormationPreview> preview(const FormationOrder& order) const;
   Result<FormationPreview> command(const FormationOrder& order, Instant now);
 
@@ -103,6 +103,7 @@ class FormationGround {
   [[nodiscard]] Result<void> within_heights(
       const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<void> within_fence(const formation::Change& change) const;
+  [[nodiscard]] Result<void> above_ground(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,
