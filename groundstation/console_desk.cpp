@@ -42,19 +42,23 @@ console::ServerConfig server_config(const configuration::ConsoleConfig& config) 
 std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>& expected,
                        const std::vector<std::string>& shapes,
                        const std::vector<std::string>& site_templates, std::optional<bool> sealed,
+                       std::optional<std::int64_t> epoch_unix_ns,
                        const std::optional<ShownRecording>& recording) {
   const Wgs84& place = origin.origin();
-  codec::Json hello{{"program", "skein-ground " + version()},
-                    {"origin",
-                     {{"latitude_deg", place.latitude_deg},
-                      {"longitude_deg", place.longitude_deg},
-                      {"height_m", place.height_m}}},
-                    {"expected", codec::Json::array()},
-                    {"shapes", shapes},
-                    {"site_templates", site_templates},
-                    {"limits", codec::parse_own_json(limits_json())},
-                    {"sealed", sealed ? codec::Json(*sealed) : codec::Json(nullptr)},
-                    {"replay", nullptr}};
+  codec::Json hello{
+      {"program", "skein-ground " + version()},
+      {"origin",
+       {{"latitude_deg", place.latitude_deg},
+        {"longitude_deg", place.longitude_deg},
+        {"height_m", place.height_m}}},
+      {"expected", codec::Json::array()},
+      {"shapes", shapes},
+      {"site_templates", site_templates},
+      {"limits", codec::parse_own_json(limits_json())},
+      {"sealed", sealed ? codec::Json(*sealed) : codec::Json(nullptr)},
+      {"epoch_unix_s", epoch_unix_ns ? codec::Json(static_cast<double>(*epoch_unix_ns) * 1e-9)
+                                     : codec::Json(nullptr)},
+      {"replay", nullptr}};
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
   if (recording) {
     // In steps of the page's scrubber.
@@ -119,7 +123,8 @@ std::string ConsoleDesk::address_text() const {
 ConsoleDesk::ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin)
     : origin_{origin}, picture_{picture_params(config)} {}
 
-Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, OperatorKeys& keys,
+Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
+                                std::int64_t epoch_unix_ns, OperatorKeys& keys,
                                 std::function<void()> wake) {
   console::ServerConfig server = server_config(config.console);
   if (!config.console.passwords.empty()) {
@@ -138,8 +143,8 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config, Opera
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);
   std::vector<std::string> templates;
   for (const auto& kind : config.site_templates) templates.push_back(kind.name);
-  server.hello =
-      hello_text(origin_, config.vehicles, shapes, templates, !config.network.keys.empty(), {});
+  server.hello = hello_text(origin_, config.vehicles, shapes, templates,
+                            !config.network.keys.empty(), epoch_unix_ns, {});
   server.on_refused_login = [](const console::RefusedLogin& login) {
     spdlog::warn("console: login of '{}' from {} refused, {} in a row; the next of that address {}",
                  login.user, login.address, login.in_a_row,
@@ -183,6 +188,14 @@ void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& aud
   auto sections = console::sections_of(picture_, fleet, origin_, version(), now);
   sections[static_cast<std::size_t>(console::Section::audit)] = audit;
   server_->publish(to_seconds(now), std::move(sections));
+}
+
+void ConsoleDesk::end(const mission::Fleet& fleet, const std::string& audit,
+                      const std::string& text, Instant now) {
+  if (!server_) return;
+  next_state_ = Instant::min();
+  on_timeout(fleet, audit, now);
+  server_->end(to_seconds(now), text);
 }
 
 std::optional<console::Server::Line> ConsoleDesk::next() {

@@ -48,6 +48,7 @@
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -163,6 +164,12 @@ std::string json_of(const Answer& answer) {
   return codec::json_text(json, 2) + "\n";
 }
 
+std::string one_line(std::string lines) {
+  while (lines.ends_with('\n')) lines.pop_back();
+  for (std::size_t at; (at = lines.find('\n')) != std::string::npos;) lines.replace(at, 1, "; ");
+  return lines;
+}
+
 /// Carries messages and lines to the node, and its messages, events and requests away.
 class GroundLoop {
  public:
@@ -218,6 +225,9 @@ class GroundLoop {
     }
     recorder_.flush();
     const Instant now = clock_.now();
+    const std::string summary = summary_text(console_.picture(), node_.fleet());
+    spdlog::info("the mission as it was left: {}", one_line(summary));
+    console_.end(node_.fleet(), audit_.json(), summary, now);
     const auto since_1970 =
         std::chrono::nanoseconds{clock_.epoch_unix_ns()} + now.time_since_epoch();
     const auto closed =
@@ -421,12 +431,14 @@ class GroundLoop {
       case View::help:
         return help_text();
       case View::status:
-        return fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
+        return "mission time " + wording::moment_text(now, clock_.epoch_unix_ns()) + "\n" +
+               fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
                network_text(network_.epoch()) + keys_text(keys_) + revocations_.text();
       case View::sites:
         return sites_text(console_.picture());
       case View::pending:
-        return pending_text(node_.agent().authorisations(), origin_, now);
+        return pending_text(node_.agent().authorisations(), console_.picture(), node_.fleet(),
+                            origin_, clock_.epoch_unix_ns(), now);
       case View::places:
         return formation_.places_table(now);
       case View::coalitions:
@@ -480,7 +492,9 @@ class GroundLoop {
     for (const auto& pending : node_.agent().authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
       if (!shown_.emplace(pending.request.site, pending.request.round).second) continue;
-      print(request_text(pending, origin_, now));
+      print(request_text(pending,
+                         console::card_of(pending.request, console_.picture(), node_.fleet(), now),
+                         origin_, clock_.epoch_unix_ns(), now));
     }
     if (now >= next_flush_) {
       next_flush_ = now + kFlushPeriod;
@@ -570,9 +584,10 @@ std::string control_socket_of(const configuration::GroundConfig& config) {
 namespace {
 
 void serve_console(ConsoleDesk& console, const configuration::GroundConfig& config,
-                   OperatorKeys& keys, process::Wake& wake) {
+                   std::int64_t epoch_unix_ns, OperatorKeys& keys, process::Wake& wake) {
   if (config.console.port == 0) return;
-  if (const auto served = console.serve(config, keys, [&wake] { wake.notify(); }); !served) {
+  if (const auto served = console.serve(config, epoch_unix_ns, keys, [&wake] { wake.notify(); });
+      !served) {
     spdlog::warn("there is no console: {}", served.error().message);
   } else {
     spdlog::info(
@@ -715,7 +730,7 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   if (!node)
     return fail("cannot join the mission network", node.error(), process::kExitCannotStart);
 
-  serve_console(console, config, keys, wake);
+  serve_console(console, config, clock.epoch_unix_ns(), keys, wake);
   auto audit = Audit::open(config.recording_folder, audit_key(*start));
   if (!audit) return fail("cannot record", audit.error(), process::kExitCannotStart);
 

@@ -9,6 +9,7 @@
 
 #include "site_words.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -72,7 +73,7 @@ struct Line {
                                            : formation.shape);
     if (formation.has_spacing) line += fmt::format(" spacing {}", shape.spacing_m);
     if (formation.has_heading) {
-      line += fmt::format(" heading {:.6g}", compass_deg_from_heading(shape.heading_rad));
+      line += " heading " + wording::bearing_digits(shape.heading_rad);
     }
     if (formation.has_centre) {
       line += fmt::format(" at {} {} {}", shape.centre.x(), shape.centre.y(), shape.centre.z());

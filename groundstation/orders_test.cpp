@@ -26,7 +26,7 @@ std::string trouble_with(const char* json) {
 }
 
 constexpr const char* kLongSite =
-    "site 1 2 deliver 90 simultaneous assess 2 wait 3 dwell 8 survey 5 reward 3 decay 0.1";
+    "site 1 2 deliver 090 simultaneous assess 2 wait 3 dwell 8 survey 5 reward 3 decay 0.1";
 
 TEST(Orders, WhatIsTypedComesBackAsItsLine) {
   for (const char* line : {"hold all",
@@ -37,7 +37,7 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "refuse 4",
                            "hazard 1200 -300 250",
                            "site 1200 -300",
-                           "site 59.1234N 17.5W deliver 90,180 every 4 by 3",
+                           "site 59.1234N 17.5W deliver 090,180 every 4 by 3",
                            "site like fire at 10 20.5 deliver none anyway",
                            kLongSite,
                            "preview site 1 2",
@@ -60,7 +60,7 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "status",
                            "pending",
                            "form wedge",
-                           "form line-abreast spacing 5 heading 90 at 0 40.5 20 places 3",
+                           "form line-abreast spacing 5 heading 090 at 0 40.5 20 places 3",
                            "fly-along lap in wedge",
                            "preview fly-along lap in column spacing 45 speed 18.5 laps 2",
                            "fly-along tracks/lap.yaml in heart spacing 60",
@@ -79,7 +79,7 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"site","preview":false,"x":10,"y":20,"like":"fire",
                              "bearings_deg":[90,180],"interval_s":4,"assessments":2,"wait_s":3,
                              "dwell_s":8,"survey_s":5,"reward":3,"vehicle":7})"),
-            "site like fire at 10 20 deliver 90,180 every 4 assess 2 wait 3 dwell 8 survey 5 "
+            "site like fire at 10 20 deliver 090,180 every 4 assess 2 wait 3 dwell 8 survey 5 "
             "reward 3 by 7");
   EXPECT_EQ(line_of_json(R"({"kind":"site","preview":true,"site":10034,"reward":3})"),
             "preview change site 10034 reward 3");
@@ -93,7 +93,7 @@ TEST(Orders, OfAPageAreReadFieldByField) {
             "preview take-off");
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"form","shape":"echelon",
                              "spacing_m":5,"heading_deg":90,"x":0,"y":40.5,"z":20,"places":3})"),
-            "form echelon spacing 5 heading 90 at 0 40.5 20 places 3");
+            "form echelon spacing 5 heading 090 at 0 40.5 20 places 3");
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"fly_along","track":"lap",
                              "shape":"wedge","spacing_m":45,"speed_mps":20,"laps":2})"),
             "fly-along lap in wedge spacing 45 speed 20 laps 2");

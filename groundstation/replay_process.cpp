@@ -54,7 +54,7 @@ class ReplayLoop {
 
   Result<void> serve(console::ServerConfig config, const std::string& name) {
     config.hello = hello_text(playback_.origin(), playback_.picture().params().expected, {}, {}, {},
-                              ShownRecording{name, playback_.begin(), playback_.end()});
+                              {}, ShownRecording{name, playback_.begin(), playback_.end()});
     auto opened = console::Server::open(std::move(config), [this] { wake_.notify(); });
     if (!opened) return opened.error();
     server_ = std::move(*opened);

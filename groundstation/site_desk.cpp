@@ -236,8 +236,8 @@ Answer SiteDesk::answer(const SitesFromFile& order, Instant now) {
         twice.empty() ? node_->add_site(site, std::nullopt, now) : Result<SiteId>{Error{twice}};
     all = all && given.ok();
     text += given ? fmt::format("site {}, {}\n", given->value, surveyor_text(*given))
-                  : fmt::format("not the one at {:.0f} {:.0f}: {}\n", site.position.x(),
-                                site.position.y(), given.error().message);
+                  : fmt::format("not the one at {}: {}\n", wording::place_text(site.position),
+                                given.error().message);
   }
   return {all, std::move(text)};
 }
@@ -282,7 +282,7 @@ std::string tasks_text(const Site& site) {
   auto out = std::back_inserter(text);
   const char* between = "; deliveries towards ";
   for (const auto& delivery : site.deliveries) {
-    fmt::format_to(out, "{}{:03.0f}", between, compass_deg_from_heading(delivery.bearing_rad));
+    fmt::format_to(out, "{}{}", between, wording::bearing_text(delivery.bearing_rad));
     between = ", ";
   }
   if (site.deliveries.size() > 1) {

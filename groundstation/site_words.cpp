@@ -9,6 +9,7 @@
 
 #include "prompt_words.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -239,7 +240,7 @@ std::string site_line(const NewSite& order) {
     if (wishes.bearings_rad->empty()) line += "none";
     const char* between = "";
     for (const double bearing_rad : *wishes.bearings_rad) {
-      fmt::format_to(out, "{}{:.6g}", between, compass_deg_from_heading(bearing_rad));
+      fmt::format_to(out, "{}{}", between, wording::bearing_digits(bearing_rad));
       between = ",";
     }
   }

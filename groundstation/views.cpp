@@ -2,12 +2,14 @@
 #include "skein/groundstation/views.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
 #include "skein/base/angles.hpp"
+#include "skein/mission/shown_state.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
@@ -37,8 +39,104 @@ std::string health_of(const mission::FleetEntry& entry) {
   return health.empty() ? "good" : health;
 }
 
+std::string state_of(const mission::FleetEntry& entry) {
+  const auto& told = *entry.telemetry;
+  return words_of(entry.silent ? mission::ShownState::silent
+                               : mission::shown_state(told.activity, told.detail));
+}
+
+/// That it has by its own word; a dash also where an older release does not say.
+std::string task_of(const mission::Telemetry& telemetry) {
+  return telemetry.task.site == SiteId{} ? "-" : to_string(telemetry.task);
+}
+
 bool can_be_decided(const mission::PendingAuthorisation& pending, Instant now) {
   return !pending.decision && now < pending.request.decide_by;
+}
+
+/// "2 of 3 deliveries"
+std::string count_text(std::size_t asked, std::size_t missing) {
+  const char* noun = asked + missing == 1 ? "delivery" : "deliveries";
+  return missing == 0 ? fmt::format("{} {}", asked, noun)
+                      : fmt::format("{} of {} {}", asked, asked + missing, noun);
+}
+
+void add_marks(std::string& text, std::string_view of, const std::vector<console::Mark>& marks) {
+  for (const console::Mark& mark : marks) {
+    fmt::format_to(std::back_inserter(text), "        {} {}: {}\n",
+                   mark.alarm ? "ATTENTION," : "note,", of, mark.text);
+  }
+}
+
+struct Share {
+  std::size_t done = 0;
+  std::size_t of = 0;
+};
+
+std::string sites_summary(const console::Picture& picture) {
+  Share sites;
+  std::array<Share, 3> tasks;
+  std::string apart;
+  for (const auto& [id, site] : picture.sites()) {
+    if (site.withdrawn || site.refused) {
+      apart += fmt::format("site {} was {} by the operator\n", id.value,
+                           site.withdrawn ? "withdrawn" : "refused");
+      continue;
+    }
+    ++sites.of;
+    sites.done += site.done ? 1 : 0;
+    if (!site.site) continue;
+    for (const TaskId& task : tasks_after_survey(*site.site)) {
+      Share& share = tasks.at(static_cast<std::size_t>(task.kind));
+      const auto known = site.tasks.find(task);
+      ++share.of;
+      share.done += known != site.tasks.end() && known->second.state == coalition::TaskState::done;
+    }
+  }
+  if (sites.of == 0 && apart.empty()) return "";
+  const Share& deliveries = tasks[static_cast<std::size_t>(TaskKind::deliver)];
+  const Share& assessments = tasks[static_cast<std::size_t>(TaskKind::assess)];
+  return fmt::format("{} of {} sites done, {} of {} deliveries flown, {} of {} assessments\n",
+                     sites.done, sites.of, deliveries.done, deliveries.of, assessments.done,
+                     assessments.of) +
+         apart;
+}
+
+bool is_on_ground(const mission::Telemetry& told) {
+  return told.activity == mission::Activity::landed ||
+         told.detail == mission::ActivityDetail::on_ground;
+}
+
+std::string vehicles_summary(const mission::Fleet& fleet) {
+  std::vector<std::uint16_t> flying;
+  std::vector<std::uint16_t> ground;
+  std::vector<std::uint16_t> silent;
+  for (const auto& [id, entry] : fleet.vehicles()) {
+    if (!entry.telemetry) continue;
+    auto& group = entry.silent ? silent : is_on_ground(*entry.telemetry) ? ground : flying;
+    group.push_back(id.value);
+  }
+  std::string text;
+  const auto add = [&text](const std::vector<std::uint16_t>& ids, std::string_view what) {
+    if (!ids.empty()) text += fmt::format("{}: {}\n", what, fmt::join(ids, ", "));
+  };
+  add(flying, "in the air, and fly on without the ground station");
+  add(ground, "on the ground");
+  add(silent, "silent, where they are is not known");
+  return text;
+}
+
+/// What is missing and why, and what has changed since the request before.
+void add_rest(std::string& text, const console::AuthorisationCard& card) {
+  auto line = std::back_inserter(text);
+  for (const auto& missing : card.missing) {
+    fmt::format_to(line, "missing delivery {} towards {}: {}\n", missing.task.index + 1,
+                   wording::bearing_text(missing.bearing_rad), missing.why);
+  }
+  for (const auto& who : card.did_not_bid) {
+    fmt::format_to(line, "        vehicle {:>3} did not bid: {}\n", who.vehicle.value, who.why);
+  }
+  for (const std::string& change : card.changes) fmt::format_to(line, "changed {}\n", change);
 }
 
 }  // namespace
@@ -47,63 +145,70 @@ std::string place_text(const Vec2& position, const MissionOrigin& origin) {
   const Wgs84 geodetic = origin.to_wgs84(Position<MissionEnu>{position.x(), position.y(), 0.0});
   const double distance_m = position.norm();
   const std::string from_origin =
-      distance_m < 0.5
-          ? "at the origin"
-          : fmt::format("{:.0f} m from the origin towards {:03.0f} deg", distance_m,
-                        compass_deg_from_heading(std::atan2(position.y(), position.x())));
+      distance_m < 0.5 ? "at the origin"
+                       : fmt::format("{:.0f} m from the origin towards {}", distance_m,
+                                     wording::bearing_text(std::atan2(position.y(), position.x())));
   return fmt::format("{}, {:.6f} {} {:.6f} {}", from_origin, std::abs(geodetic.latitude_deg),
                      geodetic.latitude_deg < 0.0 ? "S" : "N", std::abs(geodetic.longitude_deg),
                      geodetic.longitude_deg < 0.0 ? "W" : "E");
 }
 
 std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet, Instant now) {
-  std::string text = fmt::format("{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", "vehicle", "activity",
-                                 "heard", "range left", "loads", "health");
+  std::string text = fmt::format("{:>7}  {:<26}{:<18}{:>9}{:>12}{:>7}  {}\n", "vehicle", "state",
+                                 "task", "heard", "range left", "loads", "health");
   for (const auto& [vehicle, entry] : fleet) {
     auto line = std::back_inserter(text);
     if (entry.telemetry) {
-      fmt::format_to(line, "{:>7}  {:<11}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
-                     to_string(entry.telemetry->activity), to_seconds(now - entry.heard_at),
+      fmt::format_to(line, "{:>7}  {:<26}{:<18}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
+                     state_of(entry), task_of(*entry.telemetry), to_seconds(now - entry.heard_at),
                      entry.telemetry->range_left_m / 1000.0, entry.telemetry->loads,
                      health_of(entry));
     } else {
-      fmt::format_to(line, "{:>7}  {:<11}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-", "-", "-",
-                     health_of(entry));
+      fmt::format_to(line, "{:>7}  {:<26}{:<18}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-",
+                     "-", "-", "-", health_of(entry));
     }
   }
   return text;
 }
 
-std::string request_text(const mission::PendingAuthorisation& pending, const MissionOrigin& origin,
-                         Instant now) {
+std::string request_text(const mission::PendingAuthorisation& pending,
+                         const console::AuthorisationCard& card, const MissionOrigin& origin,
+                         std::int64_t epoch_unix_ns, Instant now) {
   const auto& request = pending.request;
   std::string text = fmt::format(
-      "--- Authorisation wanted: {} deliveries at site {} ---\n"
+      "--- Authorisation wanted: {} at site {} ---\n"
       "where   {}\n"
       "leader  {}, coalition {} round {}\n",
-      request.deliveries.size(), request.site.value, place_text(request.site_position, origin),
-      wording::text_of(request.round.coalition.leader), request.round.coalition.number,
-      request.round.number);
+      count_text(request.deliveries.size(), card.missing.size()), request.site.value,
+      place_text(request.site_position, origin), wording::text_of(request.round.coalition.leader),
+      request.round.coalition.number, request.round.number);
   auto line = std::back_inserter(text);
-  for (const auto& delivery : request.deliveries) {
+  add_marks(text, "leader", card.leader);
+  for (std::size_t i = 0; i < request.deliveries.size(); ++i) {
+    const auto& delivery = request.deliveries[i];
     const auto& assignment = delivery.assignment;
-    fmt::format_to(line, "        vehicle {:>3} at {:.1f} s, flying towards {:03.0f} deg\n",
-                   assignment.vehicle.value, to_seconds(assignment.time),
-                   compass_deg_from_heading(delivery.bearing_rad));
+    fmt::format_to(line, "        vehicle {:>3} at {}, flying towards {}\n",
+                   assignment.vehicle.value, wording::moment_text(assignment.time, epoch_unix_ns),
+                   wording::bearing_text(delivery.bearing_rad));
+    add_marks(text, "vehicle", card.deliveries.at(i));
   }
+  add_rest(text, card);
   fmt::format_to(line,
-                 "until   {:.1f} s, {:.0f} s from now; without a decision they hold and ask again\n"
+                 "until   {}, {:.0f} s from now; without a decision they hold and ask again\n"
                  "type    authorise {}    or    refuse {}\n",
-                 to_seconds(request.decide_by), to_seconds(request.decide_by - now),
-                 request.site.value, request.site.value);
+                 wording::moment_text(request.decide_by, epoch_unix_ns),
+                 to_seconds(request.decide_by - now), request.site.value, request.site.value);
   return text;
 }
 
 std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
-                         const MissionOrigin& origin, Instant now) {
+                         const console::Picture& picture, const mission::Fleet& fleet,
+                         const MissionOrigin& origin, std::int64_t epoch_unix_ns, Instant now) {
   std::string text;
   for (const auto& pending : all) {
-    if (can_be_decided(pending, now)) text += request_text(pending, origin, now);
+    if (!can_be_decided(pending, now)) continue;
+    text += request_text(pending, card_of(pending.request, picture, fleet, now), origin,
+                         epoch_unix_ns, now);
   }
   return text.empty() ? "nothing waits for a decision\n" : text;
 }
@@ -133,11 +238,14 @@ std::string coalitions_text(const console::Picture& picture) {
 std::string hazards_text(const console::Picture& picture) {
   std::string text;
   for (const auto& [id, hazard] : picture.hazards()) {
-    fmt::format_to(std::back_inserter(text),
-                   "hazard {}: {:.0f} m around {:.0f} east, {:.0f} north\n", id.value,
-                   hazard.radius_m, hazard.centre.x(), hazard.centre.y());
+    fmt::format_to(std::back_inserter(text), "hazard {}: radius {:.0f} m around {} of the origin\n",
+                   id.value, hazard.radius_m, wording::place_text(hazard.centre));
   }
   return text.empty() ? "no hazard is known\n" : text;
+}
+
+std::string summary_text(const console::Picture& picture, const mission::Fleet& fleet) {
+  return sites_summary(picture) + vehicles_summary(fleet);
 }
 
 std::string sites_text(const console::Picture& picture) {
@@ -150,6 +258,8 @@ std::string sites_text(const console::Picture& picture) {
     }
     fmt::format_to(std::back_inserter(text), "site {}: {}, {}, {} delivered, {} assessed", id.value,
                    site.withdrawn  ? "withdrawn"
+                   : site.refused  ? "refused by the operator"
+                   : site.done     ? "done"
                    : site.leader   ? "led by " + wording::text_of(*site.leader)
                    : site.surveyor ? "told to " + wording::text_of(*site.surveyor)
                                    : "no leader yet",

@@ -12,6 +12,9 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
+/// 02:13:20 UTC.
+constexpr std::int64_t kEpoch = 1'700'000'000'000'000'000 + 14'400'000'000'000;
+
 MissionOrigin origin() {
   return MissionOrigin::make({.latitude_deg = 31.522062, .longitude_deg = 105.044327}).value();
 }
@@ -55,7 +58,7 @@ TEST(FleetTable, ShowsStateAndHealth) {
   EXPECT_THAT(line_of(table, "good"),
               AllOf(HasSubstr("1  executing"), HasSubstr("0.5 s"), HasSubstr("12.3 km")));
   EXPECT_THAT(line_of(table, "never heard"), HasSubstr("2  -"));
-  EXPECT_THAT(line_of(table, "SILENT"), AllOf(HasSubstr("3  executing"), HasSubstr("8.0 s")));
+  EXPECT_THAT(line_of(table, "SILENT"), AllOf(HasSubstr("3  silent"), HasSubstr("8.0 s")));
   EXPECT_THAT(line_of(table, "TWO VEHICLES"), HasSubstr("4  executing"));
   EXPECT_THAT(line_of(table, "NOT WORKED WITH"),
               AllOf(HasSubstr("5  executing"), HasSubstr("another origin.latitude_deg"),
@@ -78,24 +81,31 @@ mission::PendingAuthorisation request() {
 }
 
 TEST(RequestText, SaysWhatWhereWhenWhoUntilWhenAndWhatToType) {
-  const auto text = request_text(request(), origin(), at_seconds(88.0));
-  EXPECT_THAT(text, HasSubstr("1 deliveries at site 3"));
+  const auto text =
+      request_text(request(), {{{}}, {}, {}, {}, {}}, origin(), kEpoch, at_seconds(88.0));
+  EXPECT_THAT(text, HasSubstr("1 delivery at site 3"));
   EXPECT_THAT(text, HasSubstr("2000 m from the origin towards 180 deg"));
   EXPECT_THAT(text, HasSubstr("31.504"));  // 2 km south
   EXPECT_THAT(text, HasSubstr("105.044327 E"));
-  EXPECT_THAT(text, HasSubstr("vehicle  11 at 111.2 s, flying towards 045 deg"));
+  EXPECT_THAT(text, HasSubstr("vehicle  11 at 111.2 s (02:15:11 UTC), flying towards 045 deg"));
   EXPECT_THAT(text, HasSubstr("vehicle 27, coalition 1 round 2"));
-  EXPECT_THAT(text, HasSubstr("until   100.0 s, 12 s from now"));
+  EXPECT_THAT(text, HasSubstr("until   100.0 s (02:15:00 UTC), 12 s from now"));
   EXPECT_THAT(text, HasSubstr("authorise 3"));
   EXPECT_THAT(text, HasSubstr("refuse 3"));
 }
 
 TEST(PendingText, LeavesOutWhatIsDecidedOrTooLate) {
-  EXPECT_THAT(pending_text({request()}, origin(), at_seconds(88.0)), HasSubstr("site 3"));
-  EXPECT_THAT(pending_text({request()}, origin(), at_seconds(100.0)), HasSubstr("nothing waits"));
+  EXPECT_THAT(pending_text({request()}, console::Picture{{}}, mission::Fleet{{}}, origin(), kEpoch,
+                           at_seconds(88.0)),
+              HasSubstr("site 3"));
+  EXPECT_THAT(pending_text({request()}, console::Picture{{}}, mission::Fleet{{}}, origin(), kEpoch,
+                           at_seconds(100.0)),
+              HasSubstr("nothing waits"));
   auto decided = request();
   decided.decision = mission::Authorisation{};
-  EXPECT_THAT(pending_text({decided}, origin(), at_seconds(88.0)), HasSubstr("nothing waits"));
+  EXPECT_THAT(pending_text({decided}, console::Picture{{}}, mission::Fleet{{}}, origin(), kEpoch,
+                           at_seconds(88.0)),
+              HasSubstr("nothing waits"));
 }
 
 TEST(SitesText, GathersWhatTheVehiclesTell) {
@@ -116,6 +126,33 @@ TEST(SitesText, GathersWhatTheVehiclesTell) {
   tell(4, fleet_warning, {});  // concerns no site
   EXPECT_THAT(sites_text(picture),
               HasSubstr("site 1: led by vehicle 1, surveyed, 8 delivered, 1 assessed; 5.0 s"));
+}
+
+TEST(SummaryText, SaysWhatIsDoneAndWhereVehiclesWereLeft) {
+  console::Picture picture{{}};
+  coalition::Announcement announcement;
+  announcement.round.coalition.leader = {1};
+  announcement.site.id = {1};
+  announcement.site.deliveries = {{}, {}};
+  announcement.site.assessments = {{}};
+  picture.on_message(announcement, {1}, at_seconds(4.0));
+  const auto tell = [&](mission::EventKind kind, const TaskId& task) {
+    picture.on_event({{1}, at_seconds(5.0), {}, task, mission::body_of(kind)});
+  };
+  tell(mission::EventKind::task_done, {{1}, TaskKind::deliver, 1});
+  mission::Fleet fleet{{.expected = {{1}, {2}, {3}, {4}}}};
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{3}}) {
+    mission::Telemetry told;
+    told.vehicle = {id};
+    told.activity = id == 2 ? mission::Activity::landed : mission::Activity::searching;
+    fleet.on_message(told, at_seconds(id == 3 ? 1.0 : 10.0));
+  }
+  fleet.on_timeout(at_seconds(10.0));
+  const auto text = summary_text(picture, fleet);
+  EXPECT_THAT(text, HasSubstr("0 of 1 sites done, 1 of 2 deliveries flown, 0 of 1 assessments"));
+  EXPECT_THAT(text, HasSubstr("in the air, and fly on without the ground station: 1\n"));
+  EXPECT_THAT(text, HasSubstr("on the ground: 2\n"));
+  EXPECT_THAT(text, HasSubstr("silent, where they are is not known: 3\n"));
 }
 
 }  // namespace

@@ -98,6 +98,33 @@ TEST(AgentTables, AnActivityIsThatOfTheFirstRuleThatHolds) {
   EXPECT_EQ(activity_of({.failsafe = Action::obey, .has_task = true}), Activity::holding);
 }
 
+TEST(AgentTables, ADetailTellsWhatAnActivityLeavesOpen) {
+  using Action = Failsafe::Action;
+  EXPECT_EQ(detail_of({}), ActivityDetail::none);
+  EXPECT_EQ(detail_of({.failsafe = Action::obey}), ActivityDetail::ordered);
+  EXPECT_EQ(detail_of({.failsafe = Action::obey, .homes = true}), ActivityDetail::returning);
+  EXPECT_EQ(detail_of({.failsafe = Action::obey, .homes = true, .at_home = true}),
+            ActivityDetail::at_home);
+  EXPECT_EQ(detail_of({.failsafe = Action::come_home, .homes = true, .range_spent = true}),
+            ActivityDetail::range_reserve);
+  EXPECT_EQ(detail_of({.failsafe = Action::come_home, .leads = true, .range_spent = true}),
+            ActivityDetail::range_reserve);
+  EXPECT_EQ(detail_of({.failsafe = Action::come_home, .homes = true}), ActivityDetail::left_fence);
+  EXPECT_EQ(detail_of({.failsafe = Action::stay}), ActivityDetail::barred);
+  const PartStates delivery{.has_task = true, .delivers = true};
+  EXPECT_EQ(detail_of(delivery), ActivityDetail::delivering);
+  EXPECT_EQ(detail_of({.has_task = true, .delivers = true, .awaits_decision = true}),
+            ActivityDetail::awaiting_decision);
+  EXPECT_EQ(detail_of({.has_task = true, .delivers = true, .late = true}), ActivityDetail::late);
+  EXPECT_EQ(detail_of({.has_task = true}), ActivityDetail::assessing);
+  EXPECT_EQ(detail_of({.leads = true, .awaits_decision = true}), ActivityDetail::awaiting_decision);
+  EXPECT_EQ(detail_of({.takes_off = true, .begun = false}), ActivityDetail::taking_off);
+  EXPECT_EQ(detail_of({.on_ground = true, .takes_off = true, .begun = false}),
+            ActivityDetail::on_ground);
+  EXPECT_EQ(detail_of({.begun = false}), ActivityDetail::not_begun);
+  EXPECT_EQ(detail_of({.lands = true, .homes = true, .at_home = true}), ActivityDetail::none);
+}
+
 /// After a change of a table, paste what this prints into docs/protocol.md.
 TEST(AgentTables, AreInTheProtocolDocument) {
   std::ifstream file{SKEIN_SOURCE_DIR "/docs/protocol.md"};

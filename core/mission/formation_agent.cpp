@@ -19,6 +19,24 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 /// Who waits for longer says so.
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
+/// Lower than this it stands, where its flight controller does not say.
+constexpr double kStands_m = 1.0;
+/// Off a vertical by less, a way is one.
+constexpr double kVertical_m = 0.5;
+
+bool stands(const VehicleState& state) {
+  return state.phase == FlightPhase::not_told ? state.z_m < kStands_m : state.on_ground();
+}
+
+/// Its way there is straight up from the ground, or straight down to it; else nothing.
+ActivityDetail vertical(const formation::Mover& mover) {
+  const Vec3 way = mover.points.back() - mover.points.front();
+  if (way.head<2>().norm() > kVertical_m) return ActivityDetail::none;
+  if (way.z() > 0.0 && mover.points.front().z() < kStands_m) return ActivityDetail::taking_off;
+  if (way.z() < 0.0 && mover.points.back().z() < kStands_m) return ActivityDetail::setting_down;
+  return ActivityDetail::none;
+}
+
 /// As far as its range goes.
 VehicleSpec spec_of(const FormationAgentConfig& config) {
   VehicleSpec vehicle;
@@ -211,8 +229,17 @@ Telemetry FormationAgent::telemetry() const {
   telemetry.range_left_m = range_.left_m();
   const bool moving = change_ && !execution_->finished();
   telemetry.activity = moving ? Activity::forming : Activity::holding;
+  telemetry.detail = detail(moving);
   telemetry.plan_number = change_ ? change_->number : 0;
   return telemetry;
+}
+
+ActivityDetail FormationAgent::detail(bool moving) const {
+  if (!moving && state_ && stands(*state_)) return ActivityDetail::on_ground;
+  if (held_) return ActivityDetail::ordered;
+  if (bar_ != Bar::none) return ActivityDetail::barred;
+  if (!moving) return ActivityDetail::none;
+  return vertical(change_->movers[*formation::mover_of(*change_, config_.vehicle)]);
 }
 
 Counters FormationAgent::counters() const {

@@ -94,6 +94,8 @@ class Leader {
   [[nodiscard]] bool leads_other(const coalition::CoalitionId& than) const;
   /// Its last round came to nothing: it waits before the next.
   [[nodiscard]] bool monitoring() const;
+  /// It has asked the operator, who has not answered.
+  [[nodiscard]] bool awaits_decision() const { return machine_.in(State::awaiting_decision); }
   [[nodiscard]] Instant next_timeout() const;
   [[nodiscard]] coalition::Tally tally() const;
 

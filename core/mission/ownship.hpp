@@ -43,6 +43,10 @@ class Ownship {
   [[nodiscard]] Flight& flight() { return flight_; }
   [[nodiscard]] const Flight& flight() const { return flight_; }
 
+  /// It has been seen by its flight controller, and is not at its height yet.
+  [[nodiscard]] bool takes_off() const {
+    return spec().is_copter() && ground_m_ && !flight_.started();
+  }
   /// Told over the air, before the flight has started: flown as the configuration's would be.
   void give_route(const TimedPath& route);
   /// It is not flown, where it has not been begun.

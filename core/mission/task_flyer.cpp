@@ -20,6 +20,8 @@ constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
+/// That it has not bid is told for so long.
+constexpr Duration kDeclinedFor = std::chrono::seconds{60};
 /// Nearer to its time a new path would gain little.
 constexpr Duration kTimeLatest = std::chrono::seconds{5};
 
@@ -83,12 +85,21 @@ void TaskFlyer::answer_call(const coalition::Announcement& announcement, Reason 
   if (otherwise_engaged == Reason::none) answer = make_bid(announcement, now);
   if (const auto* bid = std::get_if<coalition::Bid>(&answer)) {
     outbox_.report(event::BidSent{bid->eta}, announcement.round, about, now);
+    declined_.reset();
     participant_.bid(announcement, *bid, now);
   } else {
     const auto reason = std::get<Reason>(answer);
     outbox_.report(event::BidDeclined{{reason}}, announcement.round, about, now);
+    declined_ = {announcement.site.id, announcement.round.number, reason, now};
     participant_.decline(announcement);
   }
+}
+
+void TaskFlyer::tell_declined(Telemetry& telemetry, Instant now) const {
+  if (!declined_ || now > declined_->at + kDeclinedFor) return;
+  telemetry.declined_site = declined_->site;
+  telemetry.declined_round = declined_->round;
+  telemetry.declined_why = declined_->why;
 }
 
 std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(

@@ -55,6 +55,18 @@ class TaskFlyer {
   [[nodiscard]] bool flying() const { return task_.has_value(); }
   /// It is within its task's own run: that is flown to its end.
   [[nodiscard]] bool in_run() const { return task_ && task_->in_run(); }
+  [[nodiscard]] std::optional<TaskId> task() const {
+    return task_ ? std::optional{task_->assignment.task} : std::nullopt;
+  }
+  [[nodiscard]] bool delivers() const { return task_ && task_->is_delivery(); }
+  /// It has a delivery that is not authorised yet.
+  [[nodiscard]] bool awaits_decision() const {
+    return delivers() && task_->in(TaskFlight::State::planned);
+  }
+  /// Its task's time has passed.
+  [[nodiscard]] bool late() const { return task_ && task_->in(TaskFlight::State::late); }
+  /// Why it has not bid lately.
+  void tell_declined(Telemetry& telemetry, Instant now) const;
   /// It is in no coalition and has bid nowhere.
   [[nodiscard]] bool free() const { return participant_.free(); }
   [[nodiscard]] Instant next_timeout() const;
@@ -81,7 +93,14 @@ class TaskFlyer {
   Outbox& outbox_;
   Participant participant_;
   std::optional<TaskFlight> task_;
-  Instant time_again_{};  ///< when the task's time is looked at next
+  struct Declined {
+    SiteId site;
+    std::uint32_t round = 0;
+    coalition::Reason why{};
+    Instant at{};
+  };
+  std::optional<Declined> declined_;  ///< the newest call
+  Instant time_again_{};              ///< when the task's time is looked at next
 };
 
 }  // namespace skein::mission

@@ -229,10 +229,20 @@ Telemetry TrackAgent::telemetry() const {
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;
   telemetry.activity = forming(now_) ? Activity::forming : Activity::holding;
+  telemetry.detail = detail();
   telemetry.range_left_m = range_left_m();
   telemetry.loads = config_.vehicle.loads;
   telemetry.plan_number = flight_->started() ? flight_->plan().number : 0;
   return telemetry;
+}
+
+ActivityDetail TrackAgent::detail() const {
+  if (state_ && state_->on_ground()) return ActivityDetail::on_ground;
+  if (!flight_->started()) return ActivityDetail::not_begun;
+  if (flight_->at_home(now_)) return ActivityDetail::at_home;
+  if (ordered_) return flight_->homing() ? ActivityDetail::returning : ActivityDetail::ordered;
+  if (range_spent_) return ActivityDetail::range_reserve;
+  return bar_ == Bar::none ? ActivityDetail::none : ActivityDetail::barred;
 }
 
 Counters TrackAgent::counters() const {

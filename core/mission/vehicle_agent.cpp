@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "activity.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/overloaded.hpp"
 #include "vehicle_agent_impl.hpp"
@@ -228,22 +227,39 @@ Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   return next;
 }
 
-Activity VehicleAgent::Impl::activity() const {
-  return activity_of({.failsafe = failsafe_.action(),
-                      .lands = ownship_.landing(),
-                      .landed = ownship_.landing() && ownship_.state().on_ground(),
-                      .has_task = flyer_.flying(),
-                      .leads = leader_.leading(),
-                      .monitors = leader_.monitoring(),
-                      .scouts = scout_.flying(),
-                      .bids = !flyer_.free(),
-                      .en_route = ownship_.flight().en_route(ownship_.state().time),
-                      .stands_by = ownship_.flight().stands_by().has_value()});
+PartStates VehicleAgent::Impl::part_states() const {
+  const Flight& flight = ownship_.flight();
+  const Instant at = ownship_.state().time;
+  return {.failsafe = failsafe_.action(),
+          .lands = ownship_.landing(),
+          .landed = ownship_.landing() && ownship_.state().on_ground(),
+          .has_task = flyer_.flying(),
+          .leads = leader_.leading(),
+          .monitors = leader_.monitoring(),
+          .scouts = scout_.flying(),
+          .bids = !flyer_.free(),
+          .en_route = flight.en_route(at),
+          .stands_by = flight.stands_by().has_value(),
+          .on_ground = ownship_.state().on_ground(),
+          .takes_off = ownship_.takes_off(),
+          .begun = flight.started(),
+          .homes = flight.homing(),
+          .at_home = flight.at_home(at),
+          .range_spent = failsafe_.facts().range_spent,
+          .delivers = flyer_.delivers(),
+          .awaits_decision = flyer_.flying() ? flyer_.awaits_decision() : leader_.awaits_decision(),
+          .late = flyer_.late()};
 }
+
+Activity VehicleAgent::Impl::activity() const { return activity_of(part_states()); }
 
 Telemetry VehicleAgent::Impl::telemetry() const {
   Telemetry telemetry = ownship_.telemetry();
-  telemetry.activity = activity();
+  const PartStates states = part_states();
+  telemetry.activity = activity_of(states);
+  telemetry.detail = detail_of(states);
+  telemetry.task = flyer_.task().value_or(scout_.task().value_or(TaskId{}));
+  flyer_.tell_declined(telemetry, ownship_.state().time);
   return telemetry;
 }
 

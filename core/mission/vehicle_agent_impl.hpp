@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "activity.hpp"
 #include "failsafe.hpp"
 #include "leader.hpp"
 #include "outbox.hpp"
@@ -53,6 +54,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] coalition::Reason otherwise_engaged(const coalition::Announcement& call) const;
   void on_authorisation(const Authorisation& message, Instant now);
   void idle(Instant now);
+  [[nodiscard]] PartStates part_states() const;
   [[nodiscard]] bool may_lead() const;
   [[nodiscard]] Instant idle_until(Instant now) const;
 

@@ -252,6 +252,10 @@ class VehicleNode::Impl {
       next_telemetry = next_multiple(now, telemetry_pace.period(*state, now));
       Telemetry telemetry = agent->telemetry();
       telemetry.state = *state;
+      // Before mission time 0 the agent has seen no state.
+      if (telemetry.detail == ActivityDetail::not_begun && state->on_ground()) {
+        telemetry.detail = ActivityDetail::on_ground;
+      }
       telemetry.control_overruns = static_cast<std::uint32_t>(condition.overruns);
       telemetry.messages_dropped = static_cast<std::uint32_t>(dropped());
       messages.push(Message{telemetry});

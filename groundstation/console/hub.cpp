@@ -76,6 +76,12 @@ void Hub::restart(std::uint64_t next_seq, const std::string& series) {
   }
 }
 
+void Hub::end(const std::string& text, const std::shared_ptr<void>& sent) {
+  for (Client* client : std::vector<Client*>{clients_.begin(), clients_.end()}) {
+    client->on_end(text, sent);
+  }
+}
+
 void Hub::live(const Server::LiveRecord& record) {
   auto channel = std::find_if(channels_.begin(), channels_.end(),
                               [&](const auto& known) { return known.topic == record.topic; });

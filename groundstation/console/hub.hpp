@@ -32,6 +32,8 @@ class Client {
   /// A session has ended: its own, perhaps.
   virtual void on_log_out() = 0;
   virtual void on_news() = 0;
+  /// After all that it has not been sent yet. `sent` is let go when it has gone out.
+  virtual void on_end(const std::string& text, std::shared_ptr<void> sent) = 0;
   virtual void on_restart(const std::string& history, std::uint64_t next_seq) = 0;
 };
 
@@ -72,6 +74,7 @@ class Hub {
   // --- from the server's thread ------------------------------------------------------------------
   void append(std::vector<std::string> events);
   void restart(std::uint64_t next_seq, const std::string& series);
+  void end(const std::string& text, const std::shared_ptr<void>& sent);
   void live(const Server::LiveRecord& record);
   void report(Server::MachineReport report);
 

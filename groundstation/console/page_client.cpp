@@ -42,6 +42,11 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     if (!has_session()) close();
   }
   void on_news() override { write(); }
+  void on_end(const std::string& text, std::shared_ptr<void> sent) override {
+    last_words_ = text;
+    last_sent_ = std::move(sent);
+    write();
+  }
   void on_restart(const std::string& history, std::uint64_t next_seq) override {
     if (!resumed_) return;
     seen_.next_seq = std::min(seen_.next_seq, next_seq);
@@ -133,7 +138,8 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
     return hub_.gate().identify(cookies_, std::chrono::steady_clock::now()).has_value();
   }
 
-  /// What was asked for first, then events, then the newest state: one text at a time.
+  /// What was asked for first, then events, then the newest state, then the last words: one text at
+  /// a time.
   void write() {
     if (writing_ || stopped_) return;
     if (!has_session()) return close();
@@ -144,7 +150,10 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
       text_ = hub_.board().events(seen_);
     } else if (resumed_ && hub_.board().has_state(seen_)) {
       text_ = hub_.board().state(seen_);
+    } else if (!last_words_.empty()) {
+      text_ = std::exchange(last_words_, {});
     } else {
+      last_sent_.reset();
       return;
     }
     writing_ = true;
@@ -159,12 +168,14 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   void close() {
     if (stopped_) return;
     stopped_ = true;
+    last_sent_.reset();
     hub_.leave(*this);
     if (writing_) return socket_->drop();  // a close may not overtake a text
     socket_->close_for_policy([self = shared_from_this()] {});
   }
   void stop() {
     stopped_ = true;
+    last_sent_.reset();
     hub_.leave(*this);
     socket_->drop();
   }
@@ -176,6 +187,8 @@ class PageClient final : public Client, public std::enable_shared_from_this<Page
   std::shared_ptr<Connections::Place> place_;
   std::deque<std::string> answers_;
   std::string text_;  ///< that is being written
+  std::string last_words_;
+  std::shared_ptr<void> last_sent_;  ///< let go when these are
   Board::Seen seen_;
   bool asked_ = false;    ///< to resume
   bool resumed_ = false;  ///< has its history

@@ -38,6 +38,19 @@ void advance(TaskPicture& task, coalition::TaskState state) {
   if (rank(state) >= rank(task.state)) task.state = state;
 }
 
+/// Nobody has it any more.
+void reopen(TaskPicture& task) { task = {}; }
+
+/// What it has not begun can be taken back.
+bool can_be_taken_back(const TaskPicture& task) {
+  return task.vehicle && task.state == coalition::TaskState::planned;
+}
+
+/// An older release does not tell which task it has.
+bool tells_task(const mission::Telemetry& telemetry) {
+  return telemetry.task.site != SiteId{} || telemetry.activity != mission::Activity::executing;
+}
+
 }  // namespace
 
 std::string_view to_string(CoalitionState state) {
@@ -113,14 +126,80 @@ void Picture::on(const mission::Telemetry& telemetry, Instant now) {
         {now, s.x_m, s.y_m, s.z_m, s.groundspeed_mps, telemetry.range_left_m, delay});
     if (vehicle.series.size() > params_.series_max) vehicle.series.pop_front();
   }
-  const auto task = task_of(telemetry.vehicle);
+  note_own_word(telemetry);
+  note_declined(telemetry);
+  note_span(vehicle, telemetry, now);
+}
+
+void Picture::note_span(VehiclePicture& vehicle, const mission::Telemetry& telemetry,
+                        Instant now) const {
+  const auto state = mission::shown_state(telemetry.activity, telemetry.detail);
+  const auto task = told_task(telemetry);
   const auto site = task ? std::optional{task->first.site} : std::nullopt;
-  if (vehicle.spans.empty() || vehicle.spans.back().activity != telemetry.activity) {
+  const auto begin = [&](mission::ShownState next, Instant from) {
     if (vehicle.spans.size() >= params_.spans_max) vehicle.spans.erase(vehicle.spans.begin());
-    vehicle.spans.push_back({telemetry.activity, now, site});
+    vehicle.spans.push_back({next, from, site});
+  };
+  // What it did while it was not heard is not known.
+  const bool was_silent = vehicle.heard_at && now >= *vehicle.heard_at + params_.silence;
+  if (was_silent) begin(mission::ShownState::silent, *vehicle.heard_at);
+  vehicle.heard_at = now;
+  if (vehicle.spans.empty() || vehicle.spans.back().state != state) {
+    begin(state, now);
   } else if (!vehicle.spans.back().site) {
     vehicle.spans.back().site = site;
   }
+}
+
+/// Who has said that it has a task, and says so no more, has it no more, whatever else was heard.
+void Picture::note_own_word(const mission::Telemetry& telemetry) {
+  if (!tells_task(telemetry)) return;
+  for (auto& [id, site] : sites_) {
+    for (auto& [task, known] : site.tasks) {
+      if (known.vehicle != telemetry.vehicle) continue;
+      if (task == telemetry.task) {
+        known.held = true;
+      } else if (known.held && can_be_taken_back(known)) {
+        reopen(known);
+      }
+    }
+  }
+}
+
+void Picture::note_declined(const mission::Telemetry& telemetry) {
+  if (telemetry.declined_site == SiteId{}) return;
+  for (auto it = coalitions_.rbegin(); it != coalitions_.rend(); ++it) {
+    CoalitionPicture& coalition = it->second;
+    if (coalition.site != telemetry.declined_site) continue;
+    for (RoundPicture& round : coalition.rounds) {
+      const bool has_bid = std::ranges::any_of(
+          round.bids, [&](const auto& bid) { return bid.bidder == telemetry.vehicle; });
+      if (round.number != telemetry.declined_round || has_bid) continue;
+      round.declined[telemetry.vehicle] = {telemetry.declined_why, {}, {}};
+      return;
+    }
+  }
+}
+
+/// What was awarded in that round, and not begun.
+void Picture::take_back(const coalition::Round& round, std::optional<VehicleId> only_of) {
+  const auto coalition = std::ranges::find_if(
+      coalitions_, [&](const auto& entry) { return entry.first == round.coalition; });
+  if (coalition == coalitions_.end()) return;
+  const auto site = sites_.find(coalition->second.site);
+  if (site == sites_.end()) return;
+  for (auto& [task, known] : site->second.tasks) {
+    const bool concerned = known.round == round && (!only_of || known.vehicle == *only_of);
+    if (concerned && can_be_taken_back(known)) reopen(known);
+  }
+}
+
+void Picture::take_back_task(const TaskId& task, VehicleId of) {
+  const auto site = sites_.find(task.site);
+  if (site == sites_.end()) return;
+  const auto known = site->second.tasks.find(task);
+  if (known == site->second.tasks.end() || known->second.vehicle != of) return;
+  if (can_be_taken_back(known->second)) reopen(known->second);
 }
 
 void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
@@ -146,6 +225,13 @@ void Picture::on(const mission::Authorisation& decision) {
     if (known.request.round == decision.round && known.request.site == decision.site) {
       known.decision = decision;
     }
+  }
+  if (decision.granted) return;
+  const auto site = sites_.find(decision.site);
+  if (site == sites_.end()) return;
+  site->second.refused = true;
+  for (auto& [task, known] : site->second.tasks) {
+    if (can_be_taken_back(known)) reopen(known);
   }
 }
 
@@ -239,6 +325,8 @@ void Picture::on(const coalition::Award& m) {
     TaskPicture& task = site->tasks[assignment.task];
     if (task.state == coalition::TaskState::done) continue;
     if (first || task.vehicle != assignment.vehicle) task.state.reset();
+    task.held = task.held && task.vehicle == assignment.vehicle && task.round == m.round;
+    task.round = m.round;
     task.vehicle = assignment.vehicle;
     task.time = assignment.time;
     advance(task, coalition::TaskState::planned);
@@ -248,11 +336,15 @@ void Picture::on(const coalition::Award& m) {
                           coalition.members.end());
 }
 
-void Picture::on(const coalition::Confirmation& m) { round_of(m.round).answers[m.member] = m; }
+void Picture::on(const coalition::Confirmation& m) {
+  round_of(m.round).answers[m.member] = m;
+  if (!m.accepted) take_back(m.round, m.member);
+}
 
 void Picture::on(const coalition::Cancel& m) {
   CoalitionPicture& coalition = coalition_of(m.round.coalition);
   round_of(m.round).cancelled = m.why;
+  take_back(m.round, std::nullopt);
   if (coalition.state == CoalitionState::closed) return;
   coalition.state = CoalitionState::failed;
   coalition.why = m.why;
@@ -283,8 +375,11 @@ void Picture::on(const coalition::MemberStatus& m) {
   for (const auto& entry : m.tasks) {
     SitePicture* site = site_of(entry.task.site);
     if (site == nullptr) continue;
+    // Said before it heard that the site is over.
+    if (site->refused && entry.state == coalition::TaskState::planned) continue;
     TaskPicture& task = site->tasks[entry.task];
     if (!task.vehicle) task.vehicle = m.member;
+    task.held = task.held || task.vehicle == m.member;
     advance(task, entry.state);
   }
 }
@@ -319,6 +414,14 @@ void Picture::on_event(const mission::MissionEvent& event) {
       break;
     case site_done:
       site.done = true;
+      break;
+    case task_lost:
+      take_back_task(event.task, std::get<mission::event::TaskLost>(event.body).why.vehicle);
+      break;
+    case lease_ended:
+      if (!std::get<mission::event::LeaseEnded>(event.body).held) {
+        take_back_task(event.task, event.vehicle);
+      }
       break;
     case bid_declined:
       round_of(event.round).declined[event.vehicle] =
@@ -360,6 +463,20 @@ std::optional<std::pair<TaskId, TaskPicture>> Picture::task_of(VehicleId vehicle
     }
   }
   return next;
+}
+
+std::optional<std::pair<TaskId, TaskPicture>> Picture::told_task(
+    const mission::Telemetry& told) const {
+  if (!tells_task(told)) return task_of(told.vehicle);
+  if (told.task.site == SiteId{}) return std::nullopt;
+  TaskPicture picture;
+  if (const auto site = sites_.find(told.task.site); site != sites_.end()) {
+    const auto known = site->second.tasks.find(told.task);
+    const bool is_its = known != site->second.tasks.end() && known->second.vehicle == told.vehicle;
+    if (is_its) picture = known->second;
+  }
+  if (!picture.state) picture.state = coalition::TaskState::planned;
+  return std::pair{told.task, picture};
 }
 
 std::optional<Duration> Picture::clock_offset(VehicleId vehicle) const {

@@ -211,6 +211,207 @@ TEST(Picture, ATaskThatFailedSaysSoUntilANewRound) {
   EXPECT_EQ(state(), TaskState::planned);
 }
 
+/// What the site says of its first delivery: who, and how far.
+std::string first_delivery(const Desk& desk, double seconds) {
+  const Json task = desk.section(Section::sites, seconds)[0]["tasks"][1];
+  return (task["vehicle"].is_null() ? "nobody" : std::to_string(task["vehicle"].get<int>())) + " " +
+         task["state"].get<std::string>();
+}
+
+TEST(Picture, WhatIsRefusedCancelledOrGivenBackNobodyHasAnyMore) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 11.0);
+  desk.say(award(), kLeader, 12.0);
+  EXPECT_EQ(first_delivery(desk, 12.1), "2 planned");
+  desk.say(coalition::Cancel{kRound, {coalition::Reason::not_confirmed}}, kLeader, 13.0);
+  EXPECT_EQ(first_delivery(desk, 13.1), "nobody open");
+
+  desk.say(award(), kLeader, 14.0);
+  EXPECT_EQ(first_delivery(desk, 14.1), "2 planned");
+  desk.say(coalition::Confirmation{kRound, {2}, false, {}}, {2}, 14.2);
+  EXPECT_EQ(first_delivery(desk, 14.3), "nobody open");
+
+  desk.say(award(), kLeader, 15.0);
+  EXPECT_EQ(desk.section(Section::sites, 15.0)[0]["leader"], 1);
+  desk.hear(mission::Authorisation{kRound, {4}, false, "ada", at_seconds(16.0)}, kGroundStation,
+            16.0);
+  EXPECT_EQ(first_delivery(desk, 16.1), "nobody open");
+  const Json site = desk.section(Section::sites, 16.1)[0];
+  EXPECT_EQ(site["status"], "refused");
+  EXPECT_EQ(site["leader"], nullptr);
+  // On its way before that was heard.
+  const TaskId task{{4}, TaskKind::deliver, 0};
+  desk.say(coalition::MemberStatus{kRound, {2}, {{task, TaskState::planned, {}}}}, {2}, 16.2);
+  EXPECT_EQ(first_delivery(desk, 16.3), "nobody open");
+}
+
+TEST(Picture, AVehiclesOwnWordOnItsTaskCounts) {
+  Desk desk;
+  mission::Telemetry told;
+  told.vehicle = {2};
+  const auto tell = [&](double seconds) {
+    told.state.time = at_seconds(seconds);
+    desk.hear(told, {2}, seconds);
+  };
+  const auto shown = [&](double seconds) {
+    const Json task = desk.section(Section::vehicles, seconds)[1]["task"];
+    return task.is_null() ? "none" : task["kind"].get<std::string>();
+  };
+  desk.say(award(), kLeader, 12.0);
+  tell(12.1);  // it has not heard the award
+  EXPECT_EQ(shown(12.1), "none");
+  EXPECT_EQ(first_delivery(desk, 12.1), "2 planned");
+  told.task = {{4}, TaskKind::deliver, 0};
+  told.activity = mission::Activity::executing;
+  tell(12.3);
+  EXPECT_EQ(shown(12.3), "deliver");
+  told.task = {};
+  told.activity = mission::Activity::searching;
+  tell(12.5);
+  EXPECT_EQ(shown(12.5), "none");
+  EXPECT_EQ(first_delivery(desk, 12.5), "nobody open");
+}
+
+TEST(Picture, OfAnOlderReleaseTheAwardTellsTheTask) {
+  Desk desk;
+  desk.say(award(), kLeader, 12.0);
+  desk.telemetry({2}, 12.5, 12.5, 1, mission::Activity::executing);
+  EXPECT_EQ(desk.section(Section::vehicles, 12.5)[1]["task"]["kind"], "deliver");
+  EXPECT_EQ(desk.section(Section::vehicles, 12.5)[1]["state"], "executing");
+  desk.telemetry({2}, 13.0, 13.0, 1, mission::Activity::holding);
+  EXPECT_EQ(desk.section(Section::vehicles, 13.0)[1]["task"], nullptr);
+}
+
+TEST(Picture, StatesAreToldApart) {
+  Desk desk;
+  using Detail = mission::ActivityDetail;
+  const auto state = [&](Detail detail, double seconds) {
+    mission::Telemetry t;
+    t.vehicle = {1};
+    t.activity = mission::Activity::holding;
+    t.detail = detail;
+    t.state.time = at_seconds(seconds);
+    desk.hear(t, {1}, seconds);
+    return desk.section(Section::vehicles, seconds)[0]["state"].get<std::string>();
+  };
+  EXPECT_EQ(state(Detail::none, 1.0), "holding");
+  EXPECT_EQ(state(Detail::ordered, 2.0), "holding_by_order");
+  EXPECT_EQ(state(Detail::returning, 3.0), "returning");
+  EXPECT_EQ(state(Detail::range_reserve, 4.0), "range_reserve");
+  EXPECT_EQ(desk.section(Section::vehicles, 10.0)[0]["state"], "silent");
+}
+
+TEST(Picture, ASilentVehicleIsSilentOnTheTimeLineToo) {
+  Desk desk;
+  desk.telemetry({1}, 1.0, 1.0);
+  const auto spans = [&](double seconds) {
+    return desk.section(Section::timeline, seconds)[0]["spans"];
+  };
+  EXPECT_EQ(spans(8.0), Json::parse(R"([["searching",1.0,1.0,null],["silent",1.0,null,null]])"));
+  desk.telemetry({1}, 9.0, 9.0);
+  EXPECT_EQ(spans(9.5), Json::parse(R"([["searching",1.0,1.0,null],["silent",1.0,9.0,null],
+                                       ["searching",9.0,null,null]])"));
+}
+
+/// A request of the plan that award() has, with one of its two deliveries.
+mission::AuthorisationRequest half_a_request(std::uint32_t round = 1) {
+  mission::AuthorisationRequest request;
+  request.round = kRound;
+  request.round.number = round;
+  request.site = {4};
+  request.site_position = {100.0, 200.0};
+  request.decide_by = at_seconds(50.0);
+  request.deliveries = {{award().assignments[0], 0.0}};
+  return request;
+}
+
+TEST(AuthorisationCard, MarksWhoIsSilentLateOrLowOnRange) {
+  Desk desk;
+  mission::Telemetry told;
+  told.vehicle = {2};
+  told.task = {{4}, TaskKind::deliver, 0};
+  told.activity = mission::Activity::executing;
+  told.range_left_m = 9000.0;
+  told.state.groundspeed_mps = 20.0;
+  const auto tell = [&](double seconds) {
+    told.state.time = at_seconds(seconds);
+    desk.hear(told, {2}, seconds);
+  };
+  const auto marks = [&](double seconds) {
+    std::vector<std::string> all;
+    const Json requests = desk.section(Section::authorisations, seconds);
+    for (const Json& mark : requests[0]["deliveries"][0]["marks"]) {
+      all.push_back(mark["text"]);
+    }
+    return all;
+  };
+  desk.say(announcement(), kLeader, 10.0);
+  tell(10.0);
+  desk.hear(half_a_request(), kLeader, 10.0);
+  EXPECT_THAT(marks(10.1), ElementsAre());
+  told.range_left_m = 1500.0;
+  tell(11.0);
+  EXPECT_THAT(marks(11.1), ElementsAre("low on range: 1.5 km left, 0.2 km to the site"));
+  told.range_left_m = 9000.0;
+  told.state.x_m = 1500.0;  // at 20 m/s over 1.4 km in 48 s
+  tell(12.0);
+  EXPECT_THAT(marks(12.1), ElementsAre(HasSubstr("late: by ")));
+  told.state.x_m = 0.0;
+  told.task = {};
+  told.activity = mission::Activity::holding;
+  told.detail = mission::ActivityDetail::range_reserve;
+  tell(13.0);
+  EXPECT_THAT(marks(13.1), ElementsAre("does not have this delivery any more: range reserve",
+                                       "its range is used up, but for the way home"));
+  EXPECT_THAT(marks(25.0), ::testing::Contains(HasSubstr("silent for 12 s")));
+}
+
+TEST(AuthorisationCard, SaysWhatIsMissingAndWhyAndWhatHasChanged) {
+  Desk desk;
+  coalition::Announcement announced = announcement();
+  coalition::Bid bid;
+  bid.round = kRound;
+  bid.bidder = {2};
+  bid.capabilities.add(TaskKind::deliver);
+  bid.loads = 1;
+  desk.say(announced, kLeader, 10.0);
+  desk.say(bid, {2}, 10.5);
+  for (const std::uint16_t id : {std::uint16_t{1}, std::uint16_t{2}, std::uint16_t{3}}) {
+    mission::Telemetry told;
+    told.vehicle = {id};
+    told.state.time = at_seconds(10.6);
+    told.loads = 1;
+    told.range_left_m = 9000.0;
+    if (id == 3) {
+      told.declined_site = {4};
+      told.declined_round = 1;
+      told.declined_why = coalition::Reason::out_of_range;
+    }
+    desk.hear(told, {id}, 10.6);
+  }
+  desk.hear(half_a_request(), kLeader, 11.0);
+  const Json card = desk.section(Section::authorisations, 11.1)[0];
+  ASSERT_EQ(card["missing"].size(), 1U);
+  EXPECT_EQ(card["missing"][0]["index"], 1);
+  EXPECT_EQ(card["missing"][0]["why"], "1 that can deliver has bid");
+  EXPECT_EQ(card["did_not_bid"], Json::parse(R"([
+      {"vehicle": 1, "why": "no bid of it was heard"},
+      {"vehicle": 3, "why": "not enough range left"}])"));
+  EXPECT_TRUE(card["changes"].empty());
+
+  announced.round.number = 2;
+  desk.say(announced, kLeader, 20.0);
+  auto next = half_a_request(2);
+  next.deliveries[0].assignment.vehicle = {3};
+  next.deliveries[0].assignment.time += from_seconds(12.0);
+  desk.hear(next, kLeader, 21.0);
+  const Json second = desk.section(Section::authorisations, 21.1)[1];
+  EXPECT_EQ(second["changes"],
+            Json::parse(R"(["round 1 was not decided", "delivery 1: vehicle 3 instead of 2",
+                            "delivery 1: 12.0 s later"])"));
+  EXPECT_TRUE(desk.section(Section::authorisations, 21.1)[0]["missing"].empty()) << "over";
+}
+
 TEST(Picture, AReplacedPlanDoesNotWait) {
   Desk desk;
   mission::AuthorisationRequest request;

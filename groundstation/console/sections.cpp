@@ -12,6 +12,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/console/authorisation_card.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
@@ -137,6 +138,11 @@ Json problems_of(VehicleId id, const mission::FleetEntry& entry,
   return all;
 }
 
+mission::ShownState state_of(const mission::FleetEntry& entry) {
+  if (entry.silent) return mission::ShownState::silent;
+  return mission::shown_state(entry.telemetry->activity, entry.telemetry->detail);
+}
+
 Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const std::string& version,
                    Instant now) {
   Json all = Json::array();
@@ -156,7 +162,8 @@ Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const st
     set("groundspeed", [&] { return metres(t->state.groundspeed_mps); });
     set("airspeed", [&] { return metres(t->state.airspeed_mps); });
     set("activity", [&] { return Json(to_string(t->activity)); });
-    const auto task = picture.task_of(id);
+    set("state", [&] { return Json(to_string(state_of(entry))); });
+    const auto task = t ? picture.told_task(*t) : std::nullopt;
     v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);
     set("heard_age_s",
         [now, heard_at = entry.heard_at] { return number(to_seconds(now - heard_at), 1); });
@@ -258,10 +265,11 @@ Json site_json(SiteId id, const SitePicture& site) {
   return {{"id", id.value},
           {"x", site.site ? metres(site.site->position.x()) : Json(nullptr)},
           {"y", site.site ? metres(site.site->position.y()) : Json(nullptr)},
-          {"leader", id_or_null(site.leader)},
+          {"leader", site.over() ? Json(nullptr) : id_or_null(site.leader)},
           {"surveyor", id_or_null(site.surveyor)},
           {"reward", site.site ? number(site.site->reward, 2) : Json(nullptr)},
           {"status", site.withdrawn  ? "withdrawn"
+                     : site.refused  ? "refused"
                      : site.done     ? "done"
                      : site.surveyed ? "surveyed"
                                      : "found"},
@@ -337,9 +345,35 @@ Json coalitions_json(const Picture& picture) {
   return all;
 }
 
-Json authorisation_json(const AuthorisationPicture& picture, const MissionOrigin& origin,
-                        Instant now) {
-  const auto& request = picture.request;
+Json marks_json(const std::vector<Mark>& marks) {
+  Json all = Json::array();
+  for (const Mark& mark : marks)
+    all.push_back(problem(mark.alarm ? "alarm" : "warning", mark.text));
+  return all;
+}
+
+/// What makes a decision of it: of one that waits, nothing of others.
+void add_card(Json& json, const AuthorisationCard& card) {
+  for (std::size_t i = 0; i < card.deliveries.size(); ++i) {
+    json["deliveries"][i]["marks"] = marks_json(card.deliveries[i]);
+  }
+  json["leader_marks"] = marks_json(card.leader);
+  json["missing"] = Json::array();
+  for (const auto& missing : card.missing) {
+    json["missing"].push_back({{"index", missing.task.index},
+                               {"bearing_deg", degrees_of(missing.bearing_rad)},
+                               {"why", missing.why}});
+  }
+  json["did_not_bid"] = Json::array();
+  for (const auto& who : card.did_not_bid) {
+    json["did_not_bid"].push_back({{"vehicle", who.vehicle.value}, {"why", who.why}});
+  }
+  json["changes"] = card.changes;
+}
+
+Json authorisation_json(const AuthorisationPicture& known, const Picture& picture,
+                        const mission::Fleet& fleet, const MissionOrigin& origin, Instant now) {
+  const auto& request = known.request;
   const Wgs84 place = origin.to_wgs84({request.site_position.x(), request.site_position.y(), 0.0});
   Json deliveries = Json::array();
   for (const auto& delivery : request.deliveries) {
@@ -349,28 +383,32 @@ Json authorisation_json(const AuthorisationPicture& picture, const MissionOrigin
                           {"bearing_deg", degrees_of(delivery.bearing_rad)}});
   }
   Json decision = nullptr;
-  if (const auto& d = picture.decision) {
+  if (const auto& d = known.decision) {
     decision = {{"granted", d->granted}, {"by", d->decided_by}, {"at_s", seconds(d->decided_at)}};
   }
-  return {{"site", request.site.value},
-          {"leader", request.round.coalition.leader.value},
-          {"coalition", key_of(request.round.coalition)},
-          {"round", request.round.number},
-          {"x", metres(request.site_position.x())},
-          {"y", metres(request.site_position.y())},
-          {"latitude_deg", number(place.latitude_deg, 7)},
-          {"longitude_deg", number(place.longitude_deg, 7)},
-          {"asked_s", seconds(picture.asked_at)},
-          {"decide_by_s", seconds(request.decide_by)},
-          {"waiting", !picture.decision && !picture.replaced && now < request.decide_by},
-          {"decision", std::move(decision)},
-          {"deliveries", std::move(deliveries)}};
+  const bool waits = !known.decision && !known.replaced && now < request.decide_by;
+  Json json{{"site", request.site.value},
+            {"leader", request.round.coalition.leader.value},
+            {"coalition", key_of(request.round.coalition)},
+            {"round", request.round.number},
+            {"x", metres(request.site_position.x())},
+            {"y", metres(request.site_position.y())},
+            {"latitude_deg", number(place.latitude_deg, 7)},
+            {"longitude_deg", number(place.longitude_deg, 7)},
+            {"asked_s", seconds(known.asked_at)},
+            {"decide_by_s", seconds(request.decide_by)},
+            {"waiting", waits},
+            {"decision", std::move(decision)},
+            {"deliveries", std::move(deliveries)}};
+  add_card(json, waits ? card_of(request, picture, fleet, now) : AuthorisationCard{});
+  return json;
 }
 
-Json authorisations_json(const Picture& picture, const MissionOrigin& origin, Instant now) {
+Json authorisations_json(const Picture& picture, const mission::Fleet& fleet,
+                         const MissionOrigin& origin, Instant now) {
   Json all = Json::array();
   for (const auto& one : picture.authorisations()) {
-    all.push_back(authorisation_json(one, origin, now));
+    all.push_back(authorisation_json(one, picture, fleet, origin, now));
   }
   return all;
 }
@@ -462,17 +500,25 @@ Json formation_json(const Picture& picture, Instant now) {
           {"places", std::move(places)}};
 }
 
-Json timeline_json(const Picture& picture) {
+/// A state until the next one; the last one as long as its vehicle is heard.
+Json timeline_json(const Picture& picture, const mission::Fleet& fleet) {
   Json all = Json::array();
   for (const auto& [id, vehicle] : picture.vehicles()) {
+    const auto entry = fleet.vehicles().find(id);
+    const bool silent = entry != fleet.vehicles().end() && entry->second.silent;
+    const Json heard_s = silent ? number(to_seconds(entry->second.heard_at), 1) : Json(nullptr);
     Json spans = Json::array();
     for (std::size_t i = 0; i < vehicle.spans.size(); ++i) {
       const auto& span = vehicle.spans[i];
       const bool last = i + 1 == vehicle.spans.size();
       spans.push_back(
-          Json::array({to_string(span.activity), number(to_seconds(span.from), 1),
-                       last ? Json(nullptr) : number(to_seconds(vehicle.spans[i + 1].from), 1),
+          Json::array({to_string(span.state), number(to_seconds(span.from), 1),
+                       last ? heard_s : number(to_seconds(vehicle.spans[i + 1].from), 1),
                        span.site ? Json(span.site->value) : Json(nullptr)}));
+    }
+    if (silent) {
+      spans.push_back(
+          Json::array({to_string(mission::ShownState::silent), heard_s, nullptr, nullptr}));
     }
     all.push_back({{"id", id.value}, {"spans", std::move(spans)}});
   }
@@ -521,13 +567,13 @@ std::string section_of(Section section, const Picture& picture, const mission::F
     case Section::coalitions:
       return codec::json_text(coalitions_json(picture));
     case Section::authorisations:
-      return codec::json_text(authorisations_json(picture, origin, now));
+      return codec::json_text(authorisations_json(picture, fleet, origin, now));
     case Section::hazards:
       return codec::json_text(hazards_json(picture));
     case Section::formation:
       return codec::json_text(formation_json(picture, now));
     case Section::timeline:
-      return codec::json_text(timeline_json(picture));
+      return codec::json_text(timeline_json(picture, fleet));
     case Section::proposals:
       return codec::json_text(proposals_json(picture));
     case Section::preflight:

@@ -6,12 +6,14 @@
 #include <boost/asio.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <chrono>
+#include <future>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "byte_stream.hpp"
 #include "clients.hpp"
+#include "skein/codec/json_text.hpp"
 
 namespace skein::console {
 namespace {
@@ -21,6 +23,8 @@ namespace ssl = asio::ssl;
 using asio::ip::tcp;
 using boost::system::error_code;
 
+/// A client that takes longer does without.
+constexpr auto kLastWordsTake = std::chrono::milliseconds{500};
 constexpr auto kAcceptAgain = std::chrono::milliseconds{200};
 
 bool is_loopback(const std::string& address) {
@@ -178,6 +182,16 @@ void Server::report(MachineReport report) {
 void Server::expel(const std::string& user) {
   Hub& hub = impl_->hub();
   hub.post([&hub, user] { hub.expel(user); });
+}
+void Server::end(double time_s, const std::string& text) {
+  Hub& hub = impl_->hub();
+  const auto promise = std::make_shared<std::promise<void>>();
+  auto all_sent = promise->get_future();
+  auto sent = std::shared_ptr<void>{nullptr, [promise](void*) { promise->set_value(); }};
+  hub.post([&hub, sent = std::move(sent),
+            said = fmt::format(R"({{"type":"ended","time_s":{:.3f},"text":{}}})", time_s,
+                               codec::json_text(text))] { hub.end(said, sent); });
+  all_sent.wait_for(kLastWordsTake);
 }
 void Server::restart(std::uint64_t next_seq, const std::string& series) {
   Hub& hub = impl_->hub();

@@ -78,6 +78,8 @@ class Aircraft {
   }
   /// Precondition: running().
   [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
+  /// Precondition: running().
+  [[nodiscard]] mission::Telemetry telemetry() const { return node_->agent().telemetry(); }
   /// It has come to where its newest change of formation ends, or there is none.
   [[nodiscard]] bool in_place() const;
   [[nodiscard]] std::uint32_t life() const { return life_; }  ///< counts its nodes

@@ -6,11 +6,13 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "skein/hil/team_mission.hpp"
+#include "skein/mission/shown_state.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
@@ -200,6 +202,37 @@ TEST(FormationRuns, BodiesOfSixDegreesOfFreedomFlyItToo) {
   ASSERT_TRUE(run);
   EXPECT_TRUE(run->held()) << text_of(*run);
   EXPECT_TRUE(run->script_done) << run->reason;
+}
+
+TEST(FormationRuns, AShapeIsNotFlownFromTheGround) {
+  auto mission = seeded_mission(five(), 1, "none");
+  ASSERT_TRUE(mission);
+  mission->formation->script = {"form wedge spacing 5 at 24 0 20"};
+  mission->duration_max = std::chrono::seconds{60};
+  std::string sentence;
+  double highest_m = 0.0;
+  std::set<std::string> states;
+  TeamObserver watcher;
+  watcher.ground_event = [&](const mission::MissionEvent& event) {
+    const auto* waits = std::get_if<mission::event::OrderWaits>(&event.body);
+    if (waits != nullptr) sentence = waits->detail;
+  };
+  watcher.bodies = [&](Instant, const std::vector<SeenBody>& bodies) {
+    for (const SeenBody& body : bodies) highest_m = std::max(highest_m, body.position_m.z());
+  };
+  watcher.moment = [&](Instant, const mission::GroundNode& node, const std::vector<OwnWord>&) {
+    for (const auto& [id, entry] : node.fleet().vehicles()) {
+      if (!entry.telemetry) continue;
+      states.insert(
+          words_of(mission::shown_state(entry.telemetry->activity, entry.telemetry->detail)));
+    }
+  };
+  (void)simulate_team(*mission, watcher);
+  EXPECT_NE(sentence.find("nobody is flown to the side below 2.0 m; order 'take-off' first"),
+            std::string::npos)
+      << sentence;
+  EXPECT_LT(highest_m, 0.5);
+  EXPECT_EQ(states, std::set<std::string>{"on the ground"});
 }
 
 TEST(FormationRuns, PlanesInCoalitionsAndCoptersInFormationFlyInOneMission) {

@@ -71,8 +71,9 @@ Result<void> check_script(const TeamMission& mission) {
   return {};
 }
 
-GroundStation::GroundStation(const TeamMission& mission)
+GroundStation::GroundStation(const TeamMission& mission, const TeamObserver& observer)
     : mission_{mission},
+      observer_{observer},
       formation_{formation_of(mission)},
       clock_{clock_offset(mission.faults, kGroundStation)},
       starts_anew_{std::ranges::any_of(mission.faults, &ends_ground_for_a_time)} {}
@@ -113,7 +114,8 @@ bool GroundStation::give(const RoutesOrdered& order, Instant now) {
 void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {
   if (!node_) return;
   record(message, sender, now + clock_);
-  node_->on_message(message, sender, now + clock_);
+  const bool taken = node_->on_message(message, sender, now + clock_);
+  if (taken && observer_.ground_message) observer_.ground_message(message, sender, now + clock_);
 }
 
 void GroundStation::record(const mission::Message& message, VehicleId sender, Instant at) {
@@ -133,7 +135,9 @@ std::optional<mission::Message> GroundStation::poll_message(Instant now) {
     message = node_ ? node_->poll_message() : std::nullopt;
   } while (message &&
            std::holds_alternative<mission::MissionEvent>(*message));  // read on the ground
-  if (message) record(*message, kGroundStation, now + clock_);
+  if (!message) return message;
+  record(*message, kGroundStation, now + clock_);
+  if (observer_.ground_message) observer_.ground_message(*message, kGroundStation, now + clock_);
   return message;
 }
 
@@ -141,6 +145,7 @@ std::optional<mission::MissionEvent> GroundStation::poll_event() {
   std::optional<mission::MissionEvent> event;
   do {
     event = node_ ? node_->poll_event() : std::nullopt;
+    if (event && observer_.ground_event) observer_.ground_event(*event);
   } while (event && is_told_elsewhere(*event));
   if (event) event->time -= clock_;
   return event;

@@ -16,7 +16,7 @@ namespace skein::hil {
 /// those of its events.
 class GroundStation {
  public:
-  explicit GroundStation(const TeamMission& mission);
+  GroundStation(const TeamMission& mission, const TeamObserver& observer);
 
   /// Of what was before it knows what the real one recalls from its recording, and the lines of the
   /// script that are done: the operator goes on with the next. Precondition: the script can be read
@@ -24,6 +24,8 @@ class GroundStation {
   void start(Instant now);
   void end();
   [[nodiscard]] bool running() const { return node_.has_value(); }
+  /// Precondition: running().
+  [[nodiscard]] const mission::GroundNode& node() const { return *node_; }
 
   /// The operator withdraws that site, or the newest that detectors have seen. False where nothing
   /// is known of it yet.
@@ -51,6 +53,7 @@ class GroundStation {
   [[nodiscard]] bool is_told_elsewhere(const mission::MissionEvent& event) const;
 
   const TeamMission& mission_;
+  const TeamObserver& observer_;
   std::vector<VehicleId> formation_;
   Duration clock_;
   std::optional<mission::GroundNode> node_;

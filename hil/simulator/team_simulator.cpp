@@ -118,7 +118,7 @@ class Team {
             mission.faults,
             [](const Fault& f) { return std::holds_alternative<RoutesOrdered>(f.what); })},
         finder_{mission},
-        ground_{mission} {
+        ground_{mission, observer} {
     Random gusts{mission.seed ^ kGustStream};
     for (const auto& v : mission.vehicles) {
       vehicles_.emplace_back(mission, v, gusts.fork());
@@ -149,6 +149,7 @@ class Team {
       if (mesh_ && due(now, kNodePeriod)) move_mesh(now);
       step_nodes(now);
       if (due(now, kNodePeriod)) step_ground(now);
+      if (observer_.moment && due(now, kNodePeriod)) show_moment(now);
       if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
       if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now) &&
@@ -460,6 +461,15 @@ class Team {
     if (!ground_.running()) return;
     ground_.on_timeout(now);
     drain_ground(now);
+  }
+
+  void show_moment(Instant now) const {
+    if (!ground_.running()) return;
+    std::vector<OwnWord> words;
+    for (const Aircraft& v : vehicles_) {
+      words.push_back({v.spec().id, v.running() ? std::optional{v.telemetry()} : std::nullopt});
+    }
+    observer_.moment(now, ground_.node(), words);
   }
 
   /// True where there was anything.

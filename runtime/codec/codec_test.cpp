@@ -182,7 +182,11 @@ TEST(Codec, WhatAnOlderReleaseSaysIsNotWithdrawnAndMayHaveAnyCapability) {
     EXPECT_FALSE(std::get<mission::HazardReport>(m).withdrawn);
   });
   each("telemetry", Topic::telemetry, [](const mission::Message& m) {
-    EXPECT_EQ(std::get<mission::Telemetry>(m).capabilities.bits(), 7);
+    const auto& telemetry = std::get<mission::Telemetry>(m);
+    EXPECT_EQ(telemetry.capabilities.bits(), 7);
+    EXPECT_EQ(telemetry.detail, mission::ActivityDetail::none);
+    EXPECT_EQ(telemetry.task.site, SiteId{});
+    EXPECT_EQ(telemetry.declined_site, SiteId{});
   });
 }
 

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "skein/base/angles.hpp"
 #include "skein/mission/setup_book.hpp"
 
 namespace skein::wording {
@@ -350,7 +351,7 @@ struct News {
     return "the site's leader is lost: goes there to lead";
   }
   std::string operator()(const event::HazardKnown& e) const {
-    return fmt::format("hazard {}, {:.0f} m", e.hazard.value, e.radius_m);
+    return fmt::format("hazard {}, radius {:.0f} m", e.hazard.value, e.radius_m);
   }
   std::string operator()(const event::ConflictYielded& e) const {
     return e.leads ? text_of(e.to) + " leads the site" : "to " + text_of(e.to);
@@ -573,6 +574,30 @@ std::string text_of(const mission::MissionEvent& event) {
     line += fmt::format(", site {}", event.task.site.value);
   }
   return because(std::move(line), news_of(event));
+}
+
+std::string bearing_text(double heading_rad) {
+  const double degrees = std::round(compass_deg_from_heading(heading_rad));
+  return fmt::format("{:03.0f} deg", std::fmod(degrees, 360.0));
+}
+
+std::string bearing_digits(double heading_rad) {
+  std::string digits = fmt::format("{:.6g}", compass_deg_from_heading(heading_rad));
+  const std::size_t whole = std::min(digits.find('.'), digits.size());
+  if (whole < 3) digits.insert(0, 3 - whole, '0');
+  return digits == "360" ? "000" : digits;
+}
+
+std::string place_text(const Vec2& position) {
+  return fmt::format("{:.0f} m east, {:.0f} m north", position.x(), position.y());
+}
+
+std::string moment_text(Instant t, std::int64_t epoch_unix_ns) {
+  const auto unix_time = std::chrono::floor<std::chrono::seconds>(
+      std::chrono::nanoseconds{epoch_unix_ns} + t.time_since_epoch());
+  const std::chrono::hh_mm_ss clock{unix_time - std::chrono::floor<std::chrono::days>(unix_time)};
+  return fmt::format("{} ({:02}:{:02}:{:02} UTC)", moment(t), clock.hours().count(),
+                     clock.minutes().count(), clock.seconds().count());
 }
 
 std::string check_line(mission::CheckVerdict verdict, std::string_view what, std::string_view found,

@@ -89,7 +89,7 @@ test("an operator does, in the open page also after the ground station has start
   await log_in("ada", "word of ada");
   await until("the button", () => view.part("hold-all").isVisible());
   await stop();
-  await until("the banner", () => view.part("banner-lost").isVisible());
+  await until("the banner", () => view.part("banner-ended").isVisible());
   await start();
   // Sessions ended with the process.
   await log_in("ada", "word of ada");

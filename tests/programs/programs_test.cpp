@@ -432,8 +432,8 @@ TEST_F(Told, RoutesReachVehiclesThatStartedWithoutAndAreFlownByAllOrNone) {
   EXPECT_THAT(tell({"preview", "routes", plan, "in", "60"}), HasSubstr("judge turns"));
   EXPECT_THAT(tell({"routes", plan, "in", "60"}), HasSubstr("is offered to 2 vehicles"));
   EXPECT_TRUE(comes_to({"status"}, "taken by all")) << tell({"status"}) << text_of("log");
-  EXPECT_TRUE(comes_to({"status"}, "7  en_route")) << tell({"status"});
-  EXPECT_TRUE(comes_to({"status"}, "8  en_route")) << tell({"status"});
+  EXPECT_TRUE(comes_to({"status"}, "7  en route")) << tell({"status"});
+  EXPECT_TRUE(comes_to({"status"}, "8  en route")) << tell({"status"});
   EXPECT_TRUE(comes_to({"routes"}, "7  flown")) << tell({"routes"}) << text_of("log");
   EXPECT_TRUE(comes_to({"routes"}, "8  flown")) << tell({"routes"}) << text_of("log");
 }

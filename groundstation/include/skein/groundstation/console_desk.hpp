@@ -32,8 +32,8 @@ class ConsoleDesk {
   /// Serves the page; who logs in as an operator unlocks his key. `wake` is called on another
   /// thread when a line can be taken. Fails where it cannot be served; the picture is kept all the
   /// same.
-  Result<void> serve(const configuration::GroundConfig& config, OperatorKeys& keys,
-                     std::function<void()> wake);
+  Result<void> serve(const configuration::GroundConfig& config, std::int64_t epoch_unix_ns,
+                     OperatorKeys& keys, std::function<void()> wake);
 
   /// What an earlier process of this ground station heard or said: it is shown as it was then.
   void recall(const mission::Message& message, VehicleId sender, Instant at);
@@ -41,6 +41,10 @@ class ConsoleDesk {
   void on_event(const mission::MissionEvent& event);
   /// `audit` is its section.
   void on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now);
+
+  /// The newest of everything, and last `text`: the program is about to end.
+  void end(const mission::Fleet& fleet, const std::string& audit, const std::string& text,
+           Instant now);
 
   /// Ends what that user has open.
   void expel(const std::string& user) {
@@ -88,6 +92,7 @@ struct ShownRecording {
                                      const std::vector<std::string>& shapes,
                                      const std::vector<std::string>& site_templates,
                                      std::optional<bool> sealed,
+                                     std::optional<std::int64_t> epoch_unix_ns,
                                      const std::optional<ShownRecording>& recording);
 
 /// The section that has what a view of the prompt shows; none for those that are not of the

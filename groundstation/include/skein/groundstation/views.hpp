@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,31 +10,41 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/time.hpp"
+#include "skein/console/authorisation_card.hpp"
 #include "skein/console/picture.hpp"
 #include "skein/mission/ground_agent.hpp"
 
-/// What the operator reads. Directions are compass degrees, distances metres and kilometres, times
-/// mission seconds.
+/// What the operator reads. Directions are compass degrees of three digits, distances metres and
+/// kilometres, moments mission seconds with UTC beside them.
 namespace skein::groundstation {
 
 /// "1234 m from the origin towards 045 deg, 31.530000 N 105.050000 E"
 [[nodiscard]] std::string place_text(const Vec2& position, const MissionOrigin& origin);
 
-/// One line a vehicle: number, activity, seconds since it was heard, range left, loads, health.
+/// One line a vehicle: number, state, task, seconds since it was heard, range left, loads, health.
 [[nodiscard]] std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet,
                                       Instant now);
 
-/// What, where, when, who, until when, and what to type.
+/// What, where, when, who, what speaks against it, until when, and what to type.
 [[nodiscard]] std::string request_text(const mission::PendingAuthorisation& pending,
-                                       const MissionOrigin& origin, Instant now);
+                                       const console::AuthorisationCard& card,
+                                       const MissionOrigin& origin, std::int64_t epoch_unix_ns,
+                                       Instant now);
 
 /// The requests that still can be decided, newest last.
 [[nodiscard]] std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
-                                       const MissionOrigin& origin, Instant now);
+                                       const console::Picture& picture, const mission::Fleet& fleet,
+                                       const MissionOrigin& origin, std::int64_t epoch_unix_ns,
+                                       Instant now);
 
 /// What was announced, bid and awarded, and what came of it; newest last.
 [[nodiscard]] std::string coalitions_text(const console::Picture& picture);
 [[nodiscard]] std::string hazards_text(const console::Picture& picture);
+
+/// What the mission has come to, where the ground station ends: sites, tasks, and where vehicles
+/// were left.
+[[nodiscard]] std::string summary_text(const console::Picture& picture,
+                                       const mission::Fleet& fleet);
 
 /// One line a site: who leads there, what was done, the latest news.
 [[nodiscard]] std::string sites_text(const console::Picture& picture);

@@ -4,7 +4,7 @@
 import { ids } from "../shell/format";
 import type { Problem, Vehicle } from "../wire/protocol";
 
-export type Health = "alarm" | "silent" | "warning" | "unheard" | "well";
+export type Health = "alarm" | "silent" | "warning" | "unheard" | "stale" | "well";
 
 /** What is wrong with it, worst first; the server's words, and ours where it has none. */
 export function problems_of(vehicle: Vehicle): Problem[] {
@@ -18,6 +18,7 @@ export function problems_of(vehicle: Vehicle): Problem[] {
 }
 
 export function health_of(vehicle: Vehicle): Health {
+  if (vehicle.stale) return "stale";
   const never = vehicle.heard_age_s === null && !vehicle.duplicate;
   if (never) return "unheard";
   const problems = problems_of(vehicle);
@@ -26,7 +27,7 @@ export function health_of(vehicle: Vehicle): Health {
   return problems.length > 0 ? "warning" : "well";
 }
 
-const order: Record<Health, number> = { alarm: 0, silent: 1, warning: 2, unheard: 3, well: 4 };
+const order: Record<Health, number> = { alarm: 0, silent: 1, warning: 2, unheard: 3, stale: 4, well: 5 };
 
 /** Worst first, and by id among equals. Figures that change with every state take no part: rows
  *  that jump cannot be read. */

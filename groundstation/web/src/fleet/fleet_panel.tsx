@@ -12,7 +12,7 @@ import type { Health } from "./attention";
 import { VehicleDetails } from "./vehicle_details";
 
 const columns = ["id", "state", "task", "heard", "range", "loads", "mode", "version", "clock"] as const;
-const health_marks: Record<Health, string> = { alarm: "!", silent: "?", warning: "▲", unheard: "○", well: "●" };
+const health_marks: Record<Health, string> = { alarm: "!", silent: "?", warning: "▲", unheard: "○", stale: "◌", well: "●" };
 
 export function task_text(vehicle: Vehicle): string {
   const { task } = vehicle;
@@ -53,7 +53,7 @@ function Row({ vehicle, odd }: { vehicle: Vehicle; odd: ReadonlySet<string> }) {
           </button>
         </th>
         <td>
-          {words(vehicle.activity)}
+          {words(vehicle.state)}
           {sign && <Badge sign={sign} />}
         </td>
         <td class="task">{task_text(vehicle)}</td>

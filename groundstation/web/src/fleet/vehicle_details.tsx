@@ -50,7 +50,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
     <section class="details" aria-label={`Vehicle ${vehicle.id}`} data-testid="vehicle-details">
       <header>
         <h2>Vehicle {vehicle.id}</h2>
-        <span class="muted">{words(vehicle.activity)}</span>
+        <span class="muted">{words(vehicle.state)}</span>
         <span class="grow" />
         <button type="button" class="quiet" aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
           Follow

@@ -2,9 +2,9 @@
 // Events, oldest first; stays at the newest unless it was scrolled away from it.
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
-import { clock, words } from "../shell/format";
+import { clock, utc, words } from "../shell/format";
 import { select, selected } from "../shell/view";
-import { events, in_replay, shown, vehicles } from "../wire/store";
+import { events, hello, in_replay, shown, vehicles } from "../wire/store";
 import { all_events, filtered, rows_in_sight } from "./event_filter";
 import type { EventFilter } from "./event_filter";
 
@@ -85,6 +85,7 @@ export function LogPanel() {
           {list.slice(first, end).map((event) => (
             <div key={event.seq} class={`log-row ${event.level}${event.vehicle === selected.value ? " selected" : ""}`} data-testid={`event-${event.seq}`}>
               <span class="figure muted">{clock(event.time_s, 1)}</span>
+              <span class="figure muted">{utc(event.time_s, hello.value?.epoch_unix_s)}</span>
               <button type="button" class="row-button" title="Select this vehicle" disabled={event.vehicle === 0} onClick={() => select(event.vehicle)}>
                 {event.vehicle === 0 ? "ground" : event.vehicle}
               </button>

@@ -56,13 +56,14 @@ function sign_of_site(picture: Picture, site: number) {
 const least_scale_of_progress = 0.12;
 
 export function paint_sites(view: View, picture: Picture): void {
+  const silent = new Set(picture.vehicles.filter((vehicle) => vehicle.silent).map((vehicle) => vehicle.id));
   for (const site of picture.sites) {
     if (site.x === null || site.y === null || !view.sees(site.x, site.y, 200)) continue;
     const sign = sign_of_site(picture, site.id);
     const colour = sign ? line_colour(sign, view.colours.day) : view.colours.text;
     const x = view.px(site.x);
     const y = view.py(site.y);
-    for (const task of site.tasks) paint_bearing(view, x, y, task, colour);
+    for (const task of tasks_to_draw(site)) paint_bearing(view, x, y, task, colour, silent);
     const { context } = view;
     context.beginPath();
     context.rect(x - 7, y - 7, 14, 14);
@@ -90,6 +91,12 @@ export function paint_sites(view: View, picture: Picture): void {
   }
 }
 
+/** Of a site that nobody works at any more only what was flown there. */
+export function tasks_to_draw(site: Site): SiteTask[] {
+  const is_off = site.status === "withdrawn" || site.status === "refused";
+  return site.tasks.filter((task) => !is_off || task.state === "started" || task.state === "done" || task.state === "unknown");
+}
+
 /** "surveyed · 1/3 delivered · 0/2 assessed" */
 export function progress_of(site: Site): string {
   const count = (kind: string, word: string) => {
@@ -98,6 +105,7 @@ export function progress_of(site: Site): string {
     return `${of_kind.filter((task) => task.state === "done").length}/${of_kind.length} ${word}`;
   };
   if (site.status === "withdrawn") return "withdrawn";
+  if (site.status === "refused") return "refused by the operator";
   const parts = [site.status];
   if (site.status !== "found") parts.push(...[count("deliver", "delivered"), count("assess", "assessed")].filter((part) => part !== null));
   return parts.join(" · ");
@@ -106,7 +114,7 @@ export function progress_of(site: Site): string {
 const arrow_px = 54;
 
 /** The bearing of a delivery at the site at (site_x, site_y) on the screen. */
-function paint_bearing(view: View, site_x: number, site_y: number, task: SiteTask, colour: string): void {
+function paint_bearing(view: View, site_x: number, site_y: number, task: SiteTask, colour: string, silent: ReadonlySet<number>): void {
   if (task.bearing_deg === null) return;
   const { context } = view;
   const angle = (task.bearing_deg * Math.PI) / 180;
@@ -120,7 +128,8 @@ function paint_bearing(view: View, site_x: number, site_y: number, task: SiteTas
   arrow(view, x, y, task.bearing_deg, arrow_px, 9);
   context.restore();
   const marks: Record<string, string> = { done: "✓", failed: "✕", unknown: "?" };
-  const who = task.vehicle === null ? "" : `${task.vehicle}`;
+  const is_awaited = task.state === "planned" || task.state === "started";
+  const who = task.vehicle === null ? "" : `${task.vehicle}${is_awaited && silent.has(task.vehicle) ? " silent" : ""}`;
   context.font = font(10);
   context.textAlign = "center";
   context.textBaseline = "middle";
@@ -146,7 +155,8 @@ export function paint_authorisation(view: View, request: Authorisation): void {
     context.textAlign = "center";
     context.textBaseline = "middle";
     const far = 18 + 84 + 18;
-    label(view, `${delivery.vehicle} at ${clock(delivery.time_s)}`, x - far * Math.sin(angle), y + far * Math.cos(angle), colours.preview);
+    const alarm = delivery.marks.some((mark) => mark.level === "alarm");
+    label(view, `${delivery.vehicle} at ${clock(delivery.time_s)}${alarm ? " !" : ""}`, x - far * Math.sin(angle), y + far * Math.cos(angle), colours.preview);
     context.strokeStyle = context.fillStyle = colours.preview;
   }
   context.restore();

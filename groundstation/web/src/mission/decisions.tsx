@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Deliveries that wait for the operator: above every panel, since the time to decide runs out.
 
-import { bearing, clock, distance, duration, latitude_longitude } from "../shell/format";
+import { bearing, clock, duration, from_origin, latitude_longitude } from "../shell/format";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { tick } from "../shell/ticker";
 import { highlighted_request, place_to_show } from "../shell/view";
-import type { Authorisation } from "../wire/protocol";
-import { authorisations, may_order, mission_now_s } from "../wire/store";
+import type { Authorisation, Problem } from "../wire/protocol";
+import { authorisations, lost_s, may_order, mission_now_s } from "../wire/store";
 import { distance_and_bearing } from "../map/geodesy";
-import { request_key, waiting_requests } from "./requests";
+import { count_text, has_alarm, request_key, waiting_requests } from "./requests";
 
 function Countdown({ request }: { request: Authorisation }) {
   void tick.value;
@@ -26,6 +26,37 @@ function Countdown({ request }: { request: Authorisation }) {
   );
 }
 
+function Marks({ marks }: { marks: readonly Problem[] }) {
+  return (
+    <>
+      {marks.map(({ level, text }) => (
+        <span key={text} class={`problem ${level}`}>
+          {text}
+        </span>
+      ))}
+    </>
+  );
+}
+
+/** Why vehicles did not bid, and what is another than in the request before. */
+function Reasons({ request }: { request: Authorisation }) {
+  const { did_not_bid, changes, site } = request;
+  return (
+    <>
+      {did_not_bid.length > 0 && (
+        <p data-testid={`did-not-bid-${site}`}>
+          <span class="muted">Did not bid:</span> {did_not_bid.map(({ vehicle, why }) => `${vehicle} (${why})`).join("; ")}
+        </p>
+      )}
+      {changes.length > 0 && (
+        <p data-testid={`changes-${site}`}>
+          <span class="muted">Changed:</span> {changes.join("; ")}
+        </p>
+      )}
+    </>
+  );
+}
+
 function Request({ request }: { request: Authorisation }) {
   const { site, coalition, round } = request;
   const plan = { kind: "decision", site, coalition, round } as const;
@@ -33,10 +64,10 @@ function Request({ request }: { request: Authorisation }) {
   const key = request_key(request);
   const point_out = (on: boolean) => (highlighted_request.value = on ? key : null);
   return (
-    <article class="request" data-testid={`request-${request.site}`} onMouseEnter={() => point_out(true)} onMouseLeave={() => point_out(false)}>
+    <article class={`request${has_alarm(request) ? " has-alarm" : ""}`} data-testid={`request-${request.site}`} onMouseEnter={() => point_out(true)} onMouseLeave={() => point_out(false)}>
       <header>
         <h2>
-          Site {request.site}: {request.deliveries.length} {request.deliveries.length === 1 ? "delivery" : "deliveries"} to authorise
+          Site {request.site}: {count_text(request)} to authorise
         </h2>
         <Countdown request={request} />
         <button type="button" class="quiet" data-testid={`show-${request.site}`} onClick={() => (place_to_show.value = { x: request.x, y: request.y })}>
@@ -44,8 +75,8 @@ function Request({ request }: { request: Authorisation }) {
         </button>
       </header>
       <p class="muted">
-        {distance(where.distance_m)} from the origin towards {bearing(where.bearing_deg)} · {latitude_longitude(request.latitude_deg, request.longitude_deg)} · led by {request.leader}, round{" "}
-        {request.round}
+        {from_origin(where.distance_m, where.bearing_deg)} · {latitude_longitude(request.latitude_deg, request.longitude_deg)} · led by {request.leader}, round{" "}
+        {request.round} <Marks marks={request.leader_marks} />
       </p>
       <table class="deliveries">
         <thead>
@@ -53,6 +84,7 @@ function Request({ request }: { request: Authorisation }) {
             <th scope="col">Vehicle</th>
             <th scope="col">Flies towards</th>
             <th scope="col" class="figure">At</th>
+            <th scope="col">Look at</th>
           </tr>
         </thead>
         <tbody>
@@ -61,11 +93,26 @@ function Request({ request }: { request: Authorisation }) {
               <td>{delivery.vehicle}</td>
               <td>{bearing(delivery.bearing_deg)}</td>
               <td class="figure">{clock(delivery.time_s, 1)}</td>
+              <td>
+                <Marks marks={delivery.marks} />
+              </td>
+            </tr>
+          ))}
+          {request.missing.map((missing) => (
+            <tr key={`missing ${missing.index}`} class="missing" data-testid={`missing-${request.site}-${missing.index}`}>
+              <td>nobody</td>
+              <td>{bearing(missing.bearing_deg)}</td>
+              <td class="figure">–</td>
+              <td>
+                <span class="problem alarm">missing: {missing.why}</span>
+              </td>
             </tr>
           ))}
         </tbody>
       </table>
-      {may_order.value && (
+      <Reasons request={request} />
+      {may_order.value && lost_s.value > 0 && <p class="problem alarm">It cannot be decided here: there is no connection.</p>}
+      {may_order.value && lost_s.value === 0 && (
         <div class="button-row">
           <HoldButton kind="go" testid={`authorise-${request.site}`} on_held={() => void give({ ...plan, grant: true })}>
             Authorise

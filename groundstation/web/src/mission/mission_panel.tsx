@@ -26,7 +26,7 @@ function Sites() {
             </button>
             <span>{progress_of(site)}</span>
             <span class="muted">
-              {site.leader === null ? "no leader" : `led by ${site.leader}`}
+              {site.leader !== null ? `led by ${site.leader}` : site.status === "found" || site.status === "surveyed" ? "no leader" : ""}
               {site.news && ` · ${site.news}`}
             </span>
           </li>

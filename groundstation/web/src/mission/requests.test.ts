@@ -2,12 +2,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import type { Authorisation } from "../wire/protocol";
-import { outcome_of, request_key, waiting_requests } from "./requests";
+import { count_text, has_alarm, outcome_of, request_key, waiting_requests } from "./requests";
 
 function request(site: number, other: Partial<Authorisation> = {}): Authorisation {
   return {
     site, leader: 1, coalition: "1/1", round: 1, x: 0, y: 0, latitude_deg: 0, longitude_deg: 0,
-    asked_s: 0, decide_by_s: 10, waiting: true, decision: null, deliveries: [], ...other,
+    asked_s: 0, decide_by_s: 10, waiting: true, decision: null, deliveries: [], leader_marks: [],
+    missing: [], did_not_bid: [], changes: [], ...other,
   };
 }
 
@@ -22,6 +23,22 @@ test("what runs out first stands first; what is decided does not wait", () => {
 
 test("another plan for the same site is another request", () => {
   assert.notEqual(request_key(request(1)), request_key(request(1, { round: 2 })));
+});
+
+const delivery = { vehicle: 2, index: 0, time_s: 50, bearing_deg: 0, marks: [] };
+
+test("what is missing is counted, and an alarm", () => {
+  const missing = [{ index: 1, bearing_deg: 120, why: "1 that can deliver has bid" }];
+  assert.equal(count_text(request(1, { deliveries: [delivery] })), "1 delivery");
+  assert.equal(count_text(request(1, { deliveries: [delivery], missing })), "1 of 2 deliveries");
+  assert.equal(has_alarm(request(1, { deliveries: [delivery] })), false);
+  assert.equal(has_alarm(request(1, { deliveries: [delivery], missing })), true);
+});
+
+test("a silent vehicle is an alarm, a short range is not", () => {
+  const marked = (level: "alarm" | "warning") => request(1, { deliveries: [{ ...delivery, marks: [{ level, text: "" }] }] });
+  assert.equal(has_alarm(marked("alarm")), true);
+  assert.equal(has_alarm(marked("warning")), false);
 });
 
 test("outcomes say who decided", () => {

@@ -4,7 +4,7 @@
 import { font } from "../map/draw";
 import { clock, words } from "../shell/format";
 import type { Colours } from "../theme/colours";
-import { activity_colour } from "../theme/palette";
+import { state_colour } from "../theme/palette";
 import type { Picture } from "../wire/picture";
 import { label_step, x_of } from "./time_scale";
 import type { TimeWindow } from "./time_scale";
@@ -21,6 +21,8 @@ export interface TimelineView {
   scroll: number;
   window: TimeWindow;
   now_s: number;
+  /** Until then it is known what they did. */
+  known_s: number;
   selected: number | null;
   colours: Colours;
 }
@@ -43,13 +45,13 @@ export function paint_timeline(view: TimelineView, picture: Picture): void {
       context.fillStyle = colours["grid-strong"];
       context.fillRect(0, y, width, row_px);
     }
-    for (const [activity, from_s, to_s, site] of spans) {
+    for (const [state, from_s, to_s, site] of spans) {
       const left = Math.max(names_px, at(from_s));
-      const right = Math.min(width, at(to_s ?? view.now_s));
+      const right = Math.min(width, at(to_s ?? view.known_s));
       if (right <= left) continue;
-      context.fillStyle = activity_colour(activity);
+      context.fillStyle = state_colour(state);
       context.fillRect(left, y + 1.5, Math.max(1, right - left - 0.5), row_px - 3);
-      paint_word(view, `${words(activity)}${site === null ? "" : ` ${site}`}`, left, right, y);
+      paint_word(view, `${words(state)}${site === null ? "" : ` ${site}`}`, left, right, y);
     }
     context.font = font(10, id === view.selected);
     context.textAlign = "right";
@@ -125,7 +127,7 @@ export function span_text(view: TimelineView, picture: Picture, x: number, y: nu
   if (!line || x < names_px || y < axis_px) return null;
   const span = line.spans.find(([, from_s, to_s]) => from_s <= time_s && time_s < (to_s ?? view.now_s));
   if (!span) return `Vehicle ${line.id}`;
-  const [activity, from_s, to_s, site] = span;
+  const [state, from_s, to_s, site] = span;
   const where = site === null ? "" : `, site ${site}`;
-  return `Vehicle ${line.id}: ${words(activity)}${where}, ${clock(from_s)} – ${to_s === null ? "now" : clock(to_s)}`;
+  return `Vehicle ${line.id}: ${words(state)}${where}, ${clock(from_s)} – ${to_s === null ? "now" : clock(to_s)}`;
 }

@@ -6,8 +6,8 @@ import { useEffect, useRef, useState } from "preact/hooks";
 import { words } from "../shell/format";
 import { select, selected, theme, timeline_open } from "../shell/view";
 import { read_colours } from "../theme/colours";
-import { activity_colour } from "../theme/palette";
-import { current, mission_now_s, shown, timeline } from "../wire/store";
+import { state_colour } from "../theme/palette";
+import { current, mission_now_s, shown, since_state_s, timeline } from "../wire/store";
 import { next_span, time_at, window_of, zoomed } from "./time_scale";
 import { axis_px, names_px, paint_timeline, row_px, span_text } from "./timeline_painter";
 import type { TimelineView } from "./timeline_painter";
@@ -67,6 +67,7 @@ class TimelineCanvas {
       scroll: this.scroll,
       window: window_of(now_s, this.span_s, this.pinned_s, first_s),
       now_s,
+      known_s: (current().time_s ?? 0) + since_state_s(),
       selected: selected.value,
       colours: this.colours,
     };
@@ -126,12 +127,12 @@ const key_moves: Record<string, [number, number]> = {
 };
 
 function Legend() {
-  const names = new Set(timeline.value.flatMap(({ spans }) => spans.map(([activity]) => activity)));
+  const names = new Set(timeline.value.flatMap(({ spans }) => spans.map(([state]) => state)));
   return (
     <span class="legend" aria-hidden="true">
       {[...names].sort().map((name) => (
         <span key={name}>
-          <i ref={(element) => element?.style.setProperty("background", activity_colour(name))} />
+          <i ref={(element) => element?.style.setProperty("background", state_colour(name))} />
           {words(name)}
         </span>
       ))}

@@ -179,7 +179,7 @@ export function FormationForm() {
               </select>
             </label>
             {field("spacing", "Spacing, m", "as now")}
-            {field("heading", "Heading, °", "as now")}
+            {field("heading", "Heading, compass °", "the rally's")}
             {field("places", "Places", "all")}
             {field("east", "East, m", "as now")}
             {field("north", "North, m", "as now")}

@@ -51,7 +51,7 @@ test("who has taken the change, who not, who is lost", () => {
 test("a site says what is filled in, and needs a place unless it changes one", () => {
   const fields = { ...no_site, east: "100", north: "-20", like: "fire", bearings: "90, 180", interval: "4", assessments: "2", reward: "3" };
   const made = site_order(fields, limits, null);
-  assert.equal("order" in made && words_of_order(made.order), "site like fire at 100 -20 deliver 90,180 every 4 assess 2 reward 3");
+  assert.equal("order" in made && words_of_order(made.order), "site like fire at 100 -20 deliver 090,180 every 4 assess 2 reward 3");
   assert.deepEqual(made, {
     order: { kind: "site", preview: false, x: 100, y: -20, like: "fire", bearings_deg: [90, 180], interval_s: 4, assessments: 2, reward: 3 },
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders, from the fields of a form.
 
+import { bearing_digits } from "../shell/format";
 import type { Command, Formation, FormationOrder, Limits, Order, SiteOrder } from "../wire/protocol";
 
 export interface FormFields {
@@ -116,7 +117,7 @@ export function site_order(fields: SiteFields, limits: Limits, site: number | nu
   if (bearings !== "") {
     const [low, high] = limits.heading_deg;
     const all = bearings === "none" ? [] : bearings.split(/[\s,]+/).map(Number);
-    if (!all.every((value) => Number.isFinite(value) && value >= low && value <= high)) return { trouble: "bearings are degrees with commas between, such as 90, 180" };
+    if (!all.every((value) => Number.isFinite(value) && value >= low && value <= high)) return { trouble: "bearings are compass degrees with commas between, such as 090, 180" };
     order.bearings_deg = all;
   }
   if (values.interval !== undefined) order.interval_s = values.interval;
@@ -130,7 +131,7 @@ function words_of_site(order: SiteOrder): string {
   const words = [order.site === undefined ? "site" : `change site ${order.site}`];
   if (order.like !== undefined) words.push(`like ${order.like}`);
   if (order.x !== undefined) words.push(`at ${order.x} ${order.y}`);
-  if (order.bearings_deg) words.push(`deliver ${order.bearings_deg.join(",") || "none"}`);
+  if (order.bearings_deg) words.push(`deliver ${order.bearings_deg.map(bearing_digits).join(",") || "none"}`);
   if (order.interval_s !== undefined) words.push(`every ${order.interval_s}`);
   if (order.assessments !== undefined) words.push(`assess ${order.assessments}`);
   if (order.dwell_s !== undefined) words.push(`dwell ${order.dwell_s}`);
@@ -161,7 +162,7 @@ export function words_of_order(order: Order): string {
     case "formation": {
       const words = [order.order.replaceAll("_", " "), order.shape];
       if (order.spacing_m !== undefined) words.push(`spacing ${order.spacing_m}`);
-      if (order.heading_deg !== undefined) words.push(`heading ${order.heading_deg}`);
+      if (order.heading_deg !== undefined) words.push(`heading ${bearing_digits(order.heading_deg)}`);
       if (order.x !== undefined) words.push(`at ${order.x} ${order.y} ${order.z}`);
       if (order.places !== undefined) words.push(`places ${order.places}`);
       return words.filter((word) => word !== undefined).join(" ");

@@ -12,7 +12,7 @@ import { hello, proposals, send, sites } from "../wire/store";
 import { no_site, site_order, words_of_order } from "./orders";
 import type { SiteFields } from "./orders";
 
-const may_be_changed = (site: Site) => site.status !== "done" && site.status !== "withdrawn";
+const may_be_changed = (site: Site) => site.status !== "done" && site.status !== "withdrawn" && site.status !== "refused";
 
 function Known() {
   return (
@@ -138,7 +138,7 @@ export function SiteForm() {
             </select>
           </label>
         )}
-        {field("bearings", "Deliveries towards, deg", "90, 180")}
+        {field("bearings", "Deliveries towards, compass deg", "090, 180")}
         {field("interval", "Every, s", "0: at once")}
         {field("assessments", "Assessments")}
         {field("dwell", "of, s")}

@@ -20,7 +20,7 @@ export function count_alarms(picture: Picture): AlarmCounts {
     if (health === "alarm" || health === "silent") counts.alarms++;
     if (health === "warning") counts.warnings++;
     if (vehicle.expected) counts.expected++;
-    if (vehicle.heard_age_s !== null && !vehicle.silent) counts.heard++;
+    if (vehicle.heard_age_s !== null && !vehicle.silent && !vehicle.stale) counts.heard++;
   }
   counts.waiting = picture.authorisations.filter((request) => request.waiting).length;
   return counts;

@@ -10,7 +10,7 @@ import { OrdersPanel } from "../orders/orders_panel";
 import { PlotsPanel } from "../plots/plots_panel";
 import { PreflightPanel } from "../preflight/preflight_panel";
 import { ReplayBar } from "../replay/replay_bar";
-import { current, in_replay, session } from "../wire/store";
+import { current, in_replay, lost_s, session } from "../wire/store";
 import { Banners } from "./banners";
 import { Guard } from "./guard";
 import { Help } from "./help";
@@ -35,7 +35,7 @@ export function App() {
   if (session.value === "needed" || session.value === "token_needed") return <Login by_token={session.value === "token_needed"} />;
   const Panel = panel_of[panel.value];
   return (
-    <div class="console">
+    <div class={`console${lost_s.value > 0 ? " is-old" : ""}`} data-testid="console">
       <TopBar />
       <Banners />
       <main class="main">

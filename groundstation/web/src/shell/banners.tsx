@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must not be overlooked: the picture is old, or a recording, or only to be looked at.
 
-import { hello, in_replay, shown } from "../wire/store";
+import { ended, hello, in_replay, link, shown } from "../wire/store";
 import { lost_for_s } from "./connection";
-import { duration } from "./format";
+import { clock, duration } from "./format";
 
 function LostBanner() {
   const age_s = lost_for_s();
-  if (age_s === 0) return null;
+  if (age_s === 0 || ended.value) return null;
   const has_picture = shown.value.time_s !== null;
   return (
     <div class="banner alarm" role="status" data-testid="banner-lost">
@@ -18,9 +18,25 @@ function LostBanner() {
   );
 }
 
+/** The ground station has been told to end: what has come of the mission, not a lost connection. */
+function EndedBanner() {
+  if (!ended.value || link.value === "open") return null;
+  return (
+    <div class="banner ended" role="status" data-testid="banner-ended">
+      <b>The ground station was ended at {clock(ended.value.time_s)}.</b>
+      <ul>
+        {ended.value.text.split("\n").filter(Boolean).map((line) => (
+          <li key={line}>{line}</li>
+        ))}
+      </ul>
+    </div>
+  );
+}
+
 export function Banners() {
   return (
     <>
+      <EndedBanner />
       <LostBanner />
       {in_replay.value && (
         <div class="banner replay" role="status" data-testid="banner-replay">

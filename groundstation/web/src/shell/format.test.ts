@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { age, bearing, clock, distance, duration, ids, latitude_longitude, number } from "./format";
+import { age, bearing, bearing_digits, clock, distance, duration, from_origin, ids, latitude_longitude, number, utc } from "./format";
 
 test("clock", () => {
   assert.equal(clock(0), "00:00");
@@ -32,6 +32,21 @@ test("bearings have three digits and 360 is 0", () => {
   assert.equal(bearing(7), "007°");
   assert.equal(bearing(359.7), "000°");
   assert.equal(bearing(-90), "270°");
+});
+
+test("bearings of typed lines have three digits, too", () => {
+  assert.deepEqual([7, 90, -90, 360, 7.5].map(bearing_digits), ["007", "090", "270", "000", "007.5"]);
+});
+
+test("at the origin there is no direction", () => {
+  assert.equal(from_origin(0, 0), "at the origin");
+  assert.equal(from_origin(250, 7), "250 m from the origin towards 007°");
+});
+
+test("the time of day beside a mission time", () => {
+  assert.equal(utc(71.9, 1700014400), "02:14:31 UTC");
+  assert.equal(utc(null, 1700014400), "–");
+  assert.equal(utc(5, null), "–");
 });
 
 test("places on earth", () => {

@@ -56,6 +56,24 @@ export function bearing(degrees: number | null | undefined): string {
   return `${String(whole).padStart(3, "0")}°`;
 }
 
+/** The same for a line that is typed: 007, 007.5. */
+export function bearing_digits(degrees: number): string {
+  const [whole, rest] = String(((degrees % 360) + 360) % 360).split(".");
+  return `${whole!.padStart(3, "0")}${rest === undefined ? "" : `.${rest}`}`;
+}
+
+/** Where something is from the origin; at the origin there is no direction. */
+export function from_origin(distance_m: number, bearing_deg: number): string {
+  return distance_m < 0.5 ? "at the origin" : `${distance(distance_m)} from the origin towards ${bearing(bearing_deg)}`;
+}
+
+/** The time of day of a mission time: 14:05:33 UTC. */
+export function utc(time_s: number | null | undefined, epoch_unix_s: number | null | undefined): string {
+  if (time_s === null || time_s === undefined || epoch_unix_s === null || epoch_unix_s === undefined) return dash;
+  const at = new Date(1000 * (time_s + epoch_unix_s));
+  return Number.isNaN(at.getTime()) ? dash : `${at.toISOString().slice(11, 19)} UTC`;
+}
+
 export function latitude_longitude(latitude_deg: number, longitude_deg: number): string {
   const half = (value: number, positive: string, negative: string) =>
     `${Math.abs(value).toFixed(6)}° ${value < 0 ? negative : positive}`;

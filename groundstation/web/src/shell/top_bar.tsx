@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-import { hello, in_replay, link, log_out, may_order, mission_now_s, session, shown } from "../wire/store";
+import { aged_picture, ended, hello, in_replay, link, log_out, lost_s, may_order, mission_now_s, session, shown } from "../wire/store";
 import { count_alarms } from "./alarms";
-import { clock } from "./format";
+import { clock, utc } from "./format";
 import { hold_all } from "./give";
 import { tick } from "./ticker";
 import { help_open, panel, switch_theme, theme } from "./view";
@@ -15,10 +15,22 @@ function MissionClock() {
   );
 }
 
+function DayClock() {
+  void tick.value;
+  const epoch_unix_s = hello.value?.epoch_unix_s ?? null;
+  if (epoch_unix_s === null || shown.value.time_s === null) return null;
+  return (
+    <span class="figure muted" data-testid="utc" title="Time of day">
+      {utc(mission_now_s(), epoch_unix_s)}
+    </span>
+  );
+}
+
 const link_words = { open: "connected", connecting: "connecting", lost: "no connection" } as const;
 
 export function TopBar() {
-  const counts = count_alarms(shown.value);
+  const counts = count_alarms(aged_picture.value);
+  const is_old = lost_s.value > 0;
   const greeting = hello.value;
   return (
     <header class="top-bar">
@@ -26,9 +38,10 @@ export function TopBar() {
         Skein
       </h1>
       <MissionClock />
+      <DayClock />
       <span class={`link-state ${link.value}`} data-testid="link-state">
         <span class="dot" aria-hidden="true" />
-        {link_words[link.value]}
+        {link.value !== "open" && ended.value ? "ended" : link_words[link.value]}
       </span>
       {greeting?.sealed === false && (
         <span class="link-state lost" data-testid="in-clear" title="Whoever reaches the mission network can read and command it">
@@ -38,15 +51,15 @@ export function TopBar() {
       )}
       <button type="button" class="count" data-testid="count-heard" onClick={() => (panel.value = "fleet")} title="Vehicles heard, of those expected">
         <b>
-          {counts.heard}/{counts.expected}
+          {is_old ? "–" : counts.heard}/{counts.expected}
         </b>{" "}
         heard
       </button>
       <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={() => (panel.value = "fleet")}>
-        <b>{counts.alarms}</b> {counts.alarms === 1 ? "alarm" : "alarms"}
+        <b>{is_old ? "–" : counts.alarms}</b> {counts.alarms === 1 ? "alarm" : "alarms"}
       </button>
       <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={() => (panel.value = "fleet")}>
-        <b>{counts.warnings}</b> {counts.warnings === 1 ? "warning" : "warnings"}
+        <b>{is_old ? "–" : counts.warnings}</b> {counts.warnings === 1 ? "warning" : "warnings"}
       </button>
       <span class="grow" />
       {greeting && (

@@ -49,14 +49,28 @@ export function corners(shape: Shape): [number, number][] {
 }
 
 // Fills of the time line; words stand in the bars too.
-const activities: Record<string, string> = {
+const states: Record<string, string> = {
+  silent: "#5b646b",
+  on_the_ground: "#7d8a6b",
+  waiting_for_the_start: "#8a949c",
+  taking_off: "#a3c46b",
   searching: "#6f8ea8",
   surveying: "#56b4e9",
   leading: "#e69f00",
   bidding: "#f0e442",
+  waiting_for_authorisation: "#ff8fa3",
+  delivering: "#009e73",
+  assessing: "#57c7a8",
   executing: "#009e73",
+  too_late_for_its_task: "#d0704a",
   monitoring: "#b38b3f",
   holding: "#cc79a7",
+  holding_by_order: "#cc79a7",
+  not_worked_with: "#b05c86",
+  returning: "#9fb6e8",
+  at_home: "#7f93c4",
+  range_reserve: "#e8795a",
+  back_into_its_fence: "#e8795a",
   forming: "#4a9ad4",
   en_route: "#d58a5e",
   standing_by: "#8c7fd1",
@@ -64,6 +78,6 @@ const activities: Record<string, string> = {
   landed: "#7d8a6b",
 };
 
-export function activity_colour(activity: string | null): string {
-  return (activity && activities[activity]) || "#8a949c";
+export function state_colour(state: string | null): string {
+  return (state && states[state]) || "#8a949c";
 }

@@ -15,6 +15,8 @@ export interface Picture extends Sections {
   events_missed: number;
   /** Where a coalition stands in the palette: by its key, in the order of appearance. */
   coalition_slots: ReadonlyMap<string, number>;
+  /** The ground station's last word, until it is there again. */
+  ended: { time_s: number; text: string } | null;
   /** Grows when what the page holds belongs to another run: the server must be asked from event 0. */
   generation: number;
 }
@@ -57,6 +59,7 @@ export function empty_picture(): Picture {
     next_seq: 0,
     events_missed: 0,
     coalition_slots: new Map(),
+    ended: null,
     generation: 0,
   };
 }
@@ -72,6 +75,8 @@ export function reduce(picture: Picture, message: FromServer): Picture {
       return on_state(picture, message);
     case "events":
       return on_events(picture, message.events);
+    case "ended":
+      return { ...picture, ended: { time_s: message.time_s, text: message.text } };
     default:
       return picture;
   }
@@ -83,7 +88,7 @@ function forget(picture: Picture, hello: Hello | null): Picture {
 
 function on_hello(picture: Picture, hello: Hello): Picture {
   const other_run = picture.hello !== null && picture.hello.run !== hello.run;
-  return other_run ? forget(picture, hello) : { ...picture, hello };
+  return other_run ? forget(picture, hello) : { ...picture, hello, ended: null };
 }
 
 function on_history(picture: Picture, events: { first_seq: number; next_seq: number }): Picture {

@@ -42,6 +42,8 @@ export interface Hello {
   role: Role;
   user: string;
   origin: Origin;
+  /** Mission time 0; null in a replay. */
+  epoch_unix_s: number | null;
   expected: number[];
   shapes: string[];
   site_templates: string[];
@@ -98,6 +100,8 @@ export interface Vehicle {
   groundspeed: number | null;
   airspeed: number | null;
   activity: Activity | null;
+  /** What a person reads of it: its activity told apart, or `silent`. */
+  state: string | null;
   task: VehicleTask | null;
   heard_age_s: number | null;
   clock_offset_ms: number | null;
@@ -111,6 +115,8 @@ export interface Vehicle {
   links: { id: number; age_s: number }[];
   control_overruns: number | null;
   messages_dropped: number | null;
+  /** Of a picture that no news comes for: all of it is as it was then (aged.ts). */
+  stale?: boolean;
 }
 
 export interface Plan {
@@ -174,6 +180,8 @@ export interface Delivery {
   index: number;
   time_s: number;
   bearing_deg: number;
+  /** What speaks against it: its vehicle is silent, late, low on range. */
+  marks: Problem[];
 }
 
 export interface Authorisation {
@@ -190,6 +198,12 @@ export interface Authorisation {
   waiting: boolean;
   decision: { granted: boolean; by: string; at_s: number } | null;
   deliveries: Delivery[];
+  leader_marks: Problem[];
+  /** What the site wants besides, and why it is not in the plan. */
+  missing: { index: number; bearing_deg: number; why: string }[];
+  did_not_bid: { vehicle: number; why: string }[];
+  /** Since the request before this one. */
+  changes: string[];
 }
 
 export interface Hazard {
@@ -223,7 +237,7 @@ export interface Formation {
   places: Place[];
 }
 
-export type Span = [activity: Activity, from_s: number, to_s: number | null, site: number | null];
+export type Span = [state: string, from_s: number, to_s: number | null, site: number | null];
 
 export interface AuditEntry {
   seq: number;
@@ -355,7 +369,15 @@ export interface Pong {
   time_s: number;
 }
 
-export type FromServer = Hello | History | State | Events | Answer | Pong;
+/** The ground station's last word: it has been told to end. */
+export interface Ended {
+  type: "ended";
+  time_s: number;
+  /** What the mission has come to, in lines for people. */
+  text: string;
+}
+
+export type FromServer = Hello | History | State | Events | Answer | Pong | Ended;
 
 export interface Command {
   kind: "command";

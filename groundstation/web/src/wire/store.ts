@@ -3,6 +3,8 @@
 // four times a second at most, since nobody reads faster and tables are dear to draw.
 
 import { batch, computed, signal } from "@preact/signals";
+import { tick } from "../shell/ticker";
+import { aged } from "./aged";
 import { empty_picture, reduce } from "./picture";
 import type { Picture } from "./picture";
 import type { Answer, Order, FromServer, Session } from "./protocol";
@@ -28,11 +30,25 @@ export const link = signal<LinkState>("connecting");
 export const lost_at_ms = signal<number | null>(null);
 export const session = signal<Session | "unknown" | "needed" | "token_needed">("unknown");
 
+/** A page that has just begun to connect, or connects again, has lost nothing yet. */
+const patience_s = 1.5;
+
+/** Since the newest state of a connection that is lost, s; else 0. Changes with the ticker. */
+export const lost_s = computed(() => {
+  if (link.value === "open" || lost_at_ms.value === null) return 0;
+  void tick.value;
+  const age_s = (performance.now() - lost_at_ms.value) / 1000;
+  return age_s < patience_s ? 0 : age_s;
+});
+/** What is shown, as old as it is. */
+export const aged_picture = computed(() => aged(shown.value, lost_s.value));
+
 export const hello = computed(() => shown.value.hello);
-export const vehicles = computed(() => shown.value.vehicles);
+export const ended = computed(() => shown.value.ended);
+export const vehicles = computed(() => aged_picture.value.vehicles);
 export const sites = computed(() => shown.value.sites);
 export const coalitions = computed(() => shown.value.coalitions);
-export const authorisations = computed(() => shown.value.authorisations);
+export const authorisations = computed(() => aged_picture.value.authorisations);
 export const hazards = computed(() => shown.value.hazards);
 export const proposals = computed(() => shown.value.proposals);
 export const formation = computed(() => shown.value.formation);
@@ -62,8 +78,11 @@ export function since_state_s(): number {
   return Math.min(1, (performance.now() - state_arrived_ms) / 1000) * rate;
 }
 
+/** The mission goes on while the page hears nothing of it, but for one that has ended. */
 export function mission_now_s(): number | null {
-  return picture.time_s === null ? null : picture.time_s + since_state_s();
+  if (picture.time_s === null) return null;
+  const goes_on = lost_s.value > 0 && !picture.replay && !picture.ended;
+  return picture.time_s + (goes_on ? (performance.now() - state_arrived_ms) / 1000 : since_state_s());
 }
 
 let panels_timer = 0;
@@ -97,7 +116,7 @@ function receive(message: FromServer): void {
   for (const listener of listeners) listener(picture);
   // What waits for a person, and what answers him, is shown at once.
   const urgent = picture.authorisations !== before.authorisations || picture.formation !== before.formation ||
-    picture.hello !== before.hello || picture.replay !== before.replay;
+    picture.hello !== before.hello || picture.ended !== before.ended || picture.replay !== before.replay;
   const wait = urgent ? 0 : panels_at + panels_every_ms - performance.now();
   if (wait <= 0) {
     window.clearTimeout(panels_timer);

@@ -61,6 +61,7 @@ class FormationAgent final : public OnboardAgent {
   void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
+  [[nodiscard]] ActivityDetail detail(bool moving) const;
   [[nodiscard]] bool waits() const { return held_ || bar_ != Bar::none || !not_begun_.empty(); }
   [[nodiscard]] double off_m(Instant now) const;
   void report(EventBody body, Instant now);

@@ -69,6 +69,7 @@ class TrackAgent final : public OnboardAgent {
   [[nodiscard]] double range_left_m() const { return range_.left_m(); }
   /// On the track, and not in the orbit at its end.
   [[nodiscard]] bool forming(Instant now) const;
+  [[nodiscard]] ActivityDetail detail() const;
   void report(EventBody body, Instant now);
 
   TrackAgentConfig config_;

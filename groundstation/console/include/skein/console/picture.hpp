@@ -10,13 +10,15 @@
 
 #include "skein/base/time.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/mission/shown_state.hpp"
 
 namespace skein::console {
 
 struct PictureParams {
-  std::vector<VehicleId> expected = {};  ///< the fleet
-  std::vector<Hazard> hazards = {};      ///< known before the mission
-  double place_tolerance_m = 0.3;        ///< to be in place, in a formation
+  std::vector<VehicleId> expected = {};        ///< the fleet
+  std::vector<Hazard> hazards = {};            ///< known before the mission
+  double place_tolerance_m = 0.3;              ///< to be in place, in a formation
+  Duration silence = std::chrono::seconds{5};  ///< as mission::FleetParams has it
   Duration series_period = std::chrono::seconds{1};
   std::size_t series_max = 600;  ///< samples of a vehicle: ten minutes
   std::size_t spans_max = 1000;  ///< of a vehicle's activities
@@ -43,11 +45,12 @@ struct VehiclePicture {
   };
   std::deque<Sample> series;
   struct Span {
-    mission::Activity activity{};
+    mission::ShownState state{};
     Instant from{};
     std::optional<SiteId> site;
   };
   std::vector<Span> spans;  ///< each until the next one begins
+  std::optional<Instant> heard_at;
 };
 
 /// One round of a coalition: what was said.
@@ -77,6 +80,8 @@ struct TaskPicture {
   std::optional<VehicleId> vehicle;
   std::optional<Instant> time;
   std::optional<coalition::TaskState> state;  ///< none: nobody has it
+  coalition::Round round;                     ///< of the award
+  bool held = false;                          ///< its vehicle itself has said since that it has it
 };
 
 struct SitePicture {
@@ -85,9 +90,11 @@ struct SitePicture {
   bool surveyed = false;
   bool done = false;
   bool withdrawn = false;             ///< by the operator
+  bool refused = false;               ///< its deliveries, by the operator: nobody leads it again
   std::optional<VehicleId> surveyor;  ///< that was told of it
   std::map<TaskId, TaskPicture> tasks;
   std::optional<mission::MissionEvent> news;  ///< the newest event of the site
+  [[nodiscard]] bool over() const { return done || withdrawn || refused; }
 };
 
 /// What a detector has seen and the operator has not answered.
@@ -149,8 +156,11 @@ class Picture {
   }
   [[nodiscard]] const FormationPicture& formation() const { return formation_; }
 
-  /// The task that the vehicle does now or next.
+  /// The task that the vehicle was awarded next, and that nobody has taken back.
   [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> task_of(VehicleId vehicle) const;
+  /// The task that it has by its own word; where an older release does not tell it, the one above.
+  [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> told_task(
+      const mission::Telemetry& told) const;
   /// The least delay of its telemetry lately.
   [[nodiscard]] std::optional<Duration> clock_offset(VehicleId vehicle) const;
 
@@ -170,6 +180,11 @@ class Picture {
   CoalitionPicture& coalition_of(const coalition::CoalitionId& id);
   RoundPicture& round_of(const coalition::Round& round);
   SitePicture* site_of(SiteId id);  ///< null: one too many
+  void note_span(VehiclePicture& vehicle, const mission::Telemetry& telemetry, Instant now) const;
+  void note_own_word(const mission::Telemetry& telemetry);
+  void note_declined(const mission::Telemetry& telemetry);
+  void take_back(const coalition::Round& round, std::optional<VehicleId> only_of);
+  void take_back_task(const TaskId& task, VehicleId of);
   void know(const Site& site);
 
   PictureParams params_;

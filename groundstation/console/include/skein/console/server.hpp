@@ -99,6 +99,10 @@ class Server {
   };
   void report(MachineReport report);
 
+  /// The last words, to every page, after all that was published before; it waits until they have
+  /// gone out, for a moment at most.
+  void end(double time_s, const std::string& text);
+
   /// Ends all that this user has open here.
   void expel(const std::string& user);
 

@@ -21,6 +21,7 @@
 #include "skein/hil/fault.hpp"
 #include "skein/hil/radio/radio_model.hpp"
 #include "skein/mission/ground_agent.hpp"
+#include "skein/mission/ground_node.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "skein/models/wind.hpp"
@@ -106,6 +107,12 @@ struct SeenBody {
   double off_m = 0.0;  ///< from its reference, while it has one
 };
 
+/// What a vehicle itself has to say at a moment, whether it is heard or not.
+struct OwnWord {
+  VehicleId vehicle;
+  std::optional<mission::Telemetry> telemetry;  ///< none: its program does not run
+};
+
 /// What is observed while it runs; called in the order of time, and all times are true mission
 /// time, whatever a vehicle's clock says.
 struct TeamObserver {
@@ -119,6 +126,12 @@ struct TeamObserver {
   std::function<void(const mission::Message&)> message;
   /// All that fly in formation, in the mission's order, at every control step.
   std::function<void(Instant, const std::vector<SeenBody>&)> bodies;
+  /// What the ground station's program takes from the network, or says itself (sender 0), in its
+  /// own time; and every event that it shows.
+  std::function<void(const mission::Message&, VehicleId sender, Instant)> ground_message;
+  std::function<void(const mission::MissionEvent&)> ground_event;
+  /// At every step of the nodes, while the ground station's program runs.
+  std::function<void(Instant, const mission::GroundNode&, const std::vector<OwnWord>&)> moment;
 };
 
 /// A vehicle when the mission ended.

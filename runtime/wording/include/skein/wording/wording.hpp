@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
+#include "skein/base/geometry.hpp"
+#include "skein/base/time.hpp"
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/autopilot_notice.hpp"
 #include "skein/mission/messages.hpp"
@@ -23,6 +26,16 @@ namespace skein::wording {
 
 /// "refused: it leads into a hazard"
 [[nodiscard]] std::string text_of(mission::RouteState state, mission::RouteObstacle why);
+
+/// A direction as people read it, compass degrees in three digits: "045 deg".
+[[nodiscard]] std::string bearing_text(double heading_rad);
+/// The same for a line that is typed, without its unit and with what it has beyond whole degrees:
+/// "045", "007.5".
+[[nodiscard]] std::string bearing_digits(double heading_rad);
+/// "1200 m east, -300 m north"
+[[nodiscard]] std::string place_text(const Vec2& position);
+/// A moment of the mission: "123.4 s (14:05:33 UTC)".
+[[nodiscard]] std::string moment_text(Instant t, std::int64_t epoch_unix_ns);
 
 /// A check before a flight: "FAIL  GNSS: no fix; wait under open sky"; without a remedy where that
 /// is empty.

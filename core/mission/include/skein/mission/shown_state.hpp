@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "skein/mission/messages.hpp"
+
+namespace skein::mission {
+
+/// What a person reads of a vehicle's state. Their names, with spaces, are the words that page and
+/// command line show.
+enum class ShownState : std::uint8_t {
+  silent,
+  on_the_ground,
+  waiting_for_the_start,
+  taking_off,
+  searching,
+  surveying,
+  leading,
+  bidding,
+  waiting_for_authorisation,
+  delivering,
+  assessing,
+  executing,  ///< one of these, of an older release
+  too_late_for_its_task,
+  monitoring,
+  holding,
+  holding_by_order,
+  not_worked_with,
+  returning,
+  at_home,
+  range_reserve,
+  back_into_its_fence,
+  forming,
+  en_route,
+  standing_by,
+  landing,
+  landed,
+  count
+};
+[[nodiscard]] std::string_view to_string(ShownState state);
+/// "range reserve"
+[[nodiscard]] std::string words_of(ShownState state);
+
+/// As a vehicle has told it last.
+[[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail detail);
+
+}  // namespace skein::mission
