@@ -13,6 +13,8 @@ constexpr double kWindFilterTime_s = 10.0;
 // ArduPlane 4.6.3's simulator with SIM_WIND_TURB 1.5: airspeed less what it moved at had a standard
 // deviation of 0.71 m/s, and 0.1 s later nothing in common.
 constexpr double kShortShare = 0.47;
+/// Of a copter: four of them are then as far from their places (0.10 m rms) as four on ArduCopter.
+constexpr double kShortShareCopter = 0.65;
 constexpr double kShortTime_s = 0.04;
 constexpr std::uint64_t kShortSeed = 3;
 /// Standard deviations of what a filter tells, m/s and m, and of how far it drifts off what is
@@ -44,7 +46,8 @@ Air::Air(const EmulatorConfig& config)
     : steady_{ned_from_enu({config.wind_mps.x(), config.wind_mps.y(), 0.0})},
       gusts_{config.gusts_wind_mps, config.seed},
       gusty_{config.gusts_wind_mps > 0.0 || config.turbulence_mps > 0.0},
-      short_deviation_mps_{kShortShare * config.turbulence_mps},
+      short_deviation_mps_{(config.airframe == Airframe::copter ? kShortShareCopter : kShortShare) *
+                           config.turbulence_mps},
       random_{config.seed + kShortSeed},
       wind_{steady_},
       estimated_{steady_} {}
