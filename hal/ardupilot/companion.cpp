@@ -483,12 +483,22 @@ void Companion::Impl::enter_standing_by(State from, Event event, Instant now) {
 
 void Companion::Impl::begin_climb(Instant now) {
   custody_.fire(Custody::Event::launched);
+  climbed_ = true;
   climb_by_ = now + kLaunchWithin + from_seconds(params_.takeoff_height_m / kClimbMin_mps);
   say(false, {AutopilotNews::taking_off}, now);
   if (!traits_.is_lifted) return;
   mavlink::CommandLong takeoff = command_of(Command::nav_takeoff);
   takeoff.param7 = static_cast<float>(params_.takeoff_height_m);
   ask(takeoff, {}, true);
+}
+
+/// A plane is taken over a little below its take-off height, and before the mission nothing is
+/// commanded: in GUIDED it would stay so low, and begin its first plan there.
+void Companion::Impl::finish_climb() {
+  if (traits_.flies_to_points) return;
+  ask(command_of(Command::do_change_altitude, params_.takeoff_height_m,
+                 static_cast<double>(mavlink::Frame::global_relative_alt)),
+      {}, true);
 }
 
 /// A place to fly to, which may be where it is, is flown to on its wings. In GUIDED alone: the mode
@@ -572,6 +582,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
       target_at_ = now;
       leaves_hover_since_.reset();
       say(false, {AutopilotNews::flying}, now);
+      if (std::exchange(climbed_, false)) finish_climb();
       break;
     case State::piloted:
       enter_piloted(from, event, now);

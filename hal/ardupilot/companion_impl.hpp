@@ -174,6 +174,7 @@ class Companion::Impl {
   void entered(State from, Event event, Instant now);
   void enter_standing_by(State from, Event event, Instant now);
   void begin_climb(Instant now);
+  void finish_climb();
   void leave_hover(Instant now);
   void enter_piloted(State from, Event event, Instant now);
   void enter_loss(State from, std::uint32_t mode_before, Instant now);
@@ -267,6 +268,7 @@ class Companion::Impl {
   std::optional<Instant> streams_asked_at_;
   Instant taken_at_;
   Instant climb_by_;
+  bool climbed_ = false;  ///< by its own launch, and has not been flown since
   std::optional<Instant> duplicate_at_;
   std::optional<Demand> demand_;
   Instant demand_at_;

@@ -246,8 +246,15 @@ TEST(Companion, TakesOffWhereAsked) {
   line.run(2.0);
   EXPECT_EQ(line.companion.state(), State::climbing) << "it would begin its plan too low";
   fc.relative_height_m = 37.1;
+  line.commands = false;  // as before the mission
   line.until(State::flying, 3.0);
   EXPECT_EQ(fc.mode, 15U);
+  line.run(0.5);
+  const auto height = fc.last(mavlink::Command::do_change_altitude);
+  ASSERT_TRUE(height);
+  EXPECT_EQ(height->param1, 40.0F) << "the rest of the climb";
+  EXPECT_EQ(height->param2, static_cast<float>(mavlink::Frame::global_relative_alt));
+  line.commands = true;
   // Landed and disarmed, it stays there: once was asked for.
   fc.armed = false;
   fc.landed = 1;
