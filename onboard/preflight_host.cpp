@@ -29,6 +29,7 @@
 #include "skein/mission/host_watch.hpp"
 #include "skein/onboard/status.hpp"
 #include "skein/onboard/threads.hpp"
+#include "skein/planning/fence_check.hpp"
 #include "skein/process/host.hpp"
 #include "skein/process/mission_network.hpp"
 #include "skein/system/descriptor.hpp"
@@ -386,6 +387,21 @@ Check check_core_files() {
               "with keys in them: the service has LimitCORE=0; for others 'ulimit -c 0'");
 }
 
+/// Planned turns are wider in wind.
+Check check_search(const configuration::VehicleConfig& config) {
+  constexpr double kInWind = 1.5;
+  const double radius_m = kInWind * config.vehicle.planning_radius_m();
+  for (const Vec2& point : config.search) {
+    if (planning::orbit_leads_over(config.fence, point, radius_m)) continue;
+    return warn("search",
+                fmt::format("{} lies in a narrow part of the fence", planning::place_text(point)),
+                fmt::format("where wind widens the turns to {:.0f} m it is left out; move it, or "
+                            "widen fence.corners",
+                            radius_m));
+  }
+  return ok("search", fmt::format("{} points", config.search.size()));
+}
+
 }  // namespace
 
 Check check_epoch(const configuration::TimeConfig& time, std::int64_t now_unix_ns) {
@@ -414,7 +430,8 @@ Checks check_host_of_running(const configuration::VehicleConfig& config, std::in
   const auto route = configuration::timed_path(config.route, config.vehicle);
   Checks all{ok("configuration", fmt::format("good, vehicle {}", config.vehicle.id.value)),
              route ? ok("route", config.route.waypoints.empty() ? "none" : "can be flown")
-                   : fail("route", "cannot be flown", route.error().message)};
+                   : fail("route", "cannot be flown", route.error().message),
+             check_search(config)};
   append(all, in_group(CheckGroup::clock, {check_epoch(config.time, now_unix_ns),
                                            check_clock(process::among_machines(config.network)),
                                            check_time_source()}));

@@ -301,6 +301,23 @@ TEST(Preflight, EveryGroupIsLookedAtAndOfARunningVehicleNoPort) {
   EXPECT_EQ(std::ranges::find(all, "route", &Check::what)->group, CheckGroup::configuration);
 }
 
+TEST(Preflight, ASearchThatWindWouldShortenIsWarnedOf) {
+  configuration::VehicleConfig c = config();
+  const double radius_m = c.vehicle.planning_radius_m();
+  const auto of_search = [&c](const Vec2& point) {
+    c.search = {point};
+    const Checks all = check_host_of_running(c, kNow_s * 1'000'000'000);
+    return *std::ranges::find(all, "search", &Check::what);
+  };
+  EXPECT_EQ(of_search({0.0, 0.0}).verdict, Verdict::ok) << "there is no fence";
+  const double half_m = 10.0 * radius_m;
+  c.fence.corners = {{-half_m, -half_m}, {half_m, -half_m}, {half_m, half_m}, {-half_m, half_m}};
+  EXPECT_EQ(of_search({half_m - 5.0, 0.0}).verdict, Verdict::ok);
+  const Check warned = of_search({half_m - 0.35 * radius_m, half_m - 0.35 * radius_m});
+  EXPECT_EQ(warned.verdict, Verdict::warn);
+  EXPECT_NE(warned.found.find("narrow part of the fence"), std::string::npos);
+}
+
 TEST(Preflight, InFlightNothingIsSaidOfArming) {
   AutopilotFacts facts = good();
   facts.heartbeat->base_mode = mavlink::mode_safety_armed;
