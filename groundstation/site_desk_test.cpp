@@ -81,7 +81,8 @@ TEST_F(SiteDeskTest, TellsWhatIsAskedFor) {
       order("site 100 -200 deliver 090,180 every 4 assess 2 wait 3 dwell 8 reward 3");
   EXPECT_TRUE(told.done) << told.text;
   EXPECT_THAT(told.text, HasSubstr("site 10002, told to vehicle 2"));
-  EXPECT_THAT(told.text, HasSubstr("deliveries towards 090, 180, one every 4 s; 2 assessments"));
+  EXPECT_THAT(told.text,
+              HasSubstr("deliveries towards 090 deg, 180 deg, one every 4 s; 2 assessments"));
   const Site site = said();
   EXPECT_EQ(site.id, SiteId{10'002});
   EXPECT_EQ(site.position, (Vec2{100.0, -200.0}));
@@ -176,7 +177,7 @@ TEST_F(SiteDeskTest, ReadsAFileOfSites) {
   const Answer told = order("sites " + file.string());
   EXPECT_FALSE(told.done) << "two of them are at one place";
   EXPECT_THAT(told.text, HasSubstr("site 10002, told"));
-  EXPECT_THAT(told.text, HasSubstr("not the one at 110 0"));
+  EXPECT_THAT(told.text, HasSubstr("not the one at 110 m east, 0 m north"));
   EXPECT_THAT(told.text, HasSubstr("site 10003, told"));
   EXPECT_FALSE(order("sites nowhere.yaml").done);
 }

@@ -35,6 +35,7 @@ TEST(LandingOrder, IsObeyedOnceTheVehicleIsAtHome) {
   vehicle.order(CommandKind::land);
   EXPECT_FALSE(vehicle.plan.lands) << "it is on its way";
   EXPECT_EQ(vehicle.agent.activity(), Activity::holding);
+  EXPECT_EQ(vehicle.agent.telemetry().detail, ActivityDetail::returning);
   vehicle.fly(120.0);
   ASSERT_TRUE(vehicle.plan.lands);
   EXPECT_EQ(vehicle.agent.activity(), Activity::landing);

@@ -70,6 +70,7 @@ class Cockpit {
   [[nodiscard]] std::uint64_t bad_messages() const { return agent_.counters().bad_messages; }
   void battery(std::uint8_t percent) { state_.battery_percent = percent; }
   [[nodiscard]] double range_left_m() const { return agent_.telemetry().range_left_m; }
+  [[nodiscard]] ActivityDetail detail() const { return agent_.telemetry().detail; }
   void distance_m(double metres) { state_.distance_flown_m = metres; }
 
   Instant now = at_seconds(1.0);
@@ -163,6 +164,7 @@ TEST(TrackAgent, HoldsAtOnceAndTakesNothingUpUntilItMayGoOn) {
   cockpit.fly(1.0);
   EXPECT_FALSE(cockpit.on_straight());
   EXPECT_TRUE(cockpit.status->at_rest);
+  EXPECT_EQ(cockpit.detail(), ActivityDetail::ordered);
   cockpit.tell(cockpit.flight(2, 1.0));
   EXPECT_EQ(std::get<event::ChangeRefused>(cockpit.events.back().body).why,
             event::ChangeRefusal::obeys_others);
@@ -214,6 +216,7 @@ TEST(TrackAgent, ComesHomeWhenItsBatteryFalls) {
   EXPECT_TRUE(spent.by_battery && spent.comes_home);
   EXPECT_GT(spent.home_m, 0.0);
   EXPECT_FALSE(cockpit.on_straight());
+  EXPECT_EQ(cockpit.detail(), ActivityDetail::range_reserve);
 }
 
 TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
@@ -255,6 +258,7 @@ TEST(TrackAgent, OnItsWayHomeByOrderItTakesUpTheWayThatIsPlannedWithTheOthers) {
   home.kind = CommandKind::return_home;
   cockpit.tell(home);
   EXPECT_GT(cockpit.plan->number, number);
+  EXPECT_EQ(cockpit.detail(), ActivityDetail::returning);
   way_from(5.0);
   cockpit.tell(way);
   const Instant later = way.timed.start_time + std::chrono::seconds{10};

@@ -244,6 +244,26 @@ TEST(Server, AReplayThatJumpsBackSendsTheEventsAnew) {
   EXPECT_EQ(page.read("events")["events"][0]["seq"], 1);
 }
 
+TEST(Server, ItsLastWordsComeAfterTheNewestOfEverything) {
+  auto station = std::make_unique<Station>();
+  Page page{*station};
+  page.resume();
+  EXPECT_FALSE(page.read("history").is_null());
+  station->server().append({R"({"seq":0})"});
+  Sections sections;
+  sections[0] = "[1]";
+  station->server().publish(45.0, sections);
+  station->server().end(45.0, "1 of 1 sites done\n");
+  station.reset();
+  EXPECT_EQ(Json::parse(page.read())["type"], "events");
+  EXPECT_EQ(Json::parse(page.read())["vehicles"], Json::parse("[1]"));
+  const Json last = Json::parse(page.read());
+  EXPECT_EQ(last["type"], "ended");
+  EXPECT_EQ(last["time_s"], 45.0);
+  EXPECT_EQ(last["text"], "1 of 1 sites done\n");
+  EXPECT_EQ(page.read(), "");
+}
+
 TEST(Server, PassesLinesOnAndAnswers) {
   const Station station;
   Page page{station};

@@ -60,7 +60,9 @@ struct Facts {
 
 class Watch {
  public:
-  explicit Watch(const TeamMission& team) : origin_{*MissionOrigin::make({47.0, 8.0, 500.0})} {
+  /// `late`: what telemetry, and what reliable messages, may take.
+  explicit Watch(const TeamMission& team, Duration late = kLate, Duration word_late = kWordLate)
+      : late_{late}, word_late_{word_late}, origin_{*MissionOrigin::make({47.0, 8.0, 500.0})} {
     console::PictureParams params;
     for (const auto& v : team.vehicles) params.expected.push_back(v.spec.id);
     picture_.emplace(params);
@@ -140,7 +142,7 @@ class Watch {
         const bool is_marked = marks.find("silent for") != std::string::npos;
         marked += is_marked ? 1 : 0;
         EXPECT_FALSE(is_marked && !own.ended) << marks;
-        EXPECT_FALSE(!is_marked && own.ended && now > *own.ended + kSilence + kLate)
+        EXPECT_FALSE(!is_marked && own.ended && now > *own.ended + kSilence + late_)
             << "vehicle " << delivery["vehicle"] << " is silent at " << to_seconds(now);
       }
       for (const Json& missing : request["missing"]) {
@@ -167,12 +169,12 @@ class Watch {
                           std::string{to_string(mission::shown_state(word.telemetry->activity,
                                                                      word.telemetry->detail))},
                           text_of(word.telemetry->task)});
-    while (now - own.lately.front().at > kLate) own.lately.pop_front();
+    while (now - own.lately.front().at > late_) own.lately.pop_front();
   }
 
   void judge_state(VehicleId id, const std::string& state, Instant now) {
     const Own& own = own_[id];
-    const bool is_gone = own.ended && now > *own.ended + kSilence + kLate;
+    const bool is_gone = own.ended && now > *own.ended + kSilence + late_;
     if (state == "silent") {
       EXPECT_TRUE(own.ended) << id.value << " is heard at " << to_seconds(now);
     } else {
@@ -201,7 +203,7 @@ class Watch {
     auto& since = wrong_since_[{id.value, what}];
     if (!wrong) since.reset();
     if (wrong && !since) since = now;
-    EXPECT_FALSE(since && now - *since > kWordLate)
+    EXPECT_FALSE(since && now - *since > word_late_)
         << id.value << ", " << what << ": not so since " << to_seconds(*since);
   }
 
@@ -245,6 +247,8 @@ class Watch {
     }
   }
 
+  Duration late_;
+  Duration word_late_;
   MissionOrigin origin_;
   std::optional<console::Picture> picture_;
   std::map<VehicleId, Own> own_;
@@ -370,6 +374,22 @@ TEST(PictureRuns, ACardSaysWhatIsMissingAndWhy) {
   EXPECT_TRUE(watch.did_not_bid[6].contains("not enough range left"))
       << ::testing::PrintToString(watch.did_not_bid);
   EXPECT_FALSE(watch.did_not_bid[3].empty());
+}
+
+TEST(PictureRuns, AlsoWhereTheRadioLosesAThird) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    TeamMission team = scenario("coalition-6");
+    team.seed = seed;
+    team.faults.push_back({{}, {}, radio::Disturbance{.loss = 0.3}});
+    order(team, 20.0, 5, CommandKind::hold);
+    order(team, 30.0, 2, CommandKind::return_home);
+    goes_on_for(team, 80.0);
+    Watch watch{team, std::chrono::seconds{2}, std::chrono::seconds{4}};
+    (void)simulate_team(team, watch.observer());
+    EXPECT_TRUE(watch.seen_of[2].contains("returning"));
+    EXPECT_TRUE(watch.seen_of[5].contains("holding_by_order"));
+  }
 }
 
 TEST(PictureRuns, FromTheGroundToTheGround) {
