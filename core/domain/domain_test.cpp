@@ -190,6 +190,8 @@ TEST(SetDown, ACopterIsLedDownWithoutAStepAndStopsAboveTheGround) {
     EXPECT_LE(std::abs(led.rate_mps - before.rate_mps), 0.7 * kStep_s) << "at 0.67 m/s^2";
     before = led;
   }
+  EXPECT_DOUBLE_EQ(led_down({3.0, kRate_mps, 0.0}, 3.0).height_m, 3.0) << "no step up, either";
+  EXPECT_DOUBLE_EQ(led_down({0.0, 0.0, 0.0}, 3.0).height_m, 1.5);
   EXPECT_DOUBLE_EQ(led_down({0.0, 0.0, 0.0}).height_m, kSetDownFrom_m);
   EXPECT_DOUBLE_EQ(led_down({-1.0, kRate_mps, 0.0}).rate_mps, 0.0);
 }

@@ -27,6 +27,7 @@ constexpr double kStepM = 1.0;
 /// A turn that keeps less than this from a hazard counts as none that misses it.
 constexpr double kEdgeM = 5.0;
 constexpr double kRoundingM = 1e-6;
+constexpr Duration kTriesHomeAgain = std::chrono::seconds{10};
 
 /// Is the vehicle outside all hazards, and headed so that it need not enter one? A hazard that is
 /// two radii away is missed by a turn.
@@ -352,9 +353,11 @@ void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double 
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
-  follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
+  const bool reaches =
+      follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
   searching_ = false;
   homing_ = true;
+  tries_home_at_ = reaches ? Instant::max() : now + kTriesHomeAgain;
   search_marks_.clear();
 }
 
@@ -365,6 +368,7 @@ bool Flight::return_along(const TimedPath& way, Instant now) {
                                            Pace{way.speed_mps});
   if (!follows) return false;
   homing_ = true;
+  tries_home_at_ = Instant::max();
   search_marks_.clear();
   return true;
 }
@@ -399,6 +403,15 @@ std::optional<FenceWay> Flight::way_to(const Pose2& from, const Vec2& point,
                                        const std::vector<Hazard>& hazards) const {
   std::vector<Vec2> points = corners_between(fence_, from.position(), point);
   points.push_back(point);
+  auto way = way_over(points, from, next, hazards);
+  // A hazard may lie where a corner would be passed.
+  if (!way && points.size() > 1) way = way_over({point}, from, next, hazards);
+  return way;
+}
+
+std::optional<FenceWay> Flight::way_over(const std::vector<Vec2>& points, const Pose2& from,
+                                         const std::optional<Vec2>& next,
+                                         const std::vector<Hazard>& hazards) const {
   FenceWay all{{from, {}}, from, kFenceRoom_m};
   for (std::size_t i = 0; i < points.size(); ++i) {
     // Each point is passed in the direction between those of arriving and leaving.
@@ -426,10 +439,11 @@ bool Flight::stays_in(const FenceWay& way) const {
          fence_room_m(fence_, way.path.start, vehicle_.planning_radius_m()) < 0.0;
 }
 
-void Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
+bool Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
                     const std::vector<Hazard>& hazards, double range_m, Instant now) {
   Path route = forced_way(pose_at(at), hazards);
   const bool homeward = std::isinf(range_m);
+  bool reaches_last = false;
   std::vector<double> marks;
   Pose2 from = route.end();
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
@@ -446,12 +460,14 @@ void Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
     if (!route.append(leg->path)) break;
     marks.push_back(route.length_m());
     from = leg->end;
+    reaches_last = i + 1 == waypoints.size();
   }
   const double tail = append_hold(route, hazards);
-  if (!continue_with(at, route, tail, now)) return;
+  if (!continue_with(at, route, tail, now)) return false;
   const double lead = plan_.timed.path.length_m() - route.length_m();
   search_marks_.clear();
   for (const double mark : marks) search_marks_.push_back(lead + mark);
+  return reaches_last;
 }
 
 std::optional<FlightPlan> Flight::poll_plan() {

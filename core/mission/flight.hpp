@@ -82,7 +82,12 @@ class Flight {
   [[nodiscard]] const Pose2& first_pose() const { return first_pose_; }
   [[nodiscard]] Vec2 home() const { return first_pose_.position(); }
   /// It is in its orbit at home.
-  [[nodiscard]] bool at_home(Instant t) const { return homing_ && t >= plan_.timed.end_time(); }
+  [[nodiscard]] bool at_home(Instant t) const {
+    return homing_ && tries_home_at_ == Instant::max() && t >= plan_.timed.end_time();
+  }
+  /// When fly_home() is to be tried again, as hazards have left no way: where it is, it orbits
+  /// until then.
+  [[nodiscard]] Instant tries_home_at() const { return tries_home_at_; }
   /// The same plan, from which it lands.
   void land(const Landing& landing);
   [[nodiscard]] bool landing() const { return plan_.lands; }
@@ -136,11 +141,16 @@ class Flight {
   [[nodiscard]] std::optional<FenceWay> way_to(const Pose2& from, const Vec2& point,
                                                const std::optional<Vec2>& next,
                                                const std::vector<Hazard>& hazards) const;
+  /// The same over these points.
+  [[nodiscard]] std::optional<FenceWay> way_over(const std::vector<Vec2>& points, const Pose2& from,
+                                                 const std::optional<Vec2>& next,
+                                                 const std::vector<Hazard>& hazards) const;
   [[nodiscard]] bool stays_in(const FenceWay& way) const;
   // The new path takes over from the present plan at `at`.
   void hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now);
   void search_from(Instant at, const std::vector<Hazard>& hazards, double range_m, Instant now);
-  void follow(Instant at, const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
+  /// Whether it leads to the last of them.
+  bool follow(Instant at, const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
               double range_m, Instant now);
   /// The present plan until `way` begins, then `way` at its own times, with which others count: in
   /// the wind that it was planned with; where with none, over the ground, from the present plan's
@@ -165,6 +175,7 @@ class Flight {
   FlightPlan plan_;
   bool searching_ = false;
   bool homing_ = false;
+  Instant tries_home_at_ = Instant::max();
   std::optional<SiteId> stands_by_;
   bool en_route_ = false;
   bool fresh_ = false;

@@ -165,5 +165,23 @@ TEST(Flight, AWayHomeIsFlownAtItsOwnTimesAlsoInWind) {
   EXPECT_TRUE(flight.plan().timed.has_wind()) << "its hold is flown at one airspeed";
 }
 
+TEST(Flight, IsAtHomeOnlyWhereAWayHasLedThereAndTriesAgain) {
+  Flight flight{vehicle_with(Recovery::home), {}, {{3000.0, 0.0}, {6000.0, 0.0}}};
+  flight.start({0.0, 0.0, 0.0}, {}, 1e6, Instant{});
+  const Instant out = Instant{} + 60s;
+  const std::vector<Hazard> over_home{{HazardId{1}, {0.0, 0.0}, 500.0}};
+  flight.fly_home(over_home, out);
+  EXPECT_TRUE(flight.homing());
+  EXPECT_FALSE(flight.at_home(out + 600s)) << "it orbits where it is";
+  const Instant again = flight.tries_home_at();
+  ASSERT_GT(again, out);
+  ASSERT_LT(again, out + 60s);
+  flight.fly_home({}, again);
+  EXPECT_EQ(flight.tries_home_at(), Instant::max());
+  EXPECT_FALSE(flight.at_home(again + 10s));
+  EXPECT_TRUE(flight.at_home(again + 600s));
+  EXPECT_LT((flight.pose_at(again + 600s).position() - flight.home()).norm(), 400.0);
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -507,6 +507,10 @@ void FormationGround::correct_drift(Instant now) {
       drifting.push_back(vehicle);
       const Vec3 trim = shortened(Vec3{member.trim_m + member.drift_m}, kTrimMax_m);
       transfer.to += trim - member.trim_m;
+      // A place at the edge of the fence is not corrected beyond it.
+      if (config_.fence.exists() && config_.fence.inside_m(transfer.to.head<2>()) < 0.0) {
+        transfer.to = *goal;
+      }
     }
     transfers.push_back(transfer);
   }

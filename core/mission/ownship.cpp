@@ -113,7 +113,7 @@ void Ownship::use_load() {
 void Ownship::come_home(Instant now) {
   if (!comes_home()) {
     hold(now);
-  } else if (!flight_.homing()) {
+  } else if (!flight_.homing() || now >= flight_.tries_home_at()) {
     fly_home(now);
   }
 }

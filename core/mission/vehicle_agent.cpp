@@ -193,7 +193,8 @@ Instant VehicleAgent::Impl::idle_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   if (!flyer_.free() || flight.en_route(now)) return kNever;
   if (failsafe_.in(Failsafe::Action::come_home)) {
-    return !ownship_.comes_home() || flight.homing() ? kNever : now;
+    if (!ownship_.comes_home()) return kNever;
+    return flight.homing() ? flight.tries_home_at() : now;
   }
   if (!failsafe_.in(Failsafe::Action::none)) return flight.searching() ? kNever : now;
   const Instant next = std::min(scout_.takes_up_at(), relay_.flies_at());

@@ -31,7 +31,9 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
-constexpr double kSinks_mps = 0.2;                   ///< a point that does so faster comes down
+constexpr double kSinks_mps = 0.2;  ///< a point that does so faster comes down
+constexpr double kBend_m = 2.0 * kSetDownFrom_m;
+constexpr double kBendLeast_m = 2.0;
 constexpr Duration kStillSinks = milliseconds{500};  ///< while it slows down
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
@@ -353,9 +355,12 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
     return fire(Event::may_land, now);
   }
   Climb led{point.z_m - home_z_m, point.vz_mps, point.az_mps2};
-  if (point.vz_mps < -kSinks_mps || led.height_m <= kGround_m) sank_at_ = now;
-  if (sank_at_ && now - *sank_at_ < kStillSinks && point.vz_mps <= kSinks_mps) {
-    led = led_down(led);
+  const bool sank = sank_at_ && now - *sank_at_ < kStillSinks;
+  const bool sinks = point.vz_mps < -kSinks_mps;
+  if (sinks && !sank) sinks_from_m_ = std::clamp(led.height_m, kBendLeast_m, kBend_m);
+  if (sinks || led.height_m <= kGround_m) sank_at_ = now;
+  if (sank_at_ == now || (sank && point.vz_mps <= kSinks_mps)) {
+    led = led_down(led, sinks_from_m_);
   } else if (led.height_m < kHoverFrom_m) {
     led = {.height_m = kHoverFrom_m};
   }
@@ -495,7 +500,7 @@ void Companion::Impl::begin_climb(Instant now) {
 /// A plane is taken over a little below its take-off height, and before the mission nothing is
 /// commanded: in GUIDED it would stay so low, and begin its first plan there.
 void Companion::Impl::finish_climb() {
-  if (traits_.flies_to_points) return;
+  if (traits_.flies_to_points || traits_.hovers_first) return;
   ask(command_of(Command::do_change_altitude, params_.takeoff_height_m,
                  static_cast<double>(mavlink::Frame::global_relative_alt)),
       {}, true);
@@ -514,7 +519,11 @@ void Companion::Impl::leave_hover(Instant now) {
   constexpr double kNoSpeed = -1.0;
   constexpr double kWithoutChangeOfMode = 0.0;
   mavlink::CommandLong place = command_of(Command::do_reposition, kNoSpeed, kWithoutChangeOfMode);
-  place.param7 = static_cast<float>(motion_.relative_height_m());
+  // Its height is that of the place from now on, until another is asked for.
+  place.param7 =
+      static_cast<float>(std::max(motion_.relative_height_m(), params_.takeoff_height_m));
+  height_sent_.reset();
+  height_at_.reset();
   ask(place, {}, true);
 }
 
@@ -573,6 +582,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
     case State::flying:
       on_ground_since_.reset();
       sank_at_.reset();
+      sinks_from_m_ = kBend_m;
       forget_landing();
       speed_sent_.reset();
       height_sent_.reset();

@@ -275,6 +275,7 @@ class Companion::Impl {
   Instant target_at_;
   std::optional<Instant> on_ground_since_;  ///< the point that is flown
   std::optional<Instant> sank_at_;          ///< likewise, last
+  double sinks_from_m_ = 0.0;               ///< likewise, above home, as far as it matters
   SteadyError height_error_{{}};
   std::optional<Instant> leaves_hover_since_;  ///< a quadplane was told to, and still hovers
   std::optional<Instant> hover_left_at_;       ///< when it was last told to

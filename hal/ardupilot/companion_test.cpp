@@ -243,10 +243,10 @@ TEST(Companion, TakesOffWhereAsked) {
   EXPECT_EQ(line.companion.state(), State::climbing);
   fc.landed = 2;
   fc.relative_height_m = 36.9;
+  line.commands = false;  // as before the mission
   line.run(2.0);
   EXPECT_EQ(line.companion.state(), State::climbing) << "it would begin its plan too low";
   fc.relative_height_m = 37.1;
-  line.commands = false;  // as before the mission
   line.until(State::flying, 3.0);
   EXPECT_EQ(fc.mode, 15U);
   line.run(0.5);

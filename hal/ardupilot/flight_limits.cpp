@@ -101,7 +101,8 @@ LimitFinding judge_vertical(const VehicleSpec& vehicle, const LimitParameter& pa
                       "set {} to {} or more, or cruise_speed_mps to {:g} or less",
                       parameter.name == kClimbSpeed.name ? "climbs" : "sinks", limit_mps,
                       vehicle.cruise_speed_mps, name,
-                      number(parameter, name, vehicle.cruise_speed_mps), limit_mps)};
+                      number(parameter, name, std::ceil(10.0 * vehicle.cruise_speed_mps) / 10.0),
+                      limit_mps)};
 }
 
 }  // namespace

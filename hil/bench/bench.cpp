@@ -259,9 +259,14 @@ class Bench {
            autopilots_.of(spec) != nullptr && external_.host_of(spec.id) == nullptr;
   }
 
-  /// A user's autopilot begins there, and a copter that flies in formation.
+  /// A user's autopilot begins there, and an emulated copter that flies in formation. When an
+  /// external host's own flight controller takes off is its crew's to say.
   [[nodiscard]] bool from_ground(const VehicleSpec& spec,
                                  const configuration::FlightControllerConfig& controller) const {
+    const auto* host = external_.host_of(spec.id);
+    if (host != nullptr && host->flight_controller == configuration::HostFlightController::own) {
+      return false;
+    }
     return user_flown(spec, controller) ||
            (controller.kind == configuration::FlightControllerKind::ardupilot &&
             configuration::flies_formation(spec));

@@ -142,7 +142,8 @@ Result<UserAutopilots> user_autopilots(const std::vector<std::string>& programs,
 }
 
 double climb_needed_mps(const VehicleSpec& copter) {
-  return kClimbReserve * copter.cruise_speed_mps;
+  constexpr double kLeast_mps = 1.0;
+  return std::max(kLeast_mps, kClimbReserve * copter.cruise_speed_mps);
 }
 
 std::string autopilot_parameters(const configuration::VehicleConfig& vehicle) {

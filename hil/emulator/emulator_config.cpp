@@ -21,8 +21,7 @@ double bank_of_circle(const EmulatorConfig& config) {
                    (kGravity_mps2 * config.turn_radius_m));
 }
 
-/// Its rotors lift more than twice its weight.
-constexpr double kCopterClimbMost_mps = 5.0;
+constexpr double kCopterClimbMost_mps = 12.0;
 
 Result<void> check_plane(const EmulatorConfig& c) {
   const PlaneAirframe* const found = airframe_for(c);

@@ -14,16 +14,17 @@ struct Climb {
   double acceleration_mps2 = 0.0;
 };
 
-/// Where a copter is led whose point sinks to the ground, by where that is above it: as the point
-/// down to twice kSetDownFrom_m, from there slower, and when the point is on the ground at rest in
-/// kSetDownFrom_m. A parabola of the point's height, which meets it without a step in the rate.
-[[nodiscard]] constexpr Climb led_down(const Climb& point) {
-  constexpr double kBend_m = 2.0 * kSetDownFrom_m;
-  if (point.height_m >= kBend_m) return point;
+/// Where a copter is led whose point sinks, by where that is above the ground: as the point down to
+/// `bend_m`, from there slower, and when the point is on the ground at rest in half of that. A
+/// parabola of the point's height, which meets it without a step in the rate. A point that stops
+/// above the ground, lower than the bend, is not quite reached: it is by bend / 8 at half of it.
+/// Precondition: bend_m > 0, the height from which the point sinks at most.
+[[nodiscard]] constexpr Climb led_down(const Climb& point, double bend_m = 2.0 * kSetDownFrom_m) {
+  if (point.height_m >= bend_m) return point;
   const double above_m = point.height_m > 0.0 ? point.height_m : 0.0;
-  const double slope = above_m / kBend_m;
-  return {kSetDownFrom_m + 0.5 * slope * above_m, slope * point.rate_mps,
-          slope * point.acceleration_mps2 + point.rate_mps * point.rate_mps / kBend_m};
+  const double slope = above_m / bend_m;
+  return {0.5 * bend_m + 0.5 * slope * above_m, slope * point.rate_mps,
+          slope * point.acceleration_mps2 + point.rate_mps * point.rate_mps / bend_m};
 }
 
 }  // namespace skein
