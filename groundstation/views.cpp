@@ -81,16 +81,20 @@ std::string sites_summary(const console::Picture& picture) {
     if (site.withdrawn || site.refused) {
       apart += fmt::format("site {} was {} by the operator\n", id.value,
                            site.withdrawn ? "withdrawn" : "refused");
-      continue;
+    } else {
+      ++sites.of;
+      sites.done += site.done ? 1 : 0;
     }
-    ++sites.of;
-    sites.done += site.done ? 1 : 0;
     if (!site.site) continue;
+    const bool closed = site.withdrawn || site.refused;
     for (const TaskId& task : tasks_after_survey(*site.site)) {
       Share& share = tasks.at(static_cast<std::size_t>(task.kind));
       const auto known = site.tasks.find(task);
-      ++share.of;
-      share.done += known != site.tasks.end() && known->second.state == coalition::TaskState::done;
+      const bool done =
+          known != site.tasks.end() && known->second.state == coalition::TaskState::done;
+      // Of a site that was closed what was flown before it was counts.
+      share.of += done || !closed ? 1 : 0;
+      share.done += done ? 1 : 0;
     }
   }
   if (sites.of == 0 && apart.empty()) return "";
@@ -103,7 +107,7 @@ std::string sites_summary(const console::Picture& picture) {
 }
 
 bool is_on_ground(const mission::Telemetry& told) {
-  return told.activity == mission::Activity::landed ||
+  return told.state.on_ground() || told.activity == mission::Activity::landed ||
          told.detail == mission::ActivityDetail::on_ground;
 }
 

@@ -136,16 +136,16 @@ void Picture::note_span(VehiclePicture& vehicle, const mission::Telemetry& telem
   const auto state = mission::shown_state(telemetry.activity, telemetry.detail);
   const auto task = told_task(telemetry);
   const auto site = task ? std::optional{task->first.site} : std::nullopt;
-  const auto begin = [&](mission::ShownState next, Instant from) {
+  const auto begin = [&](mission::ShownState next, Instant from, std::optional<SiteId> where) {
     if (vehicle.spans.size() >= params_.spans_max) vehicle.spans.erase(vehicle.spans.begin());
-    vehicle.spans.push_back({next, from, site});
+    vehicle.spans.push_back({next, from, where});
   };
   // What it did while it was not heard is not known.
   const bool was_silent = vehicle.heard_at && now >= *vehicle.heard_at + params_.silence;
-  if (was_silent) begin(mission::ShownState::silent, *vehicle.heard_at);
+  if (was_silent) begin(mission::ShownState::silent, *vehicle.heard_at, std::nullopt);
   vehicle.heard_at = now;
   if (vehicle.spans.empty() || vehicle.spans.back().state != state) {
-    begin(state, now);
+    begin(state, now, site);
   } else if (!vehicle.spans.back().site) {
     vehicle.spans.back().site = site;
   }

@@ -70,10 +70,6 @@ constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::size_t kNodesPerProcessor = 4;
 /// How long an external vehicle may be silent. On the bench a process that ends is seen at once.
 constexpr auto kExternalSilence = std::chrono::seconds{10};
-/// Where copters on autopilots await their formation's orders.
-constexpr double kHover_m = 5.0;
-/// What an emulated copter takes to boot, to be armed and to get there.
-constexpr double kEmulatedTakeOff_s = 25.0;
 /// What starting a vehicle takes on a machine that is busy with other things, and where Fast DDS
 /// has a process of its own.
 constexpr double kLead_s = 0.3;
@@ -231,17 +227,13 @@ class Bench {
     const double each_s = options_.dds && deployment.isolated ? kIsolatedLead_s : kLead_s;
     double lead_s = 3.0 + each_s * static_cast<double>(scenario_.vehicles.size());
     if (!external_.empty()) lead_s += kExternalLead_s;
-    double height_max_m = 0.0;
-    bool emulated = false;
+    double take_off_s = 0.0;
     for (const auto& vehicle : scenario_.vehicles) {
-      if (user_flown(vehicle.spec, vehicle.flight_controller)) {
-        height_max_m = std::max({height_max_m, vehicle.spec.height_m, kHover_m});
-      } else if (from_ground(vehicle.spec, vehicle.flight_controller)) {
-        emulated = true;
-      }
+      if (!from_ground(vehicle.spec, vehicle.flight_controller)) continue;
+      const bool emulated = !user_flown(vehicle.spec, vehicle.flight_controller);
+      take_off_s = std::max(take_off_s, take_off_lead_s(vehicle.spec, emulated));
     }
-    if (height_max_m > 0.0) return lead_s + autopilot_lead_s(height_max_m);
-    return emulated ? lead_s + kEmulatedTakeOff_s : lead_s;
+    return lead_s + take_off_s;
   }
 
   void begin_in(double lead_s, configuration::Deployment& deployment) {

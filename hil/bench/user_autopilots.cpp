@@ -33,6 +33,7 @@ constexpr auto kListen = std::chrono::seconds{1};
 constexpr auto kBoot = std::chrono::seconds{60};
 /// What a navigation filter takes until it can be armed, and the climb.
 constexpr double kReady_s = 60.0;
+constexpr double kEmulatedReady_s = 20.0;
 constexpr double kClimb_mps = 3.0;
 /// TKOFF_DIST: a plane that takes off waits so far ahead of where it stood.
 constexpr double kTakeoffDistance_m = 200.0;
@@ -272,7 +273,10 @@ Result<void> await_autopilot(const configuration::VehicleConfig& vehicle, ChildP
                   log.string())};
 }
 
-double autopilot_lead_s(double height_max_m) { return kReady_s + height_max_m / kClimb_mps; }
+double take_off_lead_s(const VehicleSpec& vehicle, bool emulated) {
+  const double ready_s = emulated ? kEmulatedReady_s : kReady_s;
+  return ready_s + std::max(vehicle.height_m, kHover_m) / kClimb_mps;
+}
 
 Result<void> keep_autopilots_on_loopback(bool reached) {
   if (bus_is_on_loopback()) return {};

@@ -57,7 +57,10 @@ struct UserAutopilots {
 [[nodiscard]] Result<void> await_autopilot(const configuration::VehicleConfig& vehicle,
                                            ChildProcess& started, const std::filesystem::path& log);
 
-/// From when the last has booted until all are in the air at their heights.
-[[nodiscard]] double autopilot_lead_s(double height_max_m);
+/// Where copters on autopilots await their formation's orders.
+inline constexpr double kHover_m = 5.0;
+/// What a vehicle that begins on the ground takes until it is in the air at its height: a user's
+/// autopilot from when the last of them has booted, an emulated one from its start.
+[[nodiscard]] double take_off_lead_s(const VehicleSpec& vehicle, bool emulated);
 
 }  // namespace skein::hil

@@ -121,13 +121,18 @@ function paint_axis(view: TimelineView, at: (time_s: number) => number): void {
   }
 }
 
+/** Without the ground station a state lasts until it was last told. */
+function known_until(view: TimelineView): string {
+  return view.now_s - view.known_s < 1 ? "now" : `${clock(view.known_s)}, not known since`;
+}
+
 /** What is under the pointer, in words. */
 export function span_text(view: TimelineView, picture: Picture, x: number, y: number, time_s: number): string | null {
   const line = picture.timeline[Math.floor((y - axis_px + view.scroll) / row_px)];
   if (!line || x < names_px || y < axis_px) return null;
-  const span = line.spans.find(([, from_s, to_s]) => from_s <= time_s && time_s < (to_s ?? view.now_s));
+  const span = line.spans.find(([, from_s, to_s]) => from_s <= time_s && time_s < (to_s ?? view.known_s));
   if (!span) return `Vehicle ${line.id}`;
   const [state, from_s, to_s, site] = span;
   const where = site === null ? "" : `, site ${site}`;
-  return `Vehicle ${line.id}: ${words(state)}${where}, ${clock(from_s)} – ${to_s === null ? "now" : clock(to_s)}`;
+  return `Vehicle ${line.id}: ${words(state)}${where}, ${clock(from_s)} – ${to_s === null ? known_until(view) : clock(to_s)}`;
 }
