@@ -107,8 +107,9 @@ std::string sites_summary(const console::Picture& picture) {
 }
 
 bool is_on_ground(const mission::Telemetry& told) {
-  return told.state.on_ground() || told.activity == mission::Activity::landed ||
-         told.detail == mission::ActivityDetail::on_ground;
+  if (told.state.on_ground()) return true;
+  const auto state = mission::shown_state(told.activity, told.detail);
+  return state == mission::ShownState::landed || state == mission::ShownState::on_the_ground;
 }
 
 std::string vehicles_summary(const mission::Fleet& fleet) {

@@ -55,7 +55,7 @@ std::string words_of(ShownState state) {
   return words;
 }
 
-ShownState shown_state(Activity activity, ActivityDetail detail) {
+ShownState shown_state(Activity activity, ActivityDetail in_detail) {
   // In the order of ActivityDetail, from the one after `none` on.
   static constexpr std::array kStates{ShownState::on_the_ground,
                                       ShownState::waiting_for_the_start,
@@ -72,8 +72,8 @@ ShownState shown_state(Activity activity, ActivityDetail detail) {
                                       ShownState::back_into_its_fence,
                                       ShownState::not_worked_with};
   static_assert(kStates.size() + 1 == static_cast<std::size_t>(ActivityDetail::count));
-  if (detail == ActivityDetail::none) return of_activity(activity);
-  return kStates.at(static_cast<std::size_t>(detail) - 1);
+  if (in_detail == ActivityDetail::none) return of_activity(activity);
+  return kStates.at(static_cast<std::size_t>(in_detail) - 1);
 }
 
 }  // namespace skein::mission

@@ -9,6 +9,7 @@
 #include "self_report.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/mission/order_book.hpp"
+#include "skein/mission/shown_state.hpp"
 #include "told_book.hpp"
 
 namespace skein::mission {
@@ -253,7 +254,8 @@ class VehicleNode::Impl {
       Telemetry telemetry = agent->telemetry();
       telemetry.state = *state;
       // Before mission time 0 the agent has seen no state.
-      if (telemetry.detail == ActivityDetail::not_begun && state->on_ground()) {
+      const auto shown = shown_state(telemetry.activity, telemetry.detail);
+      if (shown == ShownState::waiting_for_the_start && state->on_ground()) {
         telemetry.detail = ActivityDetail::on_ground;
       }
       telemetry.control_overruns = static_cast<std::uint32_t>(condition.overruns);

@@ -16,6 +16,7 @@ namespace {
 using mission::AuthorisationRequest;
 using mission::Delivery;
 using mission::FleetEntry;
+using mission::ShownState;
 
 /// Less than that over the site is little.
 constexpr double kRangeOverSite_m = 2000.0;
@@ -25,6 +26,10 @@ constexpr double kLate_s = 2.0;
 /// Nobody is faster than that times the speed that it has bid.
 constexpr double kHurry = 1.2;
 constexpr double kSameTime_s = 0.05;
+
+ShownState state_of(const mission::Telemetry& told) {
+  return mission::shown_state(told.activity, told.detail);
+}
 
 const FleetEntry* entry_of(const mission::Fleet& fleet, VehicleId vehicle) {
   const auto known = fleet.vehicles().find(vehicle);
@@ -67,7 +72,7 @@ std::vector<Mark> marks_of(const FleetEntry* entry, Instant now) {
 /// It cannot be there in time: by the straight way, at the speed that it has bid.
 std::optional<Mark> late_mark(const Delivery& delivery, const mission::Telemetry& told,
                               double distance_m, double speed_mps) {
-  if (told.detail == mission::ActivityDetail::late) {
+  if (state_of(told) == ShownState::too_late_for_its_task) {
     return Mark{true, "late: the time of its task has passed"};
   }
   if (speed_mps <= 0.0) return std::nullopt;
@@ -78,7 +83,7 @@ std::optional<Mark> late_mark(const Delivery& delivery, const mission::Telemetry
 }
 
 std::optional<Mark> range_mark(const mission::Telemetry& told, double distance_m) {
-  if (told.detail == mission::ActivityDetail::range_reserve) {
+  if (state_of(told) == ShownState::range_reserve) {
     return Mark{true, "its range is used up, but for the way home"};
   }
   if (told.range_left_m < 0.0) return Mark{true, "its range is overdrawn"};
@@ -93,8 +98,7 @@ std::optional<Mark> other_task_mark(const Delivery& delivery, const mission::Tel
   const bool tells = told.task.site != SiteId{} || told.activity != mission::Activity::executing;
   const bool is_old = told.state.time < asked_at + kNewsMayTake;
   if (!tells || is_old || told.task == delivery.assignment.task) return std::nullopt;
-  return Mark{true, "does not have this delivery any more: " +
-                        words_of(mission::shown_state(told.activity, told.detail))};
+  return Mark{true, "does not have this delivery any more: " + words_of(state_of(told))};
 }
 
 std::vector<Mark> marks_of(const Delivery& delivery, const AuthorisationRequest& request,
@@ -195,9 +199,9 @@ std::string why_no_bid(VehicleId vehicle, const FleetEntry& entry, const RoundPi
   if (told.task.site != SiteId{} && told.task.site != request.site) {
     return "it has " + to_string(told.task);
   }
-  const auto state = mission::shown_state(told.activity, told.detail);
-  return state == mission::ShownState::searching ? "no bid of it was heard"
-                                                 : "no bid of it was heard: " + words_of(state);
+  const ShownState state = state_of(told);
+  return state == ShownState::searching ? "no bid of it was heard"
+                                        : "no bid of it was heard: " + words_of(state);
 }
 
 void add_missing(AuthorisationCard& card, const AuthorisationRequest& request,

@@ -46,6 +46,6 @@ enum class ShownState : std::uint8_t {
 [[nodiscard]] std::string words_of(ShownState state);
 
 /// As a vehicle has told it last.
-[[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail detail);
+[[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail in_detail);
 
 }  // namespace skein::mission
