@@ -90,16 +90,14 @@ void TaskFlyer::answer_call(const coalition::Announcement& announcement, Reason 
   } else {
     const auto reason = std::get<Reason>(answer);
     outbox_.report(event::BidDeclined{{reason}}, announcement.round, about, now);
-    declined_ = {announcement.site.id, announcement.round.number, reason, now};
+    declined_ = {{announcement.round, reason}, now};
     participant_.decline(announcement);
   }
 }
 
 void TaskFlyer::tell_declined(Telemetry& telemetry, Instant now) const {
   if (!declined_ || now > declined_->at + kDeclinedFor) return;
-  telemetry.declined_site = declined_->site;
-  telemetry.declined_round = declined_->round;
-  telemetry.declined_why = declined_->why;
+  telemetry.declined = declined_->call;
 }
 
 std::variant<coalition::Bid, Reason> TaskFlyer::make_bid(

@@ -94,9 +94,7 @@ class TaskFlyer {
   Participant participant_;
   std::optional<TaskFlight> task_;
   struct Declined {
-    SiteId site;
-    std::uint32_t round = 0;
-    coalition::Reason why{};
+    DeclinedCall call;
     Instant at{};
   };
   std::optional<Declined> declined_;  ///< the newest call

@@ -167,15 +167,15 @@ void Picture::note_own_word(const mission::Telemetry& telemetry) {
 }
 
 void Picture::note_declined(const mission::Telemetry& telemetry) {
-  if (telemetry.declined_site == SiteId{}) return;
-  for (auto it = coalitions_.rbegin(); it != coalitions_.rend(); ++it) {
-    CoalitionPicture& coalition = it->second;
-    if (coalition.site != telemetry.declined_site) continue;
+  const mission::DeclinedCall& declined = telemetry.declined;
+  if (declined.why == coalition::Reason::none) return;
+  for (auto& [id, coalition] : coalitions_) {
+    if (id != declined.round.coalition) continue;
     for (RoundPicture& round : coalition.rounds) {
       const bool has_bid = std::ranges::any_of(
           round.bids, [&](const auto& bid) { return bid.bidder == telemetry.vehicle; });
-      if (round.number != telemetry.declined_round || has_bid) continue;
-      round.declined[telemetry.vehicle] = {telemetry.declined_why, {}, {}};
+      if (round.number != declined.round.number || has_bid) continue;
+      round.declined[telemetry.vehicle] = {declined.why, {}, {}};
       return;
     }
   }

@@ -383,9 +383,7 @@ TEST(AuthorisationCard, SaysWhatIsMissingAndWhyAndWhatHasChanged) {
     told.loads = 1;
     told.range_left_m = 9000.0;
     if (id == 3) {
-      told.declined_site = {4};
-      told.declined_round = 1;
-      told.declined_why = coalition::Reason::out_of_range;
+      told.declined = {kRound, coalition::Reason::out_of_range};
     }
     desk.hear(told, {id}, 10.6);
   }

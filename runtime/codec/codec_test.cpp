@@ -186,7 +186,7 @@ TEST(Codec, WhatAnOlderReleaseSaysIsNotWithdrawnAndMayHaveAnyCapability) {
     EXPECT_EQ(telemetry.capabilities.bits(), 7);
     EXPECT_EQ(telemetry.detail, mission::ActivityDetail::none);
     EXPECT_EQ(telemetry.task.site, SiteId{});
-    EXPECT_EQ(telemetry.declined_site, SiteId{});
+    EXPECT_EQ(telemetry.declined.why, coalition::Reason::none);
   });
 }
 

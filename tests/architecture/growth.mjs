@@ -67,8 +67,8 @@ try {
 check(refused.includes('what is appended stands at the end'), `not refused: ${refused}`)
 
 edit(join(after, 'idl/mission.idl'), '  @appended @default(42) unsigned long added;\n', '')
-edit(join(after, 'idl/mission.idl'), '  @appended @default(7) Capabilities capabilities;  // for sites; an older release may have any\n',
-  '  @appended @default(7) Capabilities capabilities;\n  @appended @default(42) unsigned long added;\n')
+edit(join(after, 'idl/mission.idl'), '  @appended @default(0) DeclinedCall declined;\n',
+  '  @appended @default(0) DeclinedCall declined;\n  @appended @default(42) unsigned long added;\n')
 edit(join(after, 'idl/domain.idl'), '  Amount reward_decay_per_s;    // beta (eq. 9)\n',
   '  Amount reward_decay_per_s;\n  @appended @default(TRUE) boolean charted;\n')
 edit(join(after, 'idl/coalition.idl'), '  Instant time_ns;  // when it came into that state\n',
