@@ -18,6 +18,7 @@
 #include "skein/codec/json_text.hpp"
 #include "skein/configuration/setup_params.hpp"
 #include "skein/console/team_preflight.hpp"
+#include "skein/groundstation/agency_desk.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -196,6 +197,7 @@ class GroundLoop {
         routes_{node},
         control_{std::move(control)},
         console_{std::move(console)},
+        agencies_{config, origin},
         audit_{std::move(audit)},
         recording_folder_{config.recording_folder},
         among_machines_{process::among_machines(config.network)} {}
@@ -208,6 +210,9 @@ class GroundLoop {
       const Instant now = clock_.now();
       process::log_troubles(network_);
       take_lines(prompt, now);
+      while (const auto marker = agencies_.next_marker(now)) {
+        node_.propose_from_outside(*marker, now);
+      }
       if (speak_.exchange(false)) {
         node_.speak();
         take_revocations(now);
@@ -489,6 +494,7 @@ class GroundLoop {
       tell_of(*event);
     }
     console_.on_timeout(node_.fleet(), audit_.json(), now);
+    agencies_.on_timeout(console_.picture(), node_.fleet(), now);
     for (const auto& pending : node_.agent().authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
       if (!shown_.emplace(pending.request.site, pending.request.round).second) continue;
@@ -532,6 +538,7 @@ class GroundLoop {
     process::log_event(event);
     recorder_.write(event);
     console_.on_event(event);
+    agencies_.on_event(event);
   }
 
   [[nodiscard]] bool is_scripted(SiteId site) const {
@@ -557,6 +564,7 @@ class GroundLoop {
   RouteDesk routes_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
+  AgencyDesk agencies_;
   Audit audit_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
   Instant next_flush_{Instant::min()};

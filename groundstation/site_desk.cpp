@@ -271,8 +271,9 @@ std::string SiteDesk::proposals_text() const {
                    "proposal {}: {}, {:.0f} %, {} of {}\n  {}\n  accept {}    or    dismiss {}\n",
                    number, to_string(seen.kind), 100.0 * seen.confidence,
                    seen.detector.empty() ? "a detector" : seen.detector,
-                   wording::text_of(seen.vehicle), place_text(seen.position, origin_), number,
-                   number);
+                   seen.vehicle == kGroundStation ? "another agency"
+                                                  : wording::text_of(seen.vehicle),
+                   place_text(seen.position, origin_), number, number);
   }
   return text.empty() ? "detectors have proposed nothing that waits for you\n" : text;
 }

@@ -253,24 +253,27 @@ std::string summary_text(const console::Picture& picture, const mission::Fleet& 
   return sites_summary(picture) + vehicles_summary(fleet);
 }
 
+std::string site_state_text(const console::SitePicture& site) {
+  std::array<std::size_t, 3> done{};
+  for (const auto& [task, of] : site.tasks) {
+    done.at(static_cast<std::size_t>(task.kind)) += of.state == coalition::TaskState::done ? 1 : 0;
+  }
+  return fmt::format("{}, {}, {} delivered, {} assessed",
+                     site.withdrawn  ? "withdrawn"
+                     : site.refused  ? "refused by the operator"
+                     : site.done     ? "done"
+                     : site.leader   ? "led by " + wording::text_of(*site.leader)
+                     : site.surveyor ? "told to " + wording::text_of(*site.surveyor)
+                                     : "no leader yet",
+                     site.surveyed ? "surveyed" : "not surveyed",
+                     done[static_cast<std::size_t>(TaskKind::deliver)],
+                     done[static_cast<std::size_t>(TaskKind::assess)]);
+}
+
 std::string sites_text(const console::Picture& picture) {
   std::string text;
   for (const auto& [id, site] : picture.sites()) {
-    std::array<std::size_t, 3> done{};
-    for (const auto& [task, of] : site.tasks) {
-      done.at(static_cast<std::size_t>(task.kind)) +=
-          of.state == coalition::TaskState::done ? 1 : 0;
-    }
-    fmt::format_to(std::back_inserter(text), "site {}: {}, {}, {} delivered, {} assessed", id.value,
-                   site.withdrawn  ? "withdrawn"
-                   : site.refused  ? "refused by the operator"
-                   : site.done     ? "done"
-                   : site.leader   ? "led by " + wording::text_of(*site.leader)
-                   : site.surveyor ? "told to " + wording::text_of(*site.surveyor)
-                                   : "no leader yet",
-                   site.surveyed ? "surveyed" : "not surveyed",
-                   done[static_cast<std::size_t>(TaskKind::deliver)],
-                   done[static_cast<std::size_t>(TaskKind::assess)]);
+    fmt::format_to(std::back_inserter(text), "site {}: {}", id.value, site_state_text(site));
     if (site.news) {
       fmt::format_to(std::back_inserter(text), "; {:.1f} s {}", to_seconds(site.news->time),
                      wording::text_of(*site.news));

@@ -32,6 +32,20 @@ std::optional<Site> GroundDetections::on_message(const Message& message, const G
   return std::nullopt;
 }
 
+bool GroundDetections::propose_from_outside(Detection detection, const GroundSites& sites,
+                                            Instant now) {
+  detection.vehicle = kGroundStation;
+  if (is_known(detection.position, sites) || is_proposed(detection.position)) return false;
+  const auto waiting = std::ranges::count_if(proposals_, [](const auto& known) {
+    return known.second.state == Proposal::State::open &&
+           known.second.detection.vehicle == kGroundStation;
+  });
+  const bool full = static_cast<std::size_t>(waiting) >= kOutsideMax;
+  const std::uint32_t number = full ? 0 : propose(detection);
+  if (number > 0) report(number, now);
+  return number > 0;
+}
+
 void GroundDetections::on_timeout(Instant now) {
   if (!recalled_) return;
   recalled_ = false;

@@ -38,6 +38,24 @@ struct GroundDetectionsTest : ::testing::Test {
   GroundDetections detections{config(false)};
 };
 
+TEST_F(GroundDetectionsTest, WhatComesFromOutsideTheTeamIsProposedInEveryMode) {
+  GroundDetections takes{config(true)};
+  EXPECT_TRUE(takes.propose_from_outside(seen(100.0), sites, at_seconds(10.0)));
+  EXPECT_FALSE(takes.propose_from_outside(seen(105.0), sites, at_seconds(10.0)))
+      << "the same place";
+  ASSERT_EQ(takes.proposals().size(), 1U);
+  EXPECT_EQ(takes.proposals().at(1).detection.vehicle, kGroundStation);
+  EXPECT_EQ(takes.proposals().at(1).state, Proposal::State::open);
+  std::size_t proposed = 1;
+  for (int i = 0; i < 100; ++i) {
+    proposed +=
+        takes.propose_from_outside(seen(1000.0 + 100.0 * i), sites, at_seconds(11.0)) ? 1 : 0;
+  }
+  EXPECT_EQ(proposed, GroundDetections::kOutsideMax) << "the others' room is kept";
+  ASSERT_TRUE(takes.answer(1, false, "ada", at_seconds(12.0)).ok());
+  EXPECT_TRUE(takes.propose_from_outside(seen(-1000.0), sites, at_seconds(13.0)));
+}
+
 TEST_F(GroundDetectionsTest, OnePlaceIsProposedOnceWhoeverSeesIt) {
   EXPECT_FALSE(hear(seen(100.0)));
   EXPECT_FALSE(hear(seen(100.0)));

@@ -23,9 +23,12 @@ void set(pugi::xml_node node, const char* name, const std::string& value) {
   node.append_attribute(name).set_value(value.c_str());
 }
 
-/// TAK reads milliseconds and no more.
+/// With three digits of milliseconds, always: some programs take ".9" for nine of them.
 std::string time_text(std::int64_t unix_ns) {
-  return configuration::utc_text(unix_ns / kMillisecond_ns * kMillisecond_ns);
+  const std::int64_t ms = unix_ns / kMillisecond_ns;
+  std::string text = configuration::utc_text(ms / 1000 * 1000 * kMillisecond_ns);
+  text.pop_back();
+  return text + fmt::format(".{:03}Z", ms % 1000);
 }
 
 // 1e-7 degrees are a centimetre.

@@ -46,6 +46,10 @@ TEST(CotEvent, IsXmlWithTimesInMillisecondsAndPlacesInCentimetres) {
   EXPECT_EQ(attribute(root, "time"), "2023-11-14T22:13:20.123Z");
   EXPECT_EQ(attribute(root, "start"), attribute(root, "time"));
   EXPECT_EQ(attribute(root, "stale"), "2023-11-14T22:13:30.123Z");
+  CotEvent full = event();
+  full.time_unix_ns = 1'700'000'000'000'000'000;
+  const auto of_a_second = parsed(full);
+  EXPECT_EQ(attribute(of_a_second.child("event"), "time"), "2023-11-14T22:13:20.000Z");
   const auto point = root.child("point");
   EXPECT_EQ(attribute(point, "lat"), "59.1234568");
   EXPECT_EQ(attribute(point, "lon"), "-17.5000000");

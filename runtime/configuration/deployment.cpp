@@ -121,6 +121,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   }
   config.fence = scenario.fence;
   config.console.port = deployment.console_port;
+  config.agencies = scenario.agencies;
   config.op = deployment.op;
   config.formation = scenario.formation;
   if (scenario.formation.planes) {

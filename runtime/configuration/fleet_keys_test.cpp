@@ -57,6 +57,49 @@ TEST(FleetKeys, HostsEpochAndConsoleAreReadAndWritten) {
   EXPECT_EQ(again->epoch_unix_ns, s.epoch_unix_ns);
 }
 
+TEST(FleetKeys, AgenciesAreReadWrittenAndGivenToTheGroundStation) {
+  const Scenario s = mission(
+      "agencies:\n"
+      "  team: alpha\n"
+      "  cot:\n"
+      "    - {address: 239.2.3.1, port: 6969, format: protobuf, interface: 10.0.0.9}\n"
+      "    - {address: 10.0.0.7, port: 8087, transport: tcp}\n"
+      "  markers: {port: 6969, address: 10.0.0.9, group: 239.2.3.1}\n"
+      "  mavlink: [{address: 10.0.0.8}]\n");
+  const auto again = parse_scenario(to_yaml(s), "written");
+  ASSERT_TRUE(again.ok()) << again.error().message;
+  const AgenciesConfig& agencies = again->agencies;
+  EXPECT_EQ(agencies.team, "alpha");
+  ASSERT_EQ(agencies.cot.size(), 2U);
+  EXPECT_EQ(agencies.cot[0].format, CotTarget::Format::protobuf);
+  EXPECT_EQ(agencies.cot[0].interface, "10.0.0.9");
+  EXPECT_EQ(agencies.cot[1].transport, CotTarget::Transport::tcp);
+  EXPECT_EQ(agencies.cot[1].format, CotTarget::Format::xml);
+  EXPECT_EQ(agencies.markers.port, 6969);
+  EXPECT_EQ(agencies.markers.group, "239.2.3.1");
+  ASSERT_EQ(agencies.mavlink.size(), 1U);
+  EXPECT_EQ(agencies.mavlink[0].port, 14550);
+  const AgenciesConfig off = mission("").agencies;
+  EXPECT_TRUE(off.cot.empty() && off.mavlink.empty() && off.markers.port == 0);
+  EXPECT_EQ(off.markers.address, "127.0.0.1");
+}
+
+TEST(FleetKeys, MistakesOfAgenciesAreTold) {
+  EXPECT_THAT(mistakes("agencies: {team: a b}\n"), HasSubstr("team"));
+  EXPECT_THAT(mistakes("agencies: {cot: [{address: tak.example, port: 8087}]}\n"),
+              HasSubstr("no IPv4 address"));
+  EXPECT_THAT(mistakes("agencies: {cot: [{address: 239.2.3.1, port: 6969, transport: tcp}]}\n"),
+              HasSubstr("has to be udp to a multicast"));
+  EXPECT_THAT(
+      mistakes(
+          "agencies: {cot: [{address: 10.0.0.7, port: 1, transport: tcp, format: protobuf}]}\n"),
+      HasSubstr("has to be xml by tcp"));
+  EXPECT_THAT(mistakes("agencies: {markers: {port: 6969, group: 10.0.0.1}}\n"),
+              HasSubstr("no multicast"));
+  EXPECT_THAT(mistakes("agencies: {mavlink: [{address: 0.0.0.0}]}\n"),
+              HasSubstr("no IPv4 address"));
+}
+
 TEST(FleetKeys, MistakesAreToldWithTheirLine) {
   EXPECT_THAT(mistakes("epoch: tomorrow\n"), HasSubstr("fleet.yaml:11: epoch: is no time in UTC"));
   EXPECT_THAT(mistakes("hosts: [{vehicle: 1, address: 10.0.0}]\n"),

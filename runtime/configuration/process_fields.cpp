@@ -683,6 +683,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
          unique_groups_of(config.planes, kVehiclesMax, spec_fields, "vehicle",
                           [](const VehicleSpec& spec) { return spec.id.value; }));
   console_section(v, config.console);
+  agencies_section(v, config.agencies);
   v.section({"operator",
              "whose key signs what is authorised here, from the start on; else "
              "`skein-ground unlock` or a login at the console unlocks one"},

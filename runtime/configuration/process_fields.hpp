@@ -45,6 +45,7 @@ void routes_section(FieldVisitor& v, RoutesConfig& config);
 void formation_section(FieldVisitor& v, FormationConfig& formation);
 void ipv4(FieldVisitor& v, const Field& field, std::string& address);
 void air_fields(FieldVisitor& v, AirConfig& air);
+void agencies_section(FieldVisitor& v, AgenciesConfig& config);
 void console_section(FieldVisitor& v, ConsoleConfig& config);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 

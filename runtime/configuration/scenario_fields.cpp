@@ -243,6 +243,7 @@ void fields(FieldVisitor& v, Scenario& s) {
             [&s](FieldVisitor& inner) { expect_fields(inner, s.expect); });
   epoch_field(v, s.epoch_unix_ns);
   console_section(v, s.console);
+  agencies_section(v, s.agencies);
   v.list({"hosts",
           "where the programs run in the field (docs/fleet.md); a bench heeds those of external "
           "vehicles only"},

@@ -478,8 +478,10 @@ struct News {
     return fmt::format("hazard {}", e.hazard.value);
   }
   std::string operator()(const event::SiteProposed& e) const {
-    return fmt::format("{} of {} has seen {}: proposal {} waits for the operator",
-                       e.detector.empty() ? "a detector" : e.detector, text_of(e.seen_by),
+    const std::string by = e.detector.empty() ? "a detector" : e.detector;
+    return fmt::format("{} {} {}: proposal {} waits for the operator", by,
+                       e.seen_by == kGroundStation ? "of another agency tells of"
+                                                   : "of " + text_of(e.seen_by) + " has seen",
                        words_of(to_string(e.kind)), e.number);
   }
   std::string operator()(const event::ProposalAnswered& e) const {

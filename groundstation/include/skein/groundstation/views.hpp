@@ -46,6 +46,9 @@ namespace skein::groundstation {
 [[nodiscard]] std::string summary_text(const console::Picture& picture,
                                        const mission::Fleet& fleet);
 
+/// How far it has come: "led by vehicle 3, surveyed, 1 delivered, 0 assessed".
+[[nodiscard]] std::string site_state_text(const console::SitePicture& site);
+
 /// One line a site: who leads there, what was done, the latest news.
 [[nodiscard]] std::string sites_text(const console::Picture& picture);
 

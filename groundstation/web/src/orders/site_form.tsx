@@ -49,7 +49,7 @@ function Proposals() {
               E {number(seen.x)} N {number(seen.y)} m
             </span>
             <span class="muted">
-              {seen.detector || "a detector"} of {seen.seen_by}, {number(100 * seen.confidence)} % sure
+              {seen.detector || "a detector"} of {seen.seen_by || "another agency"}, {number(100 * seen.confidence)} % sure
             </span>
             <HoldButton kind="go" testid={`proposal-accept-${seen.number}`} on_held={() => void give({ kind: "proposal", number: seen.number, accept: true })}>
               Take as a site

@@ -34,6 +34,7 @@ struct Proposal {
 class GroundDetections {
  public:
   static constexpr std::size_t kProposalsMax = 200;  ///< that wait for an answer
+  static constexpr std::size_t kOutsideMax = 50;     ///< of these, from outside the team
 
   explicit GroundDetections(GroundDetectionsConfig config) : config_{std::move(config)} {}
 
@@ -43,6 +44,9 @@ class GroundDetections {
   /// The site that is to be added now, if any.
   [[nodiscard]] std::optional<Site> on_message(const Message& message, const GroundSites& sites,
                                                Instant now);
+  /// What somebody outside the team has seen (`vehicle` 0): proposed to the operator in every mode.
+  /// False where it is known already, or kOutsideMax of these wait.
+  bool propose_from_outside(Detection detection, const GroundSites& sites, Instant now);
   /// The site of that proposal, which the operator takes or dismisses. Fails where it is not open.
   Result<Site> answer(std::uint32_t number, bool accepted, const std::string& by, Instant now);
   /// As it would be taken. Fails where it is not open.

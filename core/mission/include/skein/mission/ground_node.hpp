@@ -66,6 +66,10 @@ class GroundNode {
   /// Takes a proposal as a site, whose number it gives, or dismisses it (0).
   Result<SiteId> answer_proposal(std::uint32_t number, bool accepted, const std::string& by,
                                  Instant now);
+  /// As GroundDetections::propose_from_outside().
+  bool propose_from_outside(const Detection& seen, Instant now) {
+    return detections_.propose_from_outside(seen, sites_, now);
+  }
   [[nodiscard]] const GroundDetections& detections() const { return detections_; }
   [[nodiscard]] GroundHazards& hazards() { return hazards_; }
 

@@ -10,6 +10,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/configuration/agencies_config.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/site_config.hpp"
@@ -58,6 +59,7 @@ struct GroundConfig {
   FormationConfig formation;
   std::vector<VehicleSpec> planes;  ///< of a formation of planes: what each can do
   ConsoleConfig console;
+  AgenciesConfig agencies;
   OperatorConfig op;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded

@@ -135,6 +135,7 @@ struct Scenario {
   // Of a fleet in the field (docs/fleet.md); a bench heeds the hosts of external vehicles only.
   std::optional<std::int64_t> epoch_unix_ns;  ///< nothing: given when it is rendered
   ConsoleConfig console;
+  AgenciesConfig agencies;
   std::vector<Host> hosts;
 
   /// Some vehicle does, by orders of the ground station.
