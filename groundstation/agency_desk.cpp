@@ -35,7 +35,7 @@ std::vector<Wgs84> points_of(const Path& path, double z_m, const MissionOrigin& 
     }
     begun_m += segment.length_m;
   }
-  add(begun_m);  // its end, also where there were too many
+  if (points.size() + 1 == ShownTracks::kPointsMax) add(begun_m);  // there were too many: its end
   return points;
 }
 

@@ -267,13 +267,13 @@ std::string SiteDesk::proposals_text() const {
   for (const auto& [number, proposal] : node_->detections().proposals()) {
     if (proposal.state != mission::Proposal::State::open) continue;
     const mission::Detection& seen = proposal.detection;
-    fmt::format_to(std::back_inserter(text),
-                   "proposal {}: {}, {:.0f} %, {} of {}\n  {}\n  accept {}    or    dismiss {}\n",
-                   number, to_string(seen.kind), 100.0 * seen.confidence,
-                   seen.detector.empty() ? "a detector" : seen.detector,
-                   seen.vehicle == kGroundStation ? "another agency"
-                                                  : wording::text_of(seen.vehicle),
-                   place_text(seen.position, origin_), number, number);
+    fmt::format_to(
+        std::back_inserter(text),
+        "proposal {}: {}, {:.0f} %, {} of {}\n  {}\n  accept {}    or    dismiss {}\n", number,
+        to_string(seen.kind), 100.0 * seen.confidence,
+        seen.detector.empty() ? "a detector" : seen.detector,
+        seen.vehicle == kGroundStation ? "another agency" : wording::text_of(seen.vehicle),
+        place_text(seen.position, origin_), number, number);
   }
   return text.empty() ? "detectors have proposed nothing that waits for you\n" : text;
 }

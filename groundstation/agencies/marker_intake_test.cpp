@@ -98,12 +98,12 @@ TEST(Marker, IsRefusedWithWhatIsWrong) {
 }
 
 TEST(Marker, HasNoEntitiesThatGrow) {
-  const std::string bomb =
+  const std::string growing =
       "<!DOCTYPE event [<!ENTITY a 'aaaaaaaaaa'><!ENTITY b '&a;&a;&a;&a;&a;&a;&a;'>]>"
       "<event version='2.0' uid='a' type='b-m-p-s-m' time='2023-11-14T22:13:20Z' "
       "stale='2023-11-14T22:13:30Z'><point lat='59' lon='17'/>"
       "<detail><contact callsign='&b;'/></detail></event>";
-  EXPECT_EQ(detection_of(bomb).detector, "marker '&b;'");
+  EXPECT_EQ(detection_of(growing).detector, "marker '&b;'");
 }
 
 TEST(MarkerIntake, TakesSoManyAtOnceAndThenSlowly) {
