@@ -518,6 +518,9 @@ TEST(Picture, AnAuthorisationWaitsUntilItIsDecidedOrLate) {
             25.0);
   const Json decided = desk.section(Section::authorisations, 26.0)[0];
   EXPECT_EQ(decided["waiting"], false);
+  for (const Json& delivery : decided["deliveries"]) {
+    EXPECT_EQ(delivery["marks"], Json::array()) << "the page counts on it";
+  }
   EXPECT_EQ(decided["decision"]["by"], "ada");
   EXPECT_EQ(decided["coalition"], key_of(kRound.coalition));
 }

@@ -380,7 +380,8 @@ Json authorisation_json(const AuthorisationPicture& known, const Picture& pictur
     deliveries.push_back({{"vehicle", delivery.assignment.vehicle.value},
                           {"index", delivery.assignment.task.index},
                           {"time_s", seconds(delivery.assignment.time)},
-                          {"bearing_deg", degrees_of(delivery.bearing_rad)}});
+                          {"bearing_deg", degrees_of(delivery.bearing_rad)},
+                          {"marks", Json::array()}});
   }
   Json decision = nullptr;
   if (const auto& d = known.decision) {
