@@ -51,6 +51,9 @@ autopilot::CopterParams params_of(const EmulatorConfig& config) {
   autopilot::CopterParams p;
   p.speed_mps = config.airspeed_mps;
   p.tuning.climb_max_mps = p.tuning.sink_max_mps = config.climb_mps;
+  // ArduCopter's own: PSC_POSXY_P, PSC_VELXY_P.
+  p.tuning.position_gain_per_s = 1.0;
+  p.tuning.velocity_gain_per_s = 2.0;
   p.companion_failsafe = config.companion_failsafe;
   return p;
 }
