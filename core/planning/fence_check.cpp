@@ -22,7 +22,7 @@ std::optional<Vec2> first_outside(const Fence& fence, double length_m, const Pla
   if (!fence.exists()) return std::nullopt;
   bool was_inside = false;
   for (double at_m = 0.0;;) {
-    const Vec2 place = place_at(at_m);
+    Vec2 place = place_at(at_m);
     const double inside_m = fence.inside_m(place);
     if (inside_m < 0.0 && was_inside) return place;
     was_inside = was_inside || inside_m >= 0.0;

@@ -9,8 +9,6 @@
 namespace skein::agencies {
 namespace {
 
-using ::testing::HasSubstr;
-
 constexpr std::int64_t kEpoch_unix_ns = 1'700'000'000'000'000'000;
 
 std::int64_t unix_of(double now_s) { return kEpoch_unix_ns + from_seconds(now_s).count(); }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "skein/base/angles.hpp"
@@ -110,7 +111,7 @@ TEST(MavlinkFeed, BeatsOnceASecondAndNotOfWhoIsSilent) {
   int heartbeats = 0;
   int positions = 0;
   for (int i = 0; i < 100; ++i) {  // ten seconds, telemetry five times a second
-    shown.vehicles = {vehicle(10.0 + 0.2 * (i / 2)), vehicle(10.0, 251)};
+    shown.vehicles = {vehicle(10.0 + 0.2 * std::floor(0.5 * i)), vehicle(10.0, 251)};
     const auto packets = parsed(feed.update(shown, at_seconds(10.0 + 0.1 * i)));
     for (const auto& packet : packets) {
       EXPECT_EQ(packet.system, 3) << "251 and above are no vehicles'";

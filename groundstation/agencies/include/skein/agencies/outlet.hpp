@@ -45,6 +45,8 @@ class Inlet {
   /// Bound to `address`, or to `group`, which is joined by it. Fails where that cannot be had.
   [[nodiscard]] static Result<Inlet> open(const std::string& address, std::uint16_t port,
                                           const std::string& group);
+  Inlet(const Inlet&) = delete;
+  Inlet& operator=(const Inlet&) = delete;
   Inlet(Inlet&&) noexcept;
   Inlet& operator=(Inlet&&) noexcept;
   ~Inlet();
