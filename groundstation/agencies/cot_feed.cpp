@@ -136,27 +136,29 @@ void CotFeed::say(Said& said, CotEvent event, Instant now, std::vector<CotEvent>
   due.push_back(said.event);
 }
 
-void CotFeed::take_vehicle(CotEvent event, Instant measured, Instant now,
-                           std::vector<CotEvent>& due) {
-  const auto [known, is_new] = said_.try_emplace(event.uid);
+std::pair<CotFeed::Said&, bool> CotFeed::shown_again(const std::string& uid) {
+  const auto [known, is_new] = said_.try_emplace(uid);
   Said& said = known->second;
   said.shown = true;
-  const bool again = std::exchange(said.endings, 0) > 0;
+  const bool was_ended = std::exchange(said.endings, 0) > 0;
+  return {said, is_new || was_ended};
+}
+
+void CotFeed::take_vehicle(CotEvent event, Instant measured, Instant now,
+                           std::vector<CotEvent>& due) {
+  const auto [said, at_once] = shown_again(event.uid);
   const bool newer = measured > said.measured;
-  if (is_new || again || (newer && now - said.at >= kVehiclePeriod)) {
+  if (at_once || (newer && now - said.at >= kVehiclePeriod)) {
     said.measured = measured;
     say(said, std::move(event), now, due);
   }
 }
 
 void CotFeed::take_other(CotEvent event, Instant now, std::vector<CotEvent>& due) {
-  const auto [known, is_new] = said_.try_emplace(event.uid);
-  Said& said = known->second;
-  said.shown = true;
-  const bool again = std::exchange(said.endings, 0) > 0;
+  const auto [said, at_once] = shown_again(event.uid);
   const Duration since = now - said.at;
   const bool changed = since >= kChangePeriod && !same_content(event, said.event);
-  if (is_new || again || changed || since >= kOtherPeriod) {
+  if (at_once || changed || since >= kOtherPeriod) {
     say(said, std::move(event), now, due);
   }
 }

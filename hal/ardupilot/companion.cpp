@@ -31,9 +31,8 @@ constexpr Duration kClockPeriod = seconds{1};
 constexpr int kClockQuestionsSoon = 8;
 constexpr std::size_t kClockAskedMax = 16;
 constexpr Duration kDuplicateGone = seconds{2};
-constexpr double kSinks_mps = 0.2;  ///< a point that does so faster comes down
-constexpr double kBend_m = 2.0 * kSetDownFrom_m;
-constexpr double kBendLeast_m = 2.0;
+constexpr double kSinks_mps = 0.2;                   ///< a point that does so faster comes down
+constexpr double kBendLeast_m = 2.0;                 ///< of a point that begins to sink lower
 constexpr Duration kStillSinks = milliseconds{500};  ///< while it slows down
 constexpr double kGround_m = 0.05;  ///< a setpoint no higher above home is on the ground
 constexpr Duration kSampleAgeMax = milliseconds{500};
@@ -357,7 +356,7 @@ void Companion::Impl::fly_to(PositionSetpoint point, const VehicleState& state, 
   Climb led{point.z_m - home_z_m, point.vz_mps, point.az_mps2};
   const bool sank = sank_at_ && now - *sank_at_ < kStillSinks;
   const bool sinks = point.vz_mps < -kSinks_mps;
-  if (sinks && !sank) sinks_from_m_ = std::clamp(led.height_m, kBendLeast_m, kBend_m);
+  if (sinks && !sank) sinks_from_m_ = std::clamp(led.height_m, kBendLeast_m, kSlowedFrom_m);
   if (sinks || led.height_m <= kGround_m) sank_at_ = now;
   if (sank_at_ == now || (sank && point.vz_mps <= kSinks_mps)) {
     led = led_down(led, sinks_from_m_);
@@ -582,7 +581,7 @@ void Companion::Impl::entered(State from, Event event, Instant now) {
     case State::flying:
       on_ground_since_.reset();
       sank_at_.reset();
-      sinks_from_m_ = kBend_m;
+      sinks_from_m_ = kSlowedFrom_m;
       forget_landing();
       speed_sent_.reset();
       height_sent_.reset();

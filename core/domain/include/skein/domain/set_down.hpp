@@ -6,6 +6,8 @@ namespace skein {
 /// An autopilot sets a copter down by itself, by its LAND, from here above the ground on: an
 /// ArduCopter in GUIDED overshoots a point that sinks, by 2.5 m where it stops at once.
 inline constexpr double kSetDownFrom_m = 3.0;
+/// From here on its way down is slowed.
+inline constexpr double kSlowedFrom_m = 2.0 * kSetDownFrom_m;
 
 /// A height, its rate of change and that one's, all up.
 struct Climb {
@@ -19,7 +21,7 @@ struct Climb {
 /// parabola of the point's height, which meets it without a step in the rate. A point that stops
 /// above the ground, lower than the bend, is not quite reached: it is by bend / 8 at half of it.
 /// Precondition: bend_m > 0, the height from which the point sinks at most.
-[[nodiscard]] constexpr Climb led_down(const Climb& point, double bend_m = 2.0 * kSetDownFrom_m) {
+[[nodiscard]] constexpr Climb led_down(const Climb& point, double bend_m = kSlowedFrom_m) {
   if (point.height_m >= bend_m) return point;
   const double above_m = point.height_m > 0.0 ? point.height_m : 0.0;
   const double slope = above_m / bend_m;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/agencies/cot_event.hpp"
@@ -50,6 +51,8 @@ class CotFeed {
   [[nodiscard]] CotEvent event_of(const ShownHazard& hazard, std::int64_t unix_ns) const;
   [[nodiscard]] CotEvent event_of(const ShownTrack& track, std::int64_t unix_ns) const;
   [[nodiscard]] std::string uid_of(const char* what, std::uint32_t number, bool of_mission) const;
+  /// What was said of it before; and whether it is new, or was ended, and is to be said at once.
+  std::pair<Said&, bool> shown_again(const std::string& uid);
   void take_vehicle(CotEvent event, Instant measured, Instant now, std::vector<CotEvent>& due);
   void take_other(CotEvent event, Instant now, std::vector<CotEvent>& due);
   void end_others(Instant now, std::int64_t unix_ns, std::vector<CotEvent>& due);

@@ -171,9 +171,12 @@ inline constexpr std::array kCopterModes{
 /// The mode of a number on the wire, or none of ours.
 [[nodiscard]] std::optional<PlaneMode> plane_mode(std::uint32_t number);
 [[nodiscard]] std::optional<CopterMode> copter_mode(std::uint32_t number);
-/// Those of a quadplane alone.
+/// Those of a quadplane alone, by the table.
 [[nodiscard]] constexpr bool needs_rotors(PlaneMode mode) {
-  return mode == PlaneMode::q_loiter || mode == PlaneMode::q_land || mode == PlaneMode::q_rtl;
+  for (const auto& rule : kPlaneModes) {
+    if (rule.to == mode && rule.needs == Needs::rotors) return true;
+  }
+  return false;
 }
 /// The event by which an operator or companion asks for a mode.
 [[nodiscard]] PlaneEvent selection_of(PlaneMode mode);
