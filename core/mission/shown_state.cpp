@@ -45,7 +45,8 @@ std::string_view to_string(ShownState state) {
       "en_route",
       "standing_by",
       "landing",
-      "landed"};
+      "landed",
+      "keeping_clear_of_traffic"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -70,7 +71,8 @@ ShownState shown_state(Activity activity, ActivityDetail in_detail) {
                                       ShownState::at_home,
                                       ShownState::range_reserve,
                                       ShownState::back_into_its_fence,
-                                      ShownState::not_worked_with};
+                                      ShownState::not_worked_with,
+                                      ShownState::keeping_clear_of_traffic};
   static_assert(kStates.size() + 1 == static_cast<std::size_t>(ActivityDetail::count));
   if (in_detail == ActivityDetail::none) return of_activity(activity);
   return kStates.at(static_cast<std::size_t>(in_detail) - 1);

@@ -37,20 +37,28 @@ void VehicleAgent::Impl::watch_wind(const VehicleState& state, Instant now) {
 }
 
 void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
-  std::visit(
-      Overloaded{[&](const coalition::Message& m) { receive(m, now); },
-                 [&](const Authorisation& m) { on_authorisation(m, now); },
-                 [&](const Command& m) { on_command(m, now); },
-                 [&](const SiteReport& m) { on_site(m, now); },
-                 [&](const HazardReport& m) { on_hazard(m, now); },
-                 [&](const Telemetry& m) { on_telemetry(m, now); },
-                 [](const AuthorisationRequest&) {}, [&](const MissionEvent& m) { on_event(m); },
-                 [](const formation::Change&) {}, [](const FormationStatus&) {},
-                 [](const PlanReport&) {}, [](const Health&) {}, [](const TrackFlight&) {},
-                 [](const Setup&) {}, [](const Detection&) {}, [](const RouteStatus&) {},
-                 [](const Preflight&) {}, [&](const ReturnFlight& m) { on_return_flight(m, now); },
-                 [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
-      message);
+  std::visit(Overloaded{[&](const coalition::Message& m) { receive(m, now); },
+                        [&](const Authorisation& m) { on_authorisation(m, now); },
+                        [&](const Command& m) { on_command(m, now); },
+                        [&](const SiteReport& m) { on_site(m, now); },
+                        [&](const HazardReport& m) { on_hazard(m, now); },
+                        [&](const Telemetry& m) { on_telemetry(m, now); },
+                        [](const AuthorisationRequest&) {},
+                        [&](const MissionEvent& m) { on_event(m); },
+                        [](const formation::Change&) {},
+                        [](const FormationStatus&) {},
+                        [](const PlanReport&) {},
+                        [](const Health&) {},
+                        [](const TrackFlight&) {},
+                        [](const Setup&) {},
+                        [](const Detection&) {},
+                        [](const RouteStatus&) {},
+                        [](const FenceOrder&) {},
+                        [](const Traffic&) {},
+                        [](const Preflight&) {},
+                        [&](const ReturnFlight& m) { on_return_flight(m, now); },
+                        [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
+             message);
   step(now);
 }
 

@@ -103,11 +103,17 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                                                 [&](const auto& said) { on(said); }},
                                      m);
                         },
-                        [](const mission::MissionEvent&) {}, [](const mission::Command&) {},
-                        [](const mission::Health&) {}, [](const mission::Setup&) {},
-                        [](const mission::Detection&) {}, [](const mission::Route&) {},
-                        [](const mission::RouteStatus&) {}, [](const mission::Preflight&) {},
+                        [](const mission::MissionEvent&) {},
+                        [](const mission::Command&) {},
+                        [](const mission::Health&) {},
+                        [](const mission::Setup&) {},
+                        [](const mission::Detection&) {},
+                        [](const mission::Route&) {},
+                        [](const mission::RouteStatus&) {},
+                        [](const mission::Preflight&) {},
                         [](const mission::ReturnFlight&) {},
+                        [](const mission::FenceOrder&) {},
+                        [](const mission::Traffic&) {},
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
                           formation_.flights[m.vehicle] = {m.number, m.joined};

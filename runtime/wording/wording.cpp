@@ -91,6 +91,7 @@ constexpr std::array kReasons{
     std::string_view{"it has started anew and does not know which orders stand"},
     std::string_view{"the operator has withdrawn the site"},
     std::string_view{"the fence is in the way"},
+    std::string_view{"the operator has taken the grant back"},
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 
@@ -513,6 +514,26 @@ struct News {
   }
   std::string operator()(const event::SeparationRestored& e) const {
     return "clear of " + text_of(e.other);
+  }
+  std::string operator()(const event::AuthorisationWithdrawn& e) const {
+    return fmt::format("{} has taken the grant back", e.by);
+  }
+  std::string operator()(const event::FenceAnswered& e) const {
+    return e.taken
+               ? fmt::format("keeps the fence of order {}", e.number)
+               : because(fmt::format("does not take the fence of order {}", e.number), e.detail);
+  }
+  std::string operator()(const event::TrafficWarning& e) const {
+    return fmt::format("aircraft {:06x} in {:.0f} s: {} to the side, {} in height; {}", e.address,
+                       to_seconds(e.in), metres(e.horizontal_m), metres(e.vertical_m),
+                       e.gives_way ? "gives way by its height" : "there is no room to give way");
+  }
+  std::string operator()(const event::TrafficClear& e) const {
+    return fmt::format("clear of aircraft {:06x}", e.address);
+  }
+  std::string operator()(const event::CommandHanded& e) const {
+    return e.here ? "this ground station has the command: " + e.who
+                  : e.who + " has the command: this ground station only watches";
   }
   std::string operator()(const event::ReturnAlone& e) const {
     return because(text_of(e.vehicle) + " comes home on its own way", e.detail);

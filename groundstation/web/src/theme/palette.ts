@@ -76,6 +76,7 @@ const states: Record<string, string> = {
   standing_by: "#8c7fd1",
   landing: "#c9b36a",
   landed: "#7d8a6b",
+  keeping_clear_of_traffic: "#e6cf00",
 };
 
 export function state_colour(state: string | null): string {

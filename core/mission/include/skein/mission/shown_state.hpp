@@ -39,6 +39,7 @@ enum class ShownState : std::uint8_t {
   standing_by,
   landing,
   landed,
+  keeping_clear_of_traffic,
   count
 };
 [[nodiscard]] std::string_view to_string(ShownState state);
