@@ -22,6 +22,7 @@ console::PictureParams picture_params(const configuration::GroundConfig& config)
   console::PictureParams params;
   params.expected = config.vehicles;
   params.hazards = config.hazards;
+  params.fence = config.fence;
   params.place_tolerance_m = config.formation.place_tolerance_m;
   return params;
 }
@@ -88,6 +89,8 @@ std::optional<console::Section> section_of(View view) {
       return Section::proposals;
     case View::preflight:
       return Section::preflight;
+    case View::fence:
+      return Section::fence;
     case View::help:
     case View::audit:
     case View::routes:

@@ -17,11 +17,13 @@
 #include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/configuration/setup_params.hpp"
+#include "skein/console/team_fence.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/agency_desk.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
+#include "skein/groundstation/fence_desk.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/health_report.hpp"
 #include "skein/groundstation/line_reader.hpp"
@@ -122,6 +124,7 @@ bool must_outlast(const mission::Message& message) {
          std::holds_alternative<mission::Command>(message) ||
          std::holds_alternative<mission::SiteReport>(message) ||
          std::holds_alternative<mission::HazardReport>(message) ||
+         std::holds_alternative<mission::FenceOrder>(message) ||
          std::holds_alternative<mission::Route>(message);
 }
 
@@ -129,10 +132,11 @@ bool only_looks(const Input& input) {
   const auto* formation = std::get_if<Formation>(&input);
   const auto* site = std::get_if<NewSite>(&input);
   const auto* routes = std::get_if<RoutesFromFile>(&input);
+  const auto* fence = std::get_if<NewFence>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
          std::holds_alternative<PreflightOf>(input) ||
          (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
-         (routes != nullptr && routes->preview);
+         (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview);
 }
 
 /// The console is on other machines: it opens no files here, and ends nothing that it cannot start.
@@ -146,6 +150,10 @@ const char* why_not_on_console(const Input& input) {
   }
   if (std::holds_alternative<SitesFromFile>(input)) {
     return "files of sites are for the prompt and the command line\n";
+  }
+  const auto* fence = std::get_if<NewFence>(&input);
+  if (fence != nullptr && !fence->file.empty()) {
+    return "files of fences are for the prompt and the command line; the page reads its own\n";
   }
   if (std::holds_alternative<RoutesFromFile>(input)) {
     return "files of routes are for the prompt and the command line\n";
@@ -195,6 +203,7 @@ class GroundLoop {
         formation_{std::move(formation)},
         sites_{config, origin, node},
         routes_{node},
+        fence_{node, origin_},
         control_{std::move(control)},
         console_{std::move(console)},
         agencies_{config, origin},
@@ -358,6 +367,7 @@ class GroundLoop {
     }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
     if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
+    if (const auto* preview = std::get_if<NewFence>(&input)) return fence_.answer(*preview, now);
     if (const auto* preview = std::get_if<RoutesFromFile>(&input)) {
       return routes_.answer(*preview, now);
     }
@@ -384,6 +394,7 @@ class GroundLoop {
     if (const auto* gone = std::get_if<WithdrawHazard>(&input)) {
       return answer_to(node_.hazards().withdraw(gone->hazard, now));
     }
+    if (const auto* fence = std::get_if<NewFence>(&input)) return fence_.answer(*fence, now);
     if (const auto* site = std::get_if<NewSite>(&input))
       return sites_.answer(*site, asker.who, now);
     if (const auto* file = std::get_if<SitesFromFile>(&input)) return sites_.answer(*file, now);
@@ -458,6 +469,8 @@ class GroundLoop {
         return sites_.proposals_text();
       case View::routes:
         return routes_.text(now);
+      case View::fence:
+        return console::fence_text(console_.picture(), node_.fleet());
       case View::preflight:
         return console::preflight_text(console::team_preflight(node_.fleet(), now), now);
     }
@@ -562,6 +575,7 @@ class GroundLoop {
   FormationDesk formation_;
   SiteDesk sites_;
   RouteDesk routes_;
+  FenceDesk fence_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   AgencyDesk agencies_;

@@ -57,6 +57,26 @@ class Reader {
     fail(fmt::format("{} is to be true or false", name));
     return false;
   }
+  /// Pairs [east, north].
+  std::vector<Vec2> points(const char* name, const Limit& limit, std::size_t most) {
+    const auto found = json_.find(name);
+    const bool is_list = found != json_.end() && found->is_array() && found->size() <= most;
+    std::vector<Vec2> points;
+    const auto is_good = [&limit](const ParsedJson& value) {
+      return value.is_number() && limit.has(value.get<double>());
+    };
+    if (is_list) {
+      for (const ParsedJson& pair : *found) {
+        if (!pair.is_array() || pair.size() != 2 || !is_good(pair[0]) || !is_good(pair[1])) break;
+        points.emplace_back(pair[0].get<double>(), pair[1].get<double>());
+      }
+    }
+    if (!is_list || points.size() != found->size()) {
+      fail(fmt::format("{} is to be at most {} pairs [east, north], each from {} to {}", name, most,
+                       limit.low, limit.high));
+    }
+    return points;
+  }
   std::string text(const char* name) {
     const auto found = json_.find(name);
     if (found != json_.end() && found->is_string()) return found->get<std::string>();
@@ -108,6 +128,14 @@ Input hazard(Reader& from) {
   hazard.centre_m = {from.number("x", kCoordinate_m), from.number("y", kCoordinate_m)};
   hazard.radius_m = from.number("radius_m", kHazardRadius_m);
   return hazard;
+}
+
+Input fence(Reader& from) {
+  NewFence order;
+  order.preview = from.flag("preview");
+  order.fence.corners = from.points("corners", kCoordinate_m, Fence::kCornersMax);
+  order.fence.height_max_m = from.number("height_m", kFenceHeight_m);
+  return order;
 }
 
 template <class T>
@@ -200,6 +228,7 @@ Result<Input> read_order(std::string_view text) {
     if (kind == "command") return command(from);
     if (kind == "decision") return decision(from);
     if (kind == "hazard") return hazard(from);
+    if (kind == "fence") return fence(from);
     if (kind == "site") return site_order(from);
     if (kind == "withdraw") return withdrawal(from);
     if (kind == "proposal") return proposal_answer(from);
@@ -216,6 +245,7 @@ std::string limits_json() {
   const auto range = [](const Limit& limit) { return Json::array({limit.low, limit.high}); };
   return codec::json_text({{"coordinate_m", range(kCoordinate_m)},
                            {"hazard_radius_m", range(kHazardRadius_m)},
+                           {"fence_height_m", range(kFenceHeight_m)},
                            {"spacing_m", range(kSpacing_m)},
                            {"heading_deg", range(kHeading_deg)},
                            {"places", range(kPlaces)},

@@ -7,6 +7,7 @@
 #include <array>
 #include <string_view>
 
+#include "fence_words.hpp"
 #include "site_words.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/wording/wording.hpp"
@@ -15,9 +16,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 12> kWords{
-      "help",    "status", "sites",     "pending", "places",    "coalitions",
-      "hazards", "audit",  "proposals", "routes",  "preflight", "console"};
+  static constexpr std::array<std::string_view, 13> kWords{
+      "help",  "status",    "sites",  "pending",   "places", "coalitions", "hazards",
+      "audit", "proposals", "routes", "preflight", "fence",  "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -46,6 +47,7 @@ struct Line {
   std::string operator()(const WithdrawHazard& hazard) const {
     return fmt::format("withdraw hazard {}", hazard.hazard.value);
   }
+  std::string operator()(const NewFence& fence) const { return fence_line(fence); }
   std::string operator()(const NewSite& site) const { return site_line(site); }
   std::string operator()(const SitesFromFile& from) const { return "sites " + from.file; }
   std::string operator()(const WithdrawSite& site) const {

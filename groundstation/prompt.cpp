@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "fence_words.hpp"
 #include "prompt_words.hpp"
 #include "site_words.hpp"
 #include "skein/base/angles.hpp"
@@ -206,6 +207,7 @@ Result<Input> route_order(const std::vector<std::string_view>& words, bool previ
 Result<Input> preview(std::vector<std::string_view> words) {
   words.erase(words.begin());
   if (!words.empty() && words[0] == "routes") return route_order(words, true);
+  if (!words.empty() && words[0] == "fence") return fence_order(words, true);
   if (!words.empty() && (words[0] == "site" || words[0] == "change")) {
     return site_order(words, true);
   }
@@ -267,6 +269,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
   if (verb == "hazard") return hazard(words);
+  if (verb == "fence") return fence_order(words, false);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
   if (verb == "return") return order(mission::CommandKind::return_home, words);
@@ -303,6 +306,11 @@ std::string help_text() {
          "hazard EAST NORTH RADIUS\n"
          "                  tell all of another one, in metres from the origin\n"
          "withdraw hazard N there is none any more\n"
+         "fence EAST,NORTH EAST,NORTH ... height M\n"
+         "                  where all are to stay from now on, or of a file: fence FILE height M "
+         "(GeoJSON,\n"
+         "                  or a plan of QGroundControl); preview fence ...: whether it can be\n"
+         "fence             which one is to be kept, and who keeps it\n"
          "site EAST NORTH ...\n"
          "                  tell the team of a site, in metres from the origin or as 59.12N "
          "17.23E;\n"

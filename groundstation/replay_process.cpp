@@ -17,6 +17,7 @@
 
 #include "skein/codec/json_text.hpp"
 #include "skein/console/sections.hpp"
+#include "skein/console/team_fence.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -145,6 +146,8 @@ class ReplayLoop {
         return coalitions_text(playback_.picture());
       case View::hazards:
         return hazards_text(playback_.picture());
+      case View::fence:
+        return console::fence_text(playback_.picture(), playback_.fleet());
       case View::preflight:
         return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
                                        playback_.now());

@@ -82,6 +82,9 @@ void AgentLoop::hand_out() {
   while (const auto issued = node_.poll_give_back()) {
     if (link_.give_back) link_.give_back(*issued);
   }
+  while (const auto fence = node_.poll_fence()) {
+    if (link_.keep_fence) link_.keep_fence(*fence);
+  }
 }
 
 void AgentLoop::note(recording::AgentRecord record) const {

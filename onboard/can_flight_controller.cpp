@@ -28,6 +28,18 @@ void CanFlightController::give_back(Instant issued) {
   given_back_.store(issued.time_since_epoch().count(), std::memory_order_release);
 }
 
+void CanFlightController::keep_fence(const Fence& fence) {
+  const std::lock_guard lock{fence_mutex_};
+  fence_ = fence;
+}
+
+void CanFlightController::take_fence() {
+  const std::unique_lock lock{fence_mutex_, std::try_to_lock};
+  if (!lock.owns_lock() || !fence_) return;  // in the next period
+  link_.companion().keep_fence(*fence_);
+  fence_.reset();
+}
+
 std::string CanFlightController::mode() {
   if (const auto* newer = mode_.read()) newest_mode_ = *newer;
   return newest_mode_.text.data();
@@ -80,6 +92,7 @@ void CanFlightController::step(Instant now) {
   }
   const Instant::rep issued = given_back_.exchange(kNothing, std::memory_order_acq_rel);
   if (issued != kNothing) (void)link_.companion().give_back(now, Instant{Duration{issued}});
+  take_fence();
   link_.step(now);
   if (const auto sample = link_.companion().sample()) sample_.write(*sample);
   while (auto notice = link_.companion().poll_notice()) notices_.push(std::move(*notice));

@@ -65,6 +65,7 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
   } else {
     node.agent = vehicle_agent(config, route, instance);
   }
+  node.fence = config.fence;
   node.setup = configuration::setup_params(
       config, {program.substr(program.rfind(' ') + 1), codec::wire_versions()});
   node.program = std::move(program);

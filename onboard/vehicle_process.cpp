@@ -199,6 +199,7 @@ AgentLink link_to(network::Node& node, CanFlightController* on_can, HealthBoard&
     return dropped() + on_can->notices_dropped();
   };
   link.give_back = [on_can](Instant issued) { on_can->give_back(issued); };
+  link.keep_fence = [on_can](const Fence& fence) { on_can->keep_fence(fence); };
   return link;
 }
 

@@ -2,6 +2,7 @@
 #include "skein/domain/fence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "skein/base/assert.hpp"
@@ -24,6 +25,14 @@ bool meet(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2& d) {
     return distance_to_segment(point, from, to) == 0.0;
   };
   return crosses || lies_on(c, a, b) || lies_on(d, a, b) || lies_on(a, c, d) || lies_on(b, c, d);
+}
+
+/// FNV-1a, 32 bits.
+void mix(std::uint32_t& hash, double metres) {
+  auto bits = static_cast<std::uint64_t>(std::llround(metres * 1000.0));
+  for (int i = 0; i < 8; ++i, bits >>= 8U) {
+    hash = (hash ^ static_cast<std::uint32_t>(bits & 0xFFU)) * 16'777'619U;
+  }
 }
 
 }  // namespace
@@ -56,6 +65,33 @@ bool Fence::holds(const Path& path) const {
     // Nothing leaves sooner than straight on to the nearest edge.
     at_m = std::min(at_m + std::max(inside, kFenceStep_m), length_m);
   }
+}
+
+std::uint32_t digest_of(const Fence& fence) {
+  if (!fence.exists()) return 0;
+  std::uint32_t hash = 2'166'136'261U;
+  for (const Vec2& corner : fence.corners) {
+    mix(hash, corner.x());
+    mix(hash, corner.y());
+  }
+  mix(hash, fence.height_max_m);
+  return std::max(hash, 1U);
+}
+
+std::optional<std::string> why_no_fence(const Fence& fence) {
+  constexpr double kMost_m = 1e6;
+  if (fence.corners.size() < 3 || fence.corners.size() > Fence::kCornersMax) {
+    return "a fence has 3 to " + std::to_string(Fence::kCornersMax) + " corners";
+  }
+  const bool is_near = std::ranges::all_of(fence.corners, [](const Vec2& corner) {
+    return corner.allFinite() && std::abs(corner.x()) <= kMost_m && std::abs(corner.y()) <= kMost_m;
+  });
+  if (!is_near) return "a corner is more than 1000 km from the origin";
+  if (!is_simple_polygon(fence.corners)) return "its edges cross or touch each other";
+  if (!(fence.height_max_m > 0.0) || fence.height_max_m > kMost_m) {
+    return "its height is to be above 0 m";
+  }
+  return std::nullopt;
 }
 
 bool is_simple_polygon(const std::vector<Vec2>& corners) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
@@ -84,6 +85,25 @@ TEST(Fence, OnlySimplePolygonsMakeOne) {
   EXPECT_FALSE(is_simple_polygon({{0.0, 0.0}, {2.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}})) << "a spike";
   EXPECT_FALSE(is_simple_polygon({{0.0, 0.0}, {2.0, 0.0}, {2.0, 2.0}, {1.0, 0.0}, {0.0, 2.0}}))
       << "touches itself";
+}
+
+TEST(Fence, DigestsTellFencesApart) {
+  const Fence fence = bent();
+  EXPECT_EQ(digest_of({}), 0U);
+  EXPECT_EQ(digest_of(fence), digest_of(bent()));
+  Fence other = fence;
+  other.corners[2].x() += 0.001;
+  EXPECT_NE(digest_of(other), digest_of(fence));
+  other = fence;
+  other.height_max_m += 1.0;
+  EXPECT_NE(digest_of(other), digest_of(fence));
+  std::swap(other.corners[0], other.corners[1]);
+  EXPECT_TRUE(why_no_fence(other));
+  EXPECT_FALSE(why_no_fence(fence));
+  other = fence;
+  other.corners[0].x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(why_no_fence(other));
+  EXPECT_TRUE(why_no_fence({}));
 }
 
 }  // namespace

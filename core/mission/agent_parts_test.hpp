@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -109,6 +110,8 @@ class FlownAgent : public HeardAgent {
   }
 
   void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
+  /// Why it does not; what it flies from then on is known with its next state.
+  std::string keep(const Fence& fence) { return agent.keep_fence(fence, at_seconds(now_s_)); }
 
   VehicleState state;
   Vec2 beside_m{0.0, 0.0};

@@ -125,5 +125,29 @@ TEST(FenceWatch, NobodyBidsForASiteOutside) {
   EXPECT_EQ(declined->why.reason, coalition::Reason::outside_fence);
 }
 
+TEST(FenceOrdered, WhatIsSearchedLiesWithinTheNewOneFromThenOn) {
+  VehicleAgentConfig config = plane_config();
+  config.vehicle.height_m = 120.0;
+  FlownAgent vehicle{config};
+  vehicle.fly(10.0);
+  EXPECT_GT(vehicle.plan.timed.path.end().position().x(), 1500.0) << "as there was none";
+  EXPECT_EQ(vehicle.keep(fence()), "");
+  for (int i = 0; i < 300; ++i) {
+    vehicle.fly(0.5);
+    ASSERT_GT(fence().inside_m({vehicle.state.x_m, vehicle.state.y_m}), 0.0) << i;
+  }
+  EXPECT_EQ(told(vehicle), 0);
+}
+
+TEST(FenceOrdered, OneWithoutItsHomeIsNotTaken) {
+  FlownAgent vehicle{fenced()};
+  vehicle.fly(20.0);
+  Fence away = fence();
+  away.corners[0].x() = away.corners[3].x() = 20.0;
+  ASSERT_GT(away.inside_m({vehicle.state.x_m, vehicle.state.y_m}), 0.0);
+  EXPECT_EQ(vehicle.keep(away), "its home is outside of it");
+  EXPECT_EQ(vehicle.keep(fence()), "");
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -26,6 +26,7 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       setup_{config.setup, kGroundStation, config.instance, now},
       knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now},
       hazards_{config.hazards},
+      fence_{config.fence},
       routes_{config.fence},
       detections_{config.detections},
       returns_{config.returns} {}
@@ -35,6 +36,8 @@ void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   agent_.recall(message, sender, at);
   sites_.recall(message, sender, at);
   hazards_.recall(message, sender, at);
+  fence_.recall(message, sender, at);
+  if (fence_.ordered()) use_fence();
   routes_.recall(message, sender, at);
   detections_.recall(message, sender);
   const auto* command = std::get_if<Command>(&message);
@@ -107,6 +110,7 @@ void GroundNode::on_timeout(Instant now) {
   agent_.on_timeout(now);
   sites_.on_timeout(fleet(), now);
   hazards_.on_timeout(now);
+  fence_.on_timeout(now);
   routes_.on_timeout(fleet(), now);
   detections_.on_timeout(now);
   formation_.on_timeout(now);
@@ -187,6 +191,18 @@ Result<SiteId> GroundNode::change_site(SiteId old, Site site, std::optional<Vehi
   return changed;
 }
 
+Result<std::uint32_t> GroundNode::order_fence(const Fence& fence, Instant now) {
+  auto number = fence_.order(fence, fleet(), now);
+  if (number) use_fence();
+  return number;
+}
+
+void GroundNode::use_fence() {
+  routes_.set_fence(fence_.fence());
+  formation_.set_fence(fence_.fence());
+  tracks_.set_fence(fence_.fence());
+}
+
 Result<SiteId> GroundNode::answer_proposal(std::uint32_t number, bool accepted,
                                            const std::string& by, Instant now) {
   auto site = detections_.proposed(number);
@@ -231,6 +247,7 @@ std::optional<Message> GroundNode::poll_message() {
     return message;
   }
   if (auto message = sites_.poll_message()) return message;
+  if (auto message = fence_.poll_message()) return message;
   if (auto message = routes_.poll_message()) return message;
   while (auto message = agent_.poll_message()) {
     const auto* decision = std::get_if<Authorisation>(&*message);
@@ -255,8 +272,9 @@ std::optional<MissionEvent> GroundNode::poll_event() {
 
 Instant GroundNode::next_timeout() const {
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
-                   routes_.next_timeout(), formation_.next_timeout(), tracks_.next_timeout(),
-                   setup_.next_timeout(), returns_.next_timeout(), landings_.next_timeout()});
+                   fence_.next_timeout(), routes_.next_timeout(), formation_.next_timeout(),
+                   tracks_.next_timeout(), setup_.next_timeout(), returns_.next_timeout(),
+                   landings_.next_timeout()});
 }
 
 }  // namespace skein::mission

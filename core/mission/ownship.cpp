@@ -139,13 +139,25 @@ bool Ownship::return_along(const TimedPath& way, Instant now) {
          stays_in_fence(way.path, way.tail_curvature_per_m) && flight_.return_along(way, now);
 }
 
-bool Ownship::keeps_clear(Instant now) {
-  const FlightPlan& plan = flight_.plan();
-  if (plan.lands &&
-      !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m, config_.fence)) {
-    fly_home(now);  // it goes around
-  }
-  if (flight_.keeps_clear(hazards(), now)) return true;
+bool Ownship::keep_fence(const Fence& fence) {
+  const bool is_home_in =
+      !flight_.started() || fence.inside_m(flight_.first_pose().position()) > 0.0;
+  if (comes_home() && !is_home_in) return false;
+  config_.fence = fence;
+  flight_.set_fence(fence);
+  return true;
+}
+
+bool Ownship::keeps_in(Instant now) {
+  const TimedPath& timed = flight_.plan().timed;
+  const double ahead_m = timed.distance_at(now);
+  const auto rest = timed.piece(ahead_m, std::max(ahead_m, timed.path.length_m()));
+  if (!rest || stays_in_fence(*rest, timed.tail_curvature_per_m)) return true;
+  return plans_anew(now);
+}
+
+/// Where nothing else hangs on what it flies.
+bool Ownship::plans_anew(Instant now) {
   if (flight_.homing()) {
     fly_home(now);
   } else if (flight_.searching() || flight_.stands_by()) {
@@ -154,6 +166,15 @@ bool Ownship::keeps_clear(Instant now) {
     return false;
   }
   return true;
+}
+
+bool Ownship::keeps_clear(Instant now) {
+  const FlightPlan& plan = flight_.plan();
+  if (plan.lands &&
+      !is_open(plan.landing, hazards(), config_.planning.avoidance.margin_m, config_.fence)) {
+    fly_home(now);  // it goes around
+  }
+  return flight_.keeps_clear(hazards(), now) || plans_anew(now);
 }
 
 bool Ownship::way_is_open(Instant now) const {

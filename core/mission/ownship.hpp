@@ -85,6 +85,10 @@ class Ownship {
   [[nodiscard]] bool keeps_clear(Instant now);
   /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near.
   [[nodiscard]] bool way_is_open(Instant now) const;
+  /// Keeps that fence from now on. False, and nothing changed, where its home is outside.
+  bool keep_fence(const Fence& fence);
+  /// What it flies stays in its fence, if need be after a search or a way home was planned anew?
+  [[nodiscard]] bool keeps_in(Instant now);
   [[nodiscard]] bool in_fence(const Vec2& point) const {
     return !config_.fence.exists() || config_.fence.inside_m(point) > 0.0;
   }
@@ -129,6 +133,7 @@ class Ownship {
   [[nodiscard]] Telemetry telemetry() const;
 
  private:
+  [[nodiscard]] bool plans_anew(Instant now);
   [[nodiscard]] bool is_at_route() const;
   [[nodiscard]] Pose2 begins_at(const VehicleState& state) const;
 

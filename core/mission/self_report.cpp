@@ -43,6 +43,7 @@ Health SelfReport::health(const Facts& facts, Instant now) {
   health.time = now;
   health.mode = facts.condition.mode;
   health.problems = problems(facts, now);
+  health.fence = facts.fence;
   told_ = facts;
   forget_silent(now);
   for (std::size_t i = 0; i < senders_.size(); ++i) {

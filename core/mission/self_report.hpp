@@ -51,6 +51,7 @@ class SelfReport {
     bool knows_orders = true;
     bool range_spent = false;  ///< but for the way home
     std::optional<SeparationConflict> separation = {};
+    std::uint32_t fence = 0;  ///< digest_of() the one that it keeps
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }

@@ -304,6 +304,9 @@ std::optional<PlanningRequest> VehicleAgent::poll_planning_request() {
   return impl_->outbox.planning_requests.pop();
 }
 void VehicleAgent::on_bar(Bar bar, Instant now) { impl_->on_bar(bar, now); }
+std::string VehicleAgent::keep_fence(const Fence& fence, Instant now) {
+  return impl_->keep_fence(fence, now);
+}
 Instant VehicleAgent::next_timeout() const { return impl_->next_timeout(); }
 Instant VehicleAgent::quiet_until(Instant now) const { return impl_->quiet_until(now); }
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }

@@ -103,6 +103,15 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   respond(*response, now);
 }
 
+/// What leads out of the new one is not flown on.
+std::string VehicleAgent::Impl::keep_fence(const Fence& fence, Instant now) {
+  if (!ownship_.keep_fence(fence)) return "its home is outside of it";
+  if (!ownship_.flight().started() || ownship_.landing() || ownship_.keeps_in(now)) return {};
+  if (const auto* response = failsafe_.update(now, {.path_barred = true})) respond(*response, now);
+  step(now);
+  return {};
+}
+
 void VehicleAgent::Impl::watch_fence(Instant now) {
   const bool known = failsafe_.facts().left_fence || ownship_.landing();
   if (known || !ownship_.leaves_fence(now)) return;

@@ -29,6 +29,7 @@ class VehicleAgent::Impl {
   void on_planning_result(const PlanningResult& result, Instant now);
   void on_timeout(Instant now) { step(now); }
   void on_bar(Bar bar, Instant now);
+  std::string keep_fence(const Fence& fence, Instant now);
   [[nodiscard]] std::optional<Guidance> poll_guidance() { return ownship_.poll_guidance(); }
   [[nodiscard]] Instant next_timeout() const;
   [[nodiscard]] Instant quiet_until(Instant now) const;

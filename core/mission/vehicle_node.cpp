@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "fence_keeper.hpp"
 #include "self_report.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/mission/order_book.hpp"
@@ -86,6 +87,7 @@ class VehicleNode::Impl {
         telemetry_pace{config.telemetry},
         self_report{unchanging(config, agent->telemetry()), now},
         setup{config.setup, self, agent->telemetry().instance, now},
+        fence{config.fence},
         knows_orders{!starts_anew(now)},
         knows_orders_first_hand{knows_orders},
         answers_until{knows_orders ? Instant::min() : Instant::max()},
@@ -190,6 +192,15 @@ class VehicleNode::Impl {
     update_bar(now);
   }
 
+  /// Before the first state it is not known whether it can: it is said again.
+  void on_fence(const FenceOrder& order, Instant now) {
+    const auto asked = fence.asked(order);
+    if (!asked || !state) return;
+    std::string why = FenceKeeper::why_not(*asked, *state);
+    if (why.empty()) why = agent->keep_fence(*asked, now);
+    if (auto answer = fence.answer(order, *asked, why)) report(*std::move(answer), now);
+  }
+
   /// In formation: routes are for vehicles that work in coalitions.
   void refuse_route(const Route& route) {
     if (route.vehicle != self || route.step == RouteStep::call_off) return;
@@ -272,7 +283,8 @@ class VehicleNode::Impl {
                             .differs = setup.difference(kGroundStation),
                             .knows_orders = knows_orders,
                             .range_spent = agent->range_spent(),
-                            .separation = agent->separation_conflict()};
+                            .separation = agent->separation_conflict(),
+                            .fence = digest_of(fence.fence())};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});
@@ -296,6 +308,7 @@ class VehicleNode::Impl {
   TelemetryPace telemetry_pace;
   SelfReport self_report;
   SetupBook setup;
+  FenceKeeper fence;
   OrderBook orders;
   ToldBook told_book;
   std::deque<Message> to_pass_on;
@@ -362,6 +375,8 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
   } else if (const auto* route = std::get_if<Route>(&message);
              route != nullptr && !impl_->flies_routes) {
     impl_->refuse_route(*route);
+  } else if (const auto* fence = std::get_if<FenceOrder>(&message)) {
+    impl_->on_fence(*fence, now);
   } else if (impl_->is_of_use(message, sender) && impl_->take_lasting(message, now)) {
     if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
       impl_->setup.on_time(sender, telemetry->state.time, now);
@@ -413,6 +428,7 @@ std::optional<MissionEvent> VehicleNode::poll_event() {
   if (auto event = impl_->agent->poll_event()) return event;
   return impl_->events.pop();
 }
+std::optional<Fence> VehicleNode::poll_fence() { return impl_->fence.poll_changed(); }
 std::optional<Instant> VehicleNode::poll_give_back() { return std::exchange(impl_->give_back, {}); }
 
 Instant VehicleNode::next_timeout() const {

@@ -487,5 +487,69 @@ TEST(VehicleNode, ACopterObeysWhatItHeardOnItsWayUp) {
   EXPECT_EQ(node.agent().telemetry().activity, Activity::holding);
 }
 
+Fence square(double half_m) {
+  Fence fence;
+  fence.corners = {{-half_m, -half_m}, {half_m, -half_m}, {half_m, half_m}, {-half_m, half_m}};
+  return fence;
+}
+
+FenceOrder order_of(std::uint32_t number, const Fence& fence) {
+  return {number, fence.corners, fence.height_max_m};
+}
+
+TEST(VehicleNode, KeepsTheFenceThatIsOrdered) {
+  Vehicle vehicle;
+  vehicle.step(1.0);
+  EXPECT_EQ(vehicle.said_of<Health>().back().fence, 0U);
+  const Message order{order_of(7, square(5000.0))};
+  vehicle.hear(order, {2});
+  EXPECT_FALSE(vehicle.node.poll_fence()) << "it is the ground station's to order";
+  vehicle.hear(order, kGroundStation);
+  vehicle.hear(order, kGroundStation);
+  EXPECT_EQ(vehicle.node.poll_fence(), square(5000.0)) << "for its autopilot";
+  EXPECT_FALSE(vehicle.node.poll_fence()) << "once";
+  vehicle.hear(Message{order_of(6, square(4000.0))}, kGroundStation);
+  EXPECT_FALSE(vehicle.node.poll_fence()) << "an older order";
+  vehicle.step(3.0);
+  EXPECT_EQ(vehicle.said_of<Health>().back().fence, digest_of(square(5000.0)));
+  std::vector<event::FenceAnswered> answers;
+  for (const auto& told : vehicle.said_of<MissionEvent>()) {
+    if (const auto* answer = std::get_if<event::FenceAnswered>(&told.body)) {
+      answers.push_back(*answer);
+    }
+  }
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].number, 7U);
+  EXPECT_TRUE(answers[0].taken);
+}
+
+TEST(VehicleNode, AFenceThatItIsOutsideOfIsAnsweredOnceAndLookedAtAgain) {
+  Vehicle vehicle;
+  vehicle.step(1.0);
+  Fence aside = square(1000.0);
+  for (Vec2& corner : aside.corners) corner.x() += 5000.0;
+  Fence low = square(5000.0);
+  low.height_max_m = 50.0;
+  for (int i = 0; i < 3; ++i) vehicle.hear(Message{order_of(7, aside)}, kGroundStation);
+  EXPECT_FALSE(vehicle.node.poll_fence());
+  Fence crossed = square(1000.0);
+  std::swap(crossed.corners[0], crossed.corners[1]);
+  vehicle.hear(Message{order_of(8, crossed)}, kGroundStation);
+  vehicle.node.on_state({.time = at_seconds(2.0), .z_m = 60.0}, at_seconds(2.0));
+  vehicle.hear(Message{order_of(9, low)}, kGroundStation);
+  vehicle.node.on_state({.time = at_seconds(3.0), .z_m = 40.0}, at_seconds(3.0));
+  vehicle.hear(Message{order_of(9, low)}, kGroundStation);
+  EXPECT_EQ(vehicle.node.poll_fence(), low);
+  std::vector<std::string> answers;
+  for (const auto& told : vehicle.said_of<MissionEvent>()) {
+    if (const auto* answer = std::get_if<event::FenceAnswered>(&told.body)) {
+      answers.push_back(answer->taken ? "taken" : answer->detail);
+    }
+  }
+  EXPECT_EQ(answers,
+            (std::vector<std::string>{"it is outside of it", "its edges cross or touch each other",
+                                      "it flies above its height", "taken"}));
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -62,6 +62,7 @@ std::string_view to_string(CoalitionState state) {
 Picture::Picture(PictureParams params) : params_{std::move(params)} {
   for (const VehicleId id : params_.expected) vehicles_[id];
   for (const Hazard& hazard : params_.hazards) hazards_[hazard.id] = hazard;
+  fence_ = params_.fence;
 }
 
 bool Picture::is_known(VehicleId sender) const {
@@ -112,7 +113,11 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                         [](const mission::RouteStatus&) {},
                         [](const mission::Preflight&) {},
                         [](const mission::ReturnFlight&) {},
-                        [](const mission::FenceOrder&) {},
+                        [&](const mission::FenceOrder& m) {
+                          if (m.number <= fence_order_) return;
+                          fence_order_ = m.number;
+                          fence_ = {m.corners, m.height_max_m};
+                        },
                         [](const mission::Traffic&) {},
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;

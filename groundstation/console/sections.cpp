@@ -13,6 +13,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/console/authorisation_card.hpp"
+#include "skein/console/team_fence.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
@@ -530,8 +531,8 @@ Json timeline_json(const Picture& picture, const mission::Fleet& fleet) {
 
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
-      "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
-      "formation", "timeline", "audit", "replay",     "proposals",      "preflight"};
+      "vehicles", "plans", "sites",  "coalitions", "authorisations", "hazards", "formation",
+      "timeline", "audit", "replay", "proposals",  "preflight",      "fence"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -579,6 +580,8 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return codec::json_text(proposals_json(picture));
     case Section::preflight:
       return preflight_json(team_preflight(fleet, now));
+    case Section::fence:
+      return fence_json(picture, fleet);
     case Section::audit:
     case Section::replay:
     case Section::count:

@@ -145,6 +145,7 @@ void Companion::Impl::step(Instant now) {
   check_parameters(now);
   ask_others(now);
   keep_clock(now);
+  if (renews_fence_ && !machine_.in(State::preparing)) renews_fence_ = !give_fence(now);
   say_upload(fence_upload_, now);
   say_upload(upload_, now);
   if (now >= heartbeat_at_) {
@@ -641,6 +642,7 @@ std::optional<Companion::Heard> Companion::other_heartbeat() const {
 }
 void Companion::command(const Demand& demand, Instant now) { impl_->command(demand, now); }
 bool Companion::give_back(Instant now, Instant issued) { return impl_->give_back(now, issued); }
+void Companion::keep_fence(const Fence& fence) { impl_->keep_fence(fence); }
 void Companion::step(Instant now) { impl_->step(now); }
 std::optional<mavlink::WireBytes> Companion::poll_packet() {
   return may_send() ? impl_->poll_packet() : std::nullopt;

@@ -370,10 +370,7 @@ void Companion::Impl::reset_link() {
   reasons_asked_at_.reset();
   looked_at_ = {};
   others_asked_ = 0;
-  fence_upload_.clear();
-  fence_again_at_ = Instant::min();
-  fence_failed_.clear();
-  told_fence_ = false;
+  forget_fence();
 }
 
 }  // namespace skein::ardupilot

@@ -88,6 +88,7 @@ class Companion::Impl {
     demand_at_ = now;
   }
   bool give_back(Instant now, Instant issued);
+  void keep_fence(const Fence& fence);
   void step(Instant now);
 
   std::optional<mavlink::WireBytes> poll_packet() { return packets_.pop(); }
@@ -158,6 +159,7 @@ class Companion::Impl {
   void forget_landing();
   /// True once the autopilot has it, or there is none.
   bool give_fence(Instant now);
+  void forget_fence();
   void say_upload(MissionUpload& upload, Instant now);
   void fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m, Instant now);
   /// With the time and the autopilot's address in it, when one is due.
@@ -290,6 +292,7 @@ class Companion::Impl {
   MissionUpload upload_{MissionUpload::Kind::mission};  ///< of a plane's landing
   std::optional<Landing> uploads_;                      ///< what that is of
   bool told_fence_ = false;
+  bool renews_fence_ = false;  ///< in flight: it has another one to keep
   bool told_upload_ = false;
   bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
   Instant upload_again_at_ = Instant::min();  ///< after one that failed

@@ -70,6 +70,19 @@ void Companion::Impl::land(Instant now) {
   if (!entry_.mode_confirmed) ask_for_mode(traits_.land_mode, now);
 }
 
+void Companion::Impl::keep_fence(const Fence& fence) {
+  params_.fence = fence;
+  forget_fence();
+  renews_fence_ = true;
+}
+
+void Companion::Impl::forget_fence() {
+  fence_upload_.clear();
+  fence_again_at_ = Instant::min();
+  fence_failed_.clear();
+  told_fence_ = false;
+}
+
 bool Companion::Impl::give_fence(Instant now) {
   if (!params_.fence.exists()) return true;
   switch (fence_upload_.state()) {

@@ -136,7 +136,7 @@ class Rerun {
       if (!bytes_of(content).empty()) given_.push_back(std::move(content));
     }
     while (auto request = node_->poll_planning_request()) asked_.push_back(std::move(*request));
-    while (node_->poll_event() || node_->poll_give_back()) {
+    while (node_->poll_event() || node_->poll_give_back() || node_->poll_fence()) {
     }
   }
 

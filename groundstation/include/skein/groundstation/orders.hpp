@@ -10,6 +10,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
 #include "skein/configuration/site_config.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -32,6 +33,8 @@ inline constexpr Limit kLaps{1.0, 32.0};
 inline constexpr Limit kWait_s{0.0, 86400.0};
 inline constexpr Limit kRoutesIn_s{5.0, 86400.0};
 
+inline constexpr Limit kFenceHeight_m{1.0, 1e5};
+
 inline constexpr Limit kLatitude_deg{-90.0, 90.0};
 inline constexpr Limit kLongitude_deg{-180.0, 180.0};
 inline constexpr Limit kTasks{0.0, static_cast<double>(kTasksPerKindMax)};
@@ -52,6 +55,7 @@ enum class View {
   proposals,
   routes,
   preflight,
+  fence,
   console  ///< its address
 };
 /// What that vehicle's checks find.
@@ -77,6 +81,12 @@ struct NewHazard {
 /// That hazard is no more.
 struct WithdrawHazard {
   HazardId hazard;
+};
+/// Where all vehicles are to stay from now on.
+struct NewFence {
+  Fence fence;
+  std::string file = {};  ///< GeoJSON, or a plan of QGroundControl, that has its corners
+  bool preview = false;   ///< only show whether it can be ordered
 };
 /// What is asked of a site; what is not said is as its template has it, or the site that it
 /// changes.
@@ -147,7 +157,7 @@ struct Quit {};
 /// monostate: an empty line.
 using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard,
                            NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
-                           ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf>;
+                           ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

@@ -37,6 +37,7 @@ export const section_names = [
   "replay",
   "proposals",
   "preflight",
+  "fence",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -55,6 +56,7 @@ export function empty_picture(): Picture {
     replay: null,
     proposals: [],
     preflight: null,
+    fence: null,
     events: [],
     next_seq: 0,
     events_missed: 0,

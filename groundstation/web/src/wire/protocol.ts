@@ -26,6 +26,7 @@ export type Limit = [low: number, high: number];
 export interface Limits {
   coordinate_m: Limit;
   hazard_radius_m: Limit;
+  fence_height_m: Limit;
   spacing_m: Limit;
   heading_deg: Limit;
   places: Limit;
@@ -269,6 +270,18 @@ export interface Sections {
   replay: ReplayState | null;
   proposals: Proposal[];
   preflight: Preflight | null;
+  fence: Fence | null;
+}
+
+/** Where all vehicles are to stay. */
+export interface Fence {
+  /** Of the operator; null: it is that of the configuration. */
+  order: number | null;
+  corners: [x: number, y: number][];
+  height_m: number;
+  /** What vehicles do at its edge, for people. */
+  action: string;
+  keepers: { id: number; keeps: "this" | "another" | "none" | "not_known" }[];
 }
 
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";

@@ -19,6 +19,7 @@ export function a_hello(): Hello {
     limits: {
       coordinate_m: [-1e5, 1e5],
       hazard_radius_m: [1, 5e4],
+      fence_height_m: [1, 1e5],
       spacing_m: [0.5, 1000],
       heading_deg: [-360, 360],
       places: [1, 1000],

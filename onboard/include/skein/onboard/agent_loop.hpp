@@ -36,6 +36,8 @@ struct AgentLink {
   std::function<std::string()> mode = {};
   /// The operator gives the aircraft back, by a word that was issued then; may be empty.
   std::function<void(Instant)> give_back = {};
+  /// The fence that the flight controller is to keep from now on; may be empty.
+  std::function<void(const Fence&)> keep_fence = {};
   /// Takes down what the node is given and gives, for its re-execution; may be empty.
   std::function<void(recording::AgentRecord)> record = {};
 };

@@ -41,6 +41,8 @@ class CanFlightController final : public hal::FlightController {
   // Of the agent's thread.
   /// The operator gives the aircraft (back) to the companion, by a word that was issued then.
   void give_back(Instant issued);
+  /// The autopilot is given that fence, to keep it from now on.
+  void keep_fence(const Fence& fence);
   [[nodiscard]] std::optional<ardupilot::Notice> poll_notice() { return notices_.pop(); }
   [[nodiscard]] std::uint64_t notices_dropped() const { return notices_.dropped(); }
   /// The autopilot's mode, and what the companion is about where it does not fly: "LOITER,
@@ -67,6 +69,7 @@ class CanFlightController final : public hal::FlightController {
   LatestValue<Mode> mode_;                       ///< CAN to agent
   Mode told_mode_;                               ///< CAN's
   Mode newest_mode_;                             ///< the agent's
+  void take_fence();
   void tell_mode();
   void tell_troubles();
   void tell_facts(Instant now);
@@ -78,6 +81,8 @@ class CanFlightController final : public hal::FlightController {
   std::atomic<hal::Airborne> airborne_{hal::Airborne::unknown};  ///< CAN to control
   static constexpr Instant::rep kNothing = std::numeric_limits<Instant::rep>::min();
   std::atomic<Instant::rep> given_back_{kNothing};  ///< when the operator's word was issued
+  std::mutex fence_mutex_;                          ///< agent to CAN, seldom
+  std::optional<Fence> fence_;                      ///< that the autopilot is to be given
   std::optional<ardupilot::MotionSample> newest_;   ///< control's
   ardupilot::CanLink link_;
 };

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "skein/base/geometry.hpp"
@@ -24,6 +27,14 @@ struct Fence {
 
   bool operator==(const Fence&) const = default;
 };
+
+/// What two fences that are not the same differ in, to a millimetre: of its corners in their order
+/// and its height. 0: there is none.
+[[nodiscard]] std::uint32_t digest_of(const Fence& fence);
+
+/// Why it is none, for people: too few or too many corners, edges that cross, no height. None where
+/// it is one.
+[[nodiscard]] std::optional<std::string> why_no_fence(const Fence& fence);
 
 /// Do no two edges of the polygon meet but at their common corner? Precondition: three corners.
 [[nodiscard]] bool is_simple_polygon(const std::vector<Vec2>& corners);

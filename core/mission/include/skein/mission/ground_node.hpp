@@ -9,6 +9,7 @@
 #include "skein/mission/formation_ground.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/ground_detections.hpp"
+#include "skein/mission/ground_fence.hpp"
 #include "skein/mission/ground_hazards.hpp"
 #include "skein/mission/ground_landing.hpp"
 #include "skein/mission/ground_return.hpp"
@@ -25,7 +26,7 @@ struct GroundNodeConfig {
   FormationGroundConfig formation;
   TrackGroundConfig tracks{};     ///< of planes in formation; without planes it does nothing
   std::vector<Hazard> hazards{};  ///< known before the mission
-  Fence fence{};                  ///< of the team, for routes
+  Fence fence{};                  ///< of the team, for all that is ordered
   GroundDetectionsConfig detections{};
   GroundReturnConfig returns{};
   SetupParams setup{};
@@ -83,6 +84,11 @@ class GroundNode {
   Result<void> call_off_routes(Instant now) { return routes_.call_off(now); }
   [[nodiscard]] const GroundRoutes& routes() const { return routes_; }
 
+  /// As GroundFence::order(), with the fleet as it is heard. Formations and routes are looked at
+  /// with it from now on.
+  Result<std::uint32_t> order_fence(const Fence& fence, Instant now);
+  [[nodiscard]] const GroundFence& fence() const { return fence_; }
+
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
 
@@ -109,11 +115,12 @@ class GroundNode {
   [[nodiscard]] std::uint64_t dropped() const {
     return messages_.dropped() + events_.dropped() + agent_.dropped() + formation_.dropped() +
            tracks_.dropped() + sites_.dropped() + hazards_.dropped() + routes_.dropped() +
-           detections_.dropped() + returns_.dropped() + landings_.dropped();
+           detections_.dropped() + fence_.dropped() + returns_.dropped() + landings_.dropped();
   }
 
  private:
   void take_events();
+  void use_fence();
   void note_refusal(const Authorisation& decision, Instant now);
   void on_setup(const Setup& setup, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
@@ -130,6 +137,7 @@ class GroundNode {
   Instant knows_orders_at_;  ///< from then on it says of who has none that it has none
   GroundSites sites_;
   GroundHazards hazards_;
+  GroundFence fence_;
   GroundRoutes routes_;
   GroundDetections detections_;
   GroundReturn returns_;

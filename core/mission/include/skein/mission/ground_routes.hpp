@@ -53,6 +53,8 @@ class GroundRoutes {
 
   /// No route that leads out of that fence is given.
   explicit GroundRoutes(Fence fence = {}) : fence_{std::move(fence)} {}
+  /// From now on that one.
+  void set_fence(const Fence& fence) { fence_ = fence; }
 
   void recall(const Message& message, VehicleId sender, Instant at);
   void on_message(const Message& message, Instant now);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/guidance.hpp"
 #include "skein/mission/messages.hpp"
@@ -78,6 +79,9 @@ class OnboardAgent {
   virtual void on_timeout(Instant now) = 0;
   /// From now on; before the first state, too.
   virtual void on_bar(Bar bar, Instant now) = 0;
+
+  /// Keeps that fence from now on. Else nothing is changed, and it says why not; empty: it does.
+  virtual std::string keep_fence(const Fence& /*fence*/, Instant /*now*/) { return {}; }
 
   /// To be sent; events are among them.
   [[nodiscard]] virtual std::optional<Message> poll_message() = 0;

@@ -57,6 +57,8 @@ class TrackGround {
 
   /// While there are any no order is taken.
   [[nodiscard]] BarredVehicles& barred() { return barred_; }
+  /// Nobody is led out of that one from now on.
+  void set_fence(const Fence& fence) { config_.fence = fence; }
 
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);

@@ -49,6 +49,7 @@ class VehicleAgent final : public OnboardAgent {
   void on_planning_result(const PlanningResult& result, Instant now) override;
   void on_timeout(Instant now) override;
   void on_bar(Bar bar, Instant now) override;
+  std::string keep_fence(const Fence& fence, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override;
   [[nodiscard]] std::optional<Guidance> poll_guidance() override;

@@ -21,6 +21,7 @@ struct VehicleNodeConfig {
   std::variant<VehicleAgentConfig, FormationAgentConfig, TrackAgentConfig> agent;
   std::string program;            ///< name and version, for whoever watches
   std::string flight_controller;  ///< its kind
+  Fence fence{};                  ///< of the configuration
   TelemetryPeriods telemetry{};
   SetupParams setup{};
 };
@@ -64,6 +65,8 @@ class VehicleNode {
   /// The operator gives the aircraft (back) to this program, by a command to this very vehicle that
   /// was issued then: what goes to all takes no aircraft from its pilot.
   [[nodiscard]] std::optional<Instant> poll_give_back();
+  /// To the flight controller: the fence that it is to keep from now on.
+  [[nodiscard]] std::optional<Fence> poll_fence();
   [[nodiscard]] Instant next_timeout() const;
   /// As of OnboardAgent.
   [[nodiscard]] Instant quiet_until(Instant now) const;

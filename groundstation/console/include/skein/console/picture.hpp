@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/time.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/shown_state.hpp"
 
@@ -17,6 +18,7 @@ namespace skein::console {
 struct PictureParams {
   std::vector<VehicleId> expected = {};        ///< the fleet
   std::vector<Hazard> hazards = {};            ///< known before the mission
+  Fence fence = {};                            ///< of the configuration
   double place_tolerance_m = 0.3;              ///< to be in place, in a formation
   Duration silence = std::chrono::seconds{5};  ///< as mission::FleetParams has it
   Duration series_period = std::chrono::seconds{1};
@@ -151,6 +153,10 @@ class Picture {
     return authorisations_;
   }
   [[nodiscard]] const std::map<HazardId, Hazard>& hazards() const { return hazards_; }
+  /// That the team is to keep.
+  [[nodiscard]] const Fence& fence() const { return fence_; }
+  /// The number of the operator's order; 0: it is that of the configuration, or there is none.
+  [[nodiscard]] std::uint32_t fence_order() const { return fence_order_; }
   [[nodiscard]] const std::map<std::uint32_t, ProposalPicture>& proposals() const {
     return proposals_;
   }
@@ -193,6 +199,8 @@ class Picture {
   std::vector<std::pair<coalition::CoalitionId, CoalitionPicture>> coalitions_;
   std::deque<AuthorisationPicture> authorisations_;
   std::map<HazardId, Hazard> hazards_;
+  Fence fence_;
+  std::uint32_t fence_order_ = 0;
   std::map<std::uint32_t, ProposalPicture> proposals_;
   FormationPicture formation_;
 };

@@ -27,6 +27,7 @@ enum class Section : std::uint8_t {
   replay,
   proposals,
   preflight,
+  fence,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);

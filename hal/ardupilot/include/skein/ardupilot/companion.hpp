@@ -145,6 +145,9 @@ class Companion {
   /// it cannot be given, and where it was taken after the operator's word was `issued`. In
   /// `duplicated` it says that the ids are mended, and no more.
   bool give_back(Instant now, Instant issued);
+  /// The autopilot is given that fence, in flight too, reads it back, and keeps it from now on.
+  /// What its parameters say of heights stays as its crew has set it.
+  void keep_fence(const Fence& fence);
 
   /// What is due by `now`. To be called every 10 ms or so. Precondition: `now` never decreases.
   void step(Instant now);
