@@ -37,6 +37,11 @@ console::ServerConfig server_config(const configuration::ConsoleConfig& config) 
   for (const auto& overlay : config.overlays) {
     server.overlays.push_back({overlay.name, overlay.file});
   }
+  for (const auto& group : config.groups) {
+    console::VehicleGroup& shown =
+        server.groups.emplace_back(console::VehicleGroup{group.name, {}});
+    for (const VehicleId vehicle : group.vehicles) shown.vehicles.push_back(vehicle.value);
+  }
   return server;
 }
 

@@ -33,6 +33,7 @@
 #include "skein/groundstation/recorder.hpp"
 #include "skein/groundstation/revocations.hpp"
 #include "skein/groundstation/route_desk.hpp"
+#include "skein/groundstation/several.hpp"
 #include "skein/groundstation/site_desk.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/identity/operator_key.hpp"
@@ -385,6 +386,10 @@ class GroundLoop {
     }
     if (const auto* order = std::get_if<Order>(&input)) {
       return answer_to(node_.command(order->vehicle, order->kind, now));
+    }
+    if (const auto* several = std::get_if<OrderToSeveral>(&input)) {
+      return tell_each(*several,
+                       [&](VehicleId one) { return node_.command(one, several->kind, now); });
     }
     if (const auto* hazard = std::get_if<NewHazard>(&input)) {
       const auto added = node_.hazards().add(hazard->centre_m, hazard->radius_m, now);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "skein/base/angles.hpp"
@@ -109,6 +111,22 @@ Input command(Reader& from) {
   Order order;
   order.kind = from.one_of<mission::CommandKind>("command");
   order.vehicle = {static_cast<std::uint16_t>(from.integer("vehicle", 0.0, kIdMax))};
+  return order;
+}
+
+Input command_to_several(Reader& from) {
+  OrderToSeveral order;
+  order.kind = from.one_of<mission::CommandKind>("command");
+  // Each pilot gives his own.
+  if (order.kind == mission::CommandKind::give_back) from.fail("give_back is to one vehicle");
+  for (const double id : from.numbers("vehicles", {1.0, kIdMax}, kVehiclesPerOrderMax)) {
+    if (id != std::floor(id)) from.fail("vehicles is to be a list of whole numbers");
+    order.vehicles.push_back({static_cast<std::uint16_t>(id)});
+  }
+  if (order.vehicles.empty()) from.fail("vehicles is to name at least one");
+  std::ranges::sort(order.vehicles);
+  const auto twice = std::ranges::unique(order.vehicles);
+  order.vehicles.erase(twice.begin(), twice.end());
   return order;
 }
 
@@ -226,6 +244,7 @@ Result<Input> read_order(std::string_view text) {
   const std::string kind = from.text("kind");
   const auto of_kind = [&]() -> Input {
     if (kind == "command") return command(from);
+    if (kind == "commands") return command_to_several(from);
     if (kind == "decision") return decision(from);
     if (kind == "hazard") return hazard(from);
     if (kind == "fence") return fence(from);

@@ -40,6 +40,9 @@ struct Line {
     return order.vehicle == kGroundStation ? fmt::format("{} all", verb)
                                            : fmt::format("{} {}", verb, order.vehicle.value);
   }
+  std::string operator()(const OrderToSeveral& order) const {
+    return fmt::format("{} {}", verb_of(order.kind), typed_ids(order.vehicles));
+  }
   std::string operator()(const NewHazard& hazard) const {
     return fmt::format("hazard {} {} {}", hazard.centre_m.x(), hazard.centre_m.y(),
                        hazard.radius_m);
@@ -115,6 +118,19 @@ std::optional<formation::ShapeKind> shape_named(std::string_view name) {
   const auto found = std::find(names.begin(), names.end(), hyphened(name));
   if (found == names.end()) return std::nullopt;
   return static_cast<formation::ShapeKind>(found - names.begin());
+}
+
+std::string typed_ids(const std::vector<VehicleId>& vehicles) {
+  std::string text;
+  for (std::size_t i = 0; i < vehicles.size();) {
+    std::size_t end = i;
+    while (end + 1 < vehicles.size() && vehicles[end + 1].value == vehicles[end].value + 1) ++end;
+    if (!text.empty()) text += ',';
+    text += std::to_string(vehicles[i].value);
+    if (end > i) text += (end > i + 1 ? "-" : ",") + std::to_string(vehicles[end].value);
+    i = end + 1;
+  }
+  return text;
 }
 
 std::string line_of(const Input& input) { return std::visit(Line{}, input); }

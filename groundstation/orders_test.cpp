@@ -33,6 +33,9 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "resume 7",
                            "return 3",
                            "give-back 2",
+                           "hold 3,4,7",
+                           "return 1-3,7,9-12",
+                           "land 2,5",
                            "authorise 3",
                            "refuse 4",
                            "hazard 1200 -300 250",
@@ -69,6 +72,28 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
     ASSERT_TRUE(input.ok()) << line;
     EXPECT_EQ(line_of(*input), line);
   }
+}
+
+TEST(Orders, ToSeveralAreOneWhateverTheirOrder) {
+  EXPECT_EQ(line_of_json(R"({"kind":"commands","command":"hold","vehicles":[7,3,4,3]})"),
+            "hold 3,4,7");
+  EXPECT_EQ(line_of_json(R"({"kind":"commands","command":"return_home","vehicles":[1,2,3]})"),
+            "return 1-3");
+  EXPECT_THAT(trouble_with(R"({"kind":"commands","command":"hold","vehicles":[]})"),
+              HasSubstr("at least one"));
+  EXPECT_THAT(trouble_with(R"({"kind":"commands","command":"hold"})"), HasSubstr("vehicles"));
+  // 0 is everybody, of whom nobody spoke.
+  EXPECT_THAT(trouble_with(R"({"kind":"commands","command":"hold","vehicles":[0,3]})"),
+              HasSubstr("vehicles"));
+  EXPECT_THAT(trouble_with(R"({"kind":"commands","command":"hold","vehicles":[1.5]})"),
+              HasSubstr("whole"));
+  EXPECT_THAT(trouble_with(R"({"kind":"commands","command":"give_back","vehicles":[1]})"),
+              HasSubstr("one vehicle"));
+  for (const char* line : {"hold 3,,4", "hold 3,", "hold 7-3", "hold 3-", "hold 0,1", "hold 3,all",
+                           "hold 1-60000", "hold 3, 4", "give-back 1,2"}) {
+    EXPECT_FALSE(parse_input(line).ok()) << line;
+  }
+  EXPECT_EQ(line_of(*parse_input("hold 9,3-5,4")), "hold 3-5,9");
 }
 
 TEST(Orders, OfAPageAreReadFieldByField) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "fence_words.hpp"
@@ -41,14 +42,33 @@ Result<Input> decision(bool grant, const std::vector<std::string_view>& words) {
   return Input{Decision{{*site}, grant}};
 }
 
+/// "3,5-9": ascending, none twice; nothing where it is no such list.
+std::optional<std::vector<VehicleId>> ids_of(std::string_view word) {
+  std::set<VehicleId> all;
+  for (std::size_t begin = 0; begin <= word.size();) {
+    const auto comma = std::min(word.find(',', begin), word.size());
+    const auto part = word.substr(begin, comma - begin);
+    begin = comma + 1;
+    const auto hyphen = part.find('-');
+    const auto first = id_of(part.substr(0, hyphen));
+    const auto last = hyphen == std::string_view::npos ? first : id_of(part.substr(hyphen + 1));
+    if (!first || !last || *last < *first) return std::nullopt;
+    if (all.size() + (*last - *first) >= kVehiclesPerOrderMax) return std::nullopt;
+    for (int id = *first; id <= *last; ++id) all.insert({static_cast<std::uint16_t>(id)});
+  }
+  return std::vector<VehicleId>{all.begin(), all.end()};
+}
+
 Result<Input> order(mission::CommandKind kind, const std::vector<std::string_view>& words) {
   if (words.size() == 2 && words[1] == "all") return Input{Order{kGroundStation, kind}};
   const auto vehicle = words.size() == 2 ? id_of(words[1]) : std::nullopt;
-  if (!vehicle) {
-    return Error{
-        fmt::format("'{0}' needs the number of a vehicle or 'all', as in '{0} 7'", words[0])};
+  if (vehicle) return Input{Order{{*vehicle}, kind}};
+  if (auto several = words.size() == 2 ? ids_of(words[1]) : std::nullopt) {
+    return Input{OrderToSeveral{*std::move(several), kind}};
   }
-  return Input{Order{{*vehicle}, kind}};
+  return Error{fmt::format(
+      "'{0}' needs the number of a vehicle, several as '{0} 3,5-9', or 'all', as in '{0} 7'",
+      words[0])};
 }
 
 /// 'land' alone is of a formation.
@@ -335,7 +355,10 @@ std::string help_text() {
          "accept N          take proposal N as a site; dismiss N: it is none\n"
          "audit             who gave which order, from where, and what came of it\n"
          "console           the address of its page, with the token that opens it\n"
-         "hold ID|all       fly a holding pattern until told otherwise\n"
+         "hold ID|all       fly a holding pattern until told otherwise; this one and the next "
+         "three "
+         "also\n"
+         "                  to several at once: hold 3,5-9\n"
          "resume ID|all     go on with the mission\n"
          "return ID|all     fly back to the start and hold there\n"
          "land ID|all       who is at home, or on the way there, lands, one after another, the "

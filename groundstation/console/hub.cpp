@@ -194,6 +194,10 @@ std::string Hub::hello(const Identity& identity) const {
   for (const Overlay& overlay : config_.overlays) {
     hello["overlays"].push_back({{"name", overlay.name}, {"url", "/overlays/" + overlay.name}});
   }
+  hello["groups"] = Json::array();
+  for (const VehicleGroup& group : config_.groups) {
+    hello["groups"].push_back({{"name", group.name}, {"vehicles", group.vehicles}});
+  }
   return codec::json_text(hello);
 }
 

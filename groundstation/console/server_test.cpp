@@ -500,6 +500,7 @@ TEST(Server, GivesTilesAndOverlays) {
   ServerConfig config;
   config.tiles = folder / "tiles";
   config.overlays = {{"area", folder / "area.geojson"}};
+  config.groups = {{"copters", {2, 5}}};
   const Station station{config};
   const auto tile = ask(station, get("/tiles/3/1/2"));
   EXPECT_EQ(tile.body(), "picture");
@@ -513,6 +514,8 @@ TEST(Server, GivesTilesAndOverlays) {
   const Json hello = page.read("hello");
   EXPECT_EQ(hello["tiles"]["min_zoom"], 3);
   EXPECT_EQ(hello["overlays"][0]["url"], "/overlays/area");
+  EXPECT_EQ(hello["groups"][0]["name"], "copters");
+  EXPECT_EQ(hello["groups"][0]["vehicles"], (std::vector<int>{2, 5}));
   std::filesystem::remove_all(folder);
 }
 

@@ -601,6 +601,14 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
                    "may have letters, digits, - and _ only; it becomes part of an address");
                inner.text({"file", "GeoJSON, WGS84", kRequired}, overlay.file);
              }));
+  v.list({"groups", "of vehicles, that every operator can select by name or key"},
+         groups_of(config.groups, kListMax, [](FieldVisitor& inner, ConsoleConfig::Group& group) {
+           inner.text({"name", "what the page calls it, 24 characters at most", kRequired},
+                      group.name);
+           inner.require(!group.name.empty() && group.name.size() <= 24, "name",
+                         "has 1 to 24 characters");
+           ids(inner, {"vehicles", "their ids", kRequired}, group.vehicles, "vehicle");
+         }));
   v.require(config.certificate.empty() == config.key.empty(), "key",
             "a certificate needs its key, and a key its certificate; give both or neither");
 }

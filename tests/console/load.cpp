@@ -78,8 +78,8 @@ std::string hello(const console::PictureParams& params) {
 
 int main(int argc, char** argv) {
   const int wanted = argc > 1 ? std::atoi(argv[1]) : 50;
-  if (wanted < 1 || wanted > 500) {
-    std::fprintf(stderr, "console_load VEHICLES: 1 to 500\n");
+  if (wanted < 1 || wanted > 1000) {
+    std::fprintf(stderr, "console_load VEHICLES: 1 to 1000\n");
     return 2;
   }
   const auto vehicles = static_cast<std::uint16_t>(wanted);

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "skein/base/frames.hpp"
 #include "skein/base/ids.hpp"
@@ -37,6 +38,8 @@ inline constexpr Limit kFenceHeight_m{1.0, 1e5};
 
 inline constexpr Limit kLatitude_deg{-90.0, 90.0};
 inline constexpr Limit kLongitude_deg{-180.0, 180.0};
+/// Vehicles that one order names, after ranges are written out.
+inline constexpr std::size_t kVehiclesPerOrderMax = 1000;
 inline constexpr Limit kTasks{0.0, static_cast<double>(kTasksPerKindMax)};
 /// Those of files of sites.
 [[nodiscard]] constexpr Limit limit_of(const configuration::SiteLimit& of) {
@@ -71,6 +74,11 @@ struct Decision {
 /// A command to a vehicle, or to all (kGroundStation).
 struct Order {
   VehicleId vehicle;
+  mission::CommandKind kind = mission::CommandKind::hold;
+};
+/// The same command to each of several vehicles, as one order.
+struct OrderToSeveral {
+  std::vector<VehicleId> vehicles;  ///< ascending, none twice, at least one
   mission::CommandKind kind = mission::CommandKind::hold;
 };
 /// A circle to keep out of, told to all. Mission frame.
@@ -155,9 +163,10 @@ struct Record {
 };
 struct Quit {};
 /// monostate: an empty line.
-using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, WithdrawHazard,
-                           NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
-                           ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence>;
+using Input =
+    std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard, WithdrawHazard,
+                 NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
+                 ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);
@@ -165,6 +174,8 @@ using Input = std::variant<std::monostate, View, Decision, Order, NewHazard, Wit
 [[nodiscard]] std::vector<std::string> shape_names();
 /// By a name of these, or as files write it: line-abreast, line_abreast.
 [[nodiscard]] std::optional<formation::ShapeKind> shape_named(std::string_view name);
+/// Ascending numbers as the prompt takes them: 1, 2, 3 and 7 are "1-3,7".
+[[nodiscard]] std::string typed_ids(const std::vector<VehicleId>& vehicles);
 /// The order in the prompt's words, for the log and the audit: "form wedge spacing 5".
 [[nodiscard]] std::string line_of(const Input& input);
 

@@ -29,10 +29,15 @@ export function health_of(vehicle: Vehicle): Health {
 
 const order: Record<Health, number> = { alarm: 0, silent: 1, warning: 2, unheard: 3, stale: 4, well: 5 };
 
+/** 0: the worst. */
+export function rank_of(vehicle: Vehicle): number {
+  return order[health_of(vehicle)];
+}
+
 /** Worst first, and by id among equals. Figures that change with every state take no part: rows
  *  that jump cannot be read. */
 export function by_attention(vehicles: readonly Vehicle[]): Vehicle[] {
-  return [...vehicles].sort((a, b) => order[health_of(a)] - order[health_of(b)] || a.id - b.id);
+  return [...vehicles].sort((a, b) => rank_of(a) - rank_of(b) || a.id - b.id);
 }
 
 /** What is wrong with the fleet as a whole, named. */

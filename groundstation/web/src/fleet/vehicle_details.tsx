@@ -59,6 +59,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
           ✕
         </button>
       </header>
+      {may_order.value && <Orders vehicle={vehicle} />}
       <dl class="figures">
         {rows.map(([name, value]) => (
           <div key={name}>
@@ -67,7 +68,6 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
           </div>
         ))}
       </dl>
-      {may_order.value && <Orders vehicle={vehicle} />}
     </section>
   );
 }

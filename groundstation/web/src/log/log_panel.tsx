@@ -3,25 +3,33 @@
 
 import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import { clock, utc, words } from "../shell/format";
+import { for_fingers } from "../shell/layout";
 import { select, selected } from "../shell/view";
 import { events, hello, in_replay, shown, vehicles } from "../wire/store";
 import { all_events, filtered, rows_in_sight } from "./event_filter";
 import type { EventFilter } from "./event_filter";
 
-const row_px = 22;
+// As in log.css.
+const row_px_of = (fingers: boolean) => (fingers ? 46 : 24);
 
 function Filters({ filter, change, kinds }: { filter: EventFilter; change: (some: Partial<EventFilter>) => void; kinds: string[] }) {
+  const ids = vehicles.value.map(({ id }) => id);
+  const options = useMemo(
+    () =>
+      ids.map((id) => (
+        <option key={id} value={id}>
+          vehicle {id}
+        </option>
+      )),
+    [ids.join()],
+  );
   return (
     <div class="filters" role="search" aria-label="Filter the log">
       <input type="search" placeholder="Text" aria-label="Text" value={filter.text} data-testid="log-text" onInput={(event) => change({ text: event.currentTarget.value })} />
       <select aria-label="Vehicle" data-testid="log-vehicle" value={filter.vehicle ?? ""} onChange={(event) => change({ vehicle: event.currentTarget.value === "" ? null : Number(event.currentTarget.value) })}>
         <option value="">all vehicles</option>
         <option value="0">ground station</option>
-        {vehicles.value.map(({ id }) => (
-          <option key={id} value={id}>
-            vehicle {id}
-          </option>
-        ))}
+        {options}
       </select>
       <select aria-label="Kind" data-testid="log-kind" value={filter.kind ?? ""} onChange={(event) => change({ kind: event.currentTarget.value || null })}>
         <option value="">all kinds</option>
@@ -44,6 +52,7 @@ export function LogPanel() {
   const [height, set_height] = useState(400);
   const box = useRef<HTMLDivElement>(null);
   const at_end = useRef(true);
+  const row_px = row_px_of(for_fingers.value);
   const until_s = in_replay.value ? shown.value.time_s : null;
   const all = events.value;
   const list = useMemo(() => filtered(all, filter, until_s), [all, filter, until_s]);
@@ -85,7 +94,7 @@ export function LogPanel() {
           {list.slice(first, end).map((event) => (
             <div key={event.seq} class={`log-row ${event.level}${event.vehicle === selected.value ? " selected" : ""}`} data-testid={`event-${event.seq}`}>
               <span class="figure muted">{clock(event.time_s, 1)}</span>
-              <span class="figure muted">{utc(event.time_s, hello.value?.epoch_unix_s)}</span>
+              <span class="figure muted utc">{utc(event.time_s, hello.value?.epoch_unix_s)}</span>
               <button type="button" class="row-button" title="Select this vehicle" disabled={event.vehicle === 0} onClick={() => select(event.vehicle)}>
                 {event.vehicle === 0 ? "ground" : event.vehicle}
               </button>

@@ -4,12 +4,16 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import { bearing, distance, latitude_longitude, number } from "../shell/format";
 import { note } from "../shell/give";
+import { narrow } from "../shell/layout";
+import { Menu } from "../shell/menu";
 import { on_fit } from "../shell/keys";
-import { follow, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, tool } from "../shell/view";
+import { follow, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, toggle_selected, tool } from "../shell/view";
 import type { LayerName, Spot } from "../shell/view";
 import { hello, sites } from "../wire/store";
 import { LocalFrame, distance_and_bearing } from "./geodesy";
-import { MissionMap } from "./mission_map";
+import { drawn_box } from "./box_select";
+import { MissionMap, sites_outside } from "./mission_map";
+import { outside_text } from "./out_of_view";
 import { drag_edge, press } from "./tools";
 
 const layer_words: Record<LayerName, string> = {
@@ -24,6 +28,7 @@ const layer_words: Record<LayerName, string> = {
 
 const tool_words = {
   select: "",
+  box: "Draw a box around vehicles to select them. Esc ends.",
   measure: "Press two places to measure between them. Esc ends.",
   hazard: "Press the middle of the hazard. Esc ends.",
   hazard_edge: "Press its edge. Esc ends.",
@@ -42,8 +47,7 @@ function Cursor({ at }: { at: Spot | null }) {
   );
 }
 
-function Layers() {
-  const [open, set_open] = useState(false);
+function LayerList() {
   const greeting = hello.value;
   const box = (name: string, checked: boolean, on_change: () => void, testid: string) => (
     <label key={testid}>
@@ -56,20 +60,64 @@ function Layers() {
     overlays_hidden.value = hidden;
   };
   return (
+    <fieldset class="map-layer-list">
+      <legend class="only-spoken">Layers of the map</legend>
+      {layer_names.map((name) =>
+        box(layer_words[name], layers.value[name], () => (layers.value = { ...layers.value, [name]: !layers.value[name] }), `layer-${name}`),
+      )}
+      {greeting?.tiles && box("Map tiles", tiles_shown.value, () => (tiles_shown.value = !tiles_shown.value), "layer-tiles")}
+      {greeting?.overlays.map(({ name }) => box(name, !overlays_hidden.value.has(name), () => toggle_overlay(name), `layer-overlay-${name}`))}
+    </fieldset>
+  );
+}
+
+function Layers() {
+  const [open, set_open] = useState(false);
+  return (
     <div class="map-layers">
       <button type="button" aria-expanded={open} data-testid="layers-open" onClick={() => set_open(!open)}>
         Layers
       </button>
-      {open && (
-        <fieldset class="map-layer-list">
-          <legend class="only-spoken">Layers of the map</legend>
-          {layer_names.map((name) =>
-            box(layer_words[name], layers.value[name], () => (layers.value = { ...layers.value, [name]: !layers.value[name] }), `layer-${name}`),
-          )}
-          {greeting?.tiles && box("Map tiles", tiles_shown.value, () => (tiles_shown.value = !tiles_shown.value), "layer-tiles")}
-          {greeting?.overlays.map(({ name }) => box(name, !overlays_hidden.value.has(name), () => toggle_overlay(name), `layer-overlay-${name}`))}
-        </fieldset>
-      )}
+      {open && <LayerList />}
+    </div>
+  );
+}
+
+function Tools() {
+  return (
+    <>
+      <button type="button" data-testid="follow" aria-pressed={follow.value} disabled={selected.value === null} title="Keep the selected vehicle in the middle (F)" onClick={() => (follow.value = !follow.value)}>
+        Follow
+      </button>
+      <button type="button" data-testid="measure" aria-pressed={tool.value === "measure"} title="Measure (M)" onClick={() => (tool.value = tool.value === "measure" ? "select" : "measure")}>
+        Measure
+      </button>
+      <button type="button" data-testid="box" aria-pressed={tool.value === "box"} title="Select vehicles by a box; also: Shift and drag" onClick={() => (tool.value = tool.value === "box" ? "select" : "box")}>
+        Box
+      </button>
+    </>
+  );
+}
+
+function DrawnBox() {
+  const box = drawn_box.value;
+  if (!box) return null;
+  const { left, top, right, bottom } = box;
+  return <div class="map-box" aria-hidden="true" style={{ left: `${left}px`, top: `${top}px`, width: `${right - left}px`, height: `${bottom - top}px` }} />;
+}
+
+/** The map was moved by hand: it is not taken away from who looks at it. */
+function Outside({ show }: { show: () => void }) {
+  const outside = sites_outside.value;
+  if (outside.length === 0) return null;
+  return (
+    <div class="map-outside" role="status">
+      <button type="button" data-testid="show-outside" onClick={show}>
+        {outside_text(outside)}
+      </button>
+      <button type="button" aria-label="Leave them where they are" data-testid="leave-outside" onClick={() => (sites_outside.value = [])}>
+        ✕
+      </button>
     </div>
   );
 }
@@ -82,11 +130,14 @@ export function MapPanel() {
   useEffect(() => {
     const made = new MissionMap(element.current!, note);
     map.current = made;
-    const fit = () => made.fit();
+    const fit = () => made.show_all();
     on_fit.add(fit);
     made.leaflet.on("click", (event) => {
-      if (tool.value === "select") select(made.vehicle_at(event.containerPoint.x, event.containerPoint.y));
-      else press({ x: event.latlng.lng, y: event.latlng.lat });
+      if (tool.value === "select") {
+        const id = made.vehicle_at(event.containerPoint.x, event.containerPoint.y);
+        if (!event.originalEvent.shiftKey) select(id);
+        else if (id !== null) toggle_selected(id);
+      } else press({ x: event.latlng.lng, y: event.latlng.lat });
     });
     made.leaflet.on("mousemove", (event) => {
       const at = { x: event.latlng.lng, y: event.latlng.lat };
@@ -107,23 +158,29 @@ export function MapPanel() {
     <section class={`map-panel tool-${tool.value}`} aria-label="Map">
       <div ref={element} class="map" data-testid="map" role="application" aria-label="Map of the mission. Arrow keys move it, plus and minus zoom. The fleet table lists the same vehicles." />
       <div class="map-tools" role="toolbar" aria-label="Map tools">
-        <button type="button" aria-label="Zoom in" data-testid="zoom-in" onClick={() => map.current?.leaflet.zoomIn()}>
+        <button type="button" aria-label="Zoom in" data-testid="zoom-in" onClick={() => map.current?.zoom(1)}>
           +
         </button>
-        <button type="button" aria-label="Zoom out" data-testid="zoom-out" onClick={() => map.current?.leaflet.zoomOut()}>
+        <button type="button" aria-label="Zoom out" data-testid="zoom-out" onClick={() => map.current?.zoom(-1)}>
           −
         </button>
-        <button type="button" data-testid="fit" title="Show all (A)" onClick={() => map.current?.fit()}>
+        <button type="button" data-testid="fit" title="Show all (A)" onClick={() => map.current?.show_all()}>
           All
         </button>
-        <button type="button" data-testid="follow" aria-pressed={follow.value} disabled={selected.value === null} title="Keep the selected vehicle in the middle (F)" onClick={() => (follow.value = !follow.value)}>
-          Follow
-        </button>
-        <button type="button" data-testid="measure" aria-pressed={tool.value === "measure"} title="Measure (M)" onClick={() => (tool.value = tool.value === "measure" ? "select" : "measure")}>
-          Measure
-        </button>
-        <Layers />
+        {narrow.value ? (
+          <Menu label="Tools" testid="map-tools" closes>
+            <Tools />
+            <LayerList />
+          </Menu>
+        ) : (
+          <>
+            <Tools />
+            <Layers />
+          </>
+        )}
       </div>
+      <DrawnBox />
+      <Outside show={() => map.current?.show_outside()} />
       {(tool.value !== "select" || measured) && (
         <div class="map-hint" role="status" data-testid="map-hint">
           {tool_words[tool.value]}

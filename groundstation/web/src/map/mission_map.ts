@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The map: Leaflet in local metres, with our own canvases on it.
 
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import L from "leaflet";
 import { request_key } from "../mission/requests";
-import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, selected, theme, tiles_shown } from "../shell/view";
+import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, select_all, selected, selection, theme, tiles_shown, vehicles_to_show } from "../shell/view";
 import { formation_spot, hazard_draft, measure_from, measure_to, site_spot } from "../shell/view";
 import { read_colours } from "../theme/colours";
 import { line_colour } from "../theme/palette";
@@ -12,6 +12,8 @@ import type { Colours } from "../theme/colours";
 import type { Picture } from "../wire/picture";
 import type { Authorisation } from "../wire/protocol";
 import { current, hello, on_picture, mission_now_s, since_state_s, tracks } from "../wire/store";
+import { listen_for_boxes } from "./box_select";
+import type { Box } from "./box_select";
 import { CanvasLayer, view_of } from "./canvas_layer";
 import type { View } from "./canvas_layer";
 import { LocalFrame } from "./geodesy";
@@ -19,6 +21,8 @@ import type { Point } from "./geodesy";
 import { paint_grid, paint_scale } from "./grid";
 import { paint_authorisation, paint_hazards, paint_sites } from "./ground";
 import { MercatorTiles } from "./mercator_tiles";
+import { SitesSeen } from "./out_of_view";
+import type { NewSite } from "./out_of_view";
 import { load_overlay } from "./overlays";
 import { paint_tools } from "./tools_painter";
 import { paint_movers, paint_paths, paint_trails } from "./tracks_painter";
@@ -27,12 +31,18 @@ import type { Membership } from "./vehicles_painter";
 
 const tracks_every_ms = 500;
 
+/** New sites that the operator does not see, as the map was moved by hand before they came. */
+export const sites_outside = signal<readonly NewSite[]>([]);
+
 export class MissionMap {
   readonly leaflet: L.Map;
   private colours: Colours = read_colours();
   private picture: Picture = current();
   private members: Map<number, Membership> = new Map();
   private fitted = false;
+  /** What is shown was chosen by a person: it is not to be changed by anything but that person. */
+  private by_hand = false;
+  private readonly sites_seen = new SitesSeen();
   private tracks_at_ms = 0;
   private frame = 0;
   private frame_local: LocalFrame | null = null;
@@ -53,6 +63,8 @@ export class MissionMap {
       zoomAnimation: false,
       fadeAnimation: false,
       markerZoomAnimation: false,
+      // With Shift vehicles are selected.
+      boxZoom: false,
       zoomSnap: 0.25,
       zoomDelta: 1,
       wheelPxPerZoomLevel: 100,
@@ -74,7 +86,17 @@ export class MissionMap {
 
     const resize = new ResizeObserver(() => this.leaflet.invalidateSize({ animate: false, pan: false }));
     resize.observe(element);
-    this.leaflet.on("dragstart", () => (follow.value = false));
+    this.leaflet.on("dragstart", () => {
+      follow.value = false;
+      this.by_hand = true;
+    });
+    this.leaflet.on("moveend", () => this.look_outside());
+    const moved = () => (this.by_hand = true);
+    element.addEventListener("wheel", moved, { passive: true });
+    element.addEventListener("dblclick", moved);
+    element.addEventListener("keydown", (event) => {
+      if (/^(Arrow|[+=_-]$)/.test(event.key)) moved();
+    });
     this.undo.push(
       () => resize.disconnect(),
       on_picture((picture) => this.take(picture)),
@@ -84,8 +106,14 @@ export class MissionMap {
       effect(() => this.on_hello()),
       effect(() => this.on_preview()),
       effect(() => {
-        if (place_to_show.value) this.go_to(place_to_show.value);
+        if (!place_to_show.value) return;
+        this.by_hand = true;
+        this.go_to(place_to_show.value);
       }),
+      effect(() => {
+        if (vehicles_to_show.value) this.show_vehicles(new Set(vehicles_to_show.value));
+      }),
+      listen_for_boxes(this.leaflet, (box, more) => this.select_in(box, more)),
       effect(() => this.show_overlays()),
     );
   }
@@ -96,16 +124,76 @@ export class MissionMap {
     this.leaflet.remove();
   }
 
+  /** One step; what is in the middle stays there. */
+  zoom(step: 1 | -1): void {
+    this.by_hand = true;
+    this.leaflet.setZoom(this.leaflet.getZoom() + step, { animate: false });
+  }
+
+  /** As from the begin: everything, and new sites are brought into sight by themselves again. */
+  show_all(): void {
+    this.by_hand = false;
+    sites_outside.value = [];
+    this.fit();
+  }
+
+  /** What is in sight now, and the new sites besides. */
+  show_outside(): void {
+    const bounds = this.leaflet.getBounds();
+    for (const { x, y } of sites_outside.value) bounds.extend(L.latLng(y, x));
+    sites_outside.value = [];
+    this.fit_to(bounds);
+  }
+
+  private show_vehicles(ids: ReadonlySet<number>): void {
+    this.by_hand = true;
+    follow.value = false;
+    const points = this.picture.vehicles.filter((vehicle) => ids.has(vehicle.id) && vehicle.x !== null && vehicle.y !== null);
+    if (points.length > 0) this.fit_to(L.latLngBounds(points.map((one) => L.latLng(one.y!, one.x!))));
+  }
+
+  private select_in(box: Box, more: boolean): void {
+    const { left, top, right, bottom } = box;
+    const bounds = L.latLngBounds(this.leaflet.containerPointToLatLng([left, top]), this.leaflet.containerPointToLatLng([right, bottom]));
+    const inside = this.picture.vehicles.filter(({ x, y }) => x !== null && y !== null && bounds.contains([y, x])).map(({ id }) => id);
+    select_all(more ? [...selection.value, ...inside] : inside);
+  }
+
+  /** Those of them that have come into sight by now are not outside any more. */
+  private look_outside(): void {
+    if (sites_outside.value.length === 0) return;
+    const bounds = this.leaflet.getBounds();
+    const left = sites_outside.value.filter(({ x, y }) => !bounds.contains([y, x]));
+    if (left.length < sites_outside.value.length) sites_outside.value = left;
+  }
+
+  private take_sites(picture: Picture): void {
+    const news = this.sites_seen.news(picture.sites, !this.fitted);
+    if (news.length === 0) return;
+    const bounds = this.leaflet.getBounds();
+    const outside = news.filter(({ x, y }) => !bounds.contains([y, x]));
+    if (outside.length === 0) return;
+    if (!this.by_hand && !follow.value) return this.fit();
+    const ids = new Set(outside.map(({ id }) => id));
+    sites_outside.value = [...sites_outside.value.filter(({ id }) => !ids.has(id)), ...outside];
+  }
+
   /** Everything that the mission has, in sight. */
-  fit(): void {
+  private fit(): void {
     const known = [...this.picture.vehicles, ...this.picture.sites]
       .filter((one): one is typeof one & Point => one.x !== null && one.y !== null)
       .map((one) => L.latLng(one.y, one.x));
     const points = [...known, ...this.previewed()];
     if (points.length === 0) return;
-    // To the right there are the tools.
-    const padding = { paddingTopLeft: L.point(40, 40), paddingBottomRight: L.point(110, 40) };
-    this.leaflet.fitBounds(L.latLngBounds(points), { animate: false, maxZoom: 4, ...padding });
+    this.fit_to(L.latLngBounds(points));
+  }
+
+  private fit_to(bounds: L.LatLngBounds): void {
+    // To the right there are the tools; of a small map they would take all.
+    const { x, y } = this.leaflet.getSize();
+    const side = Math.min(40, y / 8, x / 8);
+    const padding = { paddingTopLeft: L.point(side, side), paddingBottomRight: L.point(Math.min(110, x / 3), side) };
+    this.leaflet.fitBounds(bounds, { animate: false, maxZoom: 4, ...padding });
   }
 
   private previewed(): L.LatLng[] {
@@ -129,6 +217,11 @@ export class MissionMap {
 
   private take(picture: Picture): void {
     if (picture.coalitions !== this.picture.coalitions || this.members.size === 0) this.members = memberships(picture);
+    // Before the first of the vehicles there is nothing to be outside of.
+    if (picture.sites !== this.picture.sites || !this.fitted) {
+      this.picture = picture;
+      this.take_sites(picture);
+    }
     this.picture = picture;
     if (!this.fitted && picture.vehicles.some((vehicle) => vehicle.x !== null)) {
       this.fitted = true;
@@ -169,7 +262,7 @@ export class MissionMap {
 
   // Signals are named in these two so that a change of any of them repaints.
   private on_choice(): void {
-    void [layers.value, selected.value, highlighted_request.value, follow.value];
+    void [layers.value, selected.value, selection.value, highlighted_request.value, follow.value];
     this.keep_in_middle();
     this.redraw_all();
   }
@@ -250,6 +343,7 @@ export class MissionMap {
     for (const request of this.shown_requests()) paint_authorisation(view, request);
     paint_vehicles(view, picture, {
       selected: selected.value,
+      selection: selection.value,
       labels: on.labels,
       ahead_s: since_state_s(),
       members: this.members,

@@ -34,6 +34,7 @@ export function press(at: Spot): void {
       site_spot.value = at;
       tool.value = "select";
       break;
+    case "box":
     case "select":
   }
 }

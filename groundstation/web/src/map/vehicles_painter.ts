@@ -87,36 +87,64 @@ const least_scale_of_figures = 1;
 
 export interface VehicleOptions {
   selected: number | null;
+  /** All that are selected; `selected` is one of them. */
+  selection: ReadonlySet<number>;
   labels: boolean;
   ahead_s: number;
   members: ReadonlyMap<number, Membership>;
 }
 
 export function paint_vehicles(view: View, picture: Picture, options: VehicleOptions): void {
-  // The selected one last, over the others.
-  const order = [...picture.vehicles].sort((a, b) => Number(a.id === options.selected) - Number(b.id === options.selected));
+  // Those that are selected last, over the others.
+  const place = ({ id }: Vehicle) => (id === options.selected ? 2 : options.selection.has(id) ? 1 : 0);
+  const order = [...picture.vehicles].sort((a, b) => place(a) - place(b));
   const drawn = order.flatMap((vehicle) => {
     const at = drawn_at(vehicle, options.ahead_s);
     return at && view.sees(at.x, at.y) ? [{ vehicle, x: view.px(at.x), y: view.py(at.y) }] : [];
   });
-  for (const { vehicle, x, y } of drawn) {
-    const alone = !drawn.some((one) => one.vehicle !== vehicle && Math.abs(one.x - x) < 90 && Math.abs(one.y - y) < 26);
-    paint_vehicle(view, vehicle, x, y, alone, options);
+  const has_room = view.scale < least_scale_of_figures ? () => false : room_around(drawn);
+  for (const { vehicle, x, y } of drawn) paint_vehicle(view, vehicle, x, y, has_room(x, y), options);
+}
+
+const room_x_px = 90;
+const room_y_px = 26;
+
+/** Whether one at (x, y) has no other of them near; by cells, since every pair would be too many of a thousand. */
+export function room_around(drawn: readonly { x: number; y: number }[]): (x: number, y: number) => boolean {
+  const cells = new Map<string, { x: number; y: number }[]>();
+  const column = (x: number) => Math.floor(x / room_x_px);
+  const row = (y: number) => Math.floor(y / room_y_px);
+  for (const one of drawn) {
+    const key = `${column(one.x)} ${row(one.y)}`;
+    const cell = cells.get(key);
+    if (cell) cell.push(one);
+    else cells.set(key, [one]);
   }
+  return (x, y) => {
+    let near = 0;
+    for (let i = column(x) - 1; i <= column(x) + 1; ++i) {
+      for (let j = row(y) - 1; j <= row(y) + 1; ++j) {
+        for (const one of cells.get(`${i} ${j}`) ?? []) {
+          if (Math.abs(one.x - x) < room_x_px && Math.abs(one.y - y) < room_y_px && ++near > 1) return false;
+        }
+      }
+    }
+    return true;
+  };
 }
 
 function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone: boolean, options: VehicleOptions): void {
   const { context, colours } = view;
   const member = options.members.get(vehicle.id);
   const health = health_of(vehicle);
-  const is_selected = vehicle.id === options.selected;
+  const is_selected = vehicle.id === options.selected || options.selection.has(vehicle.id);
   const leads = member?.coalition.leader === vehicle.id;
 
   if (is_selected) {
     context.beginPath();
     context.arc(x, y, 17, 0, 2 * Math.PI);
     context.strokeStyle = colours.accent;
-    context.lineWidth = 2;
+    context.lineWidth = vehicle.id === options.selected ? 3 : 2;
     context.stroke();
   }
   if (leads && member) {
@@ -152,7 +180,7 @@ function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone
   context.textBaseline = "top";
   context.font = font(11, true);
   label(view, `${vehicle.id}`, x + 9, y + 4);
-  if (!is_selected && (view.scale < least_scale_of_figures || !alone)) return;
+  if (vehicle.id !== options.selected && (view.scale < least_scale_of_figures || !alone)) return;
   context.font = font(10);
   const speed = vehicle.groundspeed === null ? "" : ` · ${vehicle.groundspeed.toFixed(0)} m/s`;
   label(view, `${vehicle.z === null ? "" : `${vehicle.z.toFixed(0)} m`}${speed}`, x + 9, y + 17, colours.muted);

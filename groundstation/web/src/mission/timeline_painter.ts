@@ -8,8 +8,9 @@ import { state_colour } from "../theme/palette";
 import type { Picture } from "../wire/picture";
 import { label_step, x_of } from "./time_scale";
 import type { TimeWindow } from "./time_scale";
+import { first_span, row_at } from "./timeline_rows";
+import type { Row, Rows } from "./timeline_rows";
 
-export const row_px = 15;
 export const axis_px = 18;
 export const names_px = 30;
 
@@ -23,7 +24,8 @@ export interface TimelineView {
   now_s: number;
   /** Until then it is known what they did. */
   known_s: number;
-  selected: number | null;
+  rows: Rows;
+  selection: ReadonlySet<number>;
   colours: Colours;
 }
 
@@ -38,29 +40,10 @@ export function paint_timeline(view: TimelineView, picture: Picture): void {
   context.beginPath();
   context.rect(0, axis_px, width, height - axis_px);
   context.clip();
-  picture.timeline.forEach(({ id, spans }, row) => {
-    const y = axis_px + row * row_px - view.scroll;
-    if (y < axis_px - row_px || y > height) return;
-    if (id === view.selected) {
-      context.fillStyle = colours["grid-strong"];
-      context.fillRect(0, y, width, row_px);
-    }
-    for (const [state, from_s, to_s, site] of spans) {
-      const left = Math.max(names_px, at(from_s));
-      const right = Math.min(width, at(to_s ?? view.known_s));
-      if (right <= left) continue;
-      context.fillStyle = state_colour(state);
-      context.fillRect(left, y + 1.5, Math.max(1, right - left - 0.5), row_px - 3);
-      paint_word(view, `${words(state)}${site === null ? "" : ` ${site}`}`, left, right, y);
-    }
-    context.font = font(10, id === view.selected);
-    context.textAlign = "right";
-    context.textBaseline = "middle";
-    context.fillStyle = colours.text;
-    context.fillText(`${id}`, names_px - 6, y + row_px / 2);
-  });
+  for (const row of view.rows.rows) paint_row(view, picture, row, at);
   paint_tasks(view, picture, at);
   context.restore();
+  paint_scroll(view);
 
   const now = at(view.now_s);
   if (now < names_px || now > width) return;
@@ -68,7 +51,51 @@ export function paint_timeline(view: TimelineView, picture: Picture): void {
   context.fillRect(now - 0.75, 4, 1.5, height);
 }
 
-function paint_word(view: TimelineView, text: string, left: number, right: number, y: number): void {
+// Lower rows have no words.
+const words_px = 11;
+/** A number stands at every row that has room for it, since the one before. */
+const number_px = 10;
+
+function paint_row(view: TimelineView, picture: Picture, row: Row, at: (time_s: number) => number): void {
+  const { context, width, height, colours } = view;
+  const y = axis_px + row.y - view.scroll;
+  const line = picture.timeline[row.index];
+  if (!line || y < axis_px - row.height || y > height) return;
+  const is_selected = view.selection.has(row.id);
+  if (is_selected) {
+    context.fillStyle = colours["grid-strong"];
+    context.fillRect(0, y, width, row.height);
+  }
+  const edge = row.height >= 6 ? 1.5 : row.height >= 3 ? 0.5 : 0;
+  for (let i = first_span(line.spans, view.window.from_s); i < line.spans.length; ++i) {
+    const [state, from_s, to_s, site] = line.spans[i]!;
+    const left = Math.max(names_px, at(from_s));
+    if (left > width) break;
+    const right = Math.min(width, at(to_s ?? view.known_s));
+    if (right <= left) continue;
+    context.fillStyle = state_colour(state);
+    context.fillRect(left, y + edge, Math.max(1, right - left - 0.5), row.height - 2 * edge);
+    if (row.height >= words_px) paint_word(view, `${words(state)}${site === null ? "" : ` ${site}`}`, left, right, y + row.height / 2);
+  }
+  const every = Math.ceil(number_px / row.height);
+  if (!is_selected && every > 1 && row.index % every !== 0) return;
+  context.font = font(Math.min(10, Math.max(8, row.height)), is_selected);
+  context.textAlign = "right";
+  context.textBaseline = "middle";
+  context.fillStyle = is_selected ? colours.accent : colours.text;
+  context.fillText(`${row.id}`, names_px - 6, y + row.height / 2);
+}
+
+/** How much of it is in sight, at the right edge. */
+function paint_scroll(view: TimelineView): void {
+  const { context, width, height, colours, scroll } = view;
+  const room = height - axis_px;
+  if (view.rows.height <= room + 1) return;
+  context.fillStyle = colours.muted;
+  context.fillRect(width - 3, axis_px + (scroll / view.rows.height) * room, 3, Math.max(8, (room / view.rows.height) * room));
+}
+
+function paint_word(view: TimelineView, text: string, left: number, right: number, middle: number): void {
   const { context } = view;
   if (right - left < 26) return;
   context.font = font(9);
@@ -76,25 +103,26 @@ function paint_word(view: TimelineView, text: string, left: number, right: numbe
   context.textAlign = "left";
   context.textBaseline = "middle";
   context.fillStyle = "#0c1318";
-  context.fillText(text, left + 3, y + row_px / 2 + 0.5);
+  context.fillText(text, left + 3, middle + 0.5);
 }
 
 /** Tasks at their times, as diamonds on the row of who flies them. */
 function paint_tasks(view: TimelineView, picture: Picture, at: (time_s: number) => number): void {
   const { context, colours } = view;
-  const rows = new Map(picture.timeline.map(({ id }, row) => [id, row]));
+  const rows = new Map(view.rows.rows.map((row) => [row.id, row]));
   for (const site of picture.sites) {
     for (const task of site.tasks) {
       const row = task.vehicle === null ? undefined : rows.get(task.vehicle);
       if (row === undefined || task.time_s === null) continue;
       const x = at(task.time_s);
-      const y = axis_px + (row + 0.5) * row_px - view.scroll;
-      if (x < names_px || y < axis_px) continue;
+      const y = axis_px + row.y + row.height / 2 - view.scroll;
+      if (x < names_px || x > view.width || y < axis_px || y > view.height) continue;
+      const size = Math.max(3, Math.min(6, row.height));
       context.beginPath();
-      context.moveTo(x, y - 6);
-      context.lineTo(x + 5, y);
-      context.lineTo(x, y + 6);
-      context.lineTo(x - 5, y);
+      context.moveTo(x, y - size);
+      context.lineTo(x + 0.8 * size, y);
+      context.lineTo(x, y + size);
+      context.lineTo(x - 0.8 * size, y);
       context.closePath();
       context.fillStyle = task.state === "failed" ? colours.alarm : task.state === "done" ? colours.good : colours.halo;
       context.strokeStyle = colours.text;
@@ -128,7 +156,7 @@ function known_until(view: TimelineView): string {
 
 /** What is under the pointer, in words. */
 export function span_text(view: TimelineView, picture: Picture, x: number, y: number, time_s: number): string | null {
-  const line = picture.timeline[Math.floor((y - axis_px + view.scroll) / row_px)];
+  const line = picture.timeline[row_at(view.rows.rows, y - axis_px + view.scroll)?.index ?? -1];
   if (!line || x < names_px || y < axis_px) return null;
   const span = line.spans.find(([, from_s, to_s]) => from_s <= time_s && time_s < (to_s ?? view.known_s));
   if (!span) return `Vehicle ${line.id}`;

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each vehicle did and will do.
 
-import { effect } from "@preact/signals";
+import { effect, signal } from "@preact/signals";
 import { useEffect, useRef, useState } from "preact/hooks";
 import { words } from "../shell/format";
-import { select, selected, theme, timeline_open } from "../shell/view";
+import { needs_attention } from "../fleet/fleet_list";
+import { select, selection, theme, timeline_open, toggle_selected } from "../shell/view";
 import { read_colours } from "../theme/colours";
 import { state_colour } from "../theme/palette";
 import { current, mission_now_s, shown, since_state_s, timeline } from "../wire/store";
 import { next_span, time_at, window_of, zoomed } from "./time_scale";
-import { axis_px, names_px, paint_timeline, row_px, span_text } from "./timeline_painter";
+import { axis_px, names_px, paint_timeline, span_text } from "./timeline_painter";
 import type { TimelineView } from "./timeline_painter";
+import { row_at, row_px, rows_of } from "./timeline_rows";
+
+/** All at once where they are too many for rows that can be read; else rows that are scrolled. */
+const condensed = signal(true);
+/** Higher, at the map's cost. */
+const tall = signal(false);
 
 class TimelineCanvas {
   span_s = 300;
@@ -33,7 +40,7 @@ class TimelineCanvas {
     this.undo = [
       () => resize.disconnect(),
       effect(() => {
-        void [shown.value, selected.value];
+        void [shown.value, selection.value, condensed.value];
         this.redraw();
       }),
       effect(() => {
@@ -59,7 +66,12 @@ class TimelineCanvas {
     const context = this.canvas.getContext("2d");
     if (!context) return null;
     const now_s = mission_now_s() ?? 0;
-    const first_s = Math.min(0, ...current().timeline.map(({ spans }) => spans[0]?.[1] ?? 0));
+    const { timeline: lines, vehicles } = current();
+    const first_s = lines.reduce((least, { spans }) => Math.min(least, spans[0]?.[1] ?? 0), 0);
+    const first = new Set(selection.value);
+    for (const vehicle of vehicles) if (needs_attention(vehicle)) first.add(vehicle.id);
+    const rows = rows_of(lines.map(({ id }) => id), first, this.height - axis_px, condensed.value);
+    this.scroll = Math.max(0, Math.min(this.scroll, rows.height - (this.height - axis_px)));
     return {
       context,
       width: this.width,
@@ -68,7 +80,8 @@ class TimelineCanvas {
       window: window_of(now_s, this.span_s, this.pinned_s, first_s),
       now_s,
       known_s: (current().time_s ?? 0) + since_state_s(),
-      selected: selected.value,
+      rows,
+      selection: selection.value,
       colours: this.colours,
     };
   }
@@ -90,8 +103,7 @@ class TimelineCanvas {
     const view = this.view();
     if (!view) return;
     if (dx !== 0) this.pinned_s = view.window.from_s + (dx / (view.width - names_px)) * this.span_s;
-    const all = current().timeline.length * row_px + axis_px;
-    this.scroll = Math.max(0, Math.min(this.scroll + dy, all - view.height));
+    this.scroll += dy;
     this.redraw();
   }
 
@@ -101,7 +113,8 @@ class TimelineCanvas {
   }
 
   vehicle_at(y: number): number | null {
-    return current().timeline[Math.floor((y - axis_px + this.scroll) / row_px)]?.id ?? null;
+    const view = this.view();
+    return (view && row_at(view.rows.rows, y - axis_px + this.scroll)?.id) ?? null;
   }
 
   private paint(): void {
@@ -116,6 +129,9 @@ class TimelineCanvas {
     }
     view.context.setTransform(ratio, 0, 0, ratio, 0, 0);
     paint_timeline(view, current());
+    // For who wants to know how many are in sight: a canvas tells nobody.
+    const seen = view.rows.rows.filter(({ y, height }) => y + height > view.scroll && y < view.scroll + view.height - axis_px).length;
+    this.canvas.dataset["rows"] = `${seen}`;
   }
 }
 
@@ -185,6 +201,12 @@ function Canvas() {
         <span class="timeline-text" role="status">
           {text}
         </span>
+        <button type="button" class="quiet" data-testid="timeline-all" aria-pressed={condensed.value} title="All vehicles at once, or a row for each that is scrolled" onClick={() => (condensed.value = !condensed.value)}>
+          All
+        </button>
+        <button type="button" class="quiet" data-testid="timeline-tall" aria-pressed={tall.value} title="Higher, at the map's cost" onClick={() => (tall.value = !tall.value)}>
+          Tall
+        </button>
         <button type="button" class="quiet" data-testid="timeline-now" aria-pressed={!pinned} onClick={follow_now}>
           Now
         </button>
@@ -197,7 +219,7 @@ function Canvas() {
       </div>
       <canvas
         ref={element}
-        class="timeline-canvas"
+        class={`timeline-canvas${tall.value ? " tall" : ""}`}
         data-testid="timeline"
         tabIndex={0}
         role="img"
@@ -208,7 +230,11 @@ function Canvas() {
         }}
         onPointerMove={on_move}
         onPointerUp={(event) => {
-          if (drag.current && !drag.current.moved) select(lines.current?.vehicle_at(event.offsetY) ?? null);
+          const id = lines.current?.vehicle_at(event.offsetY) ?? null;
+          if (drag.current && !drag.current.moved) {
+            if (event.shiftKey && id !== null) toggle_selected(id);
+            else if (!event.shiftKey) select(id);
+          }
           drag.current = null;
         }}
         onPointerCancel={() => (drag.current = null)}

@@ -6,6 +6,7 @@ import type { Order, Vehicle } from "../wire/protocol";
 
 /** Which vehicles an order tells to hold; null for other orders. */
 export function told_to_hold(order: Order, vehicles: readonly Vehicle[]): number[] | null {
+  if (order.kind === "commands") return order.command === "hold" ? order.vehicles : null;
   if (order.kind !== "command" || order.command !== "hold") return null;
   if (order.vehicle !== 0) return [order.vehicle];
   return vehicles.filter((vehicle) => vehicle.heard_age_s !== null).map((vehicle) => vehicle.id);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders, from the fields of a form.
 
-import { bearing_digits } from "../shell/format";
-import type { Command, Formation, FormationOrder, Limits, Order, SiteOrder } from "../wire/protocol";
+import { bearing_digits, ids } from "../shell/format";
+import type { Command, CommandToSeveral, Formation, FormationOrder, Limits, Order, SiteOrder } from "../wire/protocol";
 
 export interface FormFields {
   kind: FormationOrder["order"];
@@ -144,11 +144,17 @@ export function command(command: Command["command"], vehicle: number): Command {
   return { kind: "command", command, vehicle };
 }
 
+export function command_to(command: CommandToSeveral["command"], vehicles: Iterable<number>): CommandToSeveral {
+  return { kind: "commands", command, vehicles: [...vehicles].sort((a, b) => a - b) };
+}
+
 /** An order in words, for people. */
 export function words_of_order(order: Order): string {
   switch (order.kind) {
     case "command":
       return `${order.command.replaceAll("_", " ")} ${order.vehicle === 0 ? "all" : order.vehicle}`;
+    case "commands":
+      return `${order.command.replaceAll("_", " ")} ${ids(order.vehicles)}`;
     case "decision":
       return `${order.grant ? "authorise" : "refuse"} ${order.site}`;
     case "hazard":

@@ -4,7 +4,7 @@
 import { useEffect, useRef, useState } from "preact/hooks";
 import uPlot from "uplot";
 import { clock, ids } from "../shell/format";
-import { selected, theme } from "../shell/view";
+import { selected, selection, theme } from "../shell/view";
 import { read_colours } from "../theme/colours";
 import { coalition_sign, line_colour } from "../theme/palette";
 import { tracks, tracks_version, vehicles } from "../wire/store";
@@ -88,10 +88,14 @@ function Swatch({ index }: { index: number }) {
   );
 }
 
+const buttons_max = 64;
+
 export function PlotsPanel() {
   const all = vehicles.value.map((vehicle) => vehicle.id);
   const [picked, set_picked] = useState<number[] | null>(null);
   const chosen = (picked ?? (selected.value === null ? all.slice(0, 3) : [selected.value])).filter((id) => all.includes(id));
+  // Of more there would be nothing but buttons: the fleet's list has them all.
+  const offered = all.length <= buttons_max ? all : all.filter((id) => chosen.includes(id) || selection.value.has(id)).slice(0, buttons_max);
   const toggle = (id: number) => {
     const without = chosen.filter((one) => one !== id);
     set_picked(without.length < chosen.length ? without : [...chosen, id].slice(-lines_max));
@@ -99,12 +103,13 @@ export function PlotsPanel() {
   return (
     <div class="scroll plots" tabIndex={0} role="region" aria-label="Plots">
       <div class="chips" role="group" aria-label="Vehicles in the plots">
-        {all.map((id) => (
+        {offered.map((id) => (
           <button key={id} type="button" class="chip" aria-pressed={chosen.includes(id)} data-testid={`plot-vehicle-${id}`} onClick={() => toggle(id)}>
             {chosen.includes(id) && <Swatch index={chosen.indexOf(id)} />}
             {id}
           </button>
         ))}
+        {offered.length < all.length && <span class="muted">Others: select them in the fleet's list.</span>}
         {picked && (
           <button type="button" class="quiet" onClick={() => set_picked(null)}>
             As selected

@@ -7,9 +7,14 @@ import { lost_for_s } from "../shell/connection";
 import { age } from "../shell/format";
 import type { Preflight, PreflightVehicle } from "../wire/protocol";
 import { preflight, shown, since_state_s } from "../wire/store";
+import { DigestGrid } from "./digest_grid";
+import { brief } from "./digests";
 import { shown_mark, shown_vehicle, told_age_s } from "./marks";
 
 const opened = signal<ReadonlySet<number>>(new Set());
+
+/** What is asked of the team: whether it is ready, or whether it is of one kind. */
+const face = signal<"checks" | "versions">("checks");
 
 function toggle(id: number): void {
   const next = new Set(opened.value);
@@ -23,11 +28,6 @@ const digests = [
   ["parameters", "Param.", "A digest of the autopilot's parameters that are looked at"],
   ["configuration", "Config.", "A digest of what the team has in common"],
 ] as const;
-
-/** Of a digest the beginning tells which are alike; the whole is its title. */
-function brief(text: string | null): string | undefined {
-  return text && /^[0-9a-f]{8}$/.test(text) ? text.slice(0, 6) : (text ?? undefined);
-}
 
 function Lines({ vehicle, columns }: { vehicle: PreflightVehicle; columns: number }) {
   const heard = vehicle.counts;
@@ -139,16 +139,30 @@ export function PreflightPanel() {
   const of = preflight.value;
   const lost_s = lost_for_s();
   const connected = lost_s === 0;
+  const odd = of?.vehicles.filter((vehicle) => vehicle.odd.length > 0).length ?? 0;
   if (!of) return <p class="empty">Nothing has been told yet.</p>;
   return (
     <div class="preflight" data-testid="preflight">
       <p class={`preflight-summary${connected ? "" : " old"}`} role="status" data-testid="preflight-summary">
         {connected ? of.summary : `Not known now; last: ${of.summary}`}
       </p>
-      <div class="scroll" tabIndex={0} role="region" aria-label="Checks of the vehicles">
-        <Table of={of} connected={connected} lost_s={lost_s} />
-        {of.vehicles.length === 0 && <p class="empty">No vehicle has been heard yet.</p>}
+      <div class="preflight-faces" role="group" aria-label="What is shown">
+        <button type="button" class="quiet" aria-pressed={face.value === "checks"} data-testid="preflight-checks" onClick={() => (face.value = "checks")}>
+          Checks
+        </button>
+        <button type="button" class="quiet" aria-pressed={face.value === "versions"} data-testid="preflight-versions" onClick={() => (face.value = "versions")}>
+          Versions and digests
+          {odd > 0 && <span class="tab-count">{odd} ≠</span>}
+        </button>
       </div>
+      {face.value === "versions" ? (
+        <DigestGrid of={of} />
+      ) : (
+        <div class="scroll" tabIndex={0} role="region" aria-label="Checks of the vehicles">
+          <Table of={of} connected={connected} lost_s={lost_s} />
+          {of.vehicles.length === 0 && <p class="empty">No vehicle has been heard yet.</p>}
+        </div>
+      )}
     </div>
   );
 }

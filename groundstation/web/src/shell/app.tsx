@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useEffect } from "preact/hooks";
 import { FleetPanel } from "../fleet/fleet_panel";
+import { SelectionBar } from "../fleet/selection_bar";
 import { LogPanel } from "../log/log_panel";
 import { MapPanel } from "../map/map_panel";
 import { Decisions } from "../mission/decisions";
@@ -15,6 +16,7 @@ import { Banners } from "./banners";
 import { Guard } from "./guard";
 import { Help } from "./help";
 import { listen_to_keys } from "./keys";
+import { follow_what_is_asked_for, map_in_front } from "./layout";
 import { Login } from "./login";
 import { Notices, SpokenAlarms } from "./notices";
 import { Tabs } from "./tabs";
@@ -32,14 +34,15 @@ const panel_of = {
 
 export function App() {
   useEffect(() => listen_to_keys(() => current().vehicles.map((vehicle) => vehicle.id)), []);
+  useEffect(follow_what_is_asked_for, []);
   if (session.value === "needed" || session.value === "token_needed") return <Login by_token={session.value === "token_needed"} />;
   const Panel = panel_of[panel.value];
   return (
     <div class={`console${lost_s.value > 0 ? " is-old" : ""}`} data-testid="console">
       <TopBar />
       <Banners />
-      <main class="main">
-        <div class="map-side">
+      <main class={`main ${map_in_front.value ? "map-in-front" : "panel-in-front"}`}>
+        <div class="map-side" id="map">
           <Guard what="The map">
             <MapPanel />
           </Guard>
@@ -58,6 +61,9 @@ export function App() {
               <Panel />
             </Guard>
           </div>
+          <Guard what="The selection">
+            <SelectionBar />
+          </Guard>
         </aside>
       </main>
       <Notices />

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keys that work anywhere on the page.
 
+import { recall_group } from "../fleet/chosen";
 import { may_order } from "../wire/store";
 import { hold_all } from "./give";
 import { follow, help_open, layers, measure_from, measure_to, panel, panels, select, selected, switch_theme, timeline_open, tool } from "./view";
@@ -15,6 +16,9 @@ export const key_list: readonly Key[] = [
   { keys: "Shift+H or F9", what: "Hold all: every vehicle holds, at once. F9 works while typing too" },
   { keys: "1 … 6", what: "Panel: fleet, mission, orders, log, plots, preflight" },
   { keys: "[ and ]", what: "Select the vehicle before, after" },
+  { keys: "Shift+1 … 9", what: "Select the group of that number" },
+  { keys: "Shift", what: "On the map: with a press one more or less is selected, with a drag all in the box" },
+  { keys: "↑ ↓, Ctrl+A", what: "In the fleet's list: select the one before, after, with Shift several; all that are listed" },
   { keys: "F", what: "Follow the selected vehicle on the map" },
   { keys: "A", what: "Show all vehicles and sites on the map" },
   { keys: "M", what: "Measure distance and bearing" },
@@ -56,6 +60,9 @@ export function listen_to_keys(vehicle_ids: () => readonly number[]): () => void
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "Escape") return put_away();
     if (is_typing(event)) return;
+    // By where the key is: with Shift it makes another sign on each keyboard.
+    const number = /^(?:Digit|Numpad)([1-9])$/.exec(event.code)?.[1];
+    if (event.shiftKey && number) return recall_group(Number(number));
     const digit = Number(event.key);
     const toggled = toggles[event.key];
     const wanted = panels[digit - 1];

@@ -3,6 +3,8 @@ import { aged_picture, ended, hello, in_replay, link, log_out, lost_s, may_order
 import { count_alarms } from "./alarms";
 import { clock, utc } from "./format";
 import { hold_all } from "./give";
+import { map_in_front, narrow } from "./layout";
+import { Menu } from "./menu";
 import { tick } from "./ticker";
 import { help_open, panel, switch_theme, theme } from "./view";
 
@@ -15,15 +17,45 @@ function MissionClock() {
   );
 }
 
-function DayClock() {
+function DayClock({ testid = "utc" }: { testid?: string }) {
   void tick.value;
   const epoch_unix_s = hello.value?.epoch_unix_s ?? null;
   if (epoch_unix_s === null || shown.value.time_s === null) return null;
   return (
-    <span class="figure muted" data-testid="utc" title="Time of day">
+    <span class="figure muted" data-testid={testid} title="Time of day">
       {utc(mission_now_s(), epoch_unix_s)}
     </span>
   );
+}
+
+function SeldomUsed() {
+  const greeting = hello.value;
+  return (
+    <>
+      {greeting && (
+        <span class="who" data-testid="who">
+          {greeting.user || "operator"} · {in_replay.value ? "replay" : greeting.role}
+        </span>
+      )}
+      {typeof session.value === "object" && session.value.login && (
+        <button type="button" class="quiet" data-testid="log-out" onClick={() => void log_out()}>
+          Log out
+        </button>
+      )}
+      <button type="button" class="quiet" data-testid="theme" onClick={switch_theme} title="Day and night colours (N)">
+        {theme.value === "night" ? "Day" : "Night"}
+      </button>
+      <button type="button" class="quiet" data-testid="help-open" onClick={() => (help_open.value = true)} title="Keys and words (?)">
+        Help
+      </button>
+    </>
+  );
+}
+
+/** To what needs attention, whatever is in front. */
+function show_fleet(): void {
+  panel.value = "fleet";
+  map_in_front.value = false;
 }
 
 const link_words = { open: "connected", connecting: "connecting", lost: "no connection" } as const;
@@ -41,7 +73,7 @@ export function TopBar() {
       <DayClock />
       <span class={`link-state ${link.value}`} data-testid="link-state">
         <span class="dot" aria-hidden="true" />
-        {link.value !== "open" && ended.value ? "ended" : link_words[link.value]}
+        <span class="words">{link.value !== "open" && ended.value ? "ended" : link_words[link.value]}</span>
       </span>
       {greeting?.sealed === false && (
         <span class="link-state lost" data-testid="in-clear" title="Whoever reaches the mission network can read and command it">
@@ -49,35 +81,27 @@ export function TopBar() {
           network in clear
         </span>
       )}
-      <button type="button" class="count" data-testid="count-heard" onClick={() => (panel.value = "fleet")} title="Vehicles heard, of those expected">
+      <button type="button" class="count" data-testid="count-heard" onClick={show_fleet} title="Vehicles heard, of those expected">
         <b>
           {is_old ? "–" : counts.heard}/{counts.expected}
         </b>{" "}
         heard
       </button>
-      <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={() => (panel.value = "fleet")}>
+      <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={show_fleet}>
         <b>{is_old ? "–" : counts.alarms}</b> {counts.alarms === 1 ? "alarm" : "alarms"}
       </button>
-      <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={() => (panel.value = "fleet")}>
+      <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={show_fleet}>
         <b>{is_old ? "–" : counts.warnings}</b> {counts.warnings === 1 ? "warning" : "warnings"}
       </button>
       <span class="grow" />
-      {greeting && (
-        <span class="who" data-testid="who">
-          {greeting.user || "operator"} · {in_replay.value ? "replay" : greeting.role}
-        </span>
+      {narrow.value ? (
+        <Menu label="Menu" testid="menu">
+          <SeldomUsed />
+          <DayClock testid="utc-in-menu" />
+        </Menu>
+      ) : (
+        <SeldomUsed />
       )}
-      {typeof session.value === "object" && session.value.login && (
-        <button type="button" class="quiet" data-testid="log-out" onClick={() => void log_out()}>
-          Log out
-        </button>
-      )}
-      <button type="button" class="quiet" data-testid="theme" onClick={switch_theme} title="Day and night colours (N)">
-        {theme.value === "night" ? "Day" : "Night"}
-      </button>
-      <button type="button" class="quiet" data-testid="help-open" onClick={() => (help_open.value = true)} title="Keys and words (?)">
-        Help
-      </button>
       {may_order.value && (
         <button type="button" class="hold-all" data-testid="hold-all" onClick={hold_all} title="All vehicles hold where they are, at once (Shift+H, F9)">
           HOLD ALL

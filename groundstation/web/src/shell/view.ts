@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the person has chosen to look at. Kept by the page, never sent.
 
-import { signal } from "@preact/signals";
+import { batch, signal } from "@preact/signals";
 import type { Preview } from "../wire/protocol";
 
 export const panels = ["fleet", "mission", "orders", "log", "plots", "preflight"] as const;
 export type Panel = (typeof panels)[number];
 
 export const panel = signal<Panel>("fleet");
+/** The vehicle that details, paths and `follow` are of: the one that was touched last of the selection. */
 export const selected = signal<number | null>(null);
+/** To whom an order to the selection goes. */
+export const selection = signal<ReadonlySet<number>>(new Set());
 /** The map keeps the selected vehicle in its middle. */
 export const follow = signal(false);
 // On an upright tablet the map needs its room.
@@ -42,7 +45,7 @@ export const tiles_shown = signal(true);
 export const overlays_hidden = signal<ReadonlySet<string>>(new Set());
 
 /** What a press on the map means. */
-export type Tool = "select" | "measure" | "hazard" | "hazard_edge" | "place" | "site";
+export type Tool = "select" | "box" | "measure" | "hazard" | "hazard_edge" | "place" | "site";
 export const tool = signal<Tool>("select");
 export interface Spot {
   x: number;
@@ -61,14 +64,34 @@ export const formation_spot = signal<Spot | null>(null);
 
 /** A place that the map is to show; a new object each time. */
 export const place_to_show = signal<Spot | null>(null);
+/** Vehicles that the map is to show, all of them; a new list each time. */
+export const vehicles_to_show = signal<readonly number[] | null>(null);
 
 /** The preview of a formation order, and the order that it is of. */
 export const preview = signal<{ line: string; data: Preview | null; text: string; done: boolean } | null>(null);
 /** The request for authorisation that the map points out, by its key. */
 export const highlighted_request = signal<string | null>(null);
 
+/** That vehicle alone, or nobody. */
 export function select(id: number | null): void {
-  if (selected.value === id) return;
-  selected.value = id;
-  if (id === null) follow.value = false;
+  select_all(id === null ? [] : [id], id);
+}
+
+/** Those; `touched`, or the last of them, is the one that details are of. */
+export function select_all(ids: Iterable<number>, touched: number | null = null): void {
+  const next = new Set(ids);
+  const before = selection.peek();
+  const same = next.size === before.size && [...next].every((id) => before.has(id));
+  const last = touched !== null && next.has(touched) ? touched : ([...next].at(-1) ?? null);
+  batch(() => {
+    if (!same) selection.value = next;
+    selected.value = last;
+    if (last === null) follow.value = false;
+  });
+}
+
+export function toggle_selected(id: number): void {
+  const next = new Set(selection.peek());
+  if (!next.delete(id)) next.add(id);
+  select_all(next, id);
 }

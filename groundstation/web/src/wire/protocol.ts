@@ -54,6 +54,8 @@ export interface Hello {
   replay: { name: string; from_s: number; to_s: number } | null;
   tiles: Tiles | null;
   overlays: { name: string; url: string }[];
+  /** Named groups of vehicles of the configuration; none of an older server. */
+  groups?: { name: string; vehicles: number[] }[];
 }
 
 export interface Series {
@@ -399,6 +401,13 @@ export interface Command {
   vehicle: number;
 }
 
+/** The same to several, as one order. */
+export interface CommandToSeveral {
+  kind: "commands";
+  command: "hold" | "resume" | "return_home" | "land";
+  vehicles: number[];
+}
+
 /** On the plan that was on the screen, and on no other. */
 export interface Decision {
   kind: "decision";
@@ -458,7 +467,7 @@ export interface ProposalAnswer {
   accept: boolean;
 }
 
-export type Order = Command | Decision | NewHazard | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
+export type Order = Command | CommandToSeveral | Decision | NewHazard | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
 
 export interface Session {
   user: string;

@@ -22,6 +22,12 @@ struct Overlay {
   std::string file;  ///< GeoJSON
 };
 
+/// Vehicles that every operator can select by a name.
+struct VehicleGroup {
+  std::string name;
+  std::vector<std::uint16_t> vehicles;
+};
+
 /// Somebody has named a user and a password that do not belong together.
 struct RefusedLogin {
   std::string user;  ///< as it was given, without control characters
@@ -42,6 +48,7 @@ struct ServerConfig {
   std::string key;
   std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none
   std::vector<Overlay> overlays;
+  std::vector<VehicleGroup> groups;
   /// Fields of the hello message that the server does not know itself, as a JSON object.
   std::string hello = "{}";
   /// On the server's thread; must be short. Empty: none.

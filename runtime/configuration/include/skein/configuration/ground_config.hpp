@@ -34,6 +34,11 @@ struct ConsoleConfig {
     std::string file;  ///< GeoJSON
   };
   std::vector<Overlay> overlays;
+  struct Group {
+    std::string name;
+    std::vector<VehicleId> vehicles;
+  };
+  std::vector<Group> groups;
 };
 
 /// Everything that skein-ground needs to know (docs/configuration.md).
