@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace skein::console {
@@ -13,6 +14,11 @@ void Board::publish(double time_s, Sections sections) {
   ++number_;
   for (std::size_t i = 0; i < kSectionCount; ++i) {
     if (sections[i].empty() || sections[i] == sections_[i]) continue;
+    if (static_cast<Section>(i) == Section::timeline) {
+      // A recording may be wound back.
+      if (std::abs(time_s - timeline_s_) < kTimelinePeriod_s) continue;
+      timeline_s_ = time_s;
+    }
     sections_[i] = std::move(sections[i]);
     revisions_[i] = number_;
   }

@@ -17,6 +17,8 @@ class Board {
  public:
   static constexpr std::size_t kEventsKept = 20'000;
   static constexpr std::size_t kEventsPerText = 200;
+  /// The time line is all that ever was: it is said again once a second at most.
+  static constexpr double kTimelinePeriod_s = 1.0;
 
   /// How much of the board somebody has seen.
   struct Seen {
@@ -43,6 +45,7 @@ class Board {
 
  private:
   double time_s_ = 0.0;
+  double timeline_s_ = -1e9;  ///< of the one that is shown
   std::uint64_t number_ = 0;
   Sections sections_;
   std::array<std::uint64_t, kSectionCount> revisions_{};

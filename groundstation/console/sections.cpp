@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -502,29 +503,41 @@ Json formation_json(const Picture& picture, Instant now) {
           {"places", std::move(places)}};
 }
 
-/// A state until the next one; the last one as long as its vehicle is heard.
-Json timeline_json(const Picture& picture, const mission::Fleet& fleet) {
-  Json all = Json::array();
+/// A state until the next one; the last one as long as its vehicle is heard. As text at once: of an
+/// hour of many vehicles it is what is longest.
+std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
+  fmt::memory_buffer text;
+  const auto to = std::back_inserter(text);
+  const char* between_lines = "";
+  fmt::format_to(to, "[");
   for (const auto& [id, vehicle] : picture.vehicles()) {
     const auto entry = fleet.vehicles().find(id);
     const bool silent = entry != fleet.vehicles().end() && entry->second.silent;
-    const Json heard_s = silent ? number(to_seconds(entry->second.heard_at), 1) : Json(nullptr);
-    Json spans = Json::array();
+    const std::string heard_s =
+        silent ? fmt::format("{:.1f}", to_seconds(entry->second.heard_at)) : "null";
+    fmt::format_to(to, R"({}{{"id":{},"spans":[)", between_lines, id.value);
+    between_lines = ",";
+    const char* between = "";
     for (std::size_t i = 0; i < vehicle.spans.size(); ++i) {
       const auto& span = vehicle.spans[i];
-      const bool last = i + 1 == vehicle.spans.size();
-      spans.push_back(
-          Json::array({to_string(span.state), number(to_seconds(span.from), 1),
-                       last ? heard_s : number(to_seconds(vehicle.spans[i + 1].from), 1),
-                       span.site ? Json(span.site->value) : Json(nullptr)}));
+      fmt::format_to(to, R"({}["{}",{:.1f},)", between, to_string(span.state),
+                     to_seconds(span.from));
+      between = ",";
+      if (i + 1 == vehicle.spans.size()) {
+        fmt::format_to(to, "{},", heard_s);
+      } else {
+        fmt::format_to(to, "{:.1f},", to_seconds(vehicle.spans[i + 1].from));
+      }
+      span.site ? fmt::format_to(to, "{}]", span.site->value) : fmt::format_to(to, "null]");
     }
     if (silent) {
-      spans.push_back(
-          Json::array({to_string(mission::ShownState::silent), heard_s, nullptr, nullptr}));
+      fmt::format_to(to, R"({}["{}",{},null,null])", between,
+                     to_string(mission::ShownState::silent), heard_s);
     }
-    all.push_back({{"id", id.value}, {"spans", std::move(spans)}});
+    fmt::format_to(to, "]}}");
   }
-  return all;
+  fmt::format_to(to, "]");
+  return fmt::to_string(text);
 }
 
 }  // namespace
@@ -575,7 +588,7 @@ std::string section_of(Section section, const Picture& picture, const mission::F
     case Section::formation:
       return codec::json_text(formation_json(picture, now));
     case Section::timeline:
-      return codec::json_text(timeline_json(picture, fleet));
+      return timeline_text(picture, fleet);
     case Section::proposals:
       return codec::json_text(proposals_json(picture));
     case Section::preflight:

@@ -58,6 +58,16 @@ export async function barriers(page) {
     .map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html.slice(0, 120)).join(" ")}`);
 }
 
+/** Whatever axe-core finds; `rules`: of these alone. */
+export async function findings(page, rules = null) {
+  if (!(await page.evaluate(() => "axe" in globalThis))) await page.evaluate(await readFile(axe, "utf8"));
+  const violations = await page.evaluate(
+    async (only) => (await globalThis.axe.run(document, { resultTypes: ["violations"], ...(only ? { runOnly: { type: "rule", values: only } } : {}) })).violations.map(({ id, nodes }) => ({ id, nodes: nodes.map((node) => node.html.slice(0, 120)) })),
+    rules,
+  );
+  return violations.map(({ id, nodes }) => `${id}: ${nodes.join(" ")}`);
+}
+
 /** Presses a button for as long as it wants. */
 export async function hold(button, ms = 1300) {
   await button.hover();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// console_load VEHICLES: serves the console with so many vehicles that fly circles and report ten
-// times a second, through the same picture and server as the ground station's. Prints the address
-// and the Unix time, in ms, of mission time 0, and goes on until its input ends.
+// console_load VEHICLES [PACE]: serves the console with so many vehicles that fly circles and
+// report ten times a second, through the same picture and server as the ground station's. Prints
+// the address and the Unix time, in ms, of mission time 0, and goes on until its input ends. With a
+// PACE the mission goes so many times as fast: as many messages in less time.
 //
 // Vehicle 1's x is ten times the mission second at which its telemetry was made, so that whoever
 // looks can say how old it is.
@@ -25,8 +26,8 @@ namespace {
 using namespace skein;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPeriod = std::chrono::milliseconds{10};
-constexpr int kTelemetryEvery = 10;  // periods; each vehicle at another one
+constexpr auto kPeriod = std::chrono::milliseconds{10};  // of the mission
+constexpr int kTelemetryEvery = 10;                      // periods; each vehicle at another one
 constexpr double kRadius_m = 200.0;
 constexpr double kSpeed_mps = 25.0;
 
@@ -78,8 +79,9 @@ std::string hello(const console::PictureParams& params) {
 
 int main(int argc, char** argv) {
   const int wanted = argc > 1 ? std::atoi(argv[1]) : 50;
-  if (wanted < 1 || wanted > 1000) {
-    std::fprintf(stderr, "console_load VEHICLES: 1 to 1000\n");
+  const int pace = argc > 2 ? std::atoi(argv[2]) : 1;
+  if (wanted < 1 || wanted > 1000 || pace < 1 || pace > 100) {
+    std::fprintf(stderr, "console_load VEHICLES [PACE]: 1 to 1000, 1 to 100\n");
     return 2;
   }
   const auto vehicles = static_cast<std::uint16_t>(wanted);
@@ -115,7 +117,7 @@ int main(int argc, char** argv) {
   };
   std::uint64_t seq = 0;
   for (long period = 0; !ended; ++period) {
-    const double now_s = std::chrono::duration<double>(Clock::now() - begun).count();
+    const double now_s = pace * std::chrono::duration<double>(Clock::now() - begun).count();
     for (const VehicleId vehicle : params.expected) {
       if ((period + vehicle.value) % kTelemetryEvery == 0) {
         hear(telemetry(vehicle, now_s), vehicle, at_seconds(now_s));
@@ -140,7 +142,7 @@ int main(int argc, char** argv) {
       auto sections = console::sections_of(picture, fleet, *origin, "1.0", at_seconds(now_s));
       (*server)->publish(now_s, std::move(sections));
     }
-    std::this_thread::sleep_until(begun + (period + 1) * kPeriod);
+    std::this_thread::sleep_until(begun + (period + 1) * std::chrono::microseconds{kPeriod} / pace);
   }
   input.join();
   return 0;

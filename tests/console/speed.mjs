@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// node speed.mjs CONSOLE_LOAD VEHICLES SECONDS: how fast the page is drawn, how old what it shows
-// is, and whether its memory grows, with so many vehicles that report ten times a second.
+// node speed.mjs CONSOLE_LOAD VEHICLES SECONDS [PACE [PANEL]]: how fast the page is drawn, how old what it
+// shows is, and whether its memory grows, with so many vehicles that report ten times a second, for so many
+// seconds of their mission, which goes PACE times as fast as the clock: with the messages of an hour in less.
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
 
 import { browse } from "./browser.mjs";
 
-const [load, vehicles, seconds] = [process.argv[2], process.argv[3], Number(process.argv[4])];
-const server = spawn(load, [vehicles], { stdio: ["pipe", "pipe", "inherit"] });
+const [load, vehicles, mission_s] = [process.argv[2], process.argv[3], Number(process.argv[4])];
+const pace = Number(process.argv[5] ?? 1);
+const seconds = mission_s / pace;
+const server = spawn(load, [vehicles, `${pace}`], { stdio: ["pipe", "pipe", "inherit"] });
 const [line] = await once(createInterface({ input: server.stdout }), "line");
 const [url, epoch_ms] = line.split(" ");
 
 // Before the page's own scripts: notes each state, and when the frame after it has been drawn.
-const watch = (epoch) => {
+const watch = ([epoch, pace]) => {
   const watched = { ages: [], frames: 0, longest: 0 };
   globalThis.watched = watched;
   const native = globalThis.WebSocket;
@@ -25,7 +28,7 @@ const watch = (epoch) => {
         const first = /"vehicles":\[\{"id":1,.*?"x":(-?[\d.]+)/.exec(data);
         if (!first) return;
         // The first frame draws it; at the begin of the second it is on the screen.
-        requestAnimationFrame(() => requestAnimationFrame(() => watched.ages.push(Date.now() - epoch - Number(first[1]) * 100)));
+        requestAnimationFrame(() => requestAnimationFrame(() => watched.ages.push(Date.now() - epoch - (Number(first[1]) * 100) / pace)));
       });
     }
   };
@@ -40,8 +43,9 @@ const watch = (epoch) => {
 };
 
 const { browser, page } = await browse("about:blank");
-await page.addInitScript(watch, Number(epoch_ms));
+await page.addInitScript(watch, [Number(epoch_ms), pace]);
 await page.goto(url);
+if (process.argv[6]) await page.getByTestId(`tab-${process.argv[6]}`).click();
 const cdp = await page.context().newCDPSession(page);
 await cdp.send("Performance.enable");
 const heap = async () => {
@@ -52,7 +56,7 @@ const heap = async () => {
 const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
 
 // What is kept of ten minutes is full after ten minutes: before, memory has to grow.
-const settle = Math.min(seconds / 2, 660);
+const settle = Math.min(seconds / 2, 600 / pace);
 await page.waitForTimeout(Math.min(5000, 1000 * settle));
 await page.evaluate(() => Object.assign(globalThis.watched, { ages: [], frames: 0, longest: 0 }));
 const begun = Date.now();
@@ -63,10 +67,10 @@ const after = await heap();
 const spent = (Date.now() - begun) / 1000;
 const { ages, frames, longest } = await page.evaluate(() => globalThis.watched);
 ages.sort((a, b) => a - b);
-console.log(`${vehicles} vehicles, ${spent.toFixed(0)} s`);
+console.log(`${vehicles} vehicles, ${spent.toFixed(0)} s${pace > 1 ? ` at ${pace} times the pace: ${(spent * pace).toFixed(0)} s of the mission` : ""}`);
 console.log(`frames a second     ${(frames / spent).toFixed(1)} (longest without one: ${longest.toFixed(0)} ms)`);
 console.log(`telemetry to pixel  median ${quantile(ages, 0.5).toFixed(0)} ms, 95 % ${quantile(ages, 0.95).toFixed(0)} ms, ${ages.length} states`);
-console.log(`memory of the page  ${before.toFixed(1)} MB after ${settle.toFixed(0)} s, ${after.toFixed(1)} MB at the end (${((after / before - 1) * 100).toFixed(1)} %)`);
+console.log(`memory of the page  ${before.toFixed(1)} MB after ${(settle * pace).toFixed(0)} s, ${after.toFixed(1)} MB at the end (${((after / before - 1) * 100).toFixed(1)} %)`);
 await browser.close();
 server.stdin.end();
 await once(server, "exit");

@@ -139,7 +139,7 @@ export function between(listed: readonly number[], from: number | null, to: numb
   return listed.slice(Math.min(a, b), Math.max(a, b) + 1);
 }
 
-const widths_px: Record<Column, number> = { id: 86, state: 128, task: 104, heard: 46, range: 54, loads: 42, mode: 62, version: 52, clock: 50, groups: 78 };
+const widths_px: Record<Column, number> = { id: 86, state: 128, task: 104, heard: 46, range: 54, loads: 46, mode: 62, version: 52, clock: 50, groups: 78 };
 // For fingers the first column has a larger box to tick.
 const finger_px = 24;
 const by_need: readonly Column[] = ["id", "state", "heard", "task", "range", "groups", "loads", "mode", "version", "clock"];

@@ -2,40 +2,59 @@
 // Where vehicles were and where they will go: trails, planned paths, previews of formation orders.
 
 import type { Mover, Plan, Vehicle } from "../wire/protocol";
-import type { Tracks } from "../wire/tracks";
+import type { Track, Tracks } from "../wire/tracks";
 import type { View } from "./canvas_layer";
 import { font, label, trace } from "./draw";
 
 const trail_samples = 300;
+// Of all trails together: of very many vehicles each is shorter.
+const samples_painted = 60_000;
 
 export function paint_trails(view: View, tracks: Tracks, vehicles: readonly Vehicle[], selected: number | null, colour_of: (id: number) => string): void {
   const { context } = view;
   context.lineJoin = "round";
+  const each = Math.max(30, Math.min(trail_samples, Math.floor(samples_painted / Math.max(1, vehicles.length))));
+  // One stroke for all of a colour is many times faster than one for each.
+  const strokes = new Map<string, Path2D>();
   for (const vehicle of vehicles) {
     const track = tracks.get(vehicle.id);
     if (!track || track.t.length < 2) continue;
-    const is_selected = vehicle.id === selected;
-    context.beginPath();
-    const from = is_selected ? 0 : Math.max(0, track.t.length - trail_samples);
-    let last_x = Number.NaN;
-    let last_y = Number.NaN;
-    for (let i = from; i < track.t.length; ++i) {
-      const x = view.px(track.x[i]!);
-      const y = view.py(track.y[i]!);
-      // Points within a pixel and a half make no line that could be seen.
-      if (Math.abs(x - last_x) + Math.abs(y - last_y) < 1.5) continue;
-      if (Number.isNaN(last_x)) context.moveTo(x, y);
-      else context.lineTo(x, y);
-      last_x = x;
-      last_y = y;
+    const colour = colour_of(vehicle.id);
+    if (vehicle.id === selected) {
+      const path = new Path2D();
+      trail(view, path, track, vehicle, 0);
+      stroke(context, path, colour, 0.95, 2);
+      continue;
     }
-    if (vehicle.x !== null && vehicle.y !== null) context.lineTo(view.px(vehicle.x), view.py(vehicle.y));
-    context.strokeStyle = colour_of(vehicle.id);
-    context.globalAlpha = is_selected ? 0.95 : 0.45;
-    context.lineWidth = is_selected ? 2 : 1;
-    context.stroke();
+    const path = strokes.get(colour) ?? new Path2D();
+    strokes.set(colour, path);
+    trail(view, path, track, vehicle, Math.max(0, track.t.length - each));
   }
+  for (const [colour, path] of strokes) stroke(context, path, colour, 0.45, 1);
   context.globalAlpha = 1;
+}
+
+function stroke(context: CanvasRenderingContext2D, path: Path2D, colour: string, alpha: number, width: number): void {
+  context.strokeStyle = colour;
+  context.globalAlpha = alpha;
+  context.lineWidth = width;
+  context.stroke(path);
+}
+
+function trail(view: View, path: Path2D, track: Track, vehicle: Vehicle, from: number): void {
+  let last_x = Number.NaN;
+  let last_y = Number.NaN;
+  for (let i = from; i < track.t.length; ++i) {
+    const x = view.px(track.x[i]!);
+    const y = view.py(track.y[i]!);
+    // Points within a pixel and a half make no line that could be seen.
+    if (Math.abs(x - last_x) + Math.abs(y - last_y) < 1.5) continue;
+    if (Number.isNaN(last_x)) path.moveTo(x, y);
+    else path.lineTo(x, y);
+    last_x = x;
+    last_y = y;
+  }
+  if (vehicle.x !== null && vehicle.y !== null) path.lineTo(view.px(vehicle.x), view.py(vehicle.y));
 }
 
 /** What is left of the planned paths, dashed, with the orbit that each ends in; `marked` ones bold. */

@@ -2,7 +2,23 @@
 // A button that opens what there is no room for, or what is seldom used.
 
 import type { ComponentChildren } from "preact";
-import { useEffect, useRef, useState } from "preact/hooks";
+import { useEffect, useLayoutEffect, useRef, useState } from "preact/hooks";
+
+const edge_px = 8;
+
+/** Under its button, or above it where there is more room; within the page, whatever is around it. */
+function place(sheet: HTMLElement, button: HTMLElement, side: "left" | "right"): void {
+  const at = button.getBoundingClientRect();
+  sheet.style.maxHeight = "";
+  const { width, height } = sheet.getBoundingClientRect();
+  const below = window.innerHeight - at.bottom - edge_px;
+  const above = at.top - edge_px;
+  const is_below = below >= Math.min(height, 200) || below >= above;
+  const wanted = side === "right" ? at.right - width : at.left;
+  sheet.style.left = `${Math.max(edge_px, Math.min(wanted, window.innerWidth - width - edge_px))}px`;
+  sheet.style.top = `${is_below ? at.bottom : Math.max(edge_px, at.top - Math.min(height, above))}px`;
+  sheet.style.maxHeight = `${is_below ? below : above}px`;
+}
 
 interface Props {
   label: ComponentChildren;
@@ -20,6 +36,18 @@ export function Menu({ label, testid, children, side = "right", spoken, closes =
   const [open, set_open] = useState(false);
   const whole = useRef<HTMLDivElement>(null);
   const button = useRef<HTMLButtonElement>(null);
+  const sheet = useRef<HTMLDivElement>(null);
+
+  useLayoutEffect(() => {
+    const element = sheet.current;
+    if (!open || !element) return;
+    // Over everything: panels clip what is in them.
+    element.showPopover?.();
+    const again = () => place(element, button.current!, side);
+    again();
+    window.addEventListener("resize", again);
+    return () => window.removeEventListener("resize", again);
+  }, [open]);
 
   useEffect(() => {
     if (!open) return;
@@ -51,7 +79,9 @@ export function Menu({ label, testid, children, side = "right", spoken, closes =
       </button>
       {open && (
         <div
-          class={`menu-sheet ${side}`}
+          ref={sheet}
+          popover="manual"
+          class="menu-sheet"
           data-testid={`${testid}-sheet`}
           onClick={(event) => {
             if (closes && (event.target as Element).closest("button")) set_open(false);

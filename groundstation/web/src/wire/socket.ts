@@ -33,6 +33,7 @@ export class ConsoleSocket {
   private next_id = 1;
   private waiting = new Map<number, Waiting>();
   private heard_at = 0;
+  private watched_at = Date.now();
   private retry = 0;
   private stopped = false;
 
@@ -136,6 +137,10 @@ export class ConsoleSocket {
 
   private watch(): void {
     const socket = this.socket;
+    // A page that was busy or asleep itself has not listened: what came meanwhile waits behind this.
+    const was_away = Date.now() - this.watched_at > 2 * ping_every_ms;
+    this.watched_at = Date.now();
+    if (was_away) this.heard_at = Date.now();
     if (socket?.readyState !== WebSocket.OPEN) return;
     if (Date.now() - this.heard_at > silence_ms) {
       // close() would wait for the other side's word, which may never come.
