@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mission_commands.hpp"
+#include "skein/base/time.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/console/users.hpp"
@@ -61,6 +62,7 @@ struct Arguments {
 struct ReplayArguments {
   std::string recording;
   double speed = 1.0;
+  std::optional<double> at_s;
   skein::configuration::ConsoleConfig console;
 };
 
@@ -464,7 +466,9 @@ class CommandLine {
 
   void add_replay() {
     CLI::App& command = add("replay", "Shows a recording in the console, as it was", [this] {
-      return groundstation::replay(replaying_.recording, replaying_.console, replaying_.speed);
+      return groundstation::replay(
+          replaying_.recording, replaying_.console, replaying_.speed,
+          replaying_.at_s ? std::optional{at_seconds(*replaying_.at_s)} : std::nullopt);
     });
     command
         .add_option("recording", replaying_.recording,
@@ -475,6 +479,8 @@ class CommandLine {
     command.add_option("--speed", replaying_.speed, "Recorded seconds in a second")
         ->check(CLI::Range(0.1, 100.0))
         ->capture_default_str();
+    command.add_option("--at", replaying_.at_s,
+                       "Seconds of mission time: shows that moment, paused");
     command.add_option("--tiles", replaying_.console.tiles,
                        "Map: a folder z/x/y.png or an MBTiles file");
     command.footer(

@@ -61,11 +61,17 @@ class ReplayLoop {
     server_ = std::move(*opened);
     return {};
   }
+  /// Before it is served.
+  void wait_at(Instant moment) {
+    playback_.go_to(moment);
+    playing_ = false;
+  }
   [[nodiscard]] std::string url() const { return server_->url(); }
 
   void run() {
     LineReader prompt{STDIN_FILENO, [this] { wake_.notify(); }};
     auto last = SteadyClock::now();
+    append_events();
     while (!stopping_) {
       const auto now = SteadyClock::now();
       if (playing_) {
@@ -243,7 +249,7 @@ Result<ReplayOrder> parse_replay_order(const std::string& line) {
 }
 
 int replay(const std::filesystem::path& path, const configuration::ConsoleConfig& console,
-           double speed) {
+           double speed, std::optional<Instant> at) {
   const process::Shutdown shutdown;
   const bool shows = ::isatty(STDERR_FILENO) == 1;
   auto playback = Playback::open(path, [shows](double share) {
@@ -260,6 +266,7 @@ int replay(const std::filesystem::path& path, const configuration::ConsoleConfig
                   ? ""
                   : fmt::format("; {} damaged parts left out", playback->damaged()).c_str());
   ReplayLoop loop{std::move(*playback), speed, shutdown};
+  if (at) loop.wait_at(*at);
   if (const auto served = loop.serve(server_config(console), path.filename().string()); !served) {
     std::fprintf(stderr, "skein-ground: %s\n", served.error().message.c_str());
     return process::kExitCannotStart;

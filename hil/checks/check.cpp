@@ -14,7 +14,7 @@ CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
                      "vehicles",
                      "",
                      {}};
-  double worst = 0.0;
+  Worst worst;
   for (const VehicleSpec& vehicle : record.vehicles) {
     ++result.judged;
     const std::string who = vehicle_name(vehicle.id);
@@ -38,7 +38,7 @@ CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
     for (std::size_t i = 1; i < recorded->track.size(); ++i) {
       const Instant from = recorded->track[i - 1].state.time;
       const double gap = to_seconds(recorded->track[i].state.time - from);
-      worst = std::max(worst, gap);
+      worst.raise(gap, from);
       if (gap <= 0.0 || gap > limits.track_gap_s) {
         result.violations.push_back(
             {vehicle.id, from,
@@ -49,7 +49,8 @@ CheckResult check_recordings(const RunRecord& record, const Limits& limits) {
       }
     }
   }
-  result.measured = "longest gap " + fixed(worst, 2) + " s";
+  result.measured = "longest gap " + fixed(worst.value, 2) + " s";
+  result.moment = worst.at;
   return result;
 }
 

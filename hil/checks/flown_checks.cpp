@@ -102,17 +102,17 @@ void judge_pass(const DeliveryFlown& d, const Limits& limits, CheckResult& resul
   }
 }
 
-/// The deliveries of one round: together, or in their slots. Returns the worst, in seconds.
-double judge_slots(const std::vector<const DeliveryFlown*>& group, const Limits& limits,
-                   CheckResult& result) {
-  if (group.size() < 2) return 0.0;
+/// The deliveries of one round: together, or in their slots. Returns the worst, s.
+Worst judge_slots(const std::vector<const DeliveryFlown*>& group, const Limits& limits,
+                  CheckResult& result) {
+  Worst worst;
+  if (group.size() < 2) return worst;
   const auto slot = [](const DeliveryFlown* d, Instant time) { return time - d->offset; };
   std::vector<Instant> planned;
   planned.reserve(group.size());
   for (const DeliveryFlown* d : group) planned.push_back(slot(d, *d->run.planned));
   std::sort(planned.begin(), planned.end());
   const Instant base = planned[planned.size() / 2];
-  double worst = 0.0;
   const DeliveryFlown* first = nullptr;
   const DeliveryFlown* last = nullptr;
   for (const DeliveryFlown* d : group) {
@@ -127,7 +127,7 @@ double judge_slots(const std::vector<const DeliveryFlown*>& group, const Limits&
     if (!d->seen) continue;
     const double off = to_seconds(slot(d, d->time) - base);
     if (d->offset > Duration{}) {
-      worst = std::max(worst, std::abs(off));
+      worst.raise(std::abs(off), d->time);
       if (std::abs(off) > limits.arrival_s) {
         result.violations.push_back({d->run.vehicle, d->time,
                                      delivery_name(*d) + " passed " + at(d->time) + ", " +
@@ -141,7 +141,7 @@ double judge_slots(const std::vector<const DeliveryFlown*>& group, const Limits&
   }
   if (first != last) {
     const double spread = to_seconds(last->time - first->time);
-    worst = std::max(worst, spread);
+    worst.raise(spread, last->time);
     if (spread > limits.arrival_s) {
       result.violations.push_back({last->run.vehicle, last->time,
                                    delivery_name(*last) + " passed " + at(last->time) + ", " +
@@ -162,7 +162,7 @@ CheckResult check_arcs(const RunRecord& record, const Limits& limits, TaskKind k
                      survey ? "surveys" : "assessments",
                      "",
                      {}};
-  double worst_time = 0.0;
+  Worst worst_time;
   double worst_radius = 0.0;
   for (const ArcFlown& arc : arcs_flown(record, kind, limits)) {
     ++result.judged;
@@ -175,7 +175,7 @@ CheckResult check_arcs(const RunRecord& record, const Limits& limits, TaskKind k
               fixed(to_seconds(arc.run.planned ? *arc.run.planned : arc.run.begin()), 2) + " s");
       continue;
     }
-    worst_time = std::max(worst_time, std::abs(arc.time_error_s()));
+    worst_time.raise(std::abs(arc.time_error_s()), *arc.start);
     worst_radius = std::max(worst_radius, std::abs(arc.radius_error_m) / arc.radius_m);
     if (std::abs(arc.time_error_s()) > limits.arrival_s) {
       violate(" began " + at(*arc.start) + ", planned " + at(*arc.run.planned) + ": " +
@@ -190,9 +190,10 @@ CheckResult check_arcs(const RunRecord& record, const Limits& limits, TaskKind k
     }
   }
   if (result.judged > 0) {
-    result.measured = "worst start " + fixed(worst_time, 2) + " s, radius " +
+    result.measured = "worst start " + fixed(worst_time.value, 2) + " s, radius " +
                       fixed(100.0 * worst_radius, 1) + " %";
   }
+  result.moment = worst_time.at;
   return result;
 }
 
@@ -286,7 +287,7 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
   }
   const std::vector<DeliveryFlown> flown = deliveries_flown(record, limits);
   std::map<std::pair<SiteId, coalition::Round>, std::vector<const DeliveryFlown*>> groups;
-  double time = 0.0;
+  Worst time;
   double miss = 0.0;
   double bearing = 0.0;
   for (const DeliveryFlown& d : flown) {
@@ -294,16 +295,21 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
     judge_pass(d, limits, result);
     groups[{d.run.task.site, d.run.round}].push_back(&d);
     if (!d.seen) continue;
-    time = std::max(time, std::abs(d.time_error_s()));
+    time.raise(std::abs(d.time_error_s()), d.time);
     miss = std::max(miss, d.miss_m);
     bearing = std::max(bearing, std::abs(d.bearing_error_rad));
   }
-  double slot = 0.0;
-  for (const auto& [key, group] : groups) slot = std::max(slot, judge_slots(group, limits, result));
-  if (!flown.empty()) {
-    result.measured = "worst " + fixed(time, 2) + " s (together or slot " + fixed(slot, 2) +
-                      " s), " + fixed(miss, 1) + " m, " + fixed(degrees(bearing), 1) + " deg";
+  Worst slot;
+  for (const auto& [key, group] : groups) {
+    const Worst of_group = judge_slots(group, limits, result);
+    if (of_group.at) slot.raise(of_group.value, *of_group.at);
   }
+  if (!flown.empty()) {
+    result.measured = "worst " + fixed(time.value, 2) + " s (together or slot " +
+                      fixed(slot.value, 2) + " s), " + fixed(miss, 1) + " m, " +
+                      fixed(degrees(bearing), 1) + " deg";
+  }
+  result.moment = slot.value > time.value ? slot.at : time.at;
   return result;
 }
 
@@ -320,15 +326,21 @@ CheckResult check_copters(const RunRecord& record, const Limits& limits) {
     return vehicle != nullptr && vehicle->is_copter();
   };
   std::map<TaskKind, std::size_t> flown;
+  std::optional<Instant> moment;
   for (const TaskKind kind : {TaskKind::survey, TaskKind::assess}) {
     for (const ArcFlown& arc : arcs_flown(record, kind, limits)) {
-      if (arc.start && by_copter(arc.run)) ++flown[kind];
+      if (!arc.start || !by_copter(arc.run)) continue;
+      ++flown[kind];
+      note_moment(moment, *arc.start);
     }
   }
   for (const DeliveryFlown& delivery : deliveries_flown(record, limits)) {
-    if (delivery.seen && by_copter(delivery.run)) ++flown[TaskKind::deliver];
+    if (!delivery.seen || !by_copter(delivery.run)) continue;
+    ++flown[TaskKind::deliver];
+    note_moment(moment, delivery.time);
   }
   CheckResult result{"copters", "copters have flown what is expected of them", 0, "tasks", "", {}};
+  result.moment = moment;
   for (const TaskKind kind : {TaskKind::survey, TaskKind::deliver, TaskKind::assess}) {
     const std::string name{to_string(kind)};
     if (flown[kind] > 0) {

@@ -18,6 +18,7 @@ CheckResult check_orders(const RunRecord& record, const Limits& /*limits*/) {
   for (const FormationChange& change : formation_changes(record)) {
     if (change.correction) continue;
     ++result.judged;
+    note_moment(result.moment, change.begun);
     if (change.held || !record.lost.empty()) continue;
     result.violations.push_back({kGroundStation, change.begun,
                                  "the order given " + at(change.begun) + " (change " +
@@ -34,7 +35,7 @@ CheckResult check_arrivals(const RunRecord& record, const Limits& limits) {
                      "changes",
                      "",
                      {}};
-  double worst = 0.0;
+  Worst worst;
   for (const FormationChange& change : formation_changes(record)) {
     std::vector<Instant> reached;
     for (const auto& recorded : record.recordings) {
@@ -47,7 +48,7 @@ CheckResult check_arrivals(const RunRecord& record, const Limits& limits) {
     ++result.judged;
     const auto [first, last] = std::minmax_element(reached.begin(), reached.end());
     const double spread = to_seconds(*last - *first);
-    worst = std::max(worst, spread);
+    worst.raise(spread, *last);
     if (spread <= limits.arrival_spread_s) continue;
     result.violations.push_back({kGroundStation, *last,
                                  "in change " + std::to_string(change.number) +
@@ -55,7 +56,8 @@ CheckResult check_arrivals(const RunRecord& record, const Limits& limits) {
                                      fixed(spread, 2) + " s after the first (limit " +
                                      fixed(limits.arrival_spread_s, 2) + " s)"});
   }
-  result.measured = "largest spread " + fixed(worst, 2) + " s";
+  result.measured = "largest spread " + fixed(worst.value, 2) + " s";
+  result.moment = worst.at;
   return result;
 }
 
@@ -90,7 +92,7 @@ class PlaceJudge {
     if (count == 0) return;
     ++result_.judged;
     const double rms = std::sqrt(squares / static_cast<double>(count));
-    worst_ = std::max(worst_, rms);
+    worst_.raise(rms, *change.held);
     if (rms <= limit_m_) return;
     result_.violations.push_back({recorded.vehicle, *change.held,
                                   vehicle_name(recorded.vehicle) + " was " + fixed(rms, 2) +
@@ -100,13 +102,14 @@ class PlaceJudge {
   }
 
   CheckResult finish() {
-    result_.measured = "worst " + fixed(worst_, 2) + " m rms";
+    result_.measured = "worst " + fixed(worst_.value, 2) + " m rms";
+    result_.moment = worst_.at;
     return result_;
   }
 
  private:
   double limit_m_;
-  double worst_ = 0.0;
+  Worst worst_;
   CheckResult result_;
 };
 

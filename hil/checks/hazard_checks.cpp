@@ -207,11 +207,10 @@ struct Stay {
 };
 
 /// The least clearance of the track outside what is excused, metres; negative inside.
-double judge_track(const Recording& recorded, const KnownHazard& known, const Held& held,
-                   const std::optional<Excused>& excuse, CheckResult& result) {
+Worst judge_track(const Recording& recorded, const KnownHazard& known, const Held& held,
+                  const std::optional<Excused>& excuse, CheckResult& result) {
   ++result.judged;
-  double nearest = std::numeric_limits<double>::infinity();
-  Instant when{};
+  Worst nearest{.value = std::numeric_limits<double>::infinity(), .at = {}};
   Stay stay;
   bool leaving = false;  // it has not yet come out of what is excused
   const auto& track = recorded.track;
@@ -225,10 +224,7 @@ double judge_track(const Recording& recorded, const KnownHazard& known, const He
       if (-clear > stay.deepest_m) stay = {s.time, -clear, s.time};
       continue;
     }
-    if (clear < nearest) {
-      nearest = clear;
-      when = s.time;
-    }
+    nearest.lower(clear, s.time);
   }
   if (excuse) {
     result.excused.push_back({recorded.vehicle, excuse->since,
@@ -239,11 +235,11 @@ double judge_track(const Recording& recorded, const KnownHazard& known, const He
                                   fixed(to_seconds(stay.left - excuse->since), 2) + " s (limit " +
                                   fixed(to_seconds(excuse->until - excuse->since), 2) + " s)"});
   }
-  if (nearest < 0.0) {
+  if (nearest.value < 0.0) {
     result.violations.push_back(
-        {recorded.vehicle, when,
-         vehicle_name(recorded.vehicle) + " flew " + at(when) + " " + fixed(-nearest, 1) +
-             " m inside " + into(known.hazard) +
+        {recorded.vehicle, *nearest.at,
+         vehicle_name(recorded.vehicle) + " flew " + at(*nearest.at) + " " +
+             fixed(-nearest.value, 1) + " m inside " + into(known.hazard) +
              (excuse ? ", which it should have left " + at(excuse->until) : std::string{})});
   }
   return nearest;
@@ -260,7 +256,7 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
                      "plans and tracks against hazards",
                      "",
                      {}};
-  double least = std::numeric_limits<double>::infinity();
+  Worst least{.value = std::numeric_limits<double>::infinity(), .at = {}};
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
     for (const KnownHazard& known : record.hazards) {
@@ -270,10 +266,12 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
       for (std::size_t i = 0; i < recorded.plans.size(); ++i) {
         judge_plan(recorded, i, known, *from, excuse, result);
       }
-      least = std::min(least, judge_track(recorded, known, *from, excuse, result));
+      const Worst of_track = judge_track(recorded, known, *from, excuse, result);
+      if (of_track.at) least.lower(of_track.value, *of_track.at);
     }
   }
-  if (std::isfinite(least)) result.measured = "least clearance flown " + fixed(least, 1) + " m";
+  if (least.at) result.measured = "least clearance flown " + fixed(least.value, 1) + " m";
+  result.moment = least.at;
   if (!result.excused.empty()) {
     result.measured += "; " + std::to_string(result.excused.size()) + " could not be avoided";
   }
@@ -283,7 +281,7 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
 std::optional<CheckResult> check_fence(const RunRecord& record) {
   if (!record.fence.exists()) return std::nullopt;
   CheckResult result{"fence", "nobody is outside of the fence", 0, "tracks", "", {}};
-  double least_m = std::numeric_limits<double>::infinity();
+  Worst least_m{.value = std::numeric_limits<double>::infinity(), .at = {}};
   for (const Recording& recorded : record.recordings) {
     ++result.judged;
     const recording::TrackPoint* worst = nullptr;
@@ -292,7 +290,7 @@ std::optional<CheckResult> check_fence(const RunRecord& record) {
       const VehicleState& s = sample.state;
       const double inside_m =
           std::min(record.fence.inside_m({s.x_m, s.y_m}), record.fence.height_max_m - s.z_m);
-      least_m = std::min(least_m, inside_m);
+      least_m.lower(inside_m, s.time);
       if (inside_m >= deepest_m) continue;
       deepest_m = inside_m;
       worst = &sample;
@@ -302,7 +300,8 @@ std::optional<CheckResult> check_fence(const RunRecord& record) {
                                  vehicle_name(recorded.vehicle) + " was " + fixed(-deepest_m, 1) +
                                      " m outside of the fence " + at(worst->state.time)});
   }
-  if (std::isfinite(least_m)) result.measured = "least distance to it " + fixed(least_m, 1) + " m";
+  if (least_m.at) result.measured = "least distance to it " + fixed(least_m.value, 1) + " m";
+  result.moment = least_m.at;
   return result;
 }
 

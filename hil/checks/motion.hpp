@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <span>
@@ -60,6 +61,29 @@ struct Pass {
 
 [[nodiscard]] const VehicleSpec* spec_of(const RunRecord& record, VehicleId vehicle);
 [[nodiscard]] const Site* site_of(const RunRecord& record, SiteId site);
+
+/// A figure at its worst, and when it was that.
+struct Worst {
+  double value = 0.0;
+  std::optional<Instant> at;
+  /// Of those where more is worse.
+  void raise(double to, Instant when) {
+    if (at && to <= value) return;
+    value = std::max(value, to);
+    at = when;
+  }
+  /// Of those where less is.
+  void lower(double to, Instant when) {
+    if (at && to >= value) return;
+    value = std::min(value, to);
+    at = when;
+  }
+};
+
+/// The later of the two.
+inline void note_moment(std::optional<Instant>& newest, Instant when) {
+  newest = std::max(newest.value_or(when), when);
+}
 
 /// Words of the sentences.
 [[nodiscard]] std::string fixed(double value, int decimals);

@@ -100,7 +100,7 @@ CheckResult check_turn_radius(const RunRecord& record, const Limits& limits) {
                      "plans and tracks",
                      "",
                      {}};
-  double least = 1e9;
+  Worst least{.value = 1e9, .at = {}};
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
     if (vehicle == nullptr) continue;
@@ -112,12 +112,14 @@ CheckResult check_turn_radius(const RunRecord& record, const Limits& limits) {
       judge_track_turns(recorded, *vehicle, limits, tightest, result);
     }
     if (tightest.curvature_per_m > 0.0) {
-      least = std::min(least, 1.0 / (tightest.curvature_per_m * vehicle->turn_radius_m));
+      least.lower(1.0 / (tightest.curvature_per_m * vehicle->turn_radius_m), tightest.when);
     }
   }
-  if (least < 1e9) {
-    result.measured = "tightest flown turn " + fixed(100.0 * least, 1) + " % of the turn radius";
+  if (least.at) {
+    result.measured =
+        "tightest flown turn " + fixed(100.0 * least.value, 1) + " % of the turn radius";
   }
+  result.moment = least.at;
   return result;
 }
 
@@ -130,7 +132,7 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
                      "plans",
                      "",
                      {}};
-  double worst = 0.0;
+  Worst worst;
   for (const Recording& recorded : record.recordings) {
     for (std::size_t i = 0; i < recorded.plans.size(); ++i) {
       const PlanRecord& plan = recorded.plans[i];
@@ -160,7 +162,7 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
       ++result.judged;
       const double jump = (here.position() - before.position()).norm();
       const double turn = std::abs(wrap_pi(here.heading_rad - before.heading_rad));
-      worst = std::max(worst, jump);
+      worst.raise(jump, plan.since);
       if (!(jump <= limits.plan_jump_m && turn <= limits.plan_jump_rad)) {
         result.violations.push_back({recorded.vehicle, plan.since,
                                      plan_name(recorded, plan) + " starts " + at(plan.since) + " " +
@@ -171,7 +173,8 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
       }
     }
   }
-  result.measured = "largest jump " + fixed(worst, 1) + " m";
+  result.measured = "largest jump " + fixed(worst.value, 1) + " m";
+  result.moment = worst.at;
   return result;
 }
 
@@ -180,7 +183,7 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
       "range", "no vehicle flies, or plans to fly, further than its range, or on an empty battery",
       0,       "plans and tracks",
       "",      {}};
-  double fullest = 0.0;
+  Worst fullest;
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
     if (vehicle == nullptr || recorded.track.empty()) continue;
@@ -192,7 +195,7 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
     }
     flown = std::max(flown, recorded.track.back().state.distance_flown_m);
     ++result.judged;
-    fullest = std::max(fullest, flown / vehicle->range_m);
+    fullest.raise(flown / vehicle->range_m, recorded.track.back().state.time);
     if (flown > vehicle->range_m) {
       result.violations.push_back({recorded.vehicle, recorded.track.back().state.time,
                                    vehicle_name(recorded.vehicle) + " flew " + fixed(flown, 0) +
@@ -221,7 +224,8 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
       }
     }
   }
-  result.measured = "most used " + fixed(100.0 * fullest, 1) + " % of the range";
+  result.measured = "most used " + fixed(100.0 * fullest.value, 1) + " % of the range";
+  result.moment = fullest.at;
   return result;
 }
 

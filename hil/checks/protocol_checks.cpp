@@ -36,6 +36,7 @@ void judge_order(const Order& order, const Limits& limits, CheckResult& result) 
   const std::string rule =
       order.wait > Duration{} ? " (wait " + fixed(to_seconds(order.wait), 1) + " s)" : "";
   ++result.judged;
+  note_moment(result.moment, order.after.begin());
   if (order.before.cut_off) {  // nobody can know when it ended, or whether; but when it began
     if (order.after.begin() >= order.before.begin()) return;
     result.violations.push_back({order.after.vehicle, order.after.begin(),
@@ -109,6 +110,7 @@ CheckResult check_precedence(const RunRecord& record, const Limits& limits) {
       for (const TaskRun* run : later) {
         if (surveys.empty()) {
           ++result.judged;
+          note_moment(result.moment, run->begin());
           result.violations.push_back({run->vehicle, run->begin(),
                                        run_name(*run) + " began " + at(run->begin()) +
                                            " at a site that was never surveyed"});
@@ -136,6 +138,7 @@ CheckResult check_capabilities(const RunRecord& record, const Limits& /*limits*/
   const auto judge_one = [&](VehicleId vehicle, const TaskId& task, Instant when,
                              const std::string& what) {
     ++result.judged;
+    note_moment(result.moment, when);
     const VehicleSpec* spec = spec_of(record, vehicle);
     if (spec != nullptr && spec->capabilities.has(task.kind)) return;
     result.violations.push_back(
@@ -164,6 +167,7 @@ CheckResult check_loads(const RunRecord& record, const Limits& /*limits*/) {
     for (const TaskRun& run : runs) {
       if (run.vehicle != vehicle.id || run.task.kind != TaskKind::deliver || !run.flown()) continue;
       ++total;
+      note_moment(result.moment, run.begin());
       if (++used != vehicle.loads + std::size_t{1}) continue;
       result.violations.push_back({vehicle.id, run.begin(),
                                    vehicle_name(vehicle.id) + " began " + to_string(run.task) +
@@ -182,6 +186,7 @@ CheckResult check_leases(const RunRecord& record, const Limits& /*limits*/) {
   const std::vector<Lease> all = leases(record);
   result.judged = all.size();
   for (std::size_t i = 0; i < all.size(); ++i) {
+    note_moment(result.moment, all[i].from);
     for (std::size_t j = i + 1; j < all.size(); ++j) {
       const Lease& a = all[i].from <= all[j].from ? all[i] : all[j];
       const Lease& b = all[i].from <= all[j].from ? all[j] : all[i];
@@ -228,6 +233,7 @@ CheckResult check_authorisation(const RunRecord& record, const Limits& /*limits*
   for (const TaskRun& run : task_runs(record)) {
     if (run.task.kind != TaskKind::deliver) continue;
     ++result.judged;
+    note_moment(result.moment, run.begin());
     const auto granted = decided(record.ground_events, kGroundStation, run, EventKind::authorised);
     const auto refusal =
         decided(record.ground_events, kGroundStation, run, EventKind::authorisation_refused);
@@ -279,6 +285,7 @@ CheckResult check_standing_orders(const RunRecord& record, const Limits& /*limit
       const auto* told = std::get_if<event::OrdersKnown>(&event.body);
       if (commanded != nullptr) {
         ++result.judged;
+        note_moment(result.moment, event.time);
         const bool goes_on = commanded->command == CommandKind::resume;
         if (goes_on) held_since.reset();
         if (!goes_on && commanded->command != CommandKind::give_back) held_since = event.time;
@@ -302,6 +309,7 @@ CheckResult check_single_delivery(const RunRecord& record, const Limits& /*limit
   for (const TaskRun& run : task_runs(record)) {
     if (run.task.kind != TaskKind::deliver || !run.flown()) continue;
     ++result.judged;
+    note_moment(result.moment, run.begin());
     const auto [earlier, is_new] = first.emplace(run.task, run);
     if (is_new) continue;
     result.violations.push_back({run.vehicle, run.begin(),
@@ -319,6 +327,7 @@ CheckResult check_completion(const RunRecord& record, const Limits& /*limits*/) 
   std::set<TaskId> begun;
   for (const TaskRun& run : task_runs(record)) {
     begun.insert(run.task);
+    note_moment(result.moment, run.done.value_or(run.begin()));
     if (run.done && !run.failed) done.insert(run.task);
   }
   std::size_t refusals = 0;

@@ -17,7 +17,7 @@ CheckResult check_routes(const RunRecord& record, const Limits& limits) {
                      "routes",
                      "",
                      {}};
-  double miss = 0.0;
+  Worst miss;
   double bearing = 0.0;
   std::optional<double> early_s;  // offsets taken away: the earliest, and the latest
   std::optional<double> late_s;
@@ -37,7 +37,7 @@ CheckResult check_routes(const RunRecord& record, const Limits& limits) {
     const double off_s = to_seconds(pass->time - end.offset);
     early_s = std::min(early_s.value_or(off_s), off_s);
     late_s = std::max(late_s.value_or(off_s), off_s);
-    miss = std::max(miss, pass->miss_m);
+    miss.raise(pass->miss_m, pass->time);
     const double turned = std::abs(wrap_pi(pass->heading_rad - end.heading_rad));
     bearing = std::max(bearing, turned);
     if (pass->miss_m > limits.miss_m) {
@@ -57,8 +57,9 @@ CheckResult check_routes(const RunRecord& record, const Limits& limits) {
                                      " s apart, offsets allowed for (limit " +
                                      fixed(limits.arrival_s, 1) + " s)"});
   }
-  result.measured = "spread " + fixed(spread_s, 2) + " s, worst " + fixed(miss, 1) + " m, " +
+  result.measured = "spread " + fixed(spread_s, 2) + " s, worst " + fixed(miss.value, 1) + " m, " +
                     fixed(degrees(bearing), 1) + " deg";
+  result.moment = miss.at;
   return result;
 }
 

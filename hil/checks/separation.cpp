@@ -165,7 +165,7 @@ class Watch {
     }
   }
 
-  [[nodiscard]] double nearest_m() const { return nearest_m_; }
+  [[nodiscard]] const Worst& nearest_m() const { return nearest_m_; }
   [[nodiscard]] std::vector<Violation> take() { return std::move(violations_); }
 
  private:
@@ -181,7 +181,10 @@ class Watch {
     if (!a[step].known || !a[step + 1].known || !b[step].known || !b[step + 1].known) return;
     const Approach approach =
         closest(a[step], a[step + 1], b[step], b[step + 1], limits_.separation_vertical_m);
-    nearest_m_ = std::min(nearest_m_, approach.horizontal_m);
+    // Where nobody is in one layer there is no approach.
+    if (approach.horizontal_m < nearest_m_.value) {
+      nearest_m_.lower(approach.horizontal_m, moment_of(step, approach));
+    }
     if (approach.horizontal_m >= limits_.separation_horizontal_m) return;
     const auto [it, is_new] = episodes_.try_emplace({first, second});
     Episode& episode = it->second;
@@ -195,10 +198,14 @@ class Watch {
     episode.last_step = step;
   }
 
+  [[nodiscard]] Instant moment_of(std::size_t step, const Approach& approach) const {
+    return grid_.begin + kStep * static_cast<Duration::rep>(step) +
+           from_seconds(approach.share * to_seconds(kStep));
+  }
+
   [[nodiscard]] Violation violation(std::size_t first, std::size_t second, std::size_t step,
                                     const Approach& approach) const {
-    const Instant when = grid_.begin + kStep * static_cast<Duration::rep>(step) +
-                         from_seconds(approach.share * to_seconds(kStep));
+    const Instant when = moment_of(step, approach);
     const VehicleId one = grid_.tracks[first].vehicle;
     return {one, when,
             vehicle_name(one) + " and " + vehicle_name(grid_.tracks[second].vehicle) + " came " +
@@ -212,7 +219,7 @@ class Watch {
   const Limits& limits_;
   std::map<std::pair<std::size_t, std::size_t>, Episode> episodes_;
   std::vector<Violation> violations_;
-  double nearest_m_ = 1e12;
+  Worst nearest_m_{.value = 1e12, .at = {}};
 };
 
 }  // namespace
@@ -234,8 +241,9 @@ CheckResult check_separation(const RunRecord& record, const Limits& limits) {
     watch.slice(from, std::min(from + kStepsPerSlice, grid.count - 1));
   }
   result.violations = watch.take();
-  result.measured = watch.nearest_m() < 1e11
-                        ? "nearest in one layer " + fixed(watch.nearest_m(), 1) + " m"
+  result.moment = watch.nearest_m().at;
+  result.measured = watch.nearest_m().at
+                        ? "nearest in one layer " + fixed(watch.nearest_m().value, 1) + " m"
                         : "no pair came near";
   return result;
 }

@@ -19,9 +19,10 @@ constexpr std::array<std::string_view, 7> kDoingNames{
     "surveying", "delivering",          "assessing"};
 static_assert(kDoingNames.size() == static_cast<std::size_t>(Doing::count));
 
-std::string open_svg(double width, double height, std::string_view label) {
-  return fmt::format(R"~(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">)~", width,
-                     height, label);
+std::string open_svg(double width, double height, std::string_view label,
+                     std::string_view attributes = "") {
+  return fmt::format(R"~(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}"{}>)~", width,
+                     height, label, attributes);
 }
 
 /// Vertical grid lines with times under them.
@@ -107,7 +108,9 @@ std::string distance_curves(const checks::RunRecord& record, const checks::Limit
   const Axis distance{0.0, 1.03 * far, kHeight - 26.0, 10.0};
   const std::size_t colour = colour_of(record, site.id);
 
-  std::string svg = open_svg(kWidth, kHeight, "Distance from the site over time");
+  std::string svg =
+      open_svg(kWidth, kHeight, "Distance from the site over time",
+               axis_attribute("time", time, "s") + axis_attribute("value", distance, "m"));
   svg += time_axis(time, 10.0, kHeight - 26.0, 5);
   for (const double d : distance.ticks(5)) {
     svg += fmt::format(
@@ -123,17 +126,19 @@ std::string distance_curves(const checks::RunRecord& record, const checks::Limit
     std::vector<Vec2> pixels;
     for (const Vec2& p : lines[i]) pixels.emplace_back(time(p.x()), distance(p.y()));
     svg += fmt::format(
-        R"~(<polyline class="curve s{}{}" points="{}"><title>vehicle {}, {}</title></polyline>)~",
-        colour, curves[i].delivers ? "" : " assessor", points_text(thinned(pixels, 0.3)),
-        curves[i].vehicle.value, curves[i].delivers ? "delivers" : "assesses");
+        R"~(<polyline class="curve s{}{}" data-series="vehicle {}" points="{}"><title>vehicle {}, {}</title></polyline>)~",
+        colour, curves[i].delivers ? "" : " assessor", curves[i].vehicle.value,
+        points_text(thinned(pixels, 0.3)), curves[i].vehicle.value,
+        curves[i].delivers ? "delivers" : "assesses");
     if (pixels.empty()) continue;
-    svg += fmt::format(R"~(<text class="id end" x="{:.1f}" y="{:.1f}">{}</text>)~",
-                       pixels.front().x() - 4.0, label_heights[i] + 3.0, curves[i].vehicle.value);
+    svg += fmt::format(
+        R"~(<text class="id end" data-series="vehicle {0}" x="{1:.1f}" y="{2:.1f}">{0}</text>)~",
+        curves[i].vehicle.value, pixels.front().x() - 4.0, label_heights[i] + 3.0);
   }
   for (const auto& d : checks::deliveries_flown(record, limits)) {
     if (d.run.task.site != site.id || !d.seen) continue;
     svg += fmt::format(
-        R"~(<circle class="pass s{}" cx="{:.1f}" cy="{:.1f}" r="4"><title>vehicle {} passes at {:.2f} s, planned {:.2f} s</title></circle>)~",
+        R"~(<circle class="pass s{0}" data-series="vehicle {3}" cx="{1:.1f}" cy="{2:.1f}" r="4"><title>vehicle {3} passes at {4:.2f} s, planned {5:.2f} s</title></circle>)~",
         colour, time(to_seconds(d.time)), distance(d.miss_m), d.run.vehicle.value,
         to_seconds(d.time), to_seconds(*d.run.planned));
   }
@@ -168,16 +173,17 @@ std::string time_line(const checks::RunRecord& record, const std::vector<Story>&
       const double right = std::max(time(to_seconds(span.until)), left + 1.0);
       const std::string site = span.site ? fmt::format(", site {}", span.site->value) : "";
       svg += fmt::format(
-          R"~(<rect class="d{}" x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.0f}"><title>vehicle {}: {}{}, {:.1f} s to {:.1f} s</title></rect>)~",
+          R"~(<rect class="d{0}" data-series="{6}|vehicle {5}" x="{1:.1f}" y="{2:.1f}" width="{3:.1f}" height="{4:.0f}"><title>vehicle {5}: {6}{7}, {8:.1f} s to {9:.1f} s</title></rect>)~",
           static_cast<int>(span.doing), left, y + 2.0, right - left, kRow - 4.0,
           story.vehicle.value, kDoingNames[static_cast<std::size_t>(span.doing)], site,
           to_seconds(span.from), to_seconds(span.until));
       if (span.doing == Doing::flying && span.site) {
         // The number of the site in the colour of its coalition, where the span begins.
         svg += fmt::format(
-            R"~(<rect class="f{}" x="{:.1f}" y="{:.1f}" width="13" height="{:.0f}"/><text class="badge" x="{:.1f}" y="{:.1f}">{}</text>)~",
+            R"~(<g data-series="{7}|vehicle {8}"><rect class="f{0}" x="{1:.1f}" y="{2:.1f}" width="13" height="{3:.0f}"/><text class="badge" x="{4:.1f}" y="{5:.1f}">{6}</text></g>)~",
             colour_of(record, span.site), left, y + 2.0, kRow - 4.0, left + 6.5, y + 12.0,
-            span.site->value);
+            span.site->value, kDoingNames[static_cast<std::size_t>(span.doing)],
+            story.vehicle.value);
       }
     }
   }
@@ -191,6 +197,7 @@ struct Mark {
   bool arc = false;
   double value = 0.0;
   std::string title;
+  SiteId site;
 };
 
 /// One kind of error, a mark a task, with the band that is allowed.
@@ -214,14 +221,16 @@ std::string error_strip(const std::vector<Mark>& marks, double limit, bool has_s
   for (std::size_t i = 0; i < marks.size(); ++i) {
     const double x = 76.0 + step * (static_cast<double>(i) + 0.5);
     const double y = value(marks[i].value);
-    svg += fmt::format(R"~(<path class="stem s{}" d="M{:.1f} {:.1f}V{:.1f}"/>)~", marks[i].colour,
-                       x, value(0.0), y);
+    svg += fmt::format(
+        R"~(<g data-series="site {}"><path class="stem s{}" d="M{:.1f} {:.1f}V{:.1f}"/>)~",
+        marks[i].site.value, marks[i].colour, x, value(0.0), y);
     svg += marks[i].arc
                ? fmt::format(R"~(<rect class="f{}" x="{:.1f}" y="{:.1f}" width="7" height="7">)~",
                              marks[i].colour, x - 3.5, y - 3.5)
                : fmt::format(R"~(<circle class="f{}" cx="{:.1f}" cy="{:.1f}" r="4">)~",
                              marks[i].colour, x, y);
-    svg += fmt::format("<title>{}</title></{}>", marks[i].title, marks[i].arc ? "rect" : "circle");
+    svg +=
+        fmt::format("<title>{}</title></{}></g>", marks[i].title, marks[i].arc ? "rect" : "circle");
   }
   return svg;
 }
@@ -239,17 +248,21 @@ std::string errors(const checks::RunRecord& record, const checks::Limits& limits
         fmt::format("{} by vehicle {}", to_string(d.run.task), d.run.vehicle.value);
     times.push_back({colour, false, d.time_error_s(),
                      fmt::format("{}: planned {:.2f} s, flown {:.2f} s", who,
-                                 to_seconds(*d.run.planned), to_seconds(d.time))});
-    misses.push_back({colour, false, d.miss_m, fmt::format("{}: {:.1f} m", who, d.miss_m)});
+                                 to_seconds(*d.run.planned), to_seconds(d.time)),
+                     d.run.task.site});
+    misses.push_back(
+        {colour, false, d.miss_m, fmt::format("{}: {:.1f} m", who, d.miss_m), d.run.task.site});
     const double off = degrees(d.bearing_error_rad);
-    bearings.push_back({colour, false, off, fmt::format("{}: {:+.1f} deg", who, off)});
+    bearings.push_back(
+        {colour, false, off, fmt::format("{}: {:+.1f} deg", who, off), d.run.task.site});
   }
   for (const auto& arc : checks::arcs_flown(record, TaskKind::assess, limits)) {
     if (!arc.start || !arc.run.planned) continue;
     times.push_back(
         {colour_of(record, arc.run.task.site), true, arc.time_error_s(),
          fmt::format("{} by vehicle {}: planned {:.2f} s, began {:.2f} s", to_string(arc.run.task),
-                     arc.run.vehicle.value, to_seconds(*arc.run.planned), to_seconds(*arc.start))});
+                     arc.run.vehicle.value, to_seconds(*arc.run.planned), to_seconds(*arc.start)),
+         arc.run.task.site});
   }
   if (times.empty()) return "";
   std::string svg = open_svg(1240.0, 344.0, "Flown against planned");

@@ -32,9 +32,9 @@ std::string escaped(std::string_view text) {
   return out;
 }
 
-std::vector<Vec2> thinned(const std::vector<Vec2>& line, double tolerance) {
-  if (line.size() < 3) return line;
-  std::vector<bool> kept(line.size(), false);
+std::vector<std::size_t> thinned_points(const std::vector<Vec2>& line, double tolerance) {
+  std::vector<bool> kept(line.size(), line.size() < 3);
+  if (line.empty()) return {};
   kept.front() = kept.back() = true;
   std::vector<std::pair<std::size_t, std::size_t>> open{{0, line.size() - 1}};
   while (!open.empty()) {
@@ -58,11 +58,29 @@ std::vector<Vec2> thinned(const std::vector<Vec2>& line, double tolerance) {
     open.emplace_back(first, split);
     open.emplace_back(split, last);
   }
-  std::vector<Vec2> out;
+  std::vector<std::size_t> points;
   for (std::size_t i = 0; i < line.size(); ++i) {
-    if (kept[i]) out.push_back(line[i]);
+    if (kept[i]) points.push_back(i);
   }
+  return points;
+}
+
+std::vector<Vec2> thinned(const std::vector<Vec2>& line, double tolerance) {
+  std::vector<Vec2> out;
+  for (const std::size_t i : thinned_points(line, tolerance)) out.push_back(line[i]);
   return out;
+}
+
+std::string timed_points(const std::vector<Vec2>& line, const std::vector<double>& times_s,
+                         double tolerance) {
+  std::string points;
+  std::string times;
+  for (const std::size_t i : thinned_points(line, tolerance)) {
+    const char* const gap = points.empty() ? "" : " ";
+    points += fmt::format("{}{:.1f},{:.1f}", gap, line[i].x(), line[i].y());
+    times += fmt::format("{}{:.1f}", gap, times_s[i]);
+  }
+  return fmt::format(R"~( points="{}" data-times="{}")~", points, times);
 }
 
 std::string points_text(const std::vector<Vec2>& line) {
@@ -71,6 +89,11 @@ std::string points_text(const std::vector<Vec2>& line) {
     text += fmt::format("{}{:.1f},{:.1f}", text.empty() ? "" : " ", p.x(), p.y());
   }
   return text;
+}
+
+std::string axis_attribute(std::string_view name, const Axis& axis, std::string_view unit) {
+  return fmt::format(R"~( data-{}="{:.6g} {:.6g} {:.6g} {:.6g} {}")~", name, axis.from, axis.to,
+                     axis.pixel_from, axis.pixel_to, unit);
 }
 
 double round_below(double value) {

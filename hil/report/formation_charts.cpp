@@ -50,8 +50,9 @@ TimeSpan span_of(const checks::RunRecord& record) {
 /// The frame of a chart over time: bands where formations held, grid, the limit's line.
 std::string frame(std::string_view label, const Axis& time, const Axis& value, double limit,
                   const std::vector<FormationChange>& held) {
-  std::string svg = fmt::format(R"~(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}">)~",
-                                kWidth, kHeight, label);
+  std::string svg = fmt::format(
+      R"~(<svg viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="{}"{}{}>)~", kWidth, kHeight,
+      label, axis_attribute("time", time, "s"), axis_attribute("value", value, "m"));
   for (const FormationChange& h : held) {
     const double from = time(to_seconds(*h.held));
     const double until = std::min(time(time.to), time(to_seconds(h.until)));
@@ -80,8 +81,9 @@ std::string line(const std::vector<Vec2>& points, const Axis& time, const Axis& 
   std::vector<Vec2> pixels;
   pixels.reserve(points.size());
   for (const Vec2& p : points) pixels.emplace_back(time(p.x()), value(std::min(p.y(), value.to)));
-  return fmt::format(R"~(<polyline class="curve s{}" points="{}"><title>{}</title></polyline>)~",
-                     colour, points_text(thinned(pixels, 0.3)), escaped(title));
+  return fmt::format(
+      R"~(<polyline class="curve s{0}" data-series="{2}" points="{1}"><title>{2}</title></polyline>)~",
+      colour, points_text(thinned(pixels, 0.3)), escaped(title));
 }
 
 }  // namespace
@@ -161,21 +163,25 @@ std::vector<std::pair<std::string, std::string>> formation_pictures(
     const Axis east{middle.x() - half, middle.x() + half, kMargin, kSide - kMargin};
     const Axis north{middle.y() - half, middle.y() + half, kSide - kMargin, kMargin};
     std::string svg = fmt::format(
-        R"~(<svg viewBox="0 0 {0:.0f} {0:.0f}" role="img" aria-label="{1} from above"><rect class="ground" width="{0:.0f}" height="{0:.0f}"/>)~",
-        kSide, escaped(h.order));
+        R"~(<svg viewBox="0 0 {0:.0f} {0:.0f}" role="img" aria-label="{1} from above"{2}{3}><rect class="ground" width="{0:.0f}" height="{0:.0f}"/>)~",
+        kSide, escaped(h.order), axis_attribute("east", east, "m"),
+        axis_attribute("north", north, "m"));
     for (const auto& [vehicle, place] : h.places) {
       const std::size_t colour = colour_of(vehicle);
       std::vector<Vec2> pixels;
+      std::vector<double> times_s;
       if (const auto* recorded = recording_of(record, vehicle)) {
         for (const auto& point : recorded->track) {
           if (point.state.time < *h.held || point.state.time >= h.until) continue;
           pixels.emplace_back(east(point.state.x_m), north(point.state.y_m));
+          times_s.push_back(to_seconds(point.state.time));
         }
       }
       svg += fmt::format(
-          R"~(<circle class="pass s{0}" cx="{1:.1f}" cy="{2:.1f}" r="9"/><polyline class="curve s{0}" points="{3}"/><text class="id mid" x="{1:.1f}" y="{4:.1f}">{5}</text>)~",
-          colour, east(place.x()), north(place.y()), points_text(thinned(pixels, 0.1)),
-          north(place.y()) - 13.0, vehicle.value);
+          R"~(<g data-series="vehicle {4}"><circle class="pass s{0}" cx="{1:.1f}" cy="{2:.1f}" r="9"/><text class="id mid" x="{1:.1f}" y="{3:.1f}">{4}</text></g>)~",
+          colour, east(place.x()), north(place.y()), north(place.y()) - 13.0, vehicle.value);
+      svg += fmt::format(R"~(<polyline class="curve s{}" data-series="vehicle {}"{}/>)~", colour,
+                         vehicle.value, timed_points(pixels, times_s, 0.1));
     }
     pictures.emplace_back(fmt::format("{}, from {:.1f} s", h.order, to_seconds(*h.held)),
                           svg + "</svg>");

@@ -95,14 +95,19 @@ std::string draw_track(const checks::RunRecord& record, const recording::Recordi
     const auto here = last ? site : site_at(story, recorded.track[i].state.time);
     if (!last && here == site) continue;
     std::vector<Vec2> line;
+    std::vector<double> times_s;
     for (std::size_t k = first; k < std::min(i + 1, recorded.track.size()); ++k) {
       line.push_back(view(position(recorded.track[k])));
+      times_s.push_back(to_seconds(recorded.track[k].state.time));
     }
     (site ? work : free) += fmt::format(
-        R"~(<polyline class="track {}s{}" points="{}"><title>vehicle {}{}</title></polyline>)~",
+        R"~(<polyline class="track {}s{}" data-series="{}vehicle {}"{}><title>vehicle {}{}</title></polyline>)~",
         site ? "" : "free ",
         record.places.empty() ? colour_of(record, site) : colour_of(recorded.vehicle),
-        points_text(thinned(line, kThinning)), recorded.vehicle.value,
+        site                    ? fmt::format("site {}|", site->value)
+        : record.places.empty() ? "searching|"
+                                : "",
+        recorded.vehicle.value, timed_points(line, times_s, kThinning), recorded.vehicle.value,
         site                    ? fmt::format(", working for site {}", site->value)
         : record.places.empty() ? ", searching"
                                 : "");
@@ -117,7 +122,7 @@ std::string draw_ends(const recording::Recording& recorded, const View& view) {
   const Vec2 end = view(position(recorded.track.back()));
   const double course = -degrees(recorded.track.back().state.course_rad);
   return fmt::format(
-      R"~(<circle class="start" cx="{0:.1f}" cy="{1:.1f}" r="3.2"/><text class="id" x="{2:.1f}" y="{3:.1f}">{4}</text><path class="end" d="M5 0L-4 3.5V-3.5Z" transform="translate({5:.1f} {6:.1f}) rotate({7:.0f})"><title>vehicle {4}, end</title></path>)~",
+      R"~(<g data-series="vehicle {4}"><circle class="start" cx="{0:.1f}" cy="{1:.1f}" r="3.2"/><text class="id" x="{2:.1f}" y="{3:.1f}">{4}</text><path class="end" d="M5 0L-4 3.5V-3.5Z" transform="translate({5:.1f} {6:.1f}) rotate({7:.0f})"><title>vehicle {4}, end</title></path></g>)~",
       start.x(), start.y(), start.x() + 5.0, start.y() - 4.0, recorded.vehicle.value, end.x(),
       end.y(), course);
 }
@@ -178,8 +183,10 @@ std::string map(const checks::RunRecord& record, const std::vector<Story>& stori
                 std::string_view attributes, std::string_view style) {
   const View view = view_of(record);
   std::string svg = fmt::format(
-      R"~(<svg {} viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="Map of the flown tracks">{})~",
-      attributes, kWidth, view.height() + kLegendHeight, style);
+      R"~(<svg {} viewBox="0 0 {:.0f} {:.0f}" role="img" aria-label="Map of the flown tracks"{}{}>{})~",
+      attributes, kWidth, view.height() + kLegendHeight,
+      axis_attribute("east", {view.low.x(), view.high.x(), 0.0, kWidth}, "m"),
+      axis_attribute("north", {view.low.y(), view.high.y(), view.height(), 0.0}, "m"), style);
   svg +=
       R"~(<defs><pattern id="hatch" width="7" height="7" patternUnits="userSpaceOnUse" patternTransform="rotate(45)"><path class="hatch" d="M0 0V7"/></pattern></defs>)~";
   svg += fmt::format(R"~(<rect class="ground" width="{:.0f}" height="{:.1f}"/>)~", kWidth,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/report/report.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,6 +40,8 @@ Contents small_contents() {
   contents.title = "Two & a <site>";
   contents.summary = "seed 1";
   contents.replay = "skein-ground replay runs/<mine>";
+  contents.replay_url = "http://127.0.0.1:7460/";
+  contents.run = "<mine>";
   Site site;
   site.id = SiteId{3};
   site.deliveries = {{0.0, Duration{}}};
@@ -74,12 +77,17 @@ Contents small_contents() {
       event(member, 54.0, TaskStarted{}, delivery),
       event(member, 60.2, TaskDone{at_seconds(60.0)}, delivery)};
   contents.checks = {{"turn radius", "none tighter", 4, "plans", "101 %", {}}};
+  contents.checks.front().moment = at_seconds(31.26);
   contents.comparison = {{site.id, "survey done", "25.00 s", "43.92 s"}};
   return contents;
 }
 
 /// The first fault in the nesting of tags; empty when there is none.
-std::string fault_of_tags(const std::string& text) {
+std::string fault_of_tags(std::string text) {
+  // A script is no markup.
+  if (const std::size_t script = text.find("<script>"); script != std::string::npos) {
+    text.erase(script, text.find("</script>") + 9 - script);
+  }
   static const std::set<std::string> never_closed{"meta", "br", "hr", "!DOCTYPE", "?xml"};
   std::vector<std::string> open;
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at + 1)) {
@@ -103,8 +111,15 @@ std::string fault_of_tags(const std::string& text) {
 TEST(Report, ThePageIsWellFormedAndNeedsNothingElse) {
   const std::string page = html(small_contents());
   EXPECT_EQ(fault_of_tags(page), "");
-  for (const char* outside : {"http", "src=", "href=", "@import", "<script", "url(h"}) {
+  for (const char* outside :
+       {" src=", "<link", "@import", "url(h", "fetch(", "XMLHttpRequest", "import("}) {
     EXPECT_THAT(page, Not(HasSubstr(outside)));
+  }
+  // It may ask nobody, and leads to this machine alone.
+  EXPECT_THAT(page, HasSubstr("content=\"default-src 'none'; "));
+  for (std::size_t at = page.find("href="); at != std::string::npos;
+       at = page.find("href=", at + 1)) {
+    EXPECT_EQ(page.substr(at, 28), "href=\"http://127.0.0.1:7460/");
   }
   EXPECT_THAT(page, HasSubstr("<code>skein-ground replay runs/&lt;mine&gt;</code>"));
   EXPECT_THAT(page, HasSubstr("Two &amp; a &lt;site&gt;"));
@@ -119,6 +134,44 @@ TEST(Report, ThePageShowsEveryVehicleSiteAndHazard) {
         "vehicle 12 passes at 60.20 s, planned 60.00 s", ">site 3</text>"}) {
     EXPECT_THAT(page, HasSubstr(shown));
   }
+}
+
+std::size_t count_of(const std::string& text, const std::string& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+TEST(Report, EveryCheckHasALinkToItsMomentInTheReplay) {
+  Contents contents = small_contents();
+  contents.checks.push_back({"loads", "no more than carried", 2, "vehicles", "1 used", {}});
+  contents.checks.push_back({"separation", "never below", 1, "pairs", "9 m", {}});
+  contents.checks.back().moment = at_seconds(12.0);
+  contents.checks.back().violations = {{VehicleId{1}, at_seconds(60.25), "1 and 12 came near"}};
+  const std::string page = html(contents);
+  // The worst figure; the beginning, where there is nothing else; the violation, twice.
+  for (const auto& [moment, times] :
+       {std::pair{"31.3", 1U}, std::pair{"0.0", 1U}, std::pair{"60.2", 2U}}) {
+    EXPECT_EQ(count_of(page, fmt::format(
+                                 "href=\"http://127.0.0.1:7460/#seek={0}&amp;of=%3Cmine%3E\" "
+                                 "data-command=\"skein-ground replay runs/&lt;mine&gt; --at {0}\"",
+                                 moment)),
+              times)
+        << moment;
+  }
+  contents.replay.clear();
+  EXPECT_THAT(html(contents), Not(HasSubstr("href=")));
+}
+
+TEST(Report, PlotsTellTheirScalesAndWhoseTheirSeriesAre) {
+  const std::string page = html(small_contents());
+  EXPECT_THAT(page, HasSubstr("data-series=\"site 3|vehicle 12\""));
+  EXPECT_THAT(page, HasSubstr("data-series=\"searching|vehicle 1\""));
+  EXPECT_THAT(page, HasSubstr("data-series=\"delivering|vehicle 12\""));
+  EXPECT_THAT(page, HasSubstr("data-time=\"27 60.2 76 420 s\""));
+  EXPECT_THAT(page, HasSubstr("data-times=\"0.0 "));
 }
 
 TEST(Report, TheVerdictFollowsTheChecks) {

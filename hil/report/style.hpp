@@ -53,6 +53,18 @@ td.number{text-align:right;padding-right:18px}td:nth-child(-n+2){white-space:now
 .dot{display:inline-block;width:11px;height:11px;border-radius:50%;margin-right:7px}
 .sentences td{color:var(--bad);padding-left:26px}.sentences ul{margin:0;padding-left:16px}
 .soft{color:var(--soft)}
+a.moment{color:var(--s1);white-space:nowrap;display:inline-block;min-width:44px}
+figure{margin:0}
+.plot svg{touch-action:pan-y}
+.plot .hidden{display:none}.plot .hover{fill:var(--paper);stroke:var(--ink);stroke-width:2;pointer-events:none}
+button{font:inherit;color:var(--ink);background:var(--ground);border:1px solid var(--rule);border-radius:6px;padding:4px 10px;cursor:pointer}
+.legend{display:flex;flex-wrap:wrap;gap:6px;margin:8px 0}
+.legend button{font-size:12px;border-left:4px solid var(--c,var(--rule))}
+.legend button[aria-pressed=false]{color:var(--soft);text-decoration:line-through;border-left-color:var(--rule)}
+@media(pointer:coarse){button{min-height:44px;min-width:44px}}
+#tip{position:fixed;z-index:2;max-width:min(90vw,460px);padding:5px 9px;border-radius:6px;background:var(--ink);color:var(--paper);font-size:12px;pointer-events:none}
+#said{position:fixed;z-index:2;left:0;right:0;bottom:0;padding:10px 28px;background:var(--ink);color:var(--paper);overflow-wrap:anywhere}
+[hidden]{display:none}
 )";
 
 }  // namespace skein::report

@@ -132,6 +132,8 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
                   fmt::localtime(std::time(nullptr)), arguments.rate);
   contents.replay = fmt::format("{} replay {}", (arguments.programs / "skein-ground").string(),
                                 std::filesystem::absolute(folder).string());
+  contents.replay_url = fmt::format("http://127.0.0.1:{}/", configuration::ConsoleConfig{}.port);
+  contents.run = std::filesystem::absolute(folder).filename().string();
   contents.limits = limits_of(scenario.expect);
   contents.checks = judge_run(scenario, record, outcome);
   contents.comparison = compare(site_figures(record, contents.limits), scenario.reference);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Play, pause and seek in a recording.
 
-import { useRef, useState } from "preact/hooks";
+import { useEffect, useRef, useState } from "preact/hooks";
 import { clock } from "../shell/format";
 import { note } from "../shell/give";
-import { hello, replay, send } from "../wire/store";
+import { hello, link, replay, send } from "../wire/store";
+import { moment_in } from "./address";
 
 const speeds = [0.25, 0.5, 1, 2, 5, 10, 30, 100];
 // The server takes 20 lines a second and no more.
@@ -15,8 +16,29 @@ async function tell(line: string): Promise<void> {
   if (!answer.done) note(answer.text);
 }
 
+/** Where the address says; a press of Play goes on from there. */
+async function show_moment(): Promise<void> {
+  const moment = moment_in(location.hash);
+  const name = hello.value?.replay?.name;
+  if (!moment || name === undefined) return;
+  if (moment.of !== null && moment.of !== name) {
+    note(`this is the recording ${name}; that link is of ${moment.of}`);
+    return;
+  }
+  await tell("pause");
+  await tell(`seek ${moment.seek_s.toFixed(1)}`);
+}
+
 export function ReplayBar() {
   const range = hello.value?.replay;
+  const is_there = link.value === "open" && Boolean(range);
+  useEffect(() => {
+    if (!is_there) return;
+    const show = () => void show_moment();
+    show();
+    window.addEventListener("hashchange", show);
+    return () => window.removeEventListener("hashchange", show);
+  }, [is_there]);
   const state = replay.value;
   const [dragged_s, set_dragged_s] = useState<number | null>(null);
   const pending = useRef<{ timer: number; to_s: number }>({ timer: 0, to_s: 0 });

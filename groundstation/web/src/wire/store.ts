@@ -3,6 +3,7 @@
 // four times a second at most, since nobody reads faster and tables are dear to draw.
 
 import { batch, computed, signal } from "@preact/signals";
+import { token_in } from "../replay/address";
 import { tick } from "../shell/ticker";
 import { aged } from "./aged";
 import { empty_picture, reduce } from "./picture";
@@ -147,10 +148,10 @@ const kToken = "skein_token";
 
 /** What the address has behind its #, kept for as long as the tab: a ground station that starts anew has it, too. */
 function take_token(): void {
-  const token = /^#([0-9a-f]{32})$/.exec(location.hash)?.[1];
-  if (!token) return;
-  sessionStorage.setItem(kToken, token);
-  history.replaceState(null, "", location.pathname + location.search);
+  const found = token_in(location.hash);
+  if (!found) return;
+  sessionStorage.setItem(kToken, found.token);
+  history.replaceState(null, "", location.pathname + location.search + found.rest);
 }
 
 /** Whether it has let us in. */

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ struct CheckResult {
   std::vector<Violation> violations;
   /// What would be a violation, but was proven to be beyond what the vehicle can do.
   std::vector<Violation> excused = {};
+  /// When `measured` was at its worst; of a check without a figure, when the last thing that it
+  /// judged began. None where nothing has a time.
+  std::optional<Instant> moment = {};
   [[nodiscard]] bool held() const { return violations.empty(); }
 };
 

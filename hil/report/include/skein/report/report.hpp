@@ -24,14 +24,17 @@ struct Contents {
   std::string title;    ///< of the mission
   std::string summary;  ///< a line under it: scenario, seed, date
   std::string replay;   ///< the command that shows the mission again in the console; may be empty
+  std::string replay_url;  ///< where its page is then, if nothing else is asked for; may be empty
+  std::string run;         ///< how that page calls the recording
   checks::RunRecord record;
   checks::Limits limits;
   std::vector<checks::CheckResult> checks;  ///< passed when every one of them held
   std::vector<ComparisonRow> comparison;    ///< by site
 };
 
-/// One HTML file that needs nothing else: verdict, tables, map, distance curves, time line, errors.
-/// For light and dark screens. Tracks are thinned to what can be seen.
+/// One HTML file that needs nothing else and may ask nobody: verdict, tables, map, distance curves,
+/// time line, errors. Each check has a link to its moment in the replay. For light and dark
+/// screens. Tracks are thinned to what can be seen.
 [[nodiscard]] std::string html(const Contents& contents);
 
 /// The map alone as an SVG file, for light and dark pages.
@@ -43,7 +46,6 @@ struct Contents {
 
 /// What was planned, believed and true, each aircraft and each delivery in a line; empty where no
 /// truth is known.
-[[nodiscard]] std::string truth_text(const checks::RunRecord& record,
-                                     const checks::Limits& limits);
+[[nodiscard]] std::string truth_text(const checks::RunRecord& record, const checks::Limits& limits);
 
 }  // namespace skein::report
