@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/logins.hpp"
 #include "skein/groundstation/orders.hpp"
+#include "skein/groundstation/vehicle_text.hpp"
 #include "skein/process/token.hpp"
 #include "skein/recording/published.hpp"
 #include "skein/version/version.hpp"
@@ -49,7 +51,8 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
                        const std::vector<std::string>& shapes,
                        const std::vector<std::string>& site_templates, std::optional<bool> sealed,
                        std::optional<std::int64_t> epoch_unix_ns,
-                       const std::optional<ShownRecording>& recording) {
+                       const std::optional<ShownRecording>& recording,
+                       const std::vector<configuration::ConsoleConfig::Video>& videos) {
   const Wgs84& place = origin.origin();
   codec::Json hello{
       {"program", "skein-ground " + version()},
@@ -64,7 +67,11 @@ std::string hello_text(const MissionOrigin& origin, const std::vector<VehicleId>
       {"sealed", sealed ? codec::Json(*sealed) : codec::Json(nullptr)},
       {"epoch_unix_s", epoch_unix_ns ? codec::Json(static_cast<double>(*epoch_unix_ns) * 1e-9)
                                      : codec::Json(nullptr)},
+      {"videos", codec::Json::array()},
       {"replay", nullptr}};
+  for (const auto& video : videos) {
+    hello["videos"].push_back({{"vehicle", video.vehicle.value}, {"url", video.url}});
+  }
   for (const VehicleId vehicle : expected) hello["expected"].push_back(vehicle.value);
   if (recording) {
     // In steps of the page's scrubber.
@@ -96,6 +103,10 @@ std::optional<console::Section> section_of(View view) {
       return Section::preflight;
     case View::fence:
       return Section::fence;
+    case View::links:
+      return Section::links;
+    case View::wind:
+      return Section::wind;
     case View::help:
     case View::audit:
     case View::routes:
@@ -129,7 +140,7 @@ std::string ConsoleDesk::address_text() const {
 }
 
 ConsoleDesk::ConsoleDesk(const configuration::GroundConfig& config, const MissionOrigin& origin)
-    : origin_{origin}, picture_{picture_params(config)} {}
+    : origin_{origin}, picture_{picture_params(config)}, videos_{config.console.videos} {}
 
 Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
                                 std::int64_t epoch_unix_ns, OperatorKeys& keys,
@@ -152,7 +163,7 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
   std::vector<std::string> templates;
   for (const auto& kind : config.site_templates) templates.push_back(kind.name);
   server.hello = hello_text(origin_, config.vehicles, shapes, templates,
-                            !config.network.keys.empty(), epoch_unix_ns, {});
+                            !config.network.keys.empty(), epoch_unix_ns, {}, videos_);
   server.on_refused_login = [](const console::RefusedLogin& login) {
     spdlog::warn("console: login of '{}' from {} refused, {} in a row; the next of that address {}",
                  login.user, login.address, login.in_a_row,
@@ -213,6 +224,36 @@ std::optional<console::Server::Line> ConsoleDesk::next() {
     next_state_ = Instant::min();
   }
   return std::nullopt;
+}
+
+std::string links_and_wind_text(View view, const console::Picture& picture,
+                                const mission::Fleet& fleet, Instant now) {
+  if (view == View::links) {
+    return console::links_text(console::team_links(fleet, picture.receptions(), now));
+  }
+  if (view == View::wind) {
+    return console::wind_text(picture.wind().estimate(console::without_airspeed(fleet), now), now);
+  }
+  return "";
+}
+
+void ConsoleDesk::on_receptions(const std::vector<network::Reception>& receptions) {
+  std::vector<console::GroundReception> own;
+  own.reserve(receptions.size());
+  for (const network::Reception& one : receptions) {
+    own.push_back({one.sender, one.datagrams, one.lost_percent,
+                   one.bytes / to_seconds(network::Node::kReceptionFor)});
+  }
+  picture_.on_receptions(std::move(own));
+}
+
+Answer ConsoleDesk::status_of(VehicleId vehicle, const mission::Fleet& fleet, Instant now) const {
+  const auto video =
+      std::ranges::find(videos_, vehicle, &configuration::ConsoleConfig::Video::vehicle);
+  Answer answer = vehicle_answer(vehicle, picture_, fleet,
+                                 video == videos_.end() ? std::string{} : video->url, now);
+  if (answer.done) answer.data = section(console::Section::vehicles, fleet, now);
+  return answer;
 }
 
 std::string ConsoleDesk::section(console::Section section, const mission::Fleet& fleet,

@@ -31,6 +31,7 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
+#include "skein/groundstation/return_desk.hpp"
 #include "skein/groundstation/revocations.hpp"
 #include "skein/groundstation/route_desk.hpp"
 #include "skein/groundstation/several.hpp"
@@ -135,7 +136,8 @@ bool only_looks(const Input& input) {
   const auto* routes = std::get_if<RoutesFromFile>(&input);
   const auto* fence = std::get_if<NewFence>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
-         std::holds_alternative<PreflightOf>(input) ||
+         std::holds_alternative<PreflightOf>(input) || std::holds_alternative<StatusOf>(input) ||
+         std::holds_alternative<ReturnPreview>(input) ||
          (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
          (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview);
 }
@@ -205,6 +207,7 @@ class GroundLoop {
         sites_{config, origin, node},
         routes_{node},
         fence_{node, origin_},
+        returns_{node},
         control_{std::move(control)},
         console_{std::move(console)},
         agencies_{config, origin},
@@ -366,6 +369,12 @@ class GroundLoop {
     if (const auto* of = std::get_if<PreflightOf>(&input)) {
       return preflight_answer(node_.fleet(), of->vehicle, now);
     }
+    if (const auto* of = std::get_if<StatusOf>(&input)) {
+      return console_.status_of(of->vehicle, node_.fleet(), now);
+    }
+    if (const auto* preview = std::get_if<ReturnPreview>(&input)) {
+      return returns_.answer(*preview, now);
+    }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
     if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
     if (const auto* preview = std::get_if<NewFence>(&input)) return fence_.answer(*preview, now);
@@ -478,6 +487,9 @@ class GroundLoop {
         return console::fence_text(console_.picture(), node_.fleet());
       case View::preflight:
         return console::preflight_text(console::team_preflight(node_.fleet(), now), now);
+      case View::links:
+      case View::wind:
+        return console_.text(view, node_.fleet(), now);
     }
     return "";
   }
@@ -530,6 +542,7 @@ class GroundLoop {
   void report(Instant now) {
     if (now < next_report_) return;
     next_report_ = now + kReportPeriod;
+    console_.on_receptions(network_.receptions());
     const auto traffic = process::traffic_of(network_);
     HealthFacts facts;
     facts.version = version();
@@ -581,6 +594,7 @@ class GroundLoop {
   SiteDesk sites_;
   RouteDesk routes_;
   FenceDesk fence_;
+  ReturnDesk returns_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   AgencyDesk agencies_;

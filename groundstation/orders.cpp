@@ -16,9 +16,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 13> kWords{
-      "help",  "status",    "sites",  "pending",   "places", "coalitions", "hazards",
-      "audit", "proposals", "routes", "preflight", "fence",  "console"};
+  static constexpr std::array<std::string_view, 15> kWords{
+      "help",   "status",    "sites", "pending", "places", "coalitions", "hazards", "audit",
+      "proposals", "routes", "preflight", "fence", "links", "wind", "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -62,6 +62,16 @@ struct Line {
   }
   std::string operator()(const PreflightOf& of) const {
     return fmt::format("preflight {}", of.vehicle.value);
+  }
+  std::string operator()(const StatusOf& of) const {
+    return fmt::format("status {}", of.vehicle.value);
+  }
+  std::string operator()(const ReturnPreview& preview) const {
+    std::string ids;
+    for (const VehicleId id : preview.vehicles) {
+      ids += fmt::format("{}{}", ids.empty() ? "" : ",", id.value);
+    }
+    return "preview return " + (ids.empty() ? "all" : ids);
   }
   std::string operator()(const CallOffRoutes& /*off*/) const { return "withdraw routes"; }
   std::string operator()(const ProposalAnswer& answer) const {

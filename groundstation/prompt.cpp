@@ -224,8 +224,26 @@ Result<Input> route_order(const std::vector<std::string_view>& words, bool previ
   return Input{order};
 }
 
+/// 'return all', or numbers with commas between them.
+Result<Input> return_preview(const std::vector<std::string_view>& words) {
+  const Error wrong{
+      "'preview return' needs the numbers of vehicles or 'all', as in 'preview return 3,4'"};
+  if (words.size() != 2) return wrong;
+  ReturnPreview preview;
+  if (words[1] == "all") return Input{preview};
+  for (std::size_t begin = 0; begin <= words[1].size();) {
+    const auto end = std::min(words[1].find(',', begin), words[1].size());
+    const auto id = id_of(words[1].substr(begin, end - begin));
+    if (!id) return wrong;
+    preview.vehicles.push_back({*id});
+    begin = end + 1;
+  }
+  return Input{std::move(preview)};
+}
+
 Result<Input> preview(std::vector<std::string_view> words) {
   words.erase(words.begin());
+  if (!words.empty() && words[0] == "return") return return_preview(words);
   if (!words.empty() && words[0] == "routes") return route_order(words, true);
   if (!words.empty() && words[0] == "fence") return fence_order(words, true);
   if (!words.empty() && (words[0] == "site" || words[0] == "change")) {
@@ -233,9 +251,8 @@ Result<Input> preview(std::vector<std::string_view> words) {
   }
   if (words.empty() || !is_formation_verb(words[0])) {
     return Error{
-        "'preview' needs an order to the formation, of a site or of routes, as in 'preview form "
-        "wedge "
-        "spacing 5'"};
+        "'preview' needs an order to the formation, of a site, of routes or to return, as in "
+        "'preview form wedge spacing 5'"};
   }
   return formation_order(words, true);
 }
@@ -254,6 +271,13 @@ Result<Input> preflight(const std::vector<std::string_view>& words) {
   return Input{PreflightOf{{*id}}};
 }
 
+Result<Input> status(const std::vector<std::string_view>& words) {
+  if (words.size() == 1) return Input{View::status};
+  const auto id = words.size() == 2 ? id_of(words[1]) : std::nullopt;
+  if (!id) return Error{"'status' stands alone, or before a vehicle's number"};
+  return Input{StatusOf{{*id}}};
+}
+
 Result<Input> record(const std::vector<std::string_view>& words) {
   if (words.size() != 2) return Error{"'record' needs a folder, or 'stop'"};
   return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
@@ -269,7 +293,9 @@ Result<Input> parse_input(std::string_view line) {
   if (words.empty()) return Input{};
   const auto verb = words[0];
   if (verb == "help") return view(View::help, words);
-  if (verb == "status") return view(View::status, words);
+  if (verb == "status") return status(words);
+  if (verb == "links") return view(View::links, words);
+  if (verb == "wind") return view(View::wind, words);
   if (verb == "sites" && words.size() == 2) return Input{SitesFromFile{std::string{words[1]}}};
   if (verb == "sites") return view(View::sites, words);
   if (verb == "site" || verb == "change") return site_order(words, false);
@@ -315,7 +341,9 @@ bool is_of_formation(std::string_view line) {
 }
 
 std::string help_text() {
-  return "status            the fleet: what each vehicle does, when it was last heard, its health\n"
+  return "status [ID]       the fleet: what each vehicle does, when it was last heard, its health\n"
+         "links             who hears whom, how often, and what is lost\n"
+         "wind              as the planes that fly tell it\n"
          "preflight [ID]    who is ready before the flight, and what each vehicle's checks find\n"
          "sites             the sites and what was done there\n"
          "pending           deliveries that wait for your decision\n"
@@ -380,9 +408,9 @@ std::string help_text() {
          "they\n"
          "                  slide into another shape on the way\n"
          "land              it comes straight down\n"
-         "preview ORDER     what one of these five, site, change or routes would do, and whether "
-         "it is "
-         "safe\n"
+         "preview ORDER     what one of these five, site, change, routes or return would do, and "
+         "whether\n"
+         "                  it is safe; return takes several: preview return 3,4\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
          "record FOLDER     record all that is said into FOLDER, too, from now on; record stop: no "
          "more\n"

@@ -51,6 +51,17 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<PreflightOf>("preflight 12").vehicle, VehicleId{12});
   EXPECT_THAT(refusal_of("preflight zero"), HasSubstr("a vehicle's number"));
   EXPECT_THAT(refusal_of("preflight 1 2"), HasSubstr("a vehicle's number"));
+  EXPECT_EQ(parsed<StatusOf>("status 12").vehicle, VehicleId{12});
+  EXPECT_THAT(refusal_of("status all"), HasSubstr("a vehicle's number"));
+  EXPECT_EQ(parsed<View>("links"), View::links);
+  EXPECT_EQ(parsed<View>("wind"), View::wind);
+  EXPECT_TRUE(parsed<ReturnPreview>("preview return all").vehicles.empty());
+  EXPECT_EQ(parsed<ReturnPreview>("preview return 3,12").vehicles,
+            (std::vector{VehicleId{3}, VehicleId{12}}));
+  for (const char* wrong : {"preview return", "preview return 3,", "preview return 3, 4",
+                            "preview return ,3", "preview return 0"}) {
+    EXPECT_THAT(refusal_of(wrong), HasSubstr("'preview return 3,4'"));
+  }
   EXPECT_EQ(parsed<Record>("record runs/mine").folder, "runs/mine");
   EXPECT_EQ(parsed<Record>("record stop").folder, "");
   parsed<Quit>("quit");

@@ -24,6 +24,7 @@
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/playback.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/groundstation/vehicle_text.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/process/log.hpp"
 #include "skein/process/shutdown.hpp"
@@ -124,6 +125,10 @@ class ReplayLoop {
       if (const auto* of = std::get_if<PreflightOf>(&*input)) {
         return preflight_answer(playback_.fleet(), of->vehicle, playback_.now());
       }
+      if (const auto* of = std::get_if<StatusOf>(&*input)) {
+        return vehicle_answer(of->vehicle, playback_.picture(), playback_.fleet(), "",
+                              playback_.now());
+      }
       if (std::holds_alternative<std::monostate>(*input)) return {true, ""};
     }
     return {false,
@@ -158,7 +163,7 @@ class ReplayLoop {
         return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
                                        playback_.now());
       default:
-        return "";
+        return links_and_wind_text(view, playback_.picture(), playback_.fleet(), playback_.now());
     }
   }
 

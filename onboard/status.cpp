@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "skein/codec/json_text.hpp"
@@ -76,6 +77,17 @@ mission::Health HealthBoard::with_host(mission::Health health) const {
   for (std::string& problem : mission::host_problems(host_)) {
     if (health.problems.size() >= mission::kProblemsMax) break;
     health.problems.push_back(std::move(problem));
+  }
+  return health;
+}
+
+mission::Health with_receptions(mission::Health health,
+                                const std::vector<network::Reception>& receptions) {
+  for (mission::Heard& heard : health.heard) {
+    const auto counted = std::ranges::find(receptions, heard.vehicle, &network::Reception::sender);
+    if (counted == receptions.end()) continue;
+    heard.datagrams = counted->datagrams;
+    heard.lost_percent = counted->lost_percent;
   }
   return health;
 }

@@ -69,6 +69,16 @@ TEST(Status, SaysWhetherTheVehicleFlies) {
   EXPECT_EQ(airborne_in("gibberish"), hal::Airborne::unknown);
 }
 
+TEST(Status, HealthTellsWhatTheNetworkCountsOfThoseThatAreHeard) {
+  mission::Health health;
+  health.heard = {{{3}, std::chrono::milliseconds{400}}, {{4}, std::chrono::milliseconds{500}}};
+  const auto told = with_receptions(health, {{{3}, 98, 2, 1000}, {{9}, 1, 0, 10}});
+  ASSERT_EQ(told.heard.size(), 2U);
+  EXPECT_EQ(told.heard[0].datagrams, 98);
+  EXPECT_EQ(told.heard[0].lost_percent, 2);
+  EXPECT_EQ(told.heard[1].lost_percent, 255);  // not counted, so not told
+}
+
 TEST(HealthBoard, AddsWhatTheHostKnowsWithinTheMessagesLimit) {
   HealthBoard board;
   mission::Health health;

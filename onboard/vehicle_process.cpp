@@ -124,8 +124,8 @@ AgentLink link_to(network::Node& node, const CanFlightController* on_can, Health
                   node.publish(message);
                   return;
                 }
-                const mission::Health whole =
-                    health.with_host(with_flight_controller(*told, on_can));
+                const mission::Health whole = health.with_host(
+                    with_receptions(with_flight_controller(*told, on_can), node.receptions()));
                 health.put(whole);
                 node.publish(mission::Message{whole});
               },

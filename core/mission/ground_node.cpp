@@ -152,12 +152,30 @@ Result<void> GroundNode::land(VehicleId vehicle, Instant now) {
   return {};
 }
 
+std::optional<std::string> GroundNode::why_not_return(VehicleId vehicle) const {
+  if (!stays_in_formation(vehicle)) return std::nullopt;
+  return (vehicle == kGroundStation ? "the fleet" : name_of(vehicle)) +
+         std::string{
+             " flies in a formation of copters, which know no way home of their own; order "
+             "the formation to rally, or to land"};
+}
+
+Result<ReturnPreview> GroundNode::preview_return(std::vector<VehicleId> vehicles,
+                                                 Instant now) const {
+  if (vehicles.empty()) {
+    if (auto why = why_not_return(kGroundStation)) return Error{*std::move(why)};
+    vehicles = concerned(kGroundStation);
+  }
+  for (const VehicleId vehicle : vehicles) {
+    if (auto why = why_not_return(vehicle)) return Error{*std::move(why)};
+  }
+  return returns_.preview(vehicles, fleet(), hazards_.known(), now);
+}
+
 Result<void> GroundNode::command(VehicleId vehicle, CommandKind kind, Instant now) {
   if (kind == CommandKind::land) return land(vehicle, now);
-  if (kind == CommandKind::return_home && stays_in_formation(vehicle)) {
-    return Error{(vehicle == kGroundStation ? "the fleet" : name_of(vehicle)) +
-                 std::string{" flies in a formation of copters, which know no way home of their "
-                             "own; order the formation to rally, or to land"}};
+  if (kind == CommandKind::return_home) {
+    if (auto why = why_not_return(vehicle)) return Error{*std::move(why)};
   }
   auto given = agent_.command(vehicle, kind, now);
   if (!given || kind == CommandKind::give_back) return given;

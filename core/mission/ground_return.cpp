@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -22,12 +23,35 @@ constexpr Duration kLead = std::chrono::seconds{6};
 constexpr Duration kToldBack = std::chrono::seconds{3};
 constexpr int kRounds = 4;
 constexpr std::size_t kPlansMax = 1024;
+/// It begins at home.
+constexpr std::uint32_t kFirstPlan = 1;
+/// Of the preview's least separation: a plane flies some metres meanwhile.
+constexpr Duration kSeparationStep = std::chrono::milliseconds{200};
+/// A round of any orbit, after the last has come there.
+constexpr Duration kOrbitsFor = std::chrono::seconds{60};
 /// Two ways are one that come to the same places at the same times, to this.
 constexpr double kSamePlace_m = 5.0;
 constexpr double kSameHeading_rad = 0.05;
 
 Duration telling_takes(std::size_t vehicles) {
   return static_cast<std::int64_t>(vehicles / (kToldAtOnce + 1)) * kToldEvery;
+}
+
+std::optional<double> least_separation_m(const std::vector<ReturnPreview::Way>& ways, Instant start,
+                                         Instant last_arrival) {
+  if (ways.size() < 2) return std::nullopt;
+  double least_sq = std::numeric_limits<double>::infinity();
+  std::vector<Vec3> places(ways.size());
+  for (Instant t = start; t <= last_arrival + kOrbitsFor; t += kSeparationStep) {
+    for (std::size_t i = 0; i < ways.size(); ++i) {
+      const Vec2 place = ways[i].timed.pose_at(t).position();
+      places[i] = {place.x(), place.y(), ways[i].height_m};
+      for (std::size_t j = 0; j < i; ++j) {
+        least_sq = std::min(least_sq, (places[i] - places[j]).squaredNorm());
+      }
+    }
+  }
+  return std::sqrt(least_sq);
 }
 
 bool same_way(const TimedPath& flies, const TimedPath& given) {
@@ -71,8 +95,17 @@ void GroundReturn::on_order(const std::vector<VehicleId>& vehicles, CommandKind 
 }
 
 void GroundReturn::on_message(const Message& message) {
+  if (const auto* told = std::get_if<Telemetry>(&message)) {
+    if (begun_.size() < kPlansMax) {
+      begun_.try_emplace(told->vehicle, Vec2{told->state.x_m, told->state.y_m});
+    }
+    return;
+  }
   const auto* report = std::get_if<PlanReport>(&message);
   if (report == nullptr) return;
+  if (report->plan.number == kFirstPlan && begun_.contains(report->vehicle)) {
+    begun_[report->vehicle] = report->plan.timed.path.start.position();
+  }
   if (flies_.contains(report->vehicle) || flies_.size() < kPlansMax) {
     flies_[report->vehicle] = report->plan;
   }
@@ -192,6 +225,85 @@ void GroundReturn::plan(const Fleet& fleet, const std::vector<Hazard>& hazards, 
   step_ = Step::telling;
   step_ends_ = start + kToldBack;
   tell(now);
+}
+
+Result<planning::ReturningVehicle> GroundReturn::as_if_ordered(VehicleId vehicle,
+                                                               const Fleet& fleet,
+                                                               Instant start) const {
+  const auto known = fleet.vehicles().find(vehicle);
+  if (known == fleet.vehicles().end() || !known->second.expected) {
+    return Error{"is not in the fleet"};
+  }
+  const FleetEntry& entry = known->second;
+  if (!entry.telemetry || entry.silent) return Error{"is not heard"};
+  const Telemetry& telemetry = *entry.telemetry;
+  if (telemetry.state.on_ground() || telemetry.activity == Activity::landed) {
+    return Error{"is on the ground"};
+  }
+  const auto flies = flies_.find(vehicle);
+  if (flies == flies_.end()) return Error{"has not told what it flies"};
+  const auto homing = homing_.find(vehicle);
+  if (homing != homing_.end() && homing->second.home) {
+    return vehicle_of(vehicle, homing->second, telemetry, start);
+  }
+  const TimedPath& timed = flies->second.timed;
+  const double curvature =
+      std::max(timed.path.curvature_max_per_m(), std::abs(timed.tail_curvature_per_m));
+  const auto begun = begun_.find(vehicle);
+  if (curvature <= 0.0 || begun == begun_.end()) {
+    return Error{"tells of no turn that it flies: it comes home on a way of its own"};
+  }
+  planning::ReturningVehicle v;
+  v.id = vehicle;
+  v.height_m = telemetry.state.z_m;
+  v.home = begun->second;
+  v.start = timed.pose_at(start);
+  v.start_time = start;
+  v.speed_mps = timed.speed_mps;
+  v.wind_mps = timed.wind_mps();
+  v.speed_min_mps = timed.speed_mps;
+  v.turn_radius_m = 1.0 / curvature;
+  v.range_left_m = telemetry.range_left_m -
+                   std::max(0.0, to_seconds(start - telemetry.state.time)) * timed.speed_mps;
+  return v;
+}
+
+ReturnPreview GroundReturn::preview(const std::vector<VehicleId>& vehicles, const Fleet& fleet,
+                                    const std::vector<Hazard>& hazards, Instant now) const {
+  ReturnPreview preview;
+  const Instant start = now + kLead + telling_takes(vehicles.size());
+  std::map<VehicleId, planning::ReturningVehicle> asked;  // each once, whatever was typed
+  for (const VehicleId vehicle : vehicles) {
+    auto one = as_if_ordered(vehicle, fleet, start);
+    if (one) {
+      asked.emplace(vehicle, *std::move(one));
+    } else {
+      preview.cannot.emplace_back(vehicle, one.error().message);
+    }
+  }
+  std::vector<planning::ReturningVehicle> all;
+  for (const auto& [id, one] : asked) all.push_back(one);
+  const auto planned = planning::plan_return(config_.params, all, hazards);
+  for (const auto& failure : planned.failures) {
+    preview.cannot.emplace_back(failure.vehicle, reason_of(failure));
+  }
+  const auto add = [&](VehicleId vehicle, const TimedPath& timed) {
+    const auto homing = homing_.find(vehicle);
+    const bool told = homing != homing_.end() && homing->second.home;
+    preview.ways.push_back({vehicle, timed, asked.at(vehicle).height_m, !told});
+  };
+  for (const auto& one : all) {
+    if (one.flies) add(one.id, *one.flies);
+  }
+  for (const auto& flight : planned.flights) add(flight.vehicle, flight.timed);
+  std::ranges::sort(preview.ways, {}, &ReturnPreview::Way::vehicle);
+  std::ranges::sort(preview.cannot);
+  preview.last_arrival = now;
+  for (const auto& way : preview.ways) {
+    preview.last_arrival = std::max(preview.last_arrival, way.timed.end_time());
+  }
+  preview.least_separation_m = least_separation_m(preview.ways, start, preview.last_arrival);
+  return preview;
 }
 
 void GroundReturn::tell(Instant now) {

@@ -137,6 +137,7 @@ void Picture::on(const mission::Telemetry& telemetry, Instant now) {
         {now, s.x_m, s.y_m, s.z_m, s.groundspeed_mps, telemetry.range_left_m, delay});
     if (vehicle.series.size() > params_.series_max) vehicle.series.pop_front();
   }
+  wind_.on_telemetry(telemetry, now);
   note_own_word(telemetry);
   note_declined(telemetry);
   note_span(vehicle, telemetry, now);

@@ -15,7 +15,9 @@
 #include "skein/codec/json_text.hpp"
 #include "skein/console/authorisation_card.hpp"
 #include "skein/console/team_fence.hpp"
+#include "skein/console/team_links.hpp"
 #include "skein/console/team_preflight.hpp"
+#include "skein/console/team_wind.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
 #include "skein/idl/domain_fields.hpp"
@@ -193,8 +195,7 @@ Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const st
   return all;
 }
 
-Json plan_json(VehicleId id, const mission::FlightPlan& plan) {
-  const TimedPath& timed = plan.timed;
+Json timed_json(VehicleId id, const TimedPath& timed) {
   const Path& path = timed.path;
   const double length = path.length_m();
   Json points = Json::array();
@@ -227,11 +228,16 @@ Json plan_json(VehicleId id, const mission::FlightPlan& plan) {
     }
   }
   return {{"id", id.value},
-          {"number", plan.number},
           {"start_s", seconds(timed.start_time)},
           {"end_s", seconds(timed.end_time())},
           {"points", std::move(points)},
           {"hold", std::move(hold)}};
+}
+
+Json plan_json(VehicleId id, const mission::FlightPlan& plan) {
+  Json json = timed_json(id, plan.timed);
+  json["number"] = plan.number;
+  return json;
 }
 
 Json plans_json(const Picture& picture) {
@@ -545,7 +551,7 @@ std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
       "vehicles", "plans", "sites",  "coalitions", "authorisations", "hazards", "formation",
-      "timeline", "audit", "replay", "proposals",  "preflight",      "fence"};
+      "timeline", "audit", "replay", "proposals", "preflight", "fence", "links", "wind"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -595,6 +601,10 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return preflight_json(team_preflight(fleet, now));
     case Section::fence:
       return fence_json(picture, fleet);
+    case Section::links:
+      return links_json(team_links(fleet, picture.receptions(), now));
+    case Section::wind:
+      return wind_json(picture.wind().estimate(without_airspeed(fleet), now), now);
     case Section::audit:
     case Section::replay:
     case Section::count:
@@ -610,6 +620,10 @@ Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
     all[i] = section_of(static_cast<Section>(i), picture, fleet, origin, version, now);
   }
   return all;
+}
+
+std::string path_json(VehicleId vehicle, const TimedPath& timed) {
+  return codec::json_text(timed_json(vehicle, timed));
 }
 
 std::string series_of(const Picture& picture) {

@@ -149,7 +149,7 @@ TEST(Report, EveryCheckHasALinkToItsMomentInTheReplay) {
   contents.checks.push_back({"loads", "no more than carried", 2, "vehicles", "1 used", {}});
   contents.checks.push_back({"separation", "never below", 1, "pairs", "9 m", {}});
   contents.checks.back().moment = at_seconds(12.0);
-  contents.checks.back().violations = {{VehicleId{1}, at_seconds(60.25), "1 and 12 came near"}};
+  contents.checks.back().violations = {{VehicleId{1}, at_seconds(60.2), "1 and 12 came near"}};
   const std::string page = html(contents);
   // The worst figure; the beginning, where there is nothing else; the violation, twice.
   for (const auto& [moment, times] :

@@ -120,6 +120,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
     if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
   }
   config.fence = scenario.fence;
+  config.console.videos = scenario.console.videos;
   config.console.port = deployment.console_port;
   config.agencies = scenario.agencies;
   config.op = deployment.op;

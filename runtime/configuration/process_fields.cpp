@@ -576,6 +576,33 @@ bool is_plain(const std::string& name) {
   });
 }
 
+/// What a browser or a player opens, and no script: of one of these schemes, with a host, in
+/// printable characters that no address has to escape.
+bool is_video_url(const std::string& url) {
+  constexpr std::size_t kUrlMax = 500;
+  const bool plain = std::ranges::all_of(
+      url, [](unsigned char c) { return c > ' ' && c < 0x7F && c != '"' && c != '<' && c != '>'; });
+  if (!plain || url.size() > kUrlMax) return false;
+  return std::ranges::any_of(std::array<std::string_view, 3>{"http://", "https://", "rtsp://"},
+                             [&url](std::string_view scheme) {
+                               if (!url.starts_with(scheme) || url.size() == scheme.size())
+                                 return false;
+                               const char host = url[scheme.size()];
+                               return std::isalnum(static_cast<unsigned char>(host)) != 0 ||
+                                      host == '[';
+                             });
+}
+
+void video_fields(FieldVisitor& v, ConsoleConfig::Video& video) {
+  id(v, {"vehicle", "whose pictures they are", kRequired}, video.vehicle);
+  v.text({"url", "where they are: http, https or rtsp; opened by the operator's browser alone",
+          kRequired},
+         video.url);
+  v.require(is_video_url(video.url), "url",
+            "is no address of pictures; write one such as rtsp://192.168.1.23/stream or "
+            "https://camera.example/3");
+}
+
 void console_fields(FieldVisitor& v, ConsoleConfig& config) {
   whole(v, {"port", "where it is served; 0: not at all"}, {0.0, 65535.0}, config.port);
   v.text({"address", "any but 127.0.0.1 or ::1 needs passwords, certificate and key"},
@@ -609,6 +636,9 @@ void console_fields(FieldVisitor& v, ConsoleConfig& config) {
                          "has 1 to 24 characters");
            ids(inner, {"vehicles", "their ids", kRequired}, group.vehicles, "vehicle");
          }));
+  v.list({"videos", "of vehicles, as links in their details"},
+         unique_groups_of(config.videos, kListMax, video_fields, "vehicle",
+                          [](const ConsoleConfig::Video& video) { return video.vehicle.value; }));
   v.require(config.certificate.empty() == config.key.empty(), "key",
             "a certificate needs its key, and a key its certificate; give both or neither");
 }

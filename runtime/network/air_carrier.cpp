@@ -171,6 +171,8 @@ std::vector<Peer> AirCarrier::peers() const {
   return peers;
 }
 
+std::vector<Reception> AirCarrier::receptions() const { return receptions_.all(steady_now()); }
+
 void AirCarrier::change_key(const seal::EpochKey& key, Duration old_for) {
   seals_->change_key(key, old_for);
 }
@@ -275,20 +277,45 @@ void AirCarrier::arrive(std::span<const std::uint8_t> datagram) {
     if (header && seals_->news.has_any()) tell_news(*header);
   }
   const auto opened = seals_ ? unseal(datagram, plain_) : read_clear(datagram);
+  count_reception(datagram, opened);
   if (!opened || !opened->content) return;
   const std::lock_guard lock{mutex_};
   link_.hear(*opened, datagram, steady_now());
 }
 
+/// Also where others have passed it on before: that its sender itself is heard is what counts.
+void AirCarrier::count_reception(std::span<const std::uint8_t> datagram,
+                                 const std::optional<air::Opened>& opened) {
+  std::optional<air::Opened> from = opened;
+  if (!from) {
+    const auto header = seals_ ? seal::read_header(datagram) : std::nullopt;
+    if (!header || !seals_->opener.has_opened(*header)) return;
+    from = air::Opened{author_of(header->from), header->counter, std::nullopt};
+  }
+  receptions_.came({from->author.node, from->author.instance}, from->counter,
+                   datagram.size() + kIpUdpBytes, steady_now());
+}
+
 /// Copies over several nodes are no replays, and not counted as such.
 std::optional<air::Opened> AirCarrier::open(std::span<const std::uint8_t> datagram) {
-  if (!seals_) return read_clear(datagram);
+  if (!seals_) {
+    const auto opened = read_clear(datagram);
+    if (opened) note_sent(*opened);
+    return opened;
+  }
   const auto header = seal::read_header(datagram);
   if (header && is_own_voice(*header)) return std::nullopt;
   if (header && seals_->opener.has_opened(*header)) {
     return air::Opened{author_of(header->from), header->counter, std::nullopt};
   }
-  return unseal(datagram, inner_);
+  const auto opened = unseal(datagram, inner_);
+  if (opened) note_sent(*opened);
+  return opened;
+}
+
+void AirCarrier::note_sent(const air::Opened& passed_on) {
+  receptions_.was_sent({passed_on.author.node, passed_on.author.instance}, passed_on.counter,
+                       steady_now());
 }
 
 std::optional<air::Opened> AirCarrier::unseal(std::span<const std::uint8_t> datagram,

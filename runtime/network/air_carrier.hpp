@@ -13,6 +13,7 @@
 
 #include "air_socket.hpp"
 #include "carrier.hpp"
+#include "reception_book.hpp"
 #include "seals.hpp"
 #include "skein/air/link.hpp"
 #include "skein/network/air_radio.hpp"
@@ -48,6 +49,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
 
   [[nodiscard]] Written write(codec::Topic topic, std::vector<std::uint8_t> bytes) override;
   [[nodiscard]] std::vector<Peer> peers() const override;
+  [[nodiscard]] std::vector<Reception> receptions() const override;
   void change_key(const seal::EpochKey& key, Duration old_for) override;
   void tell(const std::vector<KeyNews>& news) override;
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news() override;
@@ -70,9 +72,12 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   void wait();
   void receive(std::span<const std::uint8_t> datagram);
   void arrive(std::span<const std::uint8_t> datagram);
+  void count_reception(std::span<const std::uint8_t> datagram,
+                       const std::optional<air::Opened>& opened);
   [[nodiscard]] std::optional<air::Opened> unseal(std::span<const std::uint8_t> datagram,
                                                   std::vector<std::uint8_t>& plain);
   [[nodiscard]] std::optional<air::Opened> read_clear(std::span<const std::uint8_t> datagram);
+  void note_sent(const air::Opened& passed_on);
   [[nodiscard]] bool is_own_voice(const seal::Header& header) const;
   void tell_news(const seal::Header& header);
   void speak();
@@ -85,6 +90,7 @@ class AirCarrier final : public Carrier, private air::LinkSink {
   std::unique_ptr<Seals> seals_;           ///< none: in clear
   std::atomic<bool> stopping_{false};
   std::atomic<std::uint64_t> misformed_{0};
+  ReceptionBook receptions_;
 
   mutable std::mutex mutex_;  ///< of the two below
   air::Link link_;

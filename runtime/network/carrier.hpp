@@ -85,6 +85,7 @@ class Carrier {
   /// Precondition: the node's role writes that topic.
   [[nodiscard]] virtual Written write(codec::Topic topic, std::vector<std::uint8_t> bytes) = 0;
   [[nodiscard]] virtual std::vector<Peer> peers() const = 0;
+  [[nodiscard]] virtual std::vector<Reception> receptions() const = 0;
   /// Precondition of these three: it seals.
   virtual void change_key(const seal::EpochKey& key, Duration old_for) = 0;
   virtual void tell(const std::vector<KeyNews>& news) = 0;

@@ -34,6 +34,9 @@ constexpr Duration kGetsOnWithin = std::chrono::milliseconds{400};
 constexpr Duration kGetsOnWithinMax = std::chrono::seconds{10};
 constexpr long kLostProcessors = 10;
 
+/// So many pings: they are about the last ten seconds.
+constexpr std::uint32_t kReceptionsEvery = 5;
+
 /// When the predecessor's end is told again, since the join: datagrams are lost.
 constexpr std::array kBuryAgain{std::chrono::milliseconds{300}, std::chrono::milliseconds{1000}};
 
@@ -131,6 +134,11 @@ class CarrierMain : private CarrierSink {
     auto peers = carrier_->peers();
     if (peers.size() > kCarrierPeersMax) peers.resize(kCarrierPeersMax);
     if (peers != peers_ && send(PeersNow{peers})) peers_ = std::move(peers);
+    if (ping.number % kReceptionsEvery == 0) {
+      auto receptions = carrier_->receptions();
+      if (receptions.size() > kCarrierPeersMax) receptions.resize(kCarrierPeersMax);
+      send(ReceptionsNow{std::move(receptions)});
+    }
   }
   void take(const ChangeKey& change) { carrier_->change_key(change.key, change.old_for); }
   void take(const ForgetNews&) {

@@ -156,6 +156,13 @@ void write(Writer& out, const PeersNow& now) {
     out.number(static_cast<std::uint64_t>(peer.role), 1);
   }
 }
+void write(Writer& out, const ReceptionsNow& now) {
+  out.number(now.receptions.size(), 2);
+  for (const Reception& reception : now.receptions) {
+    out.number(reception.sender.value, 2).number(reception.datagrams, 2);
+    out.number(reception.lost_percent, 1).number(reception.bytes, 4);
+  }
+}
 void write(Writer& out, const Pong& pong) {
   out.number(pong.number, 4).number(pong.next_counter, 8);
   for (const std::uint64_t count : pong.counts) out.number(count, 8);
@@ -225,6 +232,16 @@ void read(Reader& in, PeersNow& now) {
     peer.id.value = in.number<std::uint16_t>();
     peer.instance.value = in.number<std::uint64_t>();
     peer.role = in.role();
+  }
+}
+void read(Reader& in, ReceptionsNow& now) {
+  constexpr std::size_t kReceptionBytes = 2 + 2 + 1 + 4;
+  for (std::size_t left = in.count(kReceptionBytes); left > 0; --left) {
+    Reception& reception = now.receptions.emplace_back();
+    reception.sender.value = in.number<std::uint16_t>();
+    reception.datagrams = in.number<std::uint16_t>();
+    reception.lost_percent = in.number<std::uint8_t>();
+    reception.bytes = in.number<std::uint32_t>();
   }
 }
 void read(Reader& in, Pong& pong) {

@@ -74,13 +74,16 @@ struct HeardNews {
 struct PeersNow {
   std::vector<Peer> peers;
 };
+struct ReceptionsNow {
+  std::vector<Reception> receptions;
+};
 struct Pong {
   std::uint32_t number = 0;
   std::uint64_t next_counter = 0;
   CarrierCounts counts{};
 };
-using FromCarrier =
-    std::variant<Joined, Refused, Stuck, HeardSample, HeardCertificate, HeardNews, PeersNow, Pong>;
+using FromCarrier = std::variant<Joined, Refused, Stuck, HeardSample, HeardCertificate, HeardNews,
+                                 PeersNow, ReceptionsNow, Pong>;
 
 /// Precondition: it is within the limits above.
 [[nodiscard]] std::vector<std::uint8_t> to_bytes(const ToCarrier& message);

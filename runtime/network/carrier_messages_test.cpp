@@ -51,6 +51,7 @@ std::vector<FromCarrier> all_from_carrier(const Bytes& sample) {
           HeardCertificate{sample},
           HeardNews{sample},
           PeersNow{{{VehicleId{1}, InstanceId{2}, codec::Role::vehicle}, {}}},
+          ReceptionsNow{{{VehicleId{1}, 100, 3, 70'000}, {}}},
           pong};
 }
 
@@ -135,6 +136,8 @@ TEST(CarrierMessages, AllPeersThatThereMayBeFit) {
   EXPECT_TRUE(to_carrier_from(to_bytes(ToCarrier{large})));
   EXPECT_TRUE(
       from_carrier_from(to_bytes(FromCarrier{PeersNow{std::vector<Peer>(kCarrierPeersMax)}})));
+  EXPECT_TRUE(from_carrier_from(
+      to_bytes(FromCarrier{ReceptionsNow{std::vector<Reception>(kCarrierPeersMax)}})));
 }
 
 }  // namespace

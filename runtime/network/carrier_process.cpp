@@ -91,6 +91,7 @@ class CarrierProcess final : public Carrier {
 
   [[nodiscard]] Written write(codec::Topic topic, std::vector<std::uint8_t> bytes) override;
   [[nodiscard]] std::vector<Peer> peers() const override;
+  [[nodiscard]] std::vector<Reception> receptions() const override;
   void change_key(const seal::EpochKey& key, Duration old_for) override;
   void tell(const std::vector<KeyNews>& news) override;
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news() override;
@@ -145,6 +146,10 @@ class CarrierProcess final : public Carrier {
     const std::lock_guard lock{mutex_};
     peers_ = now.peers;
   }
+  void take(Life&, const ReceptionsNow& now) {
+    const std::lock_guard lock{mutex_};
+    receptions_ = now.receptions;
+  }
   void take(Life& life, const Pong& pong);
 
   /// With the key that counts, and counters that none before had. Of the child's thread.
@@ -174,6 +179,7 @@ class CarrierProcess final : public Carrier {
   Clock::time_point old_until_{};
   std::vector<KeyNews> news_;
   std::vector<Peer> peers_;
+  std::vector<Reception> receptions_;
   std::deque<std::vector<std::uint8_t>> heard_news_;
   CarrierCounts counts_{};  ///< of this child
   CarrierCounts counts_before_{};
@@ -207,6 +213,11 @@ Written CarrierProcess::write(codec::Topic topic, std::vector<std::uint8_t> byte
 std::vector<Peer> CarrierProcess::peers() const {
   const std::lock_guard lock{mutex_};
   return peers_;
+}
+
+std::vector<Reception> CarrierProcess::receptions() const {
+  const std::lock_guard lock{mutex_};
+  return receptions_;
 }
 
 void CarrierProcess::change_key(const seal::EpochKey& key, Duration old_for) {
@@ -298,6 +309,7 @@ std::string CarrierProcess::live() {
     up_ = -1;
     outbox_.clear();
     peers_.clear();
+    receptions_.clear();
     for (std::size_t i = 0; i < counts_.size(); ++i) counts_before_.at(i) += counts_.at(i);
     counts_ = {};
   }

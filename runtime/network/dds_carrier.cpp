@@ -174,6 +174,13 @@ void DdsCarrier::receive(Topic topic, dds::DataReader& reader) {
     const rtps::GUID_t writer = rtps::iHandle2GUID(sample_info.publication_handle);
     if (writer.guidPrefix == prefix_) continue;
     if (const auto sender = vehicle_of(writer.guidPrefix)) {
+      // A writer counts what it writes; of what is sent again no gap tells of the air.
+      if (!kTopics.at(static_cast<std::size_t>(topic)).reliable) {
+        receptions_.came(
+            {*sender, instance_of(writer.guidPrefix), static_cast<std::uint8_t>(topic)},
+            sample_info.sample_identity.sequence_number().to64long(), sample.bytes.size(),
+            steady_now());
+      }
       sink_.on_sample(topic, *sender, instance_of(writer.guidPrefix), sample.bytes);
     } else {
       unknown_senders_.fetch_add(1, std::memory_order_relaxed);
@@ -223,6 +230,8 @@ std::vector<Peer> DdsCarrier::peers() const {
   }
   return all;
 }
+
+std::vector<Reception> DdsCarrier::receptions() const { return receptions_.all(steady_now()); }
 
 void DdsCarrier::change_key(const seal::EpochKey& key, Duration old_for) {
   SKEIN_ASSERT(seals_ != nullptr);

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "carrier.hpp"
+#include "reception_book.hpp"
 #include "sealed_transport.hpp"
 
 namespace skein::network {
@@ -37,6 +38,7 @@ class DdsCarrier final : public Carrier, private eprosima::fastdds::dds::DomainP
 
   [[nodiscard]] Written write(codec::Topic topic, std::vector<std::uint8_t> bytes) override;
   [[nodiscard]] std::vector<Peer> peers() const override;
+  [[nodiscard]] std::vector<Reception> receptions() const override;
   void change_key(const seal::EpochKey& key, Duration old_for) override;
   void tell(const std::vector<KeyNews>& news) override;
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> take_key_news() override;
@@ -86,6 +88,7 @@ class DdsCarrier final : public Carrier, private eprosima::fastdds::dds::DomainP
   std::shared_ptr<Seals> seals_;                                     ///< none: in clear
   std::optional<eprosima::fastdds::dds::DomainParticipantQos> qos_;  ///< from prepare() to join()
   std::atomic<std::uint64_t> unknown_senders_{0};
+  ReceptionBook receptions_;
   mutable std::mutex peers_mutex_;
   std::map<eprosima::fastrtps::rtps::GuidPrefix_t, PeerState> peers_;
   std::array<TopicListener, codec::kTopicCount> listeners_;

@@ -259,6 +259,7 @@ Result<std::unique_ptr<Node>> Node::open(const NodeConfig& config) {
 bool Node::publish(const mission::Message& message) { return impl_->publish(message); }
 std::optional<Received> Node::poll() { return impl_->poll(); }
 std::vector<Peer> Node::peers() const { return impl_->carrier().peers(); }
+std::vector<Reception> Node::receptions() const { return impl_->carrier().receptions(); }
 void Node::change_key(const seal::EpochKey& key, Duration old_for) {
   impl_->change_key(key, old_for);
 }

@@ -17,8 +17,13 @@
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
+#include "skein/network/node.hpp"
 
 namespace skein::groundstation {
+
+/// For people, of the views `links` and `wind`; empty of others.
+[[nodiscard]] std::string links_and_wind_text(View view, const console::Picture& picture,
+                                              const mission::Fleet& fleet, Instant now);
 
 /// Where the web console meets the ground station: keeps the picture, shows it ten times a second
 /// to whoever watches, and passes the lines on that are given there. There is a picture also where
@@ -58,6 +63,14 @@ class ConsoleDesk {
   [[nodiscard]] std::optional<console::Server::Line> next();
   [[nodiscard]] std::string section(console::Section section, const mission::Fleet& fleet,
                                     Instant now) const;
+  /// All of one vehicle.
+  [[nodiscard]] Answer status_of(VehicleId vehicle, const mission::Fleet& fleet, Instant now) const;
+  /// Of the views `links` and `wind`.
+  [[nodiscard]] std::string text(View view, const mission::Fleet& fleet, Instant now) const {
+    return links_and_wind_text(view, picture_, fleet, now);
+  }
+  /// What the ground station's network counts of each vehicle.
+  void on_receptions(const std::vector<network::Reception>& receptions);
   [[nodiscard]] const console::Picture& picture() const { return picture_; }
   /// Empty where none is served.
   [[nodiscard]] std::string url() const { return server_ ? server_->url() : ""; }
@@ -67,6 +80,7 @@ class ConsoleDesk {
  private:
   MissionOrigin origin_;
   console::Picture picture_;
+  std::vector<configuration::ConsoleConfig::Video> videos_;
   std::string token_;  ///< empty where there are passwords
   std::unique_ptr<console::Server> server_;
   std::vector<std::string> events_;  ///< to be shown
@@ -87,13 +101,12 @@ struct ShownRecording {
   Instant end{};
 };
 /// The hello message's fields that the server does not know itself (docs/console-socket.md).
-[[nodiscard]] std::string hello_text(const MissionOrigin& origin,
-                                     const std::vector<VehicleId>& expected,
-                                     const std::vector<std::string>& shapes,
-                                     const std::vector<std::string>& site_templates,
-                                     std::optional<bool> sealed,
-                                     std::optional<std::int64_t> epoch_unix_ns,
-                                     const std::optional<ShownRecording>& recording);
+[[nodiscard]] std::string hello_text(
+    const MissionOrigin& origin, const std::vector<VehicleId>& expected,
+    const std::vector<std::string>& shapes, const std::vector<std::string>& site_templates,
+    std::optional<bool> sealed, std::optional<std::int64_t> epoch_unix_ns,
+    const std::optional<ShownRecording>& recording,
+    const std::vector<configuration::ConsoleConfig::Video>& videos = {});
 
 /// The section that has what a view of the prompt shows; none for those that are not of the
 /// picture.

@@ -59,11 +59,21 @@ enum class View {
   routes,
   preflight,
   fence,
+  links,
+  wind,
   console  ///< its address
 };
 /// What that vehicle's checks find.
 struct PreflightOf {
   VehicleId vehicle;
+};
+/// That vehicle alone, with all that is known of it.
+struct StatusOf {
+  VehicleId vehicle;
+};
+/// The ways home that these would be given if they were ordered home now; none: all.
+struct ReturnPreview {
+  std::vector<VehicleId> vehicles;
 };
 /// The operator's decision on the deliveries at a site.
 struct Decision {
@@ -166,7 +176,8 @@ struct Quit {};
 using Input =
     std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard, WithdrawHazard,
                  NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
-                 ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence>;
+                 ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence,
+                 StatusOf, ReturnPreview>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

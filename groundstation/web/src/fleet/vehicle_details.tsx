@@ -7,7 +7,8 @@ import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { follow, select } from "../shell/view";
 import type { Vehicle } from "../wire/protocol";
-import { may_order } from "../wire/store";
+import { words_of_wind } from "../wind/wind";
+import { hello, may_order, wind } from "../wire/store";
 
 function Orders({ vehicle }: { vehicle: Vehicle }) {
   const { id } = vehicle;
@@ -46,6 +47,9 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
     ["Plan", number(vehicle.plan_number)],
     ["Overruns, dropped", `${number(vehicle.control_overruns)}, ${number(vehicle.messages_dropped)}`],
   ];
+  const blows = wind.value?.vehicles.find(({ id }) => id === vehicle.id);
+  if (blows) rows.splice(4, 0, ["Wind that it has", words_of_wind(blows)]);
+  const video = hello.value?.videos.find((one) => one.vehicle === vehicle.id);
   return (
     <section class="details" aria-label={`Vehicle ${vehicle.id}`} data-testid="vehicle-details">
       <header>
@@ -67,6 +71,16 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
             <dd>{value}</dd>
           </div>
         ))}
+        {video && (
+          <div>
+            <dt>Video</dt>
+            <dd>
+              <a href={video.url} target="_blank" rel="noopener noreferrer" data-testid="vehicle-video">
+                {video.url}
+              </a>
+            </dd>
+          </div>
+        )}
       </dl>
     </section>
   );

@@ -9,6 +9,7 @@ import { Menu } from "../shell/menu";
 import { on_fit } from "../shell/keys";
 import { follow, layer_names, layers, measure_from, measure_to, overlays_hidden, select, selected, tiles_shown, toggle_selected, tool } from "../shell/view";
 import type { LayerName, Spot } from "../shell/view";
+import { WindBadge } from "../wind/wind_badge";
 import { hello, sites } from "../wire/store";
 import { LocalFrame, distance_and_bearing } from "./geodesy";
 import { drawn_box } from "./box_select";
@@ -197,6 +198,7 @@ export function MapPanel() {
           )}
         </div>
       )}
+      <WindBadge />
       {sites.value.length === 0 && <span class="only-spoken">No site is known yet.</span>}
       <Cursor at={cursor} />
     </section>

@@ -18,6 +18,8 @@ import { CanvasLayer, view_of } from "./canvas_layer";
 import type { View } from "./canvas_layer";
 import { LocalFrame } from "./geodesy";
 import type { Point } from "./geodesy";
+import { paint_links } from "../links/links_painter";
+import { paint_return, return_preview } from "../returns/returns";
 import { paint_grid, paint_scale } from "./grid";
 import { paint_authorisation, paint_hazards, paint_sites } from "./ground";
 import { MercatorTiles } from "./mercator_tiles";
@@ -26,7 +28,7 @@ import type { NewSite } from "./out_of_view";
 import { load_overlay } from "./overlays";
 import { paint_tools } from "./tools_painter";
 import { paint_movers, paint_paths, paint_trails } from "./tracks_painter";
-import { memberships, needs_frames, paint_links, paint_vehicles, vehicle_near } from "./vehicles_painter";
+import { memberships, needs_frames, paint_vehicles, vehicle_near } from "./vehicles_painter";
 import type { Membership } from "./vehicles_painter";
 
 const tracks_every_ms = 500;
@@ -197,7 +199,8 @@ export class MissionMap {
   }
 
   private previewed(): L.LatLng[] {
-    return (preview.value?.data?.movers ?? []).flatMap((mover) => mover.points.map(([x, y]) => L.latLng(y, x)));
+    const ways = [...(preview.value?.data?.movers ?? []), ...(return_preview.value?.data.ways ?? [])];
+    return ways.flatMap((way) => way.points.map(([x, y]) => L.latLng(y, x)));
   }
 
   /** What is about to be ordered must be seen whole. */
@@ -268,7 +271,7 @@ export class MissionMap {
   }
 
   private on_drawing(): void {
-    void [preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value, site_spot.value];
+    void [preview.value, return_preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value, site_spot.value];
     this.moving.redraw();
   }
 
@@ -339,6 +342,7 @@ export class MissionMap {
     if (on.links) paint_links(view, picture);
     const change = picture.formation?.change;
     if (change && picture.formation?.moving) paint_movers(view, change.movers, this.colours.path, false);
+    if (return_preview.value) paint_return(view, return_preview.value.data);
     if (preview.value?.data) paint_movers(view, preview.value.data.movers, this.colours.preview, true);
     for (const request of this.shown_requests()) paint_authorisation(view, request);
     paint_vehicles(view, picture, {

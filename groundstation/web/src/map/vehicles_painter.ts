@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vehicles where they are, and the radio links between them.
+// Vehicles where they are.
 
 import { health_of } from "../fleet/attention";
 import { coalition_sign, line_colour } from "../theme/palette";
@@ -41,45 +41,6 @@ export function drawn_at(vehicle: Vehicle, ahead_s: number): Point | null {
 /** Whether states ten times a second would be seen as steps: then frames between them are painted. */
 export function needs_frames(picture: Picture, scale: number): boolean {
   return picture.vehicles.some((vehicle) => (vehicle.groundspeed ?? 0) * scale * 0.1 > 1.5);
-}
-
-// Links fade with age, in steps: one stroke for all of a step is many times faster than one for each.
-const link_steps = [
-  { until_s: 1, alpha: 0.65 },
-  { until_s: 2, alpha: 0.35 },
-  { until_s: Infinity, alpha: 0.15 },
-];
-
-/** Radio links; those that only one side hears are dashed. */
-export function paint_links(view: View, picture: Picture): void {
-  const { context } = view;
-  const at = new Map(picture.vehicles.map((vehicle) => [vehicle.id, vehicle]));
-  const heard = new Map(picture.vehicles.map((vehicle) => [vehicle.id, new Set(vehicle.links.map((link) => link.id))]));
-  const strokes = link_steps.map(() => ({ both: new Path2D(), one: new Path2D() }));
-  for (const vehicle of picture.vehicles) {
-    if (vehicle.x === null || vehicle.y === null) continue;
-    for (const link of vehicle.links) {
-      const other = at.get(link.id);
-      if (!other || other.x === null || other.y === null) continue;
-      const both = heard.get(link.id)!.has(vehicle.id);
-      if (both && link.id < vehicle.id) continue;
-      const step = strokes[link_steps.findIndex(({ until_s }) => link.age_s <= until_s)] ?? strokes[0]!;
-      const path = both ? step.both : step.one;
-      path.moveTo(view.px(vehicle.x), view.py(vehicle.y));
-      path.lineTo(view.px(other.x), view.py(other.y));
-    }
-  }
-  context.lineWidth = 1;
-  context.strokeStyle = view.colours.link;
-  strokes.forEach(({ both, one }, i) => {
-    context.globalAlpha = link_steps[i]!.alpha;
-    context.setLineDash([]);
-    context.stroke(both);
-    context.setLineDash([3, 4]);
-    context.stroke(one);
-  });
-  context.setLineDash([]);
-  context.globalAlpha = 1;
 }
 
 // Further out, height and speed stand at the selected vehicle only.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { give, hold_all } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
+import { ReturnForm } from "../returns/return_preview";
 import { formation, hello, in_replay, may_order } from "../wire/store";
 import { FormationForm } from "./formation_form";
 import { HazardForm } from "./hazard_form";
@@ -37,6 +38,7 @@ export function OrdersPanel() {
   return (
     <div class="scroll orders" tabIndex={0} role="region" aria-label="Orders">
       <ToAll />
+      <ReturnForm />
       {formation.value && (hello.value?.shapes.length ?? 0) > 0 && <FormationForm />}
       {!formation.value && <SiteForm />}
       <HazardForm />

@@ -2,6 +2,7 @@
 import { useEffect } from "preact/hooks";
 import { FleetPanel } from "../fleet/fleet_panel";
 import { SelectionBar } from "../fleet/selection_bar";
+import { LinksPanel } from "../links/links_panel";
 import { LogPanel } from "../log/log_panel";
 import { MapPanel } from "../map/map_panel";
 import { Decisions } from "../mission/decisions";
@@ -30,6 +31,7 @@ const panel_of = {
   log: LogPanel,
   plots: PlotsPanel,
   preflight: PreflightPanel,
+  links: LinksPanel,
 } as const;
 
 export function App() {

@@ -4,7 +4,7 @@
 import { batch, signal } from "@preact/signals";
 import type { Preview } from "../wire/protocol";
 
-export const panels = ["fleet", "mission", "orders", "log", "plots", "preflight"] as const;
+export const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links"] as const;
 export type Panel = (typeof panels)[number];
 
 export const panel = signal<Panel>("fleet");

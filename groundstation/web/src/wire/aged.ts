@@ -16,6 +16,12 @@ export function aged(picture: Picture, lost_s: number): Picture {
       heard_age_s: vehicle.heard_age_s === null ? null : vehicle.heard_age_s + lost_s,
       links: vehicle.links.map((link) => ({ ...link, age_s: link.age_s + lost_s })),
     })),
+    links: picture.links.map((row) => ({
+      ...row,
+      told_age_s: row.told_age_s === null ? null : row.told_age_s + lost_s,
+      hears: row.hears.map((link) => ({ ...link, age_s: link.age_s + lost_s })),
+    })),
+    wind: picture.wind && { ...picture.wind, age_s: picture.wind.age_s + lost_s },
     authorisations: picture.authorisations.map((request) => ({ ...request, waiting: request.waiting && now_s < request.decide_by_s })),
   };
 }

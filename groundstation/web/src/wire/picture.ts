@@ -38,6 +38,8 @@ export const section_names = [
   "proposals",
   "preflight",
   "fence",
+  "links",
+  "wind",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -57,6 +59,8 @@ export function empty_picture(): Picture {
     proposals: [],
     preflight: null,
     fence: null,
+    links: [],
+    wind: null,
     events: [],
     next_seq: 0,
     events_missed: 0,

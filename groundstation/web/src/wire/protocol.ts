@@ -20,6 +20,12 @@ export interface Tiles {
   attribution: string;
 }
 
+/** Where a vehicle's pictures are: for people to open. */
+export interface Video {
+  vehicle: number;
+  url: string;
+}
+
 export type Limit = [low: number, high: number];
 
 /** Between which figures the ground station takes orders. */
@@ -56,6 +62,7 @@ export interface Hello {
   overlays: { name: string; url: string }[];
   /** Named groups of vehicles of the configuration; none of an older server. */
   groups?: { name: string; vehicles: number[] }[];
+  videos: Video[];
 }
 
 export interface Series {
@@ -273,6 +280,8 @@ export interface Sections {
   proposals: Proposal[];
   preflight: Preflight | null;
   fence: Fence | null;
+  links: LinkRow[];
+  wind: Wind | null;
 }
 
 /** Where all vehicles are to stay. */
@@ -284,6 +293,41 @@ export interface Fence {
   /** What vehicles do at its edge, for people. */
   action: string;
   keepers: { id: number; keeps: "this" | "another" | "none" | "not_known" }[];
+}
+
+/** How somebody hears another, over ten seconds. */
+export interface Link {
+  /** Whom; 0: the ground station. */
+  id: number;
+  /** Since its newest word, on whatever way that came. */
+  age_s: number;
+  /** Datagrams that come of it itself; null: not told. */
+  per_s: number | null;
+  lost_percent: number | null;
+  bytes_per_s: number | null;
+  /** Nothing comes of it itself: others pass on what it says. */
+  through_others: boolean;
+}
+
+export interface LinkRow {
+  id: number;
+  told_age_s: number | null;
+  tells_loss: boolean;
+  hears: Link[];
+}
+
+export interface WindFigures {
+  /** From where it blows; null: it is calm. */
+  from_deg: number | null;
+  speed_mps: number;
+  gust_mps: number;
+  age_s: number;
+}
+
+/** As the planes that fly tell it together. */
+export interface Wind extends WindFigures {
+  spread_mps: number;
+  vehicles: (WindFigures & { id: number })[];
 }
 
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";
@@ -370,12 +414,21 @@ export interface Preview {
   lost: number[];
 }
 
+/** The ways home of those that would be ordered there now. */
+export interface ReturnPreview {
+  kind: "return_preview";
+  last_s: number;
+  least_separation_m: number | null;
+  ways: (Omit<Plan, "number"> & { z: number; length_m: number; home_assumed: boolean })[];
+  cannot: { id: number; why: string }[];
+}
+
 export interface Answer {
   type: "answer";
   id: number;
   done: boolean;
   text: string;
-  data: Preview | { kind: string } | null;
+  data: Preview | ReturnPreview | { kind: string } | null;
 }
 
 export interface Pong {

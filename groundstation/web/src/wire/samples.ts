@@ -31,6 +31,7 @@ export function a_hello(): Hello {
     replay: null,
     tiles: null,
     overlays: [],
+    videos: [],
   };
 }
 

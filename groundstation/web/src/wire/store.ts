@@ -56,6 +56,8 @@ export const formation = computed(() => shown.value.formation);
 export const timeline = computed(() => shown.value.timeline);
 export const audit = computed(() => shown.value.audit);
 export const preflight = computed(() => shown.value.preflight);
+export const links = computed(() => aged_picture.value.links);
+export const wind = computed(() => aged_picture.value.wind);
 export const replay = computed(() => shown.value.replay);
 export const events = computed(() => shown.value.events);
 export const in_replay = computed(() => Boolean(hello.value?.replay));

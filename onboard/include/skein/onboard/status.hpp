@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
@@ -15,6 +16,7 @@
 #include "skein/hal/flight_controller.hpp"
 #include "skein/mission/host_watch.hpp"
 #include "skein/mission/messages.hpp"
+#include "skein/network/node.hpp"
 #include "skein/process/host.hpp"
 
 namespace skein::onboard {
@@ -77,6 +79,10 @@ class HealthBoard {
   mission::Health health_;
   mission::HostFacts host_;
 };
+
+/// With what the network has counted of those that the agent hears.
+[[nodiscard]] mission::Health with_receptions(mission::Health health,
+                                              const std::vector<network::Reception>& receptions);
 
 /// A Unix socket that gives whoever connects one line, and closes: for the crew, for scripts, for
 /// an upgrade that must know whether the vehicle flies. What nobody listens on any more is taken

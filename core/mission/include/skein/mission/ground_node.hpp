@@ -56,6 +56,11 @@ class GroundNode {
   /// is told when its turn comes (GroundLanding).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
 
+  /// The ways home of these, or of all (none), if they were ordered home now. Fails where such an
+  /// order would.
+  [[nodiscard]] Result<ReturnPreview> preview_return(std::vector<VehicleId> vehicles,
+                                                     Instant now) const;
+
   // As of GroundSites, with the fleet as it is heard.
   Result<SiteId> add_site(Site site, std::optional<VehicleId> surveyor, Instant now) {
     return sites_.add(std::move(site), surveyor, fleet(), now);
@@ -125,6 +130,7 @@ class GroundNode {
   void on_setup(const Setup& setup, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
+  [[nodiscard]] std::optional<std::string> why_not_return(VehicleId vehicle) const;
   Result<void> land(VehicleId vehicle, Instant now);
   [[nodiscard]] std::optional<std::string> why_not_land(VehicleId vehicle) const;
   [[nodiscard]] std::vector<VehicleId> concerned(VehicleId vehicle) const;

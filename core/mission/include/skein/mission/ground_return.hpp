@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/mission/fleet.hpp"
 #include "skein/mission/messages.hpp"
@@ -23,6 +26,23 @@ struct GroundReturnConfig {
       .arrival_spacing = std::chrono::seconds{15},
       .avoidance = {.margin_m = kHazardMargin_m},
   };
+};
+
+/// What would be planned for vehicles that are ordered home now.
+struct ReturnPreview {
+  struct Way {
+    VehicleId vehicle;
+    TimedPath timed;
+    double height_m = 0.0;
+    /// It has not told yet where home is: it is taken to be where it was first heard.
+    bool home_assumed = false;
+  };
+  std::vector<Way> ways;                                  ///< ascending by vehicle
+  std::vector<std::pair<VehicleId, std::string>> cannot;  ///< sentences after the vehicle's name
+  Instant last_arrival{};                                 ///< of no ways: now
+  /// Of any two of these ways while both are flown, orbits at home included, in space; none of
+  /// fewer than two.
+  std::optional<double> least_separation_m;
 };
 
 /// Ways home that keep vehicles apart, for those that the operator orders home. Each begins to come
@@ -42,6 +62,11 @@ class GroundReturn {
                 Instant now);
   void on_message(const Message& message);
   void on_timeout(const Fleet& fleet, const std::vector<Hazard>& hazards, Instant now);
+
+  /// As an order to these vehicles would plan, from what is known of them now: nothing is told to
+  /// anybody. What each flies when the order comes, and where it has its home, it tells only then.
+  [[nodiscard]] ReturnPreview preview(const std::vector<VehicleId>& vehicles, const Fleet& fleet,
+                                      const std::vector<Hazard>& hazards, Instant now) const;
 
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] std::optional<MissionEvent> poll_event() { return events_.pop(); }
@@ -73,7 +98,13 @@ class GroundReturn {
   void leave_alone(VehicleId vehicle, Homing& homing, std::string why, Instant now);
 
   GroundReturnConfig config_;
+  /// For the preview; none: why there is none.
+  [[nodiscard]] Result<planning::ReturningVehicle> as_if_ordered(VehicleId vehicle,
+                                                                 const Fleet& fleet,
+                                                                 Instant start) const;
+
   std::map<VehicleId, FlightPlan> flies_;  ///< what each has told last
+  std::map<VehicleId, Vec2> begun_;        ///< where each was first heard, or its first plan began
   std::map<VehicleId, Homing> homing_;
   Step step_ = Step::idle;
   Instant step_ends_{};

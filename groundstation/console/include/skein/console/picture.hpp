@@ -6,10 +6,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "skein/base/time.hpp"
 #include "skein/domain/fence.hpp"
+#include "skein/console/team_links.hpp"
+#include "skein/console/team_wind.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/shown_state.hpp"
 
@@ -141,6 +144,12 @@ class Picture {
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   /// An event, once.
   void on_event(const mission::MissionEvent& event);
+  /// What the ground station's own network has counted; none of a recording.
+  void on_receptions(std::vector<GroundReception> receptions) {
+    receptions_ = std::move(receptions);
+  }
+  [[nodiscard]] const std::vector<GroundReception>& receptions() const { return receptions_; }
+  [[nodiscard]] const TeamWind& wind() const { return wind_; }
   [[nodiscard]] const PictureParams& params() const { return params_; }
   [[nodiscard]] const std::map<VehicleId, VehiclePicture>& vehicles() const { return vehicles_; }
   [[nodiscard]] const std::map<SiteId, SitePicture>& sites() const { return sites_; }
@@ -203,6 +212,8 @@ class Picture {
   std::uint32_t fence_order_ = 0;
   std::map<std::uint32_t, ProposalPicture> proposals_;
   FormationPicture formation_;
+  std::vector<GroundReception> receptions_;
+  TeamWind wind_;
 };
 
 }  // namespace skein::console

@@ -28,6 +28,8 @@ enum class Section : std::uint8_t {
   proposals,
   preflight,
   fence,
+  links,
+  wind,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);
@@ -44,6 +46,9 @@ using Sections = std::array<std::string, kSectionCount>;
 [[nodiscard]] std::string section_of(Section section, const Picture& picture,
                                      const mission::Fleet& fleet, const MissionOrigin& origin,
                                      const std::string& version, Instant now);
+
+/// A way as the section `plans` has it, without a number: a JSON object.
+[[nodiscard]] std::string path_json(VehicleId vehicle, const TimedPath& timed);
 
 /// The `series` of a history message: a JSON array.
 [[nodiscard]] std::string series_of(const Picture& picture);

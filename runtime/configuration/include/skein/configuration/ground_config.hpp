@@ -39,6 +39,12 @@ struct ConsoleConfig {
     std::vector<VehicleId> vehicles;
   };
   std::vector<Group> groups;
+  /// Where a vehicle's pictures are: a link that people follow, and that no program of ours opens.
+  struct Video {
+    VehicleId vehicle;
+    std::string url;
+  };
+  std::vector<Video> videos;
 };
 
 /// Everything that skein-ground needs to know (docs/configuration.md).

@@ -90,6 +90,16 @@ struct Peer {
   friend bool operator==(const Peer&, const Peer&) = default;
 };
 
+/// How one other node was heard in the last Node::kReceptionFor, itself and not through others: on
+/// a shared radio its datagrams, over Fast DDS its messages of those that are not sent again.
+struct Reception {
+  VehicleId sender;
+  std::uint16_t datagrams = 0;      ///< that came
+  std::uint8_t lost_percent = 255;  ///< of all that it sent, those that did not; above 100: unknown
+  std::uint32_t bytes = 0;          ///< of those that came
+  friend bool operator==(const Reception&, const Reception&) = default;
+};
+
 /// A node of another release, one of whose types we cannot read.
 struct Misfit {
   VehicleId sender;
@@ -118,6 +128,10 @@ class Node {
   [[nodiscard]] std::optional<Received> poll();
 
   [[nodiscard]] std::vector<Peer> peers() const;
+
+  static constexpr Duration kReceptionFor = std::chrono::seconds{10};
+  /// Of who has sent something lately, ascending by sender.
+  [[nodiscard]] std::vector<Reception> receptions() const;
 
   /// Seals with this key from now on, and goes on to open the present one's for so long.
   /// Precondition: the node seals.
