@@ -37,7 +37,8 @@ TEST(TeamWind, IsWhatIsOverTheGroundAndNotThroughTheAir) {
   // From 350 and 010 deg: what lies between is 000, and not 180.
   const Vec2 from_350 = -5.0 * unit_vector(heading_from_compass_deg(350.0));
   const Vec2 from_010 = -5.0 * unit_vector(heading_from_compass_deg(10.0));
-  for (double t = 0.0; t < 20.0; t += 0.2) {
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.2 * i;
     wind.on_telemetry(plane(1, t, from_350), at_seconds(t));
     wind.on_telemetry(plane(2, t, from_010, 4.0), at_seconds(t));
   }
@@ -53,7 +54,8 @@ TEST(TeamWind, IsWhatIsOverTheGroundAndNotThroughTheAir) {
 
 TEST(TeamWind, GustsAreWhatThreeSecondsHave) {
   TeamWind wind;
-  for (double t = 0.0; t < 20.0; t += 0.2) {
+  for (int i = 0; i < 100; ++i) {
+    const double t = 0.2 * i + 0.01;  // no time is the edge of a second
     const bool blows = t >= 7.0 && t < 10.0;
     wind.on_telemetry(plane(1, t, {blows ? 9.0 : 4.0, 0.0}), at_seconds(t));
   }

@@ -25,6 +25,21 @@ TEST(FlownChecks, ThePassIsMeasuredBetweenPoints) {
   EXPECT_NEAR(flown[0].bearing_error_rad, 0.0, 1e-6);
 }
 
+TEST(FlownChecks, WhateverIsJudgedHasAMomentToLookAt) {
+  RunRecord record = good_record();
+  delay(of(record, kFromWest), 0.4);
+  std::size_t judged = 0;
+  for (const CheckResult& result : judge(record, {})) {
+    if (result.judged == 0) continue;
+    ++judged;
+    EXPECT_TRUE(result.moment) << result.name;
+  }
+  EXPECT_GT(judged, 10U);
+  // The worst of the two deliveries is the one that was late.
+  const auto flown = deliveries_flown(record, {});
+  EXPECT_EQ(check_deliveries(record, {}).moment, flown[0].time);
+}
+
 TEST(FlownChecks, ALatePassIsFound) {
   RunRecord record = good_record();
   delay(of(record, kFromWest), 1.2);

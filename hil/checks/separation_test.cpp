@@ -55,6 +55,18 @@ TEST(Separation, HeightOrDistanceIsEnough) {
   EXPECT_FALSE(check_separation(meeting(300.0, 29.9), {}).held());
 }
 
+TEST(Separation, TheNearestPassHasItsMomentWhereTheLimitIsKept) {
+  const auto record = pair_of(straight(kFromWest, {-600.0, 0.0}, {60.0, 0.0}, 300.0, 0.0, 20.0),
+                              straight(kFromSouth, {600.0, 40.0}, {-60.0, 0.0}, 300.0, 0.0, 20.0));
+  const CheckResult result = check_separation(record, {});
+  EXPECT_TRUE(result.held());
+  ASSERT_TRUE(result.moment);
+  EXPECT_NEAR(to_seconds(*result.moment), 10.0, 0.05);
+  const auto apart = pair_of(straight(kFromWest, {-600.0, 0.0}, {60.0, 0.0}, 300.0, 0.0, 20.0),
+                             straight(kFromSouth, {600.0, 0.0}, {-60.0, 0.0}, 500.0, 0.0, 20.0));
+  EXPECT_FALSE(check_separation(apart, {}).moment);  // never in one layer
+}
+
 TEST(Separation, AClimbThroughAnotherAtADistanceInTimeIsNone) {
   // Horizontally together at 10 s, vertically only from 16 s on.
   const auto record = pair_of(straight(kFromWest, {-600.0, 0.0}, {60.0, 0.0}, 300.0, 0.0, 20.0),

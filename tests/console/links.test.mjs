@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who hears whom, the wind as the team tells it, and where a vehicle's pictures are: of a mission on
-// a radio that loses a fifth, and over which the ground station hears some through others alone.
+// a radio that loses a fifth; and of one in which the ground station hears some through others alone.
 import assert from "node:assert/strict";
 import { readFile, writeFile } from "node:fs/promises";
 import { join, relative } from "node:path";
@@ -120,5 +120,24 @@ test("a vehicle's pictures are a link that opens elsewhere, and nothing of ours 
 
 test("nothing was asked of anybody else, and nothing was complained about", () => {
   assert.deepEqual(view.foreign, []);
+  assert.deepEqual(view.complaints, []);
+});
+
+test("who is out of the ground station's reach is heard through others, and shown so", async () => {
+  await view.browser.close();
+  await mission.stop();
+  // Vehicle 6 waits 530 m away; those between pass on what it says.
+  const file = await scenario("links-mesh-6", [[/ground_range_m: 5000/, "ground_range_m: 420"], [/^wind: /m, "air: {hops_max: 3}\nwind: "]]);
+  mission = await fly(file, "links-mesh");
+  view = await browse(mission.url);
+  await until("vehicle 6", async () => (await view.part("count-heard").innerText()).includes("6/6"));
+  await view.part("tab-links").click();
+  await view.part("links-matrix").click();
+  await until("its link", async () => (await view.part("link-0-6").getAttribute("data-tone")) === "through");
+  assert.match(await view.part("links-through").innerText(), /^Heard through others only: .*6/);
+  await view.part("links-on-map").click();
+  await view.picture("links-mesh");
+  // Its neighbours hear it themselves.
+  await until("a neighbour's link", async () => ["good", "some"].includes(await view.part("link-2-6").getAttribute("data-tone")));
   assert.deepEqual(view.complaints, []);
 });

@@ -24,7 +24,7 @@ function Figures({ rows }: { rows: readonly LinkRow[] }) {
   const row = at && rows.find(({ id }) => id === at.who);
   const link = row?.hears.find(({ id }) => id === at!.whom) ?? null;
   return (
-    <p class="link-figures" role="status" data-testid="link-figures">
+    <p class="link-figures" data-testid="link-figures">
       {row && at ? sentence_of(row, at.whom, link) : "Point at a field, or press it: rows hear columns."}
     </p>
   );
