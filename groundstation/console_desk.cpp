@@ -110,6 +110,7 @@ std::optional<console::Section> section_of(View view) {
     case View::help:
     case View::audit:
     case View::routes:
+    case View::search:
     case View::console:
       break;
   }
@@ -199,21 +200,23 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event) {
   if (server_) events_.push_back(console::event_json(event, seq));
 }
 
-void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now) {
+void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& audit,
+                             const std::string& areas, Instant now) {
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
   if (now < next_state_ || !server_->watched()) return;
   next_state_ = now + kStatePeriod;
   auto sections = console::sections_of(picture_, fleet, origin_, version(), now);
   sections[static_cast<std::size_t>(console::Section::audit)] = audit;
+  sections[static_cast<std::size_t>(console::Section::areas)] = areas;
   server_->publish(to_seconds(now), std::move(sections));
 }
 
 void ConsoleDesk::end(const mission::Fleet& fleet, const std::string& audit,
-                      const std::string& text, Instant now) {
+                      const std::string& areas, const std::string& text, Instant now) {
   if (!server_) return;
   next_state_ = Instant::min();
-  on_timeout(fleet, audit, now);
+  on_timeout(fleet, audit, areas, now);
   server_->end(to_seconds(now), text);
 }
 

@@ -20,6 +20,7 @@
 #include "skein/console/team_fence.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/groundstation/agency_desk.hpp"
+#include "skein/groundstation/area_desk.hpp"
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
@@ -78,6 +79,7 @@ mission::GroundNodeConfig node_config(const configuration::GroundConfig& config,
     return keys.approve(grant, std::chrono::steady_clock::now());
   };
   node.hazards = config.hazards;
+  node.searches.vehicles = config.planes;
   node.detections = detections_config(config);
   for (const auto& decision : config.operator_decisions) {
     agent.decisions.push_back({.site = decision.site,
@@ -135,11 +137,14 @@ bool only_looks(const Input& input) {
   const auto* site = std::get_if<NewSite>(&input);
   const auto* routes = std::get_if<RoutesFromFile>(&input);
   const auto* fence = std::get_if<NewFence>(&input);
+  const auto* search = std::get_if<SearchArea>(&input);
+  const auto* hazard = std::get_if<NewHazard>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
          std::holds_alternative<PreflightOf>(input) || std::holds_alternative<StatusOf>(input) ||
          std::holds_alternative<ReturnPreview>(input) ||
          (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
-         (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview);
+         (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview) ||
+         (search != nullptr && search->preview) || (hazard != nullptr && hazard->preview);
 }
 
 /// The console is on other machines: it opens no files here, and ends nothing that it cannot start.
@@ -208,6 +213,7 @@ class GroundLoop {
         routes_{node},
         fence_{node, origin_},
         returns_{node},
+        areas_{node},
         control_{std::move(control)},
         console_{std::move(console)},
         agencies_{config, origin},
@@ -245,7 +251,7 @@ class GroundLoop {
     const Instant now = clock_.now();
     const std::string summary = summary_text(console_.picture(), node_.fleet());
     spdlog::info("the mission as it was left: {}", one_line(summary));
-    console_.end(node_.fleet(), audit_.json(), summary, now);
+    console_.end(node_.fleet(), audit_.json(), areas_.json(now), summary, now);
     const auto since_1970 =
         std::chrono::nanoseconds{clock_.epoch_unix_ns()} + now.time_since_epoch();
     const auto closed =
@@ -381,6 +387,8 @@ class GroundLoop {
     if (const auto* preview = std::get_if<RoutesFromFile>(&input)) {
       return routes_.answer(*preview, now);
     }
+    if (const auto* preview = std::get_if<SearchArea>(&input)) return areas_.answer(*preview, now);
+    if (const auto* preview = std::get_if<NewHazard>(&input)) return areas_.answer(*preview, now);
     return {true, ""};
   }
 
@@ -400,11 +408,8 @@ class GroundLoop {
       return tell_each(*several,
                        [&](VehicleId one) { return node_.command(one, several->kind, now); });
     }
-    if (const auto* hazard = std::get_if<NewHazard>(&input)) {
-      const auto added = node_.hazards().add(hazard->centre_m, hazard->radius_m, now);
-      if (!added) return refusal(added.error());
-      return {true, fmt::format("hazard {} is told to all\n", added->value)};
-    }
+    if (const auto* hazard = std::get_if<NewHazard>(&input)) return areas_.answer(*hazard, now);
+    if (const auto* search = std::get_if<SearchArea>(&input)) return areas_.answer(*search, now);
     if (const auto* gone = std::get_if<WithdrawHazard>(&input)) {
       return answer_to(node_.hazards().withdraw(gone->hazard, now));
     }
@@ -485,6 +490,8 @@ class GroundLoop {
         return routes_.text(now);
       case View::fence:
         return console::fence_text(console_.picture(), node_.fleet());
+      case View::search:
+        return areas_.text(now);
       case View::preflight:
         return console::preflight_text(console::team_preflight(node_.fleet(), now), now);
       case View::links:
@@ -494,8 +501,9 @@ class GroundLoop {
     return "";
   }
 
-  [[nodiscard]] std::string data_of(View view, Instant now) const {
+  [[nodiscard]] std::string data_of(View view, Instant now) {
     if (view == View::audit) return audit_.json();
+    if (view == View::search) return areas_.json(now);
     const auto section = section_of(view);
     return section ? console_.section(*section, node_.fleet(), now) : "";
   }
@@ -523,7 +531,7 @@ class GroundLoop {
     while (const auto event = node_.poll_event()) {
       tell_of(*event);
     }
-    console_.on_timeout(node_.fleet(), audit_.json(), now);
+    console_.on_timeout(node_.fleet(), audit_.json(), areas_.json(now), now);
     agencies_.on_timeout(console_.picture(), node_.fleet(), now);
     for (const auto& pending : node_.agent().authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
@@ -595,6 +603,7 @@ class GroundLoop {
   RouteDesk routes_;
   FenceDesk fence_;
   ReturnDesk returns_;
+  AreaDesk areas_;
   std::unique_ptr<ControlSocket> control_;
   ConsoleDesk console_;
   AgencyDesk agencies_;

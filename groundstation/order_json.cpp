@@ -53,6 +53,30 @@ class Reader {
     }
     return values;
   }
+  /// Places [east, north].
+  std::vector<Vec2> corners(const char* name) {
+    std::vector<Vec2> all;
+    const auto found = json_.find(name);
+    const bool list =
+        found != json_.end() && found->is_array() && found->size() <= planning::kAreaCornersMax;
+    for (std::size_t i = 0; list && i < found->size(); ++i) {
+      const auto& corner = (*found)[i];
+      if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() ||
+          !corner[1].is_number()) {
+        break;
+      }
+      const Vec2 place{corner[0].get<double>(), corner[1].get<double>()};
+      if (!kCoordinate_m.has(place.x()) || !kCoordinate_m.has(place.y())) break;
+      all.push_back(place);
+    }
+    if (!list || all.size() != found->size()) {
+      fail(fmt::format("{} is to be a list of {} places [east, north] at most", name,
+                       planning::kAreaCornersMax));
+    } else if (auto why = planning::why_no_area(all)) {
+      fail(*std::move(why));
+    }
+    return all;
+  }
   bool flag(const char* name) {
     const auto found = json_.find(name);
     if (found != json_.end() && found->is_boolean()) return found->get<bool>();
@@ -143,6 +167,14 @@ Input decision(Reader& from) {
 
 Input hazard(Reader& from) {
   NewHazard hazard;
+  if (from.has("preview")) hazard.preview = from.flag("preview");
+  if (from.has("hazard")) {
+    hazard.changes = HazardId{static_cast<std::uint16_t>(from.integer("hazard", 1.0, kIdMax))};
+  }
+  if (from.has("corners")) {
+    hazard.corners = from.corners("corners");
+    return hazard;
+  }
   hazard.centre_m = {from.number("x", kCoordinate_m), from.number("y", kCoordinate_m)};
   hazard.radius_m = from.number("radius_m", kHazardRadius_m);
   return hazard;
@@ -159,6 +191,22 @@ Input fence(Reader& from) {
 template <class T>
 void take(Reader& from, const char* name, const Limit& limit, std::optional<T>& value) {
   if (from.has(name)) value = static_cast<T>(from.number(name, limit));
+}
+
+Input search(Reader& from) {
+  SearchArea order;
+  order.preview = from.flag("preview");
+  mission::SearchWishes& wishes = order.wishes;
+  const bool is_rest = from.has("rest") && from.flag("rest");
+  if (!is_rest) wishes.corners = from.corners("corners");
+  if (from.has("vehicles")) {
+    for (const double id : from.numbers("vehicles", {1.0, kIdMax}, planning::kAreaSearchersMax)) {
+      wishes.vehicles.push_back({static_cast<std::uint16_t>(id)});
+    }
+  }
+  take(from, "spacing_m", kLaneSpacing_m, wishes.spacing_m);
+  take(from, "in_s", kRoutesIn_s, wishes.in_s);
+  return order;
 }
 
 Input site_order(Reader& from) {
@@ -191,6 +239,10 @@ Input site_order(Reader& from) {
 }
 
 Input withdrawal(Reader& from) {
+  if (from.has("routes")) {
+    (void)from.flag("routes");
+    return CallOffRoutes{};
+  }
   if (from.has("hazard")) {
     return WithdrawHazard{{static_cast<std::uint16_t>(from.integer("hazard", 1.0, kIdMax))}};
   }
@@ -248,6 +300,7 @@ Result<Input> read_order(std::string_view text) {
     if (kind == "decision") return decision(from);
     if (kind == "hazard") return hazard(from);
     if (kind == "fence") return fence(from);
+    if (kind == "search") return search(from);
     if (kind == "site") return site_order(from);
     if (kind == "withdraw") return withdrawal(from);
     if (kind == "proposal") return proposal_answer(from);

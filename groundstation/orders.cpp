@@ -7,6 +7,7 @@
 #include <array>
 #include <string_view>
 
+#include "area_words.hpp"
 #include "fence_words.hpp"
 #include "site_words.hpp"
 #include "skein/base/angles.hpp"
@@ -16,9 +17,9 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 15> kWords{
-      "help",   "status",    "sites", "pending", "places", "coalitions", "hazards", "audit",
-      "proposals", "routes", "preflight", "fence", "links", "wind", "console"};
+  static constexpr std::array<std::string_view, 16> kWords{
+      "help",      "status", "sites",  "pending",   "places", "coalitions", "hazards", "audit",
+      "proposals", "routes", "search", "preflight", "fence",  "links",      "wind",    "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -43,10 +44,8 @@ struct Line {
   std::string operator()(const OrderToSeveral& order) const {
     return fmt::format("{} {}", verb_of(order.kind), typed_ids(order.vehicles));
   }
-  std::string operator()(const NewHazard& hazard) const {
-    return fmt::format("hazard {} {} {}", hazard.centre_m.x(), hazard.centre_m.y(),
-                       hazard.radius_m);
-  }
+  std::string operator()(const NewHazard& hazard) const { return hazard_line(hazard); }
+  std::string operator()(const SearchArea& search) const { return search_line(search); }
   std::string operator()(const WithdrawHazard& hazard) const {
     return fmt::format("withdraw hazard {}", hazard.hazard.value);
   }

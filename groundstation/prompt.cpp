@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "area_words.hpp"
 #include "fence_words.hpp"
 #include "prompt_words.hpp"
 #include "site_words.hpp"
@@ -74,24 +75,6 @@ Result<Input> order(mission::CommandKind kind, const std::vector<std::string_vie
 /// 'land' alone is of a formation.
 bool lands_vehicles(const std::vector<std::string_view>& words) {
   return words.size() == 2 && words[0] == "land";
-}
-
-Result<Input> hazard(const std::vector<std::string_view>& words) {
-  if (words.size() != 4) {
-    return Error{
-        "'hazard' needs three numbers, EAST NORTH RADIUS in metres, as in "
-        "'hazard 1200 -300 250'; 'hazards' lists those that are known"};
-  }
-  NewHazard hazard;
-  const auto east = number_after("hazard EAST", words[1], kCoordinate_m);
-  const auto north = number_after("hazard EAST NORTH", words[2], kCoordinate_m);
-  const auto radius = number_after("hazard EAST NORTH RADIUS", words[3], kHazardRadius_m);
-  for (const auto* number : {&east, &north, &radius}) {
-    if (!*number) return number->error();
-  }
-  hazard.centre_m = {*east, *north};
-  hazard.radius_m = *radius;
-  return Input{hazard};
 }
 
 Result<Input> give_back(const std::vector<std::string_view>& words) {
@@ -206,6 +189,11 @@ bool is_formation_verb(std::string_view word) {
          word == "fly-along";
 }
 
+bool is_of_hazard(const std::vector<std::string_view>& words) {
+  return !words.empty() && (words[0] == "hazard" ||
+                            (words[0] == "change" && words.size() > 1 && words[1] == "hazard"));
+}
+
 /// `routes` alone looks; with a file it gives them.
 Result<Input> route_order(const std::vector<std::string_view>& words, bool preview) {
   if (words.size() == 1 && !preview) return Input{View::routes};
@@ -246,12 +234,16 @@ Result<Input> preview(std::vector<std::string_view> words) {
   if (!words.empty() && words[0] == "return") return return_preview(words);
   if (!words.empty() && words[0] == "routes") return route_order(words, true);
   if (!words.empty() && words[0] == "fence") return fence_order(words, true);
+  if (!words.empty() && words[0] == "search") return search_order(words, true);
+  if (is_of_hazard(words)) return hazard_order(words, true);
   if (!words.empty() && (words[0] == "site" || words[0] == "change")) {
     return site_order(words, true);
   }
   if (words.empty() || !is_formation_verb(words[0])) {
     return Error{
-        "'preview' needs an order to the formation, of a site, of routes or to return, as in "
+        "'preview' needs an order to the formation, of a site, of routes, of a search, of a "
+        "hazard, "
+        "of a fence or to return, as in "
         "'preview form wedge spacing 5'"};
   }
   return formation_order(words, true);
@@ -298,6 +290,8 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "wind") return view(View::wind, words);
   if (verb == "sites" && words.size() == 2) return Input{SitesFromFile{std::string{words[1]}}};
   if (verb == "sites") return view(View::sites, words);
+  if (is_of_hazard(words)) return hazard_order(words, false);
+  if (verb == "search") return search_order(words, false);
   if (verb == "site" || verb == "change") return site_order(words, false);
   if (verb == "routes") return route_order(words, false);
   if (verb == "withdraw" && words.size() == 2 && words[1] == "routes") {
@@ -314,7 +308,6 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "hazards") return view(View::hazards, words);
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
-  if (verb == "hazard") return hazard(words);
   if (verb == "fence") return fence_order(words, false);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
@@ -353,12 +346,21 @@ std::string help_text() {
          "hazards           the circles to keep out of\n"
          "hazard EAST NORTH RADIUS\n"
          "                  tell all of another one, in metres from the origin\n"
+         "hazard polygon E,N E,N E,N ...\n"
+         "                  the same of a polygon: circles hold it; change hazard N ...: another "
+         "shape\n"
          "withdraw hazard N there is none any more\n"
          "fence EAST,NORTH EAST,NORTH ... height M\n"
          "                  where all are to stay from now on, or of a file: fence FILE height M "
          "(GeoJSON,\n"
          "                  or a plan of QGroundControl); preview fence ...: whether it can be\n"
          "fence             which one is to be kept, and who keeps it\n"
+         "search E,N E,N E,N ...\n"
+         "                  share an area out among vehicles that search it, by its corners in "
+         "metres;\n"
+         "                  then, as wanted, by IDS, spacing M, in S; search rest: what was not "
+         "seen;\n"
+         "                  search: how far it is; withdraw routes calls it off\n"
          "site EAST NORTH ...\n"
          "                  tell the team of a site, in metres from the origin or as 59.12N "
          "17.23E;\n"
@@ -408,9 +410,10 @@ std::string help_text() {
          "they\n"
          "                  slide into another shape on the way\n"
          "land              it comes straight down\n"
-         "preview ORDER     what one of these five, site, change, routes or return would do, and "
-         "whether\n"
-         "                  it is safe; return takes several: preview return 3,4\n"
+         "preview ORDER     what one of these five, site, change, routes, search, hazard, fence or "
+         "return\n"
+         "                  would do, and whether it is safe; return takes several: preview return "
+         "3,4\n"
          "places            where each vehicle of the formation is, and how far from its place\n"
          "record FOLDER     record all that is said into FOLDER, too, from now on; record stop: no "
          "more\n"

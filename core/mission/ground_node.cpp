@@ -28,6 +28,7 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       hazards_{config.hazards},
       fence_{config.fence},
       routes_{config.fence},
+      searches_{config.searches},
       detections_{config.detections},
       returns_{config.returns} {}
 
@@ -68,6 +69,7 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   sites_.on_message(message, now);
   hazards_.on_message(message);
   routes_.on_message(message, now);
+  searches_.on_message(message, now);
   // Who runs with another origin has seen it somewhere else.
   const bool saw =
       std::holds_alternative<Detection>(message) && setup_.difference(sender) == nullptr;
@@ -112,6 +114,8 @@ void GroundNode::on_timeout(Instant now) {
   hazards_.on_timeout(now);
   fence_.on_timeout(now);
   routes_.on_timeout(fleet(), now);
+  searches_.on_timeout(hazards_.known(), fleet(), routes_, now);
+  hazards_.retire(fleet(), now);
   detections_.on_timeout(now);
   formation_.on_timeout(now);
   tracks_.on_timeout(now);

@@ -39,6 +39,7 @@ bool has_ended(const GivenRoute& route) {
 
 bool answers(const GivenRoute& route, RouteStep step) {
   if (!route.answer) return false;
+  if (route.released) return has_ended(route);
   return step == RouteStep::offer || *route.answer != RouteState::taken;
 }
 
@@ -119,7 +120,12 @@ void GroundRoutes::recall_own(const Route& route, Instant at) {
   GivenRoutes& plan = *given_;
   GivenRoute& entry = plan.routes[route.vehicle];
   entry.timed = route.timed;
-  if (route.step > plan.step) {
+  entry.released = route.step == RouteStep::call_off;
+  // One that alone was called off was released.
+  const bool is_for_all = !entry.released || std::ranges::all_of(plan.routes, [](const auto& r) {
+    return r.second.released;
+  });
+  if (route.step > plan.step && is_for_all) {
     plan.step = route.step;
     plan.step_at = at;
     for (auto& [id, known] : plan.routes) known.told_since = answers(known, plan.step);
@@ -194,6 +200,19 @@ Result<void> GroundRoutes::call_off(Instant now) {
   }
   call_off({given_->plan, RoutesEnd::by_operator, {}, RouteObstacle::nothing}, now);
   return {};
+}
+
+bool GroundRoutes::release(VehicleId vehicle, Instant now) {
+  if (!stands() || !given_->begun) return false;
+  const auto known = given_->routes.find(vehicle);
+  if (known == given_->routes.end() || known->second.released || has_ended(known->second)) {
+    return false;
+  }
+  known->second.released = true;
+  known->second.told_since = false;
+  known->second.next = now;
+  next_ = now;
+  return true;
 }
 
 // --- what becomes of them ---
@@ -283,7 +302,8 @@ bool GroundRoutes::tell(const Fleet& fleet, Instant now) {
       if (told == kToldAtOnce) return false;
       ++told;
       told_last_ = id;
-      messages_.push(Message{Route{id, plan.plan, plan.step, route.timed}});
+      const RouteStep step = route.released ? RouteStep::call_off : plan.step;
+      messages_.push(Message{Route{id, plan.plan, step, route.timed}});
       const bool flies = route.told_since && plan.step == RouteStep::fly;
       route.next = now + (flies ? kAskAgain : kTellAgain);
     }

@@ -550,8 +550,9 @@ std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
 
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
-      "vehicles", "plans", "sites",  "coalitions", "authorisations", "hazards", "formation",
-      "timeline", "audit", "replay", "proposals", "preflight", "fence", "links", "wind"};
+      "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
+      "formation", "timeline", "audit", "replay",     "proposals",      "preflight",
+      "fence",     "links",    "wind",  "areas"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -606,6 +607,7 @@ std::string section_of(Section section, const Picture& picture, const mission::F
     case Section::wind:
       return wind_json(picture.wind().estimate(without_airspeed(fleet), now), now);
     case Section::audit:
+    case Section::areas:
     case Section::replay:
     case Section::count:
       break;

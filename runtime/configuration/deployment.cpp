@@ -125,8 +125,8 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   config.agencies = scenario.agencies;
   config.op = deployment.op;
   config.formation = scenario.formation;
-  if (scenario.formation.planes) {
-    for (const ScenarioVehicle& vehicle : scenario.vehicles) config.planes.push_back(vehicle.spec);
+  for (const ScenarioVehicle& vehicle : scenario.vehicles) {
+    if (!vehicle.spec.is_copter()) config.planes.push_back(vehicle.spec);
   }
   config.recording_folder = folder_of(deployment, "ground");
   return config;

@@ -717,7 +717,8 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   v.section({"detections", "of sites, by detectors on board"},
             [&config](FieldVisitor& inner) { detections_fields(inner, config.detections); });
   formation_section(v, config.formation);
-  v.list({"planes", "of a formation of planes: what each can do, as in its own file"},
+  v.list({"planes",
+          "what each can do, as in its own file: for formations of planes, and to search areas"},
          unique_groups_of(config.planes, kVehiclesMax, spec_fields, "vehicle",
                           [](const VehicleSpec& spec) { return spec.id.value; }));
   console_section(v, config.console);

@@ -44,12 +44,13 @@ class ConsoleDesk {
   void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event);
-  /// `audit` is its section.
-  void on_timeout(const mission::Fleet& fleet, const std::string& audit, Instant now);
+  /// `audit` and `areas` are their sections.
+  void on_timeout(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
+                  Instant now);
 
   /// The newest of everything, and last `text`: the program is about to end.
-  void end(const mission::Fleet& fleet, const std::string& audit, const std::string& text,
-           Instant now);
+  void end(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
+           const std::string& text, Instant now);
 
   /// Ends what that user has open.
   void expel(const std::string& user) {

@@ -13,6 +13,7 @@
 #include "skein/configuration/site_config.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/mission/formation_ground.hpp"
+#include "skein/mission/ground_search.hpp"
 #include "skein/mission/messages.hpp"
 
 /// What an operator can ask: a closed set, whether it is typed, clicked, or of a script.
@@ -33,6 +34,7 @@ inline constexpr Limit kTrackSpeed_mps{1.0, 200.0};
 inline constexpr Limit kLaps{1.0, 32.0};
 inline constexpr Limit kWait_s{0.0, 86400.0};
 inline constexpr Limit kRoutesIn_s{5.0, 86400.0};
+inline constexpr Limit kLaneSpacing_m{1.0, 1e4};
 
 inline constexpr Limit kFenceHeight_m{1.0, 1e5};
 
@@ -57,6 +59,7 @@ enum class View {
   audit,
   proposals,
   routes,
+  search,
   preflight,
   fence,
   links,
@@ -91,10 +94,18 @@ struct OrderToSeveral {
   std::vector<VehicleId> vehicles;  ///< ascending, none twice, at least one
   mission::CommandKind kind = mission::CommandKind::hold;
 };
-/// A circle to keep out of, told to all. Mission frame.
+/// A circle or a polygon to keep out of, told to all. Mission frame.
 struct NewHazard {
   Vec2 centre_m{0.0, 0.0};
   double radius_m = 0.0;
+  std::vector<Vec2> corners = {};        ///< of a polygon; none: a circle
+  std::optional<HazardId> changes = {};  ///< it takes the place of that one
+  bool preview = false;                  ///< only show what would be shut out
+};
+/// An area that vehicles search, shared out among them.
+struct SearchArea {
+  mission::SearchWishes wishes;
+  bool preview = false;  ///< only show how
 };
 /// That hazard is no more.
 struct WithdrawHazard {
@@ -173,11 +184,10 @@ struct Record {
 };
 struct Quit {};
 /// monostate: an empty line.
-using Input =
-    std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard, WithdrawHazard,
-                 NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
-                 ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence,
-                 StatusOf, ReturnPreview>;
+using Input = std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard,
+                           WithdrawHazard, NewSite, SitesFromFile, WithdrawSite, RoutesFromFile,
+                           CallOffRoutes, ProposalAnswer, Formation, Wait, Record, Quit,
+                           PreflightOf, NewFence, StatusOf, ReturnPreview, SearchArea>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

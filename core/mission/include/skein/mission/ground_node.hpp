@@ -14,6 +14,7 @@
 #include "skein/mission/ground_landing.hpp"
 #include "skein/mission/ground_return.hpp"
 #include "skein/mission/ground_routes.hpp"
+#include "skein/mission/ground_search.hpp"
 #include "skein/mission/ground_sites.hpp"
 #include "skein/mission/order_book.hpp"
 #include "skein/mission/setup_book.hpp"
@@ -28,6 +29,7 @@ struct GroundNodeConfig {
   std::vector<Hazard> hazards{};  ///< known before the mission
   Fence fence{};                  ///< of the team, for all that is ordered
   GroundDetectionsConfig detections{};
+  GroundSearchConfig searches{};
   GroundReturnConfig returns{};
   SetupParams setup{};
   InstanceId instance{};  ///< of this program
@@ -94,6 +96,15 @@ class GroundNode {
   Result<std::uint32_t> order_fence(const Fence& fence, Instant now);
   [[nodiscard]] const GroundFence& fence() const { return fence_; }
 
+  // As of GroundSearch, in the same way.
+  [[nodiscard]] Result<AreaSearch> preview_search(const SearchWishes& wishes, Instant now) const {
+    return searches_.preview(wishes, hazards_.known(), fleet(), routes_, now);
+  }
+  Result<AreaSearch> give_search(const SearchWishes& wishes, Instant now) {
+    return searches_.give(wishes, hazards_.known(), fleet(), routes_, now);
+  }
+  [[nodiscard]] const GroundSearch& searches() const { return searches_; }
+
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
 
@@ -145,6 +156,7 @@ class GroundNode {
   GroundHazards hazards_;
   GroundFence fence_;
   GroundRoutes routes_;
+  GroundSearch searches_;
   GroundDetections detections_;
   GroundReturn returns_;
   GroundLanding landings_;

@@ -23,6 +23,7 @@ struct GivenRoute {
   RouteObstacle why = RouteObstacle::nothing;
   std::optional<InstanceId> instance{};  ///< of the program that has answered
   bool told_since = false;               ///< it has answered the plan's step
+  bool released = false;                 ///< it alone is told to leave its route
   Instant next{};                        ///< when it is told again
 };
 
@@ -70,6 +71,10 @@ class GroundRoutes {
                              const Fleet& fleet, Instant now);
   /// Of the operator. Fails where there is none.
   Result<void> call_off(Instant now);
+  /// That vehicle alone leaves its route, for something else; the others fly on. Not before the
+  /// plan has begun: false, and nothing is done.
+  bool release(VehicleId vehicle, Instant now);
+  [[nodiscard]] const Fence& fence() const { return fence_; }
 
   /// The newest; none before the first.
   [[nodiscard]] const std::optional<GivenRoutes>& given() const { return given_; }

@@ -30,6 +30,7 @@ enum class Section : std::uint8_t {
   fence,
   links,
   wind,
+  areas,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);
@@ -38,7 +39,7 @@ inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::c
 /// One JSON value a section; empty where there is none.
 using Sections = std::array<std::string, kSectionCount>;
 
-/// All but `audit` and `replay`, which are not of the picture. `program` is what vehicles should
+/// All but `audit`, `areas` and `replay`, which are not of the picture. `program` is what vehicles should
 /// run, so that others are named.
 [[nodiscard]] Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
                                    const MissionOrigin& origin, const std::string& version,

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/area_desk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "skein/codec/json_text.hpp"
+#include "skein/planning/circle_cover.hpp"
+#include "skein/wording/wording.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using codec::Json;
+using mission::AreaSearch;
+using mission::SearchShare;
+
+constexpr double kRouteStep_m = 25.0;  ///< of a polyline, on arcs
+constexpr std::size_t kRoutePointsMax = 500;
+
+Answer refusal(const Error& error) { return {false, error.message + "\n"}; }
+
+Json number(double value, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  return std::round(value * unit) / unit;
+}
+
+Json place(const Vec2& at) { return Json::array({number(at.x(), 1), number(at.y(), 1)}); }
+
+Json places(const std::vector<Vec2>& corners) {
+  Json all = Json::array();
+  for (const Vec2& corner : corners) all.push_back(place(corner));
+  return all;
+}
+
+Json points_of(const Path& path) {
+  Json points = Json::array();
+  double begun_m = 0.0;
+  for (const Segment& segment : path.segments) {
+    const double steps =
+        segment.curvature_per_m == 0.0 ? 1.0 : std::ceil(segment.length_m / kRouteStep_m);
+    for (double k = 0.0; k < steps && points.size() < kRoutePointsMax; ++k) {
+      points.push_back(place(path.pose_at(begun_m + segment.length_m * k / steps).position()));
+    }
+    begun_m += segment.length_m;
+  }
+  points.push_back(place(path.end().position()));
+  return points;
+}
+
+Json area_json(const AreaSearch& area) {
+  Json shares = Json::array();
+  for (const auto& [id, share] : area.shares) {
+    Json lanes = Json::array();
+    for (const auto& lane : share.lanes) {
+      const Vec2 from = lane.start.position();
+      const Vec2 to = lane.end().position();
+      lanes.push_back(Json::array(
+          {number(from.x(), 1), number(from.y(), 1), number(to.x(), 1), number(to.y(), 1)}));
+    }
+    shares.push_back({{"id", id.value},
+                      {"state", to_string(share.state)},
+                      {"why", share.why},
+                      {"lanes", share.all},
+                      {"lanes_left", share.lanes.size()},
+                      {"length_m", number(share.length_m, 0)},
+                      {"time_s", number(share.time_s, 0)},
+                      {"ways", std::move(lanes)},
+                      {"points", points_of(share.route)}});
+  }
+  Json without = Json::array();
+  for (const auto& [id, why] : area.without) without.push_back({{"id", id.value}, {"why", why}});
+  return {{"state", to_string(area.state)},
+          {"why", area.why},
+          {"corners", places(area.corners)},
+          {"sensor_radius_m", number(area.sensor_radius_m, 1)},
+          {"spacing_m", number(area.spacing_m, 1)},
+          {"planned", number(area.planned, 4)},
+          {"least_s", number(area.bound_s, 0)},
+          {"begins_s", number(to_seconds(area.begins), 1)},
+          {"ends_s", number(to_seconds(area.ends), 1)},
+          {"parts", area.parts},
+          {"shares", std::move(shares)},
+          {"without", std::move(without)}};
+}
+
+std::string minutes(double seconds) {
+  const auto whole = std::lround(seconds);
+  return fmt::format("{}:{:02} min", whole / 60, whole % 60);
+}
+
+/// What will be, or is.
+std::string plan_text(const AreaSearch& area, Instant now) {
+  std::string text = fmt::format(
+      "{:.2f} km2 in lanes {:.0f} m apart, by {} vehicles: begins in {:.0f} s, covered in {} ({} "
+      "without turns); {:.1f} % of it\n",
+      planning::area_m2(area.corners) / 1e6, area.spacing_m, area.shares.size(),
+      to_seconds(area.begins - now), minutes(to_seconds(area.ends - now)), minutes(area.bound_s),
+      100.0 * area.planned);
+  if (area.planned < 0.9995) {
+    text += "the rest is out of range, or there is no room for turns\n";
+  }
+  if (area.parts > 1) {
+    text += fmt::format(
+        "each flies {} routes one after another: the next is told when all have flown theirs\n",
+        area.parts);
+  }
+  for (const auto& [id, share] : area.shares) {
+    fmt::format_to(std::back_inserter(text), "{}: {} lanes, {:.1f} km, {}\n", wording::text_of(id),
+                   share.all, share.length_m / 1000.0, minutes(share.time_s));
+  }
+  for (const auto& [id, why] : area.without) {
+    fmt::format_to(std::back_inserter(text), "without {}: {}\n", wording::text_of(id), why);
+  }
+  return text;
+}
+
+std::string share_text(const SearchShare& share) {
+  switch (share.state) {
+    case SearchShare::State::waits:
+      return "waits for its next route";
+    case SearchShare::State::flies:
+      return fmt::format("flies {} of {} lanes", share.given, share.all);
+    case SearchShare::State::done:
+      return "has flown its share";
+    case SearchShare::State::left:
+      return fmt::format("flies it no more: {}; {} of {} lanes are not flown", share.why,
+                         share.lanes.size(), share.all);
+    case SearchShare::State::count:
+      break;
+  }
+  return "";
+}
+
+std::string shape_text(const mission::HazardGroup& group) {
+  if (group.shape.corners.empty()) return "a circle that was changed";
+  return fmt::format("{} circles hold the polygon, and shut out {:.0f} % more",
+                     group.circles.size(), 100.0 * group.more);
+}
+
+}  // namespace
+
+Answer AreaDesk::answer(const SearchArea& order, Instant now) {
+  json_until_ = Instant::min();
+  const auto area = order.preview ? node_->preview_search(order.wishes, now)
+                                  : node_->give_search(order.wishes, now);
+  if (!area) return refusal(area.error());
+  Json data = area_json(*area);
+  data["kind"] = "search";
+  return {true,
+          (order.preview ? "" : fmt::format("plan {} is offered; ", area->plan)) +
+              plan_text(*area, now),
+          codec::json_text(data)};
+}
+
+Answer AreaDesk::answer(const NewHazard& order, Instant now) {
+  const mission::HazardShape shape{order.corners, order.centre_m, order.radius_m};
+  if (order.preview) {
+    if (order.corners.empty()) return {true, "a circle\n"};
+    const auto cover = planning::cover_with_circles(order.corners);
+    if (!cover) return refusal(cover.error());
+    Json data{{"kind", "hazard"}, {"circles", Json::array()}};
+    for (const auto& circle : cover->circles) {
+      data["circles"].push_back(
+          Json::array({number(circle.centre.x(), 1), number(circle.centre.y(), 1),
+                       number(circle.radius_m, 1)}));
+    }
+    return {true,
+            fmt::format("{} circles hold the polygon, and shut out {:.0f} % more\n",
+                        cover->circles.size(), 100.0 * cover->more()),
+            codec::json_text(data)};
+  }
+  HazardId id = order.changes.value_or(HazardId{});
+  if (order.changes) {
+    const auto changed = node_->hazards().change(id, shape, now);
+    if (!changed) return refusal(changed.error());
+  } else {
+    const auto added = node_->hazards().add(shape, now);
+    if (!added) return refusal(added.error());
+    id = *added;
+  }
+  const auto group = node_->hazards().groups().find(id);
+  const bool is_polygon = group != node_->hazards().groups().end() && !order.corners.empty();
+  const std::string what = is_polygon ? "; " + shape_text(group->second) : "";
+  if (!order.changes) return {true, fmt::format("hazard {} is told to all{}\n", id.value, what)};
+  return {true, fmt::format("hazard {} is changed; the old one stands until all know the new "
+                            "one{}\n",
+                            id.value, what)};
+}
+
+std::string AreaDesk::text(Instant now) const {
+  std::string text;
+  for (const auto& [id, group] : node_->hazards().groups()) {
+    fmt::format_to(std::back_inserter(text), "hazard {}: {}\n", id.value, shape_text(group));
+  }
+  const auto& area = node_->searches().area();
+  if (!area) return text + "no area is searched\n";
+  const double left_s = to_seconds(area->ends - now);
+  text += fmt::format(
+      "area of {:.2f} km2, {}{}: {:.1f} % seen\n", planning::area_m2(area->corners) / 1e6,
+      area->state == AreaSearch::State::flown  ? "searched"
+      : area->state == AreaSearch::State::over ? "flown"
+                                               : "called off",
+      area->why.empty() ? "" : " (" + area->why + ")", 100.0 * node_->searches().seen());
+  if (area->state == AreaSearch::State::flown) {
+    text += left_s > 0.0 ? fmt::format("planned to be covered in {}\n", minutes(left_s))
+                         : fmt::format("{} later than planned\n", minutes(-left_s));
+  }
+  for (const auto& [id, share] : area->shares) {
+    fmt::format_to(std::back_inserter(text), "{:>7}  {}\n", id.value, share_text(share));
+  }
+  if (node_->searches().leaves_rest()) {
+    text += "'search rest' shares out what was not seen\n";
+  }
+  return text;
+}
+
+const std::string& AreaDesk::json(Instant now) {
+  if (now >= json_until_) {
+    json_ = made_json();
+    json_until_ = now + kJsonPeriod;
+  }
+  return json_;
+}
+
+std::string AreaDesk::made_json() const {
+  Json hazards = Json::array();
+  for (const auto& [id, group] : node_->hazards().groups()) {
+    Json circles = Json::array();
+    for (const HazardId circle : group.circles) circles.push_back(circle.value);
+    hazards.push_back({{"hazard", id.value},
+                       {"corners", places(group.shape.corners)},
+                       {"x", number(group.shape.centre_m.x(), 1)},
+                       {"y", number(group.shape.centre_m.y(), 1)},
+                       {"radius_m", number(group.shape.radius_m, 1)},
+                       {"more", number(group.more, 3)},
+                       {"circles", std::move(circles)}});
+  }
+  Json search = nullptr;
+  if (const auto& area = node_->searches().area()) {
+    search = area_json(*area);
+    search["seen"] = number(node_->searches().seen(), 3);
+    search["rest"] = node_->searches().leaves_rest();
+  }
+  return codec::json_text({{"search", std::move(search)}, {"hazards", std::move(hazards)}});
+}
+
+}  // namespace skein::groundstation
