@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/groundstation/area_desk.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "skein/base/random.hpp"
+#include "skein/codec/json_text.hpp"
+#include "skein/groundstation/prompt.hpp"
+
+namespace skein::groundstation {
+namespace {
+
+using ::testing::HasSubstr;
+
+class AreaDeskTest : public ::testing::Test {
+ protected:
+  AreaDeskTest() {
+    for (const VehicleId id : {VehicleId{1}, VehicleId{2}}) {
+      mission::Telemetry t;
+      t.vehicle = id;
+      t.instance = {id.value};
+      t.state.x_m = 300.0 * id.value;
+      t.state.groundspeed_mps = 20.0;
+      t.range_left_m = 40'000.0;
+      node_.on_message(mission::Message{t}, id, now_);
+    }
+  }
+  Answer order(const std::string& line) {
+    const auto input = parse_input(line);
+    EXPECT_TRUE(input.ok()) << line << ": " << (input ? "" : input.error().message);
+    if (const auto* search = std::get_if<SearchArea>(&*input)) return desk_.answer(*search, now_);
+    return desk_.answer(std::get<NewHazard>(*input), now_);
+  }
+
+  Instant now_ = at_seconds(10.0);
+  mission::GroundNode node_{[] {
+                              mission::GroundNodeConfig config;
+                              config.agent.expected = {{1}, {2}};
+                              for (const VehicleId id : {VehicleId{1}, VehicleId{2}}) {
+                                VehicleSpec spec;
+                                spec.id = id;
+                                spec.cruise_speed_mps = 20.0;
+                                spec.turn_radius_m = 50.0;
+                                spec.sensor_radius_m = 100.0;
+                                config.searches.vehicles.push_back(spec);
+                              }
+                              return config;
+                            }(),
+                            Instant{}};
+  AreaDesk desk_{node_};
+};
+
+TEST_F(AreaDeskTest, PreviewsAndGivesASearch) {
+  EXPECT_THAT(desk_.text(now_), HasSubstr("no area is searched"));
+  const Answer preview = order("preview search 0,200 1000,200 1000,1000 0,1000 by 1,2");
+  EXPECT_TRUE(preview.done) << preview.text;
+  EXPECT_THAT(preview.text, HasSubstr("0.80 km2 in lanes 180 m apart, by 2 vehicles"));
+  EXPECT_THAT(preview.text, HasSubstr("100.0 % of it"));
+  const auto data = codec::parse_json(preview.data);
+  EXPECT_EQ(data["kind"], "search");
+  EXPECT_EQ(data["shares"].size(), 2U);
+  EXPECT_GT(data["shares"][0]["points"].size(), 4U);
+  EXPECT_FALSE(node_.routes().given()) << "it was a preview";
+  const Answer given = order("search 0,200 1000,200 1000,1000 0,1000 in 40");
+  EXPECT_TRUE(given.done) << given.text;
+  EXPECT_THAT(given.text, HasSubstr("begins in 40 s"));
+  EXPECT_THAT(desk_.text(now_), HasSubstr("searched: 0.0 % seen"));
+  EXPECT_TRUE(node_.routes().given());
+  const auto shown = codec::parse_json(desk_.json(now_));
+  EXPECT_EQ(shown["search"]["state"], "flown");
+  EXPECT_FALSE(order("search rest").done) << "routes stand";
+}
+
+TEST_F(AreaDeskTest, APolygonIsOneHazardThatIsChangedAndWithdrawn) {
+  const Answer preview = order("preview hazard polygon 0,0 400,0 400,200 0,200");
+  EXPECT_THAT(preview.text, HasSubstr("circles hold the polygon"));
+  EXPECT_TRUE(node_.hazards().known().empty());
+  const Answer given = order("hazard polygon 0,0 400,0 400,200 0,200");
+  EXPECT_THAT(given.text, HasSubstr("hazard 10010 is told to all; "));
+  const std::size_t circles = node_.hazards().known().size();
+  EXPECT_GE(circles, 2U);
+  EXPECT_TRUE(order("change hazard 10010 600 0 50").done);
+  EXPECT_EQ(node_.hazards().known().size(), circles + 1) << "the old one stands yet";
+  now_ += mission::GroundHazards::kChangeWithin;
+  node_.on_timeout(now_);
+  EXPECT_EQ(node_.hazards().known().size(), 1U);
+  const auto shown = codec::parse_json(desk_.json(now_));
+  EXPECT_EQ(shown["hazards"][0]["hazard"], 10'010);
+  EXPECT_EQ(shown["hazards"][0]["radius_m"], 50.0);
+  EXPECT_TRUE(node_.hazards().withdraw({10'010}, now_).ok());
+  EXPECT_TRUE(node_.hazards().known().empty());
+  EXPECT_FALSE(order("change hazard 10010 600 0 50").done);
+}
+
+TEST(AreaWords, AreReadAndWrittenTheSame) {
+  for (const std::string line :
+       {"search 0,0 10.5,-3 7,8", "preview search 0,0 10,0 7,8 by 1,2 spacing 150 in 30",
+        "search rest by 4", "hazard polygon 0,0 10,0 7,8", "hazard 1 2 3",
+        "change hazard 10010 polygon 0,0 10,0 7,8", "preview change hazard 7 1 2 3"}) {
+    const auto input = parse_input(line);
+    ASSERT_TRUE(input.ok()) << line << ": " << input.error().message;
+    EXPECT_EQ(line_of(*input), line);
+  }
+  EXPECT_TRUE(std::holds_alternative<View>(*parse_input("search")));
+  for (const auto* line :
+       {"search 0,0", "search 0,0 10,10 10,0 0,10", "search a,b c,d e,f", "search 0,0 10,0 7,8 by",
+        "search 0,0 10,0 7,8 by x", "search 0,0 10,0 7,8 spacing 0", "search 0,0 10,0 7,8 in 1",
+        "search 0,0 10,0 7,8 fast", "preview search", "search 1e9,0 10,0 7,8", "hazard polygon",
+        "hazard polygon 0,0 1,1", "hazard polygon 0,0 10,0 7,8 9", "change hazard",
+        "change hazard x 1 2 3", "change hazard 7"}) {
+    EXPECT_FALSE(parse_input(line).ok()) << line;
+  }
+}
+
+TEST(AreaOrders, OfAPage) {
+  const auto search = read_order(
+      R"({"kind":"search","preview":true,"corners":[[0,0],[10,0],[7,8]],"vehicles":[1,2],"in_s":30})");
+  ASSERT_TRUE(search.ok()) << search.error().message;
+  EXPECT_EQ(line_of(*search), "preview search 0,0 10,0 7,8 by 1,2 in 30");
+  EXPECT_EQ(line_of(*read_order(R"({"kind":"search","preview":false,"rest":true})")),
+            "search rest");
+  EXPECT_EQ(line_of(*read_order(R"({"kind":"hazard","corners":[[0,0],[10,0],[7,8]],"hazard":9})")),
+            "change hazard 9 polygon 0,0 10,0 7,8");
+  EXPECT_EQ(line_of(*read_order(R"({"kind":"withdraw","routes":true})")), "withdraw routes");
+  for (const auto* text :
+       {R"({"kind":"search"})", R"({"kind":"search","preview":false})",
+        R"({"kind":"search","preview":true,"corners":[[0,0],[10,0]]})",
+        R"({"kind":"search","preview":true,"corners":[[0,0],[10,10],[10,0],[0,10]]})",
+        R"({"kind":"search","preview":true,"corners":[[0,0],[10,"x"],[7,8]]})",
+        R"({"kind":"search","preview":true,"corners":[[0,0,0],[10,0,0],[7,8,0]]})",
+        R"({"kind":"search","preview":true,"corners":[[0,0],[1e300,0],[7,8]]})",
+        R"({"kind":"search","preview":true,"corners":{"a":1}})",
+        R"({"kind":"search","preview":true,"corners":[[0,0],[10,0],[7,8]],"vehicles":[0]})",
+        R"({"kind":"search","preview":true,"rest":1})", R"({"kind":"hazard","corners":[]})",
+        R"({"kind":"hazard","corners":[[0,0],[10,0],[7,8]],"hazard":0})"}) {
+    EXPECT_FALSE(read_order(text).ok()) << text;
+  }
+}
+
+/// Whatever is sent is read or refused.
+TEST(AreaOrders, AnyTextIsSafe) {
+  Random random{5};
+  const std::string seed =
+      R"({"kind":"search","preview":true,"corners":[[0,0],[10,0],[7,8]],"vehicles":[1,2]})";
+  for (int i = 0; i < 5000; ++i) {
+    std::string text = seed;
+    for (int k = 0; k < 4; ++k) {
+      text[random.index(text.size())] = static_cast<char>(32 + random.index(95));
+    }
+    (void)read_order(text).ok();
+    (void)parse_input("search " + text).ok();
+  }
+}
+
+}  // namespace
+}  // namespace skein::groundstation

@@ -90,8 +90,8 @@ struct GroundSearchTest : ::testing::Test {
     }
   }
   void status(VehicleId id, RouteState state) {
-    routes.on_message(
-        Message{RouteStatus{id, heard[id].instance, routes.given()->plan, state, {}}}, now);
+    routes.on_message(Message{RouteStatus{id, heard[id].instance, routes.given()->plan, state, {}}},
+                      now);
   }
   Result<AreaSearch> give(std::vector<Vec2> corners) {
     return search.give({std::move(corners), {}, {}, {}}, hazards, fleet, routes, now);

@@ -16,6 +16,7 @@ import "./orders/orders.css";
 import "./log/log.css";
 import "./plots/plots.css";
 import "./preflight/preflight.css";
+import "./areas/areas.css";
 import "./replay/replay.css";
 import "./links/links.css";
 import "./returns/returns.css";

@@ -3,18 +3,22 @@
 
 import { clock } from "../shell/format";
 import { coalition_sign, line_colour } from "../theme/palette";
-import type { Authorisation, Hazard, Site, SiteTask } from "../wire/protocol";
+import type { AreaHazard, Authorisation, Hazard, Site, SiteTask } from "../wire/protocol";
 import type { Picture } from "../wire/picture";
 import type { View } from "./canvas_layer";
 import { arrow, badge, font, label } from "./draw";
 
-export function paint_hazards(view: View, hazards: readonly Hazard[]): void {
+export function paint_hazards(view: View, hazards: readonly Hazard[], groups: readonly AreaHazard[]): void {
+  const in_polygon = new Set(groups.flatMap((group) => (group.corners.length > 0 ? group.circles : [])));
+  const named = new Map(groups.flatMap((group) => group.circles.map((circle) => [circle, group.hazard] as const)));
   for (const hazard of hazards) {
     disc(view, hazard.x, hazard.y, hazard.radius_m, view.colours.hazard, true);
+    // The outline has the name.
+    if (in_polygon.has(hazard.id)) continue;
     view.context.font = font(11);
     view.context.textAlign = "center";
     view.context.textBaseline = "middle";
-    label(view, `keep out ${hazard.id}`, view.px(hazard.x), view.py(hazard.y), view.colours.hazard);
+    label(view, `keep out ${named.get(hazard.id) ?? hazard.id}`, view.px(hazard.x), view.py(hazard.y), view.colours.hazard);
   }
 }
 

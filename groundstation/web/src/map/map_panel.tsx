@@ -2,6 +2,7 @@
 // The map with its tools.
 
 import { useEffect, useRef, useState } from "preact/hooks";
+import { follow_pointer } from "../areas/pointer";
 import { bearing, distance, latitude_longitude, number } from "../shell/format";
 import { note } from "../shell/give";
 import { narrow } from "../shell/layout";
@@ -31,10 +32,11 @@ const tool_words = {
   select: "",
   box: "Draw a box around vehicles to select them. Esc ends.",
   measure: "Press two places to measure between them. Esc ends.",
-  hazard: "Press the middle of the hazard. Esc ends.",
+  hazard: "Press the middle of the hazard and drag to its edge, or press both. Esc ends.",
   hazard_edge: "Press its edge. Esc ends.",
   place: "Press where the formation shall be. Esc ends.",
   site: "Press where the site is. Esc ends.",
+  outline: "Press each corner in its order around; drag one to move it. Esc ends.",
 } as const;
 
 function Cursor({ at }: { at: Spot | null }) {
@@ -133,7 +135,9 @@ export function MapPanel() {
     map.current = made;
     const fit = () => made.show_all();
     on_fit.add(fit);
+    const pointer = follow_pointer(element.current!, made.leaflet);
     made.leaflet.on("click", (event) => {
+      if (pointer.ate_click()) return;
       if (tool.value === "select") {
         const id = made.vehicle_at(event.containerPoint.x, event.containerPoint.y);
         if (!event.originalEvent.shiftKey) select(id);
@@ -148,6 +152,7 @@ export function MapPanel() {
     made.leaflet.on("mouseout", () => set_cursor(null));
     return () => {
       on_fit.delete(fit);
+      pointer.stop();
       made.remove();
     };
   }, []);

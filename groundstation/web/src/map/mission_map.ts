@@ -3,6 +3,9 @@
 
 import { effect, signal } from "@preact/signals";
 import L from "leaflet";
+import { paint_areas, paint_outline, paint_search } from "../areas/areas_painter";
+import { cover_shown, held_corner, outline, outline_use } from "../areas/outline";
+import { search_preview } from "../areas/search";
 import { request_key } from "../mission/requests";
 import { follow, highlighted_request, layers, overlays_hidden, place_to_show, preview, select_all, selected, selection, theme, tiles_shown, vehicles_to_show } from "../shell/view";
 import { formation_spot, hazard_draft, measure_from, measure_to, site_spot } from "../shell/view";
@@ -185,7 +188,8 @@ export class MissionMap {
     const known = [...this.picture.vehicles, ...this.picture.sites]
       .filter((one): one is typeof one & Point => one.x !== null && one.y !== null)
       .map((one) => L.latLng(one.y, one.x));
-    const points = [...known, ...this.previewed()];
+    const drawn = [...(this.picture.areas?.search?.corners ?? []), ...outline.value].map(([x, y]) => L.latLng(y, x));
+    const points = [...known, ...drawn, ...this.previewed()];
     if (points.length === 0) return;
     this.fit_to(L.latLngBounds(points));
   }
@@ -272,6 +276,7 @@ export class MissionMap {
 
   private on_drawing(): void {
     void [preview.value, return_preview.value, measure_from.value, measure_to.value, hazard_draft.value, formation_spot.value, site_spot.value];
+    void [outline.value, outline_use.value, held_corner.value, cover_shown.value, search_preview.value];
     this.moving.redraw();
   }
 
@@ -326,7 +331,8 @@ export class MissionMap {
     const { picture } = this;
     const now_s = mission_now_s() ?? 0;
     const colour_of = (id: number) => this.colour_of(id);
-    if (on.hazards) paint_hazards(view, picture.hazards);
+    if (on.hazards) paint_hazards(view, picture.hazards, picture.areas?.hazards ?? []);
+    paint_areas(view, picture.areas, picture.fence, colour_of);
     if (on.trails) paint_trails(view, tracks, picture.vehicles, selected.value, colour_of);
     // Whom the operator is asked about.
     const asked = new Set(this.shown_requests().flatMap((request) => request.deliveries.map((delivery) => delivery.vehicle)));
@@ -344,6 +350,7 @@ export class MissionMap {
     if (change && picture.formation?.moving) paint_movers(view, change.movers, this.colours.path, false);
     if (return_preview.value) paint_return(view, return_preview.value.data);
     if (preview.value?.data) paint_movers(view, preview.value.data.movers, this.colours.preview, true);
+    const colour_of = () => this.colours.preview;
     for (const request of this.shown_requests()) paint_authorisation(view, request);
     paint_vehicles(view, picture, {
       selected: selected.value,
@@ -352,6 +359,8 @@ export class MissionMap {
       ahead_s: since_state_s(),
       members: this.members,
     });
+    if (search_preview.value?.data) paint_search(view, search_preview.value.data, colour_of, true);
+    paint_outline(view);
     paint_tools(view);
   }
 }

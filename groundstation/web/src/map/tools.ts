@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What presses on the map do while a tool is out.
 
+import { add_corner, outline } from "../areas/outline";
 import { formation_spot, hazard_draft, measure_from, measure_to, site_spot, tool } from "../shell/view";
 import type { Spot } from "../shell/view";
 import { distance_and_bearing } from "./geodesy";
@@ -29,6 +30,9 @@ export function press(at: Spot): void {
     case "place":
       formation_spot.value = at;
       tool.value = "select";
+      break;
+    case "outline":
+      outline.value = add_corner(outline.value, at.x, at.y);
       break;
     case "site":
       site_spot.value = at;

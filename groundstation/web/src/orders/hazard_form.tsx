@@ -2,11 +2,12 @@
 // A circle to be kept out of: drawn on the map or typed, then sent to all.
 
 import { useEffect } from "preact/hooks";
+import { hazards_by_number } from "../areas/search";
 import { distance, number } from "../shell/format";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { hazard_draft, tool } from "../shell/view";
-import { hazards } from "../wire/store";
+import { areas, hazards } from "../wire/store";
 import { hazard_order } from "./orders";
 
 const empty_draft = { x: 0, y: 0, radius_m: 100 };
@@ -46,7 +47,7 @@ export function HazardForm() {
     <section aria-labelledby="hazard-title" data-testid="hazards">
       <h2 id="hazard-title">Hazards</h2>
       <ul class="rows">
-        {hazards.value.map((hazard) => (
+        {hazards_by_number(hazards.value, areas.value?.hazards ?? []).alone.map((hazard) => (
           <li key={hazard.id}>
             <b>Keep out {hazard.id}</b>
             <span>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Orders, from the fields of a form.
 
+import { words_of_corners } from "../areas/search";
 import { bearing_digits, ids } from "../shell/format";
 import type { Command, CommandToSeveral, Formation, FormationOrder, Limits, Order, SiteOrder } from "../wire/protocol";
 
@@ -158,10 +159,20 @@ export function words_of_order(order: Order): string {
     case "decision":
       return `${order.grant ? "authorise" : "refuse"} ${order.site}`;
     case "hazard":
-      return `hazard ${order.x} ${order.y} ${order.radius_m}`;
+      return `${order.hazard === undefined ? "hazard" : `change hazard ${order.hazard}`} ${order.corners ? `polygon ${words_of_corners(order.corners)}` : `${order.x} ${order.y} ${order.radius_m}`}`;
+    case "search":
+      return [
+        order.rest ? "search rest" : `search ${words_of_corners(order.corners ?? [])}`,
+        ...(order.vehicles ? [`by ${order.vehicles.join(",")}`] : []),
+        ...(order.spacing_m === undefined ? [] : [`spacing ${order.spacing_m}`]),
+        ...(order.in_s === undefined ? [] : [`in ${order.in_s}`]),
+      ].join(" ");
+    case "fence":
+      return `fence ${words_of_corners(order.corners)} height ${order.height_m}`;
     case "site":
       return words_of_site(order);
     case "withdraw":
+      if (order.routes) return "withdraw routes";
       return order.hazard === undefined ? `withdraw site ${order.site}` : `withdraw hazard ${order.hazard}`;
     case "proposal":
       return `${order.accept ? "accept" : "dismiss"} ${order.number}`;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useEffect } from "preact/hooks";
+import { AreasPanel } from "../areas/areas_panel";
 import { FleetPanel } from "../fleet/fleet_panel";
 import { SelectionBar } from "../fleet/selection_bar";
 import { LinksPanel } from "../links/links_panel";
@@ -32,6 +33,7 @@ const panel_of = {
   plots: PlotsPanel,
   preflight: PreflightPanel,
   links: LinksPanel,
+  areas: AreasPanel,
 } as const;
 
 export function App() {

@@ -14,7 +14,7 @@ export interface Key {
 
 export const key_list: readonly Key[] = [
   { keys: "Shift+H or F9", what: "Hold all: every vehicle holds, at once. F9 works while typing too" },
-  { keys: "1 … 7", what: "Panel: fleet, mission, orders, log, plots, preflight, links" },
+  { keys: "1 … 8", what: "Panel: fleet, mission, orders, log, plots, preflight, links, areas" },
   { keys: "[ and ]", what: "Select the vehicle before, after" },
   { keys: "Shift+1 … 9", what: "Select the group of that number" },
   { keys: "Shift", what: "On the map: with a press one more or less is selected, with a drag all in the box" },

@@ -10,7 +10,7 @@ import type { Panel } from "./view";
 
 type Tab = Panel | "map";
 
-const names: Record<Tab, string> = { map: "Map", fleet: "Fleet", mission: "Mission", orders: "Orders", log: "Log", plots: "Plots", preflight: "Preflight", links: "Links" };
+const names: Record<Tab, string> = { map: "Map", fleet: "Fleet", mission: "Mission", orders: "Orders", log: "Log", plots: "Plots", preflight: "Preflight", links: "Links", areas: "Areas" };
 
 function show(name: Tab): void {
   if (name !== "map") panel.value = name;

@@ -4,7 +4,7 @@
 import { batch, signal } from "@preact/signals";
 import type { Preview } from "../wire/protocol";
 
-export const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links"] as const;
+export const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links", "areas"] as const;
 export type Panel = (typeof panels)[number];
 
 export const panel = signal<Panel>("fleet");
@@ -45,7 +45,7 @@ export const tiles_shown = signal(true);
 export const overlays_hidden = signal<ReadonlySet<string>>(new Set());
 
 /** What a press on the map means. */
-export type Tool = "select" | "box" | "measure" | "hazard" | "hazard_edge" | "place" | "site";
+export type Tool = "select" | "box" | "measure" | "hazard" | "hazard_edge" | "place" | "site" | "outline";
 export const tool = signal<Tool>("select");
 export interface Spot {
   x: number;

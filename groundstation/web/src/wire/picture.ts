@@ -40,6 +40,7 @@ export const section_names = [
   "fence",
   "links",
   "wind",
+  "areas",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -61,6 +62,7 @@ export function empty_picture(): Picture {
     fence: null,
     links: [],
     wind: null,
+    areas: null,
     events: [],
     next_seq: 0,
     events_missed: 0,

@@ -282,6 +282,7 @@ export interface Sections {
   fence: Fence | null;
   links: LinkRow[];
   wind: Wind | null;
+  areas: Areas | null;
 }
 
 /** Where all vehicles are to stay. */
@@ -328,6 +329,64 @@ export interface WindFigures {
 export interface Wind extends WindFigures {
   spread_mps: number;
   vehicles: (WindFigures & { id: number })[];
+}
+
+export type Corners = [east: number, north: number][];
+
+/** One vehicle's share of a search area. */
+export interface SearchShare {
+  id: number;
+  state: "waits" | "flies" | "done" | "left";
+  /** It has left. */
+  why: string;
+  lanes: number;
+  lanes_left: number;
+  length_m: number;
+  time_s: number;
+  /** The lanes that it has not flown. */
+  ways: [from_x: number, from_y: number, to_x: number, to_y: number][];
+  /** Of the route that it has. */
+  points: Corners;
+}
+
+export interface SearchArea {
+  kind?: "search";
+  state: "previewed" | "flown" | "over" | "called_off";
+  why: string;
+  corners: Corners;
+  sensor_radius_m: number;
+  spacing_m: number;
+  /** Shares of the area: of what is covered when all is flown, and of what was seen. */
+  planned: number;
+  seen?: number;
+  /** By all together without any turn. */
+  least_s: number;
+  begins_s: number;
+  ends_s: number;
+  /** Routes that each flies one after another. */
+  parts: number;
+  shares: SearchShare[];
+  without: { id: number; why: string }[];
+  /** Something is left that nobody flies. */
+  rest?: boolean;
+}
+
+/** A hazard that is not one circle for good. */
+export interface AreaHazard {
+  hazard: number;
+  /** Of a polygon; none: a circle. */
+  corners: Corners;
+  x: number;
+  y: number;
+  radius_m: number;
+  /** What its circles shut out besides, as a share of the polygon. */
+  more: number;
+  circles: number[];
+}
+
+export interface Areas {
+  search: SearchArea | null;
+  hazards: AreaHazard[];
 }
 
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";
@@ -470,11 +529,34 @@ export interface Decision {
   round: number;
 }
 
+/** A circle, or a polygon; `hazard`: in place of that one. */
 export interface NewHazard {
   kind: "hazard";
-  x: number;
-  y: number;
-  radius_m: number;
+  x?: number;
+  y?: number;
+  radius_m?: number;
+  corners?: Corners;
+  hazard?: number;
+  preview?: boolean;
+}
+
+/** What is left out is left to the ground station. */
+export interface SearchOrder {
+  kind: "search";
+  preview: boolean;
+  corners?: Corners;
+  /** What was not seen of the last area. */
+  rest?: boolean;
+  vehicles?: number[];
+  spacing_m?: number;
+  in_s?: number;
+}
+
+export interface FenceOrder {
+  kind: "fence";
+  preview: boolean;
+  corners: Corners;
+  height_m: number;
 }
 
 /** What is left out is left to the ground station. */
@@ -507,9 +589,10 @@ export interface SiteOrder {
   anyway?: boolean;
 }
 
-/** One of the two. */
+/** One of them. */
 export interface Withdrawal {
   kind: "withdraw";
+  routes?: true;
   site?: number;
   hazard?: number;
 }
@@ -520,7 +603,7 @@ export interface ProposalAnswer {
   accept: boolean;
 }
 
-export type Order = Command | CommandToSeveral | Decision | NewHazard | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
+export type Order = Command | CommandToSeveral | Decision | NewHazard | SearchOrder | FenceOrder | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
 
 export interface Session {
   user: string;

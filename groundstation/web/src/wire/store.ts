@@ -51,6 +51,8 @@ export const sites = computed(() => shown.value.sites);
 export const coalitions = computed(() => shown.value.coalitions);
 export const authorisations = computed(() => aged_picture.value.authorisations);
 export const hazards = computed(() => shown.value.hazards);
+export const areas = computed(() => shown.value.areas);
+export const fence = computed(() => shown.value.fence);
 export const proposals = computed(() => shown.value.proposals);
 export const formation = computed(() => shown.value.formation);
 export const timeline = computed(() => shown.value.timeline);
