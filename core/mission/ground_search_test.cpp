@@ -41,7 +41,7 @@ struct GroundSearchTest : ::testing::Test {
       t.state.y_m = -400.0;
       t.state.groundspeed_mps = 20.0;
       t.state.course_rad = kPi / 2.0;
-      t.range_left_m = 40'000.0;
+      t.range_left_m = 80'000.0;
       heard[id] = t;
     }
     hear();
@@ -78,6 +78,7 @@ struct GroundSearchTest : ::testing::Test {
   void answer(const Route& route) {
     if (route.step == RouteStep::offer) {
       done.erase(route.vehicle);
+      flown.erase(route.vehicle);  // it circles where that has ended
       ++offers[route.vehicle][route.plan];
       status(route.vehicle, RouteState::taken);
     } else if (route.step == RouteStep::fly) {
@@ -142,6 +143,9 @@ TEST_F(GroundSearchTest, WhatIsTooLongForOneRouteIsGivenInSeveralOneAfterAnother
   run(1.15 * takes_s + 60.0);
   EXPECT_EQ(area().state, AreaSearch::State::over) << area().why;
   EXPECT_GT(search.seen(), 0.999);
+  for (const auto& [id, share] : area().shares) {
+    EXPECT_EQ(share.state, SearchShare::State::done) << share.why;
+  }
   EXPECT_GE(offers[kOne].size(), 2U);
   EXPECT_GE(offers[kTwo].size(), 2U);
 }
@@ -173,7 +177,9 @@ TEST_F(GroundSearchTest, WhoFindsASiteIsReleasedAndTheRestCanBeSharedOut) {
   run(to_seconds(rest->ends - now) + 30.0);
   EXPECT_EQ(area().state, AreaSearch::State::over);
   EXPECT_GT(search.seen(), 0.995);
-  EXPECT_THAT(give({}).error().message, HasSubstr("nothing of the area is left"));
+  const auto none = give({});
+  ASSERT_FALSE(none.ok());
+  EXPECT_THAT(none.error().message, HasSubstr("nothing of the area is left"));
 }
 
 TEST_F(GroundSearchTest, TheOperatorCallsItOff) {
