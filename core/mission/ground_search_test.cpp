@@ -111,7 +111,7 @@ struct GroundSearchTest : ::testing::Test {
 };
 
 const std::vector<Vec2> kSmall{{0.0, 0.0}, {1200.0, 0.0}, {1200.0, 1000.0}, {0.0, 1000.0}};
-const std::vector<Vec2> kLarge{{0.0, 0.0}, {2500.0, 0.0}, {2500.0, 4500.0}, {0.0, 4500.0}};
+const std::vector<Vec2> kLarge{{0.0, 0.0}, {4500.0, 0.0}, {4500.0, 4500.0}, {0.0, 4500.0}};
 
 TEST_F(GroundSearchTest, AnAreaIsSharedOutFlownAndSeen) {
   const auto preview = search.preview({kSmall, {}, {}, {}}, hazards, fleet, routes, now);
