@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { a_vehicle } from "../wire/samples";
 import { hold_progress, told_to_hold } from "./hold_watch";
-import { command } from "./orders";
+import { command, command_to } from "./orders";
 
 const holding = { activity: "holding" as const };
 
@@ -12,6 +12,8 @@ test("who is told to hold", () => {
   assert.deepEqual(told_to_hold(command("hold", 0), vehicles), [1, 2]);
   assert.deepEqual(told_to_hold(command("hold", 7), vehicles), [7]);
   assert.equal(told_to_hold(command("resume", 0), vehicles), null);
+  assert.deepEqual(told_to_hold(command_to("hold", new Set([9, 2])), vehicles), [2, 9]);
+  assert.equal(told_to_hold(command_to("land", [2]), vehicles), null);
 });
 
 test("who does, who does not yet, and who cannot be heard", () => {

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { a_hello } from "../wire/samples";
-import { acknowledgements, command, formation_order, hazard_order, no_fields, no_site, site_order, words_of_order } from "./orders";
+import { acknowledgements, command, command_to, formation_order, hazard_order, no_fields, no_site, site_order, words_of_order } from "./orders";
 
 const wedge = { ...no_fields, shape: "wedge" };
 
@@ -19,6 +19,11 @@ test("a form order says what is filled in, and leaves the rest to the ground sta
   assert.deepEqual(formation_order({ ...wedge, kind: "land", spacing: "x" }, limits), {
     order: { kind: "formation", order: "land", preview: false },
   });
+});
+
+test("one order to several names them", () => {
+  assert.deepEqual(command_to("return_home", new Set([7, 3, 4])), { kind: "commands", command: "return_home", vehicles: [3, 4, 7] });
+  assert.equal(words_of_order(command_to("return_home", [7, 3, 4, 5])), "return home 3–5, 7");
 });
 
 test("what cannot be is said before it is sent", () => {
