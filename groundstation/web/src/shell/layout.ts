@@ -4,6 +4,7 @@
 import { effect, signal } from "@preact/signals";
 import type { Signal } from "@preact/signals";
 import { panel, place_to_show, tool, vehicles_to_show } from "./view";
+import type { Tool } from "./view";
 
 function matches(query: string): Signal<boolean> {
   const list = window.matchMedia(query);
@@ -24,13 +25,22 @@ export const map_in_front = signal(false);
 
 /** Brings the map to the front for what is done on it, and the panel for which somebody asks. */
 export function follow_what_is_asked_for(): () => void {
+  let before: Tool = "select";
+  let was_in_front = false;
   const undo = [
     effect(() => {
       void panel.value;
       map_in_front.value = false;
     }),
     effect(() => {
-      map_in_front.value = tool.value !== "select";
+      const next = tool.value;
+      if (before === "select" && next !== "select") {
+        was_in_front = map_in_front.peek();
+        map_in_front.value = true;
+      }
+      // What was measured is on the map; what was drawn is of the form that asked for it.
+      if (before !== "select" && next === "select") map_in_front.value = was_in_front || before === "measure";
+      before = next;
     }),
     effect(() => {
       if (place_to_show.value || vehicles_to_show.value) map_in_front.value = true;
