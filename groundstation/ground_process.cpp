@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "input_rules.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/configuration/setup_params.hpp"

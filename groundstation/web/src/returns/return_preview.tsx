@@ -2,10 +2,11 @@
 // Everybody home: seen first, with times and separation, then given by holding.
 
 import { useState } from "preact/hooks";
-import { command } from "../orders/orders";
+import { command, command_to } from "../orders/orders";
 import { clock, distance, duration, ids, number } from "../shell/format";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
+import { selection } from "../shell/view";
 import type { Answer, ReturnPreview } from "../wire/protocol";
 import { mission_now_s, send, vehicles } from "../wire/store";
 import { return_preview } from "./returns";
@@ -71,7 +72,9 @@ export function ReturnForm() {
   const [some, set_some] = useState("");
   const [refused, set_refused] = useState<string | null>(null);
   const shown = return_preview.value;
-  const asked = some.trim() === "" ? "all" : some.replaceAll(" ", "");
+  // Those that are selected, where nobody is named.
+  const marked = [...selection.value].sort((a, b) => a - b);
+  const asked = some.trim() !== "" ? some.replaceAll(" ", "") : marked.length > 1 ? marked.join(",") : "all";
   const show = async () => {
     const answer = await send(`preview return ${asked}`);
     const data = preview_of(answer);
@@ -83,10 +86,9 @@ export function ReturnForm() {
     set_refused(null);
   };
   const order = async () => {
-    // One order each where some are asked for; of all one order to all.
-    const whom = asked === "all" ? [0] : asked.split(",").map(Number);
+    if (!shown) return;
     put_away();
-    for (const id of whom) await give(command("return_home", id));
+    await give(shown.of === "all" ? command("return_home", 0) : command_to("return_home", shown.of.split(",").map(Number)));
   };
   return (
     <section aria-labelledby="return-title" class="return-form">
@@ -96,7 +98,7 @@ export function ReturnForm() {
           Vehicles{" "}
           <input
             value={some}
-            placeholder={`all: ${ids(vehicles.value.map(({ id }) => id))}`}
+            placeholder={asked === "all" ? `all: ${ids(vehicles.value.map(({ id }) => id))}` : ids(marked)}
             pattern="\s*\d+(\s*,\s*\d+)*\s*"
             data-testid="return-some"
             onInput={(event) => {

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "skein/base/time.hpp"
-#include "skein/domain/fence.hpp"
 #include "skein/console/team_links.hpp"
 #include "skein/console/team_wind.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/shown_state.hpp"
 
