@@ -107,6 +107,8 @@ std::optional<console::Section> section_of(View view) {
       return Section::links;
     case View::wind:
       return Section::wind;
+    case View::alarms:
+      return Section::alarms;
     case View::help:
     case View::audit:
     case View::routes:
@@ -179,11 +181,15 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
 
 void ConsoleDesk::recall(const mission::Message& message, VehicleId sender, Instant at) {
   picture_.on_message(message, sender, at);
-  if (const auto* event = std::get_if<mission::MissionEvent>(&message)) picture_.on_event(*event);
+  if (const auto* event = std::get_if<mission::MissionEvent>(&message)) {
+    picture_.on_event(*event);
+    alarms_.recall(*event, at);
+  }
 }
 
 void ConsoleDesk::on_message(const mission::Message& message, VehicleId sender, Instant now) {
   picture_.on_message(message, sender, now);
+  alarms_.on_message(message, sender, now);
   if (!server_ || !server_->live_watched()) return;
   auto published = recording::published(message, sender);
   if (!published) return;
@@ -194,14 +200,16 @@ void ConsoleDesk::on_message(const mission::Message& message, VehicleId sender, 
                  std::move(published->bytes)});
 }
 
-void ConsoleDesk::on_event(const mission::MissionEvent& event) {
+void ConsoleDesk::on_event(const mission::MissionEvent& event, Instant now) {
   picture_.on_event(event);
+  alarms_.on_event(event, now);
   const std::uint64_t seq = next_seq_++;
   if (server_) events_.push_back(console::event_json(event, seq));
 }
 
 void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& audit,
                              const std::string& areas, Instant now) {
+  alarms_.on_timeout(picture_, fleet, now);
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
   if (now < next_state_ || !server_->watched()) return;
@@ -209,6 +217,7 @@ void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& aud
   auto sections = console::sections_of(picture_, fleet, origin_, version(), now);
   sections[static_cast<std::size_t>(console::Section::audit)] = audit;
   sections[static_cast<std::size_t>(console::Section::areas)] = areas;
+  sections[static_cast<std::size_t>(console::Section::alarms)] = console::alarms_json(alarms_);
   server_->publish(to_seconds(now), std::move(sections));
 }
 
@@ -218,6 +227,17 @@ void ConsoleDesk::end(const mission::Fleet& fleet, const std::string& audit,
   next_state_ = Instant::min();
   on_timeout(fleet, audit, areas, now);
   server_->end(to_seconds(now), text);
+}
+
+Answer ConsoleDesk::answer(const Acknowledge& order, const std::string& by, Instant now) {
+  const auto done = alarms_.acknowledge(order.numbers, by, now);
+  if (!done) return {false, done.error().message + "\n"};
+  next_state_ = Instant::min();  // all who watch see it at once
+  std::string text;
+  for (const console::Alarm& alarm : *done) {
+    text += fmt::format("acknowledged: {}\n", alarm.what);
+  }
+  return {true, text};
 }
 
 std::optional<console::Server::Line> ConsoleDesk::next() {
@@ -261,6 +281,7 @@ Answer ConsoleDesk::status_of(VehicleId vehicle, const mission::Fleet& fleet, In
 
 std::string ConsoleDesk::section(console::Section section, const mission::Fleet& fleet,
                                  Instant now) const {
+  if (section == console::Section::alarms) return console::alarms_json(alarms_);
   return console::section_of(section, picture_, fleet, origin_, version(), now);
 }
 

@@ -428,6 +428,9 @@ class GroundLoop {
     if (const auto* proposal = std::get_if<ProposalAnswer>(&input)) {
       return sites_.answer(*proposal, asker.who, now);
     }
+    if (const auto* seen = std::get_if<Acknowledge>(&input)) {
+      return console_.answer(*seen, asker.who, now);
+    }
     if (const auto* formation = std::get_if<Formation>(&input)) return formed(*formation, now);
     if (const auto* record = std::get_if<Record>(&input)) return record_into(*record);
     if (std::holds_alternative<Wait>(input)) return {false, "'wait' is for scripts\n"};
@@ -487,6 +490,8 @@ class GroundLoop {
         return console_.address_text();
       case View::proposals:
         return sites_.proposals_text();
+      case View::alarms:
+        return console::alarms_text(console_.alarms(), now);
       case View::routes:
         return routes_.text(now);
       case View::fence:
@@ -530,7 +535,7 @@ class GroundLoop {
       }
     }
     while (const auto event = node_.poll_event()) {
-      tell_of(*event);
+      tell_of(*event, now);
     }
     console_.on_timeout(node_.fleet(), audit_.json(), areas_.json(now), now);
     agencies_.on_timeout(console_.picture(), node_.fleet(), now);
@@ -574,10 +579,10 @@ class GroundLoop {
     console_.report(machine_report(facts, node_.fleet()));
   }
 
-  void tell_of(const mission::MissionEvent& event) {
+  void tell_of(const mission::MissionEvent& event, Instant now) {
     process::log_event(event);
     recorder_.write(event);
-    console_.on_event(event);
+    console_.on_event(event, now);
     agencies_.on_event(event);
   }
 

@@ -130,6 +130,7 @@ class Reader {
 };
 
 constexpr double kIdMax = 65535.0;
+constexpr std::size_t kAcknowledgedMax = 300;
 
 Input command(Reader& from) {
   Order order;
@@ -253,6 +254,16 @@ Input proposal_answer(Reader& from) {
   return ProposalAnswer{from.integer("number", 1.0, kIdMax), from.flag("accept")};
 }
 
+/// By number: what has come since the page was drawn is not meant.
+Input acknowledgement(Reader& from) {
+  Acknowledge order;
+  for (const double number : from.numbers("alarms", {1.0, 4294967295.0}, kAcknowledgedMax)) {
+    order.numbers.push_back(static_cast<std::uint32_t>(number));
+  }
+  if (order.numbers.empty()) from.fail("alarms is to have the number of one at least");
+  return order;
+}
+
 Input formation_order(Reader& from) {
   Formation input;
   input.preview = from.flag("preview");
@@ -305,6 +316,7 @@ Result<Input> read_order(std::string_view text) {
     if (kind == "withdraw") return withdrawal(from);
     if (kind == "proposal") return proposal_answer(from);
     if (kind == "formation") return formation_order(from);
+    if (kind == "acknowledge") return acknowledgement(from);
     from.fail("there is no order '" + kind + "'");
     return {};
   };

@@ -51,6 +51,9 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "withdraw hazard 10034",
                            "accept 1",
                            "dismiss 2",
+                           "acknowledge all",
+                           "acknowledge 3 14",
+                           "alarms",
                            "proposals",
                            "take-off",
                            "rally",
@@ -109,6 +112,7 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"site","preview":true,"site":10034,"reward":3})"),
             "preview change site 10034 reward 3");
   EXPECT_EQ(line_of_json(R"({"kind":"withdraw","site":10034})"), "withdraw site 10034");
+  EXPECT_EQ(line_of_json(R"({"kind":"acknowledge","alarms":[3,14]})"), "acknowledge 3 14");
   EXPECT_EQ(line_of_json(R"({"kind":"withdraw","hazard":10034})"), "withdraw hazard 10034");
   EXPECT_EQ(line_of_json(R"({"kind":"proposal","number":3,"accept":true})"), "accept 3");
   EXPECT_THAT(trouble_with(R"({"kind":"site","preview":false,"x":1,"y":2,"bearings_deg":[900]})"),
@@ -144,6 +148,14 @@ TEST(Orders, ADecisionOfAPageIsOnThePlanThatItShows) {
   EXPECT_TRUE(decision.grant);
   EXPECT_EQ(decision.plan, (coalition::Round{id, 4}));
   EXPECT_FALSE(std::get<Decision>(*parse_input("authorise 3")).plan);
+}
+
+TEST(Orders, AnAcknowledgementNamesAlarms) {
+  for (const char* json :
+       {R"({"kind":"acknowledge"})", R"({"kind":"acknowledge","alarms":[]})",
+        R"({"kind":"acknowledge","alarms":[0]})", R"({"kind":"acknowledge","alarms":"all"})"}) {
+    EXPECT_THAT(trouble_with(json), HasSubstr("alarms is to"));
+  }
 }
 
 TEST(Orders, WhatIsWrongIsNamed) {

@@ -96,8 +96,10 @@ void Playback::take(const recording::Entry& entry) {
     if (!mission::may_say(*message, entry.sender)) return;
     seen_.fleet.on_message(*message, entry.time);
     seen_.picture.on_message(*message, entry.sender, entry.time);
+    seen_.alarms.on_message(*message, entry.sender, entry.time);
   } else if (const auto* event = std::get_if<mission::MissionEvent>(&entry.content)) {
     seen_.picture.on_event(*event);
+    seen_.alarms.on_event(*event, entry.time);
   }
 }
 
@@ -131,6 +133,7 @@ void Playback::tell_time(Instant time) {
   seen_.fleet.on_timeout(time);
   while (seen_.fleet.poll_news()) {
   }
+  seen_.alarms.on_timeout(seen_.picture, seen_.fleet, time);
 }
 
 std::size_t Playback::events_so_far() const {

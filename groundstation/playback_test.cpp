@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "skein/console/alarms.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/groundstation/replay_process.hpp"
 #include "skein/recording/writer.hpp"
@@ -37,6 +38,7 @@ class PlaybackTest : public ::testing::Test {
     for (int i = 0; i <= 1200; ++i) {
       const Instant now = at_seconds(0.1 * i);
       for (const VehicleId vehicle : config.vehicles) {
+        if (vehicle == VehicleId{3} && i > 400 && i <= 700) continue;  // silent
         mission::Telemetry t;
         t.vehicle = vehicle;
         t.instance = {vehicle.value};
@@ -98,6 +100,28 @@ TEST_F(PlaybackTest, ShowsEveryMomentAsItWasWhateverTheOrder) {
   for (double t = 0.0; t < 60.0; t += 0.37) playback->go_to(at_seconds(t));
   playback->go_to(was_[2].time);
   EXPECT_EQ(shown(playback->picture(), playback->fleet(), was_[2].time), was_[2].shown);
+}
+
+TEST_F(PlaybackTest, ItsAlarmsAreThoseOfThatMomentHoweverOneGetsThere) {
+  auto playback = Playback::open(folder_);
+  ASSERT_TRUE(playback.ok()) << playback.error().message;
+  std::vector<std::string> played;
+  for (double seconds = 0.37; seconds < 118.0; seconds += 0.37) {
+    playback->go_to(at_seconds(seconds));
+    played.push_back(console::alarms_json(playback->alarms()));
+  }
+  for (const std::size_t at : {200U, 20U, 122U, 123U, 121U, 310U, 130U}) {
+    playback->go_to(at_seconds(0.37 * (static_cast<double>(at) + 1.0)));
+    EXPECT_EQ(console::alarms_json(playback->alarms()), played.at(at)) << at;
+  }
+  playback->go_to(at_seconds(50.0));
+  const auto silent = playback->alarms().list();
+  ASSERT_EQ(silent.size(), 1U);
+  EXPECT_EQ(text_of(silent[0]->key), "vehicle_silent-3");
+  EXPECT_EQ(silent[0]->since, at_seconds(45.0));
+  playback->go_to(at_seconds(100.0));
+  ASSERT_EQ(playback->alarms().list().size(), 1U);
+  EXPECT_TRUE(playback->alarms().list()[0]->over);
 }
 
 TEST_F(PlaybackTest, HasEveryEventOnceByTime) {

@@ -270,6 +270,23 @@ Result<Input> status(const std::vector<std::string_view>& words) {
   return Input{StatusOf{{*id}}};
 }
 
+Result<Input> acknowledgement(const std::vector<std::string_view>& words) {
+  if (words.size() == 2 && words[1] == "all") return Input{Acknowledge{}};
+  Acknowledge order;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const auto number = number_of(words[i]);
+    const bool whole = number && *number >= 1.0 && *number < 4294967296.0 &&
+                       static_cast<double>(static_cast<std::uint32_t>(*number)) == *number;
+    if (!whole) order.numbers.clear();
+    if (!whole) break;
+    order.numbers.push_back(static_cast<std::uint32_t>(*number));
+  }
+  if (!order.numbers.empty()) return Input{order};
+  return Error{
+      "'acknowledge' needs the numbers of alarms or 'all', as in 'acknowledge 3'; 'alarms' "
+      "lists them"};
+}
+
 Result<Input> record(const std::vector<std::string_view>& words) {
   if (words.size() != 2) return Error{"'record' needs a folder, or 'stop'"};
   return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
@@ -306,6 +323,8 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "coalitions") return view(View::coalitions, words);
   if (verb == "preflight") return preflight(words);
   if (verb == "hazards") return view(View::hazards, words);
+  if (verb == "alarms") return view(View::alarms, words);
+  if (verb == "acknowledge") return acknowledgement(words);
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
   if (verb == "fence") return fence_order(words, false);
@@ -383,6 +402,10 @@ std::string help_text() {
          "withdraw routes   nobody flies them, or goes on with them\n"
          "proposals         what detectors have seen and you have not answered\n"
          "accept N          take proposal N as a site; dismiss N: it is none\n"
+         "alarms            what needs you now, the worst first, with what to do; and how long it "
+         "took\n"
+         "                  until vehicles showed that they obey\n"
+         "acknowledge N|all those alarms are seen: they are silent, and stay until they are over\n"
          "audit             who gave which order, from where, and what came of it\n"
          "console           the address of its page, with the token that opens it\n"
          "hold ID|all       fly a holding pattern until told otherwise; this one and the next "

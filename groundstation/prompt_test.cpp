@@ -100,13 +100,17 @@ TEST(Prompt, SaysWhatIsWrong) {
   for (const auto* line : {"give-back", "give-back all", "give-back 0", "give-back 1 2"}) {
     EXPECT_THAT(refusal_of(line), HasSubstr("number of one vehicle"));
   }
+  for (const auto* line :
+       {"acknowledge", "acknowledge 0", "acknowledge 2.5", "acknowledge 3 all"}) {
+    EXPECT_THAT(refusal_of(line), HasSubstr("numbers of alarms or 'all'"));
+  }
   EXPECT_THAT(refusal_of("status 3"), HasSubstr("stands alone"));
   EXPECT_THAT(refusal_of("quit now"), HasSubstr("stands alone"));
 }
 
 TEST(Prompt, HelpNamesEveryCommand) {
   for (const auto* word : {"status", "sites", "pending", "authorise", "refuse", "hold", "resume",
-                           "return", "give-back", "quit"}) {
+                           "return", "give-back", "alarms", "acknowledge", "quit"}) {
     EXPECT_THAT(help_text(), HasSubstr(word));
   }
 }

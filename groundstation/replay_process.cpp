@@ -140,8 +140,10 @@ class ReplayLoop {
     const auto section = section_of(view);
     if (!section) return {true, fmt::format("{}\n", kOrders)};
     std::string data =
-        console::section_of(*section, playback_.picture(), playback_.fleet(), playback_.origin(),
-                            playback_.version(), playback_.now());
+        view == View::alarms
+            ? console::alarms_json(playback_.alarms())
+            : console::section_of(*section, playback_.picture(), playback_.fleet(),
+                                  playback_.origin(), playback_.version(), playback_.now());
     std::string text = text_of(view);
     return {true, text.empty() ? data + "\n" : std::move(text), std::move(data)};
   }
@@ -159,6 +161,8 @@ class ReplayLoop {
         return hazards_text(playback_.picture());
       case View::fence:
         return console::fence_text(playback_.picture(), playback_.fleet());
+      case View::alarms:
+        return console::alarms_text(playback_.alarms(), playback_.now());
       case View::preflight:
         return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
                                        playback_.now());
@@ -215,6 +219,8 @@ class ReplayLoop {
     auto sections = console::sections_of(playback_.picture(), playback_.fleet(), playback_.origin(),
                                          playback_.version(), playback_.now());
     sections[static_cast<std::size_t>(console::Section::audit)] = "[]";
+    sections[static_cast<std::size_t>(console::Section::alarms)] =
+        console::alarms_json(playback_.alarms());
     sections[static_cast<std::size_t>(console::Section::replay)] = codec::json_text(
         {{"time_s", to_seconds(playback_.now())}, {"playing", playing_}, {"speed", speed_}});
     server_->publish(to_seconds(playback_.now()), std::move(sections));

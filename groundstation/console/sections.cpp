@@ -552,7 +552,7 @@ std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
       "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
       "formation", "timeline", "audit", "replay",     "proposals",      "preflight",
-      "fence",     "links",    "wind",  "areas"};
+      "fence",     "links",    "wind",  "areas",      "alarms"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -609,6 +609,7 @@ std::string section_of(Section section, const Picture& picture, const mission::F
     case Section::audit:
     case Section::areas:
     case Section::replay:
+    case Section::alarms:
     case Section::count:
       break;
   }

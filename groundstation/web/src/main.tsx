@@ -7,6 +7,7 @@ import "./theme/colours.css";
 import "./theme/controls.css";
 import "./shell/layout.css";
 import "./shell/dialogs.css";
+import "./alarms/alarms.css";
 import "./map/map.css";
 import "./fleet/fleet.css";
 import "./mission/decisions.css";

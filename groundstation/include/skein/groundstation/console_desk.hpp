@@ -11,6 +11,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
 #include "skein/configuration/ground_config.hpp"
+#include "skein/console/alarms.hpp"
 #include "skein/console/picture.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/console/server.hpp"
@@ -43,7 +44,7 @@ class ConsoleDesk {
   /// What an earlier process of this ground station heard or said: it is shown as it was then.
   void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
-  void on_event(const mission::MissionEvent& event);
+  void on_event(const mission::MissionEvent& event, Instant now);
   /// `audit` and `areas` are their sections.
   void on_timeout(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
                   Instant now);
@@ -51,6 +52,10 @@ class ConsoleDesk {
   /// The newest of everything, and last `text`: the program is about to end.
   void end(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
            const std::string& text, Instant now);
+
+  [[nodiscard]] const console::Alarms& alarms() const { return alarms_; }
+  /// What came of `order` of that operator.
+  Answer answer(const Acknowledge& order, const std::string& by, Instant now);
 
   /// Ends what that user has open.
   void expel(const std::string& user) {
@@ -82,6 +87,7 @@ class ConsoleDesk {
   MissionOrigin origin_;
   console::Picture picture_;
   std::vector<configuration::ConsoleConfig::Video> videos_;
+  console::Alarms alarms_;
   std::string token_;  ///< empty where there are passwords
   std::unique_ptr<console::Server> server_;
   std::vector<std::string> events_;  ///< to be shown

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -64,6 +65,7 @@ enum class View {
   fence,
   links,
   wind,
+  alarms,
   console  ///< its address
 };
 /// What that vehicle's checks find.
@@ -182,12 +184,16 @@ struct Wait {
 struct Record {
   std::string folder;  ///< empty: nothing is recorded any more
 };
+/// He has seen those alarms.
+struct Acknowledge {
+  std::vector<std::uint32_t> numbers;  ///< empty: all that wait for it
+};
 struct Quit {};
 /// monostate: an empty line.
 using Input = std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard,
                            WithdrawHazard, NewSite, SitesFromFile, WithdrawSite, RoutesFromFile,
                            CallOffRoutes, ProposalAnswer, Formation, Wait, Record, Quit,
-                           PreflightOf, NewFence, StatusOf, ReturnPreview, SearchArea>;
+                           PreflightOf, NewFence, StatusOf, ReturnPreview, SearchArea, Acknowledge>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

@@ -11,6 +11,7 @@
 
 #include "skein/base/frames.hpp"
 #include "skein/base/result.hpp"
+#include "skein/console/alarms.hpp"
 #include "skein/console/picture.hpp"
 #include "skein/mission/fleet.hpp"
 #include "skein/recording/log.hpp"
@@ -36,6 +37,8 @@ class Playback {
   [[nodiscard]] Instant now() const { return now_; }
   [[nodiscard]] const console::Picture& picture() const { return seen_.picture; }
   [[nodiscard]] const mission::Fleet& fleet() const { return seen_.fleet; }
+  /// Nobody acknowledges them in a recording.
+  [[nodiscard]] const console::Alarms& alarms() const { return seen_.alarms; }
   [[nodiscard]] const MissionOrigin& origin() const { return origin_; }
   /// All, as event_json() gives them, by time.
   struct Event {
@@ -57,6 +60,7 @@ class Playback {
   struct Seen {
     console::Picture picture;
     mission::Fleet fleet;
+    console::Alarms alarms{};
   };
   struct Copy {
     Instant time{};

@@ -152,6 +152,8 @@ export function command_to(command: CommandToSeveral["command"], vehicles: Itera
 /** An order in words, for people. */
 export function words_of_order(order: Order): string {
   switch (order.kind) {
+    case "acknowledge":
+      return `acknowledge ${order.alarms.join(" ")}`;
     case "command":
       return `${order.command.replaceAll("_", " ")} ${order.vehicle === 0 ? "all" : order.vehicle}`;
     case "commands":

@@ -2,21 +2,22 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { empty_picture } from "../wire/picture";
-import { a_vehicle } from "../wire/samples";
+import { a_vehicle, an_alarm, some_alarms } from "../wire/samples";
 import { count_alarms, fresh_alarms } from "./alarms";
 
-const silent = (age: number) => a_vehicle(7, { silent: true, heard_age_s: age, problems: [{ level: "alarm", text: `silent for ${age.toFixed(1)} s` }] });
-const picture = (...vehicles: ReturnType<typeof a_vehicle>[]) => ({ ...empty_picture(), vehicles });
+const picture = (...list: ReturnType<typeof an_alarm>[]) => ({ ...empty_picture(), alarms: some_alarms(list) });
 
-test("an alarm is said once, not at each of its figures", () => {
-  assert.deepEqual(fresh_alarms(picture(a_vehicle(7)), picture(silent(3))), ["Vehicle 7: silent for 3.0 s"]);
-  assert.deepEqual(fresh_alarms(picture(silent(3)), picture(silent(4.5))), []);
-  assert.deepEqual(fresh_alarms(picture(silent(3)), picture(a_vehicle(7))), []);
+test("an alarm is said once, with what to do", () => {
+  const silent = an_alarm(3);
+  assert.deepEqual(fresh_alarms(picture(), picture(silent)), ["vehicle 7 is silent. look for it"]);
+  assert.deepEqual(fresh_alarms(picture(silent), picture({ ...silent, acknowledged: { by: "ada", at_s: 9 } })), []);
+  assert.deepEqual(fresh_alarms(picture(silent), picture()), []);
+  assert.equal(fresh_alarms(picture(silent), picture(an_alarm(4))).length, 1, "what is back is said again");
 });
 
 test("counts", () => {
   const never = a_vehicle(3, { heard_age_s: null, x: null, y: null });
-  assert.deepEqual(count_alarms(picture(a_vehicle(1), silent(4), never)), {
-    alarms: 1, warnings: 0, heard: 1, expected: 3, waiting: 0,
-  });
+  const silent = a_vehicle(4, { silent: true });
+  const counted = { ...picture(an_alarm(1), an_alarm(2, { level: "warning" })), vehicles: [a_vehicle(1), silent, never] };
+  assert.deepEqual(count_alarms(counted), { alarms: 1, warnings: 1, heard: 1, expected: 3, waiting: 0 });
 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is said aloud by a screen reader, and counted in the bar at the top.
 
-import { health_of, problems_of } from "../fleet/attention";
+import { fresh_of } from "../alarms/alarm_list";
 import { request_key } from "../mission/requests";
 import type { Picture } from "../wire/picture";
 
@@ -14,11 +14,9 @@ export interface AlarmCounts {
 }
 
 export function count_alarms(picture: Picture): AlarmCounts {
-  const counts: AlarmCounts = { alarms: 0, warnings: 0, heard: 0, expected: 0, waiting: 0 };
+  const { alarm = 0, warning = 0 } = picture.alarms?.counts ?? {};
+  const counts: AlarmCounts = { alarms: alarm, warnings: warning, heard: 0, expected: 0, waiting: 0 };
   for (const vehicle of picture.vehicles) {
-    const health = health_of(vehicle);
-    if (health === "alarm" || health === "silent") counts.alarms++;
-    if (health === "warning") counts.warnings++;
     if (vehicle.expected) counts.expected++;
     if (vehicle.heard_age_s !== null && !vehicle.silent && !vehicle.stale) counts.heard++;
   }
@@ -28,22 +26,10 @@ export function count_alarms(picture: Picture): AlarmCounts {
 
 /** What has become wrong, or begun to wait for the operator, from one picture to the next. */
 export function fresh_alarms(before: Picture, after: Picture): string[] {
-  const said = new Set<string>();
-  for (const vehicle of before.vehicles) for (const { level, text } of problems_of(vehicle)) if (level === "alarm") said.add(`${vehicle.id}:${kind_of(text)}`);
-  const fresh: string[] = [];
-  for (const vehicle of after.vehicles) {
-    for (const { level, text } of problems_of(vehicle)) {
-      if (level === "alarm" && !said.has(`${vehicle.id}:${kind_of(text)}`)) fresh.push(`Vehicle ${vehicle.id}: ${text}`);
-    }
-  }
+  const fresh = fresh_of(before.alarms?.list ?? [], after.alarms?.list ?? []);
   const known = new Set(before.authorisations.map(request_key));
   for (const request of after.authorisations) {
     if (request.waiting && !known.has(request_key(request))) fresh.push(`Site ${request.site}: deliveries wait for your decision`);
   }
   return fresh;
-}
-
-/** The problem without its figures, which change while it stays the same problem. */
-function kind_of(text: string): string {
-  return text.replace(/[\d.,−-]+/g, "#");
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import { useEffect } from "preact/hooks";
 import { AreasPanel } from "../areas/areas_panel";
+import { AlarmBar } from "../alarms/alarm_bar";
 import { FleetPanel } from "../fleet/fleet_panel";
 import { SelectionBar } from "../fleet/selection_bar";
 import { LinksPanel } from "../links/links_panel";
@@ -45,6 +46,9 @@ export function App() {
     <div class={`console${lost_s.value > 0 ? " is-old" : ""}`} data-testid="console">
       <TopBar />
       <Banners />
+      <Guard what="The list of alarms">
+        <AlarmBar />
+      </Guard>
       <main class={`main ${map_in_front.value ? "map-in-front" : "panel-in-front"}`}>
         <div class="map-side" id="map">
           <Guard what="The map">

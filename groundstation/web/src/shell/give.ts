@@ -3,7 +3,7 @@
 
 import { signal } from "@preact/signals";
 import type { Answer, Order } from "../wire/protocol";
-import { hold_progress, told_to_hold } from "../orders/hold_watch";
+import { answers_text, given_of } from "../alarms/alarm_list";
 import { command, words_of_order } from "../orders/orders";
 import { current, on_picture, send } from "../wire/store";
 
@@ -38,32 +38,40 @@ export function note(text: string): void {
 export async function give(order: Order): Promise<Answer> {
   const id = next_id++;
   const line = words_of_order(order);
+  // A clock of the ground station that was heard just before.
+  const since_s = (current().time_s ?? 0) - 0.5;
   put({ id, line, text: "sent", state: "sent" });
   const answer = await send(order);
   put({ id, line, text: answer.text.trim() || (answer.done ? "done" : "refused"), state: answer.done ? "done" : "refused" });
-  const told = answer.done ? told_to_hold(order, current().vehicles) : null;
-  if (told) watch_hold(id, line, told);
+  if (answer.done && (order.kind === "command" || order.kind === "decision")) watch_answers(id, order, line, since_s);
   // A refusal stays until it is dismissed.
   else if (answer.done) window.setTimeout(() => dismiss(id), 6000);
   return answer;
 }
 
-const hold_within_ms = 6000;
+const shown_ms = 6000;
+const patience_ms = 10_000;
 
-/** Shows who holds until all do; and if some do not in time, until it is dismissed. */
-function watch_hold(id: number, line: string, told: number[]): void {
+/** Shows who obeys, and how long that took, as the ground station finds it in what vehicles say. It stays until all do. */
+function watch_answers(id: number, order: Order, line: string, since_s: number): void {
   const begun_ms = performance.now();
-  const stop = on_picture(({ vehicles }) => {
-    const { all, text } = hold_progress(told, vehicles);
-    const late = performance.now() - begun_ms > hold_within_ms;
+  const stop = on_picture(({ alarms }) => {
     const before = notices.value.find((notice) => notice.id === id);
     if (!before) return stop();
-    const state = all ? "done" : late ? "refused" : "sent";
+    const given = given_of(order, alarms?.orders ?? [], since_s);
+    const waited_ms = performance.now() - begun_ms;
+    if (!given) return waited_ms > shown_ms ? end() : undefined;
+    const obeyed = given.waiting.length === 0;
+    const state = obeyed ? "done" : waited_ms > patience_ms ? "refused" : "sent";
+    const text = answers_text(given);
     if (before.text !== text || before.state !== state) put({ id, line, text, state });
-    if (!all) return;
-    stop();
-    window.setTimeout(() => dismiss(id), 6000);
+    // Whom it asks is known a moment after it was given.
+    if (obeyed && (given.answered.length > 0 || waited_ms > 1000)) end();
   });
+  const end = () => {
+    stop();
+    window.setTimeout(() => dismiss(id), shown_ms);
+  };
 }
 
 /** No confirmation: to stop where one is can always be taken back. */

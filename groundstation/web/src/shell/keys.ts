@@ -2,6 +2,7 @@
 // Keys that work anywhere on the page.
 
 import { recall_group } from "../fleet/chosen";
+import { acknowledge, can_acknowledge, go_to, list_open, worst } from "../alarms/alarm_state";
 import { may_order } from "../wire/store";
 import { hold_all } from "./give";
 import { follow, help_open, layers, measure_from, measure_to, panel, panels, select, selected, switch_theme, timeline_open, tool } from "./view";
@@ -15,6 +16,7 @@ export interface Key {
 export const key_list: readonly Key[] = [
   { keys: "Shift+H or F9", what: "Hold all: every vehicle holds, at once. F9 works while typing too" },
   { keys: "1 … 8", what: "Panel: fleet, mission, orders, log, plots, preflight, links, areas" },
+  { keys: "J, K, Shift+J", what: "The worst alarm: go to it, where one acts; acknowledge it; the list of all" },
   { keys: "[ and ]", what: "Select the vehicle before, after" },
   { keys: "Shift+1 … 9", what: "Select the group of that number" },
   { keys: "Shift", what: "On the map: with a press one more or less is selected, with a drag all in the box" },
@@ -72,6 +74,9 @@ export function listen_to_keys(vehicle_ids: () => readonly number[]): () => void
     else if (event.key === "]") next_vehicle(vehicle_ids(), 1);
     else if (event.key === "f") follow.value = selected.value !== null && !follow.value;
     else if (event.key === "a") on_fit.forEach((fit) => fit());
+    else if (event.key === "j" && worst.value) go_to(worst.value);
+    else if (event.key === "J") list_open.value = !list_open.value;
+    else if (event.key === "k") acknowledge(can_acknowledge.value.slice(0, 1));
     else if (event.key === "m") tool.value = tool.value === "measure" ? "select" : "measure";
     else if (event.key === "l") timeline_open.value = !timeline_open.value;
     else if (event.key === "n") switch_theme();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import { aged_picture, ended, hello, in_replay, link, log_out, lost_s, may_order, mission_now_s, session, shown } from "../wire/store";
+import { list_open } from "../alarms/alarm_state";
 import { count_alarms } from "./alarms";
 import { clock, utc } from "./format";
 import { hold_all } from "./give";
@@ -87,10 +88,10 @@ export function TopBar() {
         </b>{" "}
         heard
       </button>
-      <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={show_fleet}>
+      <button type="button" class={`count${counts.alarms ? " alarm" : ""}`} data-testid="count-alarms" onClick={() => (list_open.value = true)}>
         <b>{is_old ? "–" : counts.alarms}</b> {counts.alarms === 1 ? "alarm" : "alarms"}
       </button>
-      <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={show_fleet}>
+      <button type="button" class={`count${counts.warnings ? " warning" : ""}`} data-testid="count-warnings" onClick={() => (list_open.value = true)}>
         <b>{is_old ? "–" : counts.warnings}</b> {counts.warnings === 1 ? "warning" : "warnings"}
       </button>
       <span class="grow" />

@@ -41,6 +41,7 @@ export const section_names = [
   "links",
   "wind",
   "areas",
+  "alarms",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -63,6 +64,7 @@ export function empty_picture(): Picture {
     links: [],
     wind: null,
     areas: null,
+    alarms: null,
     events: [],
     next_seq: 0,
     events_missed: 0,

@@ -283,6 +283,7 @@ export interface Sections {
   links: LinkRow[];
   wind: Wind | null;
   areas: Areas | null;
+  alarms: Alarms | null;
 }
 
 /** Where all vehicles are to stay. */
@@ -387,6 +388,54 @@ export interface AreaHazard {
 export interface Areas {
   search: SearchArea | null;
   hazards: AreaHazard[];
+}
+
+export type AlarmLevel = "alarm" | "warning" | "notice";
+
+/** What may not be overlooked. */
+export interface Alarm {
+  /** Its own: what comes back, or has become worse, has another one. */
+  number: number;
+  /** Which it is, whatever its figures. */
+  key: string;
+  kind: string;
+  level: AlarmLevel;
+  since_s: number;
+  /** It is not so any more, and nobody has acknowledged it. */
+  over_s: number | null;
+  what: string;
+  remedy: string;
+  times: number;
+  vehicle: number | null;
+  /** Of two vehicles. */
+  other: number | null;
+  site: number | null;
+  /** Where one acts: a panel, or `decisions`. */
+  panel: string;
+  /** Orders that may help, to its vehicle or to all. */
+  offers: Command["command"][];
+  acknowledged: { by: string; at_s: number } | null;
+}
+
+/** An order, and who has shown since that he obeys. */
+export interface GivenOrder {
+  /** A command, `authorise` or `refuse`. */
+  kind: string;
+  line: string;
+  /** 0: all; null of a decision. */
+  vehicle: number | null;
+  site: number | null;
+  given_s: number;
+  answered: { vehicle: number; after_s: number }[];
+  waiting: number[];
+}
+
+export interface Alarms {
+  counts: { alarm: number; warning: number; notice: number; unacknowledged: number };
+  /** The worst first of those that are not acknowledged; then those that are, then what is over. */
+  list: Alarm[];
+  /** Oldest first. */
+  orders: GivenOrder[];
 }
 
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";
@@ -603,7 +652,13 @@ export interface ProposalAnswer {
   accept: boolean;
 }
 
-export type Order = Command | CommandToSeveral | Decision | NewHazard | SearchOrder | FenceOrder | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
+/** By number, so that what has come since is not meant. */
+export interface Acknowledgement {
+  kind: "acknowledge";
+  alarms: number[];
+}
+
+export type Order = Acknowledgement | Command | CommandToSeveral | Decision | NewHazard | SearchOrder | FenceOrder | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
 
 export interface Session {
   user: string;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples for the tests.
 
-import type { Coalition, Hello, MissionEvent, PreflightVehicle, Vehicle } from "./protocol";
+import type { Alarm, Alarms, Coalition, Hello, MissionEvent, PreflightVehicle, Vehicle } from "./protocol";
 
 export function a_hello(): Hello {
   return {
@@ -117,4 +117,31 @@ export function a_preflight_vehicle(id: number, other: Partial<PreflightVehicle>
     lines_left_out: 0,
     ...other,
   };
+}
+
+export function an_alarm(number: number, other: Partial<Alarm> = {}): Alarm {
+  return {
+    number,
+    key: "vehicle_silent-7",
+    kind: "vehicle_silent",
+    level: "alarm",
+    since_s: 60,
+    over_s: null,
+    what: "vehicle 7 is silent",
+    remedy: "look for it",
+    times: 1,
+    vehicle: 7,
+    other: null,
+    site: null,
+    panel: "fleet",
+    offers: [],
+    acknowledged: null,
+    ...other,
+  };
+}
+
+export function some_alarms(list: Alarm[], orders: Alarms["orders"] = []): Alarms {
+  const of = (level: Alarm["level"]) => list.filter((alarm) => alarm.level === level && alarm.over_s === null).length;
+  const unacknowledged = list.filter((alarm) => alarm.acknowledged === null && alarm.over_s === null).length;
+  return { counts: { alarm: of("alarm"), warning: of("warning"), notice: of("notice"), unacknowledged }, list, orders };
 }

@@ -31,6 +31,7 @@ enum class Section : std::uint8_t {
   links,
   wind,
   areas,
+  alarms,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);
@@ -39,8 +40,8 @@ inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::c
 /// One JSON value a section; empty where there is none.
 using Sections = std::array<std::string, kSectionCount>;
 
-/// All but `audit`, `areas` and `replay`, which are not of the picture. `program` is what vehicles should
-/// run, so that others are named.
+/// All but `audit`, `areas`, `replay` and `alarms`, which are not of the picture. `version` is what
+/// vehicles should run, so that others are named.
 [[nodiscard]] Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
                                    const MissionOrigin& origin, const std::string& version,
                                    Instant now);

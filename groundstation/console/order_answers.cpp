@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "skein/console/order_answers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "skein/mission/shown_state.hpp"
+
+namespace skein::console {
+namespace {
+
+using mission::CommandKind;
+using mission::ShownState;
+
+/// What a vehicle says in the moment after an order may have been said before it heard of it.
+constexpr Duration kNewsMayTake = std::chrono::seconds{1};
+/// A vehicle's clock from ours.
+constexpr Duration kClocksDiffer = std::chrono::seconds{1};
+constexpr std::size_t kDecidedMax = 256;
+
+std::string words_of(std::string_view name) {
+  std::string words{name};
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
+bool is_on_ground(ShownState state) {
+  return state == ShownState::on_the_ground || state == ShownState::waiting_for_the_start ||
+         state == ShownState::landed;
+}
+
+/// Does what a vehicle does show that it obeys?
+bool shows(CommandKind command, ShownState state, Duration after) {
+  using enum ShownState;
+  const bool is_home =
+      state == returning || state == at_home || state == landing || state == landed;
+  switch (command) {
+    case CommandKind::hold:
+      return state == holding_by_order;
+    case CommandKind::return_home:
+      return is_home;
+    case CommandKind::land:
+      return state == landing || state == landed;
+    case CommandKind::resume:
+      return state != holding_by_order && !is_home && after >= kNewsMayTake;
+    case CommandKind::give_back:
+    case CommandKind::count:
+      break;
+  }
+  return false;
+}
+
+void answer(GivenOrder& order, VehicleId vehicle, Instant now) {
+  if (!order.asked || order.waiting.erase(vehicle) == 1) {
+    order.answered.try_emplace(vehicle, now - order.given);
+  }
+}
+
+bool concerns(const GivenOrder& order, VehicleId vehicle) {
+  if (order.decision) return true;
+  return order.to == kGroundStation || order.to == vehicle;
+}
+
+/// By its own event.
+bool is_answered_by(const GivenOrder& order, const mission::MissionEvent& event) {
+  if (event.vehicle == kGroundStation || !concerns(order, event.vehicle)) return false;
+  if (event.time + kClocksDiffer < order.given) return false;  // of an order before it
+  if (order.command) {
+    const auto* obeyed = std::get_if<mission::event::Commanded>(&event.body);
+    return obeyed != nullptr && obeyed->command == *order.command;
+  }
+  const auto wanted = order.decision->granted ? mission::EventKind::authorised
+                                              : mission::EventKind::authorisation_refused;
+  return event.kind() == wanted && event.round == order.decision->round;
+}
+
+/// By what it does.
+bool is_answered_by(const GivenOrder& order, const mission::Telemetry& told, Instant now) {
+  if (!concerns(order, told.vehicle) || told.state.time < order.given) return false;
+  const ShownState state = mission::shown_state(told.activity, told.detail);
+  if (order.command) return shows(*order.command, state, now - order.given);
+  const bool is_at_it = told.task.site == order.site && order.decision->granted;
+  return is_at_it && state == ShownState::delivering;
+}
+
+/// Who is heard and in the air; whoever was named answers in any case.
+std::set<VehicleId> asked_by(const GivenOrder& order, const Picture& picture,
+                             const mission::Fleet& fleet) {
+  std::set<VehicleId> all;
+  if (order.decision && order.decision->granted) {
+    for (const auto& delivery : order.decision->deliveries) all.insert(delivery.assignment.vehicle);
+  } else if (order.decision) {
+    // A round that nobody has asked a decision on has no leader to answer.
+    const auto known = std::ranges::find_if(picture.authorisations(), [&](const auto& one) {
+      return one.request.round == order.decision->round;
+    });
+    if (known != picture.authorisations().end()) all.insert(order.decision->round.coalition.leader);
+  } else if (order.to != kGroundStation) {
+    all.insert(order.to);
+  } else {
+    for (const auto& [id, entry] : fleet.vehicles()) {
+      if (!entry.expected || !entry.telemetry) continue;
+      const auto state = mission::shown_state(entry.telemetry->activity, entry.telemetry->detail);
+      if (!is_on_ground(state)) all.insert(id);
+    }
+  }
+  for (const auto& [id, after] : order.answered) all.erase(id);
+  return all;
+}
+
+/// Nobody flies what was decided any more, or something else was asked since.
+bool is_past(const GivenOrder& order, const Picture& picture, Instant now) {
+  if (!order.decision) return false;
+  if (order.decision->granted && now > order.decision->until) return true;
+  const auto site = picture.sites().find(order.site);
+  if (order.decision->granted && site != picture.sites().end() && site->second.over()) return true;
+  return std::ranges::any_of(picture.authorisations(), [&](const AuthorisationPicture& one) {
+    return one.request.site == order.site && one.asked_at > order.given;
+  });
+}
+
+}  // namespace
+
+std::string line_of(const GivenOrder& order) {
+  if (order.decision) return fmt::format("{} site {}", order.kind, order.site.value);
+  const std::string verb = words_of(order.kind);
+  return order.to == kGroundStation ? verb + " all" : fmt::format("{} {}", verb, order.to.value);
+}
+
+void OrderAnswers::on_message(const mission::Message& message, VehicleId sender, Instant now) {
+  if (const auto* telemetry = std::get_if<mission::Telemetry>(&message)) take(*telemetry, now);
+  if (sender != kGroundStation) return;
+  if (const auto* command = std::get_if<mission::Command>(&message)) take(*command, now);
+  if (const auto* decision = std::get_if<mission::Authorisation>(&message)) take(*decision, now);
+}
+
+void OrderAnswers::take(const mission::Command& command, Instant now) {
+  // Older ones are said again to whoever has not heard them.
+  const std::uint64_t number = mission::number_of(command);
+  if (number <= newest_command_ || command.told_by != kGroundStation) return;
+  newest_command_ = number;
+  for (GivenOrder& before : orders_) {
+    if (!before.command) continue;
+    if (command.vehicle == kGroundStation) before.waiting.clear();
+    before.waiting.erase(command.vehicle);
+  }
+  GivenOrder order;
+  order.kind = to_string(command.kind);
+  order.to = command.vehicle;
+  order.given = now;
+  order.command = command.kind;
+  add(std::move(order));
+}
+
+void OrderAnswers::take(const mission::Authorisation& decision, Instant now) {
+  if (!decided_.emplace(decision.round, decision.granted).second) return;
+  if (decided_.size() > kDecidedMax) decided_.erase(decided_.begin());
+  // Of an earlier process of this ground station.
+  if (decision.decided_at + kNewsMayTake < now) return;
+  GivenOrder order;
+  order.kind = decision.granted ? "authorise" : "refuse";
+  order.site = decision.site;
+  order.given = now;
+  order.decision = decision;
+  add(std::move(order));
+}
+
+void OrderAnswers::take(const mission::Telemetry& telemetry, Instant now) {
+  for (GivenOrder& order : orders_) {
+    if (order.waiting.contains(telemetry.vehicle) && is_answered_by(order, telemetry, now)) {
+      answer(order, telemetry.vehicle, now);
+    }
+  }
+}
+
+void OrderAnswers::add(GivenOrder order) {
+  orders_.push_back(std::move(order));
+  if (orders_.size() > kOrdersMax) orders_.pop_front();
+}
+
+void OrderAnswers::on_event(const mission::MissionEvent& event, Instant now) {
+  // The newest that it can be of: the same order may have been given before.
+  const auto order = std::find_if(orders_.rbegin(), orders_.rend(),
+                                  [&](const auto& one) { return is_answered_by(one, event); });
+  if (order != orders_.rend()) answer(*order, event.vehicle, now);
+}
+
+void OrderAnswers::on_timeout(const Picture& picture, const mission::Fleet& fleet, Instant now) {
+  for (GivenOrder& order : orders_) {
+    if (!std::exchange(order.asked, true)) order.waiting = asked_by(order, picture, fleet);
+    if (!order.waiting.empty() && is_past(order, picture, now)) order.waiting.clear();
+  }
+}
+
+}  // namespace skein::console
