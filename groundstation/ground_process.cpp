@@ -25,6 +25,7 @@
 #include "skein/groundstation/audit.hpp"
 #include "skein/groundstation/console_desk.hpp"
 #include "skein/groundstation/control_socket.hpp"
+#include "skein/groundstation/decision_desk.hpp"
 #include "skein/groundstation/fence_desk.hpp"
 #include "skein/groundstation/formation_desk.hpp"
 #include "skein/groundstation/health_report.hpp"
@@ -395,12 +396,10 @@ class GroundLoop {
 
   Answer order(const Input& input, const Asker& asker, Instant now) {
     if (const auto* decision = std::get_if<Decision>(&input)) {
-      if (decision->plan) {
-        return answer_to(node_.agent().decide_on(*decision->plan, decision->site, decision->grant,
-                                                 asker.who, now));
-      }
-      return answer_to(decision->grant ? node_.agent().authorise(decision->site, asker.who, now)
-                                       : node_.agent().refuse(decision->site, asker.who, now));
+      return decision_answer(*decision, node_.agent(), asker.who, now);
+    }
+    if (const auto* back = std::get_if<TakeBack>(&input)) {
+      return decision_answer(*back, node_.agent(), asker.who, now);
     }
     if (const auto* order = std::get_if<Order>(&input)) {
       return answer_to(node_.command(order->vehicle, order->kind, now));

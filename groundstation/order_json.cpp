@@ -163,6 +163,7 @@ Input decision(Reader& from) {
   if (!coalition) from.fail("coalition is to be the key of one");
   decision.plan = coalition::Round{coalition.value_or(coalition::CoalitionId{}),
                                    from.integer("round", 0.0, 4294967295.0)};
+  if (from.has("override")) decision.although_silent = from.flag("override");
   return decision;
 }
 
@@ -246,6 +247,9 @@ Input withdrawal(Reader& from) {
   }
   if (from.has("hazard")) {
     return WithdrawHazard{{static_cast<std::uint16_t>(from.integer("hazard", 1.0, kIdMax))}};
+  }
+  if (from.has("decision")) {
+    return TakeBack{{static_cast<std::uint16_t>(from.integer("decision", 1.0, kIdMax))}};
   }
   return WithdrawSite{{static_cast<std::uint16_t>(from.integer("site", 1.0, kIdMax))}};
 }

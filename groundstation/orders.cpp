@@ -17,100 +17,104 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 17> kWords {
-    "help", "status", "sites", "pending", "places", "coalitions", "hazards", "audit", "proposals",
-        "routes", "search", "preflight", "fence", "links", "wind",
-        alarms ", " console "};
-        return kWords.at(static_cast<std::size_t>(view));
-  }
+  static constexpr std::array<std::string_view, 17> kWords{
+      "help",    "status", "sites",     "pending", "places", "coalitions",
+      "hazards", "audit",  "proposals", "routes",  "search", "preflight",
+      "fence",   "links",  "wind",      "alarms",  "console"};
+  return kWords.at(static_cast<std::size_t>(view));
+}
 
-  std::string_view verb_of(mission::CommandKind kind) {
-    static constexpr std::array<std::string_view, 5> kVerbs{"hold", "resume", "return", "give-back",
-                                                            "land"};
-    static_assert(kVerbs.size() == static_cast<std::size_t>(mission::CommandKind::count));
-    return kVerbs.at(static_cast<std::size_t>(kind));
-  }
+std::string_view verb_of(mission::CommandKind kind) {
+  static constexpr std::array<std::string_view, 5> kVerbs{"hold", "resume", "return", "give-back",
+                                                          "land"};
+  static_assert(kVerbs.size() == static_cast<std::size_t>(mission::CommandKind::count));
+  return kVerbs.at(static_cast<std::size_t>(kind));
+}
 
-  struct Line {
-    std::string operator()(std::monostate /*empty*/) const { return ""; }
-    std::string operator()(View view) const { return std::string{word_of(view)}; }
-    std::string operator()(const Decision& decision) const {
-      return fmt::format("{} {}", decision.grant ? "authorise" : "refuse", decision.site.value);
+struct Line {
+  std::string operator()(std::monostate /*empty*/) const { return ""; }
+  std::string operator()(View view) const { return std::string{word_of(view)}; }
+  std::string operator()(const Decision& decision) const {
+    return fmt::format("{} {}{}", decision.grant ? "authorise" : "refuse", decision.site.value,
+                       decision.although_silent ? " override" : "");
+  }
+  std::string operator()(const TakeBack& back) const {
+    return fmt::format("withdraw decision {}", back.site.value);
+  }
+  std::string operator()(const Order& order) const {
+    const std::string_view verb = verb_of(order.kind);
+    return order.vehicle == kGroundStation ? fmt::format("{} all", verb)
+                                           : fmt::format("{} {}", verb, order.vehicle.value);
+  }
+  std::string operator()(const Acknowledge& order) const {
+    std::string line = "acknowledge";
+    for (const std::uint32_t number : order.numbers) line += fmt::format(" {}", number);
+    return order.numbers.empty() ? line + " all" : line;
+  }
+  std::string operator()(const OrderToSeveral& order) const {
+    return fmt::format("{} {}", verb_of(order.kind), typed_ids(order.vehicles));
+  }
+  std::string operator()(const NewHazard& hazard) const { return hazard_line(hazard); }
+  std::string operator()(const SearchArea& search) const { return search_line(search); }
+  std::string operator()(const WithdrawHazard& hazard) const {
+    return fmt::format("withdraw hazard {}", hazard.hazard.value);
+  }
+  std::string operator()(const NewFence& fence) const { return fence_line(fence); }
+  std::string operator()(const NewSite& site) const { return site_line(site); }
+  std::string operator()(const SitesFromFile& from) const { return "sites " + from.file; }
+  std::string operator()(const WithdrawSite& site) const {
+    return fmt::format("withdraw site {}", site.site.value);
+  }
+  std::string operator()(const RoutesFromFile& from) const {
+    return fmt::format("{}routes {}{}", from.preview ? "preview " : "", from.file,
+                       from.in_s ? fmt::format(" in {}", *from.in_s) : "");
+  }
+  std::string operator()(const PreflightOf& of) const {
+    return fmt::format("preflight {}", of.vehicle.value);
+  }
+  std::string operator()(const StatusOf& of) const {
+    return fmt::format("status {}", of.vehicle.value);
+  }
+  std::string operator()(const ReturnPreview& preview) const {
+    std::string ids;
+    for (const VehicleId id : preview.vehicles) {
+      ids += fmt::format("{}{}", ids.empty() ? "" : ",", id.value);
     }
-    std::string operator()(const Order& order) const {
-      const std::string_view verb = verb_of(order.kind);
-      return order.vehicle == kGroundStation ? fmt::format("{} all", verb)
-                                             : fmt::format("{} {}", verb, order.vehicle.value);
+    return "preview return " + (ids.empty() ? "all" : ids);
+  }
+  std::string operator()(const CallOffRoutes& /*off*/) const { return "withdraw routes"; }
+  std::string operator()(const ProposalAnswer& answer) const {
+    return fmt::format("{} {}", answer.accept ? "accept" : "dismiss", answer.number);
+  }
+  std::string operator()(const Formation& formation) const {
+    const formation::ShapeSpec& shape = formation.order.shape;
+    std::string line = formation.preview ? "preview " : "";
+    line += hyphened(to_string(formation.order.kind));
+    const bool along = formation.order.kind == mission::OrderKind::fly_along;
+    if (!along && formation.order.kind != mission::OrderKind::form) return line;
+    if (along) line += " " + formation.track + " in";
+    line += " " + (formation.shape.empty() ? hyphened(formation::to_string(shape.kind))
+                                           : formation.shape);
+    if (formation.has_spacing) line += fmt::format(" spacing {}", shape.spacing_m);
+    if (formation.has_heading) {
+      line += " heading " + wording::bearing_digits(shape.heading_rad);
     }
-    std::string operator()(const OrderToSeveral& order) const {
-      return fmt::format("{} {}", verb_of(order.kind), typed_ids(order.vehicles));
+    if (formation.has_centre) {
+      line += fmt::format(" at {} {} {}", shape.centre.x(), shape.centre.y(), shape.centre.z());
     }
-    std::string operator()(const NewHazard& hazard) const { return hazard_line(hazard); }
-    std::string operator()(const SearchArea& search) const { return search_line(search); }
-    std::string operator()(const WithdrawHazard& hazard) const {
-      return fmt::format("withdraw hazard {}", hazard.hazard.value);
-    }
-    std::string operator()(const NewFence& fence) const { return fence_line(fence); }
-    std::string operator()(const NewSite& site) const { return site_line(site); }
-    std::string operator()(const SitesFromFile& from) const { return "sites " + from.file; }
-    std::string operator()(const WithdrawSite& site) const {
-      return fmt::format("withdraw site {}", site.site.value);
-    }
-    std::string operator()(const RoutesFromFile& from) const {
-      return fmt::format("{}routes {}{}", from.preview ? "preview " : "", from.file,
-                         from.in_s ? fmt::format(" in {}", *from.in_s) : "");
-    }
-    std::string operator()(const PreflightOf& of) const {
-      return fmt::format("preflight {}", of.vehicle.value);
-    }
-    std::string operator()(const StatusOf& of) const {
-      return fmt::format("status {}", of.vehicle.value);
-    }
-    std::string operator()(const ReturnPreview& preview) const {
-      std::string ids;
-      for (const VehicleId id : preview.vehicles) {
-        ids += fmt::format("{}{}", ids.empty() ? "" : ",", id.value);
-      }
-      return "preview return " + (ids.empty() ? "all" : ids);
-    }
-    std::string operator()(const CallOffRoutes& /*off*/) const { return "withdraw routes"; }
-    std::string operator()(const ProposalAnswer& answer) const {
-      return fmt::format("{} {}", answer.accept ? "accept" : "dismiss", answer.number);
-    }
-    std::string operator()(const Formation& formation) const {
-      const formation::ShapeSpec& shape = formation.order.shape;
-      std::string line = formation.preview ? "preview " : "";
-      line += hyphened(to_string(formation.order.kind));
-      const bool along = formation.order.kind == mission::OrderKind::fly_along;
-      if (!along && formation.order.kind != mission::OrderKind::form) return line;
-      if (along) line += " " + formation.track + " in";
-      line += " " + (formation.shape.empty() ? hyphened(formation::to_string(shape.kind))
-                                             : formation.shape);
-      if (formation.has_spacing) line += fmt::format(" spacing {}", shape.spacing_m);
-      if (formation.has_heading) {
-        line += " heading " + wording::bearing_digits(shape.heading_rad);
-      }
-      if (formation.has_centre) {
-        line += fmt::format(" at {} {} {}", shape.centre.x(), shape.centre.y(), shape.centre.z());
-      }
-      if (formation.speed_mps) line += fmt::format(" speed {}", *formation.speed_mps);
-      if (formation.laps != 1) line += fmt::format(" laps {}", formation.laps);
-      if (formation.order.places) line += fmt::format(" places {}", *formation.order.places);
-      return line;
-    }
-    std::string operator()(const Wait& wait) const {
-      return fmt::format("wait {}", to_seconds(wait.duration));
-    }
-    std::string operator()(const Record& record) const {
-      return "record " + (record.folder.empty() ? "stop" : record.folder);
-    }
-    std::string operator()(const Acknowledge& order) const {
-      std::string line = "acknowledge";
-      for (const std::uint32_t number : order.numbers) line += fmt::format(" {}", number);
-      return order.numbers.empty() ? line + " all" : line;
-    }
-    std::string operator()(const Quit& /*quit*/) const { return "quit"; }
-  };
+    if (formation.speed_mps) line += fmt::format(" speed {}", *formation.speed_mps);
+    if (formation.laps != 1) line += fmt::format(" laps {}", formation.laps);
+    if (formation.order.places) line += fmt::format(" places {}", *formation.order.places);
+    return line;
+  }
+  std::string operator()(const Wait& wait) const {
+    return fmt::format("wait {}", to_seconds(wait.duration));
+  }
+  std::string operator()(const Record& record) const {
+    return "record " + (record.folder.empty() ? "stop" : record.folder);
+  }
+  std::string operator()(const Quit& /*quit*/) const { return "quit"; }
+};
 
 }  // namespace
 

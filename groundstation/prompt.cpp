@@ -35,12 +35,13 @@ Result<Input> view(View which, const std::vector<std::string_view>& words) {
 }
 
 Result<Input> decision(bool grant, const std::vector<std::string_view>& words) {
-  const auto site = words.size() == 2 ? id_of(words[1]) : std::nullopt;
+  const bool although_silent = grant && words.size() == 3 && words[2] == "override";
+  const auto site = words.size() == 2 || although_silent ? id_of(words[1]) : std::nullopt;
   if (!site) {
     return Error{fmt::format(
         "'{0}' needs the number of a site, as in '{0} 3'; 'pending' shows what waits", words[0])};
   }
-  return Input{Decision{{*site}, grant}};
+  return Input{Decision{{*site}, grant, {}, although_silent}};
 }
 
 /// "3,5-9": ascending, none twice; nothing where it is no such list.
@@ -359,8 +360,13 @@ std::string help_text() {
          "preflight [ID]    who is ready before the flight, and what each vehicle's checks find\n"
          "sites             the sites and what was done there\n"
          "pending           deliveries that wait for your decision\n"
-         "authorise SITE    let the deliveries at SITE be flown as planned\n"
+         "authorise SITE    let the deliveries at SITE be flown as planned; with 'override' "
+         "behind\n"
+         "                  it also where one that takes part is silent\n"
          "refuse SITE       do not\n"
+         "withdraw decision SITE\n"
+         "                  take back what was authorised there, but for a delivery that has "
+         "begun\n"
          "coalitions        what was announced, bid and awarded, and what came of it\n"
          "hazards           the circles to keep out of\n"
          "hazard EAST NORTH RADIUS\n"

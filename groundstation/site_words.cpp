@@ -199,9 +199,10 @@ Result<Input> withdrawal(const Words& words) {
   const auto number = words.size() == 3 ? id_of(words[2]) : std::nullopt;
   if (number && words[1] == "site") return Input{WithdrawSite{{*number}}};
   if (number && words[1] == "hazard") return Input{WithdrawHazard{{*number}}};
+  if (number && words[1] == "decision") return Input{TakeBack{{*number}}};
   return Error{
-      "'withdraw' needs what and its number, as in 'withdraw site 10034' or 'withdraw hazard "
-      "10051'; "
+      "'withdraw' needs what and its number, as in 'withdraw site 10034', 'withdraw hazard "
+      "10051' or 'withdraw decision 3', of a site; "
       "'sites' and 'hazards' list them"};
 }
 

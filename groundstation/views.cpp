@@ -80,7 +80,9 @@ std::string sites_summary(const console::Picture& picture) {
   for (const auto& [id, site] : picture.sites()) {
     if (site.withdrawn || site.refused) {
       apart += fmt::format("site {} was {} by the operator\n", id.value,
-                           site.withdrawn ? "withdrawn" : "refused");
+                           site.taken_back  ? "authorised, and that taken back,"
+                           : site.withdrawn ? "withdrawn"
+                                            : "refused");
     } else {
       ++sites.of;
       sites.done += site.done ? 1 : 0;
@@ -129,6 +131,23 @@ std::string vehicles_summary(const mission::Fleet& fleet) {
   add(ground, "on the ground");
   add(silent, "silent, where they are is not known");
   return text;
+}
+
+/// Of what was granted and can be taken back; empty where all of it has begun.
+std::string granted_text(const mission::PendingAuthorisation& pending,
+                         const console::Picture& picture, std::int64_t epoch_unix_ns, Instant now) {
+  std::string text;
+  for (const auto& delivery : pending.request.deliveries) {
+    if (!console::may_be_before_gate(delivery, picture, now)) continue;
+    text += fmt::format("        vehicle {:>3} at {}\n", delivery.assignment.vehicle.value,
+                        wording::moment_text(delivery.assignment.time, epoch_unix_ns));
+  }
+  if (text.empty()) return text;
+  const SiteId site = pending.request.site;
+  return fmt::format(
+      "--- Authorised at site {} by {}, and not begun ---\n{}type    withdraw "
+      "decision {}    to take it back\n",
+      site.value, pending.decision->decided_by, text, site.value);
 }
 
 /// What is missing and why, and what has changed since the request before.
@@ -200,9 +219,10 @@ std::string request_text(const mission::PendingAuthorisation& pending,
   add_rest(text, card);
   fmt::format_to(line,
                  "until   {}, {:.0f} s from now; without a decision they hold and ask again\n"
-                 "type    authorise {}    or    refuse {}\n",
+                 "type    authorise {}{}    or    refuse {}\n",
                  wording::moment_text(request.decide_by, epoch_unix_ns),
-                 to_seconds(request.decide_by - now), request.site.value, request.site.value);
+                 to_seconds(request.decide_by - now), request.site.value,
+                 card.silent.empty() ? "" : " override", request.site.value);
   return text;
 }
 
@@ -211,6 +231,9 @@ std::string pending_text(const std::vector<mission::PendingAuthorisation>& all,
                          const MissionOrigin& origin, std::int64_t epoch_unix_ns, Instant now) {
   std::string text;
   for (const auto& pending : all) {
+    if (pending.decision && pending.decision->granted) {
+      text += granted_text(pending, picture, epoch_unix_ns, now);
+    }
     if (!can_be_decided(pending, now)) continue;
     text += request_text(pending, card_of(pending.request, picture, fleet, now), origin,
                          epoch_unix_ns, now);
@@ -259,12 +282,13 @@ std::string site_state_text(const console::SitePicture& site) {
     done.at(static_cast<std::size_t>(task.kind)) += of.state == coalition::TaskState::done ? 1 : 0;
   }
   return fmt::format("{}, {}, {} delivered, {} assessed",
-                     site.withdrawn  ? "withdrawn"
-                     : site.refused  ? "refused by the operator"
-                     : site.done     ? "done"
-                     : site.leader   ? "led by " + wording::text_of(*site.leader)
-                     : site.surveyor ? "told to " + wording::text_of(*site.surveyor)
-                                     : "no leader yet",
+                     site.taken_back  ? "what was authorised there is taken back"
+                     : site.withdrawn ? "withdrawn"
+                     : site.refused   ? "refused by the operator"
+                     : site.done      ? "done"
+                     : site.leader    ? "led by " + wording::text_of(*site.leader)
+                     : site.surveyor  ? "told to " + wording::text_of(*site.surveyor)
+                                      : "no leader yet",
                      site.surveyed ? "surveyed" : "not surveyed",
                      done[static_cast<std::size_t>(TaskKind::deliver)],
                      done[static_cast<std::size_t>(TaskKind::assess)]);

@@ -14,6 +14,11 @@ constexpr Duration kReportFinishedFor = std::chrono::seconds{300};
 /// What was done here is remembered, for leaders that do not know; the oldest goes first.
 constexpr std::size_t kFinishedMax = 64;
 constexpr std::size_t kOverMax = 256;
+
+bool is_by_operator(Reason reason) {
+  return reason == Reason::site_withdrawn || reason == Reason::grant_taken_back ||
+         reason == Reason::refused_by_operator;
+}
 }  // namespace
 
 Participant::Participant(const ProtocolParams& params, VehicleId self, InstanceId instance)
@@ -134,8 +139,9 @@ void Participant::refuse(const Why& why, Instant /*now*/) {
 
 void Participant::on_cancel(const Cancel& message, Instant now) {
   if (message.round != round_ || machine_.in(State::free)) return;
-  // The operator may withdraw a site until a delivery has begun: that one is not broken off.
-  if (message.why.reason == Reason::site_withdrawn && delivery_in_progress()) return finish_alone();
+  // The operator may withdraw a site, or take a grant back, until a delivery has begun: that one is
+  // not broken off.
+  if (is_by_operator(message.why.reason) && delivery_in_progress()) return finish_alone();
   // The leader counts on what it was told has begun.
   for (const auto& lease : leases_) {
     if (lease.state == TaskState::started) give_up(lease, now);

@@ -22,8 +22,8 @@ TaskFlight delivery() { return {{{{1}, {2}, 1}, 1}, {}, {{{3}, TaskKind::deliver
 TEST(TaskFlight, PassesTheGateOnlyByAGrantAndACommittedPlan) {
   TaskFlight task = delivery();
   EXPECT_FALSE(task.accepts(Event::committed));
-  EXPECT_TRUE(task.grant());
-  EXPECT_FALSE(task.grant());  // it is news once
+  EXPECT_TRUE(task.grant(at_seconds(1)));
+  EXPECT_FALSE(task.grant(at_seconds(1)));  // it is news once
   EXPECT_TRUE(task.authorised());
   task.fire(Event::committed);
   EXPECT_TRUE(task.in_run());
@@ -34,27 +34,27 @@ TEST(TaskFlight, PassesTheGateOnlyByAGrantAndACommittedPlan) {
 
 TEST(TaskFlight, AGrantIsForItsRound) {
   TaskFlight task = delivery();
-  EXPECT_TRUE(task.grant());
+  EXPECT_TRUE(task.grant(at_seconds(1)));
   task.pass_on({{{5}, {6}, 1}, 1});
   EXPECT_FALSE(task.authorised());
   EXPECT_FALSE(task.accepts(Event::committed));
-  EXPECT_TRUE(task.grant());
+  EXPECT_TRUE(task.grant(at_seconds(1)));
   EXPECT_TRUE(task.accepts(Event::committed));
 }
 
 TEST(TaskFlight, WhatLeadsPastTheGateStaysSoUnderASuccessor) {
   TaskFlight task = delivery();
-  EXPECT_TRUE(task.grant());
+  EXPECT_TRUE(task.grant(at_seconds(1)));
   task.fire(Event::committed);
   task.pass_on({{{5}, {6}, 1}, 1});
   EXPECT_TRUE(task.in(State::committed));
-  EXPECT_TRUE(task.grant());
+  EXPECT_TRUE(task.grant(at_seconds(1)));
   EXPECT_TRUE(task.in(State::committed));
 }
 
 TEST(TaskFlight, WhoIsLateBeginsNoMore) {
   TaskFlight task = delivery();
-  EXPECT_TRUE(task.grant());
+  EXPECT_TRUE(task.grant(at_seconds(1)));
   task.fire(Event::missed);
   for (const Event event : {Event::committed, Event::began, Event::finished}) {
     EXPECT_FALSE(task.accepts(event));

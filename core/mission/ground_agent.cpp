@@ -58,8 +58,10 @@ void GroundAgent::recall_own(const Message& message, Instant at) {
     for (PendingAuthorisation& pending : pending_) {
       const bool of_it =
           pending.request.site == decision->site && pending.request.round == decision->round;
-      if (!of_it || pending.decision) continue;
-      if (script_for(decision->site) != nullptr) ++scripted_[decision->site];
+      if (!of_it) continue;
+      if (pending.decision && decision->decided_at <= pending.decision->decided_at) continue;
+      const bool first = !pending.decision;
+      if (first && script_for(decision->site) != nullptr) ++scripted_[decision->site];
       take(pending, *decision);
       next_repeat_ = std::min(next_repeat_, at + kAuthorisationRepeat);
     }
@@ -127,7 +129,7 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
 void GroundAgent::grant_again(PendingAuthorisation& pending, Authorisation before, Instant now) {
   if (why_not_grant(pending.request, now)) return;
   before.round = pending.request.round;
-  say(pending, before, now);
+  say(pending, before, now, {});
 }
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {
@@ -277,15 +279,18 @@ void GroundAgent::on_event(const MissionEvent& event) {
   events_.push(event);
 }
 
-Result<void> GroundAgent::authorise(SiteId site, const std::string& operator_name, Instant now) {
-  return decide_newest(site, true, operator_name, now);
+Result<std::string> GroundAgent::authorise(SiteId site, const std::string& operator_name,
+                                           Instant now, bool although_silent) {
+  return decide_newest(site, {true, although_silent}, operator_name, now);
 }
 Result<void> GroundAgent::refuse(SiteId site, const std::string& operator_name, Instant now) {
-  return decide_newest(site, false, operator_name, now);
+  const auto refused = decide_newest(site, {false, false}, operator_name, now);
+  if (!refused) return refused.error();
+  return {};
 }
 
-Result<void> GroundAgent::decide_on(const coalition::Round& round, SiteId site, bool granted,
-                                    const std::string& operator_name, Instant now) {
+Result<std::string> GroundAgent::decide_on(const coalition::Round& round, SiteId site, Verdict what,
+                                           const std::string& operator_name, Instant now) {
   const auto plan = std::find_if(pending_.begin(), pending_.end(), [&](const auto& p) {
     return p.request.site == site && p.request.round == round;
   });
@@ -298,14 +303,15 @@ Result<void> GroundAgent::decide_on(const coalition::Round& round, SiteId site, 
                  (plan->decision ? " was already decided by " + plan->decision->decided_by
                                  : " has run out; the vehicles hold and will ask again")};
   }
-  return decide(*plan, granted, operator_name, now);
+  return decide(*plan, what, operator_name, now);
 }
-Result<void> GroundAgent::decide_newest(SiteId site, bool granted, const std::string& by,
-                                        Instant now) {
+
+Result<std::string> GroundAgent::decide_newest(SiteId site, Verdict what, const std::string& by,
+                                               Instant now) {
   const auto waiting = std::find_if(pending_.rbegin(), pending_.rend(), [&](const auto& p) {
     return p.request.site == site && !p.decision && now < p.request.decide_by;
   });
-  if (waiting != pending_.rend()) return decide(*waiting, granted, by, now);
+  if (waiting != pending_.rend()) return decide(*waiting, what, by, now);
   const auto last = std::find_if(pending_.rbegin(), pending_.rend(),
                                  [&](const auto& p) { return p.request.site == site; });
   if (last == pending_.rend()) return Error{"no request for " + name_of(site) + " is waiting"};
@@ -318,22 +324,106 @@ Result<void> GroundAgent::decide_newest(SiteId site, bool granted, const std::st
                " has run out; the vehicles hold and will ask again with new times"};
 }
 
-Result<void> GroundAgent::decide(PendingAuthorisation& pending, bool granted, const std::string& by,
-                                 Instant now) {
+Result<std::string> GroundAgent::decide(PendingAuthorisation& pending, Verdict what,
+                                        const std::string& by, Instant now) {
   const auto& request = pending.request;
-  Authorisation decision{request.round, request.site, granted, by, now, {}, {}, {}};
-  if (granted) {
+  Authorisation decision{request.round, request.site, what.grant, by, now, {}, {}, {}};
+  std::string although;
+  if (what.grant) {
     if (auto why = why_not_grant(request, now)) return Error{*why};
+    although = silent_text(request, now);
+    if (!although.empty() && !what.although_silent) {
+      return Error{although +
+                   "; it may not hear the decision, and nobody hears what it does. "
+                   "Refuse it, wait for another plan, or order 'authorise " +
+                   std::to_string(request.site.value) + " override'"};
+    }
     decision.deliveries = request.deliveries;
     for (const auto& delivery : request.deliveries) {
       decision.until = std::max(decision.until, delivery.assignment.time);
     }
     if (config_.approve) {
-      if (auto approved = config_.approve(decision); !approved) return approved;
+      if (auto approved = config_.approve(decision); !approved) return approved.error();
     }
   }
-  say(pending, decision, now);
-  return {};
+  say(pending, decision, now, although);
+  return although;
+}
+
+std::vector<VehicleId> silent_in(const AuthorisationRequest& request, const Fleet& fleet) {
+  std::vector<VehicleId> named{request.round.coalition.leader};
+  for (const auto& delivery : request.deliveries) named.push_back(delivery.assignment.vehicle);
+  std::ranges::sort(named);
+  named.erase(std::ranges::unique(named).begin(), named.end());
+  std::erase_if(named, [&fleet](VehicleId vehicle) {
+    const auto known = fleet.vehicles().find(vehicle);
+    return known != fleet.vehicles().end() && known->second.telemetry && !known->second.silent;
+  });
+  return named;
+}
+
+/// "vehicle 3 is silent for 7 s, vehicle 5 was never heard"; empty: all are heard.
+std::string GroundAgent::silent_text(const AuthorisationRequest& request, Instant now) const {
+  std::string text;
+  for (const VehicleId vehicle : silent_in(request, fleet_)) {
+    const auto known = fleet_.vehicles().find(vehicle);
+    const bool heard = known != fleet_.vehicles().end() && known->second.telemetry;
+    if (!text.empty()) text += ", ";
+    text += name_of(vehicle);
+    if (!heard) {
+      text += " was never heard";
+      continue;
+    }
+    const auto silent_for =
+        std::chrono::duration_cast<std::chrono::seconds>(now - known->second.heard_at);
+    text += " is silent for " + std::to_string(silent_for.count()) + " s";
+  }
+  return text;
+}
+
+/// Past its gate, or perhaps: what it says of it may be on its way.
+bool GroundAgent::may_be_taken_back(const PendingAuthorisation& pending, Instant now) const {
+  if (!pending.decision || !pending.decision->granted) return false;
+  return std::ranges::any_of(pending.request.deliveries, [&](const Delivery& delivery) {
+    const auto granted = granted_.find(delivery.assignment.task);
+    const bool begun = granted != granted_.end() && granted->second.begun;
+    return !begun && !done_.contains(delivery.assignment.task) && now < delivery.assignment.time;
+  });
+}
+
+Result<TakenBack> GroundAgent::take_back(SiteId site, const std::string& by, Instant now) {
+  std::vector<PendingAuthorisation*> granted;
+  bool asked = false;
+  for (auto& pending : pending_) {
+    if (pending.request.site != site) continue;
+    if (may_be_taken_back(pending, now)) granted.push_back(&pending);
+    asked = asked || (!pending.decision && now < pending.request.decide_by);
+  }
+  if (granted.empty()) {
+    return Error{
+        "nothing that is granted at " + name_of(site) + " waits for its gate" +
+        (asked ? "; refuse what waits for a decision" : "; what has begun is flown to its end")};
+  }
+  TakenBack taken;
+  for (const auto& [task, one] : granted_) {
+    if (task.site != site || done_.contains(task)) continue;
+    if (one.begun) taken.flown_on.push_back(one.assignment);
+  }
+  for (PendingAuthorisation* pending : granted) {
+    for (const VehicleId vehicle : silent_in(pending->request, fleet_)) {
+      if (!contains(taken.silent, vehicle)) taken.silent.push_back(vehicle);
+    }
+  }
+  for (PendingAuthorisation* pending : granted) {
+    // Later than the grant, also where the clock was set back since.
+    const Instant at = std::max(now, pending->decision->decided_at + Duration{1});
+    const Authorisation back{pending->request.round, site, false, by, at, {}, {}, {}};
+    take(*pending, back);
+    report(event::AuthorisationWithdrawn{by}, back.round, {site, TaskKind::deliver, 0}, now);
+    messages_.push(Message{back});
+    next_repeat_ = std::min(next_repeat_, now + kAuthorisationRepeat);
+  }
+  return taken;
 }
 
 std::optional<std::string> GroundAgent::why_not_grant(const AuthorisationRequest& request,
@@ -352,10 +442,13 @@ std::optional<std::string> GroundAgent::why_not_grant(const AuthorisationRequest
   return fleet_.why_not_with(request.round.coalition.leader);
 }
 
-void GroundAgent::say(PendingAuthorisation& pending, const Authorisation& decision, Instant now) {
+/// `although`: what the operator has passed over.
+void GroundAgent::say(PendingAuthorisation& pending, const Authorisation& decision, Instant now,
+                      const std::string& although) {
   const auto& request = pending.request;
   take(pending, decision);
-  const std::string& by = decision.decided_by;
+  std::string by = decision.decided_by;
+  if (!although.empty()) by += ", although " + although;
   report(decision.granted ? EventBody{event::Authorised{by}}
                           : EventBody{event::AuthorisationRefused{by}},
          request.round, {request.site, TaskKind::deliver, 0}, now);
@@ -401,7 +494,8 @@ void GroundAgent::decide_by_script(Instant now) {
     const auto due = script_due(pending);
     if (!due || now < *due || now >= pending.request.decide_by) continue;
     const SiteId site = pending.request.site;
-    if (decide(pending, script_for(site)->grant, "scenario", now).ok()) {
+    // Who wrote the script has passed over whatever there may be.
+    if (decide(pending, {script_for(site)->grant, true}, "scenario", now).ok()) {
       ++scripted_[site];
     } else {
       script_again_ = now + kAuthorisationRepeat;
@@ -452,7 +546,7 @@ void GroundAgent::end_site(SiteId site, const std::string& by, Instant now) {
   if (const auto led = led_.find(site); led != led_.end()) led->second.announcement.reset();
   for (auto& pending : pending_) {
     const bool waits = pending.request.site == site && !pending.decision;
-    if (waits) (void)decide(pending, false, by, now);
+    if (waits) (void)decide(pending, {false, false}, by, now);
   }
   // What was granted is not said any more: who has not heard it holds.
   std::erase_if(pending_, [site](const PendingAuthorisation& pending) {

@@ -45,8 +45,16 @@ struct Bench {
   void hear(const Telemetry& t, double seconds) {
     agent.on_message(Message{t}, at_seconds(seconds));
   }
+  /// Of who is heard.
   void ask(const AuthorisationRequest& r, double seconds) {
+    hear_once(r.round.coalition.leader, seconds);
+    for (const Delivery& delivery : r.deliveries) hear_once(delivery.assignment.vehicle, seconds);
     agent.on_message(Message{r}, at_seconds(seconds));
+  }
+  void hear_once(VehicleId vehicle, double seconds) {
+    const auto known = agent.fleet().vehicles().find(vehicle);
+    const bool heard = known != agent.fleet().vehicles().end() && known->second.telemetry;
+    if (!heard) hear(telemetry_of(vehicle, 77, seconds), seconds);
   }
   template <class T>
   std::vector<T> sent() {
@@ -182,10 +190,10 @@ TEST(GroundAgent, SendsADecisionUntilTheLastDelivery) {
   EXPECT_EQ(sent[0].decided_by, "Ada");
   EXPECT_EQ(sent[0].round.number, 1U);
   EXPECT_EQ(sent[0].decided_at, at_seconds(12.0));
+  const auto events = bench.events();
   bench.run_until(60.0);
   EXPECT_EQ(bench.sent<Authorisation>().size(), 36U);  // 12.5 to 30.0
   EXPECT_EQ(bench.agent.next_timeout(), Instant::max());
-  const auto events = bench.events();
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].kind(), EventKind::authorised);
 
@@ -234,6 +242,138 @@ TEST(GroundAgent, WhatAnEarlierProcessGrantedIsNotGrantedAgain) {
             coalition::TaskState::unknown);
 }
 
+TEST(GroundAgent, AGrantIsTakenBackUntilItsDeliveriesHaveBegun) {
+  Bench bench;
+  EXPECT_FALSE(bench.agent.take_back(kSite, "Ada", at_seconds(1.0)));
+  AuthorisationRequest two = request(1, 20.0, 30.0);
+  two.deliveries.push_back({{{kSite, TaskKind::deliver, 1}, {3}, at_seconds(34.0)}, 1.0});
+  bench.ask(two, 10.0);
+  const auto waits = bench.agent.take_back(kSite, "Ada", at_seconds(11.0));
+  ASSERT_FALSE(waits);
+  EXPECT_THAT(waits.error().message, HasSubstr("refuse"));
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)));
+  const TaskId first = two.deliveries[0].assignment.task;
+  bench.agent.on_message(
+      Message{MissionEvent{kLeader, at_seconds(13.0), two.round, first, event::TaskStarted{}}},
+      at_seconds(13.0));
+  bench.run_until(14.0);
+  (void)bench.sent<Authorisation>();
+  (void)bench.events();
+
+  const auto taken = bench.agent.take_back(kSite, "Bob", at_seconds(14.0));
+  ASSERT_TRUE(taken);
+  ASSERT_EQ(taken->flown_on.size(), 1U);
+  EXPECT_EQ(taken->flown_on[0].task, first);
+  EXPECT_TRUE(taken->silent.empty());
+  auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_FALSE(sent[0].granted);
+  EXPECT_EQ(sent[0].round, two.round);
+  EXPECT_EQ(sent[0].decided_at, at_seconds(14.0));
+  const auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].kind(), EventKind::authorisation_withdrawn);
+  // Said again until the last delivery would have been, and no grant is said any more.
+  bench.run_until(60.0);
+  sent = bench.sent<Authorisation>();
+  EXPECT_EQ(sent.size(), 40U);  // 14.5 to 34.0
+  EXPECT_TRUE(std::ranges::none_of(sent, &Authorisation::granted));
+  EXPECT_FALSE(bench.agent.take_back(kSite, "Bob", at_seconds(60.0))) << "once is enough";
+  // Nor does a successor go on with it.
+  auto successor = two;
+  successor.round = {{{1}, {5}, 1}, 1};
+  bench.ask(successor, 15.0);
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+}
+
+TEST(GroundAgent, WhatHasBegunIsNotTakenBack) {
+  Bench bench;
+  const AuthorisationRequest one = request(1, 20.0, 30.0);
+  bench.ask(one, 10.0);
+  ASSERT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(12.0)));
+  bench.agent.on_message(
+      Message{MissionEvent{kLeader, at_seconds(13.0), one.round, one.deliveries[0].assignment.task,
+                           event::TaskStarted{}}},
+      at_seconds(13.0));
+  const auto taken = bench.agent.take_back(kSite, "Ada", at_seconds(14.0));
+  ASSERT_FALSE(taken);
+  EXPECT_THAT(taken.error().message, HasSubstr("flown to its end"));
+}
+
+TEST(GroundAgent, WhatIsTakenBackStaysSoAfterANewStartAndAgainstAClockSetBack) {
+  Bench before;
+  const AuthorisationRequest one = request(1, 30.0, 40.0);
+  before.ask(one, 10.0);
+  ASSERT_TRUE(before.agent.authorise(kSite, "ada", at_seconds(12.0)));
+  ASSERT_TRUE(before.agent.take_back(kSite, "ada", at_seconds(11.0)));
+  const auto said = before.sent<Authorisation>();
+  ASSERT_EQ(said.size(), 2U);
+  EXPECT_GT(said[1].decided_at, said[0].decided_at);
+
+  for (const bool in_order : {true, false}) {
+    Bench anew;
+    anew.agent.recall(Message{one}, kLeader, at_seconds(10));
+    anew.agent.recall(Message{said[in_order ? 0 : 1]}, kGroundStation, at_seconds(12));
+    anew.agent.recall(Message{said[in_order ? 1 : 0]}, kGroundStation, at_seconds(12));
+    anew.run_until(20.0);
+    const auto repeated = anew.sent<Authorisation>();
+    ASSERT_FALSE(repeated.empty());
+    EXPECT_TRUE(std::ranges::none_of(repeated, &Authorisation::granted));
+  }
+}
+
+TEST(GroundAgent, APlanWithWhoIsSilentIsGrantedOnlyByWhoPassesOverThat) {
+  Bench bench;
+  AuthorisationRequest two = request(1, 60.0, 80.0);
+  two.deliveries.push_back({{{kSite, TaskKind::deliver, 1}, {3}, at_seconds(84.0)}, 1.0});
+  bench.ask(two, 10.0);
+  bench.run_until(14.0);
+  bench.hear(telemetry_of(kLeader, 77, 14.0), 14.0);
+  bench.run_until(17.0);
+  const auto plain = bench.agent.authorise(kSite, "Ada", at_seconds(17.0));
+  ASSERT_FALSE(plain);
+  EXPECT_THAT(plain.error().message, HasSubstr("vehicle 3 is silent for 7 s"));
+  EXPECT_THAT(plain.error().message, HasSubstr("authorise 3 override"));
+  EXPECT_FALSE(bench.agent.decide_on(two.round, kSite, {true}, "Ada", at_seconds(17.0)));
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  (void)bench.events();
+
+  const auto over = bench.agent.decide_on(two.round, kSite, {true, true}, "Ada", at_seconds(17.0));
+  ASSERT_TRUE(over);
+  EXPECT_EQ(*over, "vehicle 3 is silent for 7 s");
+  const auto sent = bench.sent<Authorisation>();
+  ASSERT_EQ(sent.size(), 1U);
+  EXPECT_EQ(sent[0].decided_by, "Ada") << "who signs";
+  const auto events = bench.events();
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(std::get<event::Authorised>(events[0].body).by,
+            "Ada, although vehicle 3 is silent for 7 s");
+  // Whom it has passed over may not hear that it is taken back, either.
+  const auto taken = bench.agent.take_back(kSite, "Ada", at_seconds(18.0));
+  ASSERT_TRUE(taken);
+  EXPECT_EQ(taken->silent, std::vector<VehicleId>{{3}});
+}
+
+TEST(GroundAgent, ASilentLeaderOrOneThatWasNeverHeardIsPassedOverOnlyByOrder) {
+  Bench bench;
+  AuthorisationRequest led = request(1, 60.0, 80.0);
+  led.deliveries[0].assignment.vehicle = {3};
+  bench.ask(led, 10.0);
+  bench.run_until(14.0);
+  bench.hear(telemetry_of({3}, 77, 14.0), 14.0);
+  bench.run_until(17.0);
+  const auto silent = bench.agent.authorise(kSite, "Ada", at_seconds(17.0));
+  ASSERT_FALSE(silent);
+  EXPECT_THAT(silent.error().message, HasSubstr("vehicle 2 is silent"));
+
+  Bench fresh;
+  fresh.agent.on_message(Message{led}, at_seconds(10.0));
+  const auto never = fresh.agent.authorise(kSite, "Ada", at_seconds(11.0));
+  ASSERT_FALSE(never);
+  EXPECT_THAT(never.error().message, HasSubstr("vehicle 3 was never heard"));
+  EXPECT_TRUE(fresh.agent.authorise(kSite, "Ada", at_seconds(11.0), true));
+}
+
 TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   Bench bench;
   bench.ask(request(1, 20.0, 30.0), 10.0);
@@ -263,7 +403,7 @@ TEST(GroundAgent, ADeliveryIsGrantedToOneCoalitionAtATime) {
   const MissionEvent gives_up = ends(coalition::Reason::bid_again, false);
   bench.agent.on_message(Message{gives_up}, at_seconds(15.0));
   bench.ask(request(2, 25.0, 40.0), 15.5);
-  EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0)).ok());
+  EXPECT_TRUE(bench.agent.authorise(kSite, "Ada", at_seconds(16.0), true).ok());
 }
 
 /// The plan of that request goes on under another leader.
@@ -280,11 +420,11 @@ TEST(GroundAgent, ASuccessorsPlanIsGrantedWithoutAskingAgain) {
   (void)bench.sent<Authorisation>();
 
   bench.ask(passed_on(first), 30.0);
-  auto sent = bench.sent<Authorisation>();
-  ASSERT_FALSE(sent.empty());
-  EXPECT_EQ(sent[0].round, passed_on(first).round);
-  EXPECT_TRUE(sent[0].granted);
-  EXPECT_EQ(sent[0].decided_by, "Ada");
+  const auto sent = bench.sent<Authorisation>();
+  const auto grant = std::ranges::find(sent, passed_on(first).round, &Authorisation::round);
+  ASSERT_NE(grant, sent.end());
+  EXPECT_TRUE(grant->granted);
+  EXPECT_EQ(grant->decided_by, "Ada");
 
   Bench other;  // what is another plan needs a decision
   other.ask(first, 10.0);
@@ -312,6 +452,7 @@ TEST(GroundAgent, AGrantIsOfTheDeliveriesThatTheOperatorHasSigned) {
   };
   GroundAgent agent{config, Instant{}};
   const auto first = request(1, 40.0, 50.0);
+  agent.on_message(Message{telemetry_of(kLeader, 77, 10.0)}, at_seconds(10.0));
   agent.on_message(Message{first}, at_seconds(10.0));
   const auto refused = agent.authorise(kSite, "Ada", at_seconds(12.0));
   ASSERT_FALSE(refused.ok());
@@ -485,17 +626,18 @@ TEST(GroundAgent, DecidesOnThePlanThatWasSeenOrOnNone) {
   other.round.coalition.leader = {3};
   bench.ask(request(7, 100.0, 120.0), 80.0);
   bench.ask(other, 81.0);
-  EXPECT_FALSE(bench.agent.decide_on(other.round, {9}, true, "ada", at_seconds(85.0)).ok());
+  EXPECT_FALSE(bench.agent.decide_on(other.round, {9}, {true}, "ada", at_seconds(85.0)).ok());
   // The newer one has run out: the older one is not granted in its place.
-  EXPECT_FALSE(bench.agent.decide_on(other.round, kSite, true, "ada", at_seconds(90.5)).ok());
+  EXPECT_FALSE(bench.agent.decide_on(other.round, kSite, {true}, "ada", at_seconds(90.5)).ok());
   EXPECT_TRUE(bench.sent<Authorisation>().empty());
   EXPECT_TRUE(
-      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, true, "ada", at_seconds(91.0)).ok());
+      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, {true}, "ada", at_seconds(91.0))
+          .ok());
   const auto sent = bench.sent<Authorisation>();
   ASSERT_FALSE(sent.empty());
   EXPECT_EQ(sent[0].round.number, 7U);
   EXPECT_FALSE(
-      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, false, "bob", at_seconds(92.0))
+      bench.agent.decide_on(request(7, 0.0, 0.0).round, kSite, {false}, "bob", at_seconds(92.0))
           .ok());
 }
 

@@ -96,6 +96,34 @@ TEST(GroundNode, ARefusalIsToldAsAWithdrawalForTheRestOfTheMissionAlsoAfterANewS
   EXPECT_TRUE(refused);
 }
 
+TEST(GroundNode, WhatIsTakenBackIsToldAsAWithdrawalAndAskedNoMore) {
+  GroundNode ground = node();
+  AuthorisationRequest request;
+  request.round = kRound;
+  request.site = kSite;
+  request.deliveries = {{{{kSite, TaskKind::deliver, 0}, kVehicle, at_seconds(40.0)}, 0.0}};
+  request.decide_by = at_seconds(20.0);
+  ground.on_message(request, kVehicle, at_seconds(1.0));
+  ASSERT_TRUE(ground.agent().authorise(kSite, "Ada", at_seconds(2.0), true));
+  ASSERT_TRUE(ground.agent().take_back(kSite, "Ada", at_seconds(3.0)));
+  bool withdrawn = false;
+  std::optional<Authorisation> last;
+  for (double s = 3.0; s < 12.0; s += 0.5) {
+    ground.on_timeout(at_seconds(s));
+    while (const auto message = ground.poll_message()) {
+      if (const auto* decision = std::get_if<Authorisation>(&*message)) last = *decision;
+      const auto* report = std::get_if<SiteReport>(&*message);
+      withdrawn = withdrawn || (report != nullptr && report->withdrawn);
+    }
+  }
+  ASSERT_TRUE(last);
+  EXPECT_FALSE(last->granted);
+  EXPECT_TRUE(withdrawn);
+  request.round = {{{3}, {78}, 1}, 1};
+  ground.on_message(request, {3}, at_seconds(13.0));
+  EXPECT_FALSE(ground.agent().authorise(kSite, "Ada", at_seconds(13.0), true));
+}
+
 TEST(GroundNode, SendsNoCopterHomeThatIsInAFormation) {
   GroundNode ground = node();
   const auto home = [&](VehicleId vehicle) {
@@ -243,7 +271,7 @@ TEST(GroundNode, DoesNotWorkWithAVehicleOfAnotherSetup) {
 
   ground.on_message(setup_of(kVehicle, "48.1"), kVehicle, at_seconds(2.0));
   EXPECT_TRUE(ground.command(kVehicle, CommandKind::resume, at_seconds(2.0)).ok());
-  EXPECT_TRUE(ground.agent().authorise(kSite, "test", at_seconds(2.0)).ok());
+  EXPECT_TRUE(ground.agent().authorise(kSite, "test", at_seconds(2.0), true).ok());
 }
 
 TEST(GroundNode, AnIdThatWasUsedTwiceBarsNoFormationAfterASetupThatAgrees) {

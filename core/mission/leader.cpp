@@ -299,23 +299,33 @@ Instant Leader::decide_by(const TaskAssignment& delivery) const {
 }
 
 void Leader::on_authorisation(const Authorisation& message, Instant now) {
-  if (message.granted && !contains(granted_, message.round)) {
+  if (!message.granted) return on_refusal(message, now);
+  if (!contains(granted_, message.round)) {
     granted_.push_back(message.round);
     if (granted_.size() > kGrantsMax) granted_.erase(granted_.begin());
   }
   if (!leading()) return;
   // A grant counts for the rounds before this one too: a member may have heard it and begun.
-  if (message.granted && !leads_other(message.round.coalition)) {
-    initiator_->authorised(message.round);
+  if (!leads_other(message.round.coalition)) initiator_->authorised(message.round);
+  const bool asked = machine_.in(State::awaiting_decision) && message.round == request_.round;
+  if (asked) fire(Event::granted);
+}
+
+/// Of the round that awaits its decision, or of one that was granted before: what of it has begun
+/// is flown to its end, and nobody leads the site any more.
+void Leader::on_refusal(const Authorisation& message, Instant now) {
+  if (!leading() || machine_.in(State::parting) || initiator_->site().id != message.site) return;
+  const bool granted = contains(granted_, message.round);
+  const bool asked = machine_.in(State::awaiting_decision) && message.round == request_.round;
+  if (asked && !granted) {
+    outbox_.report(event::AuthorisationRefused{message.decided_by}, message.round,
+                   {message.site, TaskKind::deliver, 0}, now);
+    give_up({Reason::refused_by_operator}, now);
+  } else if (granted || !leads_other(message.round.coalition)) {
+    outbox_.report(event::Cancelled{{Reason::grant_taken_back}}, initiator_->round(), about_site(),
+                   now);
+    give_up({Reason::grant_taken_back}, now);
   }
-  if (!machine_.in(State::awaiting_decision) || message.round != request_.round) return;
-  if (message.granted) {
-    fire(Event::granted);
-    return;
-  }
-  outbox_.report(event::AuthorisationRefused{message.decided_by}, message.round,
-                 {message.site, TaskKind::deliver, 0}, now);
-  give_up({Reason::refused_by_operator}, now);
 }
 
 void Leader::on_timeout(Instant now) {

@@ -114,6 +114,7 @@ class Leader {
   void answer(const Initiator::TaskUnknown& unknown, Instant now);
   void answer(const Initiator::Superseded& superseded, Instant now);
   void answer(const Initiator::AllDone& done, Instant now);
+  void on_refusal(const Authorisation& message, Instant now);
   void ask_operator(const Initiator::Formed& formed, Instant now);
   [[nodiscard]] Instant decide_by(const TaskAssignment& delivery) const;
   void say_farewell(Instant now);

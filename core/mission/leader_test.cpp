@@ -134,6 +134,31 @@ TEST(Leader, ARefusalEndsItsCoalition) {
   EXPECT_TRUE(l.leader.poll_last_words()) << "its members are released";
 }
 
+TEST(Leader, AGrantThatIsTakenBackEndsItsCoalition) {
+  for (const bool passed_on : {false, true}) {
+    Leading l;
+    l.form();
+    l.wait_until(2.0);
+    const auto request = l.sent<AuthorisationRequest>();
+    ASSERT_TRUE(request);
+    (void)l.said<coalition::Award>();
+    l.leader.on_authorisation({request->round, {1}, true, "ada", at_seconds(1.0)}, l.now);
+    auto round = request->round;
+    if (passed_on) ++round.number;
+    l.leader.on_authorisation({round, {2}, false, "ada", at_seconds(2.0)}, l.now);
+    EXPECT_TRUE(l.leader.leading()) << "it is of another site";
+    l.leader.on_authorisation({round, {1}, false, "ada", at_seconds(2.0)}, l.now);
+    EXPECT_EQ(l.leader.state(), State::idle);
+    EXPECT_EQ(l.reported(EventKind::cancelled), 1);
+    EXPECT_EQ(l.reported(EventKind::authorisation_refused), 0);
+    const auto words = l.leader.poll_last_words();
+    ASSERT_TRUE(words);
+    const auto* cancel = std::get_if<coalition::Cancel>(&*words);
+    ASSERT_NE(cancel, nullptr);
+    EXPECT_EQ(cancel->why.reason, coalition::Reason::grant_taken_back);
+  }
+}
+
 TEST(Leader, WithoutADecisionInTimeItOpensAnotherRound) {
   Leading l;
   l.form(std::chrono::seconds{9});  // 4 s of it are the final approach

@@ -61,12 +61,18 @@ class TaskFlight {
     const bool known = machine_.fire(event);
     SKEIN_ASSERT(known);
   }
-  /// The operator has granted this round; false where that is known already.
-  bool grant() {
+  /// The operator has granted this round, then; false where that is known already.
+  bool grant(Instant decided_at) {
     if (authorised()) return false;
     granted_ = round;
+    decided_at_ = decided_at;
     fire(Event::granted);
     return true;
+  }
+  /// The operator's later word, that he grants it no more, changes something.
+  [[nodiscard]] bool can_be_taken_back(Instant decided_at) const {
+    const bool granted = in(State::authorised) || in_run();
+    return is_delivery() && granted && decided_at > decided_at_;
   }
   void pass_on(const coalition::Round& to) {
     round = to;
@@ -87,6 +93,7 @@ class TaskFlight {
  private:
   StateMachine<State, Event> machine_{kTable, State::planned};
   std::optional<coalition::Round> granted_;  ///< the newest that was
+  Instant decided_at_{};                     ///< by the operator, on the newest that was granted
 };
 [[nodiscard]] std::string_view to_string(TaskFlight::State state);
 [[nodiscard]] std::string_view to_string(TaskFlight::Event event);

@@ -24,6 +24,8 @@ constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two look
 constexpr Duration kDeclinedFor = std::chrono::seconds{60};
 /// Nearer to its time a new path would gain little.
 constexpr Duration kTimeLatest = std::chrono::seconds{5};
+/// What a flood from the network can make us remember.
+constexpr std::size_t kRefusalsMax = 256;
 
 /// Over that much of the plan from then until then. In still air its own speed does that.
 Flight::Pace pace_over(const TimedPath& plan, double length_m, Instant from, Instant until) {
@@ -216,6 +218,8 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
 /// Was this very delivery put before the operator, and may it begin yet?
 bool TaskFlyer::is_granted_by(const Authorisation& message, Instant now) const {
   if (!task_ || !task_->is_delivery() || !message.granted) return false;
+  const auto refused = refused_at_.find(message.site);
+  if (refused != refused_at_.end() && message.decided_at <= refused->second) return false;
   if (task_->round != message.round || task_->site.id != message.site) return false;
   if (message.deliveries.empty()) return true;  // of an older release
   const TaskAssignment& ours = task_->assignment;
@@ -228,18 +232,37 @@ bool TaskFlyer::is_granted_by(const Authorisation& message, Instant now) const {
 }
 
 void TaskFlyer::on_authorisation(const Authorisation& message, Instant now) {
-  if (is_granted_by(message, now) && task_->grant()) {
+  if (!message.granted) return take_back(message, now);
+  if (is_granted_by(message, now) && task_->grant(message.decided_at)) {
     outbox_.report(event::Authorised{message.decided_by}, message.round, task_->assignment.task,
                    now);
   }
 }
 
-void TaskFlyer::leave_site(SiteId site, Instant now) {
+/// Of whatever round it is: the operator has decided against the site. Who has no grant holds at
+/// its gate anyway, until its leader releases it.
+void TaskFlyer::take_back(const Authorisation& message, Instant now) {
+  Instant& refused_at = refused_at_[message.site];
+  refused_at = std::max(refused_at, message.decided_at);
+  if (refused_at_.size() > kRefusalsMax) {  // the oldest: its grants have run out first
+    refused_at_.erase(std::ranges::min_element(
+        refused_at_, [](const auto& a, const auto& b) { return a.second < b.second; }));
+  }
+  const bool concerned = task_ && task_->site.id == message.site && !participant_.free();
+  if (!concerned || !task_->can_be_taken_back(message.decided_at)) return;
+  if (!task_->in(TaskFlight::State::begun)) {
+    outbox_.report(event::AuthorisationWithdrawn{message.decided_by}, message.round,
+                   task_->assignment.task, now);
+  }
+  leave_site(message.site, Reason::grant_taken_back, now);
+}
+
+void TaskFlyer::leave_site(SiteId site, Reason why, Instant now) {
   if (!task_ || task_->site.id != site) return;
   if (task_->is_delivery() && task_->in(TaskFlight::State::begun)) {
     participant_.finish_alone();
   } else {
-    participant_.withdraw(Reason::site_withdrawn, now);
+    participant_.withdraw(why, now);
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <variant>
 
@@ -41,7 +42,7 @@ class TaskFlyer {
   void withdraw(coalition::Reason reason, Instant now) { participant_.withdraw(reason, now); }
   /// As withdraw(), of that site, which the operator wants nobody at any more. A delivery that has
   /// begun is flown to its end.
-  void leave_site(SiteId site, Instant now);
+  void leave_site(SiteId site, coalition::Reason why, Instant now);
   /// Another way to its task at the same time, clear of a hazard that bars the one it is on; false
   /// where there is none.
   [[nodiscard]] bool detour(HazardId hazard, Instant now);
@@ -87,6 +88,7 @@ class TaskFlyer {
   void begin(Instant now);
   void end(Instant now);
   void drop(Instant now);
+  void take_back(const Authorisation& message, Instant now);
   [[nodiscard]] bool deliveries_over() const;
 
   Ownship& ownship_;
@@ -98,7 +100,10 @@ class TaskFlyer {
     Instant at{};
   };
   std::optional<Declined> declined_;  ///< the newest call
-  Instant time_again_{};              ///< when the task's time is looked at next
+  /// When the operator last decided against a site: what he had granted before counts no more, in
+  /// whatever order his words come.
+  std::map<SiteId, Instant> refused_at_;
+  Instant time_again_{};  ///< when the task's time is looked at next
 };
 
 }  // namespace skein::mission

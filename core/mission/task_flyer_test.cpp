@@ -48,6 +48,9 @@ struct Flying : PartsBench {
     hear(coalition::Message{award});
   }
   void grant() { flyer.on_authorisation({kRound, {1}, true, "", {}}, now); }
+  void decide(bool granted, double decided_s) {
+    flyer.on_authorisation({kRound, {1}, granted, "ada", at_seconds(decided_s)}, now);
+  }
   void fly_until(double seconds) {
     for (double t = to_seconds(now); t < seconds; t += 0.1) {
       be_at(t);
@@ -99,7 +102,7 @@ TEST(TaskFlyer, OfAWithdrawnSiteOnlyABegunDeliveryIsFlownToItsEnd) {
       f.grant();
       f.fly_until(begun ? 58.5 : 50.0);
       ASSERT_EQ(f.reported(EventKind::task_started), begun ? 1 : 0);
-      if (told) f.flyer.leave_site({1}, f.now);
+      if (told) f.flyer.leave_site({1}, Reason::site_withdrawn, f.now);
       f.hear(coalition::Message{coalition::Cancel{kRound, {Reason::site_withdrawn}}});
       f.fly_until(65.0);
       EXPECT_EQ(f.reported(EventKind::task_done), begun ? 1 : 0);
@@ -108,6 +111,62 @@ TEST(TaskFlyer, OfAWithdrawnSiteOnlyABegunDeliveryIsFlownToItsEnd) {
       EXPECT_FALSE(f.flyer.flying());
     }
   }
+}
+
+TEST(TaskFlyer, WhatIsTakenBackBeforeItsGateIsNotFlown) {
+  for (const double taken_s : {30.0, 55.5, 58.5}) {  // on its way, committed, begun
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    f.decide(true, 1.0);
+    f.fly_until(taken_s);
+    const bool begun = f.reported(EventKind::task_started) == 1;
+    EXPECT_EQ(begun, taken_s == 58.5);
+    EXPECT_EQ(f.flyer.in_run(), taken_s > 55.0);
+    f.decide(false, 2.0);
+    f.decide(false, 2.0);
+    EXPECT_EQ(f.reported(EventKind::authorisation_withdrawn), begun ? 0 : 1);
+    f.hear(coalition::Message{coalition::Cancel{kRound, {Reason::grant_taken_back}}});
+    f.fly_until(65.0);
+    EXPECT_EQ(f.reported(EventKind::task_started), 0);
+    EXPECT_EQ(f.reported(EventKind::task_done), begun ? 1 : 0);
+    EXPECT_TRUE(f.flyer.free());
+  }
+}
+
+TEST(TaskFlyer, TheOperatorsNewestWordCountsInWhateverOrderTheyCome) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  f.decide(false, 2.0);  // has overtaken the grant
+  f.decide(true, 1.0);
+  EXPECT_EQ(f.reported(EventKind::authorised), 0);
+  f.fly_until(65.0);
+  EXPECT_EQ(f.reported(EventKind::task_started), 0);
+
+  Flying other;
+  other.call();
+  other.award(60.0, 120.0);
+  other.decide(true, 3.0);
+  other.decide(false, 2.0);  // a late copy of what was said before
+  EXPECT_EQ(other.reported(EventKind::authorisation_withdrawn), 0);
+  other.fly_until(65.0);
+  EXPECT_EQ(other.reported(EventKind::task_done), 1);
+}
+
+TEST(TaskFlyer, ASuccessorsPlanIsTakenBackToo) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  f.decide(true, 1.0);
+  f.fly_until(55.5);
+  ASSERT_TRUE(f.flyer.in_run());
+  // Whichever round the operator's word names: the site is what he has decided against.
+  coalition::Round other = kRound;
+  other.number = 7;
+  f.flyer.on_authorisation({other, {1}, false, "ada", at_seconds(2.0)}, f.now);
+  f.fly_until(65.0);
+  EXPECT_EQ(f.reported(EventKind::task_started), 0);
 }
 
 TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {

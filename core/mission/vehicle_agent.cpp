@@ -173,7 +173,7 @@ void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
   relay_.close(site);
   leader_.withdraw(site, now);
   say_last_words(now);
-  flyer_.leave_site(site, now);
+  flyer_.leave_site(site, coalition::Reason::site_withdrawn, now);
 }
 
 /// Nothing to do: search on, or take up a site that waits.

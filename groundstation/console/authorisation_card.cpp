@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "skein/mission/ground_agent.hpp"
 #include "skein/mission/shown_state.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -18,8 +19,8 @@ using mission::Delivery;
 using mission::FleetEntry;
 using mission::ShownState;
 
-/// Less than that over the site is little.
-constexpr double kRangeOverSite_m = 2000.0;
+/// Of what the delivery and the way home need: less than that more is little.
+constexpr double kSpareShare = 0.1;
 /// What is told of a plan may be a moment older than the plan.
 constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 constexpr double kLate_s = 2.0;
@@ -82,14 +83,36 @@ std::optional<Mark> late_mark(const Delivery& delivery, const mission::Telemetry
   return Mark{true, fmt::format("late: by {:.0f} s at least", late_s)};
 }
 
-std::optional<Mark> range_mark(const mission::Telemetry& told, double distance_m) {
+/// What the aircraft keeps for the way home from the site, with an orbit there. It knows that
+/// itself, and the ground station only by its bid: that tells what the task may use up, from the
+/// time on for which it bids. What it had left then is in its telemetry. Not known is whether it
+/// comes home at all; and where it was not heard then, or no bid of it was heard (a successor's
+/// plan), it is taken as far as from the site to where it was heard first.
+double way_home_m(const AuthorisationRequest& request, const RoundPicture* round,
+                  const VehiclePicture& vehicle, const coalition::Bid* bid) {
+  if (bid != nullptr && round->announcement) {
+    const Instant formed_at = round->announcement->formed_at;
+    for (const VehiclePicture::Sample& sample : vehicle.series) {
+      if (sample.time < formed_at) continue;
+      if (sample.time - formed_at > kNewsMayTake) break;
+      const double since_m = bid->speed_mps * to_seconds(sample.time - formed_at);
+      return std::max(0.0, sample.range_left_m + since_m - bid->range_left_m);
+    }
+  }
+  return vehicle.first_at ? (request.site_position - *vehicle.first_at).norm() : 0.0;
+}
+
+/// By its telemetry, in which its reserve is taken off already; it flies all the time until its
+/// delivery, the way that its leader has given it time for.
+std::optional<Mark> range_mark(const mission::Telemetry& told, double way_m, double home_m) {
   if (state_of(told) == ShownState::range_reserve) {
     return Mark{true, "its range is used up, but for the way home"};
   }
   if (told.range_left_m < 0.0) return Mark{true, "its range is overdrawn"};
-  if (told.range_left_m - distance_m >= kRangeOverSite_m) return std::nullopt;
-  return Mark{false, fmt::format("low on range: {:.1f} km left, {:.1f} km to the site",
-                                 told.range_left_m / 1000.0, distance_m / 1000.0)};
+  if (told.range_left_m >= (1.0 + kSpareShare) * (way_m + home_m)) return std::nullopt;
+  return Mark{false, fmt::format("low on range: {:.1f} km left; {:.1f} km to its delivery, {:.1f} "
+                                 "km home",
+                                 told.range_left_m / 1000.0, way_m / 1000.0, home_m / 1000.0)};
 }
 
 /// By its own word it flies something else.
@@ -102,8 +125,8 @@ std::optional<Mark> other_task_mark(const Delivery& delivery, const mission::Tel
 }
 
 std::vector<Mark> marks_of(const Delivery& delivery, const AuthorisationRequest& request,
-                           const RoundPicture* round, const mission::Fleet& fleet, Instant asked_at,
-                           Instant now) {
+                           const RoundPicture* round, const Picture& picture,
+                           const mission::Fleet& fleet, Instant asked_at, Instant now) {
   const FleetEntry* entry = entry_of(fleet, delivery.assignment.vehicle);
   std::vector<Mark> marks = marks_of(entry, now);
   if (entry == nullptr || !entry->telemetry) return marks;
@@ -111,9 +134,14 @@ std::vector<Mark> marks_of(const Delivery& delivery, const AuthorisationRequest&
   const double distance_m = (request.site_position - Vec2{told.state.x_m, told.state.y_m}).norm();
   const coalition::Bid* bid = bid_of(round, delivery.assignment.vehicle);
   const double speed_mps = bid != nullptr ? bid->speed_mps : told.state.groundspeed_mps;
+  const auto seen = picture.vehicles().find(delivery.assignment.vehicle);
+  const double home_m =
+      seen == picture.vehicles().end() ? 0.0 : way_home_m(request, round, seen->second, bid);
+  const double left_s = std::max(0.0, to_seconds(delivery.assignment.time - told.state.time));
+  const double way_m = std::max(distance_m, speed_mps * left_s);
   for (const auto& mark :
        {other_task_mark(delivery, told, asked_at), late_mark(delivery, told, distance_m, speed_mps),
-        range_mark(told, distance_m)}) {
+        range_mark(told, way_m, home_m)}) {
     if (mark) marks.push_back(*mark);
   }
   return marks;
@@ -248,6 +276,7 @@ const AuthorisationPicture* request_before(const AuthorisationRequest& request,
 std::string outcome_of(const AuthorisationPicture& before) {
   const std::string round = fmt::format("round {} ", before.request.round.number);
   if (!before.decision) return round + "was not decided";
+  if (before.taken_back) return round + "was taken back by " + before.decision->decided_by;
   return round + (before.decision->granted ? "was authorised by " : "was refused by ") +
          before.decision->decided_by;
 }
@@ -294,15 +323,25 @@ AuthorisationCard card_of(const AuthorisationRequest& request, const Picture& pi
   const AuthorisationPicture* known = picture_of(request, picture);
   const Instant asked_at = known == nullptr ? now : known->asked_at;
   for (const Delivery& delivery : request.deliveries) {
-    card.deliveries.push_back(marks_of(delivery, request, round, fleet, asked_at, now));
+    card.deliveries.push_back(marks_of(delivery, request, round, picture, fleet, asked_at, now));
   }
   card.leader = marks_of(entry_of(fleet, request.round.coalition.leader), now);
+  card.silent = mission::silent_in(request, fleet);
   add_missing(card, request, round, picture, fleet, now);
   if (const AuthorisationPicture* before = request_before(request, picture)) {
     card.changes.push_back(outcome_of(*before));
     add_changes(card, request, before->request);
   }
   return card;
+}
+
+bool may_be_before_gate(const Delivery& delivery, const Picture& picture, Instant now) {
+  if (now >= delivery.assignment.time) return false;
+  const auto site = picture.sites().find(delivery.assignment.task.site);
+  if (site == picture.sites().end()) return true;
+  const auto known = site->second.tasks.find(delivery.assignment.task);
+  if (known == site->second.tasks.end() || !known->second.state) return true;
+  return *known->second.state == coalition::TaskState::planned;
 }
 
 }  // namespace skein::console

@@ -129,6 +129,7 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
 void Picture::on(const mission::Telemetry& telemetry, Instant now) {
   VehiclePicture& vehicle = vehicles_[telemetry.vehicle];
   const Duration delay = now - telemetry.state.time;
+  if (!vehicle.first_at) vehicle.first_at = Vec2{telemetry.state.x_m, telemetry.state.y_m};
   vehicle.delays.emplace_back(now, delay);
   while (now - vehicle.delays.front().first > kDelayWindow) vehicle.delays.pop_front();
   if (vehicle.series.empty() || now - vehicle.series.back().time >= params_.series_period) {
@@ -233,15 +234,22 @@ void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
 }
 
 void Picture::on(const mission::Authorisation& decision) {
+  bool taken_back = false;
   for (auto& known : authorisations_) {
-    if (known.request.round == decision.round && known.request.site == decision.site) {
-      known.decision = decision;
-    }
+    if (known.request.site != decision.site) continue;
+    const bool of_it = known.request.round == decision.round;
+    const auto& before = known.decision;
+    if (of_it && before && before->decided_at > decision.decided_at) return;  // a late copy
+    known.taken_back =
+        known.taken_back || (of_it && before && before->granted && !decision.granted);
+    taken_back = taken_back || known.taken_back;
+    if (of_it) known.decision = decision;
   }
   if (decision.granted) return;
   const auto site = sites_.find(decision.site);
   if (site == sites_.end()) return;
   site->second.refused = true;
+  site->second.taken_back = site->second.taken_back || taken_back;
   for (auto& [task, known] : site->second.tasks) {
     if (can_be_taken_back(known)) reopen(known);
   }

@@ -349,9 +349,10 @@ TEST(AuthorisationCard, MarksWhoIsSilentLateOrLowOnRange) {
   tell(10.0);
   desk.hear(half_a_request(), kLeader, 10.0);
   EXPECT_THAT(marks(10.1), ElementsAre());
-  told.range_left_m = 1500.0;
+  told.range_left_m = 1200.0;  // 49 s at 20 m/s, and back to where it was heard first
   tell(11.0);
-  EXPECT_THAT(marks(11.1), ElementsAre("low on range: 1.5 km left, 0.2 km to the site"));
+  EXPECT_THAT(marks(11.1),
+              ElementsAre("low on range: 1.2 km left; 1.0 km to its delivery, 0.2 km home"));
   told.range_left_m = 9000.0;
   told.state.x_m = 1500.0;  // at 20 m/s over 1.4 km in 48 s
   tell(12.0);

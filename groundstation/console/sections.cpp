@@ -276,11 +276,12 @@ Json site_json(SiteId id, const SitePicture& site) {
           {"leader", site.over() ? Json(nullptr) : id_or_null(site.leader)},
           {"surveyor", id_or_null(site.surveyor)},
           {"reward", site.site ? number(site.site->reward, 2) : Json(nullptr)},
-          {"status", site.withdrawn  ? "withdrawn"
-                     : site.refused  ? "refused"
-                     : site.done     ? "done"
-                     : site.surveyed ? "surveyed"
-                                     : "found"},
+          {"status", site.taken_back  ? "taken_back"
+                     : site.withdrawn ? "withdrawn"
+                     : site.refused   ? "refused"
+                     : site.done      ? "done"
+                     : site.surveyed  ? "surveyed"
+                                      : "found"},
           {"tasks", std::move(tasks)},
           {"news", site.news ? wording::text_of(*site.news) : ""}};
 }
@@ -366,6 +367,8 @@ void add_card(Json& json, const AuthorisationCard& card) {
     json["deliveries"][i]["marks"] = marks_json(card.deliveries[i]);
   }
   json["leader_marks"] = marks_json(card.leader);
+  json["silent"] = Json::array();
+  for (const VehicleId vehicle : card.silent) json["silent"].push_back(vehicle.value);
   json["missing"] = Json::array();
   for (const auto& missing : card.missing) {
     json["missing"].push_back({{"index", missing.task.index},
@@ -384,16 +387,24 @@ Json authorisation_json(const AuthorisationPicture& known, const Picture& pictur
   const auto& request = known.request;
   const Wgs84 place = origin.to_wgs84({request.site_position.x(), request.site_position.y(), 0.0});
   Json deliveries = Json::array();
+  const bool granted = known.decision && known.decision->granted;
+  bool can_take_back = false;
   for (const auto& delivery : request.deliveries) {
+    const bool before_gate = granted && may_be_before_gate(delivery, picture, now);
+    can_take_back = can_take_back || before_gate;
     deliveries.push_back({{"vehicle", delivery.assignment.vehicle.value},
                           {"index", delivery.assignment.task.index},
                           {"time_s", seconds(delivery.assignment.time)},
                           {"bearing_deg", degrees_of(delivery.bearing_rad)},
+                          {"before_gate", before_gate},
                           {"marks", Json::array()}});
   }
   Json decision = nullptr;
   if (const auto& d = known.decision) {
-    decision = {{"granted", d->granted}, {"by", d->decided_by}, {"at_s", seconds(d->decided_at)}};
+    decision = {{"granted", d->granted},
+                {"taken_back", known.taken_back},
+                {"by", d->decided_by},
+                {"at_s", seconds(d->decided_at)}};
   }
   const bool waits = !known.decision && !known.replaced && now < request.decide_by;
   Json json{{"site", request.site.value},
@@ -408,6 +419,7 @@ Json authorisation_json(const AuthorisationPicture& known, const Picture& pictur
             {"decide_by_s", seconds(request.decide_by)},
             {"waiting", waits},
             {"decision", std::move(decision)},
+            {"can_take_back", can_take_back},
             {"deliveries", std::move(deliveries)}};
   add_card(json, waits ? card_of(request, picture, fleet, now) : AuthorisationCard{});
   return json;

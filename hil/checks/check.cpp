@@ -64,6 +64,7 @@ std::vector<CheckResult> judge(const RunRecord& record, const Limits& limits) {
     results.push_back(check(record, limits));
   }
   if (auto fence = check_fence(record)) results.push_back(*std::move(fence));
+  if (auto taken_back = check_taken_back(record)) results.push_back(*std::move(taken_back));
   return results;
 }
 

@@ -87,6 +87,7 @@ bool refused(const RunRecord& record, SiteId site) {
   for (const MissionEvent& event : record.ground_events) {
     if (event.task.site != site) continue;
     if (event.kind() == EventKind::authorisation_refused) is_refused = true;
+    if (event.kind() == EventKind::authorisation_withdrawn) is_refused = true;
     if (event.kind() == EventKind::authorised) is_refused = false;
   }
   return is_refused;
@@ -257,6 +258,56 @@ CheckResult check_authorisation(const RunRecord& record, const Limits& /*limits*
                                        at(run.begin()) + ", but " + why});
     }
   }
+  return result;
+}
+
+namespace {
+
+/// When a vehicle first heard that the operator does not want the site's deliveries flown: by the
+/// network, and by its own word.
+std::map<std::pair<VehicleId, SiteId>, Instant> refusals_heard(const RunRecord& record) {
+  std::map<std::pair<VehicleId, SiteId>, Instant> first;
+  const auto note = [&first](VehicleId vehicle, SiteId site, Instant at) {
+    const auto [known, is_new] = first.emplace(std::pair{vehicle, site}, at);
+    if (!is_new) known->second = std::min(known->second, at);
+  };
+  for (const RefusalHeard& heard : record.refusals) note(heard.vehicle, heard.site, heard.at);
+  for (const recording::Recording& recorded : record.recordings) {
+    for (const MissionEvent& event : recorded.events) {
+      if (event.kind() != EventKind::authorisation_withdrawn) continue;
+      note(recorded.vehicle, event.task.site, event.time);
+    }
+  }
+  return first;
+}
+
+}  // namespace
+
+std::optional<CheckResult> check_taken_back(const RunRecord& record) {
+  CheckResult result{"taken back",
+                     "no delivery begins once its vehicle has heard that it is not to be flown",
+                     0,
+                     "vehicles told",
+                     "",
+                     {}};
+  const auto heard = refusals_heard(record);
+  if (heard.empty()) return std::nullopt;
+  result.judged = heard.size();
+  std::size_t flown_on = 0;
+  for (const TaskRun& run : task_runs(record)) {
+    if (run.task.kind != TaskKind::deliver) continue;
+    const auto told = heard.find({run.vehicle, run.task.site});
+    if (told == heard.end()) continue;
+    if (run.begin() <= told->second) {
+      flown_on += run.done.value_or(Instant::max()) > told->second ? 1 : 0;
+      continue;
+    }
+    result.violations.push_back({run.vehicle, run.begin(),
+                                 run_name(run) + " (" + round_name(run.round) + ") began " +
+                                     at(run.begin()) + ", but the vehicle had heard " +
+                                     at(told->second) + " that it is not to be flown"});
+  }
+  result.measured = std::to_string(flown_on) + " deliveries had begun";
   return result;
 }
 

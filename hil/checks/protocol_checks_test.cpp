@@ -12,6 +12,31 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
+TEST(ProtocolChecks, ADeliveryThatBeginsAfterItsVehicleHasHeardThatItIsTakenBackIsFound) {
+  RunRecord record = good_record();
+  EXPECT_FALSE(check_taken_back(record)) << "nobody has heard such a thing";
+  const TaskRun* delivery = nullptr;
+  const auto runs = task_runs(record);
+  for (const TaskRun& run : runs) {
+    if (run.task.kind == TaskKind::deliver) delivery = &run;
+  }
+  ASSERT_NE(delivery, nullptr);
+  const SiteId site = delivery->task.site;
+  record.refusals = {{delivery->vehicle, site, "ada", delivery->begin() + Duration{1}}};
+  const auto later = check_taken_back(record);
+  ASSERT_TRUE(later);
+  EXPECT_TRUE(later->held()) << "it had begun";
+  record.refusals[0].at = delivery->begin() - Duration{1};
+  EXPECT_THAT(failed(record), ElementsAre("taken back"));
+  record.refusals[0].vehicle = {99};
+  EXPECT_TRUE(check_taken_back(record)->held()) << "another has heard it";
+  // By its own word as well.
+  of(record, delivery->vehicle)
+      .events.push_back(event(delivery->vehicle, to_seconds(delivery->begin()) - 1.0,
+                              EventKind::authorisation_withdrawn, delivery->task));
+  EXPECT_THAT(failed(record), ElementsAre("taken back"));
+}
+
 TEST(ProtocolChecks, ASurveyThatIsToldTwiceIsOneRun) {
   const auto runs = task_runs(good_record());
   ASSERT_EQ(runs.size(), 4U);

@@ -80,6 +80,10 @@ struct Sentence {
     return what.site ? fmt::format("site {} is withdrawn", what.site->value)
                      : "what detectors have seen is withdrawn";
   }
+  std::string operator()(const GrantTakenBack& what) const {
+    return fmt::format("what is granted at site {} is taken back {:.2f} s later", what.site.value,
+                       to_seconds(what.after));
+  }
   std::string operator()(const RoutesOrdered& what) const {
     return fmt::format("{} vehicles are given routes", what.routes.size());
   }

@@ -97,6 +97,11 @@ FaultParams wrong_clock() {
   p.wrong_clock = true;
   return p;
 }
+FaultParams grants_taken_back() {
+  FaultParams p = phase_only();
+  p.taken_back = 2;
+  return p;
+}
 FaultParams slow_planner() {
   FaultParams p = phase_only();
   p.planning = seconds{3};
@@ -216,7 +221,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 18> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 19> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -233,7 +238,8 @@ constexpr std::array<Profile, 18> kProfiles{{{"none", nullptr, no_fault},
                                              {"planner", slow_planner},
                                              {"sites", sites_told},
                                              {"orders", orders},
-                                             {"clock", wrong_clock}}};
+                                             {"clock", wrong_clock},
+                                             {"taken-back", grants_taken_back}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
@@ -441,6 +447,7 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   hazards = std::max(hazards, other.hazards);
   seen = std::max(seen, other.seen);
   withdrawn = std::max(withdrawn, other.withdrawn);
+  taken_back = std::max(taken_back, other.taken_back);
   slow_operator = slow_operator || other.slow_operator;
   sites_together = sites_together || other.sites_together;
   return *this;
@@ -498,6 +505,16 @@ void draw_orders(Random& random, TeamMission& mission, const FaultParams& params
     mission.faults.push_back({{.not_before = Instant{} + params.phase + i * seconds{20}},
                               {},
                               Ordered{kGroundStation, mission::CommandKind::resume}});
+  }
+}
+
+/// At any moment from the grant to the deliveries, and after them, when it is too late.
+void draw_taken_back(Random& random, TeamMission& mission, const FaultParams& params) {
+  const Instant end = Instant{} + params.phase;
+  for (std::size_t n = count(random, params.taken_back); n > 0; --n) {
+    const SiteId site = mission.sites[random.index(mission.sites.size())].id;
+    const GrantTakenBack back{site, between(random, Duration{}, seconds{25})};
+    mission.faults.push_back({{.not_after = end}, {}, back});
   }
 }
 
@@ -572,6 +589,7 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   draw_sites(random, mission, params);
   if (params.orders > 0) draw_orders(random, mission, params);
   if (params.wrong_clock) draw_wrong_clock(random, mission);
+  if (params.taken_back > 0 && !mission.sites.empty()) draw_taken_back(random, mission, params);
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }

@@ -104,6 +104,16 @@ bool GroundStation::withdraw(const std::optional<SiteId>& site, Instant now) {
   return true;
 }
 
+bool GroundStation::take_back(const GrantTakenBack& what, Instant now) {
+  if (!node_) return false;
+  const auto is_due = [&](const mission::PendingAuthorisation& known) {
+    return known.request.site == what.site && known.decision && known.decision->granted &&
+           now + clock_ >= known.decision->decided_at + what.after;
+  };
+  return std::ranges::any_of(node_->agent().authorisations(), is_due) &&
+         node_->agent().take_back(what.site, "scenario", now + clock_).ok();
+}
+
 bool GroundStation::give(const RoutesOrdered& order, Instant now) {
   if (!node_) return false;
   mission::GroundRoutes::Routes routes = order.routes;

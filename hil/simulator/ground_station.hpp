@@ -31,6 +31,9 @@ class GroundStation {
   /// is known of it yet.
   bool withdraw(const std::optional<SiteId>& site, Instant now);
 
+  /// The operator takes a grant back. False where there is none yet that long, or none any more.
+  bool take_back(const GrantTakenBack& what, Instant now);
+
   /// The operator gives those routes. False where the ground station does not run, or refuses.
   bool give(const RoutesOrdered& order, Instant now);
   /// A plan was given, and nobody is told of it any more.

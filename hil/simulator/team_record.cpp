@@ -40,6 +40,13 @@ TeamObserver TeamRecorder::observer() {
     of(vehicle).track.push_back({state, plan.number, 0.0, 0.0});
     if (watcher_.track) watcher_.track(vehicle, state, plan);
   };
+  observer.heard = [this](VehicleId vehicle, const mission::Message& message, Instant now) {
+    const auto* decision = std::get_if<mission::Authorisation>(&message);
+    if (decision != nullptr && !decision->granted) {
+      record_.refusals.push_back({vehicle, decision->site, decision->decided_by, now});
+    }
+    if (watcher_.heard) watcher_.heard(vehicle, message, now);
+  };
   observer.fault = [this](const FaultEvent& event) {
     if (event.kind == FaultEvent::Kind::gone) record_.lost.push_back(event.vehicle);
     if (event.vehicle == kGroundStation) {

@@ -243,6 +243,11 @@ class Team {
       if (done) drain_ground(now);
       return done;
     }
+    if (const auto* back = std::get_if<GrantTakenBack>(&fault.what)) {
+      const bool done = ground_.take_back(*back, now);
+      if (done) drain_ground(now);
+      return done;
+    }
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
       (void)ground_.command(order->vehicle, order->kind, now);
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
@@ -396,6 +401,7 @@ class Team {
       } else {
         const auto& message = std::get<mission::Message>(*parcel->what);
         if (!v.heeds(message, now)) continue;
+        if (observer_.heard) observer_.heard(v.spec().id, message, now);
         v.node().on_message(message, parcel->from, v.local(now));
       }
       if (drain(parcel->to, now)) air_.on_moved(*parcel);
@@ -532,6 +538,7 @@ class Team {
       if (observer_.event) observer_.event(*event);
       const auto kind = event->kind();
       if (kind == mission::EventKind::site_withdrawn ||
+          kind == mission::EventKind::authorisation_withdrawn ||
           kind == mission::EventKind::authorisation_refused) {
         over(event->task.site);
       }

@@ -34,7 +34,7 @@ const hello = {
 
 const request = {
   site: 1, leader: 1, coalition: "1-1-1", round: 2, x: 0, y: 0, latitude_deg: 47, longitude_deg: 8, asked_s: 70, decide_by_s: 500, waiting: true,
-  decision: null, leader_marks: [],
+  decision: null, can_take_back: false, silent: [2], leader_marks: [],
   deliveries: [
     { vehicle: 1, index: 0, time_s: 510, bearing_deg: 7, marks: [] },
     { vehicle: 2, index: 1, time_s: 510, bearing_deg: 90, marks: [{ level: "alarm", text: "silent for 12 s: it may not hear the decision" }] },

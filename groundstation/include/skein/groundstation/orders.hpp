@@ -85,6 +85,11 @@ struct Decision {
   SiteId site;
   bool grant = false;
   std::optional<coalition::Round> plan = {};  ///< that was seen; none: the newest
+  bool although_silent = false;               ///< a grant, also where one that it names is silent
+};
+/// What was granted there and has not begun is granted no more.
+struct TakeBack {
+  SiteId site;
 };
 /// A command to a vehicle, or to all (kGroundStation).
 struct Order {
@@ -190,10 +195,11 @@ struct Acknowledge {
 };
 struct Quit {};
 /// monostate: an empty line.
-using Input = std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard,
-                           WithdrawHazard, NewSite, SitesFromFile, WithdrawSite, RoutesFromFile,
-                           CallOffRoutes, ProposalAnswer, Formation, Wait, Record, Quit,
-                           PreflightOf, NewFence, StatusOf, ReturnPreview, SearchArea, Acknowledge>;
+using Input =
+    std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard, WithdrawHazard,
+                 NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
+                 ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence, StatusOf,
+                 ReturnPreview, SearchArea, Acknowledge, TakeBack>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

@@ -95,10 +95,12 @@ export function paint_sites(view: View, picture: Picture): void {
   }
 }
 
+/** The operator wants nobody there any more. */
+export const is_off = (site: Site): boolean => site.status === "withdrawn" || site.status === "refused" || site.status === "taken_back";
+
 /** Of a site that nobody works at any more only what was flown there. */
 export function tasks_to_draw(site: Site): SiteTask[] {
-  const is_off = site.status === "withdrawn" || site.status === "refused";
-  return site.tasks.filter((task) => !is_off || task.state === "started" || task.state === "done" || task.state === "unknown");
+  return site.tasks.filter((task) => !is_off(site) || task.state === "started" || task.state === "done" || task.state === "unknown");
 }
 
 /** "surveyed · 1/3 delivered · 0/2 assessed" */
@@ -110,6 +112,7 @@ export function progress_of(site: Site): string {
   };
   if (site.status === "withdrawn") return "withdrawn";
   if (site.status === "refused") return "refused by the operator";
+  if (site.status === "taken_back") return ["authorisation taken back", count("deliver", "delivered")].filter((part) => part !== null).join(" · ");
   const parts = [site.status];
   if (site.status !== "found") parts.push(...[count("deliver", "delivered"), count("assess", "assessed")].filter((part) => part !== null));
   return parts.join(" · ");

@@ -9,7 +9,9 @@ import { highlighted_request, place_to_show } from "../shell/view";
 import type { Authorisation, Problem } from "../wire/protocol";
 import { authorisations, lost_s, may_order, mission_now_s } from "../wire/store";
 import { distance_and_bearing } from "../map/geodesy";
-import { count_text, has_alarm, request_key, waiting_requests } from "./requests";
+import { Authorise } from "./authorise";
+import { Granted } from "./granted";
+import { count_text, granted_requests, has_alarm, request_key, waiting_requests } from "./requests";
 
 function Countdown({ request }: { request: Authorisation }) {
   void tick.value;
@@ -114,9 +116,7 @@ function Request({ request }: { request: Authorisation }) {
       {may_order.value && lost_s.value > 0 && <p class="problem alarm">It cannot be decided here: there is no connection.</p>}
       {may_order.value && lost_s.value === 0 && (
         <div class="button-row">
-          <HoldButton kind="go" testid={`authorise-${request.site}`} on_held={() => void give({ ...plan, grant: true })}>
-            Authorise
-          </HoldButton>
+          <Authorise request={request} />
           <HoldButton kind="stop" testid={`refuse-${request.site}`} on_held={() => void give({ ...plan, grant: false })}>
             Refuse
           </HoldButton>
@@ -128,12 +128,16 @@ function Request({ request }: { request: Authorisation }) {
 
 export function Decisions() {
   const waiting = waiting_requests(authorisations.value);
-  if (waiting.length === 0) return null;
+  const granted = granted_requests(authorisations.value);
+  if (waiting.length === 0 && granted.length === 0) return null;
   return (
-    <section class="decisions" aria-label="Waiting for your decision" data-testid="decisions">
+    <section class="decisions" aria-label="Waiting for your decision, or authorised and not begun" data-testid="decisions">
       {waiting.map((request) => (
         // By its key: a press that has begun on one plan must not end on another.
         <Request key={request_key(request)} request={request} />
+      ))}
+      {granted.map((request) => (
+        <Granted key={request_key(request)} request={request} />
       ))}
     </section>
   );

@@ -67,5 +67,9 @@ test("a site says what is filled in, and needs a place unless it changes one", (
   assert.ok("trouble" in site_order({ ...no_site, east: "1" }, limits, 10034));
   assert.equal(words_of_order({ kind: "withdraw", hazard: 3 }), "withdraw hazard 3");
   assert.equal(words_of_order({ kind: "withdraw", site: 3 }), "withdraw site 3");
+  assert.equal(words_of_order({ kind: "withdraw", decision: 3 }), "withdraw decision 3");
+  const decision = { kind: "decision", site: 3, grant: true, coalition: "1-1-1", round: 1 } as const;
+  assert.equal(words_of_order(decision), "authorise 3");
+  assert.equal(words_of_order({ ...decision, override: true }), "authorise 3 override");
   assert.equal(words_of_order({ kind: "proposal", number: 2, accept: false }), "dismiss 2");
 });

@@ -159,7 +159,7 @@ export function words_of_order(order: Order): string {
     case "commands":
       return `${order.command.replaceAll("_", " ")} ${ids(order.vehicles)}`;
     case "decision":
-      return `${order.grant ? "authorise" : "refuse"} ${order.site}`;
+      return `${order.grant ? "authorise" : "refuse"} ${order.site}${order.override ? " override" : ""}`;
     case "hazard":
       return `${order.hazard === undefined ? "hazard" : `change hazard ${order.hazard}`} ${order.corners ? `polygon ${words_of_corners(order.corners)}` : `${order.x} ${order.y} ${order.radius_m}`}`;
     case "search":
@@ -175,6 +175,7 @@ export function words_of_order(order: Order): string {
       return words_of_site(order);
     case "withdraw":
       if (order.routes) return "withdraw routes";
+      if (order.decision !== undefined) return `withdraw decision ${order.decision}`;
       return order.hazard === undefined ? `withdraw site ${order.site}` : `withdraw hazard ${order.hazard}`;
     case "proposal":
       return `${order.accept ? "accept" : "dismiss"} ${order.number}`;

@@ -2,7 +2,7 @@
 // Sites that the operator adds, changes and withdraws, and what detectors propose.
 
 import { useEffect, useState } from "preact/hooks";
-import { progress_of } from "../map/ground";
+import { is_off, progress_of } from "../map/ground";
 import { number } from "../shell/format";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
@@ -12,7 +12,7 @@ import { hello, proposals, send, sites } from "../wire/store";
 import { no_site, site_order, words_of_order } from "./orders";
 import type { SiteFields } from "./orders";
 
-const may_be_changed = (site: Site) => site.status !== "done" && site.status !== "withdrawn" && site.status !== "refused";
+const may_be_changed = (site: Site) => site.status !== "done" && !is_off(site);
 
 function Known() {
   return (

@@ -190,6 +190,8 @@ export interface Delivery {
   index: number;
   time_s: number;
   bearing_deg: number;
+  /** Granted, and not begun as far as is known: it can be taken back. */
+  before_gate: boolean;
   /** What speaks against it: its vehicle is silent, late, low on range. */
   marks: Problem[];
 }
@@ -206,8 +208,12 @@ export interface Authorisation {
   asked_s: number;
   decide_by_s: number;
   waiting: boolean;
-  decision: { granted: boolean; by: string; at_s: number } | null;
+  decision: { granted: boolean; taken_back: boolean; by: string; at_s: number } | null;
+  /** Some of what was granted. */
+  can_take_back: boolean;
   deliveries: Delivery[];
+  /** Of those that it names: it is authorised only by who passes over their silence. */
+  silent: number[];
   leader_marks: Problem[];
   /** What the site wants besides, and why it is not in the plan. */
   missing: { index: number; bearing_deg: number; why: string }[];
@@ -576,6 +582,8 @@ export interface Decision {
   grant: boolean;
   coalition: string;
   round: number;
+  /** A grant, also where one that it names is silent. */
+  override?: boolean;
 }
 
 /** A circle, or a polygon; `hazard`: in place of that one. */
@@ -644,6 +652,8 @@ export interface Withdrawal {
   routes?: true;
   site?: number;
   hazard?: number;
+  /** What is authorised at that site. */
+  decision?: number;
 }
 
 export interface ProposalAnswer {

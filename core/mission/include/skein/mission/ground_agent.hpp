@@ -43,12 +43,28 @@ struct PendingAuthorisation {
   std::optional<Authorisation> decision;
 };
 
+/// What the operator decides on a request.
+struct Verdict {
+  bool grant = false;
+  bool although_silent = false;  ///< a grant, also where one that it names is not heard
+};
+
+/// Whom of those that the request names the ground station does not hear now, by their ids.
+[[nodiscard]] std::vector<VehicleId> silent_in(const AuthorisationRequest& request,
+                                               const Fleet& fleet);
+
+/// What an operator must know who has taken a grant back.
+struct TakenBack {
+  std::vector<TaskAssignment> flown_on;  ///< deliveries that have begun, as far as was heard
+  std::vector<VehicleId> silent;         ///< who may not hear it, and fly
+};
+
 /// All decisions of the ground station, without I/O: keeps the fleet picture, holds requests for
 /// authorisation, sends decisions (every 0.5 s until the last delivery's time has passed) and
 /// commands (every 1 s for 5 s). Same calling rules as VehicleAgent. An authorisation is only ever
-/// made by authorise(), refuse() or a scripted decision; a successor's plan with the very
-/// deliveries that were granted needs no new one. It remembers what was flown: a delivery that is
-/// done, or was granted to another coalition and may have been flown, is not put to the operator
+/// made by authorise(), refuse(), take_back() or a scripted decision; a successor's plan with the
+/// very deliveries that were granted needs no new one. It remembers what was flown: a delivery that
+/// is done, or was granted to another coalition and may have been flown, is not put to the operator
 /// again, but told to the leader that asks. And it passes on, now and then, that a leader is there
 /// and that a site is done, so that who is out of the leader's range does not take it for lost. A
 /// site whose leader has been silent for long is announced by it: too late for bids, but it is
@@ -68,12 +84,19 @@ class GroundAgent {
 
   /// The operator's decision on the newest request for that site. Fails when there is none waiting,
   /// and does not grant what a vehicle id used twice is part of.
-  Result<void> authorise(SiteId site, const std::string& operator_name, Instant now);
+  /// Nor one with a member or a leader that is silent here at this moment, or was never heard,
+  /// unless the operator passes over that; then gives what he has passed over.
+  Result<std::string> authorise(SiteId site, const std::string& operator_name, Instant now,
+                                bool although_silent = false);
   Result<void> refuse(SiteId site, const std::string& operator_name, Instant now);
-  /// The same, for that plan and no other: one that a person has seen.
   [[nodiscard]] bool has_granted(SiteId site) const;
-  Result<void> decide_on(const coalition::Round& round, SiteId site, bool granted,
-                         const std::string& operator_name, Instant now);
+  /// As these two, for that plan and no other: one that a person has seen.
+  Result<std::string> decide_on(const coalition::Round& round, SiteId site, Verdict what,
+                                const std::string& operator_name, Instant now);
+  /// Takes back all that is granted at that site: as a refusal, and said as long. A delivery that
+  /// has begun is flown to its end. Fails where none is granted that may not have begun.
+  Result<TakenBack> take_back(SiteId site, const std::string& by, Instant now);
+  [[nodiscard]] bool may_be_taken_back(const PendingAuthorisation& pending, Instant now) const;
   /// A command to one vehicle, or to all (kGroundStation). Fails for a vehicle not in the fleet,
   /// and while two instances answer to the id (for all: while any do, but for `hold`).
   Result<void> command(VehicleId vehicle, CommandKind kind, Instant now);
@@ -136,13 +159,15 @@ class GroundAgent {
   void send_again(Instant now);
   [[nodiscard]] const ScriptedDecision* script_for(SiteId site) const;
   [[nodiscard]] std::optional<Instant> script_due(const PendingAuthorisation& pending) const;
-  Result<void> decide_newest(SiteId site, bool granted, const std::string& by, Instant now);
-  Result<void> decide(PendingAuthorisation& pending, bool granted, const std::string& by,
-                      Instant now);
+  Result<std::string> decide_newest(SiteId site, Verdict what, const std::string& by, Instant now);
+  Result<std::string> decide(PendingAuthorisation& pending, Verdict what, const std::string& by,
+                             Instant now);
+  [[nodiscard]] std::string silent_text(const AuthorisationRequest& request, Instant now) const;
   [[nodiscard]] std::optional<std::string> why_not_grant(const AuthorisationRequest& request,
                                                          Instant now);
   void grant_again(PendingAuthorisation& pending, Authorisation before, Instant now);
-  void say(PendingAuthorisation& pending, const Authorisation& decision, Instant now);
+  void say(PendingAuthorisation& pending, const Authorisation& decision, Instant now,
+           const std::string& although);
   [[nodiscard]] LedSite* led_site(SiteId site);
   void report(EventBody body, const coalition::Round& round, const TaskId& task, Instant now);
 

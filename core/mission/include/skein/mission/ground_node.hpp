@@ -80,6 +80,7 @@ class GroundNode {
   }
   [[nodiscard]] const GroundDetections& detections() const { return detections_; }
   [[nodiscard]] GroundHazards& hazards() { return hazards_; }
+  [[nodiscard]] const GroundHazards& hazards() const { return hazards_; }
 
   // As of GroundRoutes, with the fleet as it is heard and the hazards that are known.
   [[nodiscard]] Result<void> check_routes(const GroundRoutes::Routes& routes, Instant now) const {

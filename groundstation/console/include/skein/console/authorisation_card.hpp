@@ -32,10 +32,15 @@ struct AuthorisationCard {
   };
   std::vector<DidNotBid> did_not_bid;  ///< of those that can deliver; where something is missing
   std::vector<std::string> changes;    ///< since the site's request before; none: it is the first
+  std::vector<VehicleId> silent = {};  ///< it is granted only by who passes over their silence
 };
 
 [[nodiscard]] AuthorisationCard card_of(const mission::AuthorisationRequest& request,
                                         const Picture& picture, const mission::Fleet& fleet,
                                         Instant now);
+
+/// Of a delivery that was granted: it has not begun, as far as is known.
+[[nodiscard]] bool may_be_before_gate(const mission::Delivery& delivery, const Picture& picture,
+                                      Instant now);
 
 }  // namespace skein::console

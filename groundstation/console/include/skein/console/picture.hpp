@@ -56,6 +56,7 @@ struct VehiclePicture {
   };
   std::vector<Span> spans;  ///< each until the next one begins
   std::optional<Instant> heard_at;
+  std::optional<Vec2> first_at;  ///< where it was heard first
 };
 
 /// One round of a coalition: what was said.
@@ -96,6 +97,7 @@ struct SitePicture {
   bool done = false;
   bool withdrawn = false;             ///< by the operator
   bool refused = false;               ///< its deliveries, by the operator: nobody leads it again
+  bool taken_back = false;            ///< that, after they had been granted
   std::optional<VehicleId> surveyor;  ///< that was told of it
   std::map<TaskId, TaskPicture> tasks;
   std::optional<mission::MissionEvent> news;  ///< the newest event of the site
@@ -112,7 +114,8 @@ struct AuthorisationPicture {
   mission::AuthorisationRequest request;
   Instant asked_at{};
   std::optional<mission::Authorisation> decision;
-  bool replaced = false;  ///< by a newer plan of that coalition
+  bool replaced = false;    ///< by a newer plan of that coalition
+  bool taken_back = false;  ///< decided against, after it had been granted
 };
 
 struct FormationPicture {

@@ -67,6 +67,9 @@ struct CheckResult {
 /// A delivery starts only after the ground station authorised its round and site, and the vehicle
 /// heard of it.
 [[nodiscard]] CheckResult check_authorisation(const RunRecord& record, const Limits& limits);
+/// No delivery begins once its vehicle has heard that the operator refuses it, or takes his grant
+/// back. No result where nobody has heard such a thing.
+[[nodiscard]] std::optional<CheckResult> check_taken_back(const RunRecord& record);
 /// A vehicle that was told to hold or to come home takes up nothing until it is told to go on,
 /// whatever its program forgets; but where only another vehicle could tell it which orders stand,
 /// which may have missed them.

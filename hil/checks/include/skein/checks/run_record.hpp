@@ -37,6 +37,15 @@ struct Excuse {
   std::string why;
 };
 
+/// The operator's decision against a site's deliveries has reached a vehicle: a refusal, or a grant
+/// taken back.
+struct RefusalHeard {
+  VehicleId vehicle;
+  SiteId site;
+  std::string by;
+  Instant at{};
+};
+
 /// Where a route that was planned before the mission is to end.
 struct RouteEnd {
   VehicleId vehicle;
@@ -60,6 +69,8 @@ struct RunRecord {
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
   std::vector<AgentEnd> agent_ends;  ///< in the order of time
   std::vector<Excuse> excused;
+  /// As whoever watches the network saw it, where somebody did; in the order of time.
+  std::vector<RefusalHeard> refusals = {};
 };
 
 /// Of this vehicle; null where there is none.

@@ -75,6 +75,12 @@ struct PlaceSeen {
 struct SiteWithdrawal {
   std::optional<SiteId> site;
 };
+/// The operator takes back what he has granted at that site, so long after he has; once any of it
+/// can be taken back by then.
+struct GrantTakenBack {
+  SiteId site;
+  Duration after{};
+};
 /// The operator gives those vehicles these routes over the air. They begin so long afterwards.
 struct RoutesOrdered {
   std::map<VehicleId, TimedPath> routes;
@@ -88,8 +94,8 @@ struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
   std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff,
-               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, RoutesOrdered, BatteryFalls,
-               Healing>
+               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, GrantTakenBack, RoutesOrdered,
+               BatteryFalls, Healing>
       what;
 };
 

@@ -50,6 +50,7 @@ struct FaultParams {
   std::size_t hazards = 0;      ///< appear in flight
   std::size_t seen = 0;         ///< places that detectors tell of: false, doubled
   std::size_t withdrawn = 0;    ///< sites of the mission that the operator withdraws
+  std::size_t taken_back = 0;   ///< sites whose grant the operator takes back
   bool slow_operator = false;   ///< decisions late, refused, or only after a fixed moment
   bool sites_together = false;  ///< all sites are reported at one moment: several leaders
 

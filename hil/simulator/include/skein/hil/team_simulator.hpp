@@ -124,6 +124,8 @@ struct TeamObserver {
   std::function<void(const FaultEvent&)> fault;
   /// Whatever is sent, as it would go through the codec.
   std::function<void(const mission::Message&)> message;
+  /// What a vehicle's program is given of the network.
+  std::function<void(VehicleId, const mission::Message&, Instant)> heard;
   /// All that fly in formation, in the mission's order, at every control step.
   std::function<void(Instant, const std::vector<SeenBody>&)> bodies;
   /// What the ground station's program takes from the network, or says itself (sender 0), in its
