@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <fstream>
+#include <ios>
 #include <string>
 #include <utility>
 
@@ -17,6 +19,7 @@ namespace {
 
 constexpr double kArcStep_rad = 0.3;
 constexpr int kMarkersPerStep = 20;  // so that a flood cannot keep the loop from its deadlines
+constexpr int kLinesPerStep = 500;
 constexpr Duration kComplaintPeriod = std::chrono::seconds{10};
 
 std::vector<Wgs84> points_of(const Path& path, double z_m, const MissionOrigin& origin) {
@@ -62,6 +65,21 @@ agencies::ShownVehicle shown_vehicle(VehicleId id, const mission::FleetEntry& en
   return shown;
 }
 
+void set_progress(agencies::ShownTrack& track, const mission::FlightPlan& plan, Instant now) {
+  constexpr std::size_t kMost = 65'534;
+  const auto& segments = plan.timed.path.segments;
+  const double flown_m = plan.timed.distance_at(now);
+  track.legs = static_cast<std::uint16_t>(std::min(segments.size(), kMost));
+  track.leg = 0;
+  double ends_m = 0.0;
+  for (std::size_t i = 0; i < track.legs; ++i) {
+    ends_m += segments[i].length_m;
+    if (flown_m < ends_m) break;
+    track.leg = static_cast<std::uint16_t>(std::min<std::size_t>(i + 1, track.legs - 1U));
+  }
+  track.left_m = std::max(0.0, plan.timed.path.length_m() - flown_m);
+}
+
 }  // namespace
 
 const agencies::ShownTrack& ShownTracks::of(VehicleId vehicle, const mission::FlightPlan& plan,
@@ -76,17 +94,20 @@ const agencies::ShownTrack& ShownTracks::of(VehicleId vehicle, const mission::Fl
 }
 
 agencies::Shown shown_of(const console::Picture& picture, const mission::Fleet& fleet,
-                         const MissionOrigin& origin, ShownTracks& tracks, Instant now) {
+                         const MissionOrigin& origin, const configuration::TeamRemoteId& ids,
+                         ShownTracks& tracks, Instant now) {
   agencies::Shown shown;
   for (const auto& [id, entry] : fleet.vehicles()) {
     if (!entry.telemetry || entry.revoked) continue;
     shown.vehicles.push_back(shown_vehicle(id, entry, picture, origin));
+    shown.vehicles.back().remote_id = ids.of(id);
     const auto known = picture.vehicles().find(id);
     const bool has_plan = known != picture.vehicles().end() && known->second.plan.has_value();
     if (!has_plan || entry.silent) continue;
     const mission::FlightPlan& plan = known->second.plan->plan;
     if (now >= plan.timed.end_time()) continue;
     shown.tracks.push_back(tracks.of(id, plan, entry.telemetry->state.z_m));
+    set_progress(shown.tracks.back(), plan, now);
   }
   const auto on_ground = [&origin](const Vec2& place) {
     return origin.to_wgs84(Position<MissionEnu>{place.x(), place.y(), 0.0});
@@ -105,7 +126,12 @@ AgencyDesk::AgencyDesk(const configuration::GroundConfig& config, const MissionO
     : origin_{origin},
       tracks_{origin},
       cot_feed_{config.agencies.team, config.time.epoch_unix_ns},
-      intake_{origin, cot_feed_.uid_prefix()} {
+      intake_{origin, cot_feed_.uid_prefix()},
+      remote_ids_{config.remote_id},
+      adsb_{origin, {config.agencies.adsb.qnh_hpa, config.agencies.adsb.geoid_height_m}},
+      adsb_file_{config.agencies.adsb.file} {
+  const configuration::AdsbConfig& adsb = config.agencies.adsb;
+  if (!adsb.address.empty()) adsb_lines_.emplace(adsb.address, adsb.port, agencies::kSbsLineMax);
   open_outlets(config.agencies);
   open_markers(config.agencies.markers);
 }
@@ -158,6 +184,46 @@ std::optional<mission::Detection> AgencyDesk::next_marker(Instant now) {
   return seen;
 }
 
+std::optional<mission::SeenAircraft> AgencyDesk::next_aircraft(Instant now) {
+  if (aircraft_.empty() && adsb_lines_) read_lines(now);
+  if (aircraft_.empty() && !adsb_file_.empty() && now >= next_file_) read_file(now);
+  if (aircraft_.empty()) return std::nullopt;
+  mission::SeenAircraft seen = std::move(aircraft_.front());
+  aircraft_.pop_front();
+  return seen;
+}
+
+void AgencyDesk::read_lines(Instant now) {
+  if (now < next_lines_) return;
+  next_lines_ = now + kPeriod;
+  adsb_lines_->poll(std::chrono::steady_clock::now());
+  if (const auto news = adsb_lines_->poll_news()) spdlog::info("agencies: ADS-B: {}", *news);
+  for (int i = 0; i < kLinesPerStep; ++i) {
+    const auto line = adsb_lines_->next();
+    if (!line) return;
+    if (auto seen = adsb_.take_sbs(*line, now)) aircraft_.push_back(*std::move(seen));
+  }
+}
+
+void AgencyDesk::read_file(Instant now) {
+  next_file_ = now + kFilePeriod;
+  std::ifstream in{adsb_file_, std::ios::binary};
+  std::string text(agencies::kAircraftJsonMax + 1, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
+  if (text.empty()) {
+    if (!std::exchange(told_file_, true)) {
+      spdlog::warn("agencies: ADS-B: {} cannot be read; it is tried again", adsb_file_);
+    }
+    return;
+  }
+  told_file_ = false;
+  const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
+  for (auto& seen : adsb_.take_json(text, std::chrono::duration<double>(since_1970).count(), now)) {
+    aircraft_.push_back(std::move(seen));
+  }
+}
+
 void AgencyDesk::on_timeout(const console::Picture& picture, const mission::Fleet& fleet,
                             Instant now) {
   if (now < next_ || (cot_xml_.empty() && cot_protobuf_.empty() && mavlink_.empty())) return;
@@ -165,14 +231,14 @@ void AgencyDesk::on_timeout(const console::Picture& picture, const mission::Flee
   poll_outlets(cot_xml_);
   poll_outlets(cot_protobuf_);
   poll_outlets(mavlink_);
-  const agencies::Shown shown = shown_of(picture, fleet, origin_, tracks_, now);
+  const agencies::Shown shown = shown_of(picture, fleet, origin_, remote_ids_, tracks_, now);
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   const auto unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(since_1970).count();
   if (!cot_xml_.empty() || !cot_protobuf_.empty()) {
     for (const auto& event : cot_feed_.update(shown, now, unix_ns)) say(event);
   }
   if (mavlink_.empty()) return;
-  for (const auto& packet : mavlink_feed_.update(shown, now)) say(packet);
+  for (const auto& packet : mavlink_feed_.update(shown, now, unix_ns)) say(packet);
 }
 
 void AgencyDesk::on_event(const mission::MissionEvent& event) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <string>
 #include <thread>
@@ -47,11 +49,12 @@ struct ShownTest : ::testing::Test {
   }
   agencies::Shown at(double now_s) {
     fleet.on_timeout(at_seconds(now_s));
-    return shown_of(picture, fleet, origin(), tracks, at_seconds(now_s));
+    return shown_of(picture, fleet, origin(), remote_ids, tracks, at_seconds(now_s));
   }
   mission::Fleet fleet{{.expected = {{1}, {2}}}};
   console::Picture picture{{.expected = {{1}, {2}}, .hazards = {{{4}, {100.0, 200.0}, 30.0}}}};
   ShownTracks tracks{origin()};
+  configuration::TeamRemoteId remote_ids;
 };
 
 TEST_F(ShownTest, HasWhoWasHeardAndWhereItGoes) {
@@ -70,8 +73,15 @@ TEST_F(ShownTest, HasWhoWasHeardAndWhereItGoes) {
   ASSERT_EQ(points.size(), 6U) << "a line, and an arc of 1 rad in steps of 0.3";
   EXPECT_NEAR(origin().to_enu(points[1]).x(), 400.0, 1e-3);
   EXPECT_NEAR(origin().to_enu(points[1]).z(), 50.0, 1e-3);
+  EXPECT_EQ(shown.tracks[0].legs, 2);
+  EXPECT_EQ(shown.tracks[0].leg, 0);
+  EXPECT_NEAR(shown.tracks[0].left_m, 500.0 - 1.2 * 20.0, 0.1);
+  EXPECT_EQ(at(21.0).tracks.at(0).leg, 1);
   ASSERT_EQ(shown.hazards.size(), 1U);
   EXPECT_EQ(shown.hazards[0].radius_m, 30.0);
+  EXPECT_FALSE(vehicle.remote_id.exists());
+  remote_ids.ids = {{VehicleId{2}, "1ABCD9"}};
+  EXPECT_EQ(at(1.2).vehicles[0].remote_id.uas_id, "1ABCD9");
 }
 
 TEST_F(ShownTest, LeavesOutPlansThatAreOverAndWhatIsOutOfTheMission) {
@@ -148,7 +158,28 @@ TEST_F(ShownTest, IsSentWhereTheConfigurationSays) {
   EXPECT_EQ(packet->front(), '\xFD') << "MAVLink 2";
 }
 
+TEST(AgencyDesk, ReadsTheFileThatAReceiverWrites) {
+  const std::string file = ::testing::TempDir() + "agency_desk_aircraft.json";
+  const auto unix_s = std::chrono::duration<double>(
+                          std::chrono::system_clock::now().time_since_epoch())
+                          .count();
+  std::ofstream{file} << "{\"now\": " << std::to_string(unix_s)
+                      << R"(, "aircraft": [{"hex": "4ca2d6", "lat": 59.01, "lon": 17.0,
+      "alt_geom": 2000, "gs": 100, "track": 180, "seen_pos": 1.0}]})";
+  AgencyDesk desk{config("agencies: {adsb: {file: " + file + "}}\n"), origin()};
+  const auto seen = desk.next_aircraft(at_seconds(10.0));
+  ASSERT_TRUE(seen);
+  EXPECT_EQ(seen->aircraft.address, 0x4ca2d6U);
+  EXPECT_NEAR(seen->aircraft.height_m, 2000.0 * 0.3048 - 100.0, 1e-6);
+  EXPECT_NEAR(to_seconds(seen->aircraft.time.time_since_epoch()), 9.0, 0.5);
+  EXPECT_FALSE(desk.next_aircraft(at_seconds(10.5)));
+  EXPECT_TRUE(desk.next_aircraft(at_seconds(11.5))) << "it is read again";
+  std::filesystem::remove(file);
+  EXPECT_FALSE(desk.next_aircraft(at_seconds(13.0)));
+}
+
 TEST(AgencyDesk, WithoutConfigurationItDoesNothing) {
+  EXPECT_FALSE((AgencyDesk{config(""), origin()}.next_aircraft(at_seconds(1.0))));
   AgencyDesk desk{config(""), origin()};
   EXPECT_FALSE(desk.next_marker(at_seconds(1.0)));
   desk.on_timeout(console::Picture{{}}, mission::Fleet{{}}, at_seconds(1.0));

@@ -234,6 +234,7 @@ class GroundLoop {
       while (const auto marker = agencies_.next_marker(now)) {
         node_.propose_from_outside(*marker, now);
       }
+      while (auto seen = agencies_.next_aircraft(now)) node_.on_aircraft(*std::move(seen), now);
       if (speak_.exchange(false)) {
         node_.speak();
         take_revocations(now);
@@ -536,6 +537,7 @@ class GroundLoop {
     while (const auto event = node_.poll_event()) {
       tell_of(*event, now);
     }
+    console_.on_traffic(node_.traffic().all());
     console_.on_timeout(node_.fleet(), audit_.json(), areas_.json(now), now);
     agencies_.on_timeout(console_.picture(), node_.fleet(), now);
     for (const auto& pending : node_.agent().authorisations()) {

@@ -44,6 +44,8 @@ Result<ardupilot::CanLinkParams> can_params(const configuration::VehicleConfig& 
   ardupilot::CompanionParams& companion = params.companion;
   companion.vehicle = config.vehicle;
   companion.fence = config.fence;
+  companion.remote_id = config.remote_id;
+  companion.unix_us = unix_us;
   companion.system_id = fc.system_id;
   switch (fc.take_over) {
     case configuration::TakeOverKind::in_flight:

@@ -39,6 +39,7 @@ mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& co
   agent.vehicle = config.vehicle;
   agent.instance = instance;
   agent.protocol = config.protocol;
+  agent.traffic = config.traffic;
   agent.planning = config.planning;
   agent.search = config.search;
   agent.route = route;
@@ -66,6 +67,7 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
     node.agent = vehicle_agent(config, route, instance);
   }
   node.fence = config.fence;
+  node.traffic = config.traffic;
   node.setup = configuration::setup_params(
       config, {program.substr(program.rfind(' ') + 1), codec::wire_versions()});
   node.program = std::move(program);

@@ -112,6 +112,7 @@ class Judge {
     append(all, in_group(CheckGroup::battery, {battery()}));
     Checks arming;
     if (!facts_.in_flight) arming = {pre_arm(), mode(), armed()};
+    if (facts_.remote_id) arming.push_back(remote_id());
     arming.push_back(fence());
     append(all, in_group(CheckGroup::arming, std::move(arming)));
     return all;
@@ -310,6 +311,15 @@ class Judge {
                   "disarm it: the companion launches none that was seen armed since it started");
     }
     return warn("armed", "yes, on the ground", "keep clear of it");
+  }
+  [[nodiscard]] Check remote_id() const {
+    if (facts_.remote_id->empty()) return ok("Remote ID", "its transmitter is ready");
+    constexpr const char* kRemedy =
+        "see its power and line, DID_MAVPORT and SERIALn_PROTOCOL 2, and remote_id in the "
+        "configuration";
+    const std::string found = facts_.remote_id->substr(facts_.remote_id->find(": ") + 2);
+    return config_.remote_id.required ? fail("Remote ID", found, kRemedy)
+                                      : warn("Remote ID", found, kRemedy);
   }
   [[nodiscard]] Check fence() const {
     const auto enabled = facts_.parameters.find("FENCE_ENABLE");

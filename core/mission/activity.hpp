@@ -30,6 +30,7 @@ struct PartStates {
   bool delivers = false;         ///< its task is a delivery
   bool awaits_decision = false;  ///< of that, or of the deliveries that it leads
   bool late = false;             ///< for its task
+  bool avoids_traffic = false;   ///< by its height
 };
 
 struct ActivityRule {
@@ -67,6 +68,8 @@ inline constexpr std::array kDetailRules{
     DetailRule{[](const PartStates& s) { return s.on_ground; }, ActivityDetail::on_ground},
     DetailRule{[](const PartStates& s) { return s.takes_off; }, ActivityDetail::taking_off},
     DetailRule{[](const PartStates& s) { return !s.begun; }, ActivityDetail::not_begun},
+    DetailRule{[](const PartStates& s) { return s.avoids_traffic; },
+               ActivityDetail::avoiding_traffic},
     DetailRule{[](const PartStates& s) { return s.homes && s.at_home; }, ActivityDetail::at_home},
     DetailRule{[](const PartStates& s) { return s.failsafe == Failsafe::Action::obey && s.homes; },
                ActivityDetail::returning},

@@ -120,6 +120,7 @@ void GroundNode::on_timeout(Instant now) {
   formation_.on_timeout(now);
   tracks_.on_timeout(now);
   returns_.on_timeout(fleet(), hazards_.known(), now);
+  traffic_.on_timeout(fleet(), now);
   const auto lands = landings_.next(fleet(), now);
   if (lands) (void)agent_.command(*lands, CommandKind::land, now);  // else it is not in the fleet
 }
@@ -283,6 +284,7 @@ std::optional<Message> GroundNode::poll_message() {
   if (auto message = formation_.poll_message()) return message;
   if (auto message = tracks_.poll_message()) return message;
   if (auto message = returns_.poll_message()) return message;
+  if (auto message = traffic_.poll_message()) return message;
   return messages_.pop();
 }
 
@@ -296,7 +298,7 @@ Instant GroundNode::next_timeout() const {
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
                    fence_.next_timeout(), routes_.next_timeout(), formation_.next_timeout(),
                    tracks_.next_timeout(), setup_.next_timeout(), returns_.next_timeout(),
-                   landings_.next_timeout()});
+                   landings_.next_timeout(), traffic_.next_timeout()});
 }
 
 }  // namespace skein::mission

@@ -19,6 +19,13 @@ std::string text_of(const SeparationConflict& conflict, VehicleId self) {
   return near + name_of(conflict.gives_way) + " gives way";
 }
 
+std::string text_of(const TrafficWatch::Conflict& conflict) {
+  std::array<char, 32> address{};
+  std::snprintf(address.data(), address.size(), "%06x", static_cast<unsigned>(conflict.address));
+  return "aircraft " + std::string{address.data()} + " comes too near: " +
+         (conflict.gives_way ? "it gives way by its height" : "it does not give way");
+}
+
 }  // namespace
 
 void SelfReport::on_plan(const FlightPlan& plan) {
@@ -82,6 +89,7 @@ std::vector<std::string> SelfReport::problems(const Facts& facts, Instant now) c
     all.push_back("the ground station has " + text_of(*facts.differs) + ": it holds");
   }
   if (facts.range_spent) all.emplace_back("its range is used up, but for the way home");
+  if (facts.traffic) all.push_back(text_of(*facts.traffic));
   if (facts.separation) all.push_back(text_of(*facts.separation, base_.vehicle));
   if (!facts.knows_orders) all.emplace_back("it does not know which orders stand: it holds");
   const auto more = [&all](std::uint64_t count, std::uint64_t told, const char* what) {

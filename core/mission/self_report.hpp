@@ -52,6 +52,7 @@ class SelfReport {
     bool range_spent = false;  ///< but for the way home
     std::optional<SeparationConflict> separation = {};
     std::uint32_t fence = 0;  ///< digest_of() the one that it keeps
+    std::optional<TrafficWatch::Conflict> traffic = {};
   };
   [[nodiscard]] std::optional<PlanReport> plan_due(Instant now);
   [[nodiscard]] bool health_due(Instant now) const { return now >= next_health_; }

@@ -29,8 +29,9 @@ constexpr Duration kChosenFor = std::chrono::seconds{2};
 constexpr double kOthersWithin_m = 40.0;
 constexpr std::size_t kEventsMax = 64;
 
-/// Lower, a vehicle takes off, or has not yet: planes wait side by side on the ground.
-bool has_taken_off(const VehicleState& own, double layer_m) { return own.z_m > 0.5 * layer_m; }
+constexpr Duration kWayPeriod = std::chrono::seconds{1};
+/// So near to it, it is back in its layer.
+constexpr double kBack_m = 2.0;
 
 Vec2 position_at(const VehicleState& state, double seconds) {
   return Vec2{state.x_m, state.y_m} + seconds * Vec2{state.velocity_mps().head<2>()};
@@ -40,16 +41,30 @@ Vec2 position_at(const VehicleState& state, double seconds) {
 
 SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, VehicleId self,
                                  double layer_m)
-    : params_{params}, self_{self}, layer_m_{layer_m} {}
+    : params_{params}, self_{self}, layer_m_{layer_m}, base_m_{layer_m}, way_m_{layer_m} {}
+
+/// Lower, a vehicle takes off, or has not yet: planes wait side by side on the ground.
+bool SeparationWatch::has_taken_off(const VehicleState& own) const {
+  return own.z_m > 0.5 * layer_m_ || off_layer_;
+}
+
+/// Between where this one is and where it is to fly, or near to one of these.
+bool SeparationWatch::on_the_way(const VehicleState& own, const VehicleState& other) const {
+  if (!off_layer_) return false;
+  const auto [low_m, high_m] = std::minmax({own.z_m, base_m_, layer_m_});
+  const double within_m = params_.separation_vertical_m + kWaits_m + kRoom_m;
+  return other.z_m > low_m - within_m && other.z_m < high_m + within_m;
+}
 
 void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& own, Instant now) {
   if (params_.separation_look_ahead == Duration{} || other.vehicle == self_) return;
-  if (!has_taken_off(own, layer_m_)) return;
+  if (!has_taken_off(own)) return;
   const double apart_m = other.state.z_m - own.z_m;
   const auto found = known_.find(other.vehicle);
   if (found == known_.end()) {
-    const bool near =
-        any_conflict() ? std::abs(apart_m) < kOthersWithin_m : concerns(params_, apart_m);
+    const bool near = on_the_way(own, other.state) ||
+                      (any_conflict() ? std::abs(apart_m) < kOthersWithin_m
+                                      : concerns(params_, apart_m));
     if (!near || known_.size() >= kVehiclesMax) return;
   }
   Other& known = known_[other.vehicle];
@@ -86,11 +101,16 @@ std::optional<EventBody> SeparationWatch::poll_event() {
 }
 
 void SeparationWatch::step(const Self& self, Instant now) {
-  if (!has_taken_off(self.state, layer_m_)) {  // it has landed
+  if (!has_taken_off(self.state)) {  // it has landed
     known_.clear();
     target_.reset();
     return;
   }
+  if (base_m_ != self.height_m.value_or(layer_m_)) next_way_ = now;
+  base_m_ = self.height_m.value_or(layer_m_);
+  room_ = self.room;
+  const bool is_back = std::abs(self.state.z_m - layer_m_) < kBack_m;
+  off_layer_ = self.height_m || (off_layer_ && !is_back && self.activity != Activity::landing);
   for (auto& [id, other] : known_) look(id, other, self, now);
   const bool wrong = any_conflict();
   std::erase_if(known_, [&](const auto& entry) {
@@ -99,7 +119,8 @@ void SeparationWatch::step(const Self& self, Instant now) {
     if (now - other.heard > kForgotten) return true;
     const double apart_m = other.state.z_m - self.state.z_m;
     const bool was_told = other.told_at != Instant::min() && now - other.told_at < kToldEvery;
-    return !wrong && !was_told && !concerns(params_, apart_m);
+    return !wrong && !was_told && !concerns(params_, apart_m) &&
+           !on_the_way(self.state, other.state);
   });
   const bool yields =
       std::ranges::any_of(known_, [](const auto& entry) { return entry.second.yields; });
@@ -108,6 +129,32 @@ void SeparationWatch::step(const Self& self, Instant now) {
   } else {
     keep_free(self, now);
   }
+  go_on(self, now);
+}
+
+/// To where it is to fly, as far as nobody passes near on the way: where it comes down, or back up,
+/// through the layers of others, that costs nobody his.
+void SeparationWatch::go_on(const Self& self, Instant now) {
+  if (!off_layer_) {
+    way_m_ = layer_m_;
+    return;
+  }
+  if (now < next_way_) return;
+  next_way_ = now + kWayPeriod;
+  const double from_m = self.state.z_m;
+  const double side = base_m_ > from_m ? 1.0 : -1.0;
+  const double apart_m = params_.separation_vertical_m + kWaits_m;
+  double way_m = base_m_;
+  for (const auto& [id, other] : known_) {
+    const double ahead_m = side * (other.state.z_m - from_m);
+    const double beyond_m = side * (other.state.z_m - base_m_);
+    if (ahead_m < 0.0 || beyond_m >= apart_m || !passes_near(self, other, now)) continue;
+    const double waits_m = other.state.z_m - side * apart_m;
+    const double stop_m = side * (waits_m - from_m) < 0.0 ? from_m : waits_m;
+    if (side * (stop_m - way_m) < 0.0) way_m = stop_m;
+  }
+  // What it flies is not changed by the tenths of metres that it is off.
+  if (way_m == base_m_ || std::abs(way_m - way_m_) >= kClearHeight_m) way_m_ = way_m;
 }
 
 SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Other& other,
@@ -140,7 +187,7 @@ bool SeparationWatch::still_breaks(const Approach& a, const Self& self, const Ot
   if (a.horizontal_m >= kClearFactor * params_.separation_horizontal_m + a.margin_m) return false;
   const double within_m = params_.separation_vertical_m + kClearHeight_m;
   if (!other.yields) return a.vertical_m < within_m;
-  const auto [low, high] = std::minmax({layer_m_, self.state.z_m, target_.value_or(layer_m_)});
+  const auto [low, high] = std::minmax({base_m_, self.state.z_m, target_.value_or(base_m_)});
   return other.state.z_m > low - within_m && other.state.z_m < high + within_m;
 }
 
@@ -251,7 +298,8 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
     }
   }
   const bool allowed =
-      up ? height_m <= params_.separation_ceiling_m : height_m >= params_.separation_floor_m;
+      up ? height_m <= std::min(params_.separation_ceiling_m, room_.high_m)
+         : height_m >= std::max(params_.separation_floor_m, room_.low_m);
   return allowed ? std::optional{height_m} : std::nullopt;
 }
 

@@ -54,7 +54,7 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [](const Detection&) {},
                         [](const RouteStatus&) {},
                         [](const FenceOrder&) {},
-                        [](const Traffic&) {},
+                        [&](const Traffic& m) { traffic_.on_traffic(m); },
                         [](const Preflight&) {},
                         [&](const ReturnFlight& m) { on_return_flight(m, now); },
                         [&](const Route& m) { routes_.on_route(m, route_standing(), now); }},
@@ -68,6 +68,7 @@ void VehicleAgent::Impl::on_planning_result(const PlanningResult& result, Instan
 
 void VehicleAgent::Impl::step(Instant now) {
   routes_.step(route_standing(), now);
+  watch_traffic(now);
   if (!ownship_.flight().started()) return;
   leader_.on_timeout(now);
   flyer_.fly_begun(now);
@@ -225,7 +226,7 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  const bool looks = separation_.watches() || lands_ || ownship_.config().fence.exists();
+  const bool looks = separation_.watches() || traffic_.watches() || lands_ || ownship_.config().fence.exists();
   if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});
@@ -257,7 +258,8 @@ PartStates VehicleAgent::Impl::part_states() const {
           .range_spent = failsafe_.facts().range_spent,
           .delivers = flyer_.delivers(),
           .awaits_decision = flyer_.flying() ? flyer_.awaits_decision() : leader_.awaits_decision(),
-          .late = flyer_.late()};
+          .late = flyer_.late(),
+          .avoids_traffic = traffic_.gives_way()};
 }
 
 Activity VehicleAgent::Impl::activity() const { return activity_of(part_states()); }
@@ -316,6 +318,9 @@ void VehicleAgent::on_piloted(bool piloted) { impl_->on_piloted(piloted); }
 bool VehicleAgent::watches_others() const { return impl_->separation().watches(); }
 std::optional<SeparationConflict> VehicleAgent::separation_conflict() const {
   return impl_->separation().conflict();
+}
+std::optional<TrafficWatch::Conflict> VehicleAgent::traffic_conflict() const {
+  return impl_->traffic().conflict();
 }
 bool VehicleAgent::range_spent() const { return impl_->range_spent(); }
 

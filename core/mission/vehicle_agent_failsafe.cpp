@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // News for the failsafe, and what the vehicle does because of it.
+#include <algorithm>
 #include <utility>
 
 #include "vehicle_agent_impl.hpp"
@@ -61,10 +62,38 @@ void VehicleAgent::Impl::on_event(const MissionEvent& message) {
   }
 }
 
-/// By its height alone: what it flies, and when, stays.
+TrafficParams VehicleAgent::Impl::traffic_params(const VehicleAgentConfig& config) {
+  TrafficParams params = config.traffic;
+  if (config.fence.exists()) {
+    params.ceiling_m = std::min(params.ceiling_m, config.fence.height_max_m);
+  }
+  return params;
+}
+
+/// Who stands, takes off, comes down or is flown by a pilot is only warned.
+bool VehicleAgent::Impl::may_leave_layer() const {
+  if (!ownship_.flight().started() || ownship_.landing() || piloted_) return false;
+  const VehicleState& state = ownship_.state();
+  const bool high = state.z_m > 0.5 * ownship_.spec().height_m;
+  return !state.on_ground() && (high || traffic_.gives_way() || separation_.off_layer());
+}
+
+void VehicleAgent::Impl::watch_traffic(Instant now) {
+  if (!traffic_.watches()) return;
+  const Flight& flight = ownship_.flight();
+  traffic_.step({.state = ownship_.state(),
+                 .plan = flight.started() ? &flight.plan() : nullptr,
+                 .layer_m = ownship_.spec().height_m,
+                 .may_give_way = may_leave_layer()},
+                now);
+  while (auto news = traffic_.poll_event()) outbox.report(*std::move(news), {}, {}, now);
+}
+
+/// By its height alone: what it flies, and when, stays. Where it flies for the sake of aircraft, it
+/// keeps separate there.
 void VehicleAgent::Impl::watch_separation(Instant now) {
-  if (!separation_.watches()) return;
-  separation_.step({ownship_.state(), activity()}, now);
+  if (!separation_.watches() && !traffic_.gives_way()) return;
+  separation_.step({ownship_.state(), activity(), traffic_.height_m(), traffic_.room()}, now);
   while (auto news = separation_.poll_event()) outbox.report(*std::move(news), {}, {}, now);
   ownship_.flight().change_height(separation_.offset_m(), now);
 }

@@ -22,7 +22,8 @@ class VehicleAgent::Impl {
   explicit Impl(const VehicleAgentConfig& config)
       : outbox{config.vehicle.id},
         ownship_{config},
-        separation_{config.protocol, config.vehicle.id, config.vehicle.height_m} {}
+        separation_{config.protocol, config.vehicle.id, config.vehicle.height_m},
+        traffic_{traffic_params(config)} {}
 
   void on_state(const VehicleState& state, Instant now);
   void on_message(const Message& message, Instant now);
@@ -36,8 +37,12 @@ class VehicleAgent::Impl {
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
-  void on_piloted(bool piloted) { separation_.on_piloted(outbox.self, piloted); }
+  void on_piloted(bool piloted) {
+    piloted_ = piloted;
+    separation_.on_piloted(outbox.self, piloted);
+  }
   [[nodiscard]] const SeparationWatch& separation() const { return separation_; }
+  [[nodiscard]] const TrafficWatch& traffic() const { return traffic_; }
   [[nodiscard]] bool range_spent() const { return failsafe_.facts().range_spent; }
 
   Outbox outbox;
@@ -71,6 +76,9 @@ class VehicleAgent::Impl {
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
   void watch_fence(Instant now);
+  [[nodiscard]] static TrafficParams traffic_params(const VehicleAgentConfig& config);
+  [[nodiscard]] bool may_leave_layer() const;
+  void watch_traffic(Instant now);
   void watch_separation(Instant now);
   void respond(const Failsafe::Response& response, Instant now);
 
@@ -82,6 +90,8 @@ class VehicleAgent::Impl {
   RouteFlyer routes_{ownship_, outbox};
   RelayOrbit relay_{ownship_};
   SeparationWatch separation_;
+  TrafficWatch traffic_;
+  bool piloted_ = false;
   CommandFilter commands_;
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home

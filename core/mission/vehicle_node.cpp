@@ -84,6 +84,7 @@ class VehicleNode::Impl {
       : agent{std::visit(MakeAgent{now}, config.agent)},
         self{agent->telemetry().vehicle},
         flies_routes{std::holds_alternative<VehicleAgentConfig>(config.agent)},
+        traffic{config.traffic},
         telemetry_pace{config.telemetry},
         self_report{unchanging(config, agent->telemetry()), now},
         setup{config.setup, self, agent->telemetry().instance, now},
@@ -257,7 +258,14 @@ class VehicleNode::Impl {
     std::erase_if(told, [](const Told& of) { return of.times == 0; });
   }
 
+  void watch_traffic(Instant now) {
+    if (flies_routes || !traffic.watches() || !state) return;
+    traffic.step({.state = *state, .layer_m = state->z_m}, now);
+    while (auto news = traffic.poll_event()) report(*std::move(news), now);
+  }
+
   void report_itself(Instant now) {
+    watch_traffic(now);
     say_detections(now);
     pass_on(now);
     if (now >= next_telemetry && state) {
@@ -278,13 +286,15 @@ class VehicleNode::Impl {
       messages.push(Message{*ours});
     }
     if (!self_report.health_due(now)) return;
-    SelfReport::Facts facts{.condition = condition,
-                            .refused = refused,
-                            .differs = setup.difference(kGroundStation),
-                            .knows_orders = knows_orders,
-                            .range_spent = agent->range_spent(),
-                            .separation = agent->separation_conflict(),
-                            .fence = digest_of(fence.fence())};
+    SelfReport::Facts facts{
+        .condition = condition,
+        .refused = refused,
+        .differs = setup.difference(kGroundStation),
+        .knows_orders = knows_orders,
+        .range_spent = agent->range_spent(),
+        .separation = agent->separation_conflict(),
+        .fence = digest_of(fence.fence()),
+        .traffic = flies_routes ? agent->traffic_conflict() : traffic.conflict()};
     facts.condition.dropped = dropped();
     if (state) facts.state_at = state->time;
     messages.push(Message{self_report.health(facts, now)});
@@ -305,6 +315,7 @@ class VehicleNode::Impl {
   std::unique_ptr<OnboardAgent> agent;
   VehicleId self;
   bool flies_routes;
+  TrafficWatch traffic;  ///< of a formation, which keeps its places: people decide
   TelemetryPace telemetry_pace;
   SelfReport self_report;
   SetupBook setup;
@@ -377,6 +388,9 @@ void VehicleNode::on_message(const Message& message, VehicleId sender, Instant n
     impl_->refuse_route(*route);
   } else if (const auto* fence = std::get_if<FenceOrder>(&message)) {
     impl_->on_fence(*fence, now);
+  } else if (const auto* traffic = std::get_if<Traffic>(&message);
+             traffic != nullptr && !impl_->flies_routes) {
+    impl_->traffic.on_traffic(*traffic);
   } else if (impl_->is_of_use(message, sender) && impl_->take_lasting(message, now)) {
     if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
       impl_->setup.on_time(sender, telemetry->state.time, now);

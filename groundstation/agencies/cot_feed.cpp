@@ -147,9 +147,10 @@ std::pair<CotFeed::Said&, bool> CotFeed::shown_again(const std::string& uid) {
 void CotFeed::take_vehicle(CotEvent event, Instant measured, Instant now,
                            std::vector<CotEvent>& due) {
   const auto [said, at_once] = shown_again(event.uid);
-  const bool newer = measured > said.measured;
-  if (at_once || (newer && now - said.at >= kVehiclePeriod)) {
-    said.measured = measured;
+  // One that has been there for a while waits for the next one, which is younger.
+  const bool has_come = measured > said.measured;
+  said.measured = std::max(said.measured, measured);
+  if (at_once || (has_come && now - said.at >= kVehiclePeriod)) {
     say(said, std::move(event), now, due);
   }
 }

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "skein/base/angles.hpp"
 
 namespace skein::agencies {
@@ -67,6 +70,22 @@ TEST_F(CotFeedTest, AVehicleIsSaidOnceAPeriodAndOnlyWithNewerStates) {
   shown.vehicles = {vehicle(10.9)};
   EXPECT_EQ(at(10.95).size(), 1U);
   EXPECT_EQ(at(60.0).size(), 0U) << "a silent one becomes stale";
+}
+
+TEST_F(CotFeedTest, AVehiclesStateIsSaidWhenItComesOrNot) {
+  // Telemetry each 0.4 s, a tenth of a second on its way.
+  std::int64_t oldest_ns = 0;
+  int said = 0;
+  for (int i = 0; i < 400; ++i) {
+    const double now_s = 20.0 + 0.05 * i;
+    shown.vehicles = {vehicle(0.4 * std::floor((now_s - 0.1) / 0.4))};
+    for (const auto& event : at(now_s)) {
+      ++said;
+      if (i > 0) oldest_ns = std::max(oldest_ns, unix_of(now_s) - event.time_unix_ns);
+    }
+  }
+  EXPECT_NEAR(said, 25, 2) << "with every second state";
+  EXPECT_LT(oldest_ns, 200'000'000);
 }
 
 TEST_F(CotFeedTest, SitesHazardsAndTracksAreSaidBeforeTheyAreStale) {

@@ -5,12 +5,16 @@
 #include <cmath>
 #include <limits>
 
+#include "remote_id_feed.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/mavlink/enums.hpp"
 
 namespace skein::agencies {
 namespace {
 
+/// Of MISSION_CURRENT.
+constexpr std::uint8_t kNoMission = 1;
+constexpr std::uint8_t kActive = 3;
 constexpr std::uint16_t kUnknownU16 = std::numeric_limits<std::uint16_t>::max();
 
 std::uint32_t boot_ms(Instant t) {
@@ -110,20 +114,56 @@ mavlink::VfrHud hud_of(const ShownVehicle& vehicle) {
 
 }  // namespace
 
+/// Of the way that it has planned; nobody is answered who asks for its items.
+void MavlinkFeed::say_mission(System& system, const Shown& shown, VehicleId vehicle,
+                              std::vector<mavlink::WireBytes>& due) const {
+  const auto track = std::ranges::find(shown.tracks, vehicle, &ShownTrack::vehicle);
+  mavlink::MissionCurrent current;
+  if (track == shown.tracks.end()) {
+    current.total = kUnknownU16;
+    current.mission_state = kNoMission;
+    due.push_back(system.encoder.encode(current));
+    return;
+  }
+  current.seq = track->leg;
+  current.total = track->legs;
+  current.mission_state = kActive;
+  due.push_back(system.encoder.encode(current));
+  mavlink::NavControllerOutput output;
+  output.wp_dist = rounded<std::uint16_t>(track->left_m);
+  due.push_back(system.encoder.encode(output));
+}
+
+/// HEARTBEAT has a number for it, which others have no name for.
+void MavlinkFeed::say_activity(System& system, const ShownVehicle& vehicle,
+                               std::vector<mavlink::WireBytes>& due) const {
+  if (system.told == vehicle.activity) return;
+  system.told = vehicle.activity;
+  mavlink::Statustext message;
+  message.severity = static_cast<std::uint8_t>(mavlink::Severity::info);
+  message.text = mavlink::field_of<sizeof(message.text)>(to_string(vehicle.activity));
+  due.push_back(system.encoder.encode(message));
+}
+
 MavlinkFeed::System& MavlinkFeed::system_of(VehicleId vehicle) {
   return systems_.try_emplace(vehicle, vehicle).first->second;
 }
 
-std::vector<mavlink::WireBytes> MavlinkFeed::update(const Shown& shown, Instant now) {
+std::vector<mavlink::WireBytes> MavlinkFeed::update(const Shown& shown, Instant now,
+                                                    std::int64_t unix_ns) {
   std::vector<mavlink::WireBytes> due;
   for (const ShownVehicle& vehicle : shown.vehicles) {
     if (vehicle.silent || vehicle.id.value == 0 || vehicle.id.value > kVehicleMax) continue;
     System& system = system_of(vehicle.id);
+    if (!system.take_off) system.take_off = vehicle.place;
+    say_activity(system, vehicle, due);
     if (system.heartbeat_at == Instant::min() || now - system.heartbeat_at >= kHeartbeatPeriod) {
       system.heartbeat_at = now;
       due.push_back(system.encoder.encode(heartbeat_of(vehicle)));
       due.push_back(system.encoder.encode(sys_status_of(vehicle)));
       due.push_back(system.encoder.encode(battery_of(vehicle)));
+      say_mission(system, shown, vehicle.id, due);
+      say_remote_id(system.encoder, shown, vehicle, *system.take_off, now, unix_ns, due);
     }
     const bool first = system.measured == Instant::min();
     if (!first && (vehicle.state.time <= system.measured || now - system.state_at < kStatePeriod)) {

@@ -118,7 +118,9 @@ void Picture::on_message(const mission::Message& message, VehicleId sender, Inst
                           fence_order_ = m.number;
                           fence_ = {m.corners, m.height_max_m};
                         },
-                        [](const mission::Traffic&) {},
+                        [&](const mission::Traffic& m) {
+                          if (sender == kGroundStation && !hears_traffic_) on(m);
+                        },
                         [&](const mission::TrackFlight& m) {
                           if (sender != kGroundStation || !vehicles_.contains(m.vehicle)) return;
                           formation_.flights[m.vehicle] = {m.number, m.joined};
@@ -404,8 +406,44 @@ void Picture::on(const coalition::MemberStatus& m) {
   }
 }
 
+void Picture::on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all) {
+  hears_traffic_ = true;
+  traffic_.clear();
+  for (const auto& [address, seen] : all) traffic_[address] = {seen, {}};
+  show_warned();
+}
+
+void Picture::on(const mission::Traffic& m) {
+  traffic_.clear();
+  for (const mission::Aircraft& aircraft : m.aircraft) {
+    traffic_[aircraft.address].seen.aircraft = aircraft;
+  }
+  show_warned();
+}
+
+void Picture::show_warned() {
+  for (auto& [address, shown] : traffic_) {
+    const auto found = warned_.find(address);
+    if (found != warned_.end()) shown.warned = found->second;
+  }
+}
+
+void Picture::note_traffic(const mission::MissionEvent& event) {
+  if (const auto* warning = std::get_if<mission::event::TrafficWarning>(&event.body)) {
+    const bool known = warned_.contains(warning->address);
+    if (!known && warned_.size() >= params_.warned_max) return;
+    warned_[warning->address][event.vehicle] = warning->gives_way;
+  } else if (const auto* clear = std::get_if<mission::event::TrafficClear>(&event.body)) {
+    const auto found = warned_.find(clear->address);
+    if (found == warned_.end()) return;
+    found->second.erase(event.vehicle);
+    if (found->second.empty()) warned_.erase(found);
+  }
+}
+
 void Picture::on_event(const mission::MissionEvent& event) {
   using enum mission::EventKind;
+  note_traffic(event);
   if (const auto* proposed = std::get_if<mission::event::SiteProposed>(&event.body)) {
     if (proposals_.size() < params_.proposals_max) {
       proposals_[proposed->number] = {*proposed, event.time};

@@ -24,6 +24,7 @@
 #include "skein/idl/events_fields.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/wording/wording.hpp"
+#include "traffic_section.hpp"
 
 namespace skein::console {
 namespace {
@@ -564,7 +565,7 @@ std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
       "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
       "formation", "timeline", "audit", "replay",     "proposals",      "preflight",
-      "fence",     "links",    "wind",  "areas",      "alarms"};
+      "fence",     "links",    "wind",  "areas",      "alarms",         "traffic"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -618,6 +619,8 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return links_json(team_links(fleet, picture.receptions(), now));
     case Section::wind:
       return wind_json(picture.wind().estimate(without_airspeed(fleet), now), now);
+    case Section::traffic:
+      return traffic_json(picture, fleet, now);
     case Section::audit:
     case Section::areas:
     case Section::replay:

@@ -76,6 +76,7 @@ class AutopilotDouble {
   std::vector<mavlink::SetPositionTargetLocalNed> velocities;
   std::vector<mavlink::SetPositionTargetGlobalInt> points;
   std::vector<Instant> target_times;
+  std::vector<mavlink::Packet> remote_ids;  ///< OPEN_DRONE_ID_*
   int heartbeats = 0;
 
   /// From now on it signs, and heeds nothing that is not signed.
@@ -219,6 +220,7 @@ class AutopilotDouble {
 
   void on_packet(const mavlink::Packet& packet, Instant now) {
     if (mavlink::decode<mavlink::Heartbeat>(packet)) ++heartbeats;
+    if (packet.id >= 12'900 && packet.id < 12'920) remote_ids.push_back(packet);
     if (const auto question = mavlink::decode<mavlink::Timesync>(packet)) {
       mavlink::Timesync answer;
       answer.ts1 = question->ts1;

@@ -146,6 +146,7 @@ void Companion::Impl::step(Instant now) {
   ask_others(now);
   keep_clock(now);
   if (renews_fence_ && !machine_.in(State::preparing)) renews_fence_ = !give_fence(now);
+  say_remote_id(now);
   say_upload(fence_upload_, now);
   say_upload(upload_, now);
   if (now >= heartbeat_at_) {
@@ -192,6 +193,9 @@ void Companion::Impl::prepare(Instant now) {
 
 std::vector<ParameterQuestion> Companion::Impl::questions_of(const CompanionParams& params) {
   auto questions = safety_questions(params.vehicle, params.system_id, params.fence);
+  for (ParameterQuestion& one : remote_id_questions(params.remote_id)) {
+    questions.push_back(std::move(one));
+  }
   for (ParameterQuestion& limit : limit_questions(params.vehicle)) {
     questions.push_back(std::move(limit));
   }
@@ -263,7 +267,7 @@ void Companion::Impl::stand_by(Instant now) {
     case TakeOver::from_ground: {
       if (custody_.own_flight() && in_flight && high()) {
         fire(guided() ? Event::guided : Event::may_take, now);
-      } else if (custody_.may_launch() && !armed_ && !airborne()) {
+      } else if (custody_.may_launch() && !armed_ && !airborne() && !lacks_remote_id(now)) {
         if (looked_at_.prearm_good()) {
           fire(Event::may_launch, now);
         } else {
@@ -405,6 +409,13 @@ void Companion::Impl::keep_clock(Instant now) {
   if (clock_asked_.size() == kClockAskedMax) clock_asked_.erase(clock_asked_.begin());
   clock_asked_.push_back(now);
   send(question);
+}
+
+void Companion::Impl::say_remote_id(Instant now) {
+  if (const auto sample = motion_.sample()) {
+    remote_id_.on_place(origin_.to_wgs84(sample->state.position()), armed_ || airborne());
+  }
+  remote_id_.speak(system_, now, [this](const auto& message) { send(message); });
 }
 
 void Companion::Impl::ask_parameter(std::string_view name) {

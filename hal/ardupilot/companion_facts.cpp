@@ -77,6 +77,7 @@ std::optional<AutopilotFacts> Companion::Impl::facts(Instant now) const {
   facts.safety = parameters_.tested();
   facts.safety.resize(std::min(safety, facts.safety.size()));
   for (const auto& reason : pre_arm_.texts()) facts.pre_arm.push_back(reason.text);
+  if (remote_id_.exists()) facts.remote_id = remote_id_.why_not(now).value_or("");
   const bool only_waits = waits() && !airborne();
   facts.in_flight = !only_waits && in_use().value_or(false);
   return facts;

@@ -26,6 +26,9 @@ bool is_own(Companion::State state) {
 }  // namespace
 
 void Companion::Impl::on_packet(const mavlink::Packet& packet, Instant now) {
+  if (is_of_transmitter(packet, params_.system_id)) {
+    return remote_id_.on_packet(packet, now);
+  }
   if (packet.component != mavlink::kComponentAutopilot) return;
   if (packet.system != params_.system_id) return refuse_system(packet, now);
   packet_heard_ = now;
@@ -369,6 +372,7 @@ void Companion::Impl::reset_link() {
   pre_arm_.clear();
   reasons_asked_at_.reset();
   looked_at_ = {};
+  remote_id_.forget();
   others_asked_ = 0;
   forget_fence();
 }

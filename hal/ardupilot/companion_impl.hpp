@@ -13,6 +13,7 @@
 #include "custody.hpp"
 #include "mission_upload.hpp"
 #include "parameter_check.hpp"
+#include "remote_id_speaker.hpp"
 #include "skein/ardupilot/airframe.hpp"
 #include "skein/ardupilot/companion.hpp"
 #include "skein/ardupilot/flight_limits.hpp"
@@ -53,6 +54,7 @@ class Companion::Impl {
         parser_{mavlink::parser_params(params.signing, now)},
         motion_{origin, params.geoid_height_m, traits_.flies_to_points},
         parameters_{questions_of(params)},
+        remote_id_{params.remote_id, params.vehicle.airframe, params.unix_us},
         frame_heard_{now},
         packet_heard_{now},
         heartbeat_at_{now},
@@ -168,6 +170,11 @@ class Companion::Impl {
   void set_speed(const Setpoint& setpoint, double true_per_equivalent, Instant now);
   void set_height(const Setpoint& setpoint, const VehicleState& state, Instant now);
   void keep_clock(Instant now);
+  void say_remote_id(Instant now);
+  /// Where it must say who it is, and does not: why.
+  [[nodiscard]] std::optional<std::string> lacks_remote_id(Instant now) const {
+    return remote_id_.is_required() ? remote_id_.why_not(now) : std::nullopt;
+  }
   void report_refusal(Instant now);
   [[nodiscard]] AutopilotNotice why_piloted(State from, Event event) const;
   [[nodiscard]] Given given() const;
@@ -223,6 +230,7 @@ class Companion::Impl {
   BootClock clock_;
   Motion motion_;
   ParameterCheck parameters_;
+  RemoteIdSpeaker remote_id_;
   BoundedQueue<mavlink::WireBytes> packets_{64};
   BoundedQueue<Notice> notices_{64};
   Troubles troubles_;

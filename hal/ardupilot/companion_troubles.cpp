@@ -56,6 +56,9 @@ std::vector<AutopilotNotice> Companion::Impl::troubles_now(Instant now) const {
   }
   if (now - position_good_at_ >= kPatience) all.push_back({AutopilotNews::no_position});
   if (auto hover = hover_trouble(now)) all.push_back(*std::move(hover));
+  if (auto why = lacks_remote_id(now); why && waits() && !armed_ && now - entry_.at >= kPatience) {
+    all.push_back({.news = AutopilotNews::pre_arm, .detail = *std::move(why)});
+  }
   for (const auto& reason : pre_arm_.texts()) {
     all.push_back({.news = AutopilotNews::pre_arm, .detail = reason.text});
   }

@@ -78,6 +78,17 @@ std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle, std:
   return questions;
 }
 
+std::vector<ParameterQuestion> remote_id_questions(const RemoteId& id) {
+  if (!id.required) return {};
+  std::vector<ParameterQuestion> questions;
+  questions.push_back(question("DID_ENABLE", "", "1", "the autopilot tells no transmitter anything",
+                               [](double v) { return v == 1.0; }));
+  questions.push_back(
+      question("DID_OPTIONS", "", "1", "it arms without a Remote ID",
+               [](double v) { return v >= 0.0 && (static_cast<int>(v) & 1) == 1; }));
+  return questions;
+}
+
 std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle) {
   std::vector<ParameterQuestion> questions;
   for (const LimitParameter& parameter : traits_of(vehicle.airframe).limits) {

@@ -13,6 +13,7 @@
 #include "skein/ardupilot/autopilot_facts.hpp"
 #include "skein/base/time.hpp"
 #include "skein/domain/fence.hpp"
+#include "skein/domain/remote_id.hpp"
 #include "skein/domain/vehicle.hpp"
 
 namespace skein::ardupilot {
@@ -35,6 +36,8 @@ struct ParameterQuestion {
 [[nodiscard]] std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle,
                                                               std::uint8_t system_id,
                                                               const Fence& fence);
+/// Where a Remote ID is required: the autopilot itself does not arm without.
+[[nodiscard]] std::vector<ParameterQuestion> remote_id_questions(const RemoteId& id);
 /// Of what limits the vehicle (flight_limits.hpp).
 [[nodiscard]] std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle);
 

@@ -11,7 +11,8 @@ namespace {
 constexpr std::string_view kElse = "see ArduPilot's pre-arm checks";
 
 /// By a word of the reason, as ArduPilot 4.5 and 4.6 say it; the first that fits counts.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 29> kRemedies{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 30> kRemedies{{
+    {"OpenDroneID", "see the Remote ID transmitter and DID_MAVPORT"},
     {"not armable", "switch to another mode"},
     {"safety switch", "press the safety switch"},
     {"ompass", "away from metal; calibrate the compass"},

@@ -9,6 +9,7 @@
 #include "can_link_parts.hpp"
 #include "link_watch.hpp"
 #include "parameter_check.hpp"
+#include "remote_id_speaker.hpp"
 #include "skein/ardupilot/airframe.hpp"
 #include "skein/dronecan/node.hpp"
 #include "skein/dronecan/tunnel.hpp"
@@ -41,6 +42,8 @@ class Survey::Impl {
         watch_{link_ids(params, bus_->name()), now, kWatchPatience},
         parameters_{safety_questions(params.companion.vehicle, params.companion.system_id,
                                      params.companion.fence)},
+        remote_id_{params.companion.remote_id, params.companion.vehicle.airframe,
+                   params.companion.unix_us},
         encoder_{params.companion.system_id, mavlink::kComponentOnboardComputer},
         parser_{mavlink::parser_params(params.companion.signing, now)} {}
 
@@ -59,6 +62,10 @@ class Survey::Impl {
       ask_at_ = now + kAskPeriod;
       mavlink::sign_at(params_.companion.signing, encoder_, parser_, now);
       ask(now);
+    }
+    if (facts_.heartbeat) {
+      remote_id_.speak(params_.companion.system_id, now,
+                       [this](const auto& message) { send(message); });
     }
     transmit(now);
     if (!facts_.heartbeat) return false;
@@ -104,11 +111,17 @@ class Survey::Impl {
   }
 
   void on_packet(const mavlink::Packet& packet, Instant now) {
+    if (is_of_transmitter(packet, params_.companion.system_id)) {
+      return remote_id_.on_packet(packet, now);
+    }
     if (packet.component != mavlink::kComponentAutopilot) return;
     const auto heartbeat = mavlink::decode<mavlink::Heartbeat>(packet);
     if (heartbeat) watch_.on_heartbeat(packet.system, now);
     if (packet.system != params_.companion.system_id) return;
     if (heartbeat && !facts_.heartbeat) found_at_ = now;
+    if (const auto fix = mavlink::decode<mavlink::GpsRawInt>(packet)) {
+      remote_id_.on_place({fix->lat * 1e-7, fix->lon * 1e-7, fix->alt * 1e-3}, false);
+    }
     if (facts_.take(packet, now)) return;
     if (const auto text = mavlink::decode<mavlink::Statustext>(packet)) {
       on_text(*text, now);
@@ -188,7 +201,8 @@ class Survey::Impl {
         facts_.prearm_good() ||
         (reasons_asked_at_ && now - std::max(*reasons_asked_at_, reason_at_) >= kReasonsWithin);
     return facts_.firmware && facts_.health && facts_.gnss && facts_.filter && facts_.time &&
-           facts_.landed && told && reasons;
+           facts_.landed && told && reasons &&
+           (!remote_id_.exists() || !remote_id_.why_not(now));
   }
 
   void transmit(Instant now) {
@@ -210,6 +224,7 @@ class Survey::Impl {
       facts_.trouble = AutopilotNotice{AutopilotNews::not_signed};
     }
     if (facts_.heartbeat) facts_.safety = parameters_.tested();
+    if (remote_id_.exists()) facts_.remote_id = remote_id_.why_not(now).value_or("");
     for (const auto& reason : reasons_.texts()) facts_.pre_arm.push_back(reason.text);
     return true;
   }
@@ -219,6 +234,7 @@ class Survey::Impl {
   Instant begun_;
   LinkWatch watch_;
   ParameterCheck parameters_;
+  RemoteIdSpeaker remote_id_;
   mavlink::Encoder encoder_;
   mavlink::Parser parser_;
   dronecan::Reassembler reassembler_;

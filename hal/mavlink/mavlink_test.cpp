@@ -108,7 +108,13 @@ constexpr std::array kPublished{Published{0, "HEARTBEAT", 50, 9},
                                 Published{253, "STATUSTEXT", 83, 54},
                                 Published{295, "AIRSPEED", 234, 12},
                                 Published{11020, "AOA_SSA", 205, 16},
-                                Published{11030, "ESC_TELEMETRY_1_TO_4", 144, 44}};
+                                Published{11030, "ESC_TELEMETRY_1_TO_4", 144, 44},
+                                Published{12900, "OPEN_DRONE_ID_BASIC_ID", 114, 44},
+                                Published{12901, "OPEN_DRONE_ID_LOCATION", 254, 59},
+                                Published{12903, "OPEN_DRONE_ID_SELF_ID", 249, 46},
+                                Published{12904, "OPEN_DRONE_ID_SYSTEM", 77, 54},
+                                Published{12905, "OPEN_DRONE_ID_OPERATOR_ID", 49, 43},
+                                Published{12918, "OPEN_DRONE_ID_ARM_STATUS", 139, 51}};
 
 TEST(Mavlink, EveryDefinitionHasThePublishedCrcExtra) {
   ASSERT_EQ(messages().size(), kPublished.size());

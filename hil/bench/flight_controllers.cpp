@@ -100,6 +100,7 @@ std::vector<std::string> flight_controller_command(
                                    std::to_string(vehicle.time.epoch_unix_ns)});
   }
   if (!fc.signing_key.empty()) command.insert(command.end(), {"--signing-key", fc.signing_key});
+  if (vehicle.remote_id.exists()) command.emplace_back("--remote-id");
   if (vehicle.fence.exists()) {
     command.insert(command.end(), {"--fence-height", number(vehicle.fence.height_max_m)});
   }

@@ -162,6 +162,9 @@ void add_link_options(CLI::App& app, FcArguments& a, Texts& t) {
       "--signing-key", t.signing_key,
       "File with the key of MAVLink's signatures, 64 hexadecimal digits or a passphrase:\n"
       "it signs, and heeds nothing unsigned");
+  app.add_flag("--remote-id", c.remote_id,
+               "It has a transmitter of Remote ID, and does not arm while that is not told what it "
+               "must say\n(DID_ENABLE 1, DID_OPTIONS 1)");
   app.add_flag("--failsafe", c.companion_failsafe,
                "RTL 5 s after the last heartbeat of the companion");
   app.add_option("--without", c.unknown_parameters,

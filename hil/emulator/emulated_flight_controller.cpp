@@ -135,7 +135,12 @@ struct EmulatedFlightController::State {
       link->mavlink.emplace(config, earth, *vehicle, battery, link->port, booted, t);
     }
     if (!last) return;  // a program that was held up does not send the past
-    link->mavlink->set_refusal(refusal());
+    auto why_not = refusal();
+    if (auto* const transmitter = link->mavlink->remote_id()) {
+      transmitter->set_powered(remote_id);
+      if (!why_not) why_not = transmitter->refusal(t);
+    }
+    link->mavlink->set_refusal(std::move(why_not));
     link->mavlink->set_position(health.position);
     link->mavlink->step(t);
     if (link->mavlink->wants_restart(t)) restart(t);
@@ -155,6 +160,7 @@ struct EmulatedFlightController::State {
   std::string duplicate;
   std::string reason_given;  ///< not to arm, from outside
   bool silent = false;
+  bool remote_id = true;  ///< its transmitter has power
   mavlink::Encoder truth_encoder{config.system_id, mavlink::kComponentAutopilot};
 };
 
@@ -245,6 +251,10 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
     s.vehicle->set_health(s.health);
     return {};
   }
+  if (verb == "remote-id" && (word == "on" || word == "off")) {
+    s.remote_id = word == "on";
+    return {};
+  }
   if (verb == "prearm") {
     s.reason_given = word;
     return {};
@@ -263,7 +273,7 @@ Result<void> EmulatedFlightController::interfere(std::string_view line, Instant 
   if (!is_arming && (verb != "mode" || !is_word)) {
     return Error{
         fmt::format("'{}': not one of mode NAME, arm, disarm, reboot, silent on|off, "
-                    "position lost|good, prearm REASON, battery PERCENT",
+                    "position lost|good, prearm REASON, battery PERCENT, remote-id on|off",
                     line)};
   }
   if (!s.link || !s.link->mavlink) return Error{fmt::format("'{}': the autopilot restarts", line)};

@@ -93,6 +93,7 @@ MavlinkEndpoint::MavlinkEndpoint(const EmulatorConfig& config, const Earth& eart
   for (const std::uint32_t id : telemetry_ids()) {
     streams_.push_back({id, default_interval(id), now});
   }
+  if (config_.remote_id) remote_id_.emplace(config_.system_id);
   mavlink::sign_at(signing_, encoder_, parser_, now);
   std::array<std::uint8_t, kGreeting.size()> greeting{};
   std::copy(kGreeting.begin(), kGreeting.end(), greeting.begin());
@@ -127,6 +128,7 @@ void MavlinkEndpoint::step(Instant now) {
     stream.due = std::max(stream.due + stream.interval, now);
     (void)send_once(stream.id, now);
   }
+  if (const auto word = remote_id_ ? remote_id_->poll(now) : std::nullopt) send(*word);
   if (now >= timesync_at_) {
     timesync_at_ = now + kTimesyncInterval;
     mavlink::Timesync question;
@@ -173,6 +175,8 @@ void MavlinkEndpoint::on_packet(const mavlink::Packet& packet, Instant now) {
     if (for_us(global->target_system, global->target_component)) {
       vehicle_.on_position_target(*global, now);
     }
+  } else if (remote_id_ && remote_id_->on_packet(packet, now)) {
+    return;
   } else if (mission_.on_packet(packet, now) || fence_store_.on_packet(packet, now)) {
     mission_system_ = packet.system;
     mission_component_ = packet.component;
@@ -319,7 +323,7 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
   constexpr auto kReal = mavlink::ParamType::real32;
   const bool fenced = fence_.enabled();
   const bool is_quadplane = config_.airframe == Airframe::quadplane;
-  const std::array<Parameter, 19> parameters{{
+  const std::array<Parameter, 21> parameters{{
       {"SYSID_THISMAV", static_cast<double>(config_.system_id)},
       {"SYSID_MYGCS", static_cast<double>(config_.companion_system)},
       {is_plane ? "FS_GCS_ENABL" : "FS_GCS_ENABLE", failsafe},
@@ -339,6 +343,8 @@ void MavlinkEndpoint::tell_parameter(std::string_view name) {
       {"FENCE_ACTION", 1.0},
       {"FENCE_TYPE", 5.0},
       {"FENCE_ALT_MAX", config_.fence_height_m, kReal},
+      {config_.remote_id ? "DID_ENABLE" : "", 1.0},
+      {config_.remote_id ? "DID_OPTIONS" : "", 1.0},
   }};
   const auto known = std::ranges::find(parameters, name, &Parameter::name);
   if (name.empty() || known == parameters.end() ||

@@ -9,6 +9,7 @@
 
 #include "fence_keeper.hpp"
 #include "mission_store.hpp"
+#include "remote_id_transmitter.hpp"
 #include "skein/dronecan/tunnel.hpp"
 #include "skein/hil/emulator_config.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -35,6 +36,8 @@ class MavlinkEndpoint {
   /// Arms, or says why not.
   mavlink::CommandResult arm();
   /// Was asked to restart, and has had the time to say that it will.
+  /// None: it has no transmitter.
+  [[nodiscard]] RemoteIdTransmitter* remote_id() { return remote_id_ ? &*remote_id_ : nullptr; }
   [[nodiscard]] bool wants_restart(Instant now) const { return restart_at_ && now >= *restart_at_; }
 
  private:
@@ -74,6 +77,7 @@ class MavlinkEndpoint {
   mavlink::Parser parser_;
   mavlink::Encoder encoder_;
   FenceKeeper fence_;
+  std::optional<RemoteIdTransmitter> remote_id_;
   MissionStore mission_;
   MissionStore fence_store_;
   std::uint8_t mission_system_ = 0;  ///< who is answered about the mission

@@ -81,6 +81,7 @@ mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) 
   config.vehicle.loads = loads_left_;
   config.search = what_.search;
   config.protocol = mission_.protocol;
+  config.traffic = mission_.traffic;
   config.planning = mission_.planning;
   config.hazards = hazards;
   config.fence = mission_.fence;

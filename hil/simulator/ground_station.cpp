@@ -139,6 +139,12 @@ void GroundStation::on_timeout(Instant now) {
   if (desk_) desk_->on_timeout(now + clock_);
 }
 
+void GroundStation::on_aircraft(mission::Aircraft aircraft, Instant now) {
+  if (!node_) return;
+  aircraft.time += clock_;
+  node_->on_aircraft({.aircraft = aircraft}, now + clock_);
+}
+
 std::optional<mission::Message> GroundStation::poll_message(Instant now) {
   std::optional<mission::Message> message;
   do {

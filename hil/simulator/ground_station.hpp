@@ -44,6 +44,8 @@ class GroundStation {
   // As of an agent.
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_timeout(Instant now);
+  /// A receiver beside it hears that aircraft.
+  void on_aircraft(mission::Aircraft aircraft, Instant now);
   /// Of the operator, who gives it while the program runs. False where it does not, or refuses.
   bool command(VehicleId vehicle, mission::CommandKind kind, Instant now) {
     return node_ && node_->command(vehicle, kind, now + clock_).ok();

@@ -134,6 +134,8 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
   team.fence = scenario.fence;
   team.protocol = scenario.protocol;
+  team.traffic = scenario.traffic;
+  team.aircraft = scenario.aircraft;
   team.planning = scenario.planning;
   team.decisions = scripted_decisions(scenario.operator_decisions);
   team.radio = radio_params(scenario.radio);

@@ -37,6 +37,8 @@ constexpr Duration kNodePeriod = std::chrono::milliseconds{40};
 constexpr Duration kFormationNodePeriod = std::chrono::milliseconds{20};
 constexpr Duration kSensorPeriod = std::chrono::milliseconds{100};
 constexpr Duration kTrackPeriod = std::chrono::milliseconds{100};
+/// A receiver of ADS-B hears an aircraft so often.
+constexpr Duration kAircraftPeriod = std::chrono::milliseconds{480};
 constexpr Duration kAfterwards = std::chrono::seconds{5};
 /// How long the track of a vehicle goes on that nobody hears of any more: what it has just done can
 /// be judged.
@@ -465,6 +467,11 @@ class Team {
 
   void step_ground(Instant now) {
     if (!ground_.running()) return;
+    if (!mission_.aircraft.empty() && due(now, kAircraftPeriod)) {
+      for (const auto& one : mission_.aircraft) {
+        if (const auto there = place_of(one, now)) ground_.on_aircraft(*there, now);
+      }
+    }
     ground_.on_timeout(now);
     drain_ground(now);
   }
@@ -644,6 +651,21 @@ class Team {
 };
 
 }  // namespace
+
+std::optional<mission::Aircraft> place_of(const configuration::PassingAircraft& aircraft,
+                                          Instant now) {
+  const Vec2 way = aircraft.to_m - aircraft.from_m;
+  const double flown_s = to_seconds(now - aircraft.at);
+  if (flown_s < 0.0 || flown_s * aircraft.speed_mps > way.norm()) return std::nullopt;
+  const Vec2 velocity = aircraft.speed_mps * way.normalized();
+  return mission::Aircraft{.address = aircraft.address,
+                           .position = aircraft.from_m + flown_s * velocity,
+                           .height_m = aircraft.height_m + flown_s * aircraft.climb_mps,
+                           .east_mps = velocity.x(),
+                           .north_mps = velocity.y(),
+                           .climb_mps = aircraft.climb_mps,
+                           .time = now};
+}
 
 TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer) {
   return Team{mission, observer}.run();

@@ -74,6 +74,23 @@ void mavlink_fields(FieldVisitor& v, MavlinkTarget& target) {
   whole(v, {"port", "UDP"}, kUdpPort, target.port);
 }
 
+void adsb_fields(FieldVisitor& v, AdsbConfig& config) {
+  v.text({"address", "IPv4 of a dump1090 that tells SBS-1 text by TCP; empty: none"},
+         config.address);
+  v.require(config.address.empty() || first_byte(config.address), "address", kNoAddress);
+  whole(v, {"port", "TCP, of that text"}, kUdpPort, config.port);
+  v.text({"file", "path of dump1090's aircraft.json on this machine; empty: none"}, config.file);
+  v.require(config.address.empty() || config.file.empty(), "file",
+            "is read in place of an address; give one of them");
+  v.number({"qnh_hpa",
+            "pressure at the place, reduced to the sea's level: what heights from pressure are "
+            "corrected by; 27 ft for each hPa"},
+           {900.0, 1100.0, "hPa"}, config.qnh_hpa);
+  v.number({"geoid_height_m",
+            "of the geoid above the ellipsoid at the origin: heights from pressure count from it"},
+           {-120.0, 100.0, "m"}, config.geoid_height_m);
+}
+
 }  // namespace
 
 void agencies_section(FieldVisitor& v, AgenciesConfig& config) {
@@ -91,6 +108,8 @@ void agencies_section(FieldVisitor& v, AgenciesConfig& config) {
                             [&config](FieldVisitor& of) { markers_fields(of, config.markers); });
               inner.list({"mavlink", "where the team is shown as MAVLink systems; none: nowhere"},
                          groups_of(config.mavlink, kTargetsMax, mavlink_fields));
+              inner.section({"adsb", "a receiver that tells of aircraft that are not of the team"},
+                            [&config](FieldVisitor& of) { adsb_fields(of, config.adsb); });
             });
 }
 

@@ -90,6 +90,8 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     config.network = network_of(configs.size() + 1, nodes, scenario.air, deployment);
     config.protocol = scenario.protocol;
     config.planning = scenario.planning;
+    config.traffic = scenario.traffic;
+    config.remote_id = scenario.remote_id.of(vehicle.spec.id);
     for (const ScenarioHazard& hazard : scenario.hazards) {
       if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
     }
@@ -111,6 +113,8 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   config.time = deployment.time;
   config.protocol = scenario.protocol;
   config.planning = scenario.planning;
+  config.traffic = scenario.traffic;
+  config.remote_id = scenario.remote_id;
   for (const ScenarioVehicle& vehicle : scenario.vehicles) {
     config.vehicles.push_back(vehicle.spec.id);
   }

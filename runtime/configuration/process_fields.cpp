@@ -686,6 +686,15 @@ void fields(FieldVisitor& v, VehicleConfig& config) {
   });
   turn_rules(v, config.vehicle, "vehicle.");
   coalition_sections(v, config.protocol, config.planning);
+  traffic_section(v, config.traffic);
+  remote_id_section(v, config.remote_id);
+  v.require(!config.remote_id.required ||
+                config.flight_controller.kind == FlightControllerKind::ardupilot,
+            "remote_id.required", "asks an ardupilot's transmitter; leave it out for the others");
+  v.require(!config.remote_id.required || config.flight_controller.ardupilot.signing_key.empty(),
+            "remote_id.required",
+            "would wait in vain: the transmitter's word comes through the autopilot unsigned, and "
+            "with flight_controller.signing_key that is not heeded; leave one of them out");
   v.list({"hazards", "known before the mission"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
@@ -709,6 +718,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   ids(v, {"vehicles", "ids of the fleet that is expected", kRequired}, config.vehicles, "vehicle");
   operator_decisions_list(v, config.operator_decisions);
   coalition_sections(v, config.protocol, config.planning);
+  traffic_section(v, config.traffic);
   v.list({"hazards", "known before the mission, for the map"},
          unique_groups_of(config.hazards, kListMax, hazard_fields, "hazard",
                           [](const Hazard& hazard) { return hazard.id.value; }));
@@ -723,6 +733,7 @@ void fields(FieldVisitor& v, GroundConfig& config) {
                           [](const VehicleSpec& spec) { return spec.id.value; }));
   console_section(v, config.console);
   agencies_section(v, config.agencies);
+  team_remote_id_section(v, config.remote_id);
   v.section({"operator",
              "whose key signs what is authorised here, from the start on; else "
              "`skein-ground unlock` or a login at the console unlocks one"},

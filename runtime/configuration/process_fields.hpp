@@ -9,12 +9,16 @@
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/ground_config.hpp"
+#include "skein/configuration/remote_id_config.hpp"
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/site_config.hpp"
+#include "skein/domain/traffic_params.hpp"
 #include "skein/planning/allocation.hpp"
 
 /// The parts that several tables share.
 namespace skein::configuration {
+
+struct PassingAircraft;
 
 inline constexpr int kVersion = 1;
 
@@ -46,6 +50,11 @@ void formation_section(FieldVisitor& v, FormationConfig& formation);
 void ipv4(FieldVisitor& v, const Field& field, std::string& address);
 void air_fields(FieldVisitor& v, AirConfig& air);
 void agencies_section(FieldVisitor& v, AgenciesConfig& config);
+void traffic_section(FieldVisitor& v, TrafficParams& params);
+void traffic_fields(FieldVisitor& v, TrafficParams& params);
+void passing_aircraft_list(FieldVisitor& v, std::vector<PassingAircraft>& aircraft);
+void remote_id_section(FieldVisitor& v, RemoteId& config);
+void team_remote_id_section(FieldVisitor& v, TeamRemoteId& team);
 void console_section(FieldVisitor& v, ConsoleConfig& config);
 void operator_decisions_list(FieldVisitor& v, std::vector<OperatorDecision>& decisions);
 

@@ -198,6 +198,11 @@ void world_fields(FieldVisitor& v, Scenario& s) {
             [&s](FieldVisitor& inner) { protocol_fields(inner, s.protocol); });
   v.section({"planning", "how tasks are given to vehicles"},
             [&s](FieldVisitor& inner) { planning_fields(inner, s.planning); });
+  v.section({"traffic", "aircraft that are not of the team, and how vehicles keep clear of them"},
+            [&s](FieldVisitor& inner) {
+              traffic_fields(inner, s.traffic);
+              passing_aircraft_list(inner, s.aircraft);
+            });
 }
 
 }  // namespace
@@ -244,6 +249,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   epoch_field(v, s.epoch_unix_ns);
   console_section(v, s.console);
   agencies_section(v, s.agencies);
+  team_remote_id_section(v, s.remote_id);
   v.list({"hosts",
           "where the programs run in the field (docs/fleet.md); a bench heeds those of external "
           "vehicles only"},

@@ -14,8 +14,8 @@ namespace skein::configuration {
 namespace {
 
 /// Groups of a process's file that all of a team have in common; what else it says is its own.
-constexpr std::array<std::string_view, 5> kCommonGroups{"origin", "time", "protocol", "planning",
-                                                        "formation"};
+constexpr std::array<std::string_view, 6> kCommonGroups{"origin",   "time",    "protocol",
+                                                        "planning", "traffic", "formation"};
 
 /// Of formations what vehicles fly by themselves. Where they fly, how far apart and how high,
 /// reaches them with every change or flight: for that the ground station's file alone counts, and

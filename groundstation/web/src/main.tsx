@@ -22,6 +22,7 @@ import "./replay/replay.css";
 import "./links/links.css";
 import "./returns/returns.css";
 import "./wind/wind.css";
+import "./traffic/traffic.css";
 import { App } from "./shell/app";
 import { theme } from "./shell/view";
 import { start } from "./wire/store";

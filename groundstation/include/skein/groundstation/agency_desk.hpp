@@ -2,12 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "skein/agencies/adsb_intake.hpp"
 #include "skein/agencies/cot_feed.hpp"
+#include "skein/agencies/line_source.hpp"
 #include "skein/agencies/marker_intake.hpp"
 #include "skein/agencies/mavlink_feed.hpp"
 #include "skein/agencies/outlet.hpp"
@@ -41,7 +45,8 @@ class ShownTracks {
 /// What others are shown: vehicles that were heard and belong to the mission, their plans until
 /// these end, sites that are not withdrawn, and hazards.
 [[nodiscard]] agencies::Shown shown_of(const console::Picture& picture, const mission::Fleet& fleet,
-                                       const MissionOrigin& origin, ShownTracks& tracks,
+                                       const MissionOrigin& origin,
+                                       const configuration::TeamRemoteId& ids, ShownTracks& tracks,
                                        Instant now);
 
 /// Where systems of other agencies meet the ground station (docs/agencies.md): they are shown the
@@ -49,12 +54,15 @@ class ShownTracks {
 /// where none are configured; an address that cannot be had is left out, with a warning.
 class AgencyDesk {
  public:
-  static constexpr Duration kPeriod = std::chrono::milliseconds{100};
+  static constexpr Duration kPeriod = std::chrono::milliseconds{50};
+  static constexpr Duration kFilePeriod = std::chrono::seconds{1};  ///< of aircraft.json
 
   AgencyDesk(const configuration::GroundConfig& config, const MissionOrigin& origin);
 
   /// The next marker that is to be proposed to the operator.
   [[nodiscard]] std::optional<mission::Detection> next_marker(Instant now);
+  /// The next aircraft that a receiver of ADS-B tells of.
+  [[nodiscard]] std::optional<mission::SeenAircraft> next_aircraft(Instant now);
   /// `now` and the system's clock.
   void on_timeout(const console::Picture& picture, const mission::Fleet& fleet, Instant now);
   /// Warnings of vehicles are passed on.
@@ -64,6 +72,8 @@ class AgencyDesk {
   using Outlets = std::vector<std::unique_ptr<agencies::Outlet>>;
 
   void open_outlets(const configuration::AgenciesConfig& config);
+  void read_lines(Instant now);
+  void read_file(Instant now);
   void open_markers(const configuration::MarkersConfig& config);
   void say(const agencies::CotEvent& event);
   void say(const mavlink::WireBytes& packet);
@@ -78,6 +88,14 @@ class AgencyDesk {
   Outlets cot_protobuf_;
   Outlets mavlink_;
   std::optional<agencies::Inlet> markers_;
+  configuration::TeamRemoteId remote_ids_;
+  agencies::AdsbIntake adsb_;
+  std::optional<agencies::LineSource> adsb_lines_;
+  std::string adsb_file_;
+  std::deque<mission::SeenAircraft> aircraft_;
+  Instant next_lines_{Instant::min()};
+  Instant next_file_{Instant::min()};
+  bool told_file_ = false;  ///< that it cannot be read
   Instant next_{Instant::min()};
   Instant next_complaint_{Instant::min()};
 };

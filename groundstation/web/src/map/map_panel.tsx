@@ -25,6 +25,7 @@ const layer_words: Record<LayerName, string> = {
   links: "Radio links",
   sites: "Sites",
   hazards: "Hazards",
+  traffic: "Other aircraft",
   labels: "Labels",
 };
 

@@ -12,6 +12,7 @@ import { formation_spot, hazard_draft, measure_from, measure_to, site_spot } fro
 import { read_colours } from "../theme/colours";
 import { line_colour } from "../theme/palette";
 import type { Colours } from "../theme/colours";
+import { paint_traffic } from "../traffic/traffic_painter";
 import type { Picture } from "../wire/picture";
 import type { Authorisation } from "../wire/protocol";
 import { current, hello, on_picture, mission_now_s, since_state_s, tracks } from "../wire/store";
@@ -361,6 +362,7 @@ export class MissionMap {
     });
     if (search_preview.value?.data) paint_search(view, search_preview.value.data, colour_of, true);
     paint_outline(view);
+    if (on.traffic) paint_traffic(view, picture.traffic, since_state_s());
     paint_tools(view);
   }
 }

@@ -14,6 +14,7 @@ import { OrdersPanel } from "../orders/orders_panel";
 import { PlotsPanel } from "../plots/plots_panel";
 import { PreflightPanel } from "../preflight/preflight_panel";
 import { ReplayBar } from "../replay/replay_bar";
+import { TrafficList } from "../traffic/traffic_list";
 import { current, in_replay, lost_s, session } from "../wire/store";
 import { Banners } from "./banners";
 import { Guard } from "./guard";
@@ -53,6 +54,9 @@ export function App() {
         <div class="map-side" id="map">
           <Guard what="The map">
             <MapPanel />
+          </Guard>
+          <Guard what="The list of other aircraft">
+            <TrafficList />
           </Guard>
           {in_replay.value && <ReplayBar />}
           <Guard what="The time line">

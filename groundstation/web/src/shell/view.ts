@@ -30,7 +30,7 @@ export function switch_theme(): void {
   localStorage.setItem("skein.theme", theme.value);
 }
 
-export const layer_names = ["grid", "trails", "paths", "links", "sites", "hazards", "labels"] as const;
+export const layer_names = ["grid", "trails", "paths", "links", "sites", "hazards", "traffic", "labels"] as const;
 export type LayerName = (typeof layer_names)[number];
 export const layers = signal<Record<LayerName, boolean>>({
   grid: true,
@@ -39,6 +39,7 @@ export const layers = signal<Record<LayerName, boolean>>({
   links: false,
   sites: true,
   hazards: true,
+  traffic: true,
   labels: true,
 });
 export const tiles_shown = signal(true);

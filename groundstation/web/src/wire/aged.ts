@@ -22,6 +22,7 @@ export function aged(picture: Picture, lost_s: number): Picture {
       hears: row.hears.map((link) => ({ ...link, age_s: link.age_s + lost_s })),
     })),
     wind: picture.wind && { ...picture.wind, age_s: picture.wind.age_s + lost_s },
+    traffic: picture.traffic.map((aircraft) => ({ ...aircraft, age_s: aircraft.age_s + lost_s })),
     authorisations: picture.authorisations.map((request) => ({ ...request, waiting: request.waiting && now_s < request.decide_by_s })),
   };
 }

@@ -42,6 +42,7 @@ export const section_names = [
   "wind",
   "areas",
   "alarms",
+  "traffic",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -65,6 +66,7 @@ export function empty_picture(): Picture {
     wind: null,
     areas: null,
     alarms: null,
+    traffic: [],
     events: [],
     next_seq: 0,
     events_missed: 0,

@@ -290,6 +290,7 @@ export interface Sections {
   wind: Wind | null;
   areas: Areas | null;
   alarms: Alarms | null;
+  traffic: TrafficAircraft[];
 }
 
 /** Where all vehicles are to stay. */
@@ -442,6 +443,35 @@ export interface Alarms {
   list: Alarm[];
   /** Oldest first. */
   orders: GivenOrder[];
+}
+
+/** An aircraft that is not of the team, where it is now; the nearest first. */
+export interface TrafficAircraft {
+  /** Of ICAO, six hexadecimal digits. */
+  address: string;
+  /** Empty: not told. */
+  callsign: string;
+  x: number;
+  y: number;
+  z: number;
+  track_deg: number;
+  speed_mps: number;
+  climb_mps: number;
+  /** Since its place was heard. */
+  age_s: number;
+  /** Its height is from pressure. */
+  barometric: boolean;
+  on_ground: boolean;
+  /** Vehicles that are too near to it, and whether they give way. */
+  warned: { vehicle: number; gives_way: boolean }[];
+  nearest: {
+    vehicle: number;
+    distance_m: number;
+    above_m: number;
+    /** To the side, if both fly straight on. */
+    closest_m: number;
+    closest_in_s: number;
+  } | null;
 }
 
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";

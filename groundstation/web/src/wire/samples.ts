@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples for the tests.
 
-import type { Alarm, Alarms, Coalition, Hello, MissionEvent, PreflightVehicle, Vehicle } from "./protocol";
+import type { Alarm, Alarms, Coalition, Hello, MissionEvent, PreflightVehicle, TrafficAircraft, Vehicle } from "./protocol";
 
 export function a_hello(): Hello {
   return {
@@ -96,6 +96,25 @@ export function a_coalition(key: string, other: Partial<Coalition> = {}): Coalit
     members: [],
     rounds: [],
     lease_until_s: null,
+    ...other,
+  };
+}
+
+export function a_traffic_aircraft(other: Partial<TrafficAircraft> = {}): TrafficAircraft {
+  return {
+    address: "4ca2d6",
+    callsign: "RYR12",
+    x: 4000,
+    y: 0,
+    z: 300,
+    track_deg: 270,
+    speed_mps: 60,
+    climb_mps: 0,
+    age_s: 1,
+    barometric: false,
+    on_ground: false,
+    warned: [],
+    nearest: { vehicle: 1, distance_m: 4000, above_m: 200, closest_m: 2000, closest_in_s: 60 },
     ...other,
   };
 }

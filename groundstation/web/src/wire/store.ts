@@ -60,6 +60,7 @@ export const audit = computed(() => shown.value.audit);
 export const preflight = computed(() => shown.value.preflight);
 export const links = computed(() => aged_picture.value.links);
 export const wind = computed(() => aged_picture.value.wind);
+export const traffic = computed(() => aged_picture.value.traffic);
 export const replay = computed(() => shown.value.replay);
 export const events = computed(() => shown.value.events);
 export const in_replay = computed(() => Boolean(hello.value?.replay));

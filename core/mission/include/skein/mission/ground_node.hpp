@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "skein/base/bounded_queue.hpp"
 #include "skein/mission/fleet.hpp"
@@ -16,6 +17,7 @@
 #include "skein/mission/ground_routes.hpp"
 #include "skein/mission/ground_search.hpp"
 #include "skein/mission/ground_sites.hpp"
+#include "skein/mission/ground_traffic.hpp"
 #include "skein/mission/order_book.hpp"
 #include "skein/mission/setup_book.hpp"
 #include "skein/mission/track_ground.hpp"
@@ -106,6 +108,12 @@ class GroundNode {
   }
   [[nodiscard]] const GroundSearch& searches() const { return searches_; }
 
+  /// As GroundTraffic::on_aircraft().
+  void on_aircraft(SeenAircraft seen, Instant now) {
+    traffic_.on_aircraft(std::move(seen), fleet(), now);
+  }
+  [[nodiscard]] const GroundTraffic& traffic() const { return traffic_; }
+
   /// Tells all of what was decided around the node: where the script of the formation stands.
   void say(MissionEvent event);
 
@@ -161,6 +169,7 @@ class GroundNode {
   GroundDetections detections_;
   GroundReturn returns_;
   GroundLanding landings_;
+  GroundTraffic traffic_;
   std::uint64_t refused_ = 0;
   BoundedQueue<Message> messages_{64};  ///< the node's own
   BoundedQueue<MissionEvent> events_{64};

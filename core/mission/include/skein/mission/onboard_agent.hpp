@@ -11,6 +11,7 @@
 #include "skein/mission/guidance.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/separation_watch.hpp"
+#include "skein/mission/traffic_watch.hpp"
 #include "skein/planning/allocation.hpp"
 
 namespace skein::mission {
@@ -107,6 +108,10 @@ class OnboardAgent {
   /// It goes by the telemetry of others, wherever they are (SeparationWatch).
   [[nodiscard]] virtual bool watches_others() const { return false; }
   [[nodiscard]] virtual std::optional<SeparationConflict> separation_conflict() const {
+    return std::nullopt;
+  }
+  /// With aircraft that are not of the team.
+  [[nodiscard]] virtual std::optional<TrafficWatch::Conflict> traffic_conflict() const {
     return std::nullopt;
   }
 };

@@ -14,6 +14,7 @@
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/events.hpp"
+#include "skein/mission/height_band.hpp"
 #include "skein/mission/messages.hpp"
 
 namespace skein::mission {
@@ -52,9 +53,16 @@ class SeparationWatch {
   /// one's height is looked at while nothing is wrong, which is less than two layers are apart.
   static constexpr double kRoom_m = 2.0;
 
+  /// Who is on the way to another height waits so much farther from others, who may come up to it.
+  static constexpr double kWaits_m = 8.0;
+
   struct Self {
     VehicleState state;
     Activity activity = Activity::searching;
+    /// Where it is to fly in place of its layer, and the heights that it may give way to from there
+    /// (TrafficWatch). On the way there, and back, it waits for others that are between.
+    std::optional<double> height_m = {};
+    HeightBand room = {};
   };
 
   /// `layer_m`: the vehicle's own height, above the origin.
@@ -73,9 +81,12 @@ class SeparationWatch {
   void step(const Self& self, Instant now);
 
   /// It knows of others: step() is to be called with every state.
-  [[nodiscard]] bool watches() const { return !known_.empty() || target_.has_value(); }
+  [[nodiscard]] bool watches() const {
+    return !known_.empty() || target_.has_value() || off_layer_;
+  }
+  [[nodiscard]] bool off_layer() const { return off_layer_; }
   /// From its layer, to which the vehicle is to change its height; 0: it flies there.
-  [[nodiscard]] double offset_m() const { return target_ ? *target_ - layer_m_ : 0.0; }
+  [[nodiscard]] double offset_m() const { return target_.value_or(way_m_) - layer_m_; }
   [[nodiscard]] std::optional<SeparationConflict> conflict() const;
   [[nodiscard]] std::optional<EventBody> poll_event();
 
@@ -118,6 +129,9 @@ class SeparationWatch {
   [[nodiscard]] std::optional<double> free_height(const Other& other, bool up, const Self& self,
                                                   Instant now) const;
   void keep_free(const Self& self, Instant now);
+  void go_on(const Self& self, Instant now);
+  [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
+  [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
   [[nodiscard]] bool any_conflict() const;
 
   coalition::ProtocolParams params_;
@@ -125,7 +139,12 @@ class SeparationWatch {
   double layer_m_;
   std::map<VehicleId, Other> known_;
   std::set<VehicleId> piloted_;
-  std::optional<double> target_;  ///< height
+  std::optional<double> target_;  ///< height, to give way
+  double base_m_;                 ///< where it is to fly: its layer, or Self::height_m
+  double way_m_;                  ///< as far as nobody is in the way there
+  bool off_layer_ = false;        ///< by Self::height_m, or not back from there yet
+  HeightBand room_;
+  Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
   std::deque<EventBody> events_;
 };

@@ -10,6 +10,7 @@
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/path.hpp"
+#include "skein/domain/traffic_params.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/onboard_agent.hpp"
 #include "skein/planning/allocation.hpp"
@@ -20,6 +21,7 @@ struct VehicleAgentConfig {
   VehicleSpec vehicle;
   InstanceId instance;
   coalition::ProtocolParams protocol;
+  TrafficParams traffic;
   planning::AllocationParams planning;
   std::vector<Vec2> search;  ///< waypoints of the search route; the vehicle orbits the last one
   std::optional<TimedPath> route;  ///< flown first, to its end unless a task comes between
@@ -65,6 +67,7 @@ class VehicleAgent final : public OnboardAgent {
   void on_piloted(bool piloted) override;
   [[nodiscard]] bool watches_others() const override;
   [[nodiscard]] std::optional<SeparationConflict> separation_conflict() const override;
+  [[nodiscard]] std::optional<TrafficWatch::Conflict> traffic_conflict() const override;
 
  private:
   class Impl;

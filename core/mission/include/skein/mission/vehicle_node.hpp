@@ -24,6 +24,7 @@ struct VehicleNodeConfig {
   Fence fence{};                  ///< of the configuration
   TelemetryPeriods telemetry{};
   SetupParams setup{};
+  TrafficParams traffic{};  ///< of who flies in a formation, and is only warned
 };
 
 /// Everything that a vehicle decides and says: its agent, the telemetry and what it tells of itself

@@ -14,13 +14,13 @@
 namespace skein::agencies {
 
 /// Makes Cursor on Target events of what is shown, when they are due: of a vehicle with a newer
-/// state once in kVehiclePeriod, of all else when it changes, kChangePeriod after its last event,
+/// state kVehiclePeriod apart and no later than it came, of all else when it changes, kChangePeriod after its last event,
 /// and before its last event is stale. What is not shown any more is ended, said kEndings times
 /// since a datagram may be lost. UIDs are those of the team, and of sites, hazards also of the
 /// mission: the same after a new start. Pure; `now` never decreases.
 class CotFeed {
  public:
-  static constexpr Duration kVehiclePeriod = std::chrono::milliseconds{900};
+  static constexpr Duration kVehiclePeriod = std::chrono::milliseconds{700};
   static constexpr Duration kVehicleStale = std::chrono::seconds{10};
   static constexpr Duration kOtherPeriod = std::chrono::seconds{20};
   static constexpr Duration kOtherStale = std::chrono::seconds{60};
@@ -40,7 +40,7 @@ class CotFeed {
   struct Said {
     CotEvent event;
     Instant at{};
-    Instant measured{};  ///< of a vehicle: its state
+    Instant measured{};  ///< of a vehicle: its newest state, said or not
     int endings = 0;
     bool shown = false;  ///< in this update
   };

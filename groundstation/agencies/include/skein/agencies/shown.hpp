@@ -8,6 +8,7 @@
 #include "skein/base/frames.hpp"
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
+#include "skein/domain/remote_id.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -24,6 +25,7 @@ struct ShownVehicle {
   std::uint8_t loads = 0;
   bool silent = false;                ///< not heard lately
   std::vector<std::string> problems;  ///< that a person should look at
+  RemoteId remote_id{};               ///< without an id: none is said
 };
 
 struct ShownSite {
@@ -43,6 +45,9 @@ struct ShownHazard {
 struct ShownTrack {
   VehicleId vehicle;
   std::vector<Wgs84> points;  ///< two at least
+  std::uint16_t legs = 0;     ///< straight ways and turns
+  std::uint16_t leg = 0;      ///< that is flown now, from 0
+  double left_m = 0.0;        ///< to its end
 };
 
 struct Shown {

@@ -13,6 +13,7 @@
 #include "skein/console/team_links.hpp"
 #include "skein/console/team_wind.hpp"
 #include "skein/domain/fence.hpp"
+#include "skein/mission/ground_traffic.hpp"
 #include "skein/mission/messages.hpp"
 #include "skein/mission/shown_state.hpp"
 
@@ -34,6 +35,7 @@ struct PictureParams {
   std::size_t sites_max = 1000;
   std::size_t hazards_max = 1000;
   std::size_t proposals_max = 200;
+  std::size_t warned_max = 100;  ///< aircraft that vehicles are warned of
 };
 
 /// What an operator sees of one vehicle besides its entry in mission::Fleet.
@@ -134,6 +136,12 @@ struct FormationPicture {
   std::map<VehicleId, Flight> flights;
 };
 
+/// An aircraft that is not of the team, and whom it has come too near to.
+struct TrafficPicture {
+  mission::SeenAircraft seen;
+  std::map<VehicleId, bool> warned{};  ///< whether that vehicle gives way to it
+};
+
 /// Everything that the ground station has heard and said, put together for people: what was said
 /// over time, beside the fleet as it is now (mission::Fleet). It decides nothing. Pure and
 /// copyable: of a recording, copies taken on the way make every moment quick to reach. `now` never
@@ -153,6 +161,8 @@ class Picture {
   }
   [[nodiscard]] const std::vector<GroundReception>& receptions() const { return receptions_; }
   [[nodiscard]] const TeamWind& wind() const { return wind_; }
+  /// All aircraft that receivers hear now; in a replay those that vehicles were told of are known.
+  void on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all);
   [[nodiscard]] const PictureParams& params() const { return params_; }
   [[nodiscard]] const std::map<VehicleId, VehiclePicture>& vehicles() const { return vehicles_; }
   [[nodiscard]] const std::map<SiteId, SitePicture>& sites() const { return sites_; }
@@ -173,6 +183,8 @@ class Picture {
     return proposals_;
   }
   [[nodiscard]] const FormationPicture& formation() const { return formation_; }
+  /// By their addresses.
+  [[nodiscard]] const std::map<std::uint32_t, TrafficPicture>& traffic() const { return traffic_; }
 
   /// The task that the vehicle was awarded next, and that nobody has taken back.
   [[nodiscard]] std::optional<std::pair<TaskId, TaskPicture>> task_of(VehicleId vehicle) const;
@@ -188,6 +200,9 @@ class Picture {
   void on(const mission::AuthorisationRequest& request, Instant now);
   void on(const mission::Authorisation& decision);
   void on(const mission::SiteReport& m);
+  void on(const mission::Traffic& m);
+  void show_warned();
+  void note_traffic(const mission::MissionEvent& event);
   void on(const coalition::Announcement& m);
   void on(const coalition::Bid& m);
   void on(const coalition::Award& m);
@@ -217,6 +232,9 @@ class Picture {
   FormationPicture formation_;
   std::vector<GroundReception> receptions_;
   TeamWind wind_;
+  std::map<std::uint32_t, TrafficPicture> traffic_;
+  std::map<std::uint32_t, std::map<VehicleId, bool>> warned_;  ///< of each aircraft
+  bool hears_traffic_ = false;
 };
 
 }  // namespace skein::console

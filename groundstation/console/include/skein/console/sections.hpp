@@ -32,6 +32,7 @@ enum class Section : std::uint8_t {
   wind,
   areas,
   alarms,
+  traffic,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);

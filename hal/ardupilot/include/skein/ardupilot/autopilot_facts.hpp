@@ -42,6 +42,8 @@ struct AutopilotFacts {
   std::vector<TestedParameter> safety;  ///< that nothing is flown without (parameter_check.hpp)
   std::map<std::string, double> parameters;  ///< the others, as far as they were told
   std::vector<std::string> pre_arm;          ///< why it would not arm
+  /// Of what says a Remote ID: why it does not; empty: it does.
+  std::optional<std::string> remote_id;
   /// Armed or in the air, and not only waiting on the ground for who flies it.
   bool in_flight = false;
 

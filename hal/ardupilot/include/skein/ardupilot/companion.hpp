@@ -17,6 +17,7 @@
 #include "skein/base/time.hpp"
 #include "skein/domain/autopilot_notice.hpp"
 #include "skein/domain/fence.hpp"
+#include "skein/domain/remote_id.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mavlink/enums.hpp"
 #include "skein/mavlink/parser.hpp"
@@ -38,6 +39,8 @@ struct CompanionParams {
   VehicleSpec vehicle;
   std::optional<mavlink::Signing> signing =
       {};       ///< none: packets are not signed, and any are heeded
+  RemoteId remote_id{};      ///< without an id nothing is said
+  std::int64_t unix_us = 0;  ///< system time at Instant{}
   Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself
   TakeOver take_over = TakeOver::when_guided;
   std::uint8_t system_id = 1;      ///< of the autopilot: SYSID_THISMAV; others are not heeded

@@ -135,6 +135,8 @@ enum Capability : std::uint64_t {
 /// Components of a system.
 inline constexpr std::uint8_t kComponentAutopilot = 1;
 inline constexpr std::uint8_t kComponentOnboardComputer = 191;
+/// The first and the last of transmitters of Remote ID.
+inline constexpr std::uint8_t kComponentRemoteId1 = 236, kComponentRemoteId3 = 238;
 
 // clang-format on
 

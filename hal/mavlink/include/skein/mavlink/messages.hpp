@@ -8,6 +8,7 @@
 #include "skein/mavlink/command.hpp"
 #include "skein/mavlink/mission.hpp"
 #include "skein/mavlink/parameter.hpp"
+#include "skein/mavlink/remote_id.hpp"
 #include "skein/mavlink/sensors.hpp"
 #include "skein/mavlink/vehicle.hpp"
 
@@ -26,7 +27,9 @@ using Messages =
                PositionTargetGlobalInt, SimState, Timesync, ScaledImu2, PowerStatus, ScaledImu3,
                TerrainRequest, TerrainReport, ScaledPressure2, BatteryStatus, AutopilotVersion,
                Meminfo, Ahrs, Simstate, Wind, Ahrs2, EkfStatusReport, Vibration, HomePosition,
-               MessageInterval, ExtendedSysState, Statustext, Airspeed, AoaSsa, EscTelemetry1To4>;
+               MessageInterval, ExtendedSysState, Statustext, Airspeed, AoaSsa, EscTelemetry1To4,
+               OpenDroneIdBasicId, OpenDroneIdLocation, OpenDroneIdSelfId, OpenDroneIdSystem,
+               OpenDroneIdOperatorId, OpenDroneIdArmStatus>;
 
 /// What is known of them, by id.
 [[nodiscard]] std::span<const MessageInfo> messages();

@@ -52,6 +52,9 @@ struct EmulatorConfig {
   /// It signs what it says, and heeds nothing that is not signed with it.
   std::optional<std::array<std::uint8_t, 32>> signing_key;
 
+  /// It has a transmitter of Remote ID, and does not arm without (DID_ENABLE, DID_OPTIONS 1).
+  bool remote_id = false;
+
   double battery_mah = 16000.0;  ///< BATT_CAPACITY; 60 A at full throttle and 0.5 A besides
 
   Vec2 wind_mps{0.0, 0.0};      ///< where the air moves to, mission frame

@@ -14,9 +14,11 @@
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/formation_config.hpp"
+#include "skein/configuration/scenario.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
+#include "skein/domain/traffic_params.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/hil/fault.hpp"
 #include "skein/hil/radio/radio_model.hpp"
@@ -62,6 +64,8 @@ struct TeamMission {
   Fence fence{};
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
+  TrafficParams traffic;
+  std::vector<configuration::PassingAircraft> aircraft;  ///< that the ground station hears
   std::vector<mission::ScriptedDecision> decisions;
   radio::RadioParams radio;
   models::WindParams wind;
@@ -112,6 +116,10 @@ struct OwnWord {
   VehicleId vehicle;
   std::optional<mission::Telemetry> telemetry;  ///< none: its program does not run
 };
+
+/// Where an aircraft that is not of the team is then; none before it is heard, and after it was.
+[[nodiscard]] std::optional<mission::Aircraft> place_of(
+    const configuration::PassingAircraft& aircraft, Instant now);
 
 /// What is observed while it runs; called in the order of time, and all times are true mission
 /// time, whatever a vehicle's clock says.

@@ -31,12 +31,23 @@ struct MavlinkTarget {
   std::uint16_t port = 14550;
 };
 
+/// A receiver of ADS-B (dump1090), which tells of aircraft that are not of the team.
+struct AdsbConfig {
+  std::string address;  ///< IPv4, where it tells SBS-1 text by TCP; empty: nowhere
+  std::uint16_t port = 30003;
+  std::string file;  ///< its aircraft.json, which it writes anew each second; empty: none
+  /// What heights from pressure are corrected by: at the place, reduced to the sea's level.
+  double qnh_hpa = 1013.25;
+  double geoid_height_m = 0.0;  ///< of the geoid above the ellipsoid at the mission's origin
+};
+
 /// What systems of other agencies are shown, and what they may propose (docs/agencies.md).
 struct AgenciesConfig {
   std::string team = "skein";  ///< begins callsigns and UIDs
   std::vector<CotTarget> cot;
   MarkersConfig markers;
   std::vector<MavlinkTarget> mavlink;
+  AdsbConfig adsb;
 };
 
 }  // namespace skein::configuration

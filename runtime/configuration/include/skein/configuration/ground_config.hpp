@@ -13,9 +13,11 @@
 #include "skein/configuration/agencies_config.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
+#include "skein/configuration/remote_id_config.hpp"
 #include "skein/configuration/site_config.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
+#include "skein/domain/traffic_params.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
 
@@ -58,6 +60,7 @@ struct GroundConfig {
   Wgs84 origin;
   NetworkConfig network;
   coalition::ProtocolParams protocol;
+  TrafficParams traffic;
   planning::AllocationParams planning;
   TimeConfig time;
   std::vector<VehicleId> vehicles;  ///< the fleet that is expected
@@ -71,6 +74,7 @@ struct GroundConfig {
   std::vector<VehicleSpec> planes;  ///< of a formation of planes: what each can do
   ConsoleConfig console;
   AgenciesConfig agencies;
+  TeamRemoteId remote_id;
   OperatorConfig op;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded

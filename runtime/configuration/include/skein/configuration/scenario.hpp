@@ -107,6 +107,17 @@ struct Expectations {
 enum class Ending : std::uint8_t { in_the_air, landed };
 inline constexpr std::array<std::string_view, 2> kEndings{"in_the_air", "landed"};
 
+/// An aircraft that is not of the team, and is heard from one place to the other.
+struct PassingAircraft {
+  std::uint32_t address = 0;  ///< of ICAO
+  Vec2 from_m{0.0, 0.0};
+  Vec2 to_m{0.0, 0.0};
+  double height_m = 0.0;  ///< above the origin, where it is first heard
+  double climb_mps = 0.0;
+  double speed_mps = 0.0;
+  Instant at{};
+};
+
 /// A mission: the fleet, the sites, the world and what must come out (docs/scenarios.md).
 struct Scenario {
   std::string title;
@@ -120,6 +131,8 @@ struct Scenario {
   WindConfig wind;
   coalition::ProtocolParams protocol;
   planning::AllocationParams planning;
+  TrafficParams traffic;
+  std::vector<PassingAircraft> aircraft;  ///< in virtual time
   std::vector<ScenarioVehicle> vehicles;
   std::vector<Site> sites;
   std::vector<SiteTemplate> site_templates;  ///< for the ground station
@@ -136,6 +149,7 @@ struct Scenario {
   std::optional<std::int64_t> epoch_unix_ns;  ///< nothing: given when it is rendered
   ConsoleConfig console;
   AgenciesConfig agencies;
+  TeamRemoteId remote_id;
   std::vector<Host> hosts;
 
   /// Some vehicle does, by orders of the ground station.

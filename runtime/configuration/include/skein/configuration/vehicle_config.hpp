@@ -18,6 +18,8 @@
 #include "skein/configuration/routes_config.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
+#include "skein/domain/remote_id.hpp"
+#include "skein/domain/traffic_params.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/planning/allocation.hpp"
 #include "skein/planning/path_follower.hpp"
@@ -83,10 +85,12 @@ struct VehicleConfig {
   FlightControllerConfig flight_controller;
   NetworkConfig network;
   coalition::ProtocolParams protocol;
+  TrafficParams traffic;
   planning::AllocationParams planning;
   std::vector<Hazard> hazards;    ///< known before the mission
   Fence fence;                    ///< of the whole team
   FormationConfig formation;      ///< of a vehicle that flies in formation
+  RemoteId remote_id;
   std::string detections_socket;  ///< path, where detectors tell of sites; empty: nowhere
   TimeConfig time;
   std::string recording_folder;  ///< empty: nothing is recorded
