@@ -11,15 +11,16 @@ using IdType = RemoteId::IdType;
 using UaType = RemoteId::UaType;
 using Category = RemoteId::Category;
 
-constexpr std::array<std::string_view, static_cast<std::size_t>(IdType::count)> kIdTypes{
-    "none", "serial_number", "registration", "utm_assigned", "session"};
+/// Without the first: who has no id says none.
+constexpr std::array<std::string_view, static_cast<std::size_t>(IdType::count) - 1> kIdTypes{
+    "serial_number", "registration", "utm_assigned", "session"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(UaType::count)> kUaTypes{
     "by_airframe", "aeroplane", "helicopter_or_multirotor", "gyroplane", "hybrid_lift"};
 constexpr std::array<std::string_view, static_cast<std::size_t>(Category::count)> kCategories{
     "undeclared", "open", "specific", "certified"};
 constexpr std::array<std::string_view, 8> kClasses{"undeclared", "C0", "C1", "C2",
                                                    "C3",         "C4", "C5", "C6"};
-constexpr std::array<std::string_view, 2> kNoYes{"no", "yes"};
+constexpr std::array<std::string_view, 2> kFalseTrue{"false", "true"};
 constexpr std::size_t kIdMax = 20;    ///< bytes of a UAS or operator id
 constexpr std::size_t kTextMax = 23;  ///< of a description
 
@@ -42,8 +43,9 @@ void uas_id_field(FieldVisitor& v, std::string& id) {
 }
 
 void common_fields(FieldVisitor& v, RemoteId& c) {
-  choose(v, {"id_type", "what a uas_id is"}, kIdTypes, c.id_type);
-  v.require(c.id_type != IdType::none, "id_type", "says what the id is; name one of the others");
+  std::size_t id_type = static_cast<std::size_t>(c.id_type) - 1;
+  v.choice({"id_type", "what a uas_id is"}, kIdTypes, id_type);
+  c.id_type = static_cast<IdType>(id_type + 1);
   choose(v, {"ua_type", "what the aircraft is"}, kUaTypes, c.ua_type);
   v.text({"operator_id", "as the authority gave it to the operator; 20 ASCII characters at most"},
          c.operator_id);
@@ -80,7 +82,7 @@ void common_fields(FieldVisitor& v, RemoteId& c) {
   std::size_t required = c.required ? 1 : 0;
   v.choice({"required", "a vehicle is not ready, nor armed by its companion, without a transmitter "
                         "that says it is good"},
-           kNoYes, required);
+           kFalseTrue, required);
   c.required = required == 1;
 }
 

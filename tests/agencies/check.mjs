@@ -26,6 +26,7 @@ const kTeam = 'alpha'
 const kVehicles = [1, 2, 3]
 const kPlace_m = 1.0
 const kAge_s = 0.5
+const uas_id_of = id => `1ABCD012345678${id}`
 
 // --- where others listen -----------------------------------------------------------------------
 
@@ -123,6 +124,13 @@ agencies:
   markers: {port: ${markers.port}}
   mavlink:
     - {address: 127.0.0.1, port: ${mavlink.port}}
+remote_id:
+  operator_id: SWE1234567890abc
+  description: search for a fire
+  category: open
+  class: C2
+  operator: {latitude_deg: 31.5, longitude_deg: 105.0, height_m: 490}
+  ids: [${kVehicles.map(id => `{vehicle: ${id}, uas_id: ${uas_id_of(id)}}`).join(', ')}]
 `)
 start('ground', 'skein-ground', ground_file)
 for (const id of kVehicles) start(`onboard-${id}`, 'skein-onboard', configure(`onboard-${id}`, ''))
@@ -313,6 +321,34 @@ for (let i = 1; i < refreshed.length; ++i) assert(refreshed[i].at_ms < Date.pars
 const registry = { ...minimal.REGISTRY, ...standard.REGISTRY, ...common.REGISTRY }
 const counts = new Map()
 const positions = []
+const trimmed = text => text.replace(/\0+$/, '')
+const of_remote_id = {
+  OPEN_DRONE_ID_BASIC_ID(message, id) {
+    assert.equal(trimmed(Buffer.from(message.uasId).toString('latin1')), uas_id_of(id))
+    assert.equal(message.idType, common.MavOdidIdType.SERIAL_NUMBER)
+    assert.equal(message.uaType, common.MavOdidUaType.AEROPLANE)
+  },
+  OPEN_DRONE_ID_LOCATION(message, id, at_ms) {
+    assert.equal(message.status, common.MavOdidStatus.AIRBORNE)
+    const hour_s = (at_ms / 1000) % 3600
+    const age_s = (hour_s - message.timestamp + 3600) % 3600
+    assert(age_s < 2, `${age_s} s since the location`)
+    positions_by_id.push({ vehicle: id, time_s: since_epoch_s(at_ms) - age_s, heard_s: since_epoch_s(at_ms),
+      place: [message.latitude / 1e7, message.longitude / 1e7, message.altitudeGeodetic] })
+  },
+  OPEN_DRONE_ID_SYSTEM(message, id, at_ms) {
+    assert.equal(message.operatorLatitude, 315000000)
+    assert.equal(message.operatorLocationType, common.MavOdidOperatorLocationType.FIXED)
+    assert.equal(message.categoryEu, common.MavOdidCategoryEu.OPEN)
+    assert.equal(message.classEu, common.MavOdidClassEu.CLASS_2)
+    assert(Math.abs(message.timestamp - (at_ms / 1000 - 1546300800)) < 3)
+    groups.add(message.areaCount)
+  },
+  OPEN_DRONE_ID_OPERATOR_ID: message => assert.equal(trimmed(message.operatorId), 'SWE1234567890abc'),
+  OPEN_DRONE_ID_SELF_ID: message => assert.equal(trimmed(message.description), 'search for a fire'),
+}
+const positions_by_id = []
+const groups = new Set()
 for (const { bytes, at_ms } of mavlink.got) {
   const packets = []
   const stream = createMavLinkStream(Readable.from([bytes]), { onCrcError: () => assert.fail('a checksum is wrong') })
@@ -329,15 +365,19 @@ for (const { bytes, at_ms } of mavlink.got) {
     assert.equal(message.type, minimal.MavType.FIXED_WING)
     assert.equal(message.autopilot, minimal.MavAutopilot.GENERIC)
   }
+  of_remote_id[Message.MSG_NAME]?.(message, header.sysid, at_ms)
   if (Message.MSG_NAME !== 'GLOBAL_POSITION_INT') continue
   positions.push({ vehicle: header.sysid, time_s: message.timeBootMs / 1000, heard_s: since_epoch_s(at_ms),
     place: [message.lat / 1e7, message.lon / 1e7, message.alt / 1e3] })
 }
 console.log(`mavlink: ${mavlink.got.length} packets: ${[...counts].map(([name, n]) => `${n} ${name}`).join(', ')}`)
-for (const name of ['HEARTBEAT', 'GLOBAL_POSITION_INT', 'ATTITUDE', 'VFR_HUD', 'SYS_STATUS', 'BATTERY_STATUS']) {
+for (const name of ['HEARTBEAT', 'GLOBAL_POSITION_INT', 'ATTITUDE', 'VFR_HUD', 'SYS_STATUS', 'BATTERY_STATUS', 'MISSION_CURRENT',
+  'NAV_CONTROLLER_OUTPUT', 'STATUSTEXT', ...Object.keys(of_remote_id)]) {
   assert(counts.has(name), name)
 }
 judge_places('mavlink', positions, 60)
+judge_places('remote id', positions_by_id, 10)
+assert(groups.has(kVehicles.length), 'as one group')
 
 for (const { socket } of [xml, protobuf, mavlink]) socket.close()
 sender.close()
