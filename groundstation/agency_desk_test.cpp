@@ -160,9 +160,8 @@ TEST_F(ShownTest, IsSentWhereTheConfigurationSays) {
 
 TEST(AgencyDesk, ReadsTheFileThatAReceiverWrites) {
   const std::string file = ::testing::TempDir() + "agency_desk_aircraft.json";
-  const auto unix_s = std::chrono::duration<double>(
-                          std::chrono::system_clock::now().time_since_epoch())
-                          .count();
+  const auto unix_s =
+      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   std::ofstream{file} << "{\"now\": " << std::to_string(unix_s)
                       << R"(, "aircraft": [{"hex": "4ca2d6", "lat": 59.01, "lon": 17.0,
       "alt_geom": 2000, "gs": 100, "track": 180, "seen_pos": 1.0}]})";

@@ -68,11 +68,8 @@ std::optional<NearestMember> nearest_member(const Aircraft& aircraft, const Flee
 void GroundTraffic::on_aircraft(SeenAircraft seen, const Fleet& fleet, Instant now) {
   const std::uint32_t address = seen.aircraft.address;
   const auto found = known_.find(address);
-  if (found == known_.end()) {
-    next_tell_ = std::min(next_tell_, now);
-  } else if (seen.aircraft.time < found->second.aircraft.time) {
-    return;
-  }
+  if (found != known_.end() && seen.aircraft.time < found->second.aircraft.time) return;
+  if (known_.empty() && !told_) next_tell_ = std::min(next_tell_, now);
   known_[address] = std::move(seen);
   if (known_.size() > kKnownMax) forget_farthest(fleet, now);
 }
@@ -92,9 +89,8 @@ void GroundTraffic::forget_farthest(const Fleet& fleet, Instant now) {
 void GroundTraffic::on_timeout(const Fleet& fleet, Instant now) {
   if (now < next_tell_ || (known_.empty() && !told_)) return;
   next_tell_ = now + kTellPeriod;
-  std::erase_if(known_, [now](const auto& entry) {
-    return now - entry.second.aircraft.time > kForgotten;
-  });
+  std::erase_if(known_,
+                [now](const auto& entry) { return now - entry.second.aircraft.time > kForgotten; });
   std::vector<std::pair<double, std::uint32_t>> near;
   for (const auto& [address, seen] : known_) {
     const double away_m = distance_m(seen, fleet, now);

@@ -62,9 +62,9 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   const double apart_m = other.state.z_m - own.z_m;
   const auto found = known_.find(other.vehicle);
   if (found == known_.end()) {
-    const bool near = on_the_way(own, other.state) ||
-                      (any_conflict() ? std::abs(apart_m) < kOthersWithin_m
-                                      : concerns(params_, apart_m));
+    const bool near =
+        on_the_way(own, other.state) ||
+        (any_conflict() ? std::abs(apart_m) < kOthersWithin_m : concerns(params_, apart_m));
     if (!near || known_.size() >= kVehiclesMax) return;
   }
   Other& known = known_[other.vehicle];
@@ -297,9 +297,8 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
       moved = true;
     }
   }
-  const bool allowed =
-      up ? height_m <= std::min(params_.separation_ceiling_m, room_.high_m)
-         : height_m >= std::max(params_.separation_floor_m, room_.low_m);
+  const bool allowed = up ? height_m <= std::min(params_.separation_ceiling_m, room_.high_m)
+                          : height_m >= std::max(params_.separation_floor_m, room_.low_m);
   return allowed ? std::optional{height_m} : std::nullopt;
 }
 

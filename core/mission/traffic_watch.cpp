@@ -52,7 +52,7 @@ void TrafficWatch::on_traffic(const Traffic& traffic) {
     const auto found = known_.find(told.address);
     if (found == known_.end() && known_.size() >= kAircraftKnownMax) continue;
     Known& known = known_[told.address];
-    if (told.time >= known.aircraft.time) known.aircraft = told;
+    if (found == known_.end() || told.time >= known.aircraft.time) known.aircraft = told;
   }
 }
 
@@ -78,9 +78,8 @@ void TrafficWatch::step(const Self& self, Instant now) {
   next_look_ = now + kLookPeriod;
   for (auto& [address, known] : known_) look(known, self, now);
   std::erase_if(known_, [now](const auto& entry) {
-    return !entry.second.conflict &&
-           (entry.second.aircraft.time == Instant::min() ||
-            now - entry.second.aircraft.time > kForgotten);
+    return !entry.second.conflict && (entry.second.aircraft.time == Instant::min() ||
+                                      now - entry.second.aircraft.time > kForgotten);
   });
   choose(self);
   for (auto& [address, known] : known_) tell(known, self, now);
@@ -130,11 +129,11 @@ std::optional<TrafficWatch::Encounter> TrafficWatch::encounter(const Self& self,
 }
 
 void TrafficWatch::look(Known& known, const Self& self, Instant now) {
-  const bool is_known = known.aircraft.time != Instant::min() &&
-                        now - known.aircraft.time <= kForgotten;
-  known.encounter = is_known ? encounter(self, known.aircraft, known.conflict ? kClearFactor : 1.0,
-                                         now)
-                             : std::nullopt;
+  const bool is_known =
+      known.aircraft.time != Instant::min() && now - known.aircraft.time <= kForgotten;
+  known.encounter = is_known
+                        ? encounter(self, known.aircraft, known.conflict ? kClearFactor : 1.0, now)
+                        : std::nullopt;
   // Who has given way is to come back.
   const double back_m = self.may_give_way ? self.layer_m : self.state.z_m;
   const auto [low_m, high_m] = std::minmax(self.state.z_m, back_m);
@@ -209,7 +208,8 @@ void TrafficWatch::choose(const Self& self) {
   if (!target_ || !all_in_time(*target_)) {
     const auto down = free_height(self.layer_m, false);
     const auto up = free_height(self.layer_m, true);
-    const double other_m = 0.5 * (first->encounter->heights.low_m + first->encounter->heights.high_m);
+    const double other_m =
+        0.5 * (first->encounter->heights.low_m + first->encounter->heights.high_m);
     const bool is_above = other_m >= self.state.z_m;
     if (down && all_in_time(*down)) {
       target_ = down;

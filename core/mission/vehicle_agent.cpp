@@ -226,7 +226,8 @@ Instant VehicleAgent::Impl::next_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  const bool looks = separation_.watches() || traffic_.watches() || lands_ || ownship_.config().fence.exists();
+  const bool looks =
+      separation_.watches() || traffic_.watches() || lands_ || ownship_.config().fence.exists();
   if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_.next_timeout(), idle_until(now)});

@@ -117,8 +117,8 @@ double AdsbIntake::above_origin_m(double above_ellipsoid_m) const {
 std::optional<Vec2> AdsbIntake::place_of(double latitude_deg, double longitude_deg) const {
   const Vec2 place =
       origin_.to_enu({latitude_deg, longitude_deg, origin_.origin().height_m}).horizontal();
-  const bool near = std::abs(place.x()) <= kAircraftPlaceMax_m &&
-                    std::abs(place.y()) <= kAircraftPlaceMax_m;
+  const bool near =
+      std::abs(place.x()) <= kAircraftPlaceMax_m && std::abs(place.y()) <= kAircraftPlaceMax_m;
   return near ? std::optional{place} : std::nullopt;
 }
 
@@ -221,14 +221,12 @@ std::vector<mission::SeenAircraft> AdsbIntake::take_json(std::string_view text, 
     mission::SeenAircraft seen;
     seen.aircraft.address = *address;
     seen.aircraft.position = *place;
-    const double age_s =
-        file_age_s + number_in(one, "seen_pos", 0.0, kFileAgeMax_s).value_or(0.0);
+    const double age_s = file_age_s + number_in(one, "seen_pos", 0.0, kFileAgeMax_s).value_or(0.0);
     seen.aircraft.time = now - from_seconds(age_s);
     const auto baro_word = one.find("alt_baro");
     seen.on_ground = baro_word != one.end() && baro_word->is_string();  // "ground"
     const auto geometric_ft = number_in(one, "alt_geom", kAltitudeMin_ft, kAltitudeMax_ft);
-    const auto pressure_ft =
-        either(one, "alt_baro", "altitude", kAltitudeMin_ft, kAltitudeMax_ft);
+    const auto pressure_ft = either(one, "alt_baro", "altitude", kAltitudeMin_ft, kAltitudeMax_ft);
     if (!geometric_ft && !pressure_ft && !seen.on_ground) continue;
     seen.barometric = !geometric_ft && pressure_ft;
     if (geometric_ft) seen.aircraft.height_m = above_origin_m(*geometric_ft * kFoot_m);

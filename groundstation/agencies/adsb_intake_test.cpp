@@ -25,7 +25,8 @@ struct AdsbIntakeTest : ::testing::Test {
 
 // In the form of what dump1090 says on its port 30003.
 constexpr const char* kPosition =
-    "MSG,3,1,1,4CA2D6,1,2026/06/01,10:20:30.123,2026/06/01,10:20:30.160,,2000,,,53.05000,-1.50000,,,"
+    "MSG,3,1,1,4CA2D6,1,2026/06/01,10:20:30.123,2026/06/"
+    "01,10:20:30.160,,2000,,,53.05000,-1.50000,,,"
     "0,,0,0";
 constexpr const char* kVelocity =
     "MSG,4,1,1,4CA2D6,1,2026/06/01,10:20:30.223,2026/06/01,10:20:30.260,,,120,90,,,-640,,,,,0";
@@ -48,8 +49,9 @@ TEST_F(AdsbIntakeTest, PutsTheLinesOfAnAircraftTogether) {
   EXPECT_NEAR(seen->aircraft.north_mps, 0.0, 1e-9);
   EXPECT_NEAR(seen->aircraft.climb_mps, -640.0 * 0.00508, 1e-9);
   EXPECT_EQ(seen->aircraft.time, at_seconds(2.0));
-  const auto turned = line(
-      "MSG,4,1,1,4CA2D6,1,2026/06/01,10:20:31.223,2026/06/01,10:20:31.260,,,120,180,,,0,,,,,0", 3.0);
+  const auto turned =
+      line("MSG,4,1,1,4CA2D6,1,2026/06/01,10:20:31.223,2026/06/01,10:20:31.260,,,120,180,,,0,,,,,0",
+           3.0);
   ASSERT_TRUE(turned);
   EXPECT_LT(turned->aircraft.north_mps, -60.0);
   EXPECT_EQ(turned->aircraft.time, at_seconds(2.0)) << "of its place";
@@ -66,16 +68,16 @@ TEST_F(AdsbIntakeTest, HeightsFromPressureAreCorrected) {
 
 TEST_F(AdsbIntakeTest, WhatRollsNeedsNoHeight) {
   const auto seen = line(
-      "MSG,2,1,1,40621D,1,2026/06/01,10:20:30.123,2026/06/01,10:20:30.160,,,12,270,53.01,-1.51,,,,,,"
+      "MSG,2,1,1,40621D,1,2026/06/01,10:20:30.123,2026/06/"
+      "01,10:20:30.160,,,12,270,53.01,-1.51,,,,,,"
       "-1");
   ASSERT_TRUE(seen);
   EXPECT_TRUE(seen->on_ground);
 }
 
 TEST_F(AdsbIntakeTest, WhatIsNoLineIsCountedAndNothingElse) {
-  for (const char* const text :
-       {"MSG", "MSG,3,1,1,XYZ,1,,,,,,2000,,,53.0,-1.5", "nonsense", "MSG,3,1,1,000000,1",
-        "MSG,3,1,1,4CA2D61,1,,,,,,1,,,53.0,-1.5"}) {
+  for (const char* const text : {"MSG", "MSG,3,1,1,XYZ,1,,,,,,2000,,,53.0,-1.5", "nonsense",
+                                 "MSG,3,1,1,000000,1", "MSG,3,1,1,4CA2D61,1,,,,,,1,,,53.0,-1.5"}) {
     EXPECT_FALSE(line(text)) << text;
   }
   EXPECT_EQ(intake.unreadable(), 5U);
@@ -131,8 +133,10 @@ TEST_F(AdsbIntakeTest, WhatIsNoFileIsCounted) {
   EXPECT_TRUE(file("{\"aircraft\": 3}").empty());
   EXPECT_TRUE(file(std::string(3'000'000, ' ')).empty());
   EXPECT_EQ(intake.unreadable(), 4U);
-  EXPECT_TRUE(file(R"({"now": 900.0, "aircraft": [{"hex": "4ca2d6", "alt_geom": 1, "lat": 53.0, "lon": -1.5}]})")
-                  .empty())
+  EXPECT_TRUE(
+      file(
+          R"({"now": 900.0, "aircraft": [{"hex": "4ca2d6", "alt_geom": 1, "lat": 53.0, "lon": -1.5}]})")
+          .empty())
       << "it is not written any more";
 }
 

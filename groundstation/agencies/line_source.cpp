@@ -77,13 +77,13 @@ class LineSource::Connection {
   }
   void read() {
     reads_ = true;
-    socket_.async_read_some(asio::buffer(buffer_), [this](const error_code& error,
-                                                          std::size_t size) {
-      reads_ = false;
-      if (error) return end(error);
-      waiting_.append(buffer_.data(), size);
-      if (waiting_.size() < kWaitingMax) read();
-    });
+    socket_.async_read_some(asio::buffer(buffer_),
+                            [this](const error_code& error, std::size_t size) {
+                              reads_ = false;
+                              if (error) return end(error);
+                              waiting_.append(buffer_.data(), size);
+                              if (waiting_.size() < kWaitingMax) read();
+                            });
   }
   void end(const error_code& error) {
     if (error == asio::error::operation_aborted || state_ == State::off) return;

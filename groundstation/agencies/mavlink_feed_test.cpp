@@ -110,8 +110,8 @@ TEST(MavlinkFeed, TellsHowFarItsWayIs) {
   MavlinkFeed feed;
   Shown shown;
   shown.vehicles = {vehicle(9.9)};
-  const auto none = first<mavlink::MissionCurrent>(
-      parsed(feed.update(shown, at_seconds(10.0), kUnix_ns)));
+  const auto none =
+      first<mavlink::MissionCurrent>(parsed(feed.update(shown, at_seconds(10.0), kUnix_ns)));
   ASSERT_TRUE(none);
   EXPECT_EQ(none->total, 65'535) << "there is none";
   EXPECT_EQ(none->mission_state, 1);
@@ -143,9 +143,8 @@ TEST(MavlinkFeed, SaysTheRemoteIdOfWhoHasOne) {
     shown.vehicles[i].remote_id = id;
   }
   const auto packets = parsed(feed.update(shown, at_seconds(10.0), kUnix_ns));
-  const auto count = std::ranges::count_if(packets, [](const auto& packet) {
-    return packet.id >= 12'900 && packet.id < 12'920;
-  });
+  const auto count = std::ranges::count_if(
+      packets, [](const auto& packet) { return packet.id >= 12'900 && packet.id < 12'920; });
   EXPECT_EQ(count, 10) << "five of each of both; the third has none";
   const auto basic = first<mavlink::OpenDroneIdBasicId>(packets);
   ASSERT_TRUE(basic);

@@ -83,9 +83,9 @@ std::vector<ParameterQuestion> remote_id_questions(const RemoteId& id) {
   std::vector<ParameterQuestion> questions;
   questions.push_back(question("DID_ENABLE", "", "1", "the autopilot tells no transmitter anything",
                                [](double v) { return v == 1.0; }));
-  questions.push_back(
-      question("DID_OPTIONS", "", "1", "it arms without a Remote ID",
-               [](double v) { return v >= 0.0 && (static_cast<int>(v) & 1) == 1; }));
+  questions.push_back(question("DID_OPTIONS", "", "1", "it arms without a Remote ID", [](double v) {
+    return v >= 0.0 && (static_cast<int>(v) & 1) == 1;
+  }));
   return questions;
 }
 

@@ -24,8 +24,8 @@ namespace skein::ardupilot {
          packet.component <= mavlink::kComponentRemoteId3;
 }
 
-/// Tells an ArduPilot what its transmitter of Remote ID is to say, and hears whether that can. Where
-/// the aircraft is the autopilot tells it by itself.
+/// Tells an ArduPilot what its transmitter of Remote ID is to say, and hears whether that can.
+/// Where the aircraft is the autopilot tells it by itself.
 class RemoteIdSpeaker {
  public:
   /// Of each message; an ArduPilot does not arm 3 s after the last SYSTEM.

@@ -201,8 +201,7 @@ class Survey::Impl {
         facts_.prearm_good() ||
         (reasons_asked_at_ && now - std::max(*reasons_asked_at_, reason_at_) >= kReasonsWithin);
     return facts_.firmware && facts_.health && facts_.gnss && facts_.filter && facts_.time &&
-           facts_.landed && told && reasons &&
-           (!remote_id_.exists() || !remote_id_.why_not(now));
+           facts_.landed && told && reasons && (!remote_id_.exists() || !remote_id_.why_not(now));
   }
 
   void transmit(Instant now) {

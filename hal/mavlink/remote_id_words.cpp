@@ -50,8 +50,8 @@ OpenDroneIdSystem system_of(const RemoteId& id, const std::optional<Wgs84>& take
     message.operator_longitude = static_cast<std::int32_t>(std::lround(place->longitude_deg * 1e7));
     message.operator_altitude_geo = static_cast<float>(place->height_m);
   }
-  message.timestamp =
-      static_cast<std::uint32_t>(std::max<std::int64_t>(0, unix_ns / kSecond_ns - kYear2019_unix_s));
+  message.timestamp = static_cast<std::uint32_t>(
+      std::max<std::int64_t>(0, unix_ns / kSecond_ns - kYear2019_unix_s));
   message.area_count = id.group_count;
   message.area_radius = static_cast<std::uint16_t>(
       std::clamp(std::ceil(id.group_radius_m), 0.0,

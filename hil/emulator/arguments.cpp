@@ -49,6 +49,7 @@ constexpr const char* kFooter =
     "  position lost|good    the navigation filter\n"
     "  prearm REASON         it would not arm, and says why: 'PreArm: REASON'; without a reason:\n"
     "                        it would again\n"
+    "  remote-id on|off      power of its transmitter of Remote ID (--remote-id)\n"
     "  battery PERCENT       so much is left of it from now on, as its gauge tells, too\n"
     "\n"
     "Standard output says 'ready' once it is on the bus. It ends with status 0 on SIGINT or\n"

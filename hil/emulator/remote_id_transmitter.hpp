@@ -14,8 +14,8 @@
 
 namespace skein::hil {
 
-/// A transmitter of Remote ID on a serial port of the autopilot, as ArduRemoteID is one: it says once
-/// a second whether it has been told all that it must say. And what an ArduPilot with
+/// A transmitter of Remote ID on a serial port of the autopilot, as ArduRemoteID is one: it says
+/// once a second whether it has been told all that it must say. And what an ArduPilot with
 /// DID_OPTIONS 1 makes of that.
 class RemoteIdTransmitter {
  public:

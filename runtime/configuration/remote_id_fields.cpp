@@ -49,8 +49,7 @@ void common_fields(FieldVisitor& v, RemoteId& c) {
   choose(v, {"ua_type", "what the aircraft is"}, kUaTypes, c.ua_type);
   v.text({"operator_id", "as the authority gave it to the operator; 20 ASCII characters at most"},
          c.operator_id);
-  v.require(is_ascii(c.operator_id, kIdMax), "operator_id",
-            "may have 20 ASCII characters at most");
+  v.require(is_ascii(c.operator_id, kIdMax), "operator_id", "may have 20 ASCII characters at most");
   v.text({"description", "free text of what the flight is for; 23 ASCII characters at most"},
          c.description);
   v.require(is_ascii(c.description, kTextMax), "description",
@@ -80,8 +79,9 @@ void common_fields(FieldVisitor& v, RemoteId& c) {
   v.number({"group_radius_m", "around each of them, in which the others are; tens of metres"},
            {0.0, 2550.0, "m"}, c.group_radius_m);
   std::size_t required = c.required ? 1 : 0;
-  v.choice({"required", "a vehicle is not ready, nor armed by its companion, without a transmitter "
-                        "that says it is good"},
+  v.choice({"required",
+            "a vehicle is not ready, nor armed by its companion, without a transmitter "
+            "that says it is good"},
            kFalseTrue, required);
   c.required = required == 1;
 }
@@ -102,16 +102,15 @@ void team_remote_id_section(FieldVisitor& v, TeamRemoteId& team) {
   v.section({"remote_id", "what vehicles say of themselves by Remote ID (docs/agencies.md)"},
             [&team](FieldVisitor& inner) {
               common_fields(inner, team.common);
-              inner.list({"ids", "of each vehicle; who has none says nothing"},
-                         unique_groups_of(
-                             team.ids, kVehiclesMax,
-                             [](FieldVisitor& of, TeamRemoteId::Id& one) {
-                               id(of, {"vehicle", "number of the vehicle", kRequired}, one.vehicle);
-                               uas_id_field(of, one.uas_id);
-                             },
-                             "vehicle", [](const TeamRemoteId::Id& one) {
-                               return one.vehicle.value;
-                             }));
+              inner.list(
+                  {"ids", "of each vehicle; who has none says nothing"},
+                  unique_groups_of(
+                      team.ids, kVehiclesMax,
+                      [](FieldVisitor& of, TeamRemoteId::Id& one) {
+                        id(of, {"vehicle", "number of the vehicle", kRequired}, one.vehicle);
+                        uas_id_field(of, one.uas_id);
+                      },
+                      "vehicle", [](const TeamRemoteId::Id& one) { return one.vehicle.value; }));
             });
 }
 

@@ -526,7 +526,8 @@ struct News {
   std::string operator()(const event::TrafficWarning& e) const {
     return fmt::format("aircraft {:06x} in {:.0f} s: {} to the side, {} in height; {}", e.address,
                        to_seconds(e.in), metres(e.horizontal_m), metres(e.vertical_m),
-                       e.gives_way ? "gives way by its height" : "it does not give way (no room, no time, or it may not)");
+                       e.gives_way ? "gives way by its height"
+                                   : "it does not give way (no room, no time, or it may not)");
   }
   std::string operator()(const event::TrafficClear& e) const {
     return fmt::format("clear of aircraft {:06x}", e.address);

@@ -3,9 +3,9 @@
 // A mission of many vehicles in virtual time, and all that other agencies' systems would be sent of
 // it, on standard output:
 //   agencies_mission_feed VEHICLES SECONDS
-// Each record: kind (u8: 0 truth, 1 Cursor on Target as XML, 2 as protobuf, 3 MAVLink), mission time
-// (i64, ns), length (u32), bytes; numbers are little-endian. Truth: vehicle (u16), then latitude,
-// longitude and height above the ellipsoid (f64).
+// Each record: kind (u8: 0 truth, 1 Cursor on Target as XML, 2 as protobuf, 3 MAVLink), mission
+// time (i64, ns), length (u32), bytes; numbers are little-endian. Truth: vehicle (u16), then
+// latitude, longitude and height above the ellipsoid (f64).
 #include <unistd.h>
 
 #include <array>
@@ -94,9 +94,9 @@ hil::TeamMission mission_of(int count, int seconds) {
     v.start = {corner.x(), corner.y(), 0.3 * i};
     for (int lap = 0; lap < 40; ++lap) {
       const double in_m = 8.0 * lap;
-      v.search.insert(v.search.end(), {corner + Vec2{kSide_m - in_m, 0.0},
-                                       corner + Vec2{kSide_m - in_m, kSide_m},
-                                       corner + Vec2{0.0, kSide_m}, corner});
+      v.search.insert(v.search.end(),
+                      {corner + Vec2{kSide_m - in_m, 0.0}, corner + Vec2{kSide_m - in_m, kSide_m},
+                       corner + Vec2{0.0, kSide_m}, corner});
     }
     team.vehicles.push_back(v);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Any bytes as what a receiver of ADS-B says: by lines, and as its file. What is taken is an aircraft
-// in the mission's area, at a height and a speed that there are.
+// Any bytes as what a receiver of ADS-B says: by lines, and as its file. What is taken is an
+// aircraft in the mission's area, at a height and a speed that there are.
 #include <cmath>
 #include <string_view>
 

@@ -14,7 +14,7 @@ struct TrafficParams {
   double vertical_m = 150.0;    ///< ... an aircraft is to be at least that far apart in height
   /// So far ahead that is looked at; 0: it is not.
   Duration look_ahead = std::chrono::seconds{90};
-  double floor_m = 30.0;  ///< above the origin: nobody gives way downwards below it
+  double floor_m = 30.0;        ///< above the origin: nobody gives way downwards below it
   double ceiling_m = 10'000.0;  ///< nor upwards above this
 };
 

@@ -17,9 +17,9 @@ namespace skein::mission {
 
 /// An aircraft that is not of the team, as a receiver has it.
 struct SeenAircraft {
-  Aircraft aircraft;                   ///< where it was, at its time
-  std::string callsign{};              ///< empty: not told
-  bool barometric = false;             ///< its height is from pressure
+  Aircraft aircraft;        ///< where it was, at its time
+  std::string callsign{};   ///< empty: not told
+  bool barometric = false;  ///< its height is from pressure
   bool on_ground = false;
   friend bool operator==(const SeenAircraft&, const SeenAircraft&) = default;
 };

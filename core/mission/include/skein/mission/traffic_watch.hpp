@@ -42,7 +42,7 @@ class TrafficWatch {
     VehicleState state;
     const FlightPlan* plan = nullptr;  ///< null: it flies straight on
     double layer_m = 0.0;              ///< its height, where nothing is wrong
-    bool may_give_way = false;  ///< it flies, by this program, and not in a formation
+    bool may_give_way = false;         ///< it flies, by this program, and not in a formation
   };
 
   explicit TrafficWatch(const TrafficParams& params) : params_{params} {}

@@ -17,7 +17,7 @@ namespace skein::agencies {
 
 inline constexpr std::size_t kSbsLineMax = 512;             ///< bytes
 inline constexpr std::size_t kAircraftJsonMax = 2'000'000;  ///< bytes
-inline constexpr double kAircraftPlaceMax_m = 150'000.0;  ///< from the origin, east and north
+inline constexpr double kAircraftPlaceMax_m = 150'000.0;    ///< from the origin, east and north
 
 /// What heights from pressure are corrected by: they are told as of a standard atmosphere.
 struct PressureHeight {
@@ -27,9 +27,9 @@ struct PressureHeight {
 
 /// What dump1090 tells of aircraft: as SBS-1 text ("BaseStation", TCP port 30003), of which each
 /// line has a part, or as its file aircraft.json. Feet, knots and feet a minute become metres and
-/// seconds; heights are above the mission's origin: from an aircraft's own satellites where they are
-/// told, or else from pressure. What cannot be read is counted, and never thrown. Pure; `now` never
-/// decreases.
+/// seconds; heights are above the mission's origin: from an aircraft's own satellites where they
+/// are told, or else from pressure. What cannot be read is counted, and never thrown. Pure; `now`
+/// never decreases.
 class AdsbIntake {
  public:
   static constexpr std::size_t kKnownMax = 500;  ///< whose parts are put together

@@ -14,10 +14,10 @@
 namespace skein::agencies {
 
 /// Makes Cursor on Target events of what is shown, when they are due: of a vehicle with a newer
-/// state kVehiclePeriod apart and no later than it came, of all else when it changes, kChangePeriod after its last event,
-/// and before its last event is stale. What is not shown any more is ended, said kEndings times
-/// since a datagram may be lost. UIDs are those of the team, and of sites, hazards also of the
-/// mission: the same after a new start. Pure; `now` never decreases.
+/// state kVehiclePeriod apart and no later than it came, of all else when it changes, kChangePeriod
+/// after its last event, and before its last event is stale. What is not shown any more is ended,
+/// said kEndings times since a datagram may be lost. UIDs are those of the team, and of sites,
+/// hazards also of the mission: the same after a new start. Pure; `now` never decreases.
 class CotFeed {
  public:
   static constexpr Duration kVehiclePeriod = std::chrono::milliseconds{700};

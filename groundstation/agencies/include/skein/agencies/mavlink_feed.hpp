@@ -16,9 +16,9 @@ namespace skein::agencies {
 
 /// Shows every vehicle as a MAVLink system of its number, component autopilot: HEARTBEAT,
 /// SYS_STATUS, BATTERY_STATUS, of its way MISSION_CURRENT and NAV_CONTROLLER_OUTPUT, and who has a
-/// Remote ID that (OPEN_DRONE_ID_*), once a second; what it does as text when it changes; position, attitude and speeds with newer states,
-/// kStatePeriod apart; nothing of vehicles that are silent, and of those beyond kVehicleMax. Pure;
-/// `now` never decreases.
+/// Remote ID that (OPEN_DRONE_ID_*), once a second; what it does as text when it changes; position,
+/// attitude and speeds with newer states, kStatePeriod apart; nothing of vehicles that are silent,
+/// and of those beyond kVehicleMax. Pure; `now` never decreases.
 class MavlinkFeed {
  public:
   static constexpr std::uint16_t kVehicleMax = 250;  ///< above it ground stations have theirs

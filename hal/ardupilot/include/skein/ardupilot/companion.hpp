@@ -38,7 +38,7 @@ enum class TakeOver : std::uint8_t {
 struct CompanionParams {
   VehicleSpec vehicle;
   std::optional<mavlink::Signing> signing =
-      {};       ///< none: packets are not signed, and any are heeded
+      {};                    ///< none: packets are not signed, and any are heeded
   RemoteId remote_id{};      ///< without an id nothing is said
   std::int64_t unix_us = 0;  ///< system time at Instant{}
   Fence fence;  ///< that the autopilot is given before anything is flown, and keeps by itself

@@ -45,11 +45,10 @@ struct OpenDroneIdLocation {
   static constexpr auto kDefinition =
       define(12901, "OPEN_DRONE_ID_LOCATION",
              SKEIN_MAVLINK_FIELDS(OpenDroneIdLocation, latitude, longitude, altitude_barometric,
-                                  altitude_geodetic, height, timestamp, direction,
-                                  speed_horizontal, speed_vertical, target_system,
-                                  target_component, id_or_mac, status, height_reference,
-                                  horizontal_accuracy, vertical_accuracy, barometer_accuracy,
-                                  speed_accuracy, timestamp_accuracy));
+                                  altitude_geodetic, height, timestamp, direction, speed_horizontal,
+                                  speed_vertical, target_system, target_component, id_or_mac,
+                                  status, height_reference, horizontal_accuracy, vertical_accuracy,
+                                  barometer_accuracy, speed_accuracy, timestamp_accuracy));
 };
 
 /// What the flight is for.
@@ -68,9 +67,9 @@ struct OpenDroneIdSelfId {
 /// Where the operator is, and of how many that fly as one it is.
 struct OpenDroneIdSystem {
   std::int32_t operator_latitude = 0, operator_longitude = 0;  ///< degE7; both 0: not known
-  float area_ceiling = -1000.0F, area_floor = -1000.0F;  ///< m above the ellipsoid; not known
-  float operator_altitude_geo = -1000.0F;                ///< m above the ellipsoid
-  std::uint32_t timestamp = 0;                           ///< s since 2019-01-01 UTC
+  float area_ceiling = -1000.0F, area_floor = -1000.0F;        ///< m above the ellipsoid; not known
+  float operator_altitude_geo = -1000.0F;                      ///< m above the ellipsoid
+  std::uint32_t timestamp = 0;                                 ///< s since 2019-01-01 UTC
   std::uint16_t area_count = 1;
   std::uint16_t area_radius = 0;  ///< m
   std::uint8_t target_system = 0, target_component = 0;
@@ -79,13 +78,12 @@ struct OpenDroneIdSystem {
   std::uint8_t classification_type = 0;     ///< 1: of the European Union
   std::uint8_t category_eu = 0, class_eu = 0;
 
-  static constexpr auto kDefinition =
-      define(12904, "OPEN_DRONE_ID_SYSTEM",
-             SKEIN_MAVLINK_FIELDS(OpenDroneIdSystem, operator_latitude, operator_longitude,
-                                  area_ceiling, area_floor, operator_altitude_geo, timestamp,
-                                  area_count, area_radius, target_system, target_component,
-                                  id_or_mac, operator_location_type, classification_type,
-                                  category_eu, class_eu));
+  static constexpr auto kDefinition = define(
+      12904, "OPEN_DRONE_ID_SYSTEM",
+      SKEIN_MAVLINK_FIELDS(OpenDroneIdSystem, operator_latitude, operator_longitude, area_ceiling,
+                           area_floor, operator_altitude_geo, timestamp, area_count, area_radius,
+                           target_system, target_component, id_or_mac, operator_location_type,
+                           classification_type, category_eu, class_eu));
 };
 
 /// Whose it is.
@@ -97,8 +95,8 @@ struct OpenDroneIdOperatorId {
 
   static constexpr auto kDefinition =
       define(12905, "OPEN_DRONE_ID_OPERATOR_ID",
-             SKEIN_MAVLINK_FIELDS(OpenDroneIdOperatorId, target_system, target_component,
-                                  id_or_mac, operator_id_type, operator_id));
+             SKEIN_MAVLINK_FIELDS(OpenDroneIdOperatorId, target_system, target_component, id_or_mac,
+                                  operator_id_type, operator_id));
 };
 
 /// Of the transmitter, once a second: whether it has what it needs.

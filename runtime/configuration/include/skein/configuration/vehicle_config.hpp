@@ -87,9 +87,9 @@ struct VehicleConfig {
   coalition::ProtocolParams protocol;
   TrafficParams traffic;
   planning::AllocationParams planning;
-  std::vector<Hazard> hazards;    ///< known before the mission
-  Fence fence;                    ///< of the whole team
-  FormationConfig formation;      ///< of a vehicle that flies in formation
+  std::vector<Hazard> hazards;  ///< known before the mission
+  Fence fence;                  ///< of the whole team
+  FormationConfig formation;    ///< of a vehicle that flies in formation
   RemoteId remote_id;
   std::string detections_socket;  ///< path, where detectors tell of sites; empty: nowhere
   TimeConfig time;
