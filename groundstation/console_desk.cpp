@@ -129,9 +129,9 @@ Answer preflight_answer(const mission::Fleet& fleet, VehicleId vehicle, Instant 
 namespace {
 
 /// The same at every start where there is a folder to keep it in: a page goes on with it.
-Result<std::string> token_of(const std::filesystem::path& recording_folder) {
+Result<std::string> token_of(const std::filesystem::path& recording_folder, const char* file) {
   if (recording_folder.empty()) return process::make_token();
-  return process::read_or_make_token(recording_folder / process::kConsoleTokenFile);
+  return process::read_or_make_token(recording_folder / file);
 }
 
 }  // namespace
@@ -157,9 +157,12 @@ Result<void> ConsoleDesk::serve(const configuration::GroundConfig& config,
       return logins->check(user, password, std::chrono::steady_clock::now());
     };
   } else {
-    auto token = token_of(config.recording_folder);
+    auto token = token_of(config.recording_folder, process::kConsoleTokenFile);
     if (!token) return token.error();
     server.token = token_ = *std::move(token);
+    auto observers = token_of(config.recording_folder, process::kObserverTokenFile);
+    if (!observers) return observers.error();
+    server.observer_token = *std::move(observers);
   }
   std::vector<std::string> shapes = shape_names();
   for (const auto& shape : config.formation.shapes) shapes.push_back(shape.name);

@@ -18,4 +18,4 @@ _skein_complete() {
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
   ((${#COMPREPLY[@]})) || mapfile -t COMPREPLY < <(compgen -f -- "$word")
 }
-complete -o filenames -F _skein_complete skein skein-onboard skein-ground skein-hil skein-fc
+complete -o filenames -F _skein_complete skein skein-onboard skein-ground skein-ros2 skein-hil skein-fc

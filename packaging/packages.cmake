@@ -30,7 +30,8 @@ systemd unit for each vehicle, skein-onboard@N.service, and examples for CAN
 and batman-adv by systemd-networkd.")
 set(about_ground "The ground station: shows the fleet and its mission in a browser, and is
 where an operator authorises or refuses deliveries and gives a formation its
-orders. With skein, which configures and starts a fleet.")
+orders. With skein, which configures and starts a fleet, and skein-ros2, which
+shows a team to ROS 2.")
 set(about_bench "The bench: flies missions on one machine, with every process, a radio and its
 faults, flight controllers on CAN, and in virtual time; judges them and
 writes a report.")

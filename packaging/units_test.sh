@@ -9,13 +9,13 @@ if ! command -v systemd-analyze >/dev/null; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-for unit in 'skein-onboard@.service' skein-ground.service; do
+for unit in 'skein-onboard@.service' skein-ground.service skein-ros2.service; do
   # The programs need not be installed where this runs.
   sed -E 's|^ExecStart=[^ ]+|ExecStart=/bin/true|' "$1/$unit" >"$folder/$unit"
 done
 cp "$folder/skein-onboard@.service" "$folder/skein-onboard@7.service"
 failed=0
-for unit in skein-onboard@7.service skein-ground.service; do
+for unit in skein-onboard@7.service skein-ground.service skein-ros2.service; do
   # Of ours only: the machine's own units may be wrong.
   if systemd-analyze verify --man=no "$folder/$unit" 2>&1 | grep -F skein; then failed=1; fi
   systemd-analyze security --no-pager --offline=true --threshold=20 "$folder/$unit" >"$folder/exposure" || {

@@ -11,6 +11,17 @@ namespace {
 
 constexpr std::string_view kName = "skein_session";
 constexpr const char* kOperator = "operator";
+constexpr const char* kObserver = "observer";
+
+/// Takes as long wherever they differ.
+bool is_token(std::string_view token, std::string_view own) {
+  if (own.empty()) return false;
+  unsigned differ = token.size() == own.size() ? 0U : 1U;
+  for (std::size_t i = 0; i < std::min(token.size(), own.size()); ++i) {
+    differ |= static_cast<unsigned char>(token[i] ^ own[i]);
+  }
+  return differ == 0;
+}
 
 /// The session that a Cookie field names; empty for none.
 std::string_view session_in(std::string_view cookies) {
@@ -36,13 +47,9 @@ std::optional<Identity> Gate::identify(std::string_view cookies, Time now) const
 }
 
 std::optional<Identity> Gate::check(std::string_view token) const {
-  // Takes as long wherever they differ.
-  unsigned differ = token.size() == token_.size() ? 0U : 1U;
-  for (std::size_t i = 0; i < std::min(token.size(), token_.size()); ++i) {
-    differ |= static_cast<unsigned char>(token[i] ^ token_[i]);
-  }
-  if (differ != 0) return std::nullopt;
-  return Identity{kOperator, Role::op};
+  if (is_token(token, token_)) return Identity{kOperator, Role::op};
+  if (is_token(token, observer_token_)) return Identity{kObserver, Role::observer};
+  return std::nullopt;
 }
 
 std::string Gate::admit(const Identity& identity, Time now) {

@@ -27,13 +27,16 @@ class Gate {
   static constexpr auto kSessionLasts = std::chrono::hours{12};
   static constexpr std::size_t kSessionsMax = 1000;
 
-  /// Without passwords: whoever has the token is the operator; `token` empty, too: whoever reaches
-  /// the port.
-  Gate(bool with_passwords, std::string token, bool secure)
-      : with_passwords_{with_passwords}, token_{std::move(token)}, secure_{secure} {}
+  /// Without passwords: whoever has the token is the operator, or with the observers' an observer;
+  /// `token` empty, too: whoever reaches the port.
+  Gate(bool with_passwords, std::string token, bool secure, std::string observer_token = {})
+      : with_passwords_{with_passwords},
+        token_{std::move(token)},
+        observer_token_{std::move(observer_token)},
+        secure_{secure} {}
 
   [[nodiscard]] std::optional<Identity> identify(std::string_view cookies, Time now) const;
-  /// Who has that token. Precondition: it asks for one.
+  /// Whose token that is. Precondition: it asks for one.
   [[nodiscard]] std::optional<Identity> check(std::string_view token) const;
   /// Makes a session; gives the Set-Cookie field.
   [[nodiscard]] std::string admit(const Identity& identity, Time now);
@@ -63,6 +66,7 @@ class Gate {
 
   bool with_passwords_;
   std::string token_;
+  std::string observer_token_;
   bool secure_;
   std::map<std::string, Session, std::less<>> sessions_;
 };

@@ -28,7 +28,8 @@ Hub::Hub(const ServerConfig& config, std::function<void()> on_request, Post post
       on_request_{std::move(on_request)},
       post_{std::move(post)},
       post_login_{std::move(post_login)},
-      gate_{config.log_in != nullptr, config.token, !config.certificate.empty()},
+      gate_{config.log_in != nullptr, config.token, !config.certificate.empty(),
+            config.observer_token},
       run_{random_hex(8)},
       requests_{kRequestsMax} {}
 

@@ -168,6 +168,7 @@ Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const st
     set("airspeed", [&] { return metres(t->state.airspeed_mps); });
     set("activity", [&] { return Json(to_string(t->activity)); });
     set("state", [&] { return Json(to_string(state_of(entry))); });
+    set("measured_s", [&] { return seconds(t->state.time); });
     const auto task = t ? picture.told_task(*t) : std::nullopt;
     v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);
     set("heard_age_s",

@@ -418,6 +418,18 @@ TEST(Server, WithATokenLetsInWhoHasIt) {
   EXPECT_TRUE((Page{station, {.cookie = field.substr(0, field.find(';'))}}.open()));
 }
 
+TEST(Server, WithTheObserversTokenOneLooksOnly) {
+  ServerConfig config;
+  config.token = "0123456789abcdef0123456789abcdef";
+  config.observer_token = "fedcba9876543210fedcba9876543210";
+  const Station station{std::move(config)};
+  const auto let_in = ask(station, login("operator", "fedcba9876543210fedcba9876543210"));
+  ASSERT_EQ(let_in.result(), http::status::ok);
+  EXPECT_EQ(Json::parse(let_in.body())["role"], "observer");
+  EXPECT_EQ(Json::parse(ask(station, login("", "0123456789abcdef0123456789abcdef")).body())["role"],
+            "operator");
+}
+
 TEST(Server, WhoGuessesPasswordsWaitsAndIsTold) {
   ServerConfig config = with_users();
   std::mutex mutex;

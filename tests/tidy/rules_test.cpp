@@ -108,6 +108,15 @@ TEST(Rules, CoreRulesLeaveTestsAndOtherFoldersAlone) {
       findings_in("runtime/network/participant.cpp", "#include <fastdds/dds/Topic.hpp>").empty());
 }
 
+TEST(Rules, OnlyTheNodeOfRos2HasDdsBesideTheNetwork) {
+  const char* const include = "#include <fastdds/dds/Topic.hpp>";
+  const char* const qos = "auto k = KEEP_LAST_HISTORY_QOS;";
+  EXPECT_TRUE(findings_in("groundstation/ros2/ros_node.cpp", include).empty());
+  EXPECT_TRUE(findings_in("groundstation/ros2/ros_node.cpp", qos).empty());
+  EXPECT_EQ(findings_in("groundstation/ros2/bridge.cpp", include).size(), 1U);
+  EXPECT_EQ(findings_in("groundstation/ros2/bridge.cpp", qos).size(), 1U);
+}
+
 TEST(Rules, SentencesAreForTestsAndTheirOwnModule) {
   const char* const line = "EXPECT(event.detail == \"too late\");";
   EXPECT_TRUE(findings_in("core/mission/agent_test.cpp", line).empty());
@@ -116,7 +125,8 @@ TEST(Rules, SentencesAreForTestsAndTheirOwnModule) {
 }
 
 TEST(Rules, QosIsSetByTheNode) {
-  EXPECT_TRUE(findings_in("runtime/network/dds_settings.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
+  EXPECT_TRUE(
+      findings_in("runtime/network/dds_settings.cpp", "auto k = KEEP_LAST_HISTORY_QOS;").empty());
 }
 
 TEST(Rules, SourceMustBeginWithItsLicence) {

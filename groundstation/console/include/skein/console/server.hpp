@@ -43,7 +43,8 @@ struct ServerConfig {
   /// take a while; as long for a name that is not known. Empty: whoever has the token is the
   /// operator; on loopback only.
   std::function<std::optional<Role>(const std::string& user, std::string_view password)> log_in;
-  std::string token;        ///< empty: whoever reaches it, as of a recording
+  std::string token;           ///< empty: whoever reaches it, as of a recording
+  std::string observer_token;  ///< beside it: whoever has that one may look only; empty: none
   std::string certificate;  ///< PEM files; both: HTTPS, which any other address needs
   std::string key;
   std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none

@@ -11,6 +11,8 @@ namespace skein::process {
 
 /// In a ground station's recording folder: what opens its console.
 inline constexpr const char* kConsoleTokenFile = "console.token";
+/// The same, for looking only.
+inline constexpr const char* kObserverTokenFile = "console.observer.token";
 
 /// A word that nobody guesses: 128 random bits in hexadecimal.
 [[nodiscard]] std::string make_token();

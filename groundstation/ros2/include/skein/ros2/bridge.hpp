@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "skein/base/result.hpp"
+#include "skein/ros2/console_client.hpp"
+#include "skein/ros2/ros_node.hpp"
+
+namespace skein::ros2 {
+
+/// Where the ground station takes markers (agencies.markers).
+struct MarkersAddress {
+  std::string host;  ///< IPv4
+  std::uint16_t port = 0;
+};
+
+struct BridgeConfig {
+  ConsoleClient::Config console;
+  RosNodeConfig node;
+  std::optional<MarkersAddress> markers{};  ///< none: proposals are dropped
+};
+
+/// Why it cannot be run so.
+[[nodiscard]] Result<void> check(const BridgeConfig& config);
+
+/// Runs until SIGINT or SIGTERM. Call it once, from a process without other threads. Gives the exit
+/// code: 0, or process::kExitCannotStart with the reason in the log.
+[[nodiscard]] int run(const BridgeConfig& config);
+
+}  // namespace skein::ros2
