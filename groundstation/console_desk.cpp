@@ -12,6 +12,7 @@
 
 #include "skein/codec/json_text.hpp"
 #include "skein/console/team_preflight.hpp"
+#include "skein/console/team_state.hpp"
 #include "skein/groundstation/logins.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/groundstation/vehicle_text.hpp"
@@ -113,6 +114,7 @@ std::optional<console::Section> section_of(View view) {
     case View::audit:
     case View::routes:
     case View::search:
+    case View::command:
     case View::console:
       break;
   }
@@ -210,25 +212,30 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event, Instant now) {
   if (server_) events_.push_back(console::event_json(event, seq));
 }
 
-void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const std::string& audit,
-                             const std::string& areas, Instant now) {
+void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now) {
   alarms_.on_timeout(picture_, fleet, now);
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
   if (now < next_state_ || !server_->watched()) return;
   next_state_ = now + kStatePeriod;
   auto sections = console::sections_of(picture_, fleet, origin_, version(), now);
-  sections[static_cast<std::size_t>(console::Section::audit)] = audit;
-  sections[static_cast<std::size_t>(console::Section::areas)] = areas;
-  sections[static_cast<std::size_t>(console::Section::alarms)] = console::alarms_json(alarms_);
+  const auto set = [&sections](console::Section section, const std::string& json) {
+    sections[static_cast<std::size_t>(section)] = json;
+  };
+  set(console::Section::audit, beside.audit);
+  set(console::Section::command, beside.command);
+  set(console::Section::team,
+      console::team_json(console::team_state(fleet, {beside.nobody_commands}, now)));
+  set(console::Section::areas, beside.areas);
+  set(console::Section::alarms, console::alarms_json(alarms_));
   server_->publish(to_seconds(now), std::move(sections));
 }
 
-void ConsoleDesk::end(const mission::Fleet& fleet, const std::string& audit,
-                      const std::string& areas, const std::string& text, Instant now) {
+void ConsoleDesk::end(const mission::Fleet& fleet, const Beside& beside, const std::string& text,
+                      Instant now) {
   if (!server_) return;
   next_state_ = Instant::min();
-  on_timeout(fleet, audit, areas, now);
+  on_timeout(fleet, beside, now);
   server_->end(to_seconds(now), text);
 }
 

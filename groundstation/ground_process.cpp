@@ -14,12 +14,16 @@
 #include <thread>
 #include <utility>
 
+#include "commanding.hpp"
+#include "ground_start.hpp"
 #include "input_rules.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/configuration/setup_params.hpp"
 #include "skein/console/team_fence.hpp"
 #include "skein/console/team_preflight.hpp"
+#include "skein/console/team_state.hpp"
 #include "skein/groundstation/agency_desk.hpp"
 #include "skein/groundstation/area_desk.hpp"
 #include "skein/groundstation/audit.hpp"
@@ -194,8 +198,8 @@ class GroundLoop {
  public:
   GroundLoop(const configuration::GroundConfig& config, const MissionOrigin& origin,
              std::string operator_name, const process::MissionClock& clock,
-             const process::Shutdown& shutdown, network::Node& network, process::Wake& wake,
-             Recorder recorder, OperatorKeys& keys, Revocations& revocations,
+             const process::Shutdown& shutdown, StationNetwork& network, InstanceId instance,
+             process::Wake& wake, Recorder recorder, OperatorKeys& keys, Revocations& revocations,
              mission::GroundNode& node, FormationDesk formation,
              std::unique_ptr<ControlSocket> control, ConsoleDesk console, Audit audit)
       : origin_{origin},
@@ -204,6 +208,7 @@ class GroundLoop {
         clock_{clock},
         shutdown_{shutdown},
         network_{network},
+        commanding_{config.command, instance, network, node, clock.now()},
         wake_{wake},
         recorder_{std::move(recorder)},
         decisions_{config.operator_decisions},
@@ -229,18 +234,22 @@ class GroundLoop {
     while (!stopping_) {
       const bool heard_all = take_messages();
       const Instant now = clock_.now();
-      process::log_troubles(network_);
+      process::log_troubles(network_.ear());
       take_lines(prompt, now);
       while (const auto marker = agencies_.next_marker(now)) {
-        node_.propose_from_outside(*marker, now);
+        if (commanding_.is_commanding()) node_.propose_from_outside(*marker, now);
       }
       while (auto seen = agencies_.next_aircraft(now)) node_.on_aircraft(*std::move(seen), now);
       if (speak_.exchange(false)) {
         node_.speak();
         take_revocations(now);
       }
+      if (const auto notice = commanding_.on_timeout([this](const auto& e) { tell_of(e); }, now)) {
+        print(*notice + "\n");
+        spdlog::info(*notice);
+      }
       node_.on_timeout(now);
-      formation_.on_timeout(now);
+      if (commanding_.is_commanding()) formation_.on_timeout(now);
       hand_out(now);
       report(now);
       steps_.fetch_add(1, std::memory_order_relaxed);
@@ -254,7 +263,8 @@ class GroundLoop {
     const Instant now = clock_.now();
     const std::string summary = summary_text(console_.picture(), node_.fleet());
     spdlog::info("the mission as it was left: {}", one_line(summary));
-    console_.end(node_.fleet(), audit_.json(), areas_.json(now), summary, now);
+    console_.end(node_.fleet(), {audit_.json(), areas_.json(now), commanding_.desk().json(now)},
+                 summary, now);
     const auto since_1970 =
         std::chrono::nanoseconds{clock_.epoch_unix_ns()} + now.time_since_epoch();
     const auto closed =
@@ -281,7 +291,7 @@ class GroundLoop {
   /// False where more wait: lines, repeats and decisions come first.
   bool take_messages() {
     for (int i = 0; i < kMessagesPerStep; ++i) {
-      const auto received = network_.poll();
+      const auto received = commanding_.next(clock_.now());
       if (!received) return true;
       const Instant now = clock_.now();  // never before it was sent, or its sender's clock is ahead
       recorder_.write(received->message, received->sender, now);
@@ -396,6 +406,13 @@ class GroundLoop {
   }
 
   Answer order(const Input& input, const Asker& asker, Instant now) {
+    if (auto watches = commanding_.why_not(input, now)) return *std::move(watches);
+    if (const auto* take = std::get_if<TakeCommand>(&input)) {
+      return commanding_.answer(*take, asker.who, now);
+    }
+    if (const auto* over = std::get_if<HandOver>(&input)) {
+      return commanding_.answer(*over, asker.who, now);
+    }
     if (const auto* decision = std::get_if<Decision>(&input)) {
       return decision_answer(*decision, node_.agent(), asker.who, now);
     }
@@ -471,8 +488,11 @@ class GroundLoop {
         return help_text();
       case View::status:
         return "mission time " + wording::moment_text(now, clock_.epoch_unix_ns()) + "\n" +
+               console::team_text(console::team_state(
+                   node_.fleet(), {commanding_.desk().nobody_commands(now)}, now)) +
                fleet_table(node_.fleet().vehicles(), now) + routes_.status_text(now) +
-               network_text(network_.epoch()) + keys_text(keys_) + revocations_.text();
+               (commanding_.desk().is_one_of_several() ? commanding_.desk().text(now) + "\n" : "") +
+               network_text(network_.ear().epoch()) + keys_text(keys_) + revocations_.text();
       case View::sites:
         return sites_text(console_.picture());
       case View::pending:
@@ -486,6 +506,8 @@ class GroundLoop {
         return hazards_text(console_.picture());
       case View::audit:
         return audit_.text();
+      case View::command:
+        return commanding_.desk().text(now) + "\n";
       case View::console:
         return console_.address_text();
       case View::proposals:
@@ -510,6 +532,7 @@ class GroundLoop {
   [[nodiscard]] std::string data_of(View view, Instant now) {
     if (view == View::audit) return audit_.json();
     if (view == View::search) return areas_.json(now);
+    if (view == View::command) return commanding_.desk().json(now);
     const auto section = section_of(view);
     return section ? console_.section(*section, node_.fleet(), now) : "";
   }
@@ -538,18 +561,27 @@ class GroundLoop {
       tell_of(*event, now);
     }
     console_.on_traffic(node_.traffic().all());
-    console_.on_timeout(node_.fleet(), audit_.json(), areas_.json(now), now);
-    agencies_.on_timeout(console_.picture(), node_.fleet(), now);
+    console_.on_timeout(node_.fleet(),
+                        {audit_.json(), areas_.json(now), commanding_.desk().json(now),
+                         commanding_.desk().nobody_commands(now)},
+                        now);
+    if (commanding_.is_commanding()) {
+      agencies_.on_timeout(console_.picture(), node_.fleet(), now);
+      ask_operator(now);
+    }
+    if (now >= next_flush_) {
+      next_flush_ = now + kFlushPeriod;
+      recorder_.flush();
+    }
+  }
+
+  void ask_operator(Instant now) {
     for (const auto& pending : node_.agent().authorisations()) {
       if (pending.decision || is_scripted(pending.request.site)) continue;
       if (!shown_.emplace(pending.request.site, pending.request.round).second) continue;
       print(request_text(pending,
                          console::card_of(pending.request, console_.picture(), node_.fleet(), now),
                          origin_, clock_.epoch_unix_ns(), now));
-    }
-    if (now >= next_flush_) {
-      next_flush_ = now + kFlushPeriod;
-      recorder_.flush();
     }
   }
 
@@ -558,7 +590,7 @@ class GroundLoop {
     if (now < next_report_) return;
     next_report_ = now + kReportPeriod;
     console_.on_receptions(network_.receptions());
-    const auto traffic = process::traffic_of(network_);
+    const auto traffic = process::traffic_of(network_.ear());
     HealthFacts facts;
     facts.version = version();
     facts.now = now;
@@ -597,7 +629,8 @@ class GroundLoop {
   const std::string own_operator_;  ///< that, where no key is unlocked
   const process::MissionClock& clock_;
   const process::Shutdown& shutdown_;
-  network::Node& network_;
+  StationNetwork& network_;
+  Commanding commanding_;
   process::Wake& wake_;
   Recorder recorder_;
   std::vector<configuration::OperatorDecision>
@@ -625,12 +658,6 @@ class GroundLoop {
   std::atomic<bool> stopping_{false};
 };
 
-std::string who_decides(const configuration::GroundConfig& config,
-                        const std::string& operator_name) {
-  if (!config.operator_decisions.empty()) return "with decisions scripted by the scenario";
-  return "decisions by " + operator_name;
-}
-
 }  // namespace
 
 std::string control_socket_of(const configuration::GroundConfig& config) {
@@ -639,57 +666,6 @@ std::string control_socket_of(const configuration::GroundConfig& config) {
 }
 
 namespace {
-
-void serve_console(ConsoleDesk& console, const configuration::GroundConfig& config,
-                   std::int64_t epoch_unix_ns, OperatorKeys& keys, process::Wake& wake) {
-  if (config.console.port == 0) return;
-  if (const auto served = console.serve(config, epoch_unix_ns, keys, [&wake] { wake.notify(); });
-      !served) {
-    spdlog::warn("there is no console: {}", served.error().message);
-  } else {
-    spdlog::info(
-        "console: {} (`console` at the prompt, or 'skein-ground tell console': what opens it)",
-        console.url());
-  }
-}
-
-/// None, and a warning, where it cannot be had.
-std::unique_ptr<ControlSocket> open_control(const configuration::GroundConfig& config,
-                                            process::Wake& wake) {
-  auto control = ControlSocket::open(control_socket_of(config), [&wake] { wake.notify(); });
-  if (control) return std::move(*control);
-  spdlog::warn("takes no orders from other programs: {}", control.error().message);
-  return nullptr;
-}
-
-void recall_mission(const configuration::GroundConfig& config, std::int64_t epoch_unix_ns,
-                    mission::GroundNode& ground, ConsoleDesk& console) {
-  if (config.recording_folder.empty()) return;
-  const std::size_t messages =
-      recall(config.recording_folder, epoch_unix_ns, ground,
-             [&console](const mission::Message& message, VehicleId sender, Instant at) {
-               console.recall(message, sender, at);
-             });
-  if (messages == 0) return;
-  spdlog::info("goes on with this mission: {} messages of its recording are recalled", messages);
-}
-
-/// By the password that was typed, or lies in a file.
-Result<void> unlock_first(OperatorKeys& keys, const configuration::OperatorConfig& config,
-                          const Login& login) {
-  if (login.password) return keys.unlock_machine(login.name, *login.password);
-  if (config.name.empty()) return {};
-  auto password = identity::read_password(config.password_file);
-  if (!password) return Error{"operator.password_file: " + password.error().message};
-  const auto unlocked = keys.unlock_machine(config.name, *password);
-  identity::wipe(*password);
-  return unlocked;
-}
-
-std::optional<AuditKey> audit_key(const process::NodeStart& start) {
-  if (!start.identity) return std::nullopt;
-  return AuditKey{start.identity->signer(), start.identity->own(), start.instance};
-}
 
 /// Until the process is asked to end; the service manager's watchdog is fed while the loop gets on.
 const char* wait_watched(const GroundLoop& loop, const process::Shutdown& shutdown,
@@ -702,49 +678,6 @@ const char* wait_watched(const GroundLoop& loop, const process::Shutdown& shutdo
     const auto now = std::chrono::steady_clock::now();
     if (progress.all_moved(std::array{loop.steps()}, now)) service.feed_watchdog();
   }
-}
-
-void log_start(const configuration::GroundConfig& config, const process::NodeStart& start,
-               const std::string& operator_name) {
-  spdlog::info("ground station of {} vehicles, {}, {}; type help", config.vehicles.size(),
-               process::how_it_speaks(start), who_decides(config, operator_name));
-}
-
-void log_summary(const network::Node& node, const mission::GroundNode& ground) {
-  const auto traffic = process::traffic_of(node);
-  spdlog::info(
-      "ended: messages sent {}, received {}, dropped {}, refused of their senders {}; datagrams of "
-      "strangers {}, decisions unproven {}; network restarted {} times, messages not sent "
-      "meanwhile {}",
-      traffic.sent, traffic.received, traffic.dropped + ground.dropped(), ground.refused(),
-      traffic.of_strangers, traffic.unproven, traffic.restarts, traffic.unconnected);
-  process::log_air(node);
-}
-
-/// None without keys.
-std::unique_ptr<process::KeyWatch> watch_keys(process::NodeStart& start,
-                                              const configuration::NetworkConfig& config,
-                                              network::Node& node,
-                                              process::KeyWatch::OnTold on_told) {
-  if (!start.identity) return nullptr;
-  return std::make_unique<process::KeyWatch>(node, std::move(*start.identity), config.keys,
-                                             std::move(on_told));
-}
-
-Result<std::unique_ptr<network::Node>> join(const configuration::NetworkConfig& config,
-                                            const process::NodeStart& start, process::Wake& wake) {
-  auto node = process::node_config(config, start, [&wake] { wake.notify(); });
-  node.isolated = config.isolated;
-  return network::Node::open(node);
-}
-
-Result<Recorder> open_recorder(const configuration::GroundConfig& config, InstanceId instance,
-                               std::int64_t epoch_unix_ns) {
-  recording::Writer::Options options;
-  options.session = {kGroundStation, instance,      "skein-ground",
-                     version(),      epoch_unix_ns, to_yaml(config)};
-  options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
-  return Recorder::open(config.recording_folder, std::move(options));
 }
 
 int fail(const char* what, const Error& why, int exit_code) {
@@ -763,7 +696,9 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   const auto origin = MissionOrigin::make(config.origin);
   if (!origin)
     return fail("the mission origin is unusable", origin.error(), process::kExitBadInput);
-  auto start = process::start_node(config.network, kGroundStation);
+  const std::uint16_t station = config.command.station;
+  auto start =
+      process::start_node(config.network, station == 0 ? kGroundStation : station_node(station));
   if (!start)
     return fail("cannot join the mission network", start.error(), process::kExitCannotStart);
   const InstanceId instance = start->instance;
@@ -783,9 +718,10 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   auto recorder = open_recorder(config, instance, clock.epoch_unix_ns());
   if (!recorder) return fail("cannot record", recorder.error(), process::kExitCannotStart);
   process::Wake wake;
-  auto node = join(config.network, *start, wake);
-  if (!node)
-    return fail("cannot join the mission network", node.error(), process::kExitCannotStart);
+  auto opened = StationNetwork::open(config.network, *start, wake);
+  if (!opened)
+    return fail("cannot join the mission network", opened.error(), process::kExitCannotStart);
+  StationNetwork& network = **opened;
 
   serve_console(console, config, clock.epoch_unix_ns(), keys, wake);
   auto audit = Audit::open(config.recording_folder, audit_key(*start));
@@ -798,7 +734,8 @@ int run(const configuration::GroundConfig& config, const Login& login) {
                   operator_name,
                   clock,
                   shutdown,
-                  **node,
+                  network,
+                  instance,
                   wake,
                   std::move(*recorder),
                   keys,
@@ -808,7 +745,7 @@ int run(const configuration::GroundConfig& config, const Login& login) {
                   open_control(config, wake),
                   std::move(console),
                   std::move(*audit)};
-  const auto key_watch = watch_keys(*start, config.network, **node,
+  const auto key_watch = watch_keys(*start, config.network, network,
                                     [&loop](const auto& revoked) { loop.on_revoked(revoked); });
   std::thread thread{[&loop] { loop.run(); }};
   const process::Service service;
@@ -817,7 +754,7 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   spdlog::info("{}: stopping", signal);
   loop.stop();
   thread.join();
-  log_summary(**node, ground);
+  log_summary(network.ear(), ground);
   close_limit.start(process::kCloseWithin);
   return 0;
 }

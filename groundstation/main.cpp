@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "mission_commands.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/base/time.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
@@ -55,6 +56,7 @@ struct Arguments {
   std::string config;
   std::string operator_name;
   bool check_only = false;
+  bool watch = false;
   std::string socket;
   bool json = false;
 };
@@ -84,12 +86,19 @@ int run(const Arguments& arguments) {
   if (arguments.config.empty()) {
     return fail("--config is required; --help has examples", skein::process::kExitBadInput);
   }
-  const auto config = load(arguments.config);
+  auto config = load(arguments.config);
   if (!config) return fail(config.error().message, skein::process::kExitBadInput);
+  if (arguments.watch && config->command.station == 0) {
+    return fail("--watch is for one of several ground stations; give it a number: command.station",
+                skein::process::kExitBadInput);
+  }
+  config->command.watches = config->command.watches || arguments.watch;
   if (arguments.check_only) {
     std::printf("%s: good, a fleet of %zu vehicles\n", arguments.config.c_str(),
                 config->vehicles.size());
-    const auto starts = skein::process::check_start(config->network, skein::kGroundStation);
+    const std::uint16_t station = config->command.station;
+    const auto starts = skein::process::check_start(
+        config->network, station == 0 ? skein::kGroundStation : skein::station_node(station));
     if (!starts)
       std::fprintf(stderr, "it would not start here: %s\n", starts.error().message.c_str());
     return 0;
@@ -310,6 +319,9 @@ class CommandLine {
         ->capture_default_str();
     app_.add_flag("--check-config", arguments_.check_only,
                   "Read the configuration, say whether it is good, end");
+    app_.add_flag("--watch", arguments_.watch,
+                  "Of one of several ground stations: its operator takes the command, it does not "
+                  "by itself");
     app_.set_version_flag("--version", "skein-ground " + skein::version());
     app_.set_help_all_flag("--help-all", "The same of every command");
     app_.require_subcommand(0, 1);  // 'tell record stop': what follows a command is its own
@@ -317,7 +329,8 @@ class CommandLine {
     add_plan();
     add_password();
     add_unlock();
-    for (const CLI::App* group : {&missions_.mission(), &missions_.keys()}) {
+    for (const CLI::App* group :
+         {&missions_.mission(), &missions_.keys(), &missions_.enrolment()}) {
       actions_[group] = [this] { return missions_.run(); };
     }
     add_recordings();

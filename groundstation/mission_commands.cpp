@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -12,8 +13,10 @@
 #include <system_error>
 #include <utility>
 
+#include "skein/base/stations.hpp"
 #include "skein/console/users.hpp"
 #include "skein/identity/authority.hpp"
+#include "skein/identity/identity.hpp"
 #include "skein/identity_desk/given.hpp"
 #include "skein/identity_desk/keys_shown.hpp"
 #include "skein/process/log.hpp"
@@ -30,6 +33,12 @@ constexpr int kExitRefused = 1;
 int fail(const std::string& why, int status) {
   std::fprintf(stderr, "skein-ground: %s\n", why.c_str());
   return status;
+}
+
+/// "vehicle 3", "station 2"
+std::string name_of(VehicleId node) {
+  return is_station(node) ? "station " + std::to_string(station_number(node))
+                          : "vehicle " + std::to_string(node.value);
 }
 
 int refuse(const Error& error) { return fail(error.message, kExitRefused); }
@@ -50,7 +59,7 @@ Result<std::vector<identity::Request>> read_requests(const std::vector<std::stri
 
 /// Did somebody compare them?
 bool are_compared() {
-  std::fputs("Does each vehicle show the same? [y/N] ", stderr);
+  std::fputs("Does each of them show the same? [y/N] ", stderr);
   std::string answer;
   std::getline(std::cin, answer);
   return answer == "y" || answer == "yes";
@@ -61,7 +70,9 @@ Result<void> write_answers(const std::vector<identity::Membership>& answers,
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
   for (const auto& answer : answers) {
-    const auto file = folder / ("vehicle-" + std::to_string(answer.own.node.value) + ".txt");
+    std::string name = name_of(answer.own.node) + ".txt";
+    std::ranges::replace(name, ' ', '-');
+    const auto file = folder / name;
     std::ofstream stream{file};
     stream << to_text(answer) << '\n';
     if (!stream.flush()) return Error{"cannot write " + file.string()};
@@ -77,7 +88,11 @@ std::optional<identity::Serial> find(const Authority& authority, const std::stri
   const auto [end, error] =
       std::from_chars(which.data(), which.data() + which.size(), vehicle.value);
   if (error != std::errc{} || end != which.data() + which.size()) return std::nullopt;
-  return authority.serial_of(vehicle);
+  if (kind == "vehicle") {
+    return is_station(vehicle) ? std::nullopt : authority.serial_of(vehicle);
+  }
+  const bool is_number = vehicle.value >= 1 && vehicle.value <= kStationsMax;
+  return is_number ? authority.serial_of(station_node(vehicle.value)) : std::nullopt;
 }
 
 }  // namespace
@@ -94,9 +109,11 @@ MissionCommands::MissionCommands(CLI::App& app) {
   keys_ = app.add_subcommand("keys", "Tells of the keys and members of a mission");
   keys_->require_subcommand(1);
   add_show();
+  add_enrolment(app);
 }
 
 int MissionCommands::run() const {
+  if (enrolment_->parsed()) return membership_.empty() ? ask_to_enrol() : keep_answer();
   const CLI::App& group = mission_->parsed() ? *mission_ : *keys_;
   return actions_.at(group.get_subcommands().front())();
 }
@@ -122,11 +139,14 @@ void MissionCommands::add_create() {
 }
 
 void MissionCommands::add_enrol() {
-  CLI::App& command = add(*mission_, "enrol", "Takes vehicles into the mission, by their requests",
-                          [this] { return enrol(); });
+  CLI::App& command =
+      add(*mission_, "enrol",
+          "Takes vehicles and other ground stations into the mission, by their requests",
+          [this] { return enrol(); });
   command
       .add_option("request", requests_,
-                  "What skein-onboard enrol printed: the line itself, files of such lines, or -")
+                  "What skein-onboard enrol, or skein-ground enrol on another ground station's "
+                  "machine, printed: the line itself, files of such lines, or -")
       ->required();
   command.add_option("--out", out_, "Folder for the answers, a file each (default: printed)");
   command.add_flag("--yes", yes_, "The fingerprints were compared; ask nothing");
@@ -136,6 +156,51 @@ void MissionCommands::add_enrol() {
       "Examples:\n"
       "  skein-ground mission enrol requests/*.txt --out memberships\n"
       "  skein-ground mission enrol SKEIN-REQUEST-1:...");
+}
+
+void MissionCommands::add_enrolment(CLI::App& app) {
+  enrolment_ = app.add_subcommand("enrol",
+                                  "Of another ground station than the mission's own: makes its "
+                                  "keys and asks to take part, or keeps the answer");
+  enrolment_->add_option("--station", station_, "Its number, from 2 on")
+      ->check(CLI::Range(std::uint16_t{2}, kStationsMax));
+  enrolment_->add_option("--keys", folder_, "Folder of its keys")->capture_default_str();
+  enrolment_->add_option("--membership", membership_,
+                         "The mission's answer: the line itself, its file, or -");
+  enrolment_->add_flag("--new-keys", new_keys_, "Makes others, where the old ones were revoked");
+  enrolment_->add_flag("--replace", replace_, "Leaves the mission that it is a member of");
+  enrolment_->footer(
+      "The request is for skein-ground mission enrol on the mission's own ground station. Who is "
+      "to\n"
+      "authorise deliveries here needs his key here, too: copy operators/NAME.key.\n"
+      "Examples:\n"
+      "  skein-ground enrol --station 2 > station-2.txt\n"
+      "  skein-ground enrol --membership memberships/station-2.txt");
+}
+
+int MissionCommands::ask_to_enrol() const {
+  if (station_ == 0) return fail("which ground station? --station N", process::kExitBadInput);
+  const auto keys = identity::KeyFolder::of(folder_);
+  const VehicleId node = station_node(station_);
+  const auto key = new_keys_ ? identity::make_new_node_key(keys, node)
+                             : identity::read_or_make_node_key(keys, node);
+  if (!key) return refuse(key.error());
+  std::printf("%s\n", to_text(request_of(*key)).c_str());
+  std::fprintf(stderr, "%s: %s\n", name_of(node).c_str(), fingerprint(*key).c_str());
+  return 0;
+}
+
+int MissionCommands::keep_answer() const {
+  const auto membership = identity_desk::given_membership(membership_);
+  if (!membership) return fail(membership.error().message, process::kExitBadInput);
+  const auto kept = identity::store_membership(identity::KeyFolder::of(folder_), *membership,
+                                               now_unix_s(), replace_);
+  if (!kept) return refuse(kept.error());
+  std::printf("%s is of the mission %s until %s\nauthority %s\n",
+              name_of(membership->own.node).c_str(), membership->authority.name.c_str(),
+              identity::utc_text(membership->own.not_after_unix_s).c_str(),
+              fingerprint(membership->authority).c_str());
+  return 0;
 }
 
 void MissionCommands::add_operator() {
@@ -151,12 +216,17 @@ void MissionCommands::add_operator() {
 }
 
 void MissionCommands::add_revoke() {
-  CLI::App& command = add(*mission_, "revoke", "Puts a vehicle or an operator out of the mission",
-                          [this] { return revoke(); });
-  command.add_option("kind", kind_, "vehicle or operator")
+  CLI::App& command =
+      add(*mission_, "revoke",
+          "Puts a vehicle, an operator or another ground station out of the mission",
+          [this] { return revoke(); });
+  command.add_option("kind", kind_, "vehicle, station or operator")
       ->required()
-      ->check(CLI::IsMember({"vehicle", "operator"}));
-  command.add_option("which", which_, "The vehicle's number or the operator's name")->required();
+      ->check(CLI::IsMember({"vehicle", "station", "operator"}));
+  command
+      .add_option("which", which_,
+                  "The number of the vehicle or the ground station, or the operator's name")
+      ->required();
   command.footer(
       "All others are given another key.\n"
       "Example:\n"
@@ -182,11 +252,11 @@ int MissionCommands::enrol() const {
   const auto requests = read_requests(requests_);
   if (!requests) return fail(requests.error().message, process::kExitBadInput);
   for (const auto& request : *requests) {
-    std::fprintf(stderr, "vehicle %u: %s\n", static_cast<unsigned>(request.vehicle.value),
+    std::fprintf(stderr, "%s: %s\n", name_of(request.vehicle).c_str(),
                  identity::fingerprint(request.sign_key, request.agree_key).c_str());
   }
   if (!yes_ && ::isatty(STDIN_FILENO) != 1) {
-    return fail("compare these with what the vehicles show, and give --yes", kExitRefused);
+    return fail("compare these with what the others show, and give --yes", kExitRefused);
   }
   if (!yes_ && !are_compared()) return fail("nobody was enrolled", kExitRefused);
   auto authority = Authority::open(folder_);  // not before: somebody may take his time to compare

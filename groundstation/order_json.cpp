@@ -5,7 +5,9 @@
 #include <cmath>
 #include <optional>
 
+#include "prompt_words.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/base/text.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/console/sections.hpp"
 #include "skein/groundstation/orders.hpp"
@@ -321,6 +323,8 @@ Result<Input> read_order(std::string_view text) {
     if (kind == "proposal") return proposal_answer(from);
     if (kind == "formation") return formation_order(from);
     if (kind == "acknowledge") return acknowledgement(from);
+    if (kind == "take_command") return TakeCommand{as_text(from.text("reason"), kReasonMax)};
+    if (kind == "hand_over") return HandOver{};
     from.fail("there is no order '" + kind + "'");
     return {};
   };

@@ -17,10 +17,10 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 17> kWords{
-      "help",    "status", "sites",     "pending", "places", "coalitions",
-      "hazards", "audit",  "proposals", "routes",  "search", "preflight",
-      "fence",   "links",  "wind",      "alarms",  "console"};
+  static constexpr std::array<std::string_view, 18> kWords{
+      "help",    "status", "sites",     "pending", "places",  "coalitions",
+      "hazards", "audit",  "proposals", "routes",  "search",  "preflight",
+      "fence",   "links",  "wind",      "alarms",  "command", "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 
@@ -114,6 +114,10 @@ struct Line {
     return "record " + (record.folder.empty() ? "stop" : record.folder);
   }
   std::string operator()(const Quit& /*quit*/) const { return "quit"; }
+  std::string operator()(const TakeCommand& take) const {
+    return take.reason.empty() ? "take command" : "take command " + take.reason;
+  }
+  std::string operator()(const HandOver& /*over*/) const { return "hand over"; }
 };
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "prompt_words.hpp"
 #include "site_words.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/base/text.hpp"
 
 namespace skein::groundstation {
 namespace {
@@ -293,6 +294,23 @@ Result<Input> record(const std::vector<std::string_view>& words) {
   return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
 }
 
+Result<Input> take_command(std::string_view line, const std::vector<std::string_view>& words) {
+  if (words.size() < 2 || words[1] != "command") {
+    return Error{"'take' takes the command: 'take command', and why, for the others"};
+  }
+  const auto end = words.back().data() + words.back().size();
+  const std::string_view reason =
+      words.size() == 2 ? "" : line.substr(words[2].data() - line.data(), end - words[2].data());
+  return Input{TakeCommand{as_text(reason, kReasonMax)}};
+}
+
+Result<Input> hand_over(const std::vector<std::string_view>& words) {
+  if (words.size() != 2 || words[1] != "over") {
+    return Error{"'hand over' stands alone; a watching ground station takes the command"};
+  }
+  return Input{HandOver{}};
+}
+
 }  // namespace
 
 Result<Input> parse_input(std::string_view line) {
@@ -328,6 +346,9 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "acknowledge") return acknowledgement(words);
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
+  if (verb == "command") return view(View::command, words);
+  if (verb == "take") return take_command(line, words);
+  if (verb == "hand") return hand_over(words);
   if (verb == "fence") return fence_order(words, false);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
   if (verb == "resume") return order(mission::CommandKind::resume, words);
@@ -413,6 +434,9 @@ std::string help_text() {
          "                  until vehicles showed that they obey\n"
          "acknowledge N|all those alarms are seen: they are silent, and stay until they are over\n"
          "audit             who gave which order, from where, and what came of it\n"
+         "command           which ground station has the command\n"
+         "take command WHY  this one takes it, whoever has it, and tells the others why\n"
+         "hand over         ask a ground station that watches to take it\n"
          "console           the address of its page, with the token that opens it\n"
          "hold ID|all       fly a holding pattern until told otherwise; this one and the next "
          "three "

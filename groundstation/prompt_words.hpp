@@ -14,6 +14,9 @@
 /// The words of a typed line.
 namespace skein::groundstation {
 
+/// Bytes of why the command is taken.
+inline constexpr std::size_t kReasonMax = 80;
+
 /// The whole word as a number.
 [[nodiscard]] inline std::optional<double> number_of(std::string_view word) {
   double value = 0.0;

@@ -74,19 +74,8 @@ int KeyCommands::request() const {
 }
 
 int KeyCommands::store() const {
-  const auto lines = identity_desk::given_lines(membership_, "SKEIN-");
-  if (!lines) return fail(lines.error().message, process::kExitBadInput);
-  if (lines->size() != 1) {
-    return fail("a membership is one line, and here are " + std::to_string(lines->size()),
-                process::kExitBadInput);
-  }
-  const auto membership = identity::membership_from_text(lines->front());
-  if (!membership) {
-    return fail(
-        identity_desk::name_of_given(membership_, "SKEIN-") + ": " + membership.error().message +
-            "; wanted is what 'skein-ground mission enrol' answered to this vehicle's request",
-        process::kExitBadInput);
-  }
+  const auto membership = identity_desk::given_membership(membership_);
+  if (!membership) return fail(membership.error().message, process::kExitBadInput);
   const auto& [authority, own, keys] = *membership;
   const auto kept = identity::store_membership(folder_of(folder_, own.node.value), *membership,
                                                now_unix_s(), replace_);

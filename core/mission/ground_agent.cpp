@@ -27,6 +27,8 @@ constexpr int kClosedTimes = 5;
 constexpr Duration kLeaderLost = std::chrono::seconds{75};
 /// A vehicle's from that of the ground station; more than ProtocolParams::clock_guard.
 constexpr Duration kClocksDiffer = std::chrono::seconds{1};
+/// How far the numbers of orders may be ahead of the mission's time.
+constexpr Duration kOrdersAheadMax = std::chrono::seconds{60};
 
 Instant last_delivery(const AuthorisationRequest& request) {
   Instant last = request.decide_by;
@@ -72,6 +74,31 @@ void GroundAgent::recall_own(const Message& message, Instant at) {
   }
 }
 
+void GroundAgent::overhear(const Message& message, Instant now) {
+  if (const auto* event = std::get_if<MissionEvent>(&message)) return on_event(*event);
+  const auto* decision = std::get_if<Authorisation>(&message);
+  const auto waits = [&](const PendingAuthorisation& pending) {
+    return !pending.decision && pending.request.round == decision->round &&
+           pending.request.site == decision->site;
+  };
+  const bool is_news = decision != nullptr && std::ranges::any_of(pending_, waits);
+  recall_own(message, now);
+  if (!is_news) return;
+  const std::string& by = decision->decided_by;
+  report(decision->granted ? EventBody{event::Authorised{by}}
+                           : EventBody{event::AuthorisationRefused{by}},
+         decision->round, {decision->site, TaskKind::deliver, 0}, now);
+}
+
+/// Numbers are times: one far ahead is no order's.
+void GroundAgent::note_order(std::uint64_t number, Instant now) {
+  const auto ahead = std::chrono::duration_cast<std::chrono::milliseconds>(
+      (now + kOrdersAheadMax).time_since_epoch());
+  if (ahead.count() > 0 && number <= static_cast<std::uint64_t>(ahead.count())) {
+    last_command_ = std::max(last_command_, number);
+  }
+}
+
 void GroundAgent::on_message(const Message& message, Instant now) {
   hear(message, now);
   on_timeout(now);
@@ -93,6 +120,7 @@ void GroundAgent::hear(const Message& message, Instant now) {
 void GroundAgent::on_timeout(Instant now) {
   fleet_.on_timeout(now);
   while (const auto news = fleet_.poll_news()) report(*news, {}, {}, now);
+  if (watching_) return;
   decide_by_script(now);
   send_again(now);
 }
@@ -587,6 +615,7 @@ std::optional<Message> GroundAgent::poll_message() { return messages_.pop(); }
 std::optional<MissionEvent> GroundAgent::poll_event() { return events_.pop(); }
 
 Instant GroundAgent::next_timeout() const {
+  if (watching_) return fleet_.next_timeout();
   Instant next = std::min(next_repeat_, fleet_.next_timeout());
   for (const auto& sent : commands_) next = std::min(next, sent.next);
   for (const auto& [site, led] : led_) {

@@ -24,6 +24,7 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
       formation_{config.formation, now},
       tracks_{config.tracks, now},
       setup_{config.setup, kGroundStation, config.instance, now},
+      start_{config.instance},
       knows_orders_at_{starts_anew(now) ? now + kOthersAnswer : now},
       hazards_{config.hazards},
       fence_{config.fence},
@@ -54,12 +55,51 @@ void GroundNode::note_refusal(const Authorisation& decision, Instant now) {
   agent_.end_site(decision.site, decision.decided_by, now);
 }
 
+void GroundNode::watch(Instant now) {
+  watching_ = true;
+  agent_.set_watching(true);
+  drop_words();
+  on_timeout(now);
+}
+
+void GroundNode::take_command(InstanceId start, Instant now) {
+  if (watching_) knows_orders_at_ = now + kOthersAnswer;
+  reign_from_ = agent_.newest_order() + 1;
+  told_.clear();
+  watching_ = false;
+  agent_.set_watching(false);
+  start_ = start;
+  speak();
+}
+
+/// As of what an earlier start of this program said, but as it is said.
+void GroundNode::overhear(const Message& message, VehicleId sender, Instant now) {
+  agent_.overhear(message, now);
+  sites_.recall(message, sender, now);
+  hazards_.recall(message, sender, now);
+  routes_.recall(message, sender, now);
+  detections_.recall(message, sender);
+  if (const auto* command = std::get_if<Command>(&message)) orders_.note(*command);
+  const auto* decision = std::get_if<Authorisation>(&message);
+  if (decision != nullptr && !decision->granted) note_refusal(*decision, now);
+}
+
+/// What its parts would say is for who has the command to say; of their events, too.
+void GroundNode::drop_words() {
+  while (next_message()) continue;
+  while (events_.pop()) continue;
+}
+
 bool GroundNode::on_message(const Message& message, VehicleId sender, Instant now) {
   if (!may_say(message, sender)) {
     ++refused_;
     return false;
   }
   if (told_by(message) != kGroundStation) return false;  // to who has started anew, not to us
+  if (watching_ && sender == kGroundStation) {
+    overhear(message, sender, now);
+    return true;
+  }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
   if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
     setup_.on_time(sender, telemetry->state.time, now);
@@ -73,7 +113,7 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   // Who runs with another origin has seen it somewhere else.
   const bool saw =
       std::holds_alternative<Detection>(message) && setup_.difference(sender) == nullptr;
-  if (auto site = saw ? detections_.on_message(message, sites_, now) : std::nullopt) {
+  if (auto site = saw && !watching_ ? detections_.on_message(message, sites_, now) : std::nullopt) {
     (void)sites_.add(*std::move(site), std::nullopt, fleet(), now);  // full: it is seen again
   }
   formation_.on_message(message, now);
@@ -102,13 +142,34 @@ void GroundNode::take_differences(VehicleId vehicle, Instant now) {
 void GroundNode::on_setup(const Setup& setup, Instant now) {
   setup_.on_setup(setup, now);
   take_differences(setup.node, now);
+  agent_.note_order(setup.newest_order, now);
   const Command standing = orders_.standing(setup.node, kGroundStation);
   const bool asks = !setup.knows_orders && now >= knows_orders_at_;
   if (asks || number_of(standing) > setup.newest_order) messages_.push(Message{standing});
+  if (!watching_) order_again(setup, standing, now);
+}
+
+/// Who had the command before has gone on to order a vehicle that could not hear this one: what was
+/// ordered here since stands.
+void GroundNode::order_again(const Setup& setup, const Command& standing, Instant now) {
+  if (!reign_from_ || number_of(standing) < *reign_from_) return;
+  std::uint64_t told = 0;
+  for (const VehicleId to : {kGroundStation, setup.node}) {
+    const auto known = told_.find(to);
+    if (known != told_.end()) told = std::max(told, known->second);
+  }
+  if (setup.newest_order > told) (void)command(setup.node, standing.kind, now);
 }
 
 void GroundNode::on_timeout(Instant now) {
-  if (auto ours = setup_.poll_setup({}, now)) messages_.push(Message{*std::move(ours)});
+  if (watching_) {
+    agent_.on_timeout(now);
+    return drop_words();
+  }
+  if (auto ours = setup_.poll_setup({}, now)) {
+    ours->instance = start_;
+    messages_.push(Message{*std::move(ours)});
+  }
   agent_.on_timeout(now);
   sites_.on_timeout(fleet(), now);
   hazards_.on_timeout(now);
@@ -263,6 +324,12 @@ void GroundNode::take_events() {
 }
 
 std::optional<Message> GroundNode::poll_message() {
+  if (!watching_) return next_message();
+  drop_words();
+  return std::nullopt;
+}
+
+std::optional<Message> GroundNode::next_message() {
   take_events();
   if (auto message = hazards_.poll_message()) {
     // What the operator tells of is to be planned around, too.
@@ -278,7 +345,11 @@ std::optional<Message> GroundNode::poll_message() {
     if (grants && sites_.is_withdrawn(decision->site)) continue;  // since it was decided
     if (decision != nullptr && decision->granted) sites_.on_granted(decision->site);
     if (decision != nullptr && !decision->granted) note_refusal(*decision, decision->decided_at);
-    if (const auto* command = std::get_if<Command>(&*message)) orders_.note(*command);
+    if (const auto* command = std::get_if<Command>(&*message)) {
+      orders_.note(*command);
+      std::uint64_t& newest = told_[command->vehicle];
+      newest = std::max(newest, number_of(*command));
+    }
     return message;
   }
   if (auto message = formation_.poll_message()) return message;
@@ -289,12 +360,14 @@ std::optional<Message> GroundNode::poll_message() {
 }
 
 std::optional<MissionEvent> GroundNode::poll_event() {
+  if (watching_) drop_words();
   take_events();
   if (auto event = events_.pop()) return event;
   return agent_.poll_event();
 }
 
 Instant GroundNode::next_timeout() const {
+  if (watching_) return agent_.next_timeout();
   return std::min({agent_.next_timeout(), sites_.next_timeout(), hazards_.next_timeout(),
                    fence_.next_timeout(), routes_.next_timeout(), formation_.next_timeout(),
                    tracks_.next_timeout(), setup_.next_timeout(), returns_.next_timeout(),

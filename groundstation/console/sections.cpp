@@ -17,6 +17,7 @@
 #include "skein/console/team_fence.hpp"
 #include "skein/console/team_links.hpp"
 #include "skein/console/team_preflight.hpp"
+#include "skein/console/team_state.hpp"
 #include "skein/console/team_wind.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
@@ -564,9 +565,9 @@ std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
 
 std::string_view to_string(Section section) {
   static constexpr std::array<std::string_view, kSectionCount> kNames{
-      "vehicles",  "plans",    "sites", "coalitions", "authorisations", "hazards",
-      "formation", "timeline", "audit", "replay",     "proposals",      "preflight",
-      "fence",     "links",    "wind",  "areas",      "alarms",         "traffic"};
+      "vehicles", "plans", "sites",  "coalitions", "authorisations", "hazards", "formation",
+      "timeline", "audit", "replay", "proposals",  "preflight",      "fence",   "links",
+      "wind",     "areas", "alarms", "traffic",    "command",        "team"};
   return kNames.at(static_cast<std::size_t>(section));
 }
 
@@ -622,8 +623,11 @@ std::string section_of(Section section, const Picture& picture, const mission::F
       return wind_json(picture.wind().estimate(without_airspeed(fleet), now), now);
     case Section::traffic:
       return traffic_json(picture, fleet, now);
+    case Section::team:
+      return team_json(team_state(fleet, {}, now));
     case Section::audit:
     case Section::areas:
+    case Section::command:
     case Section::replay:
     case Section::alarms:
     case Section::count:

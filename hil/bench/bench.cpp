@@ -8,7 +8,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -25,6 +24,7 @@
 #include "mission_watch.hpp"
 #include "ports.hpp"
 #include "run_keys.hpp"
+#include "second_station.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
@@ -106,7 +106,12 @@ class Bench {
     auto table = radio::LinkTable::create();
     if (!table) return table.error();
     table_.emplace(std::move(table).value());
-    if (auto ready = prepare_floods(*base); !ready) return ready;
+    if (Flooder::is_wanted(scenario_)) {
+      if (options_.dds) return Error{"a flood_vehicle floods the air; leave --dds out"};
+      auto flooder = Flooder::open(scenario_.air.group, *base, options_.address);
+      if (!flooder) return flooder.error();
+      flooder_.emplace(std::move(flooder).value());
+    }
 
     if (!options_.links.empty()) {
       auto listener = LinkListener::start(options_.links, options_.run_folder / "links.log");
@@ -131,6 +136,7 @@ class Bench {
       ground.network.transport_plugin = external_.ground()->radio_plugin;
     }
     control_socket_ = groundstation::control_socket_of(ground);
+    if (auto joined = join_second(ground); !joined) return joined;
     if (auto kept = keep_console_token(ground.recording_folder); !kept) return kept;
     // All of it before the first program runs, and wants the processor, too.
     std::ofstream{configuration_of(kGroundStation)} << configuration::to_yaml(ground);
@@ -139,6 +145,9 @@ class Bench {
       std::ofstream{configuration_of(config.vehicle.id)} << configuration::to_yaml(config);
     }
     if (auto up = launch(kGroundStation, "skein-ground"); !up) return up;
+    if (second_) {
+      if (auto up = launch(SecondStation::kNode, "skein-ground"); !up) return up;
+    }
     nodes_.push_back(kGroundStation);
     for (const auto& config : configs) {
       nodes_.push_back(config.vehicle.id);
@@ -341,6 +350,7 @@ class Bench {
   /// The bench among them.
   [[nodiscard]] std::vector<VehicleId> all_nodes() const {
     std::vector<VehicleId> nodes{kGroundStation, kBench};
+    if (options_.ground_stations > 1) nodes.push_back(SecondStation::kNode);
     for (const auto& vehicle : scenario_.vehicles) nodes.push_back(vehicle.spec.id);
     return nodes;
   }
@@ -350,6 +360,16 @@ class Bench {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
     return process::keep_token(folder / process::kConsoleTokenFile, options_.console_token);
+  }
+
+  /// The ground station is one of two from then on, where two are wanted.
+  Result<void> join_second(configuration::GroundConfig& ground) {
+    if (options_.ground_stations < 2) return {};
+    const auto second = SecondStation::join(ground, options_.run_folder, options_.sealed);
+    if (!second) return second.error();
+    second_.emplace(second->control_socket, options_.take_command_at);
+    std::ofstream{configuration_of(SecondStation::kNode)} << configuration::to_yaml(*second);
+    return keep_console_token(second->recording_folder);
   }
 
   Result<void> launch_vehicle(const configuration::VehicleConfig& config) {
@@ -403,18 +423,6 @@ class Bench {
          {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
     if (!child) return child.error();
     processes_.emplace(id, std::move(child).value());
-    return {};
-  }
-
-  Result<void> prepare_floods(std::uint16_t port) {
-    const auto floods = [](const configuration::Fault& fault) {
-      return fault.kind == configuration::FaultKind::flood;
-    };
-    if (!std::ranges::any_of(scenario_.faults, floods)) return {};
-    if (options_.dds) return Error{"a flood_vehicle floods the air; leave --dds out"};
-    auto flooder = Flooder::open(scenario_.air.group, port, options_.address);
-    if (!flooder) return flooder.error();
-    flooder_.emplace(std::move(flooder).value());
     return {};
   }
 
@@ -563,6 +571,7 @@ class Bench {
   }
 
   void play_faults(Instant now) {
+    if (const auto news = second_ ? second_->play(now) : std::nullopt) say(*news);
     timeline_.play(
         now, [](Role) { return std::vector<VehicleId>{}; },
         [this](const Fault& fault, const std::vector<VehicleId>& who) {
@@ -591,8 +600,9 @@ class Bench {
     places_.clear();
     for (const VehicleId id : nodes_) {
       const auto found = at.find(id);
-      places_.push_back({id, found == at.end() ? std::nullopt : std::optional{found->second},
-                         !killed_.contains(id)});
+      const bool is_there = !killed_.contains(id) || (id == kGroundStation && second_);
+      places_.push_back(
+          {id, found == at.end() ? std::nullopt : std::optional{found->second}, is_there});
     }
     const auto& interference = timeline_.interference();
     if (mesh_) mesh_->move(radio_, interference, places_, now);
@@ -678,7 +688,8 @@ class Bench {
     // The vehicles first, so that the ground station hears their last words.
     std::vector<ChildProcess*> vehicles;
     for (auto& [id, process] : processes_) {
-      if (id != kGroundStation && !killed_.contains(id)) vehicles.push_back(&process);
+      const bool is_ground = id == kGroundStation || is_station(id);
+      if (!is_ground && !killed_.contains(id)) vehicles.push_back(&process);
     }
     for (std::string& problem : external_.stop()) outcome_.deaths.push_back(std::move(problem));
     const bool clean = stop_all(vehicles, kStopWithin);
@@ -691,7 +702,10 @@ class Bench {
     const bool controllers_clean = stop_all(controllers, kStopWithin);
     (void)stop_all(autopilots, kStopWithin);  // how they end is theirs
     std::vector<ChildProcess*> ground;
-    if (!killed_.contains(kGroundStation)) ground.push_back(&processes_.at(kGroundStation));
+    for (const VehicleId id : {kGroundStation, SecondStation::kNode}) {
+      const auto process = processes_.find(id);
+      if (process != processes_.end() && !killed_.contains(id)) ground.push_back(&process->second);
+    }
     outcome_.stopped_cleanly = stop_all(ground, kStopWithin) && clean && controllers_clean;
     for (auto& [id, process] : processes_) {
       const auto how = process.ended();
@@ -714,17 +728,7 @@ class Bench {
     if (on_progress_) on_progress_(progress_);
   }
 
-  static std::string seconds_text(double s) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.1f s", s);
-    return text.data();
-  }
-  static std::string name_of(VehicleId id) {
-    return id == kGroundStation ? "the ground station" : "vehicle " + std::to_string(id.value);
-  }
-  static std::string log_name(VehicleId id) {
-    return id == kGroundStation ? "ground" : "vehicle-" + std::to_string(id.value);
-  }
+  static std::string seconds_text(double s) { return fmt::format("{:.1f} s", s); }
 
   const configuration::Scenario& scenario_;
   const BenchOptions& options_;
@@ -737,6 +741,7 @@ class Bench {
   bool links_reported_ = false;           ///< that it has ended
   std::unique_ptr<TruthRecorder> truth_;  ///< none where no aircraft is simulated
   std::map<VehicleId, ChildProcess> processes_;
+  std::optional<SecondStation> second_;  ///< ground station
   std::map<VehicleId, ChildProcess> flight_controllers_;
   std::set<VehicleId> user_flown_;  ///< of these by autopilots of the user's own
   std::unique_ptr<network::Node> node_;

@@ -16,6 +16,12 @@
 
 namespace skein::hil {
 
+bool Flooder::is_wanted(const configuration::Scenario& scenario) {
+  return std::ranges::any_of(scenario.faults, [](const configuration::Fault& fault) {
+    return fault.kind == configuration::FaultKind::flood;
+  });
+}
+
 Result<Flooder> Flooder::open(const std::string& group, std::uint16_t port,
                               const std::string& address) {
   Flooder flooder{::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0)};

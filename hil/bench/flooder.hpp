@@ -8,6 +8,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
+#include "skein/configuration/scenario.hpp"
 
 namespace skein::hil {
 
@@ -15,6 +16,8 @@ namespace skein::hil {
 /// sealed datagram, until it is opened.
 class Flooder {
  public:
+  /// Does a fault of the scenario flood?
+  [[nodiscard]] static bool is_wanted(const configuration::Scenario& scenario);
   /// To that group of the air, from that address of this machine.
   [[nodiscard]] static Result<Flooder> open(const std::string& group, std::uint16_t port,
                                             const std::string& address);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "second_station.hpp"
 #include "skein/checks/flown.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/recording/reader.hpp"
@@ -39,6 +40,15 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
     } else {
       record.recordings.push_back(std::move(r));
     }
+  }
+  // What the operator of a second ground station has decided counts as much.
+  if (const auto second = run_folder / log_name(SecondStation::kNode);
+      std::filesystem::exists(second)) {
+    auto read = recording::read(second, kGroundStation);
+    if (!read) return read.error();
+    auto& events = record.ground_events;
+    events.insert(events.end(), read->events.begin(), read->events.end());
+    std::ranges::stable_sort(events, {}, &mission::MissionEvent::time);
   }
   const auto truths = run_folder / kTruthFolder;
   if (std::filesystem::exists(truths)) {

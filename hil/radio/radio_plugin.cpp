@@ -26,6 +26,7 @@
 #include <vector>
 
 #include "skein/base/random.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/hil/radio/link_feed.hpp"
 #include "skein/hil/radio/link_table.hpp"
 #include "skein/mission/may_say.hpp"
@@ -57,9 +58,14 @@ std::optional<VehicleId> sender_of(std::span<const octet> datagram) {
   return network::rtps_sender(datagram);
 }
 
+/// All ground stations are in one place.
+VehicleId place_of(VehicleId node) { return is_station(node) ? kGroundStation : node; }
+
 /// Perfect from itself, and from the bench, which stands for sensors on board.
 Link link_from(const LinkTable& table, VehicleId sender, VehicleId self) {
-  return sender == self || sender == mission::kSensors ? Link{} : table.get(sender, self);
+  const VehicleId from = place_of(sender);
+  const VehicleId to = place_of(self);
+  return from == to || sender == mission::kSensors ? Link{} : table.get(from, to);
 }
 
 class RadioTransport : public rtps::ChainingTransport {

@@ -37,9 +37,11 @@ struct RunArguments {
   bool clear = false;
   bool prompt = false;
   std::uint16_t console_port = 0;  ///< 0: no console
-  std::string external;            ///< ids of vehicles on other machines
-  std::filesystem::path fleet;     ///< file that names their hosts; empty: the scenario does
-  std::string address;  ///< of this machine; empty: as that file says of the ground station
+  int ground_stations = 1;
+  std::optional<double> take_command_s{};
+  std::string external;         ///< ids of vehicles on other machines
+  std::filesystem::path fleet;  ///< file that names their hosts; empty: the scenario does
+  std::string address;          ///< of this machine; empty: as that file says of the ground station
 };
 /// Gives the vehicles the routes of the plan's file, or of a plan that is made and printed, where
 /// the mission asks for routes.

@@ -111,6 +111,15 @@ void add_run(CLI::App& app, int& status) {
                    "with --prompt you decide there")
       ->check(CLI::Range(1, 65535));
   command
+      ->add_option("--ground-stations", arguments->ground_stations,
+                   "2: a second one watches; its console is at the next port")
+      ->check(CLI::Range(1, 2))
+      ->excludes("--external");
+  command
+      ->add_option("--take-command", arguments->take_command_s,
+                   "Mission second at which the second ground station takes the command")
+      ->needs("--ground-stations");
+  command
       ->add_flag("--clear", arguments->clear,
                  "Fly without keys, in clear, on loopback: to compare with a sealed run")
       ->excludes("--external");

@@ -46,6 +46,10 @@ class ProgressLine {
       fmt::print("\r{:7.1f} s   vehicles heard {}/{}   sites found {}/{}, done {}/{} ", t,
                  p.vehicles_heard, vehicles_, p.sites_found, sites_, p.sites_done, sites_);
     }
+    if (options.ground_stations > 1) {
+      fmt::print("console of the second: http://127.0.0.1:{}/#{}\n", options.console_port + 1,
+                 options.console_token);
+    }
     std::fflush(stdout);
   }
   void clear() const {
@@ -109,6 +113,8 @@ BenchOptions options_of(const RunArguments& arguments) {
   options.sealed = !arguments.clear;
   options.dds = arguments.dds;
   options.links = arguments.links;
+  options.ground_stations = arguments.ground_stations;
+  if (arguments.take_command_s) options.take_command_at = at_seconds(*arguments.take_command_s);
   options.console_port = arguments.console_port;
   if (options.console_port != 0) options.console_token = process::make_token();
   options.run_folder =

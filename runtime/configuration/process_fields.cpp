@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 
+#include "skein/base/stations.hpp"
 #include "skein/formation/change.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/planning/fence_check.hpp"
@@ -160,6 +161,7 @@ void landing_fields(FieldVisitor& v, LandingSpec& landing) {
 void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
   id(v, {"id", "number of the vehicle, its own in the fleet", kRequired}, spec.id);
   v.require(spec.id != mission::kSensors, "id", "is of the sensors; give the vehicle another");
+  v.require(!is_station(spec.id), "id", "is of a ground station; give the vehicle one below 65001");
   v.number({"cruise_speed_mps", "speed that paths are planned at", kRequired}, {1.0, 200.0, "m/s"},
            spec.cruise_speed_mps);
   v.number({"speed_min_mps", "least airspeed", kRequired}, {0.5, 200.0, "m/s"}, spec.speed_min_mps);
@@ -652,6 +654,25 @@ void operator_fields(FieldVisitor& v, OperatorConfig& config) {
             "neither");
 }
 
+constexpr std::array<std::string_view, 2> kCommandRoles{"commanding", "watching"};
+
+void command_fields(FieldVisitor& v, CommandConfig& config) {
+  whole(v,
+        {"station",
+         "number of this one of several ground stations, of which one has the command; 0: there is "
+         "no other"},
+        {0.0, double{kStationsMax}}, config.station);
+  v.text({"name", "by which the operators of the others know it; empty: ground station N"},
+         config.name);
+  v.require(config.name.size() <= 32, "name", "is longer than 32 bytes; shorten it");
+  std::size_t watches = config.watches ? 1 : 0;
+  v.choice({"role",
+            "commanding: it takes the command where it hears for 3 s that nobody has it; watching: "
+            "its operator takes it (`take command`)"},
+           kCommandRoles, watches);
+  config.watches = watches == 1;
+}
+
 void coalition_sections(FieldVisitor& v, coalition::ProtocolParams& protocol,
                         planning::AllocationParams& planning) {
   v.section({"protocol", "the contract net; the same for the whole fleet"},
@@ -734,6 +755,10 @@ void fields(FieldVisitor& v, GroundConfig& config) {
   console_section(v, config.console);
   agencies_section(v, config.agencies);
   team_remote_id_section(v, config.remote_id);
+  v.section({"command",
+             "of one of several ground stations, of which one has the command and the others watch "
+             "(docs/console.md)"},
+            [&config](FieldVisitor& inner) { command_fields(inner, config.command); });
   v.section({"operator",
              "whose key signs what is authorised here, from the start on; else "
              "`skein-ground unlock` or a login at the console unlocks one"},
@@ -744,6 +769,8 @@ void fields(FieldVisitor& v, GroundConfig& config) {
          config.control_socket);
   process_fields(v, config.network, config.time, config.recording_folder,
                  config.recording_limit_mb);
+  v.require(config.command.station == 0 || config.network.peers.empty(), "command",
+            "of several ground stations needs the air: leave network.peers out");
 }
 
 }  // namespace skein::configuration

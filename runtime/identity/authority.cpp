@@ -12,6 +12,7 @@
 #include "crypto.hpp"
 #include "files.hpp"
 #include "key_text.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/base/text.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/identity/node_key.hpp"
@@ -29,6 +30,25 @@ constexpr TextForm kKeyForm{"SKEIN-AUTHORITY-KEY-1:", "key of an authority", kKe
 constexpr std::size_t kKeyFileMax = 256;
 constexpr std::size_t kChangeTextMax = 2400;
 constexpr std::size_t kChangesFileMax = kMembersMax * kChangeTextMax;
+
+/// The role of a node that asks to be enrolled.
+Role role_of(VehicleId node) { return is_station(node) ? Role::ground : Role::vehicle; }
+/// "vehicle 3", "station 2": as it is named at a command.
+std::string name_of(VehicleId node) {
+  return is_station(node) ? fmt::format("station {}", station_number(node))
+                          : fmt::format("vehicle {}", node.value);
+}
+/// What makes its keys.
+std::string enrols(VehicleId node) {
+  return is_station(node) ? fmt::format("skein-ground enrol --station {}", station_number(node))
+                          : fmt::format("skein-onboard enrol --id {}", node.value);
+}
+/// Who is told of a new key: a node that was enrolled here, and is not out.
+bool is_told(const Certificate& member, const RevocationList& revoked) {
+  const bool is_node = member.role == Role::vehicle ||
+                       (member.role == Role::ground && member.node != kGroundStation);
+  return is_node && !revoked.contains(member.serial);
+}
 
 /// Beside `folder`, so that a rename makes it that.
 Result<std::filesystem::path> staging_for(const std::filesystem::path& folder) {
@@ -186,7 +206,7 @@ Result<void> Authority::save() const {
 Result<void> Authority::publish() const {
   std::string changes;
   for (const Certificate& member : members_) {
-    if (member.role != Role::vehicle || revoked_.contains(member.serial)) continue;
+    if (!is_told(member, revoked_)) continue;
     changes += fmt::format("{} {}\n", member.node.value, to_text(membership_of(member).keys));
   }
   if (auto kept = write_file(folder_ / kMembershipFile,
@@ -209,9 +229,7 @@ bool Authority::is_published() const {
   }
   std::vector<Serial> due;
   for (const Certificate& member : members_) {
-    if (member.role == Role::vehicle && !revoked_.contains(member.serial)) {
-      due.push_back(member.serial);
-    }
+    if (is_told(member, revoked_)) due.push_back(member.serial);
   }
   return told == due;
 }
@@ -228,7 +246,7 @@ std::optional<Certificate> Authority::valid(Role role, VehicleId node,
 }
 
 std::optional<Serial> Authority::serial_of(VehicleId vehicle) const {
-  const auto member = valid(Role::vehicle, vehicle, {});
+  const auto member = valid(role_of(vehicle), vehicle, {});
   return member ? std::optional{member->serial} : std::nullopt;
 }
 
@@ -255,27 +273,27 @@ Result<Certificate> Authority::certify(const Request& request, std::int64_t now_
   if (auto room = room_for_one(now_unix_s); !room) return room.error();
   if (!is_proven(request) || !x25519(random_secret(), request.agree_key)) {
     return Error{
-        fmt::format("the request of vehicle {} is not signed with its own key; have it "
-                    "made again with 'skein-onboard enrol --id {}'",
-                    request.vehicle.value, request.vehicle.value)};
+        fmt::format("the request of {} is not signed with its own key; have it made again with "
+                    "'{}'",
+                    name_of(request.vehicle), enrols(request.vehicle))};
   }
-  if (const auto known = valid(Role::vehicle, request.vehicle, {})) {
+  if (const auto known = valid(role_of(request.vehicle), request.vehicle, {})) {
     if (known->sign_key == request.sign_key && known->agree_key == request.agree_key) return *known;
     return Error{
-        fmt::format("vehicle {0} is a member with the keys {1}, and these are {2}; if they "
-                    "are new, 'mission revoke vehicle {0}' first",
-                    request.vehicle.value, fingerprint(*known),
+        fmt::format("{0} is a member with the keys {1}, and these are {2}; if they are new, "
+                    "'mission revoke {0}' first",
+                    name_of(request.vehicle), fingerprint(*known),
                     fingerprint(request.sign_key, request.agree_key))};
   }
   for (const Certificate& member : members_) {
     if (member.sign_key != request.sign_key && member.agree_key != request.agree_key) continue;
     return Error{
-        fmt::format("vehicle {0}: these keys were those of certificate {1}, and count no "
-                    "more; make others with 'skein-onboard enrol --id {0} --new-keys'",
-                    request.vehicle.value, member.serial.value)};
+        fmt::format("{}: these keys were those of certificate {}, and count no more; make others "
+                    "with '{} --new-keys'",
+                    name_of(request.vehicle), member.serial.value, enrols(request.vehicle))};
   }
   Certificate own;
-  own.role = Role::vehicle;
+  own.role = role_of(request.vehicle);
   own.node = request.vehicle;
   own.sign_key = request.sign_key;
   own.agree_key = request.agree_key;
@@ -341,7 +359,7 @@ Result<void> Authority::revoke(Serial serial) {
   if (serial.value == 0 || serial.value > members_.size()) {
     return Error{fmt::format("there is no certificate {} in this mission", serial.value)};
   }
-  if (members_[serial.value - 1].role == Role::ground) {
+  if (serial == members_.front().serial) {
     return Error{"the ground station holds the authority; if it was lost, create a new mission"};
   }
   if (revoked_.contains(serial)) {

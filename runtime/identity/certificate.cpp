@@ -9,6 +9,7 @@
 
 #include "bytes.hpp"
 #include "crypto.hpp"
+#include "skein/base/stations.hpp"
 #include "text_form.hpp"
 
 namespace skein::identity {
@@ -89,7 +90,10 @@ Result<Certificate> certificate_from(Span bytes) {
   c.signature = in.array<64>("signature");
 
   in.require((c.role == Role::authority) == (c.serial.value == 0), "serial");
-  in.require((c.role == Role::vehicle) == (c.node != kGroundStation), "node");
+  const bool is_right = c.role == Role::vehicle  ? c.node != kGroundStation && !is_station(c.node)
+                        : c.role == Role::ground ? c.node == kGroundStation || is_station(c.node)
+                                                 : c.node == kGroundStation;
+  in.require(is_right, "node");
   in.require(is_named(c.role) ? is_name(c.name) : c.name.empty(), "name");
   in.require(before < after, "not_before");
   in.require(after <= static_cast<std::uint64_t>(kLastUnixS), "not_after");
@@ -184,7 +188,8 @@ std::string holder_of(const Certificate& certificate) {
     case Role::op:
       return fmt::format("operator {}", certificate.name);
     case Role::ground:
-      return "ground station";
+      if (!is_station(certificate.node)) return "ground station";
+      return fmt::format("ground station {}", station_number(certificate.node));
     case Role::authority:
       break;
   }

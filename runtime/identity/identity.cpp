@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
@@ -98,7 +99,8 @@ Result<std::uint16_t> starts_of(const KeyFolder& keys) {
   return *starts;
 }
 
-Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node) {
+Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node,
+                                      std::uint16_t at_least) {
   const auto lock = FolderLock::take(keys.folder);
   if (!lock) return lock.error();
   const auto starts = starts_of(keys);
@@ -109,7 +111,7 @@ Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node) {
                     "enrol anew",
                     keys.folder.string())};
   }
-  const auto number = static_cast<std::uint16_t>(*starts + 1);
+  const auto number = std::max(static_cast<std::uint16_t>(*starts + 1), at_least);
   if (auto kept = write_file(keys.folder / kStartsFile, fmt::format("{}\n", number), Durable::yes);
       !kept) {
     return kept.error();
@@ -120,6 +122,19 @@ Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node) {
       .sender = node,
       .number = number,
       .random = static_cast<std::uint32_t>(random[0] << 16U | random[1] << 8U | random[2])};
+}
+
+Result<void> note_start(const KeyFolder& keys, std::uint16_t number) {
+  const auto lock = FolderLock::take(keys.folder);
+  if (!lock) return lock.error();
+  const auto starts = starts_of(keys);
+  if (!starts) return starts.error();
+  if (*starts >= number) return {};
+  return write_file(keys.folder / kStartsFile, fmt::format("{}\n", number), Durable::yes);
+}
+
+std::uint16_t start_number(InstanceId instance) {
+  return static_cast<std::uint16_t>(instance.value >> 24U);
 }
 
 InstanceId instance_of(const seal::SenderStart& start) {

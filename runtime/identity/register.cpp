@@ -43,7 +43,7 @@ Result<void> in_order(const Register& mission) {
   for (std::size_t i = 0; i < mission.members.size(); ++i) {
     const Certificate& member = mission.members[i];
     if (member.serial.value != i + 1 || member.mission != mission.authority.mission ||
-        (member.role == Role::ground) != (i == 0)) {
+        (member.role == Role::ground && member.node == kGroundStation) != (i == 0)) {
       return Error{fmt::format("its certificate {} does not belong there", i + 1)};
     }
   }

@@ -4,6 +4,7 @@
 #include "bytes.hpp"
 #include "crypto.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/base/stations.hpp"
 
 namespace skein::identity {
 namespace {
@@ -88,10 +89,29 @@ Trust Verifier::learn(const RevocationList& list) {
   return trust;
 }
 
+bool Verifier::knows_stations() const {
+  const auto first = nodes_.lower_bound(kFirstStation);
+  return first != nodes_.end() && is_station(first->first);
+}
+
 Trust Verifier::verify(const Statement& statement, const Signature& signature) const {
+  if (statement.sender == kGroundStation && knows_stations()) {
+    return verify_of_stations(signed_bytes(authority_.mission, statement), signature);
+  }
   const auto by = nodes_.find(statement.sender);
   if (by == nodes_.end()) return Trust::unknown;
   return verify(by->second, signed_bytes(authority_.mission, statement), signature);
+}
+
+Trust Verifier::verify_of_stations(Span said, const Signature& signature) const {
+  Trust trust = Trust::unknown;
+  for (const auto& [node, by] : nodes_) {
+    if (by.role != Role::ground) continue;
+    const Trust of_it = verify(by, said, signature);
+    if (of_it == Trust::good) return of_it;
+    if (trust != Trust::revoked) trust = of_it;
+  }
+  return trust;
 }
 
 Trust Verifier::verify(const std::string& op, const Approval& approval,

@@ -10,6 +10,7 @@
 #include "crypto.hpp"
 #include "files.hpp"
 #include "key_text.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/identity/authority.hpp"
 #include "skein/identity/node_key.hpp"
 
@@ -33,6 +34,7 @@ Result<void> make_operator(Authority& authority, const std::filesystem::path& fo
 }  // namespace
 
 std::filesystem::path node_folder(const std::filesystem::path& folder, VehicleId node) {
+  if (is_station(node)) return folder / fmt::format("ground-{}", station_number(node));
   return folder / (node == kGroundStation ? "ground" : fmt::format("vehicle-{}", node.value));
 }
 

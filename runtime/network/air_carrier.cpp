@@ -225,7 +225,7 @@ void AirCarrier::run() {
     for (const Heard& heard : std::exchange(heard_, {})) {
       if (!heard.topic) {
         sink_.on_certificate(heard.bytes);
-      } else if (codec::info(*heard.topic).readers.has(config_.role)) {
+      } else if (config_.overhears || codec::info(*heard.topic).readers.has(config_.role)) {
         sink_.on_sample(*heard.topic, heard.author.node, heard.author.instance, heard.bytes);
       }
     }

@@ -33,6 +33,7 @@ struct CarrierConfig {
     seal::CounterRange counters;
   };
   std::optional<Seal> seal;
+  bool overhears = false;                 ///< by the air
   std::vector<std::uint8_t> certificate;  ///< told to all; of a node that signs, else empty
   std::string transport_plugin;
 };

@@ -308,6 +308,7 @@ CarrierConfig carrier_config(const NodeConfig& config) {
   carrier.peers = config.peers;
   carrier.air = config.air;
   if (config.seal) carrier.seal = CarrierConfig::Seal{config.seal->start, config.seal->key, {}};
+  carrier.overhears = config.overhears;
   if (config.sign) carrier.certificate = identity::to_bytes(config.sign->own);
   carrier.transport_plugin = config.transport_plugin;
   return carrier;

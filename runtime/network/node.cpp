@@ -15,6 +15,7 @@
 #include "skein/base/bounded_queue.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/mission/may_say.hpp"
+#include "skein/mission/newest_station.hpp"
 
 namespace skein::network {
 namespace {
@@ -40,6 +41,7 @@ enum class Counter : std::uint8_t {
   signature_forged,
   signature_replayed,
   key_news_forged,
+  station_superseded,
   count
 };
 constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCounterNames{
@@ -58,7 +60,8 @@ constexpr std::array<const char*, static_cast<std::size_t>(Counter::count)> kCou
     "signature_missing",
     "signature_forged",
     "signature_replayed",
-    "key_news_forged"};
+    "key_news_forged",
+    "station_superseded"};
 
 }  // namespace
 
@@ -87,6 +90,8 @@ class Node::Impl : private CarrierSink {
   }
   void learn(const identity::RevocationList& revoked) {
     if (signatures_) signatures_->learn(revoked);
+    const std::lock_guard lock{queue_mutex_};
+    station_ = {};  // it may have been who is out
   }
   void count_forged_key_news() { count(Counter::key_news_forged); }
   [[nodiscard]] bool seals() const { return config_.seal.has_value(); }
@@ -100,6 +105,7 @@ class Node::Impl : private CarrierSink {
   }
   void refuse(Topic topic, const codec::Refusal& refusal, VehicleId sender);
   void refuse(Signatures::Judged judged);
+  [[nodiscard]] bool heeds_station(const mission::Message& message, InstanceId instance);
   void count(Counter counter) {
     counters_.at(static_cast<std::size_t>(counter)).fetch_add(1, std::memory_order_relaxed);
   }
@@ -110,6 +116,7 @@ class Node::Impl : private CarrierSink {
   std::array<std::atomic<std::uint64_t>, kCounterNames.size()> counters_{};
   mutable std::mutex queue_mutex_;
   BoundedQueue<Received> queue_;
+  mission::NewestStation station_;  ///< under the same mutex
   std::mutex misfits_mutex_;
   std::set<std::tuple<VehicleId, Topic, std::uint16_t>> misfits_seen_;
   std::vector<Misfit> misfits_;
@@ -166,12 +173,22 @@ void Node::Impl::on_sample(Topic topic, VehicleId sender, InstanceId instance,
     if (judged != Signatures::Judged::good) return refuse(judged);
   }
   bool room = false;
+  bool is_heeded = true;
   {
     const std::lock_guard lock{queue_mutex_};
-    room = queue_.push(Received{std::move(message), sender});
+    if (sender == kGroundStation) is_heeded = heeds_station(message, instance);
+    if (is_heeded) room = queue_.push(Received{std::move(message), sender, instance});
   }
+  if (!is_heeded) return count(Counter::station_superseded);
   count(room ? Counter::received : Counter::dropped_full);
   if (room && config_.on_received) config_.on_received();
+}
+
+/// What nobody has proven supersedes none: the seal looks after who repeats an older start's.
+bool Node::Impl::heeds_station(const mission::Message& message, InstanceId instance) {
+  const bool is_proven = !signatures_ || mission::is_signed(message);
+  if (is_proven) return station_.heeds(instance);
+  return !station_.newest() || *station_.newest() <= instance;
 }
 
 void Node::Impl::refuse(Signatures::Judged judged) {

@@ -61,7 +61,9 @@ void Signatures::learn(std::span<const std::uint8_t> certificate) {
   if (!read || read->role == identity::Role::op) return;
   const Unverified heard{*read, std::chrono::duration_cast<std::chrono::seconds>(since_1970())};
   const std::lock_guard lock{mutex_};
-  const auto [from, to] = unverified_.equal_range(read->node);
+  // Whichever ground station has the command speaks as the one.
+  const VehicleId speaks_as = read->role == identity::Role::ground ? kGroundStation : read->node;
+  const auto [from, to] = unverified_.equal_range(speaks_as);
   if (std::any_of(from, to, [&](const auto& one) { return one.second.certificate == *read; })) {
     return;
   }
@@ -69,7 +71,7 @@ void Signatures::learn(std::span<const std::uint8_t> certificate) {
   if (full || static_cast<std::size_t>(std::distance(from, to)) >= kUnverifiedOfNode) {
     return verify(heard);
   }
-  unverified_.emplace(read->node, heard);
+  unverified_.emplace(speaks_as, heard);
 }
 
 void Signatures::verify_certificates(VehicleId of) {
@@ -92,6 +94,9 @@ void Signatures::verify(const Unverified& unverified) {
 void Signatures::learn(const identity::RevocationList& list) {
   const std::lock_guard lock{mutex_};
   (void)verifier_.learn(list);
+  // A ground station that is out may have used up the numbers of all.
+  if (!verifier_.knows_stations()) return;
+  std::erase_if(newest_, [](const auto& newest) { return newest.first.first == kGroundStation; });
 }
 
 void Signatures::sign(codec::Topic topic, std::vector<std::uint8_t>& bytes) {

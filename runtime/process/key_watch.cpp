@@ -21,11 +21,12 @@ constexpr Duration kOldKeyFor = std::chrono::seconds{3};
 }  // namespace
 
 KeyWatch::KeyWatch(network::Node& node, identity::Identity identity, std::filesystem::path folder,
-                   OnTold on_told)
+                   OnTold on_told, OnKey on_key)
     : node_{node},
       identity_{std::move(identity)},
       folder_{std::move(folder)},
       on_told_{std::move(on_told)},
+      on_key_{std::move(on_key)},
       thread_{[this] { run(); }} {}
 
 KeyWatch::~KeyWatch() {
@@ -38,7 +39,8 @@ KeyWatch::~KeyWatch() {
 }
 
 void KeyWatch::run() {
-  const bool has_authority = identity_.own().role == identity::Role::ground;
+  const bool has_authority =
+      identity_.own().role == identity::Role::ground && identity_.own().node == kGroundStation;
   std::unique_lock lock{mutex_};
   while (!changed_.wait_for(lock, kPeriod, [this] { return ending_; })) {
     if (has_authority) {
@@ -52,6 +54,7 @@ void KeyWatch::run() {
 void KeyWatch::begin_epoch() {
   node_.learn(identity_.revoked());
   node_.change_key(identity_.epoch_key(), kOldKeyFor);
+  on_key_(identity_.revoked(), identity_.epoch_key(), kOldKeyFor);
   spdlog::info("the team has another key from now on, of epoch {}; revoked so far: {}",
                identity_.epoch_key().epoch, identity_.revoked().serials.size());
 }

@@ -6,11 +6,14 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <limits>
 #include <random>
 #include <system_error>
 #include <utility>
 
+#include "skein/base/stations.hpp"
 #include "skein/identity_desk/given.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -18,10 +21,25 @@ namespace skein::process {
 
 namespace {
 
+/// How often others may have started that were not heard.
+constexpr std::uint32_t kStartsUnheard = 200;
+
 InstanceId random_instance() {
   std::random_device device;
   const std::uint64_t high = device();
   return {high << 32U | device()};
+}
+
+/// In clear nobody counts a ground station's starts: by its clock, in steps of 256 ms since 2024,
+/// and by chance where two start in one; 40 bits, as all carriers have them.
+InstanceId instance_by_clock() {
+  constexpr std::int64_t kYear2024_unix_ms = 1'704'067'200'000;
+  const auto since_1970 = std::chrono::duration_cast<std::chrono::milliseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+  const std::int64_t steps =
+      std::max<std::int64_t>(0, since_1970.count() - kYear2024_unix_ms) / 256;
+  std::random_device device;
+  return {(static_cast<std::uint64_t>(steps) & 0x7FFF'FFFFU) << 9U | (device() & 0x1FFU)};
 }
 
 bool is_loopback(const std::string& address) { return address.starts_with("127."); }
@@ -54,7 +72,10 @@ Result<std::optional<identity::Identity>> identity_of(const configuration::Netwo
   auto known =
       identity::Identity::open(identity::KeyFolder::of(config.keys), identity_desk::now_unix_s());
   if (!known) return known.error();
-  if (known->own().node != self) {
+  // The mission's own ground station has no certificate besides for the number that it listens as.
+  const bool is_own_ear = is_station(self) && known->own().node == kGroundStation &&
+                          known->own().role == identity::Role::ground;
+  if (known->own().node != self && !is_own_ear) {
     return Error{config.keys + ": has the keys of " + wording::text_of(known->own().node) +
                  ", and this is " + wording::text_of(self) + "; give it a folder of its own"};
   }
@@ -85,7 +106,7 @@ Result<NodeStart> start_node(const configuration::NetworkConfig& config, Vehicle
   start.self = self;
   start.identity = std::move(identity).value();
   if (!start.identity) {
-    start.instance = random_instance();
+    start.instance = self == kGroundStation ? instance_by_clock() : random_instance();
     return start;
   }
   const auto counted = identity::count_start(identity::KeyFolder::of(config.keys), self);
@@ -93,6 +114,29 @@ Result<NodeStart> start_node(const configuration::NetworkConfig& config, Vehicle
   start.instance = identity::instance_of(*counted);
   start.seal = network::SealConfig{*counted, start.identity->epoch_key()};
   return start;
+}
+
+Result<Voice> start_voice(const configuration::NetworkConfig& config, const NodeStart& heard_as,
+                          std::optional<InstanceId> newest) {
+  Voice voice;
+  if (!heard_as.seal) {
+    voice.instance = instance_by_clock();
+    if (newest && voice.instance <= *newest) voice.instance = {newest->value + 1};
+    return voice;
+  }
+  const auto keys = identity::KeyFolder::of(config.keys);
+  const auto starts = identity::starts_of(keys);
+  if (!starts) return starts.error();
+  // Who has heard no other does not know how often they have started.
+  const auto beyond = std::max<std::uint32_t>(newest ? identity::start_number(*newest) + 1U : 0U,
+                                              newest ? 0U : *starts + kStartsUnheard);
+  const auto at_least = static_cast<std::uint16_t>(
+      std::min<std::uint32_t>(beyond, std::numeric_limits<std::uint16_t>::max()));
+  const auto counted = identity::count_start(keys, kGroundStation, at_least);
+  if (!counted) return counted.error();
+  voice.instance = identity::instance_of(*counted);
+  voice.start = *counted;
+  return voice;
 }
 
 std::string how_it_speaks(const NodeStart& start) {
@@ -106,7 +150,9 @@ network::NodeConfig node_config(const configuration::NetworkConfig& config, cons
   node.domain = config.domain_id;
   node.self = start.self;
   node.instance = start.instance;
-  node.role = start.self == kGroundStation ? codec::Role::ground : codec::Role::vehicle;
+  const bool is_ground = start.self == kGroundStation || is_station(start.self);
+  node.role = is_ground ? codec::Role::ground : codec::Role::vehicle;
+  node.overhears = is_station(start.self);
   node.seal = start.seal;
   if (start.identity) {
     node.sign = network::SignConfig{start.identity->signer(), start.identity->own(),
@@ -167,7 +213,7 @@ Traffic traffic_of(const network::Node& node) {
       traffic.of_strangers += count;
     } else if (name.starts_with("seal_")) {
       if (name != "seal_opened") traffic.of_strangers += count;
-    } else if (!name.starts_with("air_")) {
+    } else if (!name.starts_with("air_") && name != "station_superseded") {
       traffic.dropped += count;
     }
   }

@@ -114,6 +114,37 @@ TEST_F(EndToEnd, TheSmallMissionIsFlownAndJudged) {
   EXPECT_NE(output().find("vehicle 6: "), std::string::npos) << output();
 }
 
+// Its script decides there, and not before the first one is gone.
+TEST_F(EndToEnd, TheSecondGroundStationTakesOverFromOneThatHasDied) {
+  const auto late = scenario_with(
+      "  - {site: 1, decision: grant, reaction_s: 1}\n",
+      "  - {site: 1, decision: grant, reaction_s: 1, not_before_s: 21}\n"
+      "faults:\n"
+      "  - {at_s: 8, kill_vehicle: 0}\n");
+  EXPECT_EQ(run({"run", late, "--headless", "--ground-stations", "2", "--take-command", "20", "--out",
+                 (folder_ / "run").string()}),
+            "exit status 0")
+      << output();
+  const auto log = text_of(folder_ / "run" / "ground-2.log");
+  EXPECT_NE(log.find("ground-1 has the command: this ground station only watches"),
+            std::string::npos);
+  EXPECT_NE(log.find("NOBODY is in command: ground-1 was not heard"), std::string::npos) << log;
+  EXPECT_NE(log.find("this ground station has the command: ground-2"), std::string::npos);
+}
+
+TEST_F(EndToEnd, TheFirstGroundStationStepsBackWhereTheSecondTakesTheCommand) {
+  const auto late = scenario_with("reaction_s: 1}", "reaction_s: 1, not_before_s: 15}");
+  EXPECT_EQ(run({"run", late, "--headless", "--ground-stations", "2", "--take-command", "10", "--out",
+                 (folder_ / "run").string()}),
+            "exit status 0")
+      << output();
+  const auto first = text_of(folder_ / "run" / "ground.log");
+  EXPECT_NE(first.find("this ground station has the command: ground-1"), std::string::npos);
+  EXPECT_NE(first.find("ground-2 (rehearsal) has the command: this ground station only watches"),
+            std::string::npos)
+      << first;
+}
+
 TEST_F(EndToEnd, CoptersSurveyAndAssessWhatPlanesDeliver) {
   const std::string mission = SKEIN_SOURCE_DIR "/scenarios/mixed-6.yaml";
   EXPECT_EQ(run({"run", mission, "--headless", "--rate", "3", "--out", (folder_ / "run").string()}),

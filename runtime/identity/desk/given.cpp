@@ -54,6 +54,20 @@ std::string name_of_given(const std::string& argument, std::string_view prefix) 
   return argument == "-" ? "standard input" : argument;
 }
 
+Result<identity::Membership> given_membership(const std::string& argument) {
+  const auto lines = given_lines(argument, "SKEIN-");
+  if (!lines) return lines.error();
+  if (lines->size() != 1) {
+    return Error{"a membership is one line, and here are " + std::to_string(lines->size())};
+  }
+  auto membership = identity::membership_from_text(lines->front());
+  if (!membership) {
+    return Error{name_of_given(argument, "SKEIN-") + ": " + membership.error().message +
+                 "; wanted is what 'skein-ground mission enrol' answered to this node's request"};
+  }
+  return membership;
+}
+
 std::int64_t now_unix_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(
              std::chrono::system_clock::now().time_since_epoch())

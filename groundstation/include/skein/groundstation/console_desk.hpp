@@ -46,13 +46,17 @@ class ConsoleDesk {
   void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event, Instant now);
-  /// `audit` and `areas` are their sections.
-  void on_timeout(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
-                  Instant now);
+  /// What is shown that is not of the picture: sections, and whether nobody has the command.
+  struct Beside {
+    const std::string& audit;
+    const std::string& areas;
+    const std::string& command;
+    bool nobody_commands = false;
+  };
+  void on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now);
 
   /// The newest of everything, and last `text`: the program is about to end.
-  void end(const mission::Fleet& fleet, const std::string& audit, const std::string& areas,
-           const std::string& text, Instant now);
+  void end(const mission::Fleet& fleet, const Beside& beside, const std::string& text, Instant now);
 
   [[nodiscard]] const console::Alarms& alarms() const { return alarms_; }
   /// What came of `order` of that operator.

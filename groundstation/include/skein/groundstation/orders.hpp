@@ -66,7 +66,8 @@ enum class View {
   links,
   wind,
   alarms,
-  console  ///< its address
+  command,  ///< who has it
+  console   ///< its address
 };
 /// What that vehicle's checks find.
 struct PreflightOf {
@@ -194,12 +195,18 @@ struct Acknowledge {
   std::vector<std::uint32_t> numbers;  ///< empty: all that wait for it
 };
 struct Quit {};
+/// This ground station, which watches, takes the command from whoever has it.
+struct TakeCommand {
+  std::string reason;  ///< for the others; may be empty
+};
+/// The one that has it asks the others to take it.
+struct HandOver {};
 /// monostate: an empty line.
 using Input =
     std::variant<std::monostate, View, Decision, Order, OrderToSeveral, NewHazard, WithdrawHazard,
                  NewSite, SitesFromFile, WithdrawSite, RoutesFromFile, CallOffRoutes,
                  ProposalAnswer, Formation, Wait, Record, Quit, PreflightOf, NewFence, StatusOf,
-                 ReturnPreview, SearchArea, Acknowledge, TakeBack>;
+                 ReturnPreview, SearchArea, Acknowledge, TakeBack, TakeCommand, HandOver>;
 
 /// "line_abreast" as it is typed: "line-abreast".
 [[nodiscard]] std::string hyphened(std::string_view name);

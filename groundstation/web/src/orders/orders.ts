@@ -160,6 +160,10 @@ export function words_of_order(order: Order): string {
       return `${order.command.replaceAll("_", " ")} ${ids(order.vehicles)}`;
     case "decision":
       return `${order.grant ? "authorise" : "refuse"} ${order.site}${order.override ? " override" : ""}`;
+    case "take_command":
+      return order.reason === "" ? "take command" : `take command ${order.reason}`;
+    case "hand_over":
+      return "hand over";
     case "hazard":
       return `${order.hazard === undefined ? "hazard" : `change hazard ${order.hazard}`} ${order.corners ? `polygon ${words_of_corners(order.corners)}` : `${order.x} ${order.y} ${order.radius_m}`}`;
     case "search":

@@ -2,7 +2,7 @@
 import { give, hold_all } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { ReturnForm } from "../returns/return_preview";
-import { formation, hello, in_replay, may_order } from "../wire/store";
+import { formation, hello, in_replay, is_operator, may_order } from "../wire/store";
 import { FormationForm } from "./formation_form";
 import { HazardForm } from "./hazard_form";
 import { command } from "./orders";
@@ -33,7 +33,8 @@ function ToAll() {
 
 export function OrdersPanel() {
   if (!may_order.value) {
-    return <p class="empty">{in_replay.value ? "A recording takes no orders." : "An observer gives no orders."}</p>;
+    const watches = is_operator.value ? "This ground station watches: orders are given where the command is." : "An observer gives no orders.";
+    return <p class="empty">{in_replay.value ? "A recording takes no orders." : watches}</p>;
   }
   return (
     <div class="scroll orders" tabIndex={0} role="region" aria-label="Orders">

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must not be overlooked: the picture is old, or a recording, or only to be looked at.
 
+import { CommandBanner } from "../command/command_banner";
+import { TeamBanner } from "../command/team_state";
 import { ended, hello, in_replay, link, shown } from "../wire/store";
 import { lost_for_s } from "./connection";
 import { clock, duration } from "./format";
@@ -38,6 +40,8 @@ export function Banners() {
     <>
       <EndedBanner />
       <LostBanner />
+      <CommandBanner />
+      <TeamBanner />
       {in_replay.value && (
         <div class="banner replay" role="status" data-testid="banner-replay">
           <b>Recording</b> {hello.value?.replay?.name}: nothing here is happening now, and no orders can be given.

@@ -13,9 +13,11 @@ interface Props {
   disabled?: boolean;
   testid: string;
   label?: string;
+  /** How long it is to be kept pressed. */
+  seconds?: number;
 }
 
-export function HoldButton({ on_held, children, kind = "plain", disabled = false, testid, label }: Props) {
+export function HoldButton({ on_held, children, kind = "plain", disabled = false, testid, label, seconds = press_ms / 1000 }: Props) {
   const [pressing, set_pressing] = useState(false);
   const [hint, set_hint] = useState(false);
   const timer = useRef(0);
@@ -35,7 +37,7 @@ export function HoldButton({ on_held, children, kind = "plain", disabled = false
       done.current = true;
       cancel();
       on_held();
-    }, press_ms);
+    }, seconds * 1000);
   };
   const end = () => {
     if (timer.current === 0) return;
@@ -54,7 +56,7 @@ export function HoldButton({ on_held, children, kind = "plain", disabled = false
       disabled={disabled}
       aria-label={label}
       data-testid={testid}
-      title="Press and keep pressed for one second"
+      title={`Press and keep pressed for ${seconds === 1 ? "one second" : `${seconds} seconds`}`}
       onPointerDown={(event) => {
         if (event.button !== 0) return;
         begin();
@@ -73,9 +75,9 @@ export function HoldButton({ on_held, children, kind = "plain", disabled = false
       }}
       onBlur={cancel}
     >
-      <span class="hold-progress" aria-hidden="true" />
+      <span class="hold-progress" aria-hidden="true" style={{ transitionDuration: pressing ? `${seconds}s` : undefined }} />
       <span class="hold-text">{children}</span>
-      <span class="hold-hint">{pressing ? "keep pressed …" : hint ? "press for 1 s" : "hold 1 s"}</span>
+      <span class="hold-hint">{pressing ? "keep pressed …" : hint ? `press for ${seconds} s` : `hold ${seconds} s`}</span>
     </button>
   );
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import { aged_picture, ended, hello, in_replay, link, log_out, lost_s, may_order, mission_now_s, session, shown } from "../wire/store";
 import { list_open } from "../alarms/alarm_state";
+import { CommandMark } from "../command/command_banner";
+import { TeamMark } from "../command/team_state";
 import { count_alarms } from "./alarms";
 import { clock, utc } from "./format";
 import { hold_all } from "./give";
@@ -76,6 +78,8 @@ export function TopBar() {
         <span class="dot" aria-hidden="true" />
         <span class="words">{link.value !== "open" && ended.value ? "ended" : link_words[link.value]}</span>
       </span>
+      <CommandMark />
+      <TeamMark />
       {greeting?.sealed === false && (
         <span class="link-state lost" data-testid="in-clear" title="Whoever reaches the mission network can read and command it">
           <span class="dot" aria-hidden="true" />

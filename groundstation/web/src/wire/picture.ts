@@ -43,6 +43,8 @@ export const section_names = [
   "areas",
   "alarms",
   "traffic",
+  "command",
+  "team",
 ] as const satisfies readonly (keyof Sections)[];
 
 export function empty_picture(): Picture {
@@ -67,6 +69,8 @@ export function empty_picture(): Picture {
     areas: null,
     alarms: null,
     traffic: [],
+    command: null,
+    team: [],
     events: [],
     next_seq: 0,
     events_missed: 0,

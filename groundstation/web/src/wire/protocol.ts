@@ -291,6 +291,8 @@ export interface Sections {
   areas: Areas | null;
   alarms: Alarms | null;
   traffic: TrafficAircraft[];
+  command: CommandState | null;
+  team: TeamRow[];
 }
 
 /** Where all vehicles are to stay. */
@@ -474,6 +476,33 @@ export interface TrafficAircraft {
   } | null;
 }
 
+/** Which ground station has the command. */
+export interface CommandState {
+  state: "listening" | "watching" | "commanding";
+  /** There are others, to which it can be handed, or from which it can be taken. */
+  several: boolean;
+  name: string;
+  /** Who has it, or had it last; empty: not known. */
+  who: string;
+  since_s: number;
+  heard_s: number | null;
+  /** Who had it has not been heard for 10 s. */
+  nobody: boolean;
+  /** Who has it asks others to take it. */
+  offered: boolean;
+  text: string;
+}
+
+/** The team's state as a whole; the first row is it. */
+export interface TeamRow {
+  state: string;
+  level: "alarm" | "warning" | "info";
+  title: string;
+  means: string;
+  to_do: string;
+  vehicles: number[];
+}
+
 export type Readiness = "ready" | "not_ready" | "in_flight" | "not_known";
 export type CheckMark = "ok" | "warn" | "fail" | "not_looked_at" | "not_known";
 
@@ -605,6 +634,16 @@ export interface CommandToSeveral {
   vehicles: number[];
 }
 
+export interface TakeCommand {
+  kind: "take_command";
+  /** For the others' operators; may be empty. */
+  reason: string;
+}
+
+export interface HandOver {
+  kind: "hand_over";
+}
+
 /** On the plan that was on the screen, and on no other. */
 export interface Decision {
   kind: "decision";
@@ -698,7 +737,7 @@ export interface Acknowledgement {
   alarms: number[];
 }
 
-export type Order = Acknowledgement | Command | CommandToSeveral | Decision | NewHazard | SearchOrder | FenceOrder | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder;
+export type Order = Acknowledgement | Command | CommandToSeveral | Decision | NewHazard | SearchOrder | FenceOrder | SiteOrder | Withdrawal | ProposalAnswer | FormationOrder | TakeCommand | HandOver;
 
 export interface Session {
   user: string;

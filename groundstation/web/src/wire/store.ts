@@ -64,8 +64,12 @@ export const traffic = computed(() => aged_picture.value.traffic);
 export const replay = computed(() => shown.value.replay);
 export const events = computed(() => shown.value.events);
 export const in_replay = computed(() => Boolean(hello.value?.replay));
-/** Whether this page may give orders. */
-export const may_order = computed(() => hello.value?.role === "operator" && !in_replay.value);
+export const command_state = computed(() => shown.value.command);
+export const team = computed(() => shown.value.team);
+/** Whether this page is an operator's, who may take the command. */
+export const is_operator = computed(() => hello.value?.role === "operator" && !in_replay.value);
+/** Whether this page may give orders: an operator's, of the ground station that has the command. */
+export const may_order = computed(() => is_operator.value && (command_state.value?.state ?? "commanding") === "commanding");
 
 /** The newest picture, without waiting for the panels' turn. */
 export function current(): Picture {
@@ -122,7 +126,7 @@ function receive(message: FromServer): void {
   for (const listener of listeners) listener(picture);
   // What waits for a person, and what answers him, is shown at once.
   const urgent = picture.authorisations !== before.authorisations || picture.formation !== before.formation ||
-    picture.hello !== before.hello || picture.ended !== before.ended || picture.replay !== before.replay;
+    picture.hello !== before.hello || picture.command !== before.command || picture.ended !== before.ended || picture.replay !== before.replay;
   const wait = urgent ? 0 : panels_at + panels_every_ms - performance.now();
   if (wait <= 0) {
     window.clearTimeout(panels_timer);

@@ -78,6 +78,15 @@ class GroundAgent {
   /// flown and told. Telemetry is passed over.
   void recall(const Message& message, VehicleId sender, Instant at);
 
+  /// Another ground station has the command: nothing is decided, repeated or passed on from now on;
+  /// or this one has it (again), from the start on.
+  void set_watching(bool watching) { watching_ = watching; }
+  /// What the ground station that has the command has just said: its decisions are this one's.
+  void overhear(const Message& message, Instant now);
+  /// A vehicle has heard of an order with that number: those to come are greater, whoever gave it.
+  void note_order(std::uint64_t number, Instant now);
+  [[nodiscard]] std::uint64_t newest_order() const { return last_command_; }
+
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
@@ -182,6 +191,7 @@ class GroundAgent {
   std::vector<SentCommand> commands_;
   std::map<SiteId, std::string> withdrawn_;  ///< and by whom
   std::uint64_t last_command_ = 0;
+  bool watching_ = false;
   Instant next_repeat_ = Instant::max();  ///< of the authorisations
   std::set<EventKey> seen_events_;
   BoundedQueue<Message> messages_{256};

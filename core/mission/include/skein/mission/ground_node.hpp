@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -48,6 +49,15 @@ class GroundNode {
 
   /// As GroundAgent::recall(); what was not its sender's to say is passed over.
   void recall(const Message& message, VehicleId sender, Instant at);
+
+  /// Another ground station has the command: nothing is decided or said from now on. What the other
+  /// says is taken in, so that this one knows what it must when it takes over. Orders to this node
+  /// are the caller's to refuse meanwhile.
+  void watch(Instant now);
+  /// This one has it from now on, as that start of the ground station, which is newer than all that
+  /// vehicles have heard. What it cannot know vehicles tell each other first, as after a new start.
+  void take_command(InstanceId start, Instant now);
+  [[nodiscard]] bool is_watching() const { return watching_; }
 
   /// False where it is refused.
   bool on_message(const Message& message, VehicleId sender, Instant now);
@@ -146,8 +156,12 @@ class GroundNode {
  private:
   void take_events();
   void use_fence();
+  void overhear(const Message& message, VehicleId sender, Instant now);
+  void drop_words();
+  [[nodiscard]] std::optional<Message> next_message();
   void note_refusal(const Authorisation& decision, Instant now);
   void on_setup(const Setup& setup, Instant now);
+  void order_again(const Setup& setup, const Command& standing, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
   [[nodiscard]] std::optional<std::string> why_not_return(VehicleId vehicle) const;
@@ -159,6 +173,7 @@ class GroundNode {
   FormationGround formation_;
   TrackGround tracks_;
   SetupBook setup_;
+  InstanceId start_;  ///< that it speaks as
   OrderBook orders_;
   Instant knows_orders_at_;  ///< from then on it says of who has none that it has none
   GroundSites sites_;
@@ -171,7 +186,12 @@ class GroundNode {
   GroundLanding landings_;
   GroundTraffic traffic_;
   std::uint64_t refused_ = 0;
-  BoundedQueue<Message> messages_{64};  ///< the node's own
+  bool watching_ = false;
+  /// The first order of this ground station since it took the command from another; none: it never
+  /// did.
+  std::optional<std::uint64_t> reign_from_;
+  std::map<VehicleId, std::uint64_t> told_;  ///< the newest order to each, and to all
+  BoundedQueue<Message> messages_{64};       ///< the node's own
   BoundedQueue<MissionEvent> events_{64};
 };
 

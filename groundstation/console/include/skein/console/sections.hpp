@@ -33,6 +33,8 @@ enum class Section : std::uint8_t {
   areas,
   alarms,
   traffic,
+  command,
+  team,
   count
 };
 inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::count);
@@ -41,8 +43,8 @@ inline constexpr std::size_t kSectionCount = static_cast<std::size_t>(Section::c
 /// One JSON value a section; empty where there is none.
 using Sections = std::array<std::string, kSectionCount>;
 
-/// All but `audit`, `areas`, `replay` and `alarms`, which are not of the picture. `version` is what
-/// vehicles should run, so that others are named.
+/// All but `audit`, `replay`, `areas`, `alarms` and `command`, which are not of the picture.
+/// `version` is what vehicles should run, so that others are named.
 [[nodiscard]] Sections sections_of(const Picture& picture, const mission::Fleet& fleet,
                                    const MissionOrigin& origin, const std::string& version,
                                    Instant now);

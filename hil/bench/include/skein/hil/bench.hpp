@@ -38,9 +38,11 @@ struct BenchOptions {
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.
   std::string links;
-  bool sealed = true;              ///< with keys that are made for the run
-  std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
-  std::string console_token;       ///< that opens it
+  bool sealed = true;                      ///< with keys that are made for the run
+  std::uint16_t console_port = 0;          ///< of the ground station's page; 0: it has none
+  std::string console_token;               ///< that opens it
+  int ground_stations = 1;                 ///< 2: the second watches; its page is at the next port
+  std::optional<Instant> take_command_at;  ///< when the second takes the command; none: never
   bool prompt =
       false;  ///< leave the decisions to skein-ground's prompt (its input is the terminal's)
 };

@@ -11,6 +11,7 @@
 #include "skein/base/result.hpp"
 #include "skein/coalition/protocol_params.hpp"
 #include "skein/configuration/agencies_config.hpp"
+#include "skein/configuration/command_config.hpp"
 #include "skein/configuration/formation_config.hpp"
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/remote_id_config.hpp"
@@ -75,6 +76,7 @@ struct GroundConfig {
   ConsoleConfig console;
   AgenciesConfig agencies;
   TeamRemoteId remote_id;
+  CommandConfig command;
   OperatorConfig op;
   std::string control_socket;    ///< its name; empty: by the network's port
   std::string recording_folder;  ///< empty: nothing is recorded

@@ -25,7 +25,9 @@ struct Certificate {
   MissionId mission;
   Serial serial;
   Role role = Role::vehicle;
-  VehicleId node;         ///< of a vehicle; else 0
+  /// Of a vehicle; of a ground station that was enrolled beside the mission's own (is_station());
+  /// else 0.
+  VehicleId node;
   std::string name;       ///< of an operator, and in the authority's the mission's; else empty
   PublicKey sign_key{};   ///< Ed25519
   PublicKey agree_key{};  ///< X25519, of ground station and vehicles; else zeros
@@ -46,7 +48,8 @@ inline constexpr std::size_t kCertificateBytesMax = 201;
 [[nodiscard]] Result<Certificate> certificate_from_text(std::string_view text);
 
 [[nodiscard]] std::string fingerprint(const Certificate& certificate);
-/// Whose it is: "vehicle 3", "operator ada", "ground station" or "authority".
+/// Whose it is: "vehicle 3", "operator ada", "ground station", "ground station 2" or
+/// "authority".
 [[nodiscard]] std::string holder_of(const Certificate& certificate);
 
 /// Signs all but the signature, under a purpose of its own.

@@ -23,7 +23,14 @@ namespace skein::identity {
 [[nodiscard]] Result<std::uint16_t> starts_of(const KeyFolder& keys);
 /// Counts one more, on the disk before it returns: call it once in a run, before the first
 /// datagram. No clock has part in it, so that no number comes twice where one begins at 1970.
-[[nodiscard]] Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node);
+/// The number is `at_least` that, where it is to be greater than another machine's.
+[[nodiscard]] Result<seal::SenderStart> count_start(const KeyFolder& keys, VehicleId node,
+                                                    std::uint16_t at_least = 0);
+/// Another machine has started under that number as the node that this one may speak as: the next
+/// start of this one is counted beyond it.
+[[nodiscard]] Result<void> note_start(const KeyFolder& keys, std::uint16_t number);
+/// The number of a start by what instance_of() made of it.
+[[nodiscard]] std::uint16_t start_number(InstanceId instance);
 /// Tells processes apart as the start does.
 [[nodiscard]] InstanceId instance_of(const seal::SenderStart& start);
 

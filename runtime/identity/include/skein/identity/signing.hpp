@@ -77,8 +77,10 @@ class Verifier {
   /// A list of an earlier epoch than the one that is known changes nothing.
   [[nodiscard]] Trust learn(const RevocationList& list);
   [[nodiscard]] bool knows(VehicleId node) const { return nodes_.contains(node); }
+  /// More than one ground station may speak in this mission, as far as is known.
+  [[nodiscard]] bool knows_stations() const;
 
-  /// Did that node say this?
+  /// Did that node say this? As the ground station, did one of the mission's ground stations?
   [[nodiscard]] Trust verify(const Statement& statement, const Signature& signature) const;
   /// Did that operator decide this?
   [[nodiscard]] Trust verify(const std::string& op, const Approval& approval,
@@ -86,6 +88,7 @@ class Verifier {
 
  private:
   [[nodiscard]] Trust verify(const Certificate& by, Span said, const Signature& signature) const;
+  [[nodiscard]] Trust verify_of_stations(Span said, const Signature& signature) const;
 
   Certificate authority_;
   RevocationList revoked_{.mission = {}, .epoch = 0, .serials = {}, .signature = {}};

@@ -67,6 +67,8 @@ struct NodeConfig {
   /// Whether what knows Fast DDS runs in a process of its own (carrier_process.hpp), so that its
   /// faults are not this one's.
   bool isolated = false;
+  /// It hears what is for vehicles alone, too: a ground station that watches another. By the air.
+  bool overhears = false;
   /// A library that stands between this node and its sockets (transport_plugin.hpp). Empty: none.
   std::string transport_plugin;
   /// Whether this node does anything by that message: what it does not heed is not judged either,
@@ -80,6 +82,7 @@ struct NodeConfig {
 struct Received {
   mission::Message message;
   VehicleId sender;
+  InstanceId instance;  ///< of the sender's program
 };
 
 /// A node that is matched on every topic that the two roles share.

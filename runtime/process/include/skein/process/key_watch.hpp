@@ -20,12 +20,16 @@ namespace skein::process {
 class KeyWatch {
  public:
   using OnTold = std::function<void(const identity::RevocationList& revoked)>;
+  /// On its thread, after the node has changed: another of this process has to, too.
+  using OnKey = std::function<void(const identity::RevocationList& revoked,
+                                   const seal::EpochKey& key, Duration old_for)>;
 
   /// `folder` is the node's own (network.keys). `on_told` is called, on its thread, where there are
   /// new news for the others: they go before whatever each is sent next. The node must outlive it.
   KeyWatch(
       network::Node& node, identity::Identity identity, std::filesystem::path folder,
-      OnTold on_told = [](const identity::RevocationList&) {});
+      OnTold on_told = [](const identity::RevocationList&) {},
+      OnKey on_key = [](const auto&, const auto&, Duration) {});
   ~KeyWatch();
   KeyWatch(const KeyWatch&) = delete;
   KeyWatch& operator=(const KeyWatch&) = delete;
@@ -40,6 +44,7 @@ class KeyWatch {
   identity::Identity identity_;
   const std::filesystem::path folder_;
   const OnTold on_told_;
+  const OnKey on_key_;
   std::optional<std::filesystem::file_time_type> changes_of_;
   std::string said_;  ///< the last trouble, told once
   std::mutex mutex_;

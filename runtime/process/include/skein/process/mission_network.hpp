@@ -16,7 +16,7 @@ namespace skein::process {
 
 /// Which start of which node this process is.
 struct NodeStart {
-  VehicleId self;       ///< the ground station is the node with its id (0)
+  VehicleId self;       ///< 0: the ground station; is_station(): one of several, which listens
   InstanceId instance;  ///< two processes with one vehicle id differ in it
   /// Who it is by its keys; none on loopback without: there it is who it says, and speaks in clear.
   std::optional<identity::Identity> identity;
@@ -26,6 +26,16 @@ struct NodeStart {
 /// keys are no good, or there are none and other machines are in the network.
 [[nodiscard]] Result<NodeStart> start_node(const configuration::NetworkConfig& config,
                                            VehicleId self);
+
+/// A start of the ground station by which one of several takes the command: newer than `newest`,
+/// which it has heard of another. None was heard: newer than any is likely to have been.
+struct Voice {
+  InstanceId instance;
+  std::optional<seal::SenderStart> start;  ///< with keys
+};
+[[nodiscard]] Result<Voice> start_voice(const configuration::NetworkConfig& config,
+                                        const NodeStart& heard_as,
+                                        std::optional<InstanceId> newest);
 
 /// Would start_node() refuse here, now? Counts no start.
 [[nodiscard]] Result<void> check_start(const configuration::NetworkConfig& config, VehicleId self);

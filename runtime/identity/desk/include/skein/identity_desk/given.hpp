@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "skein/base/result.hpp"
+#include "skein/identity/membership.hpp"
 
 namespace skein::identity_desk {
 
@@ -17,6 +18,9 @@ namespace skein::identity_desk {
 
 /// What such an argument is, for an error: the file's name, or what stands in its place.
 [[nodiscard]] std::string name_of_given(const std::string& argument, std::string_view prefix);
+
+/// The one membership that an argument names, as the authority answered to this node's request.
+[[nodiscard]] Result<identity::Membership> given_membership(const std::string& argument);
 
 /// By this machine's clock.
 [[nodiscard]] std::int64_t now_unix_s();
