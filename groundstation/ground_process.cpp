@@ -245,8 +245,8 @@ class GroundLoop {
         take_revocations(now);
       }
       if (const auto notice = commanding_.on_timeout([this](const auto& e) { tell_of(e); }, now)) {
-        print(*notice + "\n");
-        spdlog::info(*notice);
+        const bool nobody = commanding_.desk().nobody_commands(now);
+        spdlog::log(nobody ? spdlog::level::warn : spdlog::level::info, *notice);
       }
       node_.on_timeout(now);
       if (commanding_.is_commanding()) formation_.on_timeout(now);

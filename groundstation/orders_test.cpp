@@ -62,6 +62,10 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "wait 10",
                            "record stop",
                            "record runs/mine",
+                           "command",
+                           "take command",
+                           "take command the van moves",
+                           "hand over",
                            "quit",
                            "status",
                            "pending",
@@ -126,6 +130,14 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"formation","preview":false,"order":"fly_along","track":"lap",
                              "shape":"wedge","spacing_m":45,"speed_mps":20,"laps":2})"),
             "fly-along lap in wedge spacing 45 speed 20 laps 2");
+}
+
+TEST(Orders, OfAPageTakeTheCommandAndHandItOver) {
+  EXPECT_EQ(line_of_json(R"({"kind":"take_command","reason":"van\nmoves"})"),
+            "take command van moves");
+  EXPECT_EQ(line_of_json(R"({"kind":"take_command","reason":""})"), "take command");
+  EXPECT_EQ(line_of_json(R"({"kind":"hand_over"})"), "hand over");
+  EXPECT_THAT(trouble_with(R"({"kind":"take_command"})"), HasSubstr("reason"));
 }
 
 TEST(Orders, AlongATrackNeedATrackAndAShape) {

@@ -64,6 +64,12 @@ TEST(Prompt, UnderstandsEveryCommand) {
   }
   EXPECT_EQ(parsed<Record>("record runs/mine").folder, "runs/mine");
   EXPECT_EQ(parsed<Record>("record stop").folder, "");
+  EXPECT_EQ(parsed<View>("command"), View::command);
+  EXPECT_EQ(parsed<TakeCommand>("take command").reason, "");
+  EXPECT_EQ(parsed<TakeCommand>(" take  command  the van  moves ").reason, "the van  moves");
+  parsed<HandOver>("hand over");
+  EXPECT_THAT(refusal_of("take"), HasSubstr("'take command'"));
+  EXPECT_THAT(refusal_of("hand over now"), HasSubstr("stands alone"));
   parsed<Quit>("quit");
   parsed<std::monostate>("   ");
   parsed<std::monostate>("");
@@ -109,8 +115,9 @@ TEST(Prompt, SaysWhatIsWrong) {
 }
 
 TEST(Prompt, HelpNamesEveryCommand) {
-  for (const auto* word : {"status", "sites", "pending", "authorise", "refuse", "hold", "resume",
-                           "return", "give-back", "alarms", "acknowledge", "quit"}) {
+  for (const auto* word :
+       {"status", "sites", "pending", "authorise", "refuse", "hold", "resume", "return",
+        "give-back", "alarms", "acknowledge", "take command", "hand over", "quit"}) {
     EXPECT_THAT(help_text(), HasSubstr(word));
   }
 }

@@ -336,5 +336,122 @@ TEST(GroundNode, ThatStartedAnewWithoutRecollectionLetsOthersAnswerFirst) {
   EXPECT_EQ(told[0].kind, CommandKind::hold);
 }
 
+/// What it says in so many steps of half a second.
+std::vector<Message> said_by(GroundNode& node, double from_s, double to_s) {
+  std::vector<Message> all;
+  for (double s = from_s; s < to_s; s += 0.5) {
+    node.on_timeout(at_seconds(s));
+    while (auto message = node.poll_message()) all.push_back(*std::move(message));
+  }
+  return all;
+}
+template <class T>
+std::vector<T> of(const std::vector<Message>& messages) {
+  std::vector<T> all;
+  for (const Message& message : messages) {
+    if (const auto* one = std::get_if<T>(&message)) all.push_back(*one);
+  }
+  return all;
+}
+AuthorisationRequest request_until(double s) {
+  AuthorisationRequest request;
+  request.round = kRound;
+  request.site = kSite;
+  request.decide_by = at_seconds(s);
+  request.deliveries = {{{{kSite, TaskKind::deliver, 0}, kVehicle, at_seconds(s)}, 0.0}};
+  return request;
+}
+
+TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
+  GroundNode ground = node();
+  ground.watch(at_seconds(1.0));
+  const AuthorisationRequest request = request_until(40.0);
+  ground.on_message(request, kVehicle, at_seconds(2.0));
+  Authorisation grant{request.round,      kSite, true, "Ada", at_seconds(3.0),
+                      request.deliveries, {},    {}};
+  grant.until = at_seconds(40.0);
+  grant.approval = {1, 2, 3};
+  EXPECT_TRUE(ground.on_message(grant, kGroundStation, at_seconds(3.0)));
+  Command hold{.vehicle = {1}, .kind = CommandKind::hold};
+  set_number(hold, 4001);
+  ground.on_message(hold, kGroundStation, at_seconds(4.0));
+  Site site;
+  site.id = {10005};
+  ground.on_message(SiteReport{{}, site, true}, kGroundStation, at_seconds(5.0));
+  Detection seen;
+  seen.vehicle = kVehicle;
+  ground.on_message(seen, kVehicle, at_seconds(5.0));
+  EXPECT_TRUE(said_by(ground, 5.0, 15.0).empty());
+  ASSERT_EQ(ground.agent().authorisations().size(), 1U);
+  EXPECT_TRUE(ground.agent().authorisations().front().decision);
+  int authorised = 0;
+  while (const auto event = ground.poll_event()) {
+    authorised += event->kind() == EventKind::authorised ? 1 : 0;
+  }
+  EXPECT_EQ(authorised, 1) << "it is shown";
+
+  ground.take_command({99}, at_seconds(15.0));
+  const auto said = said_by(ground, 15.0, 20.0);
+  ASSERT_FALSE(of<Setup>(said).empty());
+  EXPECT_EQ(of<Setup>(said).front().instance, InstanceId{99});
+  const auto grants = of<Authorisation>(said);
+  ASSERT_GE(grants.size(), 3U) << "who has not heard it yet";
+  EXPECT_EQ(grants.front().approval, grant.approval) << "the operator's own";
+  const auto sites = of<SiteReport>(said);
+  ASSERT_FALSE(sites.empty());
+  EXPECT_TRUE(sites.front().withdrawn);
+  // Who started anew and asks is told what the other ordered, when others had their time.
+  Setup asks;
+  asks.node = {1};
+  asks.instance = {5};
+  asks.knows_orders = false;
+  asks.newest_order = 4001;
+  ground.on_message(asks, {1}, at_seconds(21.0));
+  EXPECT_TRUE(of<Command>(said_by(ground, 21.0, 22.0)).empty());
+  ground.on_message(asks, {1}, at_seconds(26.0));
+  const auto told = of<Command>(said_by(ground, 26.0, 27.0));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told.front().kind, CommandKind::hold);
+}
+
+TEST(GroundNode, WhatItHasOrderedSinceItTookTheCommandStands) {
+  GroundNode ground = node();
+  ground.watch(at_seconds(1.0));
+  ground.take_command({99}, at_seconds(10.0));
+  ASSERT_TRUE(ground.command({1}, CommandKind::hold, at_seconds(11.0)).ok());
+  const auto ordered = of<Command>(said_by(ground, 11.0, 20.0));
+  ASSERT_FALSE(ordered.empty());
+  // Meanwhile the other one, which it cannot know to be superseded, has it resume.
+  Setup setup;
+  setup.node = {1};
+  setup.instance = {5};
+  setup.knows_orders = true;
+  setup.newest_order = 15'001;
+  ground.on_message(setup, {1}, at_seconds(20.0));
+  const auto again = of<Command>(said_by(ground, 20.0, 20.5));
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again.front().kind, CommandKind::hold);
+  EXPECT_GT(number_of(again.front()), 15'001U);
+  setup.newest_order = number_of(again.front());
+  ground.on_message(setup, {1}, at_seconds(30.0));
+  EXPECT_TRUE(of<Command>(said_by(ground, 30.0, 31.0)).empty());
+}
+
+TEST(GroundNode, ItsOrdersHaveGreaterNumbersThanAnyThatAVehicleHasHeardOf) {
+  GroundNode ground = node();
+  Setup setup;
+  setup.node = {1};
+  setup.instance = {5};
+  setup.knows_orders = true;
+  setup.newest_order = 30'001;
+  ground.on_message(setup, {1}, at_seconds(10.0));
+  setup.newest_order = ~std::uint64_t{0};  // no order's
+  ground.on_message(setup, {1}, at_seconds(10.0));
+  ASSERT_TRUE(ground.command({1}, CommandKind::hold, at_seconds(11.0)).ok());
+  const auto said = of<Command>(said_by(ground, 11.0, 11.5));
+  ASSERT_FALSE(said.empty());
+  EXPECT_EQ(number_of(said.front()), 30'002U);
+}
+
 }  // namespace
 }  // namespace skein::mission

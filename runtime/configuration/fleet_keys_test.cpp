@@ -177,5 +177,39 @@ TEST(Deployment, OnTheAirNobodyIsListed) {
   }
 }
 
+std::string ground_station(const std::string& more) {
+  return "version: 1\n"
+         "origin: {latitude_deg: 47, longitude_deg: 8}\n"
+         "vehicles: [1, 2]\n"
+         "time: {epoch_unix_ns: 1790000000000000000}\n" +
+         more;
+}
+
+TEST(CommandKeys, OneOfSeveralGroundStationsHasANumberAndNeedsTheAir) {
+  const auto read = parse_ground_config(
+      ground_station(
+          "network: {port: 7400}\ncommand: {station: 2, name: ridge-2, role: watching}\n"),
+      "g.yaml");
+  ASSERT_TRUE(read) << read.error().message;
+  const CommandConfig wanted{2, "ridge-2", true};
+  EXPECT_EQ(read->command, wanted);
+  const auto again = parse_ground_config(to_yaml(*read), "again.yaml");
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->command, wanted);
+  const auto alone = parse_ground_config(ground_station("network: {port: 7400}\n"), "g.yaml");
+  ASSERT_TRUE(alone);
+  EXPECT_EQ(alone->command, CommandConfig{});
+
+  const auto trouble = [](const std::string& more) {
+    const auto read = parse_ground_config(ground_station(more), "g.yaml");
+    return read ? std::string{} : read.error().message;
+  };
+  EXPECT_THAT(
+      trouble("network: {port: 7400, peers: [{id: 1, port: 7402}]}\ncommand: {station: 1}\n"),
+      HasSubstr("needs the air"));
+  EXPECT_THAT(trouble("network: {port: 7400}\ncommand: {station: 100}\n"), HasSubstr("station"));
+  EXPECT_THAT(trouble("network: {port: 7400}\ncommand: {role: boss}\n"), HasSubstr("role"));
+}
+
 }  // namespace
 }  // namespace skein::configuration

@@ -6,6 +6,7 @@
 
 #include <chrono>
 
+#include "skein/base/stations.hpp"
 #include "skein/identity/register.hpp"
 #include "skein/identity/team.hpp"
 #include "test_mission.hpp"
@@ -148,6 +149,43 @@ TEST_F(AuthorityTest, OneVehicleHasOneCertificateUnlessItWasRevoked) {
   EXPECT_FALSE(
       check(Membership{first.authority, first.own, {authority.revoked(), first.keys.grant}},
             kNow_unix_s));
+}
+
+TEST_F(AuthorityTest, AnotherGroundStationIsEnrolledAsAVehicleIs) {
+  const VehicleId node = station_node(2);
+  Membership second;
+  {
+    Authority authority = create();
+    second = enrol(authority, node.value);
+    EXPECT_EQ(second.own.role, Role::ground);
+    EXPECT_EQ(second.own.node, node);
+    EXPECT_EQ(holder_of(second.own), "ground station 2");
+    enrol(authority, 1);
+    EXPECT_EQ(authority.members().size(), 3U);
+  }
+  Authority again = reopen();
+  EXPECT_EQ(again.serial_of(node), second.own.serial);
+  const auto told = read_changes(ground());
+  ASSERT_TRUE(told);
+  EXPECT_EQ(told->size(), 2U) << "it is told of new keys, too";
+  EXPECT_FALSE(again.revoke(Serial{1})) << "the mission's own";
+  ASSERT_TRUE(again.revoke(second.own.serial));
+  EXPECT_FALSE(again.serial_of(node));
+  EXPECT_EQ(read_changes(ground())->size(), 1U);
+}
+
+TEST_F(AuthorityTest, CountsAStartBeyondAnothersOfTheSameNode) {
+  Authority authority = create();
+  enrol(authority, station_node(2).value);
+  const KeyFolder keys = vehicle(station_node(2).value);
+  EXPECT_EQ(count_start(keys, kGroundStation)->number, 1);
+  EXPECT_EQ(count_start(keys, kGroundStation, 58)->number, 58);
+  EXPECT_EQ(count_start(keys, kGroundStation, 7)->number, 59);
+  ASSERT_TRUE(note_start(keys, 90));
+  ASSERT_TRUE(note_start(keys, 60));
+  const auto next = count_start(keys, kGroundStation);
+  EXPECT_EQ(next->number, 91);
+  EXPECT_EQ(start_number(instance_of(*next)), 91);
 }
 
 TEST_F(AuthorityTest, NobodyJoinsWhenItIsOver) {

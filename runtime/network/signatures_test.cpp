@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "skein/base/stations.hpp"
 #include "skein/identity/authority.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/identity/node_key.hpp"
@@ -28,6 +29,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 constexpr VehicleId kOne{1};
 constexpr VehicleId kTwo{2};
+constexpr VehicleId kStation = station_node(2);
 
 std::int64_t now_unix_s() {
   return std::chrono::duration_cast<std::chrono::seconds>(
@@ -42,7 +44,7 @@ class SignaturesTest : public testing::Test {
     std::string name = testing::TempDir() + "skein-signatures-XXXXXX";
     ASSERT_NE(::mkdtemp(name.data()), nullptr);
     folder_ = name;
-    const std::vector vehicles{kOne, kTwo};
+    const std::vector vehicles{kOne, kTwo, kStation};
     ASSERT_TRUE(identity::make_team(folder_, vehicles, now_unix_s()).ok());
     judge_ = std::make_unique<Signatures>(config(kOne), kOne, InstanceId{7});
     for (const VehicleId other : {kGroundStation, kTwo}) {
@@ -241,6 +243,35 @@ TEST_F(SignaturesTest, AGrantNeedsAnOperatorsApproval) {
   judge_->learn(authority->revoked());
   grant = good;
   EXPECT_EQ(judged(), Judged::forged) << "that operator is out";
+}
+
+TEST_F(SignaturesTest, EachOfSeveralGroundStationsSpeaksAsTheOne) {
+  Signatures first = of(kGroundStation, {7});
+  Signatures second{config(kStation), kGroundStation, {8}};
+  const Bytes early = said(second, {1});
+  EXPECT_EQ(judge(early, kGroundStation, {8}), Judged::forged) << "it is not known yet";
+  judge_->learn(identity::to_bytes(config(kStation).own));
+  EXPECT_EQ(judge(said(first, {1})), Judged::good);
+  EXPECT_EQ(judge(said(second, {1}), kGroundStation, {8}), Judged::good);
+  EXPECT_EQ(judge(said(first, {1})), Judged::replayed) << "the newer start has the command";
+  Signatures again = of(kGroundStation, {9});
+  EXPECT_EQ(judge(said(again, {1}), kGroundStation, {9}), Judged::good) << "taken back";
+  Signatures insider{config(kTwo), kGroundStation, {10}};
+  EXPECT_EQ(judge(said(insider, {1}), kGroundStation, {10}), Judged::forged);
+}
+
+TEST_F(SignaturesTest, AGroundStationThatIsOutHasUsedUpNobodysNumbers) {
+  judge_->learn(identity::to_bytes(config(kStation).own));
+  Signatures captor{config(kStation), kGroundStation, {~0ULL}};
+  EXPECT_EQ(judge(said(captor, {1}), kGroundStation, {~0ULL}), Judged::good);
+  Signatures first = of(kGroundStation, {7});
+  EXPECT_EQ(judge(said(first, {1})), Judged::replayed);
+  auto authority = identity::Authority::open(identity::node_folder(folder_, kGroundStation));
+  ASSERT_TRUE(authority.ok()) << authority.error().message;
+  ASSERT_TRUE(authority->revoke(*authority->serial_of(kStation)).ok());
+  judge_->learn(identity(kGroundStation).revoked());
+  EXPECT_EQ(judge(said(captor, {1}), kGroundStation, {~0ULL}), Judged::forged);
+  EXPECT_EQ(judge(said(first, {1})), Judged::good);
 }
 
 TEST_F(SignaturesTest, WhoIsUnknownOrRevokedIsNotBelieved) {
