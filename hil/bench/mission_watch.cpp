@@ -21,6 +21,7 @@ bool is_news(mission::EventKind kind) {
                                     EventKind::formation_held,
                                     EventKind::script_done,
                                     EventKind::task_failed};
+  if (kind == EventKind::command_handed) return false;  // said again and again while it is so
   return std::ranges::find(kNews, kind) != kNews.end() || mission::is_warning(kind);
 }
 
