@@ -10,19 +10,6 @@
 namespace skein::groundstation {
 namespace {
 
-/// "120,-40"
-Result<Vec2> place_of(std::string_view word) {
-  const auto comma = word.find(',');
-  if (comma == std::string_view::npos) {
-    return Error{fmt::format("a corner is EAST,NORTH in metres, such as 120,-40, not '{}'", word)};
-  }
-  const auto east = number_after("EAST of a corner", word.substr(0, comma), kCoordinate_m);
-  const auto north = number_after("NORTH of a corner", word.substr(comma + 1), kCoordinate_m);
-  if (!east) return east.error();
-  if (!north) return north.error();
-  return Vec2{*east, *north};
-}
-
 /// From that word on as long as they are places.
 Result<std::vector<Vec2>> corners_of(const Words& words, std::size_t& next) {
   std::vector<Vec2> corners;

@@ -8,22 +8,6 @@
 #include "prompt_words.hpp"
 
 namespace skein::groundstation {
-namespace {
-
-Result<Vec2> corner_of(std::string_view word) {
-  const auto comma = word.find(',');
-  if (comma == std::string_view::npos) {
-    return Error{fmt::format("'{}' is no corner EAST,NORTH", word)};
-  }
-  const auto east = number_after("fence EAST", word.substr(0, comma), kCoordinate_m);
-  const auto north = number_after("fence EAST,NORTH", word.substr(comma + 1), kCoordinate_m);
-  if (!east) return east.error();
-  if (!north) return north.error();
-  return Vec2{*east, *north};
-}
-
-}  // namespace
-
 Result<Input> fence_order(const std::vector<std::string_view>& words, bool preview) {
   if (words.size() == 1 && !preview) return Input{View::fence};
   NewFence order;
@@ -36,7 +20,7 @@ Result<Input> fence_order(const std::vector<std::string_view>& words, bool previ
     } else if (words.size() > 1 && i == 1 && words[i].find(',') == std::string_view::npos) {
       order.file = words[i];
     } else {
-      const auto corner = corner_of(words[i]);
+      const auto corner = place_of(words[i]);
       if (!corner) return corner.error();
       order.fence.corners.push_back(*corner);
     }

@@ -55,30 +55,6 @@ class Reader {
     }
     return values;
   }
-  /// Places [east, north].
-  std::vector<Vec2> corners(const char* name) {
-    std::vector<Vec2> all;
-    const auto found = json_.find(name);
-    const bool list =
-        found != json_.end() && found->is_array() && found->size() <= planning::kAreaCornersMax;
-    for (std::size_t i = 0; list && i < found->size(); ++i) {
-      const auto& corner = (*found)[i];
-      if (!corner.is_array() || corner.size() != 2 || !corner[0].is_number() ||
-          !corner[1].is_number()) {
-        break;
-      }
-      const Vec2 place{corner[0].get<double>(), corner[1].get<double>()};
-      if (!kCoordinate_m.has(place.x()) || !kCoordinate_m.has(place.y())) break;
-      all.push_back(place);
-    }
-    if (!list || all.size() != found->size()) {
-      fail(fmt::format("{} is to be a list of {} places [east, north] at most", name,
-                       planning::kAreaCornersMax));
-    } else if (auto why = planning::why_no_area(all)) {
-      fail(*std::move(why));
-    }
-    return all;
-  }
   bool flag(const char* name) {
     const auto found = json_.find(name);
     if (found != json_.end() && found->is_boolean()) return found->get<bool>();
@@ -169,6 +145,12 @@ Input decision(Reader& from) {
   return decision;
 }
 
+std::vector<Vec2> outline(Reader& from) {
+  auto corners = from.points("corners", kCoordinate_m, planning::kAreaCornersMax);
+  if (auto why = planning::why_no_area(corners)) from.fail(*std::move(why));
+  return corners;
+}
+
 Input hazard(Reader& from) {
   NewHazard hazard;
   if (from.has("preview")) hazard.preview = from.flag("preview");
@@ -176,7 +158,7 @@ Input hazard(Reader& from) {
     hazard.changes = HazardId{static_cast<std::uint16_t>(from.integer("hazard", 1.0, kIdMax))};
   }
   if (from.has("corners")) {
-    hazard.corners = from.corners("corners");
+    hazard.corners = outline(from);
     return hazard;
   }
   hazard.centre_m = {from.number("x", kCoordinate_m), from.number("y", kCoordinate_m)};
@@ -202,7 +184,7 @@ Input search(Reader& from) {
   order.preview = from.flag("preview");
   mission::SearchWishes& wishes = order.wishes;
   const bool is_rest = from.has("rest") && from.flag("rest");
-  if (!is_rest) wishes.corners = from.corners("corners");
+  if (!is_rest) wishes.corners = outline(from);
   if (from.has("vehicles")) {
     for (const double id : from.numbers("vehicles", {1.0, kIdMax}, planning::kAreaSearchersMax)) {
       wishes.vehicles.push_back({static_cast<std::uint16_t>(id)});

@@ -44,4 +44,17 @@ inline constexpr std::size_t kReasonMax = 80;
   return *value;
 }
 
+/// EAST,NORTH in metres.
+[[nodiscard]] inline Result<Vec2> place_of(std::string_view word) {
+  const auto comma = word.find(',');
+  if (comma == std::string_view::npos) {
+    return Error{fmt::format("'{}' is no corner EAST,NORTH in metres, such as 120,-40", word)};
+  }
+  const auto east = number_after("EAST of a corner", word.substr(0, comma), kCoordinate_m);
+  const auto north = number_after("NORTH of a corner", word.substr(comma + 1), kCoordinate_m);
+  if (!east) return east.error();
+  if (!north) return north.error();
+  return Vec2{*east, *north};
+}
+
 }  // namespace skein::groundstation

@@ -7,7 +7,7 @@ import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { words_of_order } from "../orders/orders";
 import type { Answer, FenceOrder } from "../wire/protocol";
-import { fence, may_order, send } from "../wire/store";
+import { fence, hello, may_order, send } from "../wire/store";
 import { fence_yaml, outline, why_no_outline } from "./outline";
 
 const keeps_words = { this: "keep it", another: "keep another one", none: "keep none", not_known: "have not said" } as const;
@@ -44,7 +44,8 @@ export function FencePart() {
   useEffect(() => set_tried(null), [outline.value, height]);
   const wrong = why_no_outline(outline.value);
   const height_m = Number(height);
-  const is_height = Number.isFinite(height_m) && height_m >= 10 && height_m <= 10_000;
+  const [lowest, highest] = hello.value?.limits.fence_height_m ?? [1, 1e5];
+  const is_height = Number.isFinite(height_m) && height_m >= lowest && height_m <= highest;
   const order: FenceOrder | null = !wrong && is_height ? { kind: "fence", preview: false, corners: outline.value.map(([x, y]) => [x, y]), height_m } : null;
   const line = order && words_of_order(order);
   const try_it = async () => {
@@ -76,7 +77,7 @@ export function FencePart() {
             )}
             <label>
               Up to, m above the origin
-              <input type="number" min="10" max="10000" step="10" value={height} data-testid="fence-height" onInput={(event) => set_height(event.currentTarget.value)} />
+              <input type="number" min={lowest} max={highest} step="10" value={height} data-testid="fence-height" onInput={(event) => set_height(event.currentTarget.value)} />
             </label>
           </div>
           <div class="button-row">
