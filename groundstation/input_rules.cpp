@@ -11,11 +11,14 @@ bool only_looks(const Input& input) {
   const auto* site = std::get_if<NewSite>(&input);
   const auto* routes = std::get_if<RoutesFromFile>(&input);
   const auto* fence = std::get_if<NewFence>(&input);
+  const auto* search = std::get_if<SearchArea>(&input);
+  const auto* hazard = std::get_if<NewHazard>(&input);
   return std::holds_alternative<std::monostate>(input) || std::holds_alternative<View>(input) ||
          std::holds_alternative<PreflightOf>(input) || std::holds_alternative<StatusOf>(input) ||
          std::holds_alternative<ReturnPreview>(input) ||
          (formation != nullptr && formation->preview) || (site != nullptr && site->preview) ||
-         (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview);
+         (routes != nullptr && routes->preview) || (fence != nullptr && fence->preview) ||
+         (search != nullptr && search->preview) || (hazard != nullptr && hazard->preview);
 }
 
 const char* why_not_on_console(const Input& input) {
