@@ -247,6 +247,8 @@ Input acknowledgement(Reader& from) {
   Acknowledge order;
   for (const double number : from.numbers("alarms", {1.0, 4294967295.0}, kAcknowledgedMax)) {
     order.numbers.push_back(static_cast<std::uint32_t>(number));
+    if (static_cast<double>(order.numbers.back()) != number)
+      from.fail("alarms is to have whole numbers");
   }
   if (order.numbers.empty()) from.fail("alarms is to have the number of one at least");
   return order;

@@ -204,10 +204,10 @@ void find_runs_out(const Scene& in, std::vector<Found>& found) {
           .site = request.site,
           .detail = request.round.number},
          last_third,
-         fmt::format("site {}: {} wait for your decision, until {:.1f} s", request.site.value,
+         fmt::format("site {}: {} for your decision, until {:.1f} s", request.site.value,
                      request.deliveries.size() == 1
-                         ? "a delivery"
-                         : fmt::format("{} deliveries", request.deliveries.size()),
+                         ? "a delivery waits"
+                         : fmt::format("{} deliveries wait", request.deliveries.size()),
                      to_seconds(request.decide_by))});
   }
 }

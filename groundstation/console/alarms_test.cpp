@@ -29,10 +29,10 @@ class Desk {
  public:
   explicit Desk(std::vector<VehicleId> expected = {{1}, {2}, {3}})
       : picture_{{.expected = expected}}, fleet_{{.expected = expected}} {
-    for (const std::uint16_t id : {1, 2, 3}) {
-      mission::Telemetry& t = said[{id}];
-      t.vehicle = {id};
-      t.instance = {id};
+    for (const VehicleId id : {VehicleId{1}, VehicleId{2}, VehicleId{3}}) {
+      mission::Telemetry& t = said[id];
+      t.vehicle = id;
+      t.instance = {id.value};
       t.range_left_m = 9000.0;
     }
   }
@@ -93,6 +93,7 @@ class Desk {
     hear(said_now, kGroundStation);
   }
   void award(coalition::TaskState state) {
+    said[{2}].task = kTask;  // by its own word
     hear(mission::Message{coalition::Message{
              coalition::MemberStatus{{kCoalition, 1}, {2}, {{kTask, state, now_}}}}},
          {2});
@@ -167,7 +168,6 @@ void is_heard_again(Desk& desk) {
 void holds(Desk& desk, ActivityDetail detail) {
   for (auto& [id, telemetry] : desk.said) telemetry.detail = detail;
 }
-void nothing(Desk& /*desk*/) {}
 
 /// What begins and ends every kind.
 std::map<AlarmKind, Case> cases() {
@@ -351,7 +351,7 @@ INSTANTIATE_TEST_SUITE_P(All, Kinds, ::testing::ValuesIn([] {
                            for (const KindRow& row : alarm_kinds()) all.push_back(row.kind);
                            return all;
                          }()),
-                         [](const auto& info) { return std::string{to_string(info.param)}; });
+                         [](const auto& one) { return std::string{to_string(one.param)}; });
 
 TEST(Alarms, AQuietTeamHasNone) {
   Desk desk;

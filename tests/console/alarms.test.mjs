@@ -133,7 +133,7 @@ test("mute is shown while it lasts, and can be ended", async () => {
   await until("how long", async () => /Muted for (10|9) min/.test(await view.part("unmute").innerText()));
   assert.equal(await sounding(), "nothing");
   await view.page.reload();
-  await view.page.keyboard.press("Escape");
+  await view.part("sound-on").click();
   await until("it still", () => view.part("unmute").isVisible());
   await view.part("unmute").click();
   await until("the volume", () => view.part("volume").isVisible());

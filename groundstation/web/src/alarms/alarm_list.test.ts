@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { command } from "../orders/orders";
 import { an_alarm } from "../wire/samples";
 import type { GivenOrder } from "../wire/protocol";
-import { answers_text, connection_alarm, counts_of, counts_text, fresh_of, given_of, lasted, sound_of, title_of, worst_of } from "./alarm_list";
+import { answers_text, connection_alarm, counts_of, counts_text, fresh_of, given_of, in_hand, lasted, sound_of, title_of, worst_of } from "./alarm_list";
 
 const seen = { by: "ada", at_s: 70 };
 
@@ -26,6 +26,16 @@ test("the one in the bar is open and stands, else the first that there is", () =
   assert.equal(worst_of([known, over])?.number, 1);
   assert.equal(worst_of([over])?.number, 5);
   assert.equal(worst_of([]), null);
+});
+
+test("what was taken up stays in the bar, whatever becomes of it, until it is acknowledged", () => {
+  const held = an_alarm(2, { level: "warning" });
+  assert.equal(in_hand([an_alarm(3, { level: "warning" }), held], 2)?.number, 2);
+  assert.equal(in_hand([an_alarm(3, { level: "warning" }), { ...held, over_s: 65 }], 2)?.number, 2);
+  assert.equal(in_hand([an_alarm(3, { level: "warning" }), { ...held, acknowledged: seen }], 2)?.number, 3);
+  assert.equal(in_hand([an_alarm(1), held], 2)?.number, 1, "only what is worse takes its place");
+  assert.equal(in_hand([an_alarm(1)], 2)?.number, 1);
+  assert.equal(in_hand([], 2), null);
 });
 
 test("counts, and the title of a window that is behind others", () => {

@@ -39,6 +39,18 @@ export function worst_of(list: readonly Alarm[]): Alarm | null {
   return list.find((alarm) => stands(alarm) && is_open(alarm)) ?? list[0] ?? null;
 }
 
+const rank = { alarm: 0, warning: 1, notice: 2 } as const;
+
+/** What the bar shows: what was taken up stays there until it is acknowledged, so that nothing else comes
+ *  under a hand that reaches for it; only what is worse takes its place. */
+export function in_hand(list: readonly Alarm[], taken: number | null): Alarm | null {
+  const worst = worst_of(list);
+  const held = list.find((alarm) => alarm.number === taken && is_open(alarm));
+  if (!held || !worst) return worst;
+  const is_worse = stands(worst) && is_open(worst) && rank[worst.level] < rank[held.level];
+  return is_worse ? worst : held;
+}
+
 /** What is to be heard: what stands, and nobody has acknowledged. */
 export function sound_of(list: readonly Alarm[]): SoundLevel {
   const heard = list.filter((alarm) => stands(alarm) && is_open(alarm));

@@ -4,13 +4,13 @@
 
 import { computed, effect, signal } from "@preact/signals";
 import { request_key } from "../mission/requests";
-import { give } from "../shell/give";
+import { note } from "../shell/give";
 import { tick } from "../shell/ticker";
 import { highlighted_request, panel, panels, place_to_show, select } from "../shell/view";
 import type { Panel } from "../shell/view";
 import type { Alarm } from "../wire/protocol";
-import { current, ended, hello, in_replay, lost_s, mission_now_s, may_order, shown } from "../wire/store";
-import { connection_alarm, counts_of, is_open, own_number, sound_of, title_of, worst_of } from "./alarm_list";
+import { current, ended, hello, in_replay, lost_s, mission_now_s, may_order, send, shown } from "../wire/store";
+import { connection_alarm, counts_of, in_hand, is_open, own_number, sound_of, title_of } from "./alarm_list";
 import { AlarmSound, mute_ms, muted_for, volume_in_range } from "./sound";
 
 export const list_open = signal(false);
@@ -25,18 +25,32 @@ export const alarm_list = computed<readonly Alarm[]>(() => {
   return own ? [own, ...theirs] : theirs;
 });
 export const alarm_counts = computed(() => counts_of(alarm_list.value));
-export const worst = computed(() => worst_of(alarm_list.value));
+/** The alarm that the operator has gone to last. */
+const taken = signal<number | null>(null);
+export const worst = computed(() => in_hand(alarm_list.value, taken.value));
 /** Those that this page can acknowledge now. */
 export const can_acknowledge = computed(() => alarm_list.value.filter((alarm) => is_open(alarm) && (alarm.number === own_number || (may_order.value && lost_s.value === 0))));
+
+/** What comes of it is seen in the list. */
+async function say_acknowledged(alarms: number[]): Promise<void> {
+  const answer = await send({ kind: "acknowledge", alarms });
+  if (!answer.done) note(answer.text);
+}
+
+/** The one in the bar: never another that has just come. */
+export function acknowledge_shown(): void {
+  acknowledge(can_acknowledge.value.filter(({ number }) => number === worst.value?.number));
+}
 
 export function acknowledge(alarms: readonly Alarm[]): void {
   if (alarms.some(({ number }) => number === own_number)) loss_known.value = true;
   const numbers = alarms.map(({ number }) => number).filter((number) => number !== own_number);
-  if (numbers.length > 0) void give({ kind: "acknowledge", alarms: numbers.slice(0, 300) });
+  if (numbers.length > 0) void say_acknowledged(numbers.slice(0, 300));
 }
 
 /** Shows what an alarm is about, on the map and in the lists, and where one acts. */
 export function go_to(alarm: Alarm): void {
+  taken.value = alarm.number;
   const { vehicles, sites, authorisations } = current();
   const vehicle = vehicles.find(({ id }) => id === alarm.vehicle);
   const site = sites.find(({ id }) => id === alarm.site);

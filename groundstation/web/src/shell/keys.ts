@@ -2,7 +2,7 @@
 // Keys that work anywhere on the page.
 
 import { recall_group } from "../fleet/chosen";
-import { acknowledge, can_acknowledge, go_to, list_open, worst } from "../alarms/alarm_state";
+import { acknowledge_shown, go_to, list_open, worst } from "../alarms/alarm_state";
 import { may_order } from "../wire/store";
 import { hold_all } from "./give";
 import { follow, help_open, layers, measure_from, measure_to, panel, panels, select, selected, switch_theme, timeline_open, tool } from "./view";
@@ -76,7 +76,7 @@ export function listen_to_keys(vehicle_ids: () => readonly number[]): () => void
     else if (event.key === "a") on_fit.forEach((fit) => fit());
     else if (event.key === "j" && worst.value) go_to(worst.value);
     else if (event.key === "J") list_open.value = !list_open.value;
-    else if (event.key === "k") acknowledge(can_acknowledge.value.slice(0, 1));
+    else if (event.key === "k") acknowledge_shown();
     else if (event.key === "m") tool.value = tool.value === "measure" ? "select" : "measure";
     else if (event.key === "l") timeline_open.value = !timeline_open.value;
     else if (event.key === "n") switch_theme();
