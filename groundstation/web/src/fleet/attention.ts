@@ -49,7 +49,10 @@ export function fleet_notes(vehicles: readonly Vehicle[]): string[] {
   if (strangers.length > 0) notes.push(`Not in the fleet, but heard: ${ids(strangers)}`);
   const versions = new Map<string, number[]>();
   for (const { version, id } of vehicles) {
-    if (version) versions.set(version, [...(versions.get(version) ?? []), id]);
+    if (!version) continue;
+    const of = versions.get(version);
+    if (of) of.push(id);
+    else versions.set(version, [id]);
   }
   if (versions.size > 1) {
     const groups = [...versions].sort((a, b) => a[1].length - b[1].length || a[0].localeCompare(b[0]));

@@ -2,12 +2,13 @@
 // Vehicles where they are.
 
 import { health_of } from "../fleet/attention";
+import type { Health } from "../fleet/attention";
 import { coalition_sign, line_colour } from "../theme/palette";
 import type { CoalitionSign } from "../theme/palette";
 import type { Picture } from "../wire/picture";
 import type { Coalition, Vehicle } from "../wire/protocol";
 import type { View } from "./canvas_layer";
-import { badge, font, label } from "./draw";
+import { badge, font, kept_label, label } from "./draw";
 import { moved } from "./geodesy";
 import type { Point } from "./geodesy";
 
@@ -61,10 +62,19 @@ export function paint_vehicles(view: View, picture: Picture, options: VehicleOpt
   const order = [...picture.vehicles].sort((a, b) => place(a) - place(b));
   const drawn = order.flatMap((vehicle) => {
     const at = drawn_at(vehicle, options.ahead_s);
-    return at && view.sees(at.x, at.y) ? [{ vehicle, x: view.px(at.x), y: view.py(at.y) }] : [];
+    return at && view.sees(at.x, at.y) ? [{ vehicle, health: health_of(vehicle), x: view.px(at.x), y: view.py(at.y) }] : [];
   });
   const has_room = view.scale < least_scale_of_figures ? () => false : room_around(drawn);
-  for (const { vehicle, x, y } of drawn) paint_vehicle(view, vehicle, x, y, has_room(x, y), options);
+  for (const one of drawn) paint_rings(view, one, options);
+  paint_darts(view, drawn, options);
+  for (const one of drawn) paint_words(view, one, has_room(one.x, one.y), options);
+}
+
+interface Drawn {
+  vehicle: Vehicle;
+  health: Health;
+  x: number;
+  y: number;
 }
 
 const room_x_px = 90;
@@ -94,54 +104,83 @@ export function room_around(drawn: readonly { x: number; y: number }[]): (x: num
   };
 }
 
-function paint_vehicle(view: View, vehicle: Vehicle, x: number, y: number, alone: boolean, options: VehicleOptions): void {
+/** Around who is selected, and who leads. */
+function paint_rings(view: View, { vehicle, x, y }: Drawn, options: VehicleOptions): void {
   const { context, colours } = view;
-  const member = options.members.get(vehicle.id);
-  const health = health_of(vehicle);
-  const is_selected = vehicle.id === options.selected || options.selection.has(vehicle.id);
-  const leads = member?.coalition.leader === vehicle.id;
-
-  if (is_selected) {
+  if (options.selection.has(vehicle.id)) {
     context.beginPath();
     context.arc(x, y, 17, 0, 2 * Math.PI);
     context.strokeStyle = colours.accent;
     context.lineWidth = vehicle.id === options.selected ? 3 : 2;
     context.stroke();
   }
-  if (leads && member) {
-    context.beginPath();
-    context.arc(x, y, 13, 0, 2 * Math.PI);
-    context.strokeStyle = line_colour(member.sign, colours.day);
-    context.lineWidth = 1.5;
-    context.stroke();
-  }
-
-  context.save();
-  context.translate(x, y);
-  context.rotate(((vehicle.heading_deg ?? 0) * Math.PI) / 180);
+  const member = options.members.get(vehicle.id);
+  if (member?.coalition.leader !== vehicle.id) return;
   context.beginPath();
-  context.moveTo(0, -10);
-  context.lineTo(7, 8);
-  context.lineTo(0, 4);
-  context.lineTo(-7, 8);
-  context.closePath();
-  const lost = health === "silent" || health === "unheard";
-  context.fillStyle = lost ? colours.ground : member ? line_colour(member.sign, colours.day) : colours.vehicle;
-  context.fill();
-  context.lineWidth = lost ? 1.5 : 1;
-  context.strokeStyle = lost ? colours.alarm : colours.halo;
-  if (lost) context.setLineDash([3, 2]);
+  context.arc(x, y, 13, 0, 2 * Math.PI);
+  context.strokeStyle = line_colour(member.sign, colours.day);
+  context.lineWidth = 1.5;
   context.stroke();
-  context.restore();
+}
 
+// Point, right, notch, left, point; ahead is upwards. (To close a path of a thousand of them is slow.)
+const dart = [[0, -10], [7, 8], [0, 4], [-7, 8], [0, -10]] as const;
+
+function add_dart(path: Path2D, { vehicle, x, y }: Drawn): void {
+  const angle = ((vehicle.heading_deg ?? 0) * Math.PI) / 180;
+  const cos = Math.cos(angle);
+  const sin = Math.sin(angle);
+  dart.forEach(([dx, dy], i) => {
+    const px = x + dx * cos - dy * sin;
+    const py = y + dx * sin + dy * cos;
+    if (i === 0) path.moveTo(px, py);
+    else path.lineTo(px, py);
+  });
+}
+
+/** All of one colour at once: one stroke for each is many times slower. */
+function paint_darts(view: View, drawn: readonly Drawn[], options: VehicleOptions): void {
+  const { context, colours } = view;
+  const heard = new Map<string, Path2D>();
+  const lost = new Path2D();
+  for (const one of drawn) {
+    if (one.health === "silent" || one.health === "unheard") {
+      add_dart(lost, one);
+      continue;
+    }
+    const member = options.members.get(one.vehicle.id);
+    const colour = member ? line_colour(member.sign, colours.day) : colours.vehicle;
+    const path = heard.get(colour) ?? new Path2D();
+    heard.set(colour, path);
+    add_dart(path, one);
+  }
+  context.lineWidth = 1;
+  context.strokeStyle = colours.halo;
+  for (const [colour, path] of heard) {
+    context.fillStyle = colour;
+    context.fill(path);
+    context.stroke(path);
+  }
+  context.fillStyle = colours.ground;
+  context.fill(lost);
+  context.lineWidth = 1.5;
+  context.strokeStyle = colours.alarm;
+  context.setLineDash([3, 2]);
+  context.stroke(lost);
+  context.setLineDash([]);
+}
+
+function paint_words(view: View, { vehicle, health, x, y }: Drawn, alone: boolean, options: VehicleOptions): void {
+  const { context, colours } = view;
+  const member = options.members.get(vehicle.id);
+  const lost = health === "silent" || health === "unheard";
   if (health !== "well") paint_mark(view, x - 12, y - 9, health === "warning" ? colours.warning : colours.alarm, lost ? "?" : "!");
   if (member) badge(view, member.sign, x + 13, y - 10);
-  if (!options.labels && !is_selected) return;
+  if (!options.labels && !options.selection.has(vehicle.id)) return;
+  kept_label(view, `${vehicle.id}`, x + 9, y + 4, 11, true);
+  if (vehicle.id !== options.selected && (view.scale < least_scale_of_figures || !alone)) return;
   context.textAlign = "left";
   context.textBaseline = "top";
-  context.font = font(11, true);
-  label(view, `${vehicle.id}`, x + 9, y + 4);
-  if (vehicle.id !== options.selected && (view.scale < least_scale_of_figures || !alone)) return;
   context.font = font(10);
   const speed = vehicle.groundspeed === null ? "" : ` · ${vehicle.groundspeed.toFixed(0)} m/s`;
   label(view, `${vehicle.z === null ? "" : `${vehicle.z.toFixed(0)} m`}${speed}`, x + 9, y + 17, colours.muted);
