@@ -36,7 +36,6 @@
 #include "skein/groundstation/line_reader.hpp"
 #include "skein/groundstation/operator_keys.hpp"
 #include "skein/groundstation/prompt.hpp"
-#include "skein/groundstation/recall.hpp"
 #include "skein/groundstation/recorder.hpp"
 #include "skein/groundstation/return_desk.hpp"
 #include "skein/groundstation/revocations.hpp"
@@ -44,7 +43,6 @@
 #include "skein/groundstation/several.hpp"
 #include "skein/groundstation/site_desk.hpp"
 #include "skein/groundstation/views.hpp"
-#include "skein/identity/operator_key.hpp"
 #include "skein/identity_desk/given.hpp"
 #include "skein/mission/ground_node.hpp"
 #include "skein/network/node.hpp"
@@ -58,7 +56,6 @@
 #include "skein/process/service.hpp"
 #include "skein/process/shutdown.hpp"
 #include "skein/process/wake.hpp"
-#include "skein/recording/writer.hpp"
 #include "skein/version/version.hpp"
 #include "skein/wording/wording.hpp"
 

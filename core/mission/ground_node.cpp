@@ -36,6 +36,12 @@ GroundNode::GroundNode(const GroundNodeConfig& config, Instant now)
 void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   if (!may_say(message, sender) || told_by(message) != kGroundStation) return;
   agent_.recall(message, sender, at);
+  take_in(message, sender, at);
+  knows_orders_at_ = at;
+}
+
+/// What was said then, but for the agent.
+void GroundNode::take_in(const Message& message, VehicleId sender, Instant at) {
   sites_.recall(message, sender, at);
   hazards_.recall(message, sender, at);
   fence_.recall(message, sender, at);
@@ -46,7 +52,6 @@ void GroundNode::recall(const Message& message, VehicleId sender, Instant at) {
   if (command != nullptr && sender == kGroundStation) orders_.note(*command);
   const auto* decision = std::get_if<Authorisation>(&message);
   if (decision != nullptr && !decision->granted) note_refusal(*decision, at);
-  knows_orders_at_ = at;
 }
 
 /// It stands for the rest of the mission, whoever may lead there by then.
@@ -72,18 +77,6 @@ void GroundNode::take_command(InstanceId start, Instant now) {
   speak();
 }
 
-/// As of what an earlier start of this program said, but as it is said.
-void GroundNode::overhear(const Message& message, VehicleId sender, Instant now) {
-  agent_.overhear(message, now);
-  sites_.recall(message, sender, now);
-  hazards_.recall(message, sender, now);
-  routes_.recall(message, sender, now);
-  detections_.recall(message, sender);
-  if (const auto* command = std::get_if<Command>(&message)) orders_.note(*command);
-  const auto* decision = std::get_if<Authorisation>(&message);
-  if (decision != nullptr && !decision->granted) note_refusal(*decision, now);
-}
-
 /// What its parts would say is for who has the command to say; of their events, too.
 void GroundNode::drop_words() {
   while (next_message()) continue;
@@ -97,7 +90,8 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   }
   if (told_by(message) != kGroundStation) return false;  // to who has started anew, not to us
   if (watching_ && sender == kGroundStation) {
-    overhear(message, sender, now);
+    agent_.overhear(message, now);
+    take_in(message, sender, now);
     return true;
   }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);

@@ -156,7 +156,7 @@ class GroundNode {
  private:
   void take_events();
   void use_fence();
-  void overhear(const Message& message, VehicleId sender, Instant now);
+  void take_in(const Message& message, VehicleId sender, Instant at);
   void drop_words();
   [[nodiscard]] std::optional<Message> next_message();
   void note_refusal(const Authorisation& decision, Instant now);
