@@ -392,8 +392,8 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
 
   ground.take_command({99}, at_seconds(15.0));
   const auto said = said_by(ground, 15.0, 20.0);
-  ASSERT_FALSE(of<Setup>(said).empty());
-  EXPECT_EQ(of<Setup>(said).front().instance, InstanceId{99});
+  ASSERT_FALSE(of<mission::Setup>(said).empty());
+  EXPECT_EQ(of<mission::Setup>(said).front().instance, InstanceId{99});
   const auto grants = of<Authorisation>(said);
   ASSERT_GE(grants.size(), 3U) << "who has not heard it yet";
   EXPECT_EQ(grants.front().approval, grant.approval) << "the operator's own";
@@ -401,7 +401,7 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
   ASSERT_FALSE(sites.empty());
   EXPECT_TRUE(sites.front().withdrawn);
   // Who started anew and asks is told what the other ordered, when others had their time.
-  Setup asks;
+  mission::Setup asks;
   asks.node = {1};
   asks.instance = {5};
   asks.knows_orders = false;
@@ -422,7 +422,7 @@ TEST(GroundNode, WhatItHasOrderedSinceItTookTheCommandStands) {
   const auto ordered = of<Command>(said_by(ground, 11.0, 20.0));
   ASSERT_FALSE(ordered.empty());
   // Meanwhile the other one, which it cannot know to be superseded, has it resume.
-  Setup setup;
+  mission::Setup setup;
   setup.node = {1};
   setup.instance = {5};
   setup.knows_orders = true;
@@ -439,7 +439,7 @@ TEST(GroundNode, WhatItHasOrderedSinceItTookTheCommandStands) {
 
 TEST(GroundNode, ItsOrdersHaveGreaterNumbersThanAnyThatAVehicleHasHeardOf) {
   GroundNode ground = node();
-  Setup setup;
+  mission::Setup setup;
   setup.node = {1};
   setup.instance = {5};
   setup.knows_orders = true;
