@@ -201,8 +201,8 @@ TEST(CommandKeys, OneOfSeveralGroundStationsHasANumberAndNeedsTheAir) {
   EXPECT_EQ(alone->command, CommandConfig{});
 
   const auto trouble = [](const std::string& more) {
-    const auto read = parse_ground_config(ground_station(more), "g.yaml");
-    return read ? std::string{} : read.error().message;
+    const auto config = parse_ground_config(ground_station(more), "g.yaml");
+    return config ? std::string{} : config.error().message;
   };
   EXPECT_THAT(
       trouble("network: {port: 7400, peers: [{id: 1, port: 7402}]}\ncommand: {station: 1}\n"),
