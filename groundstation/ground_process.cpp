@@ -200,7 +200,8 @@ class GroundLoop {
         node_.speak();
         take_revocations(now);
       }
-      if (const auto notice = commanding_.on_timeout([this](const auto& e) { tell_of(e); }, now)) {
+      if (const auto notice =
+              commanding_.on_timeout([&](const auto& e) { tell_of(e, now); }, now)) {
         const bool nobody = commanding_.desk().nobody_commands(now);
         spdlog::log(nobody ? spdlog::level::warn : spdlog::level::info, *notice);
       }
@@ -545,7 +546,7 @@ class GroundLoop {
   void report(Instant now) {
     if (now < next_report_) return;
     next_report_ = now + kReportPeriod;
-    console_.on_receptions(network_.receptions());
+    console_.on_receptions(network_.ear().receptions());
     const auto traffic = process::traffic_of(network_.ear());
     HealthFacts facts;
     facts.version = version();

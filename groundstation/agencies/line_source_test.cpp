@@ -28,11 +28,11 @@ bool until(const std::function<bool()>& holds) {
 }
 
 struct LineSourceTest : ::testing::Test {
-  tcp::socket accepted(LineSource& source) {
+  tcp::socket accepted(LineSource& from) {
     acceptor.non_blocking(true);
     tcp::socket socket{io};
     EXPECT_TRUE(until([&] {
-      source.poll(now);
+      from.poll(now);
       boost::system::error_code error;
       acceptor.accept(socket, error);
       return !error;
@@ -42,11 +42,11 @@ struct LineSourceTest : ::testing::Test {
   static void send(tcp::socket& socket, const std::string& text) {
     boost::asio::write(socket, boost::asio::buffer(text));
   }
-  std::optional<std::string> line(LineSource& source) {
+  std::optional<std::string> line(LineSource& from) {
     std::optional<std::string> got;
     (void)until([&] {
-      source.poll(now);
-      got = source.next();
+      from.poll(now);
+      got = from.next();
       return got.has_value();
     });
     return got;

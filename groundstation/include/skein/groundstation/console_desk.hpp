@@ -46,6 +46,10 @@ class ConsoleDesk {
   void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event, Instant now);
+  /// All aircraft that receivers hear now.
+  void on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all) {
+    picture_.on_traffic(all);
+  }
   /// What is shown that is not of the picture: sections, and whether nobody has the command.
   struct Beside {
     const std::string& audit;
