@@ -20,7 +20,7 @@ namespace skein::ros2 {
 namespace {
 
 constexpr std::chrono::milliseconds kStep{20};
-constexpr int kStepsOfRound = 10;  // between two looks at whether it is to end
+constexpr int kStepsOfRound = 10;      // between two looks at whether it is to end
 constexpr int kProposalsPerStep = 20;  // so that a flood cannot keep the loop from its picture
 constexpr Duration kComplaintPeriod = std::chrono::seconds{10};
 constexpr std::uint32_t kDomainMax = 232;  // of more the ports would not fit
@@ -118,6 +118,11 @@ Result<void> check(const BridgeConfig& config) {
     return Error{"'" + config.node.name_space +
                  "' is no namespace: small letters, digits and _, a letter first"};
   }
+  for (const std::string& address : config.node.peers) {
+    if (const auto peer = parse_place(address); !peer || peer->port != 0) {
+      return Error{"'" + address + "' is no IPv4 address of a peer"};
+    }
+  }
   return {};
 }
 
@@ -133,6 +138,11 @@ int run(const BridgeConfig& config) {
       return process::kExitCannotStart;
     }
     markers = std::move(opened).value();
+  }
+  // Fast DDS would start all the same, and speak with nobody.
+  if (const auto own = agencies::Inlet::open(config.node.address, 0, ""); !own) {
+    spdlog::error("--address is to be one of this machine's: {}", own.error().message);
+    return process::kExitCannotStart;
   }
   auto node = RosNode::open(config.node);
   if (!node) {

@@ -26,6 +26,7 @@ namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
 using boost::system::error_code;
 
+constexpr std::uint16_t kConsolePort = 7460;
 constexpr const char* kProtocol = "skein.console.1";
 constexpr std::chrono::seconds kPatience{10};
 constexpr std::chrono::seconds kSilence{20};
@@ -33,25 +34,32 @@ constexpr std::size_t kTextMax = 64U << 20U;  // a picture of a thousand vehicle
 
 }  // namespace
 
-Result<ConsoleAddress> parse_console_address(const std::string& url) {
-  constexpr std::string_view kScheme = "http://";
-  const Error error{"'" + url + "' is no console: http://127.0.0.1:7460 is one"};
-  if (!url.starts_with(kScheme)) return error;
-  std::string_view rest = std::string_view{url}.substr(kScheme.size());
-  if (rest.ends_with('/')) rest.remove_suffix(1);
-  ConsoleAddress address;
-  const auto colon = rest.find(':');
-  address.host = rest.substr(0, colon);
+Result<Place> parse_place(std::string_view text) {
+  const Error error{"'" + std::string{text} + "' is no place: 127.0.0.1:7460 is one"};
+  const auto colon = text.find(':');
+  Place place{std::string{text.substr(0, colon)}};
   error_code bad;
-  asio::ip::make_address_v4(address.host, bad);
+  asio::ip::make_address_v4(place.host, bad);
   if (bad) return error;
-  if (colon == std::string_view::npos) return address;
-  const std::string_view port = rest.substr(colon + 1);
-  const auto read = std::from_chars(port.data(), port.data() + port.size(), address.port);
-  if (read.ec != std::errc{} || read.ptr != port.data() + port.size() || address.port == 0) {
-    return error;
+  if (colon == std::string_view::npos) return place;
+  const std::string_view port = text.substr(colon + 1);
+  const auto read = std::from_chars(port.data(), port.data() + port.size(), place.port);
+  const bool whole = read.ec == std::errc{} && read.ptr == port.data() + port.size();
+  if (!whole || place.port == 0) return error;
+  return place;
+}
+
+Result<Place> parse_console(std::string_view url) {
+  constexpr std::string_view kScheme = "http://";
+  std::string_view rest = url;
+  if (!rest.starts_with(kScheme)) {
+    return Error{"'" + std::string{url} + "' is no console: http://127.0.0.1:7460 is one"};
   }
-  return address;
+  rest.remove_prefix(kScheme.size());
+  if (rest.ends_with('/')) rest.remove_suffix(1);
+  auto place = parse_place(rest);
+  if (place && place->port == 0) place->port = kConsolePort;
+  return place;
 }
 
 class ConsoleClient::Session {

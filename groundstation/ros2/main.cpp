@@ -40,7 +40,7 @@ Result<skein::ros2::BridgeConfig> config_of(const Arguments& arguments) {
   skein::ros2::BridgeConfig config;
   config.node = arguments.node;
   if (arguments.humble) config.node.gid_bytes = 24;
-  const auto console = skein::ros2::parse_console_address(arguments.console);
+  const auto console = skein::ros2::parse_console(arguments.console);
   if (!console) return console.error();
   config.console.address = *console;
   config.console.user = arguments.user;
@@ -53,11 +53,11 @@ Result<skein::ros2::BridgeConfig> config_of(const Arguments& arguments) {
   if (!secret) return secret.error();
   config.console.password = *std::move(secret);
   if (!arguments.markers.empty()) {
-    const auto markers = skein::ros2::parse_console_address("http://" + arguments.markers);
-    if (!markers || arguments.markers.find(':') == std::string::npos) {
+    const auto markers = skein::ros2::parse_place(arguments.markers);
+    if (!markers || markers->port == 0) {
       return Error{"'" + arguments.markers + "' is no place for markers: 127.0.0.1:6969 is one"};
     }
-    config.markers = skein::ros2::MarkersAddress{markers->host, markers->port};
+    config.markers = *markers;
   }
   if (auto good = skein::ros2::check(config); !good) return good.error();
   return config;

@@ -154,7 +154,7 @@ class DdsNode final : public RosNode {
         config_.domain, participant_qos(config_));
     if (participant_ == nullptr) {
       return Error{"Fast DDS cannot start in domain " + std::to_string(config_.domain) + " on " +
-                   config_.address + ": is that an address of this machine?"};
+                   config_.address};
     }
     publisher_ = participant_->create_publisher(dds::PUBLISHER_QOS_DEFAULT);
     subscriber_ = participant_->create_subscriber(dds::SUBSCRIBER_QOS_DEFAULT);

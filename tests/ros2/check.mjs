@@ -176,7 +176,7 @@ assert(mission.tell('dismiss 1').done)
 late.say('95 105.06 1 off the earth')
 late.say('31.525 105.06 77 of no kind')
 // A flood, each far from the others: what the bridge passes on is bounded.
-for (let i = 0; i < 100; ++i) late.say(`${31.4 + 0.002 * i} 105.1 0 fire ${i}`)
+for (let i = 0; i < 100; ++i) late.say(`${31.4 + 0.005 * i} 105.1 0 fire ${i}`)
 await until('a complaint', () => /a proposal is dropped/.test(bridge_log('bridge')))
 await until('many proposals', () => mission.tell('proposals').data.length >= 15)
 const answered = mission.tell('proposals').data.length

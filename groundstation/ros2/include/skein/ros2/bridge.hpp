@@ -11,16 +11,11 @@
 
 namespace skein::ros2 {
 
-/// Where the ground station takes markers (agencies.markers).
-struct MarkersAddress {
-  std::string host;  ///< IPv4
-  std::uint16_t port = 0;
-};
-
 struct BridgeConfig {
   ConsoleClient::Config console;
   RosNodeConfig node;
-  std::optional<MarkersAddress> markers{};  ///< none: proposals are dropped
+  /// Where the ground station takes markers (agencies.markers); none: proposals are dropped.
+  std::optional<Place> markers{};
 };
 
 /// Why it cannot be run so.

@@ -6,18 +6,21 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "skein/base/result.hpp"
 
 namespace skein::ros2 {
 
-struct ConsoleAddress {
-  std::string host = "127.0.0.1";  ///< IPv4
-  std::uint16_t port = 7460;
+struct Place {
+  std::string host;  ///< IPv4
+  std::uint16_t port = 0;
 };
 
+/// "127.0.0.1:7460"; without a port it has 0.
+[[nodiscard]] Result<Place> parse_place(std::string_view text);
 /// "http://127.0.0.1:7460", with or without the port and a slash at the end.
-[[nodiscard]] Result<ConsoleAddress> parse_console_address(const std::string& url);
+[[nodiscard]] Result<Place> parse_console(std::string_view url);
 
 /// Logs in at a console and hears its socket; does so again kRetry after that has failed or ended.
 /// On one thread, which runs it.
@@ -26,7 +29,7 @@ class ConsoleClient {
   static constexpr std::chrono::seconds kRetry{2};
 
   struct Config {
-    ConsoleAddress address;
+    Place address;
     std::string user;  ///< empty: `password` is an observer's token
     std::string password;
   };

@@ -28,7 +28,7 @@ class RosNode {
   static constexpr std::size_t kTopicsMax = 4000;
   static constexpr const char* kProposalTopic = "site_proposal";
 
-  /// Fails where the address is not of this machine, or Fast DDS has no room.
+  /// Fails where Fast DDS has no room. Precondition: the address is of this machine.
   [[nodiscard]] static Result<std::unique_ptr<RosNode>> open(const RosNodeConfig& config);
   RosNode(const RosNode&) = delete;
   RosNode& operator=(const RosNode&) = delete;
