@@ -183,7 +183,7 @@ class World {
       ++orders_judged_;
     }
     for (const auto& station : stations_) {
-      if (station) EXPECT_FALSE(station->desk().nobody_commands(now_));
+      EXPECT_FALSE(station && station->desk().nobody_commands(now_));
     }
   }
   [[nodiscard]] std::size_t handed_over() const { return starts_.size(); }

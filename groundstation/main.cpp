@@ -481,7 +481,7 @@ class CommandLine {
     CLI::App& command = add("replay", "Shows a recording in the console, as it was", [this] {
       return groundstation::replay(
           replaying_.recording, replaying_.console, replaying_.speed,
-          replaying_.at_s ? std::optional{at_seconds(*replaying_.at_s)} : std::nullopt);
+          replaying_.at_s ? std::optional{skein::at_seconds(*replaying_.at_s)} : std::nullopt);
     });
     command
         .add_option("recording", replaying_.recording,

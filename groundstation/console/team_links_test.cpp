@@ -27,7 +27,7 @@ Telemetry telemetry(std::uint16_t id) {
 /// an older release; 3 has told nothing.
 Fleet fleet() {
   Fleet fleet{{.expected = {{1}, {2}, {3}}}};
-  for (const std::uint16_t id : {1, 2, 3}) {
+  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{1, 2, 3}) {
     fleet.on_message(Message{telemetry(id)}, at_seconds(id == 3 ? 1.0 : 20.0));
   }
   Health health;

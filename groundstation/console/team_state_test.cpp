@@ -24,7 +24,8 @@ class TeamStateTest : public testing::Test {
     fleet_.on_message(mission::Message{said}, at_seconds(time_s));
   }
   void all(Activity activity, ActivityDetail detail) {
-    for (const std::uint16_t id : {1, 2, 3}) hear(id, activity, detail);
+    for (const std::uint16_t id : std::initializer_list<std::uint16_t>{1, 2, 3})
+      hear(id, activity, detail);
   }
   [[nodiscard]] std::vector<TeamState> states(double time_s = 10.0, bool nobody = false) {
     fleet_.on_timeout(at_seconds(time_s));
@@ -66,13 +67,14 @@ TEST_F(TeamStateTest, TellsHeldAndRecallOfAllFromThoseOfSome) {
   all(Activity::holding, ActivityDetail::returning);
   EXPECT_THAT(states(), ElementsAre(TeamState::part_recall))
       << "what is older than the newest word of vehicle 1 is passed over";
-  for (const std::uint16_t id : {1, 2, 3}) {
+  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{1, 2, 3}) {
     hear(id, Activity::holding, ActivityDetail::returning, 12.0);
   }
   EXPECT_THAT(states(12.0), ElementsAre(TeamState::recall));
   hear(1, Activity::landed, ActivityDetail::on_ground, 13.0);
   EXPECT_THAT(states(13.0), ElementsAre(TeamState::recall));
-  for (const std::uint16_t id : {2, 3}) hear(id, Activity::landed, ActivityDetail::on_ground, 13.0);
+  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{2, 3})
+    hear(id, Activity::landed, ActivityDetail::on_ground, 13.0);
   EXPECT_THAT(states(13.0), ElementsAre(TeamState::on_ground));
 }
 

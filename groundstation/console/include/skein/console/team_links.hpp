@@ -34,9 +34,9 @@ struct LinkFigures {
 struct LinkRow {
   VehicleId who;
   /// Since it told; none: it has not, so nothing is known of whom it hears.
-  std::optional<Duration> told_age;
-  bool tells_loss = false;         ///< an older release does not
-  std::vector<LinkFigures> hears;  ///< ascending by whom
+  std::optional<Duration> told_age = {};
+  bool tells_loss = false;              ///< an older release does not
+  std::vector<LinkFigures> hears = {};  ///< ascending by whom
 };
 
 /// Who hears whom, as each has told last: the ground station first, then vehicles, ascending.
