@@ -41,6 +41,14 @@ const sections = {
   proposals: [{ number: 1, kind: "fire", x: 10, y: 20, seen_by: 2, confidence: 0.8, detector: "thermal", time_s: 60 }],
 };
 
+/** Of every kind: good, lossy, bad, through others, old, and of an older release. */
+const a_link = (id, i) => ({ id, age_s: i === 5 ? 30 : 0.2, per_s: i === 6 ? null : 9.5, lost_percent: [2, 12, 40, 100, 0, 0, null][i], bytes_per_s: id === 1 ? 1200 : null, through_others: i === 3 });
+sections.links = [0, 1, 2, 3, 4, 5, 6, 7].map((who) => ({
+  id: who, told_age_s: who === 7 ? null : 0.4, tells_loss: true,
+  hears: who === 7 ? [] : [0, 1, 2, 3, 4, 5, 6, 7].filter((whom) => whom !== who).map((whom, i) => a_link(whom, i)),
+}));
+sections.wind = { from_deg: 240, speed_mps: 4.1, gust_mps: 6, age_s: 0.3, spread_mps: 0.4, vehicles: [{ id: 4, from_deg: 238, speed_mps: 4, gust_mps: 6, age_s: 0.3 }] };
+
 /** Of the screen at 100 %; at 200 % the page has half of it, and each of its pixels is four. */
 const screens = [{ width: 1440, height: 900 }, { width: 1024, height: 768 }, { width: 390, height: 844 }];
 
@@ -80,7 +88,7 @@ const too_small = (page, least) =>
       .map(({ element, box }) => `${element.outerHTML.slice(0, 110)}: ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
   }, least);
 
-const panels = ["fleet", "mission", "orders", "log", "plots", "preflight"];
+const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links"];
 
 async function open(view, name) {
   if ((await view.part(`tab-${name}`).count()) === 0) await view.part("tabs-more").click();
@@ -133,6 +141,11 @@ for (const { width, height } of screens) {
           wrong.push(...(await both(name, ["hold-all", `tab-${name}`])));
           await view.picture(`access-${name}-${width}-${percent}`);
         }
+        for (const way of ["matrix", "list"]) {
+          await view.part(`links-${way}`).click();
+          wrong.push(...(await both(`links, ${way}`, [])));
+        }
+        await open(view, "preflight");
         await view.part("preflight-versions").click();
         wrong.push(...(await both("versions", ["hold-all", "preflight-versions"])));
         await view.part("preflight-checks").click();

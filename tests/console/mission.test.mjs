@@ -28,7 +28,7 @@ test("the fleet is there, well, and accounted for", async () => {
 });
 
 test("an observer's eyes: no serious barrier in any panel", async () => {
-  for (const panel of ["fleet", "mission", "orders", "log", "plots", "preflight"]) {
+  for (const panel of ["fleet", "mission", "orders", "log", "plots", "preflight", "links"]) {
     await view.part(`tab-${panel}`).click();
     assert.deepEqual(await barriers(view.page), [], panel);
   }

@@ -49,7 +49,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
   ];
   const blows = wind.value?.vehicles.find(({ id }) => id === vehicle.id);
   if (blows) rows.splice(4, 0, ["Wind that it has", words_of_wind(blows)]);
-  const video = hello.value?.videos.find((one) => one.vehicle === vehicle.id);
+  const video = hello.value?.videos?.find((one) => one.vehicle === vehicle.id);
   return (
     <section class="details" aria-label={`Vehicle ${vehicle.id}`} data-testid="vehicle-details">
       <header>

@@ -9,7 +9,7 @@ export function WindBadge() {
   if (!now) return null;
   const old = now.age_s > wind_age_max_s;
   return (
-    <div class={`wind-badge${old ? " old" : ""}`} data-testid="wind" title={who_tells(now)}>
+    <div class={`wind-badge${old ? " old" : ""}`} data-testid="wind">
       <svg viewBox="-12 -12 24 24" width="26" height="26" aria-hidden="true">
         {now.from_deg === null ? (
           <circle r="5" class="wind-calm" />

@@ -62,7 +62,8 @@ export interface Hello {
   overlays: { name: string; url: string }[];
   /** Named groups of vehicles of the configuration; none of an older server. */
   groups?: { name: string; vehicles: number[] }[];
-  videos: Video[];
+  /** Where vehicles' pictures are; none of an older server. */
+  videos?: Video[];
 }
 
 export interface Series {
