@@ -110,10 +110,24 @@ std::set<VehicleId> asked_by(const GivenOrder& order, const Picture& picture,
   return all;
 }
 
+/// It was given up, or another one has taken its place.
+bool is_over(const coalition::Round& round, const Picture& picture) {
+  for (const auto& [id, coalition] : picture.coalitions()) {
+    if (id != round.coalition) continue;
+    const bool gone =
+        coalition.state == CoalitionState::failed || coalition.state == CoalitionState::closed;
+    const bool replaced =
+        !coalition.rounds.empty() && coalition.rounds.back().number > round.number;
+    return gone || replaced;
+  }
+  return false;
+}
+
 /// Nobody flies what was decided any more, or something else was asked since.
 bool is_past(const GivenOrder& order, const Picture& picture, Instant now) {
   if (!order.decision) return false;
   if (order.decision->granted && now > order.decision->until) return true;
+  if (order.decision->granted && is_over(order.decision->round, picture)) return true;
   const auto site = picture.sites().find(order.site);
   if (order.decision->granted && site != picture.sites().end() && site->second.over()) return true;
   return std::ranges::any_of(picture.authorisations(), [&](const AuthorisationPicture& one) {

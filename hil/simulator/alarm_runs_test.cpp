@@ -28,6 +28,7 @@ constexpr Duration kSilence = std::chrono::seconds{5};
 constexpr Duration kLate = std::chrono::milliseconds{700};
 /// Reliable messages, where one is lost and said again.
 constexpr Duration kWordLate = std::chrono::milliseconds{1600};
+constexpr Duration kStep = std::chrono::milliseconds{50};
 /// An alarm stays for as long after its end.
 constexpr Duration kSteady = std::chrono::seconds{2};
 
@@ -65,6 +66,7 @@ class AlarmWatch {
 
   console::Alarms alarms;
   std::set<AlarmKind> seen;
+  std::set<std::string> said;
   std::map<AlarmKind, Duration> stood;  ///< so long, all in all
   std::map<std::pair<CommandKind, VehicleId>, std::vector<Instant>> obeyed;
 
@@ -99,6 +101,7 @@ class AlarmWatch {
     for (const console::Alarm* alarm : alarms.list()) {
       if (alarm->over) continue;
       seen.insert(alarm->key.kind);
+      said.insert(alarm->what);
       stood[alarm->key.kind] += step;
       standing_.insert({alarm->key.kind, alarm->key.vehicle, alarm->key.site});
     }
@@ -243,7 +246,8 @@ TEST(AlarmRuns, EachAnswerIsTheVehiclesOwn) {
       const auto obeyed =
           std::ranges::find_if(truly, [&](Instant at) { return at >= order.given; });
       ASSERT_NE(obeyed, truly.end()) << line_of(order) << " of " << vehicle.value;
-      EXPECT_GE(order.given + after, *obeyed);
+      // An event is heard within the step of the nodes that shows it.
+      EXPECT_GE(order.given + after + kStep, *obeyed);
       EXPECT_LE(order.given + after, *obeyed + kWordLate);
       slowest_s = std::max(slowest_s, to_seconds(after));
       ++answers;
@@ -263,7 +267,7 @@ TEST(AlarmRuns, AlsoWhereTheRadioLosesAThird) {
     AlarmWatch watch{team};
     (void)simulate_team(team, watch.observer());
     EXPECT_FALSE(watch.seen.contains(AlarmKind::vehicle_silent));
-    EXPECT_FALSE(watch.seen.contains(AlarmKind::no_answer));
+    EXPECT_FALSE(watch.seen.contains(AlarmKind::no_answer)) << ::testing::PrintToString(watch.said);
   }
 }
 
