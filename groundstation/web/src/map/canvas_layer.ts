@@ -66,6 +66,8 @@ export class CanvasLayer extends L.Layer {
     const context = canvas?.getContext("2d");
     if (!map || !canvas || !context) return;
     const size = map.getSize();
+    // Of a narrow page the map may be behind a panel.
+    if (size.x === 0 || size.y === 0) return;
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     const width = Math.round(size.x * ratio);
     const height = Math.round(size.y * ratio);

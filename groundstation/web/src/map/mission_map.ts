@@ -49,6 +49,8 @@ export class MissionMap {
   /** What is shown was chosen by a person: it is not to be changed by anything but that person. */
   private by_hand = false;
   private readonly sites_seen = new SitesSeen();
+  /** What it is to show as soon as it has a size: of a narrow page it may be behind a panel. */
+  private when_seen: (() => void) | null = null;
   private tracks_at_ms = 0;
   private frame = 0;
   private frame_local: LocalFrame | null = null;
@@ -90,7 +92,12 @@ export class MissionMap {
     this.ground = new CanvasLayer("ground", colours, (view) => this.paint_ground(view)).addTo(this.leaflet);
     this.moving = new CanvasLayer("moving", colours, (view) => this.paint_moving(view)).addTo(this.leaflet);
 
-    const resize = new ResizeObserver(() => this.leaflet.invalidateSize({ animate: false, pan: false }));
+    const resize = new ResizeObserver(() => {
+      this.leaflet.invalidateSize({ animate: false, pan: false });
+      if (!this.is_seen()) return;
+      this.when_seen?.();
+      this.when_seen = null;
+    });
     resize.observe(element);
     this.leaflet.on("dragstart", () => {
       follow.value = false;
@@ -196,6 +203,10 @@ export class MissionMap {
   }
 
   private fit_to(bounds: L.LatLngBounds): void {
+    if (!this.is_seen()) {
+      this.when_seen = () => this.fit_to(bounds);
+      return;
+    }
     // To the right there are the tools; of a small map they would take all.
     const { x, y } = this.leaflet.getSize();
     const side = Math.min(40, y / 8, x / 8);
@@ -213,8 +224,14 @@ export class MissionMap {
     if (this.previewed().some((at) => !this.leaflet.getBounds().contains(at))) this.fit();
   }
 
+  private is_seen(): boolean {
+    const { x, y } = this.leaflet.getSize();
+    return x > 0 && y > 0;
+  }
+
   go_to(point: Point): void {
-    this.leaflet.panTo([point.y, point.x], { animate: false });
+    if (!this.is_seen()) this.when_seen = () => this.go_to(point);
+    else this.leaflet.panTo([point.y, point.x], { animate: false });
   }
 
   /** The vehicle at a press, if there is one within a finger's reach. */
