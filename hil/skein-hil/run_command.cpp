@@ -46,10 +46,6 @@ class ProgressLine {
       fmt::print("\r{:7.1f} s   vehicles heard {}/{}   sites found {}/{}, done {}/{} ", t,
                  p.vehicles_heard, vehicles_, p.sites_found, sites_, p.sites_done, sites_);
     }
-    if (options.ground_stations > 1) {
-      fmt::print("console of the second: http://127.0.0.1:{}/#{}\n", options.console_port + 1,
-                 options.console_token);
-    }
     std::fflush(stdout);
   }
   void clear() const {
@@ -184,6 +180,10 @@ int run(const RunArguments& arguments) {
              options.run_folder.string());
   if (options.console_port != 0) {
     fmt::print("console: http://127.0.0.1:{}/#{}\n", options.console_port, options.console_token);
+    if (options.ground_stations > 1) {
+      fmt::print("console of the second: http://127.0.0.1:{}/#{}\n", options.console_port + 1,
+                 options.console_token);
+    }
     std::fflush(stdout);
   }
   if (wants_an_operator(*scenario) && !arguments.prompt && arguments.console_port == 0) {

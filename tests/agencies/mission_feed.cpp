@@ -105,8 +105,8 @@ hil::TeamMission mission_of(int count, int seconds) {
     Site site;
     site.id = SiteId{static_cast<std::uint16_t>(i + 1)};
     site.position = {400.0 * (i % 9 - 4), 350.0 * (i % 7 - 3)};
-    site.survey = {.radius_m = 150.0, .dwell = std::chrono::seconds{5}};
-    site.assessments.push_back({.radius_m = 180.0, .dwell = std::chrono::seconds{4}});
+    site.survey = {{}, std::chrono::seconds{5}};
+    site.assessments.push_back({{}, std::chrono::seconds{4}});
     team.sites.push_back(site);
     team.reported[site.id] = at_seconds(20.0 + 115.0 * i);
   }
