@@ -95,7 +95,7 @@ class PictureWatch {
 
   /// What events, which are told in true time, say of a vehicle besides.
   struct Facts {
-    std::optional<mission::CommandKind> order;  ///< the newest that it obeys
+    std::optional<mission::CommandKind> order = {};  ///< the newest that it obeys
     bool range_spent = false;
     bool authorised = false;  ///< its newest delivery
     Instant changed_at{};
