@@ -155,7 +155,7 @@ void TrafficWatch::look(Known& known, const Self& self, Instant now) {
 }
 
 /// The nearest height from there on that side that is too near to none of them.
-std::optional<double> TrafficWatch::free_height(double from_m, bool up) const {
+std::optional<double> TrafficWatch::free_height(double from_m, bool up, double ceiling_m) const {
   double height_m = from_m;
   for (bool moved = true; moved;) {
     moved = false;
@@ -168,7 +168,7 @@ std::optional<double> TrafficWatch::free_height(double from_m, bool up) const {
       moved = true;
     }
   }
-  const bool allowed = up ? height_m <= params_.ceiling_m : height_m >= params_.floor_m;
+  const bool allowed = up ? height_m <= ceiling_m : height_m >= params_.floor_m;
   return allowed ? std::optional{height_m} : std::nullopt;
 }
 
@@ -199,6 +199,7 @@ void TrafficWatch::choose(const Self& self) {
     return;
   }
   if (first == nullptr) return;  // they are clear of each other, and not for long enough yet
+  const double ceiling_m = std::min(params_.ceiling_m, self.ceiling_m);
   const auto all_in_time = [&](double to_m) {
     return std::ranges::all_of(known_, [&](const auto& entry) {
       const Known& known = entry.second;
@@ -206,8 +207,8 @@ void TrafficWatch::choose(const Self& self) {
     });
   };
   if (!target_ || !all_in_time(*target_)) {
-    const auto down = free_height(self.layer_m, false);
-    const auto up = free_height(self.layer_m, true);
+    const auto down = free_height(self.layer_m, false, ceiling_m);
+    const auto up = free_height(self.layer_m, true, ceiling_m);
     const double other_m =
         0.5 * (first->encounter->heights.low_m + first->encounter->heights.high_m);
     const bool is_above = other_m >= self.state.z_m;
@@ -218,10 +219,10 @@ void TrafficWatch::choose(const Self& self) {
     } else if (is_above) {
       target_ = down.value_or(std::min(std::max(params_.floor_m, 0.0), self.layer_m));
     } else {
-      target_ = up.value_or(std::max(params_.ceiling_m, self.layer_m));
+      target_ = up.value_or(std::max(ceiling_m, self.layer_m));
     }
   }
-  room_ = {params_.floor_m, params_.ceiling_m};
+  room_ = {params_.floor_m, ceiling_m};
   for (const auto& [address, known] : known_) {
     if (!known.conflict || !known.encounter) continue;
     const HeightBand& band = known.encounter->heights;

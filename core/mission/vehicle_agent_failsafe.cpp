@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // News for the failsafe, and what the vehicle does because of it.
-#include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "vehicle_agent_impl.hpp"
@@ -62,14 +62,6 @@ void VehicleAgent::Impl::on_event(const MissionEvent& message) {
   }
 }
 
-TrafficParams VehicleAgent::Impl::traffic_params(const VehicleAgentConfig& config) {
-  TrafficParams params = config.traffic;
-  if (config.fence.exists()) {
-    params.ceiling_m = std::min(params.ceiling_m, config.fence.height_max_m);
-  }
-  return params;
-}
-
 /// Who stands, takes off, comes down or is flown by a pilot is only warned.
 bool VehicleAgent::Impl::may_leave_layer() const {
   if (!ownship_.flight().started() || ownship_.landing() || piloted_) return false;
@@ -81,9 +73,12 @@ bool VehicleAgent::Impl::may_leave_layer() const {
 void VehicleAgent::Impl::watch_traffic(Instant now) {
   if (!traffic_.watches()) return;
   const Flight& flight = ownship_.flight();
+  const Fence& fence = ownship_.config().fence;
+  constexpr double kNone = std::numeric_limits<double>::infinity();
   traffic_.step({.state = ownship_.state(),
                  .plan = flight.started() ? &flight.plan() : nullptr,
                  .layer_m = ownship_.spec().height_m,
+                 .ceiling_m = fence.exists() ? fence.height_max_m : kNone,
                  .may_give_way = may_leave_layer()},
                 now);
   while (auto news = traffic_.poll_event()) outbox.report(*std::move(news), {}, {}, now);

@@ -23,7 +23,7 @@ class VehicleAgent::Impl {
       : outbox{config.vehicle.id},
         ownship_{config},
         separation_{config.protocol, config.vehicle.id, config.vehicle.height_m},
-        traffic_{traffic_params(config)} {}
+        traffic_{config.traffic} {}
 
   void on_state(const VehicleState& state, Instant now);
   void on_message(const Message& message, Instant now);
@@ -76,7 +76,6 @@ class VehicleAgent::Impl {
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
   void watch_fence(Instant now);
-  [[nodiscard]] static TrafficParams traffic_params(const VehicleAgentConfig& config);
   [[nodiscard]] bool may_leave_layer() const;
   void watch_traffic(Instant now);
   void watch_separation(Instant now);

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -42,7 +43,9 @@ class TrafficWatch {
     VehicleState state;
     const FlightPlan* plan = nullptr;  ///< null: it flies straight on
     double layer_m = 0.0;              ///< its height, where nothing is wrong
-    bool may_give_way = false;         ///< it flies, by this program, and not in a formation
+    /// Of its fence.
+    double ceiling_m = std::numeric_limits<double>::infinity();
+    bool may_give_way = false;  ///< it flies, by this program, and not in a formation
   };
 
   explicit TrafficWatch(const TrafficParams& params) : params_{params} {}
@@ -86,7 +89,7 @@ class TrafficWatch {
                                                    double factor, Instant now) const;
   void look(Known& known, const Self& self, Instant now);
   void choose(const Self& self);
-  [[nodiscard]] std::optional<double> free_height(double from_m, bool up) const;
+  [[nodiscard]] std::optional<double> free_height(double from_m, bool up, double ceiling_m) const;
   [[nodiscard]] bool in_time(const Self& self, const Encounter& encounter, double to_m) const;
   void tell(Known& known, const Self& self, Instant now);
 
