@@ -29,6 +29,12 @@ constexpr Duration kChosenFor = std::chrono::seconds{2};
 constexpr double kOthersWithin_m = 40.0;
 constexpr std::size_t kEventsMax = 64;
 
+/// Who climbs or sinks faster towards this one comes to it.
+constexpr double kComes_mps = 0.7;
+/// Beyond the vertical minimum: between two that give way to the same aircraft.
+constexpr double kLayerRoom_m = 3.0;
+/// To pass through another's layer takes so long.
+constexpr double kCross_s = 8.0;
 constexpr Duration kWayPeriod = std::chrono::seconds{1};
 /// So near to it, it is back in its layer.
 constexpr double kBack_m = 2.0;
@@ -41,7 +47,12 @@ Vec2 position_at(const VehicleState& state, double seconds) {
 
 SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, VehicleId self,
                                  double layer_m)
-    : params_{params}, self_{self}, layer_m_{layer_m}, base_m_{layer_m}, way_m_{layer_m} {}
+    : params_{params},
+      self_{self},
+      layer_m_{layer_m},
+      asked_m_{layer_m},
+      base_m_{layer_m},
+      way_m_{layer_m} {}
 
 /// Lower, a vehicle takes off, or has not yet: planes wait side by side on the ground.
 bool SeparationWatch::has_taken_off(const VehicleState& own) const {
@@ -68,6 +79,11 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
     if (!near || known_.size() >= kVehiclesMax) return;
   }
   Other& known = known_[other.vehicle];
+  const double since_s = to_seconds(other.state.time - known.state.time);
+  if (since_s > 0.0) {
+    known.climb_mps = found == known_.end() ? 0.0 : (other.state.z_m - known.state.z_m) / since_s;
+  }
+  known.gives_way_too = other.detail == ActivityDetail::avoiding_traffic;
   known.state = other.state;
   known.activity = other.activity;
   known.heard = now;
@@ -106,8 +122,12 @@ void SeparationWatch::step(const Self& self, Instant now) {
     target_.reset();
     return;
   }
-  if (base_m_ != self.height_m.value_or(layer_m_)) next_way_ = now;
-  base_m_ = self.height_m.value_or(layer_m_);
+  const double wanted_m = self.height_m.value_or(layer_m_);
+  if (wanted_m != asked_m_) {
+    next_way_ = now;
+    behind_ = before_ = 0;
+    base_m_ = asked_m_ = wanted_m;
+  }
   room_ = self.room;
   const bool is_back = std::abs(self.state.z_m - layer_m_) < kBack_m;
   off_layer_ = self.height_m || (off_layer_ && !is_back && self.activity != Activity::landing);
@@ -132,6 +152,48 @@ void SeparationWatch::step(const Self& self, Instant now) {
   go_on(self, now);
 }
 
+/// Where it is to fly, and beyond that a layer for each that is to come after it: who gives way to
+/// the same aircraft is on one side of it, and would else be at one height with all others.
+double SeparationWatch::with_room_for_others(const Self& self) {
+  if (!self.height_m || *self.height_m == layer_m_) return base_m_;
+  const double side = *self.height_m > layer_m_ ? 1.0 : -1.0;
+  const double apart_m = params_.separation_vertical_m + kLayerRoom_m;
+  const double low_m = std::max(params_.separation_floor_m, room_.low_m);
+  const double high_m = std::min(params_.separation_ceiling_m, room_.high_m);
+  int behind = 0;
+  int before = 0;
+  for (const auto& [id, other] : known_) {
+    if (!other.gives_way_too) continue;
+    const double behind_m = side * (self.state.z_m - other.state.z_m);
+    const bool is_behind = std::abs(behind_m) < kLevel_m ? id > self_ : behind_m > 0.0;
+    ++(is_behind ? behind : before);
+  }
+  behind_ = std::max(behind_, behind);
+  before_ = std::max(before_, before);
+  double height_m = *self.height_m + side * behind_ * apart_m;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& [id, other] : known_) {
+      if (other.gives_way_too || std::abs(other.state.z_m - height_m) >= apart_m - kLevel_m)
+        continue;
+      height_m = other.state.z_m + side * apart_m;
+      moved = true;
+    }
+  }
+  const double end_m = side > 0.0 ? high_m : low_m;
+  // Without room for all of them they stand in their order at its end.
+  if (side * (height_m - end_m) > 0.0) height_m = end_m - side * before_ * apart_m;
+  return side > 0.0 ? std::max(layer_m_, height_m) : std::min(layer_m_, height_m);
+}
+
+/// Whether it may be beside this one before that has passed its height, however it turns.
+bool SeparationWatch::may_come(const Self& self, const Other& other, Instant now) const {
+  const double age_s = to_seconds(now - other.heard + other.delay);
+  const Vec2 apart = position_at(other.state, age_s) - Vec2{self.state.x_m, self.state.y_m};
+  const double speed_mps = self.state.groundspeed_mps + other.state.groundspeed_mps;
+  return apart.norm() < params_.separation_horizontal_m + kCross_s * speed_mps;
+}
+
 /// To where it is to fly, as far as nobody passes near on the way: where it comes down, or back up,
 /// through the layers of others, that costs nobody his.
 void SeparationWatch::go_on(const Self& self, Instant now) {
@@ -141,14 +203,17 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
   }
   if (now < next_way_) return;
   next_way_ = now + kWayPeriod;
+  base_m_ = with_room_for_others(self);
   const double from_m = self.state.z_m;
   const double side = base_m_ > from_m ? 1.0 : -1.0;
-  const double apart_m = params_.separation_vertical_m + kWaits_m;
   double way_m = base_m_;
   for (const auto& [id, other] : known_) {
+    const bool comes = side * other.climb_mps < -kComes_mps;
+    const double apart_m = params_.separation_vertical_m + (comes ? kWaits_m : kRoom_m);
     const double ahead_m = side * (other.state.z_m - from_m);
     const double beyond_m = side * (other.state.z_m - base_m_);
-    if (ahead_m < 0.0 || beyond_m >= apart_m || !passes_near(self, other, now)) continue;
+    if (ahead_m < 0.0 || beyond_m >= apart_m) continue;
+    if (!passes_near(self, other, now) && !may_come(self, other, now)) continue;
     const double waits_m = other.state.z_m - side * apart_m;
     const double stop_m = side * (waits_m - from_m) < 0.0 ? from_m : waits_m;
     if (side * (stop_m - way_m) < 0.0) way_m = stop_m;

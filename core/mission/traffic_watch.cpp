@@ -15,6 +15,10 @@ constexpr double kMargin_mps = 3.0;
 /// A conflict ends only beyond these.
 constexpr double kClearFactor = 1.2;
 constexpr double kClearHeight_m = 5.0;
+/// Lower, it stands on the ground.
+constexpr double kStands_m = 2.0;
+/// Of heights, which are told in steps of 25 feet and looked at twice a second.
+constexpr double kHeightMargin_m = 3.0;
 constexpr Duration kStep = std::chrono::seconds{1};
 /// A climb is begun so much later than it is asked for.
 constexpr double kClimbLag_s = 3.0;
@@ -99,6 +103,7 @@ std::optional<TrafficWatch::Encounter> TrafficWatch::encounter(const Self& self,
     return Vec2{aircraft.position + (age_s + t_s) * velocity - own};
   };
   const double height_now_m = aircraft.height_m + aircraft.climb_mps * age_s;
+  const double vertical_m = params_.vertical_m + kHeightMargin_m;
   std::optional<Encounter> found;
   Vec2 begin = apart_at({});
   for (Duration ahead{}; ahead < params_.look_ahead; ahead += kStep) {
@@ -112,14 +117,14 @@ std::optional<TrafficWatch::Encounter> TrafficWatch::encounter(const Self& self,
     const auto [low_m, high_m] = std::minmax(height_now_m, then_m);
     if (!found) {
       found = Encounter{.enters_s = t_s,
-                        .heights = {low_m - params_.vertical_m, high_m + params_.vertical_m},
+                        .heights = {low_m - vertical_m, high_m + vertical_m},
                         .horizontal_m = apart_m,
                         .vertical_m = std::abs(then_m - self.state.z_m),
                         .closest_s = t_s};
       continue;
     }
-    found->heights.low_m = std::min(found->heights.low_m, low_m - params_.vertical_m);
-    found->heights.high_m = std::max(found->heights.high_m, high_m + params_.vertical_m);
+    found->heights.low_m = std::min(found->heights.low_m, low_m - vertical_m);
+    found->heights.high_m = std::max(found->heights.high_m, high_m + vertical_m);
     if (apart_m >= found->horizontal_m) continue;
     found->horizontal_m = apart_m;
     found->vertical_m = std::abs(then_m - self.state.z_m);
@@ -135,7 +140,9 @@ void TrafficWatch::look(Known& known, const Self& self, Instant now) {
                         ? encounter(self, known.aircraft, known.conflict ? kClearFactor : 1.0, now)
                         : std::nullopt;
   // Who has given way is to come back.
-  const double back_m = self.may_give_way ? self.layer_m : self.state.z_m;
+  // Who takes off is to go there.
+  const bool goes_there = self.may_give_way || self.state.z_m > kStands_m;
+  const double back_m = goes_there ? self.layer_m : self.state.z_m;
   const auto [low_m, high_m] = std::minmax(self.state.z_m, back_m);
   const double more_m = known.conflict ? kClearHeight_m : 0.0;
   const bool breaks = known.encounter && low_m < known.encounter->heights.high_m + more_m &&
@@ -223,6 +230,11 @@ void TrafficWatch::choose(const Self& self) {
     }
   }
   room_ = {params_.floor_m, ceiling_m};
+  if (!all_in_time(*target_)) {  // what the team needs among itself comes first then
+    if (*target_ < self.layer_m) room_.high_m = self.layer_m;
+    if (*target_ > self.layer_m) room_.low_m = self.layer_m;
+    return;
+  }
   for (const auto& [address, known] : known_) {
     if (!known.conflict || !known.encounter) continue;
     const HeightBand& band = known.encounter->heights;

@@ -293,12 +293,6 @@ class VehicleNode::Impl {
         .knows_orders = knows_orders,
         .range_spent = agent->range_spent(),
         .separation = agent->separation_conflict(),
-        .traffic = condition,
-        .refused = refused,
-        .differs = setup.difference(kGroundStation),
-        .knows_orders = knows_orders,
-        .range_spent = agent->range_spent(),
-        .separation = agent->separation_conflict(),
         .fence = digest_of(fence.fence()),
         .traffic = flies_routes ? agent->traffic_conflict() : traffic.conflict()};
     facts.condition.dropped = dropped();

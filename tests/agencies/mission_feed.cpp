@@ -86,6 +86,8 @@ hil::TeamMission mission_of(int count, int seconds) {
     v.spec.range_m = 400'000.0;
     v.spec.sensor_radius_m = 150.0;
     v.spec.height_m = 60.0 + 10.0 * i;
+    v.spec.assess_radius_m = 120.0;
+    v.spec.final_approach_m = 200.0;
     v.spec.loads = 2;
     for (const TaskKind kind : {TaskKind::survey, TaskKind::deliver, TaskKind::assess}) {
       v.spec.capabilities.add(kind);
@@ -105,8 +107,8 @@ hil::TeamMission mission_of(int count, int seconds) {
     Site site;
     site.id = SiteId{static_cast<std::uint16_t>(i + 1)};
     site.position = {400.0 * (i % 9 - 4), 350.0 * (i % 7 - 3)};
-    site.survey = {{}, std::chrono::seconds{5}};
-    site.assessments.push_back({{}, std::chrono::seconds{4}});
+    site.survey.dwell = std::chrono::seconds{5};
+    site.assessments.emplace_back().dwell = std::chrono::seconds{4};
     team.sites.push_back(site);
     team.reported[site.id] = at_seconds(20.0 + 115.0 * i);
   }

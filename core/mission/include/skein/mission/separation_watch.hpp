@@ -53,14 +53,15 @@ class SeparationWatch {
   /// one's height is looked at while nothing is wrong, which is less than two layers are apart.
   static constexpr double kRoom_m = 2.0;
 
-  /// Who is on the way to another height waits so much farther from others, who may come up to it.
+  /// Who is on the way to another height waits so much farther from others that come towards it.
   static constexpr double kWaits_m = 8.0;
 
   struct Self {
     VehicleState state;
     Activity activity = Activity::searching;
     /// Where it is to fly in place of its layer, and the heights that it may give way to from there
-    /// (TrafficWatch). On the way there, and back, it waits for others that are between.
+    /// (TrafficWatch). On the way there, and back, it waits for others that are between; and it
+    /// goes on beyond for those that follow it.
     std::optional<double> height_m = {};
     HeightBand room = {};
   };
@@ -95,7 +96,9 @@ class SeparationWatch {
     VehicleState state;
     Activity activity = Activity::searching;
     Instant heard{};
-    Duration delay{};  ///< of its state, when it was heard
+    Duration delay{};            ///< of its state, when it was heard
+    double climb_mps = 0.0;      ///< from one state to the next
+    bool gives_way_too = false;  ///< to the same aircraft, perhaps
     bool conflict = false;
     bool yields = false;  ///< this one, to it
     VehicleId gives_way;
@@ -130,6 +133,8 @@ class SeparationWatch {
                                                   Instant now) const;
   void keep_free(const Self& self, Instant now);
   void go_on(const Self& self, Instant now);
+  [[nodiscard]] double with_room_for_others(const Self& self);
+  [[nodiscard]] bool may_come(const Self& self, const Other& other, Instant now) const;
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
   [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
   [[nodiscard]] bool any_conflict() const;
@@ -140,9 +145,12 @@ class SeparationWatch {
   std::map<VehicleId, Other> known_;
   std::set<VehicleId> piloted_;
   std::optional<double> target_;  ///< height, to give way
-  double base_m_;                 ///< where it is to fly: its layer, or Self::height_m
+  double asked_m_;                ///< where it is to fly: its layer, or Self::height_m
+  double base_m_;                 ///< the same, with room for those that follow
   double way_m_;                  ///< as far as nobody is in the way there
-  bool off_layer_ = false;        ///< by Self::height_m, or not back from there yet
+  int behind_ = 0;                ///< others that give way with it, the most at once
+  int before_ = 0;
+  bool off_layer_ = false;  ///< by Self::height_m, or not back from there yet
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
