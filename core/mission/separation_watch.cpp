@@ -125,7 +125,6 @@ void SeparationWatch::step(const Self& self, Instant now) {
   const double wanted_m = self.height_m.value_or(layer_m_);
   if (wanted_m != asked_m_) {
     next_way_ = now;
-    behind_ = before_ = 0;
     base_m_ = asked_m_ = wanted_m;
   }
   room_ = self.room;
@@ -154,7 +153,7 @@ void SeparationWatch::step(const Self& self, Instant now) {
 
 /// Where it is to fly, and beyond that a layer for each that is to come after it: who gives way to
 /// the same aircraft is on one side of it, and would else be at one height with all others.
-double SeparationWatch::with_room_for_others(const Self& self) {
+double SeparationWatch::with_room_for_others(const Self& self) const {
   if (!self.height_m || *self.height_m == layer_m_) return base_m_;
   const double side = *self.height_m > layer_m_ ? 1.0 : -1.0;
   const double apart_m = params_.separation_vertical_m + kLayerRoom_m;
@@ -168,9 +167,7 @@ double SeparationWatch::with_room_for_others(const Self& self) {
     const bool is_behind = std::abs(behind_m) < kLevel_m ? id > self_ : behind_m > 0.0;
     ++(is_behind ? behind : before);
   }
-  behind_ = std::max(behind_, behind);
-  before_ = std::max(before_, before);
-  double height_m = *self.height_m + side * behind_ * apart_m;
+  double height_m = *self.height_m + side * behind * apart_m;
   for (bool moved = true; moved;) {
     moved = false;
     for (const auto& [id, other] : known_) {
@@ -182,7 +179,7 @@ double SeparationWatch::with_room_for_others(const Self& self) {
   }
   const double end_m = side > 0.0 ? high_m : low_m;
   // Without room for all of them they stand in their order at its end.
-  if (side * (height_m - end_m) > 0.0) height_m = end_m - side * before_ * apart_m;
+  if (side * (height_m - end_m) > 0.0) height_m = end_m - side * before * apart_m;
   return side > 0.0 ? std::max(layer_m_, height_m) : std::min(layer_m_, height_m);
 }
 

@@ -133,7 +133,7 @@ class SeparationWatch {
                                                   Instant now) const;
   void keep_free(const Self& self, Instant now);
   void go_on(const Self& self, Instant now);
-  [[nodiscard]] double with_room_for_others(const Self& self);
+  [[nodiscard]] double with_room_for_others(const Self& self) const;
   [[nodiscard]] bool may_come(const Self& self, const Other& other, Instant now) const;
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
   [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
@@ -148,9 +148,7 @@ class SeparationWatch {
   double asked_m_;                ///< where it is to fly: its layer, or Self::height_m
   double base_m_;                 ///< the same, with room for those that follow
   double way_m_;                  ///< as far as nobody is in the way there
-  int behind_ = 0;                ///< others that give way with it, the most at once
-  int before_ = 0;
-  bool off_layer_ = false;  ///< by Self::height_m, or not back from there yet
+  bool off_layer_ = false;        ///< by Self::height_m, or not back from there yet
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
