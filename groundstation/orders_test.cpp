@@ -37,7 +37,9 @@ TEST(Orders, WhatIsTypedComesBackAsItsLine) {
                            "return 1-3,7,9-12",
                            "land 2,5",
                            "authorise 3",
+                           "authorise 3 override",
                            "refuse 4",
+                           "withdraw decision 3",
                            "hazard 1200 -300 250",
                            "site 1200 -300",
                            "site 59.1234N 17.5W deliver 090,180 every 4 by 3",
@@ -118,6 +120,11 @@ TEST(Orders, OfAPageAreReadFieldByField) {
   EXPECT_EQ(line_of_json(R"({"kind":"withdraw","site":10034})"), "withdraw site 10034");
   EXPECT_EQ(line_of_json(R"({"kind":"acknowledge","alarms":[3,14]})"), "acknowledge 3 14");
   EXPECT_EQ(line_of_json(R"({"kind":"withdraw","hazard":10034})"), "withdraw hazard 10034");
+  EXPECT_EQ(line_of_json(R"({"kind":"withdraw","decision":3})"), "withdraw decision 3");
+  EXPECT_EQ(
+      line_of_json(R"({"kind":"decision","site":3,"grant":true,"coalition":"1-1-1","round":2,)"
+                   R"("override":true})"),
+      "authorise 3 override");
   EXPECT_EQ(line_of_json(R"({"kind":"proposal","number":3,"accept":true})"), "accept 3");
   EXPECT_THAT(trouble_with(R"({"kind":"site","preview":false,"x":1,"y":2,"bearings_deg":[900]})"),
               HasSubstr("bearings_deg is to be a list"));

@@ -35,6 +35,10 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_TRUE(parsed<Decision>("authorise 3").grant);
   EXPECT_EQ(parsed<Decision>("authorise   3").site, SiteId{3});
   EXPECT_FALSE(parsed<Decision>("refuse 3").grant);
+  EXPECT_FALSE(parsed<Decision>("authorise 3").although_silent);
+  EXPECT_TRUE(parsed<Decision>("authorise 3 override").although_silent);
+  EXPECT_THAT(refusal_of("refuse 3 override"), HasSubstr("number of a site"));
+  EXPECT_EQ(parsed<TakeBack>("withdraw decision 3").site, SiteId{3});
   EXPECT_EQ(parsed<Order>("hold 12").vehicle, VehicleId{12});
   EXPECT_EQ(parsed<Order>("hold 12").kind, mission::CommandKind::hold);
   EXPECT_EQ(parsed<Order>("resume all").vehicle, kGroundStation);

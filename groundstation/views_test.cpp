@@ -94,6 +94,23 @@ TEST(RequestText, SaysWhatWhereWhenWhoUntilWhenAndWhatToType) {
   EXPECT_THAT(text, HasSubstr("refuse 3"));
 }
 
+TEST(PendingText, SaysWhatCanBeTakenBackAndWhatNeedsAnOverride) {
+  auto granted = request();
+  granted.decision = mission::Authorisation{};
+  granted.decision->granted = true;
+  granted.decision->decided_by = "ada";
+  const auto text = [&](double at_s) {
+    return pending_text({granted}, console::Picture{{}}, mission::Fleet{{}}, origin(), kEpoch,
+                        at_seconds(at_s));
+  };
+  EXPECT_THAT(text(88.0), HasSubstr("Authorised at site 3 by ada"));
+  EXPECT_THAT(text(88.0), HasSubstr("withdraw decision 3"));
+  EXPECT_THAT(text(111.3), HasSubstr("nothing waits"));
+  const auto silent =
+      request_text(request(), {{{}}, {}, {}, {}, {}, {{11}}}, origin(), kEpoch, at_seconds(88.0));
+  EXPECT_THAT(silent, HasSubstr("authorise 3 override"));
+}
+
 TEST(PendingText, LeavesOutWhatIsDecidedOrTooLate) {
   EXPECT_THAT(pending_text({request()}, console::Picture{{}}, mission::Fleet{{}}, origin(), kEpoch,
                            at_seconds(88.0)),

@@ -367,6 +367,59 @@ TEST(AuthorisationCard, MarksWhoIsSilentLateOrLowOnRange) {
   EXPECT_THAT(marks(25.0), ::testing::Contains(HasSubstr("silent for 12 s")));
 }
 
+/// By its bid, 2 km of its range are for the way home.
+TEST(AuthorisationCard, LowOnRangeIsAMatterOfTheAircraft) {
+  for (const double left_m : {3600.0, 3200.0}) {
+    Desk desk;
+    mission::Telemetry told;
+    told.vehicle = {2};
+    told.task = {{4}, TaskKind::deliver, 0};
+    told.activity = mission::Activity::executing;
+    told.range_left_m = left_m;
+    coalition::Announcement call = announcement();
+    call.formed_at = at_seconds(10.0);
+    desk.say(call, kLeader, 9.0);
+    coalition::Bid bid;
+    bid.round = kRound;
+    bid.bidder = {2};
+    bid.speed_mps = 20.0;
+    bid.range_left_m = left_m - 2000.0;
+    desk.say(bid, {2}, 9.5);
+    told.state.time = at_seconds(10.0);
+    desk.hear(told, {2}, 10.0);
+    desk.hear(half_a_request(), kLeader, 10.0);
+    const Json marks = desk.section(Section::authorisations, 10.1)[0]["deliveries"][0]["marks"];
+    // 50 s at 20 m/s to its delivery, and 2 km home.
+    ASSERT_EQ(marks.size(), left_m < 3300.0 ? 1U : 0U) << marks;
+    if (marks.empty()) continue;
+    EXPECT_EQ(marks[0]["text"], "low on range: 3.2 km left; 1.0 km to its delivery, 2.0 km home");
+  }
+}
+
+TEST(Picture, WhatWasGrantedAndTakenBackIsToldApartFromARefusal) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 10.0);
+  desk.say(award(), kLeader, 11.0);
+  const mission::AuthorisationRequest request = half_a_request();
+  desk.hear(request, kLeader, 12.0);
+  mission::Authorisation grant{request.round,    request.site, true, "ada",
+                               at_seconds(13.0), {},           {},   {}};
+  mission::Authorisation back{request.round,    request.site, false, "bob",
+                              at_seconds(14.0), {},           {},    {}};
+  desk.hear(grant, kGroundStation, 13.0);
+  Json shown = desk.section(Section::authorisations, 13.5)[0];
+  EXPECT_EQ(shown["can_take_back"], true);
+  EXPECT_EQ(shown["deliveries"][0]["before_gate"], true);
+  EXPECT_EQ(desk.section(Section::authorisations, 60.5)[0]["can_take_back"], false);
+  desk.hear(back, kGroundStation, 14.0);
+  desk.hear(grant, kGroundStation, 14.5);  // a late copy
+  shown = desk.section(Section::authorisations, 15.0)[0];
+  EXPECT_EQ(shown["decision"]["granted"], false);
+  EXPECT_EQ(shown["decision"]["taken_back"], true);
+  EXPECT_EQ(shown["can_take_back"], false);
+  EXPECT_EQ(desk.section(Section::sites, 15.0)[0]["status"], "taken_back");
+}
+
 TEST(AuthorisationCard, SaysWhatIsMissingAndWhyAndWhatHasChanged) {
   Desk desk;
   coalition::Announcement announced = announcement();

@@ -79,7 +79,9 @@ TeamObserver PictureWatch::observer() {
   observer.fault = [this](const FaultEvent& e) {
     using Kind = FaultEvent::Kind;
     if (e.kind != Kind::ended && e.kind != Kind::gone && e.kind != Kind::restarted) return;
-    facts_[e.vehicle] = {.changed_at = e.time};
+    Facts& facts = facts_[e.vehicle];
+    facts = {};
+    facts.changed_at = e.time;
     if (e.vehicle != kGroundStation || e.kind != Kind::restarted) return;
     for (auto& [id, own] : own_) own.heard_at.reset();  // it knows of nobody yet
   };

@@ -28,7 +28,7 @@ bool of_interest(mission::EventKind kind) {
       EventKind::site_detected,        EventKind::survey_done,        EventKind::coalition_formed,
       EventKind::monitoring,           EventKind::authorisation_late, EventKind::task_done,
       EventKind::task_failed,          EventKind::conflict_yielded,   EventKind::site_done,
-      EventKind::authorisation_refused};
+      EventKind::authorisation_refused, EventKind::authorisation_withdrawn};
   return mission::is_warning(kind) || std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 
