@@ -432,6 +432,7 @@ TEST(GroundNode, WhatItHasOrderedSinceItTookTheCommandStands) {
   ASSERT_EQ(again.size(), 1U);
   EXPECT_EQ(again.front().kind, CommandKind::hold);
   EXPECT_GT(number_of(again.front()), 15'001U);
+  (void)said_by(ground, 20.5, 29.0);  // it is said again for a while
   setup.newest_order = number_of(again.front());
   ground.on_message(setup, {1}, at_seconds(30.0));
   for (const Command& said : of<Command>(said_by(ground, 30.0, 31.0))) {

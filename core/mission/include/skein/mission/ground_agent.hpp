@@ -80,7 +80,10 @@ class GroundAgent {
 
   /// Another ground station has the command: nothing is decided, repeated or passed on from now on;
   /// or this one has it (again), from the start on.
-  void set_watching(bool watching) { watching_ = watching; }
+  void set_watching(bool watching) {
+    watching_ = watching;
+    if (watching) commands_.clear();  // who has not heard them asks who has the command
+  }
   /// What the ground station that has the command has just said: its decisions are this one's.
   void overhear(const Message& message, Instant now);
   /// A vehicle has heard of an order with that number: those to come are greater, whoever gave it.
