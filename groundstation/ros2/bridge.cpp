@@ -20,8 +20,8 @@ namespace skein::ros2 {
 namespace {
 
 constexpr std::chrono::milliseconds kStep{20};
-constexpr int kStepsOfRound = 10;      // between two looks at whether it is to end
-constexpr int kProposalsPerStep = 20;  // so that a flood cannot keep the loop from its picture
+constexpr int kStepsOfRound = 10;       // between two looks at whether it is to end
+constexpr int kProposalsPerStep = 100;  // so that a flood cannot keep the loop from its picture
 constexpr Duration kComplaintPeriod = std::chrono::seconds{10};
 constexpr std::uint32_t kDomainMax = 232;  // of more the ports would not fit
 

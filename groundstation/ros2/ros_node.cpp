@@ -32,8 +32,8 @@ using rmw_dds_common::Gid;
 
 constexpr const char* kNodeName = "skein_bridge";
 constexpr const char* kGraphTopic = "ros_discovery_info";
-constexpr std::uint32_t kFirstSize = 512;  // of a sample's memory, which grows
-constexpr int kProposalsKept = 20;
+constexpr std::uint32_t kFirstSize = 512;              // of a sample's memory, which grows
+constexpr int kProposalsKept = 100;                    // between two looks; of more the newest
 constexpr std::uint32_t kParticipantsOfHost = 32;      // that are looked for without multicast
 constexpr std::uint32_t kWriteWaitMax_ns = 5'000'000;  // for a lock inside DDS, never for a reader
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Any sample on ROS 2's topic of proposals. What is passed on is a marker that the ground station can read,
-// of the proposal's own kind.
+// Any sample on ROS 2's topic of proposals. What is passed on is a marker that the ground station
+// can read, of the proposal's own kind.
 #include <span>
 
 #include "fuzz_input.hpp"
