@@ -95,7 +95,7 @@ recording_folder: recording
     });
   });
   // A page of a build that no program has yet may be looked at.
-  const served = process.env.SKEIN_PAGE ?? url;
+  const served = process.env.SKEIN_PAGE || url;
   if (process.env.SKEIN_PAGE) await view.page.route(/\/session$/, (route) => route.fulfill({ json: { user: hello.user, role: hello.role } }));
   await view.page.goto(served);
   await until("the connection", async () => (await view.part("link-state").innerText()).includes("connected"));
