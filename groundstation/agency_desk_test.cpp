@@ -76,6 +76,7 @@ TEST_F(ShownTest, HasWhoWasHeardAndWhereItGoes) {
   EXPECT_EQ(shown.tracks[0].legs, 2);
   EXPECT_EQ(shown.tracks[0].leg, 0);
   EXPECT_NEAR(shown.tracks[0].left_m, 500.0 - 1.2 * 20.0, 0.1);
+  hear(telemetry(20.9, 1000.0), 21.0);
   EXPECT_EQ(at(21.0).tracks.at(0).leg, 1);
   ASSERT_EQ(shown.hazards.size(), 1U);
   EXPECT_EQ(shown.hazards[0].radius_m, 30.0);

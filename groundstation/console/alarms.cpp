@@ -73,9 +73,11 @@ Json order_json(const GivenOrder& order) {
   }
   Json waiting = Json::array();
   for (const VehicleId vehicle : order.waiting) waiting.push_back(vehicle.value);
+  Json to = Json::array();
+  for (const VehicleId vehicle : order.to) to.push_back(vehicle.value);
   return {{"kind", order.kind},
           {"line", line_of(order)},
-          {"vehicle", order.decision ? Json(nullptr) : Json(order.to.value)},
+          {"vehicles", order.decision ? Json(nullptr) : std::move(to)},
           {"site", id_or_null(order.site)},
           {"given_s", seconds(order.given)},
           {"answered", std::move(answered)},

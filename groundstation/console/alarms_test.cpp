@@ -507,6 +507,21 @@ TEST(OrderAnswers, WhoStandsOnTheGroundIsNotAsked) {
   EXPECT_EQ(desk.alarms.orders().orders().back().waiting, (std::set<VehicleId>{{1}, {2}}));
 }
 
+TEST(OrderAnswers, AnOrderToSeveralIsOne) {
+  Desk desk;
+  desk.run(1.0);
+  desk.order(CommandKind::hold, {1});
+  desk.order(CommandKind::hold, {3});
+  desk.run(0.2);
+  ASSERT_EQ(desk.alarms.orders().orders().size(), 1U);
+  const GivenOrder& order = desk.alarms.orders().orders().back();
+  EXPECT_EQ(line_of(order), "hold 1, 3");
+  EXPECT_EQ(order.waiting, (std::set<VehicleId>{{1}, {3}}));
+  desk.run(1.0);
+  desk.order(CommandKind::hold, {2});
+  EXPECT_EQ(desk.alarms.orders().orders().size(), 2U);
+}
+
 TEST(OrderAnswers, AnOrderThatIsSaidAgainIsOne) {
   Desk desk;
   desk.run(1.0);

@@ -16,6 +16,8 @@ using mission::ShownState;
 
 /// What a vehicle says in the moment after an order may have been said before it heard of it.
 constexpr Duration kNewsMayTake = std::chrono::seconds{1};
+/// Orders to several vehicles are said within it.
+constexpr Duration kAtOnce = std::chrono::milliseconds{100};
 /// A vehicle's clock from ours.
 constexpr Duration kClocksDiffer = std::chrono::seconds{1};
 constexpr std::size_t kDecidedMax = 256;
@@ -60,7 +62,7 @@ void answer(GivenOrder& order, VehicleId vehicle, Instant now) {
 
 bool concerns(const GivenOrder& order, VehicleId vehicle) {
   if (order.decision) return true;
-  return order.to == kGroundStation || order.to == vehicle;
+  return order.to.empty() || order.to.contains(vehicle);
 }
 
 /// By its own event.
@@ -97,8 +99,8 @@ std::set<VehicleId> asked_by(const GivenOrder& order, const Picture& picture,
       return one.request.round == order.decision->round;
     });
     if (known != picture.authorisations().end()) all.insert(order.decision->round.coalition.leader);
-  } else if (order.to != kGroundStation) {
-    all.insert(order.to);
+  } else if (!order.to.empty()) {
+    all = order.to;
   } else {
     for (const auto& [id, entry] : fleet.vehicles()) {
       if (!entry.expected || !entry.telemetry) continue;
@@ -140,7 +142,12 @@ bool is_past(const GivenOrder& order, const Picture& picture, Instant now) {
 std::string line_of(const GivenOrder& order) {
   if (order.decision) return fmt::format("{} site {}", order.kind, order.site.value);
   const std::string verb = words_of(order.kind);
-  return order.to == kGroundStation ? verb + " all" : fmt::format("{} {}", verb, order.to.value);
+  if (order.to.empty()) return verb + " all";
+  std::string names;
+  for (const VehicleId id : order.to) {
+    names += (names.empty() ? "" : ", ") + std::to_string(id.value);
+  }
+  return verb + " " + names;
 }
 
 void OrderAnswers::on_message(const mission::Message& message, VehicleId sender, Instant now) {
@@ -160,12 +167,23 @@ void OrderAnswers::take(const mission::Command& command, Instant now) {
     if (command.vehicle == kGroundStation) before.waiting.clear();
     before.waiting.erase(command.vehicle);
   }
+  if (add_to_last(command, now)) return;
   GivenOrder order;
   order.kind = to_string(command.kind);
-  order.to = command.vehicle;
+  if (command.vehicle != kGroundStation) order.to.insert(command.vehicle);
   order.given = now;
   order.command = command.kind;
   add(std::move(order));
+}
+
+/// To several at once is one order, though each of them is told by itself.
+bool OrderAnswers::add_to_last(const mission::Command& command, Instant now) {
+  if (orders_.empty() || command.vehicle == kGroundStation) return false;
+  GivenOrder& last = orders_.back();
+  const bool same =
+      last.command == command.kind && !last.to.empty() && !last.asked && now < last.given + kAtOnce;
+  if (same) last.to.insert(command.vehicle);
+  return same;
 }
 
 void OrderAnswers::take(const mission::Authorisation& decision, Instant now) {

@@ -68,14 +68,16 @@ test("how long it is so, and was", () => {
   assert.equal(lasted(an_alarm(1, { over_s: 65 }), 72), "5.0 s");
 });
 
-const given = (other: Partial<GivenOrder> = {}): GivenOrder => ({ kind: "hold", line: "hold all", vehicle: 0, site: null, given_s: 50, answered: [], waiting: [1, 2], ...other });
+const given = (other: Partial<GivenOrder> = {}): GivenOrder => ({ kind: "hold", line: "hold all", vehicles: [], site: null, given_s: 50, answered: [], waiting: [1, 2], ...other });
 
 test("an order's answers are found by what it was and when", () => {
-  const orders = [given({ given_s: 20 }), given({ given_s: 50 }), given({ given_s: 51, vehicle: 3 })];
+  const orders = [given({ given_s: 20 }), given({ given_s: 50 }), given({ given_s: 51, vehicles: [3, 5] })];
   assert.equal(given_of(command("hold", 0), orders, 49)?.given_s, 50);
+  assert.equal(given_of({ kind: "commands", command: "hold", vehicles: [5, 3] }, orders, 49)?.given_s, 51);
+  assert.equal(given_of(command("hold", 3), orders, 49), null, "it was to two");
   assert.equal(given_of(command("hold", 0), orders, 60), null, "that was before");
   assert.equal(given_of(command("resume", 0), orders, 10), null);
-  const decision = given({ kind: "authorise", vehicle: null, site: 4 });
+  const decision = given({ kind: "authorise", vehicles: null, site: 4 });
   assert.equal(given_of({ kind: "decision", site: 4, grant: true, coalition: "1-1-1", round: 1 }, [decision], 10), decision);
   assert.equal(given_of({ kind: "decision", site: 4, grant: false, coalition: "1-1-1", round: 1 }, [decision], 10), null);
 });

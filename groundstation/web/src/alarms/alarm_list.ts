@@ -94,10 +94,13 @@ export function fresh_of(before: readonly Alarm[], after: readonly Alarm[]): str
   return after.filter((alarm) => stands(alarm) && !known.has(`${alarm.number} ${alarm.key}`)).map(({ what, remedy }) => (remedy ? `${what}. ${remedy}` : what));
 }
 
+const is_to = (one: GivenOrder, vehicles: readonly number[]): boolean => one.vehicles?.length === vehicles.length && vehicles.every((id) => one.vehicles?.includes(id));
+
 /** The newest order that may be what came of `order`. */
 export function given_of(order: Order, given: readonly GivenOrder[], since_s: number): GivenOrder | null {
   const same = (one: GivenOrder) => {
-    if (order.kind === "command") return one.kind === order.command && one.vehicle === order.vehicle;
+    if (order.kind === "command") return one.kind === order.command && is_to(one, order.vehicle === 0 ? [] : [order.vehicle]);
+    if (order.kind === "commands") return one.kind === order.command && is_to(one, order.vehicles);
     if (order.kind === "decision") return one.kind === (order.grant ? "authorise" : "refuse") && one.site === order.site;
     return false;
   };

@@ -5,6 +5,7 @@
 import { computed, effect, signal } from "@preact/signals";
 import { request_key } from "../mission/requests";
 import { note } from "../shell/give";
+import { map_in_front } from "../shell/layout";
 import { tick } from "../shell/ticker";
 import { highlighted_request, panel, panels, place_to_show, select } from "../shell/view";
 import type { Panel } from "../shell/view";
@@ -62,6 +63,7 @@ export function go_to(alarm: Alarm): void {
   const there = panels.includes(wanted as Panel) && (wanted !== "orders" || may_order.value);
   panel.value = there ? (wanted as Panel) : "fleet";
   if (request && alarm.panel === "decisions") highlighted_request.value = request_key(request);
+  map_in_front.value = false;
   // After the panel is drawn.
   window.setTimeout(() => bring_to_hand(alarm), 60);
 }

@@ -43,7 +43,7 @@ export async function give(order: Order): Promise<Answer> {
   put({ id, line, text: "sent", state: "sent" });
   const answer = await send(order);
   put({ id, line, text: answer.text.trim() || (answer.done ? "done" : "refused"), state: answer.done ? "done" : "refused" });
-  if (answer.done && (order.kind === "command" || order.kind === "decision")) watch_answers(id, order, line, since_s);
+  if (answer.done && ["command", "commands", "decision"].includes(order.kind)) watch_answers(id, order, line, since_s);
   // A refusal stays until it is dismissed.
   else if (answer.done) window.setTimeout(() => dismiss(id), 6000);
   return answer;

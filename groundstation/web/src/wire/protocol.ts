@@ -432,8 +432,8 @@ export interface GivenOrder {
   /** A command, `authorise` or `refuse`. */
   kind: string;
   line: string;
-  /** 0: all; null of a decision. */
-  vehicle: number | null;
+  /** None: all; null of a decision. */
+  vehicles: number[] | null;
   site: number | null;
   given_s: number;
   answered: { vehicle: number; after_s: number }[];

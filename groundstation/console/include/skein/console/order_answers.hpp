@@ -18,9 +18,9 @@ namespace skein::console {
 
 /// An order that was given, and who has shown since that he obeys.
 struct GivenOrder {
-  std::string kind;  ///< a command's name, "authorise", "refuse"
-  VehicleId to;      ///< 0: all, or a decision
-  SiteId site;       ///< of a decision
+  std::string kind;        ///< a command's name, "authorise", "refuse"
+  std::set<VehicleId> to;  ///< empty: all, or a decision
+  SiteId site;             ///< of a decision
   Instant given{};
   std::map<VehicleId, Duration> answered;  ///< by its own event or telemetry, so long after it
   std::set<VehicleId> waiting;             ///< nothing of them shows it yet
@@ -30,7 +30,7 @@ struct GivenOrder {
   std::optional<mission::Authorisation> decision;
   bool asked = false;  ///< `waiting` is filled
 };
-/// "hold all", "return home 3", "authorise site 4"
+/// "hold all", "return home 3, 7", "authorise site 4"
 [[nodiscard]] std::string line_of(const GivenOrder& order);
 
 /// How long it takes from an operator's word until what the vehicle itself says shows that it
@@ -54,6 +54,7 @@ class OrderAnswers {
   void take(const mission::Command& command, Instant now);
   void take(const mission::Authorisation& decision, Instant now);
   void take(const mission::Telemetry& telemetry, Instant now);
+  [[nodiscard]] bool add_to_last(const mission::Command& command, Instant now);
   void add(GivenOrder order);
 
   std::deque<GivenOrder> orders_;
