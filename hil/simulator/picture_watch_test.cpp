@@ -140,6 +140,7 @@ void PictureWatch::note(const mission::MissionEvent& e) {
   events.push_back(e);
   if (e.kind() == EventKind::survey_done) surveyed_.insert(e.task.site);
   if (e.kind() == EventKind::site_done) done_.insert(e.task.site);
+  if (e.kind() == EventKind::coalition_formed) coalitions_[e.round.coalition].formed = true;
   if (e.vehicle == kGroundStation) {
     if (e.kind() == EventKind::authorisation_refused) refused_at = e.time;
     return;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/judged_runs.hpp"
@@ -47,7 +48,11 @@ Flown fly(const TeamMission& team, SiteId site) {
 }
 
 TEST(TakeBackRuns, OnlyWhatHasBegunByThenIsFlown) {
-  const TeamMission whole = team_mission(scenario("coalition-6"));
+  TeamMission whole = team_mission(scenario("coalition-6"));
+  Duration offset{};  // one after another: there is a time between their gates
+  for (auto& delivery : whole.sites.front().deliveries) {
+    delivery.offset = std::exchange(offset, offset + std::chrono::seconds{6});
+  }
   const SiteId site = whole.sites.front().id;
   const auto wanted = static_cast<int>(whole.sites.front().deliveries.size());
   ASSERT_EQ(fly(whole, site).begun, wanted);
