@@ -105,7 +105,7 @@ TEST(Prompt, SaysWhatIsWrong) {
     EXPECT_THAT(refusal_of(line), HasSubstr("number of a site"));
   }
   for (const auto* line : {"hold", "hold 0", "hold 1 2", "hold everyone"}) {
-    EXPECT_THAT(refusal_of(line), HasSubstr("number of a vehicle or 'all'"));
+    EXPECT_THAT(refusal_of(line), HasSubstr("number of a vehicle, several as"));
   }
   for (const auto* line : {"give-back", "give-back all", "give-back 0", "give-back 1 2"}) {
     EXPECT_THAT(refusal_of(line), HasSubstr("number of one vehicle"));
@@ -114,7 +114,7 @@ TEST(Prompt, SaysWhatIsWrong) {
        {"acknowledge", "acknowledge 0", "acknowledge 2.5", "acknowledge 3 all"}) {
     EXPECT_THAT(refusal_of(line), HasSubstr("numbers of alarms or 'all'"));
   }
-  EXPECT_THAT(refusal_of("status 3"), HasSubstr("stands alone"));
+  EXPECT_THAT(refusal_of("hazards 3"), HasSubstr("stands alone"));
   EXPECT_THAT(refusal_of("quit now"), HasSubstr("stands alone"));
 }
 
