@@ -58,7 +58,8 @@ std::optional<std::string> Commanding::on_timeout(const Tell& tell, Instant now)
   if (desk_.takes_by_itself(now) && now >= try_again_) {
     if (const auto taken = take("", "", now); !taken) {
       try_again_ = now + kTryAgain;
-      if (std::exchange(trouble_, taken.error().message) != taken.error().message) {
+      const std::string before = std::exchange(trouble_, taken.error().message);
+      if (before != trouble_) {
         spdlog::error("cannot take the command: {}", trouble_);
       }
     }

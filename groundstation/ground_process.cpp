@@ -645,7 +645,6 @@ int fail(const char* what, const Error& why, int exit_code) {
 }  // namespace
 
 int run(const configuration::GroundConfig& config, const Login& login) {
-  const std::string& operator_name = login.name;
   const process::Shutdown shutdown;
   const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
   process::start_log(clock);
@@ -684,11 +683,11 @@ int run(const configuration::GroundConfig& config, const Login& login) {
   auto audit = Audit::open(config.recording_folder, audit_key(*start));
   if (!audit) return fail("cannot record", audit.error(), process::kExitCannotStart);
 
-  log_start(config, *start, operator_name);
+  log_start(config, *start, login.name);
   process::log_unused_keys(config.network, config.recording_folder);
   GroundLoop loop{config,
                   *origin,
-                  operator_name,
+                  login.name,
                   clock,
                   shutdown,
                   network,

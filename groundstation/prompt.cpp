@@ -374,7 +374,10 @@ bool is_of_formation(std::string_view line) {
           (words[0] == "preview" && words.size() > 1 && is_formation_verb(words[1])));
 }
 
-std::string help_text() {
+namespace {
+
+/// What is looked at, told and decided.
+std::string help_of_sites() {
   return "status [ID]       the fleet: what each vehicle does, when it was last heard, its health\n"
          "links             who hears whom, how often, and what is lost\n"
          "wind              as the planes that fly tell it\n"
@@ -437,7 +440,13 @@ std::string help_text() {
          "command           which ground station has the command\n"
          "take command WHY  this one takes it, whoever has it, and tells the others why\n"
          "hand over         ask a ground station that watches to take it\n"
-         "console           the address of its page, with the token that opens it\n"
+         "console           the address of its page, with the token that opens it\n";
+}
+
+}  // namespace
+
+std::string help_text() {
+  return help_of_sites() +
          "hold ID|all       fly a holding pattern until told otherwise; this one and the next "
          "three "
          "also\n"

@@ -27,15 +27,24 @@ bool has_task(const Telemetry& telemetry) {
 }
 
 bool is_up(const Telemetry& telemetry) {
-  return telemetry.detail != ActivityDetail::on_ground &&
-         telemetry.detail != ActivityDetail::taking_off && !telemetry.state.on_ground();
+  const ActivityDetail in_detail = telemetry.detail;
+  return in_detail != ActivityDetail::on_ground && in_detail != ActivityDetail::taking_off &&
+         !telemetry.state.on_ground();
+}
+
+/// The share of the area when all shares are flown.
+double seen_in_the_end(planning::AreaCells cells, const AreaSearch& area) {
+  for (const auto& [id, share] : area.shares) {
+    for (const auto& lane : share.lanes) cells.see(lane.start.position(), lane.end().position());
+  }
+  return cells.share();
 }
 
 bool goes_home(const Telemetry& telemetry) {
-  return telemetry.detail == ActivityDetail::returning ||
-         telemetry.detail == ActivityDetail::at_home ||
-         telemetry.detail == ActivityDetail::range_reserve ||
-         telemetry.activity == Activity::landing || telemetry.activity == Activity::landed;
+  const ActivityDetail in_detail = telemetry.detail;
+  return in_detail == ActivityDetail::returning || in_detail == ActivityDetail::at_home ||
+         in_detail == ActivityDetail::range_reserve || telemetry.activity == Activity::landing ||
+         telemetry.activity == Activity::landed;
 }
 
 /// All legs as one way; shorter at its front by what is flown until it begins.
@@ -228,13 +237,7 @@ Result<AreaSearch> GroundSearch::preview(const SearchWishes& wishes,
   }
   area.planned = plan->covered;
   area.bound_s = plan->bound_s;
-  if (is_rest) {
-    planning::AreaCells after = *cells_;
-    for (const auto& [id, share] : area.shares) {
-      for (const auto& lane : share.lanes) after.see(lane.start.position(), lane.end().position());
-    }
-    area.planned = after.share();
-  }
+  if (is_rest) area.planned = seen_in_the_end(*cells_, area);
   area.parts = 1 + segments / kSegmentsEach;
   area.begins = std::max(now, Instant{}) + from_seconds(in_s);
   area.ends = area.begins + from_seconds(plan->time_s);

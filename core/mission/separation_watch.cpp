@@ -83,7 +83,8 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   if (since_s > 0.0) {
     known.climb_mps = found == known_.end() ? 0.0 : (other.state.z_m - known.state.z_m) / since_s;
   }
-  known.gives_way_too = other.detail == ActivityDetail::avoiding_traffic;
+  const ActivityDetail in_detail = other.detail;
+  known.gives_way_too = in_detail == ActivityDetail::avoiding_traffic;
   known.state = other.state;
   known.activity = other.activity;
   known.heard = now;

@@ -114,7 +114,7 @@ std::string text_of(const AlarmKey& key) {
   if (key.vehicle != VehicleId{}) text += fmt::format("-{}", key.vehicle.value);
   if (key.other != VehicleId{}) text += fmt::format("-{}", key.other.value);
   if (key.site != SiteId{}) text += fmt::format("-site-{}", key.site.value);
-  if (key.detail != 0) text += fmt::format("-{:x}", key.detail);
+  if (const auto more = key.detail; more != 0) text += fmt::format("-{:x}", key.detail);
   return text;
 }
 

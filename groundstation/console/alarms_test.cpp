@@ -169,68 +169,10 @@ void holds(Desk& desk, ActivityDetail detail) {
   for (auto& [id, telemetry] : desk.said) telemetry.detail = detail;
 }
 
-/// What begins and ends every kind.
-std::map<AlarmKind, Case> cases() {
+/// Those that are no alarms.
+void add_what_is_less(std::map<AlarmKind, Case>& all) {
   using enum AlarmKind;
   const VehicleId v3{3};
-  std::map<AlarmKind, Case> all;
-  all[nobody_heard] = {falls_silent({{1}, {2}, {3}}), is_heard_again};
-  all[separation_no_room] = {tells(v3, event::SeparationWarning{{2}, 10, 2, {}, {}}),
-                             tells(v3, event::SeparationRestored{{2}})};
-  all[traffic_no_room] = {tells(v3, event::TrafficWarning{0xabc, 100, 20, {}, false}),
-                          tells(v3, event::TrafficClear{0xabc})};
-  all[left_fence] = {is(ActivityDetail::left_fence), is_flying};
-  all[vehicle_silent] = {falls_silent({v3}), is_heard_again};
-  all[decision_runs_out] = {[](Desk& desk) {
-                              desk.ask(60.0);
-                              desk.run(41.0);
-                            },
-                            [](Desk& desk) { desk.decide(false); }};
-  all[decision_lapsed] = {[](Desk& desk) {
-                            desk.ask(1.0);
-                            desk.run(2.0);
-                          },
-                          [](Desk& desk) { desk.decide(false); }};
-  all[no_answer] = {[](Desk& desk) {
-                      desk.order(CommandKind::hold, {3});
-                      desk.run(10.5);
-                    },
-                    tells(v3, event::Commanded{CommandKind::hold})};
-  all[range_reserve] = {[](Desk& desk) {
-                          is_flying(desk);
-                          desk.run(1.0);
-                          desk.tell({3}, event::RangeSpent{500, true, 400, false});
-                          desk.run(0.2);
-                        },
-                        is_on_ground};
-  all[range_overdrawn] = {[](Desk& desk) {
-                            desk.said[{3}].range_left_m = -1.0;
-                            desk.run(0.5);
-                          },
-                          [](Desk& desk) { desk.said[{3}].range_left_m = 9000.0; }};
-  all[autopilot_trouble] = {flight(AutopilotNews::not_obeying), flight(AutopilotNews::flying)};
-  all[vehicle_trouble] = {tells(v3, event::VehicleTrouble{event::Trouble::orders_unknown}),
-                          tells(v3, event::OrdersKnown{kGroundStation})};
-  all[task_unknown] = {[](Desk& desk) {
-                         desk.tell({1}, event::TaskUnknown{{2}}, kTask);
-                         desk.run(0.2);
-                       },
-                       [](Desk& desk) { desk.award(coalition::TaskState::done); }, false};
-  all[duplicate_id] = {[](Desk& desk) {
-                         desk.twin = desk.said[{3}];
-                         desk.twin->instance = {99};
-                         desk.run(0.5);
-                       },
-                       [](Desk& desk) {
-                         desk.twin.reset();
-                         desk.run(6.0);
-                       }};
-  all[setup_differs] = {tells(kGroundStation, event::SetupDiffers{{3}, "protocol", 0.0}),
-                        tells(kGroundStation, event::SetupAgrees{{3}})};
-  all[formation_lost] = {tells(kGroundStation, formation(event::FormationNews::lost)),
-                         tells(kGroundStation, formation(event::FormationNews::back))};
-  all[command_elsewhere] = {tells(kGroundStation, event::CommandHanded{false, "ben"}),
-                            tells(kGroundStation, event::CommandHanded{true, "ada"})};
   all[separation] = {tells(v3, event::SeparationWarning{{2}, 10, 2, {}, v3}),
                      tells(v3, event::SeparationRestored{{2}})};
   all[traffic] = {tells(v3, event::TrafficWarning{0xabc, 100, 20, {}, true}),
@@ -293,6 +235,71 @@ std::map<AlarmKind, Case> cases() {
                           [](Desk& desk) { desk.be_ill({}); }};
   all[told] = {tells(v3, event::VehicleTrouble{event::Trouble::untimely}),
                [](Desk& desk) { desk.run(61.0); }};
+}
+
+/// What begins and ends every kind.
+std::map<AlarmKind, Case> cases() {
+  using enum AlarmKind;
+  const VehicleId v3{3};
+  std::map<AlarmKind, Case> all;
+  all[nobody_heard] = {falls_silent({{1}, {2}, {3}}), is_heard_again};
+  all[separation_no_room] = {tells(v3, event::SeparationWarning{{2}, 10, 2, {}, {}}),
+                             tells(v3, event::SeparationRestored{{2}})};
+  all[traffic_no_room] = {tells(v3, event::TrafficWarning{0xabc, 100, 20, {}, false}),
+                          tells(v3, event::TrafficClear{0xabc})};
+  all[left_fence] = {is(ActivityDetail::left_fence), is_flying};
+  all[vehicle_silent] = {falls_silent({v3}), is_heard_again};
+  all[decision_runs_out] = {[](Desk& desk) {
+                              desk.ask(60.0);
+                              desk.run(41.0);
+                            },
+                            [](Desk& desk) { desk.decide(false); }};
+  all[decision_lapsed] = {[](Desk& desk) {
+                            desk.ask(1.0);
+                            desk.run(2.0);
+                          },
+                          [](Desk& desk) { desk.decide(false); }};
+  all[no_answer] = {[](Desk& desk) {
+                      desk.order(CommandKind::hold, {3});
+                      desk.run(10.5);
+                    },
+                    tells(v3, event::Commanded{CommandKind::hold})};
+  all[range_reserve] = {[](Desk& desk) {
+                          is_flying(desk);
+                          desk.run(1.0);
+                          desk.tell({3}, event::RangeSpent{500, true, 400, false});
+                          desk.run(0.2);
+                        },
+                        is_on_ground};
+  all[range_overdrawn] = {[](Desk& desk) {
+                            desk.said[{3}].range_left_m = -1.0;
+                            desk.run(0.5);
+                          },
+                          [](Desk& desk) { desk.said[{3}].range_left_m = 9000.0; }};
+  all[autopilot_trouble] = {flight(AutopilotNews::not_obeying), flight(AutopilotNews::flying)};
+  all[vehicle_trouble] = {tells(v3, event::VehicleTrouble{event::Trouble::orders_unknown}),
+                          tells(v3, event::OrdersKnown{kGroundStation})};
+  all[task_unknown] = {[](Desk& desk) {
+                         desk.tell({1}, event::TaskUnknown{{2}}, kTask);
+                         desk.run(0.2);
+                       },
+                       [](Desk& desk) { desk.award(coalition::TaskState::done); }, false};
+  all[duplicate_id] = {[](Desk& desk) {
+                         desk.twin = desk.said[{3}];
+                         desk.twin->instance = {99};
+                         desk.run(0.5);
+                       },
+                       [](Desk& desk) {
+                         desk.twin.reset();
+                         desk.run(6.0);
+                       }};
+  all[setup_differs] = {tells(kGroundStation, event::SetupDiffers{{3}, "protocol", 0.0}),
+                        tells(kGroundStation, event::SetupAgrees{{3}})};
+  all[formation_lost] = {tells(kGroundStation, formation(event::FormationNews::lost)),
+                         tells(kGroundStation, formation(event::FormationNews::back))};
+  all[command_elsewhere] = {tells(kGroundStation, event::CommandHanded{false, "ben"}),
+                            tells(kGroundStation, event::CommandHanded{true, "ada"})};
+  add_what_is_less(all);
   return all;
 }
 
