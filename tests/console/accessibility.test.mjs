@@ -35,7 +35,7 @@ const event = (seq) => ({ seq, time_s: seq, vehicle: (seq % 50) + 1, kind: "anno
 const sections = {
   vehicles, plans: [], hazards: [{ id: 1, x: 500, y: 500, radius_m: 100 }], preflight,
   sites: [a_site(1, 200, 300, { leader: 1, tasks: [{ kind: "deliver", index: 0, bearing_deg: 7, vehicle: 1, time_s: 90, state: "planned" }] }), a_site(2, 900, 200, { status: "done" })],
-  coalitions: [coalition], authorisations: [a_request(1), a_request(2)],
+  coalitions: [coalition], authorisations: [a_request(1), a_request(2, { silent: [2] })],
   timeline: vehicles.map(({ id }) => ({ id, spans: [["searching", 0, 40, null], ["surveying", 40, null, 1]] })),
   audit: [{ seq: 1, time_s: 12, who: "ada", from: "console", line: "hold 1-3", done: true, text: "told to 1-3" }],
   proposals: [{ number: 1, kind: "fire", x: 10, y: 20, seen_by: 2, confidence: 0.8, detector: "thermal", time_s: 60 }],
@@ -48,6 +48,17 @@ sections.links = [0, 1, 2, 3, 4, 5, 6, 7].map((who) => ({
   hears: who === 7 ? [] : [0, 1, 2, 3, 4, 5, 6, 7].filter((whom) => whom !== who).map((whom, i) => a_link(whom, i)),
 }));
 sections.wind = { from_deg: 240, speed_mps: 4.1, gust_mps: 6, age_s: 0.3, spread_mps: 0.4, vehicles: [{ id: 4, from_deg: 238, speed_mps: 4, gust_mps: 6, age_s: 0.3 }] };
+
+const an_alarm = (number, level, other = {}) => ({
+  number, key: `range ${number}`, kind: "range_reserve", level, since_s: 40, over_s: null, what: `vehicle ${number} has run into its reserve and flies home`, remedy: "Let it come home.",
+  times: 1, vehicle: number, other: null, site: null, panel: "fleet", offers: ["hold"], acknowledged: null, ...other,
+});
+sections.alarms = {
+  counts: { alarm: 2, warning: 1, notice: 0, unacknowledged: 3 }, orders: [],
+  list: [an_alarm(4, "alarm"), an_alarm(21, "alarm"), an_alarm(9, "warning"), an_alarm(8, "warning", { acknowledged: { by: "ada", at_s: 50 } })],
+};
+sections.areas = { search: null, hazards: [] };
+sections.traffic = [];
 
 /** Of the screen at 100 %; at 200 % the page has half of it, and each of its pixels is four. */
 const screens = [{ width: 1440, height: 900 }, { width: 1024, height: 768 }, { width: 390, height: 844 }];
@@ -88,7 +99,7 @@ const too_small = (page, least) =>
       .map(({ element, box }) => `${element.outerHTML.slice(0, 110)}: ${box.width.toFixed(0)} x ${box.height.toFixed(0)}`);
   }, least);
 
-const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links"];
+const panels = ["fleet", "mission", "orders", "log", "plots", "preflight", "links", "areas"];
 
 async function open(view, name) {
   if ((await view.part(`tab-${name}`).count()) === 0) await view.part("tabs-more").click();
@@ -141,6 +152,7 @@ for (const { width, height } of screens) {
           wrong.push(...(await both(name, ["hold-all", `tab-${name}`])));
           await view.picture(`access-${name}-${width}-${percent}`);
         }
+        await open(view, "links");
         for (const way of ["matrix", "list"]) {
           await view.part(`links-${way}`).click();
           wrong.push(...(await both(`links, ${way}`, [])));

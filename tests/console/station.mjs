@@ -27,10 +27,10 @@ export const a_site = (id, x, y, other = {}) => ({ id, x, y, leader: null, surve
 
 export const a_request = (site, other = {}) => ({
   site, leader: 1, coalition: `1-1-${site}`, round: 2, x: 0, y: 0, latitude_deg: 47, longitude_deg: 8, asked_s: 70, decide_by_s: 500, waiting: true,
-  decision: null, leader_marks: [],
+  decision: null, can_take_back: false, silent: [], leader_marks: [],
   deliveries: [
-    { vehicle: 1, index: 0, time_s: 510, bearing_deg: 7, marks: [] },
-    { vehicle: 2, index: 1, time_s: 510, bearing_deg: 90, marks: [{ level: "alarm", text: "silent for 12 s: it may not hear the decision" }] },
+    { vehicle: 1, index: 0, time_s: 510, bearing_deg: 7, marks: [], before_gate: false },
+    { vehicle: 2, index: 1, time_s: 510, bearing_deg: 90, marks: [{ level: "alarm", text: "silent for 12 s: it may not hear the decision" }], before_gate: false },
   ],
   missing: [{ index: 2, bearing_deg: 240, why: "2 that can deliver have bid" }],
   did_not_bid: [{ vehicle: 3, why: "not enough range left" }],
