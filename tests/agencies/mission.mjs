@@ -189,7 +189,7 @@ console.log(`${messages} messages, ${rejected.length} rejected, ${sent_packets -
   `${((Date.now() - begun_ms) / 1000).toFixed(0)} s`)
 assert.deepEqual(rejected.slice(0, 5), [])
 assert.equal(read_packets, sent_packets, 'every packet is found')
-for (const name of ['cot by xml a-f-A-M-F-Q', 'cot by xml b-m-p-s-m', 'cot by xml u-d-c-c', 'cot by xml u-d-f',
+for (const name of ['cot by xml a-f-A-M-F-Q', 'cot by xml b-m-p-s-m', 'cot by xml u-d-f',
   'mavlink HEARTBEAT', 'mavlink MISSION_CURRENT', 'mavlink OPEN_DRONE_ID_LOCATION', 'mavlink OPEN_DRONE_ID_SYSTEM']) {
   assert(counts.has(name), name)
 }
