@@ -2,7 +2,9 @@
 #include "skein/groundstation/command_desk.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -16,6 +18,7 @@ namespace {
 /// A newer start is heard before it says who it is.
 constexpr Duration kNameWithin = std::chrono::seconds{2};
 constexpr std::size_t kWhoMax = 160;  ///< bytes
+constexpr std::size_t kVehiclesMax = 4096;
 
 mission::MissionEvent event_of(bool here, std::string who, Instant now) {
   return {kGroundStation, now, {}, {}, mission::event::CommandHanded{here, std::move(who)}};
@@ -34,6 +37,7 @@ CommandDesk::CommandDesk(configuration::CommandConfig config, InstanceId start, 
 
 CommandDesk::Heard CommandDesk::on_message(const mission::Message& message, VehicleId sender,
                                            InstanceId instance, Instant now) {
+  if (const auto* health = std::get_if<mission::Health>(&message)) on_health(*health, now);
   if (sender != kGroundStation) return Heard::others;
   if (own_ && instance == *own_) return Heard::own;
   // Only what is signed counts: nobody else may silence this one.
@@ -66,6 +70,27 @@ CommandDesk::Heard CommandDesk::on_message(const mission::Message& message, Vehi
   return word != nullptr ? Heard::word : Heard::others;
 }
 
+/// Nobody decides by it: it only tells the operator.
+void CommandDesk::on_health(const mission::Health& health, Instant now) {
+  const auto heard = std::ranges::find(health.heard, kGroundStation, &mission::Heard::vehicle);
+  const bool is_told = heard != health.heard.end() || health.heard.size() < mission::kHeardMax;
+  if (!is_told) return;
+  if (heard != health.heard.end() && heard->age <= kHeeds) {
+    unheard_by_.erase(health.vehicle);
+  } else if (unheard_by_.size() < kVehiclesMax) {
+    unheard_by_.try_emplace(health.vehicle, now);
+  }
+}
+
+std::vector<VehicleId> CommandDesk::unheeding(Instant now) const {
+  std::vector<VehicleId> all;
+  if (!is_commanding() || now < since_ + kHeeds) return all;
+  for (const auto& [vehicle, since] : unheard_by_) {
+    if (now >= std::max(since, since_) + kHeeds) all.push_back(vehicle);
+  }
+  return all;
+}
+
 bool CommandDesk::takes_by_itself(Instant now) const {
   return state_ == State::listening && now >= since_ + kListen;
 }
@@ -75,14 +100,16 @@ bool CommandDesk::nobody_commands(Instant now) const {
   return now >= (heard_at_ ? *heard_at_ : since_) + kNobodyAfter;
 }
 
-std::optional<std::string> CommandDesk::why_not_take() const {
+std::optional<std::string> CommandDesk::why_not_take(Instant now) const {
   if (!is_one_of_several()) {
     return is_commanding()
                ? "this ground station has the command: there is no other (command.station)"
                : "another ground station has taken the command, and this one was not configured as "
                  "one of several: give it command.station and start it anew";
   }
-  if (is_commanding() && offered_by_.empty()) return "this ground station has the command already";
+  if (is_commanding() && offered_by_.empty() && unheeding(now).empty()) {
+    return "this ground station has the command already";
+  }
   return std::nullopt;
 }
 
@@ -146,9 +173,15 @@ std::string CommandDesk::other() const { return who_.empty() ? "another ground s
 std::string CommandDesk::text(Instant now) const {
   if (is_commanding()) {
     if (!is_one_of_several()) return "this ground station has the command; there is no other";
-    return offered_by_.empty()
-               ? who_ + " has the command: this ground station"
-               : who_ + " has the command: this ground station, which asks others to take it";
+    std::string text = who_ + " has the command: this ground station";
+    if (!offered_by_.empty()) text += ", which asks others to take it";
+    std::vector<std::uint16_t> ids;
+    for (const VehicleId vehicle : unheeding(now)) ids.push_back(vehicle.value);
+    if (!ids.empty()) {
+      text += fmt::format("; {} {} not heed it: 'take command' speaks beyond whom they heed",
+                          fmt::join(ids, ", "), ids.size() == 1 ? "does" : "do");
+    }
+    return text;
   }
   if (state_ == State::listening) return "this ground station listens whether another commands";
   if (nobody_commands(now)) {
@@ -168,6 +201,8 @@ std::string CommandDesk::why_no_orders(Instant now) const {
 std::string CommandDesk::json(Instant now) const {
   static constexpr std::array<const char*, static_cast<std::size_t>(State::count)> kStates{
       "listening", "watching", "commanding"};
+  codec::Json unheeding_ids = codec::Json::array();
+  for (const VehicleId vehicle : unheeding(now)) unheeding_ids.push_back(vehicle.value);
   const auto number = [](std::optional<Instant> time) {
     return time ? codec::Json(to_seconds(*time)) : codec::Json(nullptr);
   };
@@ -179,6 +214,7 @@ std::string CommandDesk::json(Instant now) const {
                            {"heard_s", number(heard_at_)},
                            {"nobody", nobody_commands(now)},
                            {"offered", !offered_by_.empty()},
+                           {"unheeding", std::move(unheeding_ids)},
                            {"text", text(now)}});
 }
 

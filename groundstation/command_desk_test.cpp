@@ -32,7 +32,7 @@ TEST(CommandDesk, OneAloneCommandsFromTheStartOn) {
   EXPECT_EQ(desk.on_message(mission::Telemetry{}, VehicleId{3}, kNewer, at_seconds(1.0)),
             Heard::others);
   EXPECT_TRUE(desk.is_commanding());
-  EXPECT_TRUE(desk.why_not_take());
+  EXPECT_TRUE(desk.why_not_take(at_seconds(1.0)));
   EXPECT_FALSE(desk.hand_over("ada", at_seconds(1.0)));
 }
 
@@ -107,7 +107,7 @@ TEST(CommandDesk, AsksOthersToTakeItAndKeepsItUntilOneDoes) {
   CommandDesk other{{1, "ridge-1", true}, {}, at_seconds(0.0)};
   EXPECT_FALSE(desk.hand_over("ada", at_seconds(1.0)));
   (void)desk.take(kOwn, "ada", "", at_seconds(1.0));
-  EXPECT_TRUE(desk.why_not_take()) << "it has it";
+  EXPECT_TRUE(desk.why_not_take(at_seconds(1.5))) << "it has it";
   const auto asked = desk.hand_over("ada", at_seconds(2.0));
   ASSERT_TRUE(asked);
   EXPECT_TRUE(desk.is_commanding());
@@ -115,10 +115,36 @@ TEST(CommandDesk, AsksOthersToTakeItAndKeepsItUntilOneDoes) {
             Heard::word);
   EXPECT_THAT(other.text(at_seconds(2.2)), HasSubstr("ridge-2 (ada) asks others to take"));
   EXPECT_TRUE(desk.poll_word(at_seconds(5.1))) << "for who comes later";
-  EXPECT_FALSE(desk.why_not_take()) << "it may take that back";
+  EXPECT_FALSE(desk.why_not_take(at_seconds(5.5))) << "it may take that back";
   const auto kept = desk.keep("ada", "", at_seconds(6.0));
   (void)other.on_message(mission::Message{kept}, kGroundStation, kOwn, at_seconds(6.1));
   EXPECT_THAT(other.text(at_seconds(6.2)), HasSubstr("ridge-2 (ada) has the command"));
+}
+
+// They have heard a start of the other one that this one never did.
+TEST(CommandDesk, NamesWhoDoesNotHeedIt) {
+  CommandDesk desk{one_of_two(true), {}, at_seconds(0.0)};
+  (void)desk.take(kOwn, "", "", at_seconds(10.0));
+  const auto tell = [&](std::uint16_t vehicle, std::optional<Duration> age, double time_s) {
+    mission::Health health;
+    health.vehicle = {vehicle};
+    if (age) health.heard.push_back({kGroundStation, *age});
+    (void)desk.on_message(mission::Message{health}, {vehicle}, {}, at_seconds(time_s));
+  };
+  for (double s = 11.0; s < 30.0; s += 1.0) {
+    tell(1, std::chrono::milliseconds{300}, s);
+    tell(2, std::chrono::seconds{60}, s);
+    tell(3, std::nullopt, s);
+    EXPECT_TRUE(s >= 17.0 || desk.unheeding(at_seconds(s)).empty()) << s;
+  }
+  EXPECT_THAT(desk.unheeding(at_seconds(30.0)), testing::ElementsAre(VehicleId{2}, VehicleId{3}));
+  EXPECT_THAT(desk.text(at_seconds(30.0)), HasSubstr("2, 3 do not heed it"));
+  EXPECT_FALSE(desk.why_not_take(at_seconds(30.0))) << "it may take it again";
+  (void)desk.take(kNewer, "", "", at_seconds(31.0));
+  EXPECT_TRUE(desk.unheeding(at_seconds(32.0)).empty()) << "they are given time";
+  for (const std::uint16_t id : {std::uint16_t{2}, std::uint16_t{3}})
+    tell(id, std::chrono::seconds{1}, 33.0);
+  EXPECT_TRUE(desk.unheeding(at_seconds(60.0)).empty());
 }
 
 TEST(CommandDesk, OfTwoThatTakeItAtOnceOneHasIt) {

@@ -76,11 +76,13 @@ std::optional<Answer> Commanding::why_not(const Input& input, Instant now) const
 }
 
 Result<void> Commanding::take(const std::string& by, const std::string& reason, Instant now) {
-  if (desk_.is_commanding()) {  // it had asked others to: no more
+  const bool is_heeded = desk_.unheeding(now).empty();
+  if (desk_.is_commanding() && is_heeded) {  // it had asked others to: no more
     node_.say(desk_.keep(by, reason, now));
     return {};
   }
-  const auto start = network_.speak(desk_.newest());
+  // Whom vehicles heed was not heard here.
+  const auto start = network_.speak(is_heeded ? desk_.newest() : std::nullopt);
   if (!start) return start.error();
   node_.take_command(*start, now);
   node_.say(desk_.take(*start, by, reason, now));
@@ -88,7 +90,7 @@ Result<void> Commanding::take(const std::string& by, const std::string& reason, 
 }
 
 Answer Commanding::answer(const TakeCommand& order, const std::string& by, Instant now) {
-  if (const auto why = desk_.why_not_take()) return {false, *why + "\n"};
+  if (const auto why = desk_.why_not_take(now)) return {false, *why + "\n"};
   if (const auto taken = take(by, order.reason, now); !taken) {
     return {false, taken.error().message + "\n"};
   }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "skein/base/ids.hpp"
 #include "skein/base/result.hpp"
@@ -23,6 +25,8 @@ class CommandDesk {
   /// Nobody has it when who had it was not heard for so long.
   static constexpr Duration kNobodyAfter = std::chrono::seconds{10};
   static constexpr Duration kTellAgain = std::chrono::seconds{3};
+  /// A vehicle that is heard, and has not heard the one in command for so long, heeds another.
+  static constexpr Duration kHeeds = std::chrono::seconds{8};
 
   enum class State : std::uint8_t { listening, watching, commanding, count };
 
@@ -48,8 +52,13 @@ class CommandDesk {
   /// It is known who has the command, or nobody was heard for so long.
   [[nodiscard]] bool nobody_commands(Instant now) const;
 
+  /// Vehicles that are heard and do not heed this one, though it has the command: they have heard a
+  /// start that is newer than all that it knows of, or do not hear it at all. Taken again, it
+  /// speaks with a start that is newer by far.
+  [[nodiscard]] std::vector<VehicleId> unheeding(Instant now) const;
+
   /// Why it cannot be taken.
-  [[nodiscard]] std::optional<std::string> why_not_take() const;
+  [[nodiscard]] std::optional<std::string> why_not_take(Instant now) const;
   /// Precondition: it can be. `by` is the operator; the start is the one it speaks as from now on.
   /// What it tells all.
   [[nodiscard]] mission::MissionEvent take(InstanceId start, const std::string& by,
@@ -77,17 +86,19 @@ class CommandDesk {
  private:
   [[nodiscard]] std::string own_name() const;
   [[nodiscard]] std::string other() const;
+  void on_health(const mission::Health& health, Instant now);
 
   configuration::CommandConfig config_;
   State state_;
-  std::optional<InstanceId> own_;      ///< that it speaks as
-  std::optional<InstanceId> newest_;   ///< of others
-  std::optional<Instant> heard_at_;    ///< who has it
-  Instant since_;                      ///< of the state
-  std::string who_;                    ///< has it; empty: not known
-  std::string offered_by_;             ///< who has it asks others to take it; empty: no
-  std::optional<Instant> changed_at_;  ///< who has it, and not told yet
-  std::string noticed_;                ///< what poll_notice() told last, without ages
+  std::optional<InstanceId> own_;            ///< that it speaks as
+  std::optional<InstanceId> newest_;         ///< of others
+  std::optional<Instant> heard_at_;          ///< who has it
+  Instant since_;                            ///< of the state
+  std::string who_;                          ///< has it; empty: not known
+  std::string offered_by_;                   ///< who has it asks others to take it; empty: no
+  std::optional<Instant> changed_at_;        ///< who has it, and not told yet
+  std::map<VehicleId, Instant> unheard_by_;  ///< and since when, of who is heard
+  std::string noticed_;                      ///< what poll_notice() told last, without ages
   std::optional<mission::MissionEvent> word_;
   Instant word_again_{};
 };

@@ -83,6 +83,16 @@ export function CommandBanner() {
       </div>
     );
   }
+  if (is === "unheeded") {
+    return (
+      <div class="banner command alarm" role="status" data-testid="banner-command">
+        <span>
+          <b>Not heeded by {command.unheeding.join(", ")}.</b> They are heard, and have not heard {command.name} in command for a while: they heed a ground station that was not heard here, or do not hear this one.
+        </span>
+        {is_operator.value && <TakeCommand />}
+      </div>
+    );
+  }
   if (is === "commanding" || is === "offering") {
     if (!is_operator.value || (is === "commanding" && !is_open.value)) return null;
     return (

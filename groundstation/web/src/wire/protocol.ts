@@ -491,6 +491,8 @@ export interface CommandState {
   nobody: boolean;
   /** Who has it asks others to take it. */
   offered: boolean;
+  /** Vehicles that are heard, and do not heed this one that has the command. */
+  unheeding: number[];
   text: string;
 }
 
