@@ -40,12 +40,15 @@ LinkRow own_row(const mission::Fleet& fleet, const std::vector<GroundReception>&
   return row;
 }
 
-LinkRow row_of(VehicleId id, const mission::FleetEntry& entry, Instant now) {
+LinkRow row_of(VehicleId id, const mission::FleetEntry& entry, const mission::Fleet& fleet,
+               Instant now) {
   LinkRow row{.who = id};
   if (!entry.health) return row;
   const Duration told_age = now - entry.health_at;
   row.told_age = told_age;
   for (const mission::Heard& heard : entry.health->heard) {
+    // Also what plays sensors on a bench is heard, and whoever is not of this team.
+    if (heard.vehicle != kGroundStation && !fleet.vehicles().contains(heard.vehicle)) continue;
     LinkFigures& link = row.hears.emplace_back();
     link.whom = heard.vehicle;
     link.age = heard.age + told_age;
@@ -81,7 +84,7 @@ std::string text_of(const LinkFigures& link) {
 std::vector<LinkRow> team_links(const mission::Fleet& fleet,
                                 const std::vector<GroundReception>& own, Instant now) {
   std::vector<LinkRow> rows{own_row(fleet, own, now)};
-  for (const auto& [id, entry] : fleet.vehicles()) rows.push_back(row_of(id, entry, now));
+  for (const auto& [id, entry] : fleet.vehicles()) rows.push_back(row_of(id, entry, fleet, now));
   return rows;
 }
 

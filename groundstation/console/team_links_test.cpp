@@ -82,6 +82,19 @@ TEST(TeamLinks, WhoIsReachedThroughOthersAloneIsToldApart) {
   EXPECT_FALSE(link(later, 1, 2).through_others);
 }
 
+TEST(TeamLinks, WhoIsNotOfTheTeamIsLeftOut) {
+  Fleet one{{.expected = {{1}}}};
+  Health health;
+  health.vehicle = {1};
+  health.heard = {{VehicleId{65'535}, std::chrono::seconds{1}, 10, 0},
+                  {kGroundStation, std::chrono::seconds{1}, 10, 0}};
+  one.on_message(Message{health}, at_seconds(1.0));
+  const auto rows = team_links(one, {}, at_seconds(1.0));
+  ASSERT_EQ(rows.size(), 2U);
+  ASSERT_EQ(rows[1].hears.size(), 1U);
+  EXPECT_EQ(rows[1].hears[0].whom, kGroundStation);
+}
+
 TEST(TeamLinks, AnOlderReleaseTellsNoLoss) {
   const auto rows = team_links(fleet(), {}, at_seconds(21.0));
   EXPECT_TRUE(rows[1].tells_loss);

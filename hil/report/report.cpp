@@ -89,7 +89,7 @@ std::string link_to(const Contents& contents, Instant moment) {
   const std::string seconds = fmt::format("{:.1f}", to_seconds(moment));
   if (contents.replay.empty() || contents.replay_url.empty()) return seconds + " s";
   return fmt::format(
-      R"~(<a class="moment" target="skein-replay" href="{}#seek={}&amp;of={}" data-command="{} --at {}" title="Opens where the replay runs; copies what starts it">{} s</a>)~",
+      R"~(<a class="moment" target="_blank" rel="noopener" href="{}#seek={}&amp;of={}" data-command="{} --at {}" title="Opens where the replay runs; copies what starts it">{} s</a>)~",
       escaped(contents.replay_url), seconds, percent_encoded(contents.run),
       escaped(contents.replay), seconds, seconds);
 }

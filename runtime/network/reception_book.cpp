@@ -94,6 +94,8 @@ std::vector<Reception> ReceptionBook::all(Instant now) const {
 }
 
 void ReceptionBook::forget(Instant now) {
+  if (now < next_forget_) return;
+  next_forget_ = now + std::chrono::seconds{1};
   std::erase_if(senders_, [now](const auto& entry) {
     return reception_of(entry.first, entry.second, now).lost_percent > 100;
   });

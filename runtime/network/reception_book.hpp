@@ -67,6 +67,7 @@ class ReceptionBook {
 
   mutable std::mutex mutex_;
   std::map<VehicleId, Sender> senders_;
+  Instant next_forget_ = Instant::min();  ///< whoever makes up senders shall not cost a look at all
 };
 
 }  // namespace skein::network

@@ -16,6 +16,8 @@ const video = "rtsp://127.0.0.1:8554/three";
 /** The small mission with another radio and wind, a file beside the others. */
 async function scenario(name, changes) {
   let text = await readFile(join(scenarios, "coalition-6.yaml"), "utf8");
+  // It waits for a decision that nobody takes, for as long as it is looked at.
+  changes = [[/duration_max_s: 120/, "duration_max_s: 900"], ...changes];
   for (const [before, after] of changes) {
     assert.match(text, before);
     text = text.replace(before, after);

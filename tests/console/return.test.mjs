@@ -51,6 +51,10 @@ test("the ways are shown before anything is ordered", async () => {
   assert.deepEqual(await barriers(view.page), []);
   await view.picture("return-preview");
   assert.deepEqual((await mission.audit()).filter(({ line }) => line.startsWith("return")), [], "nobody was ordered anywhere");
+  // They fly on: what is shown is planned again from where they are.
+  const times = () => view.page.locator('[data-testid^="return-way-"]').allInnerTexts().then((all) => all.join());
+  const first = await times();
+  await until("newer ways", async () => (await times()) !== first);
 });
 
 test("one who is not there has no way, and it is said why", async () => {
@@ -74,7 +78,7 @@ test("a short press gives nothing, a long one sends all home together", async ()
   await until("the order", async () => (await mission.audit()).some(({ line, done, from }) => line === "return all" && done && from === "console"));
   assert.equal(await view.part("return-outcome").count(), 0, "what was looked at is put away");
   await view.part("tab-log").click();
-  await until("ways that are planned together", async () => /ways home|way home/i.test(await view.page.locator('[data-testid^="event-"]').allInnerTexts().then((all) => all.join("\n"))));
+  await until("ways that are planned together", async () => /6 vehicles come home on ways clear of each other, the last in \d+ s/.test(await view.page.locator('[data-testid^="event-"]').allInnerTexts().then((all) => all.join("\n"))));
 });
 
 test("nothing was asked of anybody else, and nothing was complained about", () => {

@@ -45,6 +45,7 @@ export class MissionMap {
   private colours: Colours = read_colours();
   private picture: Picture = current();
   private members: Map<number, Membership> = new Map();
+  private return_of: string | null = null;
   private fitted = false;
   /** What is shown was chosen by a person: it is not to be changed by anything but that person. */
   private by_hand = false;
@@ -221,7 +222,12 @@ export class MissionMap {
 
   /** What is about to be ordered must be seen whole. */
   private on_preview(): void {
-    if (this.previewed().some((at) => !this.leaflet.getBounds().contains(at))) this.fit();
+    // Ways home are planned again all the time: whoever has moved the map meanwhile has his reason.
+    const ways = this.previewed();
+    const of = return_preview.value?.of ?? null;
+    const renewed = of !== null && of === this.return_of;
+    this.return_of = of;
+    if (ways.some((at) => !this.leaflet.getBounds().contains(at)) && !renewed) this.fit();
   }
 
   private is_seen(): boolean {

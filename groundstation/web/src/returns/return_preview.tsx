@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Everybody home: seen first, with times and separation, then given by holding.
 
-import { useState } from "preact/hooks";
+import { useEffect, useState } from "preact/hooks";
 import { command, command_to } from "../orders/orders";
 import { clock, distance, duration, ids, number } from "../shell/format";
 import { give } from "../shell/give";
@@ -68,6 +68,9 @@ function Ways({ data }: { data: ReturnPreview }) {
   );
 }
 
+/** Vehicles fly on while their ways are looked at. */
+const renewed_every_ms = 3000;
+
 export function ReturnForm() {
   const [some, set_some] = useState("");
   const [refused, set_refused] = useState<string | null>(null);
@@ -81,6 +84,17 @@ export function ReturnForm() {
     set_refused(answer.done && data ? null : answer.text);
     return_preview.value = answer.done && data ? { of: asked, data } : null;
   };
+  const of = shown?.of;
+  useEffect(() => {
+    if (of === undefined) return;
+    const renew = async () => {
+      const data = preview_of(await send(`preview return ${of}`));
+      // Refused, as another is being looked at: the next one will tell.
+      if (data && return_preview.value?.of === of) return_preview.value = { of, data };
+    };
+    const timer = window.setInterval(() => void renew(), renewed_every_ms);
+    return () => window.clearInterval(timer);
+  }, [of]);
   const put_away = () => {
     return_preview.value = null;
     set_refused(null);
