@@ -6,6 +6,7 @@
 #include "skein/domain/path.hpp"
 #include "skein/domain/set_down.hpp"
 #include "skein/domain/site.hpp"
+#include "skein/domain/vehicle.hpp"
 
 namespace skein {
 namespace {
@@ -176,6 +177,17 @@ TEST(Capabilities, BitsSurviveARoundTripAndNothingElseDoes) {
   EXPECT_FALSE(c.has(TaskKind::assess));
   EXPECT_EQ(Capabilities::from_bits(c.bits()), c);
   EXPECT_EQ(Capabilities::from_bits(0xF8).bits(), 0);
+}
+
+TEST(VehicleState, GoesWhereItsCourseIsAndWhereItHoversItsNose) {
+  VehicleState state;
+  state.heading_rad = 0.2;
+  state.course_rad = -2.6;
+  state.groundspeed_mps = 7.0;
+  EXPECT_EQ(state.pose_over_ground().heading_rad, -2.6);
+  state.groundspeed_mps = 0.3;  // a gust's
+  EXPECT_EQ(state.pose_over_ground().heading_rad, 0.2);
+  EXPECT_EQ(state.pose().heading_rad, 0.2);
 }
 
 TEST(SetDown, ACopterIsLedDownWithoutAStepAndStopsAboveTheGround) {

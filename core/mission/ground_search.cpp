@@ -118,9 +118,7 @@ planning::Searcher GroundSearch::searcher(VehicleId id, const Telemetry& telemet
       std::ranges::find_if(config_.vehicles, [id](const VehicleSpec& v) { return v.id == id; });
   planning::Searcher one;
   one.id = id;
-  const double course = telemetry.state.groundspeed_mps > 1.0 ? telemetry.state.course_rad
-                                                              : telemetry.state.heading_rad;
-  one.from = {telemetry.state.x_m, telemetry.state.y_m, course};
+  one.from = telemetry.state.pose_over_ground();
   one.speed_mps = spec->cruise_speed_mps;
   one.radius_m = spec->planning_radius_m();
   // What a vehicle itself keeps, and the way to where its route begins.

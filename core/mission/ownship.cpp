@@ -66,7 +66,7 @@ bool Ownship::on_state(const VehicleState& state, Instant now) {
 
 /// In wind an aircraft moves elsewhere than its nose points.
 Pose2 Ownship::begins_at(const VehicleState& state) const {
-  return {state.x_m, state.y_m, config_.heeds_wind ? state.course_rad : state.heading_rad};
+  return config_.heeds_wind ? state.pose_over_ground() : state.pose();
 }
 
 bool Ownship::measures_wind(const VehicleState& state) {

@@ -98,6 +98,11 @@ struct VehicleState {
     return phase == FlightPhase::landed || phase == FlightPhase::disarmed;
   }
   [[nodiscard]] Pose2 pose() const { return {x_m, y_m, heading_rad}; }
+  /// Where it goes: its course, and its nose where it stands or hovers, whose course is noise.
+  [[nodiscard]] Pose2 pose_over_ground() const {
+    constexpr double kCourseKnownAbove_mps = 1.0;
+    return {x_m, y_m, groundspeed_mps > kCourseKnownAbove_mps ? course_rad : heading_rad};
+  }
   [[nodiscard]] Position<MissionEnu> position() const { return {x_m, y_m, z_m}; }
   /// Over the ground, mission frame.
   [[nodiscard]] Eigen::Vector3d velocity_mps() const {
