@@ -29,22 +29,27 @@ export function Notices() {
   );
 }
 
-/** Says new alarms to a screen reader. */
+const kept_spoken = 8;
+
+/** Says new alarms to a screen reader, each once; what was said last can be read again. */
 export function SpokenAlarms() {
-  const [text, set_text] = useState("");
+  const [said, set_said] = useState<{ number: number; text: string }[]>([]);
   useEffect(() => {
     let before = current();
     let first = true;
+    let number = 0;
     return on_picture((picture) => {
       const fresh = first ? [] : fresh_alarms(before, picture);
       if (picture.vehicles.length > 0) first = false;
       before = picture;
-      if (fresh.length > 0) set_text(fresh.slice(0, 4).join(". "));
+      if (fresh.length > 0) set_said((old) => [...old, ...fresh.map((text) => ({ number: ++number, text }))].slice(-kept_spoken));
     });
   }, []);
   return (
-    <div class="only-spoken" role="alert" aria-live="assertive" data-testid="spoken-alarms">
-      {text}
+    <div class="only-spoken" role="log" aria-label="Alarms" aria-live="assertive" data-testid="spoken-alarms">
+      {said.map((one) => (
+        <p key={one.number}>{one.text}</p>
+      ))}
     </div>
   );
 }
