@@ -518,6 +518,7 @@ class GroundLoop {
       tell_of(*event, now);
     }
     console_.on_traffic(node_.traffic().all());
+    console_.on_decisions(node_.agent(), now);
     console_.on_timeout(node_.fleet(),
                         {audit_.json(), areas_.json(now), commanding_.desk().json(now),
                          commanding_.desk().nobody_commands(now)},

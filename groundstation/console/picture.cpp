@@ -7,12 +7,15 @@
 #include <variant>
 
 #include "skein/base/overloaded.hpp"
+#include "skein/mission/ground_agent.hpp"
 #include "skein/mission/told_by.hpp"
 
 namespace skein::console {
 namespace {
 
 constexpr Duration kDelayWindow = std::chrono::seconds{10};
+/// So long what was said to a vehicle, or of it, and its own next word may be on their way.
+constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 
 /// Newer knowledge of a task never makes it less done.
 int rank(const std::optional<coalition::TaskState>& state) {
@@ -34,12 +37,24 @@ int rank(const std::optional<coalition::TaskState>& state) {
   return 5;
 }
 
-void advance(TaskPicture& task, coalition::TaskState state) {
-  if (rank(state) >= rank(task.state)) task.state = state;
+/// At that moment it was heard that nobody has it any more.
+void reopen(TaskPicture& task, Instant now) {
+  task = {};
+  task.told_at = now;
 }
 
-/// Nobody has it any more.
-void reopen(TaskPicture& task) { task = {}; }
+void advance(TaskPicture& task, coalition::TaskState state, Instant now) {
+  if (rank(state) < rank(task.state)) return;
+  if (task.state != state) task.told_at = now;
+  task.state = state;
+}
+
+/// What that vehicle says of a task of that round is of the task as it stands, and no late copy of
+/// what became of it in other hands or in a plan before.
+bool is_of(const TaskPicture& task, VehicleId vehicle, const coalition::Round& round) {
+  const bool older = task.round.coalition == round.coalition && round.number < task.round.number;
+  return (!task.vehicle || task.vehicle == vehicle) && !older;
+}
 
 /// What it has not begun can be taken back.
 bool can_be_taken_back(const TaskPicture& task) {
@@ -73,6 +88,7 @@ bool Picture::is_known(VehicleId sender) const {
 void Picture::on_message(const mission::Message& message, VehicleId sender, Instant now) {
   // What vehicles pass on the ground station has said itself.
   if (!is_known(sender) || mission::told_by(message) != kGroundStation) return;
+  heard_at_ = now;
   std::visit(Overloaded{[&](const mission::Telemetry& m) {
                           if (m.vehicle == sender) on(m, now);
                         },
@@ -166,16 +182,37 @@ void Picture::note_span(VehiclePicture& vehicle, const mission::Telemetry& telem
   }
 }
 
-/// Who has said that it has a task, and says so no more, has it no more, whatever else was heard.
+/// In the end the vehicles' own words count, whatever else was heard: an award or its end may not
+/// have been.
 void Picture::note_own_word(const mission::Telemetry& telemetry) {
   if (!tells_task(telemetry)) return;
+  const auto is_old = [&](const TaskPicture& known) {
+    return heard_at_ - known.told_at > kNewsMayTake;
+  };
+  const bool names_one = telemetry.task.site != SiteId{} && telemetry.task.kind != TaskKind::survey;
+  SitePicture* const of = names_one ? site_of(telemetry.task.site) : nullptr;
+  if (of != nullptr && !of->over()) {
+    TaskPicture& told = of->tasks[telemetry.task];
+    const bool nobody = !told.vehicle && !told.state;
+    const bool another = told.vehicle != telemetry.vehicle &&
+                         told.state != coalition::TaskState::done && is_old(told);
+    const bool again = told.state == coalition::TaskState::failed && is_old(told);
+    if (nobody || another || again) {
+      reopen(told, heard_at_);
+      told.vehicle = telemetry.vehicle;
+      told.state = coalition::TaskState::planned;
+    }
+  }
   for (auto& [id, site] : sites_) {
     for (auto& [task, known] : site.tasks) {
       if (known.vehicle != telemetry.vehicle) continue;
       if (task == telemetry.task) {
         known.held = true;
-      } else if (known.held && can_be_taken_back(known)) {
-        reopen(known);
+        known.told_at = heard_at_;
+      } else if ((known.held || is_old(known)) && can_be_taken_back(known)) {
+        reopen(known, heard_at_);
+      } else if (known.state == coalition::TaskState::started && is_old(known)) {
+        advance(known, coalition::TaskState::unknown, heard_at_);
       }
     }
   }
@@ -205,7 +242,7 @@ void Picture::take_back(const coalition::Round& round, std::optional<VehicleId> 
   if (site == sites_.end()) return;
   for (auto& [task, known] : site->second.tasks) {
     const bool concerned = known.round == round && (!only_of || known.vehicle == *only_of);
-    if (concerned && can_be_taken_back(known)) reopen(known);
+    if (concerned && can_be_taken_back(known)) reopen(known, heard_at_);
   }
 }
 
@@ -214,7 +251,7 @@ void Picture::take_back_task(const TaskId& task, VehicleId of) {
   if (site == sites_.end()) return;
   const auto known = site->second.tasks.find(task);
   if (known == site->second.tasks.end() || known->second.vehicle != of) return;
-  if (can_be_taken_back(known->second)) reopen(known->second);
+  if (can_be_taken_back(known->second)) reopen(known->second, heard_at_);
 }
 
 void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
@@ -231,7 +268,7 @@ void Picture::on(const mission::AuthorisationRequest& request, Instant now) {
     if (known.request.round.number > request.round.number) return;
     known.replaced = true;
   }
-  authorisations_.push_back({request, now, {}, false});
+  authorisations_.push_back({.request = request, .asked_at = now, .decision = {}, .standing = {}});
   if (authorisations_.size() > params_.authorisations_max) authorisations_.pop_front();
 }
 
@@ -253,7 +290,20 @@ void Picture::on(const mission::Authorisation& decision) {
   site->second.refused = true;
   site->second.taken_back = site->second.taken_back || taken_back;
   for (auto& [task, known] : site->second.tasks) {
-    if (can_be_taken_back(known)) reopen(known);
+    if (can_be_taken_back(known)) reopen(known, heard_at_);
+  }
+}
+
+void Picture::on_decisions(const mission::GroundAgent& agent, Instant now) {
+  for (AuthorisationPicture& known : authorisations_) {
+    known.standing.emplace();
+    for (const mission::PendingAuthorisation& pending : agent.authorisations()) {
+      if (pending.request.round != known.request.round ||
+          pending.request.site != known.request.site) {
+        continue;
+      }
+      known.standing = {!pending.decision, agent.may_be_taken_back(pending, now)};
+    }
   }
 }
 
@@ -346,12 +396,15 @@ void Picture::on(const coalition::Award& m) {
     if (site == nullptr) continue;
     TaskPicture& task = site->tasks[assignment.task];
     if (task.state == coalition::TaskState::done) continue;
-    if (first || task.vehicle != assignment.vehicle) task.state.reset();
+    if (first || task.vehicle != assignment.vehicle) {
+      task.state.reset();
+      task.told_at = heard_at_;
+    }
     task.held = task.held && task.vehicle == assignment.vehicle && task.round == m.round;
     task.round = m.round;
     task.vehicle = assignment.vehicle;
     task.time = assignment.time;
-    advance(task, coalition::TaskState::planned);
+    advance(task, coalition::TaskState::planned, heard_at_);
   }
   std::sort(coalition.members.begin(), coalition.members.end());
   coalition.members.erase(std::unique(coalition.members.begin(), coalition.members.end()),
@@ -378,8 +431,10 @@ void Picture::on(const coalition::LeaseRenewal& m) {
   coalition.lease_until = m.lease_until;
   SitePicture* site = site_of(m.site);
   if (site != nullptr) {
-    for (const TaskId& task : m.done) advance(site->tasks[task], coalition::TaskState::done);
-    for (const TaskId& task : m.unknown) advance(site->tasks[task], coalition::TaskState::unknown);
+    for (const TaskId& task : m.done)
+      advance(site->tasks[task], coalition::TaskState::done, heard_at_);
+    for (const TaskId& task : m.unknown)
+      advance(site->tasks[task], coalition::TaskState::unknown, heard_at_);
   }
   if (m.closed) {
     coalition.state = CoalitionState::closed;
@@ -400,9 +455,12 @@ void Picture::on(const coalition::MemberStatus& m) {
     // Said before it heard that the site is over.
     if (site->refused && entry.state == coalition::TaskState::planned) continue;
     TaskPicture& task = site->tasks[entry.task];
+    const bool is_final =
+        entry.state == coalition::TaskState::done || entry.state == coalition::TaskState::unknown;
+    if (!is_final && !is_of(task, m.member, m.round)) continue;
     if (!task.vehicle) task.vehicle = m.member;
     task.held = task.held || task.vehicle == m.member;
-    advance(task, entry.state);
+    advance(task, entry.state, heard_at_);
   }
 }
 
@@ -459,16 +517,20 @@ void Picture::on_event(const mission::MissionEvent& event) {
   switch (event.kind()) {
     case survey_done:
       site.surveyed = true;
-      advance(site.tasks[{event.task.site, TaskKind::survey, 0}], coalition::TaskState::done);
+      advance(site.tasks[{event.task.site, TaskKind::survey, 0}], coalition::TaskState::done,
+              heard_at_);
       break;
     case task_started:
-      advance(site.tasks[event.task], coalition::TaskState::started);
+    case task_failed: {
+      TaskPicture& task = site.tasks[event.task];
+      const bool failed = event.kind() == task_failed;
+      if (!is_of(task, event.vehicle, event.round)) break;
+      advance(task, failed ? coalition::TaskState::failed : coalition::TaskState::started,
+              heard_at_);
       break;
+    }
     case task_done:
-      advance(site.tasks[event.task], coalition::TaskState::done);
-      break;
-    case task_failed:
-      advance(site.tasks[event.task], coalition::TaskState::failed);
+      advance(site.tasks[event.task], coalition::TaskState::done, heard_at_);
       break;
     case site_done:
       site.done = true;

@@ -9,6 +9,7 @@
 
 #include "skein/base/random.hpp"
 #include "skein/console/sections.hpp"
+#include "skein/mission/ground_agent.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/random_messages/random_messages.hpp"
 
@@ -245,6 +246,67 @@ TEST(Picture, WhatIsRefusedCancelledOrGivenBackNobodyHasAnyMore) {
   EXPECT_EQ(first_delivery(desk, 16.3), "nobody open");
 }
 
+TEST(Picture, WhoSaysThatItStillHasWhatNobodyElseHasIsShownWithIt) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 11.0);
+  desk.say(award(), kLeader, 12.0);
+  desk.say(coalition::Cancel{kRound, {coalition::Reason::not_confirmed}}, kLeader, 13.0);
+  EXPECT_EQ(first_delivery(desk, 13.1), "nobody open");
+  mission::Telemetry told;
+  told.vehicle = {2};
+  told.activity = mission::Activity::executing;
+  told.task = {{4}, TaskKind::deliver, 0};
+  desk.hear(told, {2}, 14.0);  // it has not heard of that
+  EXPECT_EQ(first_delivery(desk, 14.1), "2 planned");
+  told.activity = mission::Activity::searching;
+  told.task = {};
+  desk.hear(told, {2}, 15.0);
+  EXPECT_EQ(first_delivery(desk, 15.1), "nobody open");
+  desk.hear(mission::Authorisation{kRound, {4}, false, "ada", at_seconds(16.0)}, kGroundStation,
+            16.0);
+  told.task = {{4}, TaskKind::deliver, 0};
+  desk.hear(told, {2}, 16.1);  // of a refused site only what it says of its state is shown
+  EXPECT_EQ(first_delivery(desk, 16.2), "nobody open");
+}
+
+TEST(Picture, WhatBecameOfATaskInOtherHandsIsNotOfWhoHasItNow) {
+  Desk desk;
+  const TaskId task{{4}, TaskKind::deliver, 0};
+  desk.say(announcement(), kLeader, 11.0);
+  desk.say(award(), kLeader, 12.0);
+  const coalition::Round before{{{3}, {9}, 1}, 1};
+  desk.picture.on_event({{3}, at_seconds(12.5), before, task, mission::event::TaskFailed{}});
+  desk.say(coalition::MemberStatus{before, {3}, {{task, TaskState::failed, {}}}}, {3}, 12.6);
+  EXPECT_EQ(first_delivery(desk, 12.7), "2 planned");
+  desk.picture.on_event({{2}, at_seconds(12.8), kRound, task, mission::event::TaskFailed{}});
+  EXPECT_EQ(first_delivery(desk, 12.9), "2 failed");
+}
+
+/// Its award or the end of it was heard here alone, or not here.
+TEST(Picture, InTheEndVehiclesThemselvesKnowWhatTheyHave) {
+  Desk desk;
+  const TaskId task{{4}, TaskKind::deliver, 0};
+  mission::Telemetry told;
+  const auto tell = [&](VehicleId vehicle, bool has_it, double seconds) {
+    told.vehicle = vehicle;
+    told.activity = has_it ? mission::Activity::executing : mission::Activity::searching;
+    told.task = has_it ? task : TaskId{};
+    told.state.time = at_seconds(seconds);
+    desk.hear(told, vehicle, seconds);
+    return first_delivery(desk, seconds);
+  };
+  desk.say(announcement(), kLeader, 11.0);
+  desk.say(award(), kLeader, 12.0);
+  EXPECT_EQ(tell({2}, false, 12.5), "2 planned") << "it may not have heard the award yet";
+  EXPECT_EQ(tell({2}, false, 13.5), "nobody open");
+  EXPECT_EQ(tell({2}, true, 14.0), "2 planned");
+  EXPECT_EQ(tell({3}, true, 14.5), "2 planned") << "who had it last may not have spoken yet";
+  EXPECT_EQ(tell({3}, true, 15.5), "3 planned");
+  desk.say(coalition::MemberStatus{kRound, {3}, {{task, TaskState::started, {}}}}, {3}, 16.0);
+  EXPECT_EQ(tell({3}, false, 16.5), "3 started") << "that it is done may be on its way";
+  EXPECT_EQ(tell({3}, false, 17.5), "3 unknown") << "started anew, it knows nothing of it";
+}
+
 TEST(Picture, AVehiclesOwnWordOnItsTaskCounts) {
   Desk desk;
   mission::Telemetry told;
@@ -394,6 +456,19 @@ TEST(AuthorisationCard, LowOnRangeIsAMatterOfTheAircraft) {
     if (marks.empty()) continue;
     EXPECT_EQ(marks[0]["text"], "low on range: 3.2 km left; 1.0 km to its delivery, 2.0 km home");
   }
+}
+
+TEST(Picture, WhatTheGroundStationLetsNobodyDecideDoesNotWait) {
+  Desk desk;
+  desk.say(announcement(), kLeader, 10.0);
+  desk.say(award(), kLeader, 11.0);
+  desk.hear(half_a_request(), kLeader, 12.0);
+  EXPECT_EQ(desk.section(Section::authorisations, 12.1)[0]["waiting"], true);
+  const mission::GroundAgent knows_of_none{{}, at_seconds(0.0)};
+  desk.picture.on_decisions(knows_of_none, at_seconds(12.2));
+  const Json shown = desk.section(Section::authorisations, 12.3)[0];
+  EXPECT_EQ(shown["waiting"], false);
+  EXPECT_EQ(shown["can_take_back"], false);
 }
 
 TEST(Picture, WhatWasGrantedAndTakenBackIsToldApartFromARefusal) {

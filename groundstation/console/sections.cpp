@@ -272,6 +272,10 @@ Json site_json(SiteId id, const SitePicture& site) {
                     ? degrees_of(site.site->deliveries[task.index].bearing_rad)
                     : Json(nullptr));
     }
+  } else {
+    for (const auto& [task, known] : site.tasks) {
+      if (task.kind != TaskKind::survey) add(task, nullptr);
+    }
   }
   return {{"id", id.value},
           {"x", site.site ? metres(site.site->position.x()) : Json(nullptr)},
@@ -409,7 +413,10 @@ Json authorisation_json(const AuthorisationPicture& known, const Picture& pictur
                 {"by", d->decided_by},
                 {"at_s", seconds(d->decided_at)}};
   }
-  const bool waits = !known.decision && !known.replaced && now < request.decide_by;
+  const bool undecided =
+      known.standing ? known.standing->undecided : !known.decision && !known.replaced;
+  const bool waits = undecided && now < request.decide_by;
+  if (known.standing) can_take_back = known.standing->can_be_taken_back;
   Json json{{"site", request.site.value},
             {"leader", request.round.coalition.leader.value},
             {"coalition", key_of(request.round.coalition)},

@@ -152,7 +152,10 @@ void PictureWatch::note(const mission::MissionEvent& e) {
     if (order->command == CommandKind::resume) facts.order.reset();
   }
   facts.range_spent = facts.range_spent || e.kind() == EventKind::range_spent;
-  if (e.kind() == EventKind::confirmed) facts.authorised = false;
+  // Also who leads without a delivery waits for the operator.
+  if (e.kind() == EventKind::confirmed || e.kind() == EventKind::authorisation_requested) {
+    facts.authorised = false;
+  }
   if (e.kind() == EventKind::authorised) facts.authorised = true;
   const bool changed = facts.order != before.order || facts.range_spent != before.range_spent ||
                        facts.authorised != before.authorised;
@@ -224,6 +227,7 @@ std::string PictureWatch::section(console::Section which, const mission::GroundN
 
 void PictureWatch::look(Instant now, const mission::GroundNode& node) {
   looked_.clear();
+  picture_.on_decisions(node.agent(), now + ground_clock_);
   judge_vehicles(now, node);
   judge_sites(now, node);
   judge_coalitions(now, node);
@@ -308,7 +312,8 @@ void PictureWatch::judge_sites(Instant now, const mission::GroundNode& node) {
       if (task["vehicle"].is_null()) continue;
       const VehicleId who{task["vehicle"].get<std::uint16_t>()};
       const std::string shown = to_string(task_of(id, task));
-      if (held) owners[shown] = who;
+      // Whether it was flown before is not known; who is to fly it anew is shown all the same.
+      if (held || task["state"] == "unknown") owners[shown] = who;
       const Own& own = own_[who];
       if (!held || !is_fresh(own, now)) continue;
       expect(lately(own, [&](const Moment& m) { return m.task == shown; }), "owner",

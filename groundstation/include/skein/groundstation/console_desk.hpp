@@ -46,6 +46,10 @@ class ConsoleDesk {
   void recall(const mission::Message& message, VehicleId sender, Instant at);
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   void on_event(const mission::MissionEvent& event, Instant now);
+  /// What its operator may decide and take back now.
+  void on_decisions(const mission::GroundAgent& agent, Instant now) {
+    picture_.on_decisions(agent, now);
+  }
   /// All aircraft that receivers hear now.
   void on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all) {
     picture_.on_traffic(all);

@@ -17,6 +17,10 @@
 #include "skein/mission/messages.hpp"
 #include "skein/mission/shown_state.hpp"
 
+namespace skein::mission {
+class GroundAgent;
+}
+
 namespace skein::console {
 
 struct PictureParams {
@@ -90,6 +94,7 @@ struct TaskPicture {
   std::optional<coalition::TaskState> state;  ///< none: nobody has it
   coalition::Round round;                     ///< of the award
   bool held = false;                          ///< its vehicle itself has said since that it has it
+  Instant told_at{};                          ///< when anything was heard of it last
 };
 
 struct SitePicture {
@@ -118,6 +123,12 @@ struct AuthorisationPicture {
   std::optional<mission::Authorisation> decision;
   bool replaced = false;    ///< by a newer plan of that coalition
   bool taken_back = false;  ///< decided against, after it had been granted
+  /// What the ground station itself makes of it (on_decisions); none in a recording.
+  struct Standing {
+    bool undecided = false;
+    bool can_be_taken_back = false;
+  };
+  std::optional<Standing> standing;
 };
 
 struct FormationPicture {
@@ -160,6 +171,8 @@ class Picture {
     receptions_ = std::move(receptions);
   }
   [[nodiscard]] const std::vector<GroundReception>& receptions() const { return receptions_; }
+  /// Which requests this ground station lets its operator decide, and which decisions take back.
+  void on_decisions(const mission::GroundAgent& agent, Instant now);
   [[nodiscard]] const TeamWind& wind() const { return wind_; }
   /// All aircraft that receivers hear now; in a replay those that vehicles were told of are known.
   void on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all);
@@ -221,6 +234,7 @@ class Picture {
   void know(const Site& site);
 
   PictureParams params_;
+  Instant heard_at_{};  ///< when the newest message was
   std::map<VehicleId, VehiclePicture> vehicles_;
   std::map<SiteId, SitePicture> sites_;
   std::vector<std::pair<coalition::CoalitionId, CoalitionPicture>> coalitions_;
