@@ -5,6 +5,8 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 
 export const press_ms = 1000;
+/** A pointer that is moved so far has left. That the page moves under a still one ends no press. */
+const slide_px = 24;
 
 interface Props {
   on_held: () => void;
@@ -22,6 +24,7 @@ export function HoldButton({ on_held, children, kind = "plain", disabled = false
   const [hint, set_hint] = useState(false);
   const timer = useRef(0);
   const done = useRef(false);
+  const pressed_at = useRef({ x: 0, y: 0 });
 
   const cancel = () => {
     window.clearTimeout(timer.current);
@@ -59,10 +62,15 @@ export function HoldButton({ on_held, children, kind = "plain", disabled = false
       title={`Press and keep pressed for ${seconds === 1 ? "one second" : `${seconds} seconds`}`}
       onPointerDown={(event) => {
         if (event.button !== 0) return;
+        event.currentTarget.setPointerCapture(event.pointerId);
+        pressed_at.current = { x: event.clientX, y: event.clientY };
         begin();
       }}
+      onPointerMove={(event) => {
+        const { x, y } = pressed_at.current;
+        if (Math.hypot(event.clientX - x, event.clientY - y) > slide_px) end();
+      }}
       onPointerUp={end}
-      onPointerLeave={end}
       onPointerCancel={cancel}
       onContextMenu={(event) => event.preventDefault()}
       onKeyDown={(event) => {
