@@ -208,7 +208,7 @@ void Picture::note_own_word(const mission::Telemetry& telemetry) {
       if (known.vehicle != telemetry.vehicle) continue;
       if (task == telemetry.task) {
         known.held = true;
-        known.told_at = heard_at_;
+        if (known.state != coalition::TaskState::failed) known.told_at = heard_at_;
       } else if ((known.held || is_old(known)) && can_be_taken_back(known)) {
         reopen(known, heard_at_);
       } else if (known.state == coalition::TaskState::started && is_old(known)) {
@@ -390,9 +390,13 @@ void Picture::on(const coalition::Award& m) {
     coalition.why = {};
   }
   round.award = m;
-  coalition.members.clear();
+  const bool newest = m.awarded_at >= coalition.members_at;
+  if (newest) {
+    coalition.members.clear();
+    coalition.members_at = m.awarded_at;
+  }
   for (const TaskAssignment& assignment : m.assignments) {
-    coalition.members.push_back(assignment.vehicle);
+    if (newest) coalition.members.push_back(assignment.vehicle);
     if (site == nullptr) continue;
     TaskPicture& task = site->tasks[assignment.task];
     if (task.state == coalition::TaskState::done) continue;
@@ -441,7 +445,8 @@ void Picture::on(const coalition::LeaseRenewal& m) {
     return;
   }
   if (site != nullptr) site->leader = m.round.coalition.leader;
-  if (stands(m) && !m.members.empty()) {
+  if (stands(m) && !m.members.empty() && m.sent_at >= coalition.members_at) {
+    coalition.members_at = m.sent_at;
     coalition.state = CoalitionState::formed;
     coalition.why = {};
     coalition.members = m.members;

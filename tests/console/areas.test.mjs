@@ -25,11 +25,20 @@ async function take(corners) {
   await view.part("outline-take").click();
 }
 
-/** Every point of every way that a search would give. */
+/** Places along a way, 5 m apart at most; of a straight line it has the ends alone. */
+function along(points) {
+  return points.slice(1).flatMap(([x, y], i) => {
+    const [from_x, from_y] = points[i];
+    const steps = Math.ceil(Math.hypot(x - from_x, y - from_y) / 5) || 1;
+    return Array.from({ length: steps }, (_, k) => [from_x + ((x - from_x) * (k + 1)) / steps, from_y + ((y - from_y) * (k + 1)) / steps]);
+  });
+}
+
+/** Places along every way that a search would give. */
 async function ways_of(corners) {
   const answer = await say(view.page, { type: "order", order: { kind: "search", preview: true, corners } });
   assert.equal(answer.done, true, answer.text);
-  return answer.data.shares.flatMap((share) => share.points);
+  return answer.data.shares.flatMap((share) => along(share.points));
 }
 
 /** How far a place is inside of the rectangle; negative outside. */
@@ -195,12 +204,21 @@ test("who finds a site is released to survey it, and the rest is shared out agai
   await until("all of it", async () => (await percent()) > 99, 240_000);
 });
 
-test("a fence can be drawn and copied for the configuration", async () => {
+test("a fence can be drawn, copied for the configuration, and given to all in flight", async () => {
   await view.part("outline-use-fence").check();
   await take("-500,-500 1500,-500 1500,3000 -500,3000");
   await view.page.getByText("For the configuration").click();
   assert.match(await text_of("fence-yaml"), /fence:\s+height_max_m: 120\s+corners:\s+- \[-500, -500\]/);
   assert.deepEqual(await barriers(view.page), []);
+  await view.part("fence-height").fill("200");
+  await view.part("fence-preview").click();
+  await until("what it would do", () => view.part("fence-outcome").isVisible());
+  assert.match(await text_of("fence-outcome"), /can be ordered: 4 corners/);
+  await hold(view.part("fence-give"));
+  await until("the order", async () => (await mission.audit()).some(({ line, done }) => done && line.startsWith("fence ")));
+  await until("all who keep it", async () => /1[–-]3|1, 2, 3|all/.test(await view.part("fence-keepers-this").innerText().catch(() => "")));
+  assert.match(await text_of("fence-action"), /\S/);
+  await view.picture("fence-kept");
 });
 
 test("nothing was asked of anybody else, and nothing was complained about", () => {

@@ -64,7 +64,7 @@ function LayerList() {
     overlays_hidden.value = hidden;
   };
   return (
-    <fieldset class="map-layer-list">
+    <fieldset>
       <legend class="only-spoken">Layers of the map</legend>
       {layer_names.map((name) =>
         box(layer_words[name], layers.value[name], () => (layers.value = { ...layers.value, [name]: !layers.value[name] }), `layer-${name}`),
@@ -76,14 +76,10 @@ function LayerList() {
 }
 
 function Layers() {
-  const [open, set_open] = useState(false);
   return (
-    <div class="map-layers">
-      <button type="button" aria-expanded={open} data-testid="layers-open" onClick={() => set_open(!open)}>
-        Layers
-      </button>
-      {open && <LayerList />}
-    </div>
+    <Menu label="Layers" testid="layers-open">
+      <LayerList />
+    </Menu>
   );
 }
 

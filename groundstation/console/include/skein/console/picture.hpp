@@ -84,6 +84,7 @@ struct CoalitionPicture {
   CoalitionState state = CoalitionState::announced;
   coalition::Why why;  ///< it failed
   std::vector<VehicleId> members;
+  Instant members_at{};  ///< when its leader said so: what comes later may be older
   std::optional<Instant> lease_until;
   std::deque<RoundPicture> rounds;
 };
