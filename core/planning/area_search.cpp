@@ -138,8 +138,9 @@ Tour cut(std::span<const Lane> lanes, const AreaProblem& problem) {
   for (const Lane& lane : lanes) all_m += lane.length_m;
   const double piece_m = std::max(kPieceMin_m, all_m / static_cast<double>(kPiecesEach * vehicles));
   for (const Lane& lane : lanes) {
-    const auto count = vehicles == 1 ? 1.0 : std::max(1.0, std::floor(lane.length_m / piece_m));
-    for (double k = 0.0; k < count; ++k) {
+    const auto count =
+        vehicles == 1 ? 1 : std::max(1, static_cast<int>(std::floor(lane.length_m / piece_m)));
+    for (int k = 0; k < count; ++k) {
       tour.pieces.push_back(
           {advance(lane.start, 0.0, lane.length_m * k / count), lane.length_m / count});
     }
@@ -556,7 +557,7 @@ std::optional<Path> way_to_hold(const AreaProblem& problem, const Searcher& sear
         if (best && shortest_dubins_length(from, to, radius) >= best->length_m()) continue;
         if (!holds(to)) continue;
         auto path = open_dubins(problem, from, to, radius);
-        if (path && (!best || path->length_m() < best->length_m())) best = std::move(path);
+        if (path && (!best || path->length_m() < best->length_m())) best = path;
       }
     }
     if (best) break;

@@ -126,7 +126,7 @@ AreaProblem random_problem(Random& random, bool convex, bool barred) {
   problem.sensor_radius_m = random.uniform(60.0, 150.0);
   problem.spacing_m = 2.0 * problem.sensor_radius_m * 0.95;
   problem.avoidance.margin_m = 15.0;
-  const auto vehicles = 1 + random.index(6);
+  const auto vehicles = static_cast<std::uint16_t>(1 + random.index(6));
   for (std::uint16_t i = 1; i <= vehicles; ++i) {
     const Vec2 at{random.uniform(-size_m, size_m), random.uniform(-size_m, size_m)};
     problem.searchers.push_back({{i},

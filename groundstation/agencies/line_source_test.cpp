@@ -42,7 +42,7 @@ struct LineSourceTest : ::testing::Test {
   static void send(tcp::socket& socket, const std::string& text) {
     boost::asio::write(socket, boost::asio::buffer(text));
   }
-  std::optional<std::string> line(LineSource& from) {
+  std::optional<std::string> line(LineSource& from) const {
     std::optional<std::string> got;
     (void)until([&] {
       from.poll(now);

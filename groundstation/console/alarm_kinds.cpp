@@ -277,28 +277,28 @@ void find_proposals(const Scene& in, std::vector<Found>& found) {
 
 // --- of news ---
 
-template <Topic topic, AlarmKind kind>
+template <Topic Of, AlarmKind Kind>
 void find_news(const Scene& in, std::vector<Found>& found) {
-  const auto [first, last] = in.news.of(topic);
+  const auto [first, last] = in.news.of(Of);
   for (auto one = first; one != last; ++one) {
     const auto& [key, item] = *one;
-    found.push_back({{kind, key.vehicle, key.other, key.site, key.detail}, item.since, item.what});
+    found.push_back({{Kind, key.vehicle, key.other, key.site, key.detail}, item.since, item.what});
   }
 }
 
 /// Only those that somebody must act on, or only the others.
-template <Topic topic, AlarmKind kind, bool grave>
+template <Topic Of, AlarmKind Kind, bool Grave>
 void find_graded(const Scene& in, std::vector<Found>& found) {
-  const auto [first, last] = in.news.of(topic);
+  const auto [first, last] = in.news.of(Of);
   for (auto one = first; one != last; ++one) {
     const auto& [key, item] = *one;
-    if (item.grave != grave) continue;
-    found.push_back({{kind, key.vehicle, key.other, key.site, key.detail}, item.since, item.what});
+    if (item.grave != Grave) continue;
+    found.push_back({{Kind, key.vehicle, key.other, key.site, key.detail}, item.since, item.what});
   }
 }
 
 /// Of two that come too near to each other either may tell: the worse word counts.
-template <AlarmKind kind, bool grave>
+template <AlarmKind Kind, bool Grave>
 void find_separation(const Scene& in, std::vector<Found>& found) {
   const auto [first, last] = in.news.of(Topic::separation);
   std::map<std::pair<VehicleId, VehicleId>, const AlarmNews::Item*> pairs;
@@ -308,8 +308,8 @@ void find_separation(const Scene& in, std::vector<Found>& found) {
     if (!fresh && one->second.grave && !known->second->grave) known->second = &one->second;
   }
   for (const auto& [pair, item] : pairs) {
-    if (item->grave != grave) continue;
-    found.push_back({{kind, pair.first, pair.second}, item->since, item->what});
+    if (item->grave != Grave) continue;
+    found.push_back({{Kind, pair.first, pair.second}, item->since, item->what});
   }
 }
 

@@ -27,7 +27,7 @@ constexpr coalition::CoalitionId kCoalition{{1}, {77}, 1};
 /// A ground station with three vehicles that report ten times a second.
 class Desk {
  public:
-  explicit Desk(std::vector<VehicleId> expected = {{1}, {2}, {3}})
+  explicit Desk(const std::vector<VehicleId>& expected = {{1}, {2}, {3}})
       : picture_{{.expected = expected}}, fleet_{{.expected = expected}} {
     for (const VehicleId id : {VehicleId{1}, VehicleId{2}, VehicleId{3}}) {
       mission::Telemetry& t = said[id];
@@ -135,7 +135,7 @@ struct Case {
 };
 
 template <class Body>
-std::function<void(Desk&)> tells(VehicleId who, Body body, const TaskId& task = {}) {
+std::function<void(Desk&)> tells(VehicleId who, const Body& body, const TaskId& task = {}) {
   return [=](Desk& desk) {
     desk.tell(who, body, task);
     desk.run(0.2);

@@ -7,7 +7,8 @@
 #include "companion_bench.hpp"
 #include "skein/base/angles.hpp"
 
-/// A companion that must say a Remote ID, and an autopilot with a transmitter that wants to be told.
+/// A companion that must say a Remote ID, and an autopilot with a transmitter that wants to be
+/// told.
 namespace skein::hil {
 namespace {
 

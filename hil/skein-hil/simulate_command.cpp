@@ -24,11 +24,17 @@ constexpr std::size_t kFailuresShown = 20;
 /// What a reader of a mission wants to see first.
 bool of_interest(mission::EventKind kind) {
   using mission::EventKind;
-  static constexpr std::array kKinds{
-      EventKind::site_detected,        EventKind::survey_done,        EventKind::coalition_formed,
-      EventKind::monitoring,           EventKind::authorisation_late, EventKind::task_done,
-      EventKind::task_failed,          EventKind::conflict_yielded,   EventKind::site_done,
-      EventKind::authorisation_refused, EventKind::authorisation_withdrawn};
+  static constexpr std::array kKinds{EventKind::site_detected,
+                                     EventKind::survey_done,
+                                     EventKind::coalition_formed,
+                                     EventKind::monitoring,
+                                     EventKind::authorisation_late,
+                                     EventKind::task_done,
+                                     EventKind::task_failed,
+                                     EventKind::conflict_yielded,
+                                     EventKind::site_done,
+                                     EventKind::authorisation_refused,
+                                     EventKind::authorisation_withdrawn};
   return mission::is_warning(kind) || std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 

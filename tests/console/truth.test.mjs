@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { after, before, test } from "node:test";
 
 import { free_port, programs, until, work } from "./bench.mjs";
-import { browse } from "./browser.mjs";
+import { barriers, browse } from "./browser.mjs";
 
 const folder = join(work, "truth");
 let station;
@@ -143,6 +143,7 @@ test("without connection everything ages and is grey, and nothing can be decided
   await until("its age", async () => (await heard_s()) > before_s + 1);
   assert.equal(await view.part("authorise-1").count(), 0);
   assert.match(await view.part("request-1").innerText(), /no connection/);
+  assert.deepEqual(await barriers(view.page), []);
   await view.picture("lost");
 });
 

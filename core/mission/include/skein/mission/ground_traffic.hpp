@@ -21,7 +21,6 @@ struct SeenAircraft {
   std::string callsign{};   ///< empty: not told
   bool barometric = false;  ///< its height is from pressure
   bool on_ground = false;
-  friend bool operator==(const SeenAircraft&, const SeenAircraft&) = default;
 };
 
 /// Where it is at that time, if it flies straight on.

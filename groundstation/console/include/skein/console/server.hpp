@@ -45,7 +45,7 @@ struct ServerConfig {
   std::function<std::optional<Role>(const std::string& user, std::string_view password)> log_in;
   std::string token;           ///< empty: whoever reaches it, as of a recording
   std::string observer_token;  ///< beside it: whoever has that one may look only; empty: none
-  std::string certificate;  ///< PEM files; both: HTTPS, which any other address needs
+  std::string certificate;     ///< PEM files; both: HTTPS, which any other address needs
   std::string key;
   std::string tiles;  ///< a folder z/x/y.png or an MBTiles file; empty: none
   std::vector<Overlay> overlays;
