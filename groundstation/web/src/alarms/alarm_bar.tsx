@@ -147,8 +147,9 @@ export function AlarmBar() {
             <Sign alarm={alarm} />
             <What alarm={alarm} testid="alarm-worst" />
             <Lasted alarm={alarm} />
-            <Offers alarm={alarm} />
-            <AcknowledgeButton alarm={alarm} />
+            {/* Another alarm has buttons of its own: no hand or focus stays on them. */}
+            <Offers key={`offers ${alarm.number}`} alarm={alarm} />
+            <AcknowledgeButton key={`acknowledge ${alarm.number}`} alarm={alarm} />
           </>
         )}
         <span class="grow" />

@@ -64,15 +64,30 @@ export function go_to(alarm: Alarm): void {
   panel.value = there ? (wanted as Panel) : "fleet";
   if (request && alarm.panel === "decisions") highlighted_request.value = request_key(request);
   map_in_front.value = false;
-  // After the panel is drawn.
-  window.setTimeout(() => bring_to_hand(alarm), 60);
+  bring_to_hand(alarm, request !== undefined && alarm.panel === "decisions");
 }
 
-function bring_to_hand(alarm: Alarm): void {
-  const of = (id: string) => document.querySelector<HTMLElement>(`[data-testid="${id}"]`);
-  const row = alarm.vehicle === null ? of(`site-${alarm.site}`) : of(`vehicle-${alarm.vehicle}`);
+const drawn_every_ms = 60;
+const drawn_tries = 20;
+
+/** After the panel is drawn, which a busy machine may take a while for. */
+function bring_to_hand(alarm: Alarm, decides: boolean, tries = drawn_tries): void {
+  window.setTimeout(() => {
+    if (taken.value !== alarm.number) return;
+    const decision = decides ? element_of(`authorise-${alarm.site}`) : null;
+    if (decides && !decision && tries > 0) bring_to_hand(alarm, decides, tries - 1);
+    else focus_on(alarm, decision);
+  }, drawn_every_ms);
+}
+
+function element_of(id: string): HTMLElement | null {
+  return document.querySelector<HTMLElement>(`[data-testid="${id}"]`);
+}
+
+function focus_on(alarm: Alarm, decision: HTMLElement | null): void {
+  const row = element_of(alarm.vehicle === null ? `site-${alarm.site}` : `vehicle-${alarm.vehicle}`);
   row?.scrollIntoView({ block: "nearest" });
-  const act = (alarm.panel === "decisions" ? of(`authorise-${alarm.site}`) : null) ?? of(`alarm-offer-${alarm.number}-0`) ?? of(`alarm-acknowledge-${alarm.number}`);
+  const act = decision ?? element_of(`alarm-offer-${alarm.number}-0`) ?? element_of(`alarm-acknowledge-${alarm.number}`);
   act?.focus();
   act?.scrollIntoView({ block: "nearest" });
 }
