@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "skein/base/frames.hpp"
+#include "skein/base/geometry.hpp"
 #include "skein/base/result.hpp"
 
 namespace skein::groundstation {

@@ -145,7 +145,9 @@ std::string json_of(const Answer& answer) {
 
 std::string one_line(std::string lines) {
   while (lines.ends_with('\n')) lines.pop_back();
-  for (std::size_t at; (at = lines.find('\n')) != std::string::npos;) lines.replace(at, 1, "; ");
+  for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos;) {
+    lines.replace(at, 1, "; ");
+  }
   return lines;
 }
 
@@ -206,7 +208,11 @@ class GroundLoop {
         spdlog::log(nobody ? spdlog::level::warn : spdlog::level::info, *notice);
       }
       node_.on_timeout(now);
-      if (commanding_.is_commanding()) formation_.on_timeout(now);
+      if (commanding_.is_commanding()) {
+        formation_.on_timeout(now);
+      } else if (commanding_.desk().newest()) {
+        formation_.leave_script();
+      }
       hand_out(now);
       report(now);
       steps_.fetch_add(1, std::memory_order_relaxed);

@@ -18,6 +18,8 @@ namespace {
 using codec::Json;
 using codec::ParsedJson;
 
+constexpr double kIdMax = 65535.0;
+
 /// Reads members, and keeps the first that is wrong.
 class Reader {
  public:
@@ -54,6 +56,18 @@ class Reader {
                        limit.low, limit.high));
     }
     return values;
+  }
+  /// None twice, in their order.
+  std::vector<VehicleId> vehicles(const char* name, std::size_t most) {
+    std::vector<VehicleId> all;
+    for (const double id : numbers(name, {1.0, kIdMax}, most)) {
+      if (id != std::floor(id)) fail(fmt::format("{} is to be a list of whole numbers", name));
+      all.push_back({static_cast<std::uint16_t>(id)});
+    }
+    std::ranges::sort(all);
+    const auto twice = std::ranges::unique(all);
+    all.erase(twice.begin(), twice.end());
+    return all;
   }
   bool flag(const char* name) {
     const auto found = json_.find(name);
@@ -107,7 +121,6 @@ class Reader {
   std::optional<Error> wrong_;
 };
 
-constexpr double kIdMax = 65535.0;
 constexpr std::size_t kAcknowledgedMax = 300;
 
 Input command(Reader& from) {
@@ -122,14 +135,8 @@ Input command_to_several(Reader& from) {
   order.kind = from.one_of<mission::CommandKind>("command");
   // Each pilot gives his own.
   if (order.kind == mission::CommandKind::give_back) from.fail("give_back is to one vehicle");
-  for (const double id : from.numbers("vehicles", {1.0, kIdMax}, kVehiclesPerOrderMax)) {
-    if (id != std::floor(id)) from.fail("vehicles is to be a list of whole numbers");
-    order.vehicles.push_back({static_cast<std::uint16_t>(id)});
-  }
+  order.vehicles = from.vehicles("vehicles", kVehiclesPerOrderMax);
   if (order.vehicles.empty()) from.fail("vehicles is to name at least one");
-  std::ranges::sort(order.vehicles);
-  const auto twice = std::ranges::unique(order.vehicles);
-  order.vehicles.erase(twice.begin(), twice.end());
   return order;
 }
 
@@ -186,9 +193,7 @@ Input search(Reader& from) {
   const bool is_rest = from.has("rest") && from.flag("rest");
   if (!is_rest) wishes.corners = outline(from);
   if (from.has("vehicles")) {
-    for (const double id : from.numbers("vehicles", {1.0, kIdMax}, planning::kAreaSearchersMax)) {
-      wishes.vehicles.push_back({static_cast<std::uint16_t>(id)});
-    }
+    wishes.vehicles = from.vehicles("vehicles", planning::kAreaSearchersMax);
   }
   take(from, "spacing_m", kLaneSpacing_m, wishes.spacing_m);
   take(from, "in_s", kRoutesIn_s, wishes.in_s);

@@ -36,7 +36,10 @@ Result<InstanceId> StationNetwork::speak(std::optional<InstanceId> newest) {
   voice.on_received = {};
   voice_.reset();
   auto opened = network::Node::open(voice);
-  if (!opened) return opened.error();
+  if (!opened) {
+    silent_ = true;  // nobody would heed what the ear says
+    return opened.error();
+  }
   voice_ = std::move(opened).value();
   silent_ = false;
   return as->instance;

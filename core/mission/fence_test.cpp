@@ -139,6 +139,16 @@ TEST(FenceOrdered, WhatIsSearchedLiesWithinTheNewOneFromThenOn) {
   EXPECT_EQ(told(vehicle), 0);
 }
 
+TEST(FenceOrdered, OneBelowItsLayerIsNotTakenWhereverTheVehicleIs) {
+  VehicleAgentConfig config = plane_config();
+  config.vehicle.height_m = 120.0;
+  FlownAgent vehicle{config};
+  vehicle.fly(1.0);
+  Fence low = fence();
+  low.height_max_m = 60.0;
+  EXPECT_EQ(vehicle.keep(low), "its layer of height is above it");
+}
+
 TEST(FenceOrdered, OneWithoutItsHomeIsNotTaken) {
   FlownAgent vehicle{fenced()};
   vehicle.fly(20.0);

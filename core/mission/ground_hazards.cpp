@@ -35,7 +35,11 @@ void GroundHazards::recall(const Message& message, VehicleId sender, Instant at)
 void GroundHazards::on_message(const Message& message) {
   if (const auto* event = std::get_if<MissionEvent>(&message)) {
     const auto* known = std::get_if<event::HazardKnown>(&event->body);
-    if (known != nullptr && !retiring_.empty()) heard_.emplace(known->hazard, event->vehicle);
+    const bool asked =
+        known != nullptr && std::ranges::any_of(retiring_, [&](const auto& one) {
+          return std::ranges::find(one.in_place, known->hazard) != one.in_place.end();
+        });
+    if (asked) heard_.emplace(known->hazard, event->vehicle);
     return;
   }
   const auto* report = std::get_if<HazardReport>(&message);
@@ -64,8 +68,13 @@ Result<HazardGroup> GroundHazards::tell(const HazardShape& shape, Instant now) {
   } else if (!is_circle(shape)) {
     return Error{"a hazard is a circle: a centre, and a radius above 0 m"};
   }
-  if (standing() + circles.size() > kHazardsMax || told_.size() + circles.size() > kToldMax) {
+  if (standing() + circles.size() > kHazardsMax) {
     return Error{"there are too many hazards already; withdraw those that are no more"};
+  }
+  if (told_.size() + circles.size() > kToldMax) {
+    return Error{"in this mission " + std::to_string(told_.size()) + " circles of " +
+                 std::to_string(kToldMax) +
+                 " were told, those of changed and withdrawn hazards included; no more are kept"};
   }
   for (const planning::Circle& circle : circles) {
     const HazardReport report{{new_number(taken_, now), circle.centre, circle.radius_m}, false};

@@ -63,6 +63,9 @@ void GroundNode::note_refusal(const Authorisation& decision, Instant now) {
 void GroundNode::watch(Instant now) {
   watching_ = true;
   agent_.set_watching(true);
+  // What it had ordered goes on as long as who has the command now lets it.
+  landings_.forget();
+  returns_.forget();
   drop_words();
   on_timeout(now);
 }

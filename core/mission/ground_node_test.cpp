@@ -414,6 +414,22 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
   EXPECT_EQ(told.front().kind, CommandKind::hold);
 }
 
+TEST(GroundNode, WhoHasWatchedDoesNotGoOnWithTheLandingsOfBefore) {
+  GroundNode ground = node();
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  telemetry.instance = {7};
+  telemetry.activity = Activity::holding;
+  ground.on_message(telemetry, kVehicle, at_seconds(1.0));
+  ASSERT_TRUE(ground.command(kVehicle, CommandKind::return_home, at_seconds(2.0)).ok());
+  ASSERT_TRUE(ground.command(kVehicle, CommandKind::land, at_seconds(3.0)).ok());
+  ground.watch(at_seconds(3.0));  // before its turn has come
+  ground.take_command({99}, at_seconds(60.0));
+  for (const Command& command : of<Command>(said_by(ground, 60.0, 90.0))) {
+    EXPECT_NE(command.kind, CommandKind::land);
+  }
+}
+
 TEST(GroundNode, WhatItHasOrderedSinceItTookTheCommandStands) {
   GroundNode ground = node();
   ground.watch(at_seconds(1.0));

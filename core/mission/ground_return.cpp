@@ -27,6 +27,7 @@ constexpr std::size_t kPlansMax = 1024;
 constexpr std::uint32_t kFirstPlan = 1;
 /// Of the preview's least separation: a plane flies some metres meanwhile.
 constexpr Duration kSeparationStep = std::chrono::milliseconds{200};
+constexpr int kSeparationStepsMax = 20'000;  ///< more than an hour
 /// A round of any orbit, after the last has come there.
 constexpr Duration kOrbitsFor = std::chrono::seconds{60};
 /// Two ways are one that come to the same places at the same times, to this.
@@ -42,7 +43,10 @@ std::optional<double> least_separation_m(const std::vector<ReturnPreview::Way>& 
   if (ways.size() < 2) return std::nullopt;
   double least_sq = std::numeric_limits<double>::infinity();
   std::vector<Vec3> places(ways.size());
-  for (Instant t = start; t <= last_arrival + kOrbitsFor; t += kSeparationStep) {
+  const Instant end = last_arrival + kOrbitsFor;
+  // Whatever vehicles tell of themselves, one look takes no longer than this.
+  const Duration step = std::max(kSeparationStep, (end - start) / kSeparationStepsMax);
+  for (Instant t = start; t <= end; t += step) {
     for (std::size_t i = 0; i < ways.size(); ++i) {
       const Vec2 place = ways[i].timed.pose_at(t).position();
       places[i] = {place.x(), place.y(), ways[i].height_m};

@@ -129,6 +129,7 @@ void VehicleAgent::Impl::watch_range(Instant now) {
 
 /// What leads out of the new one is not flown on.
 std::string VehicleAgent::Impl::keep_fence(const Fence& fence, Instant now) {
+  if (ownship_.spec().height_m >= fence.height_max_m) return "its layer of height is above it";
   if (!ownship_.keep_fence(fence)) return "its home is outside of it";
   if (!ownship_.flight().started() || ownship_.landing() || ownship_.keeps_in(now)) return {};
   if (const auto* response = failsafe_.update(now, {.path_barred = true})) respond(*response, now);

@@ -159,10 +159,6 @@ std::optional<mission::SeenAircraft> AdsbIntake::take_sbs(std::string_view line,
   if (!fields[f_on_ground].empty()) {
     seen.on_ground = fields[f_on_ground] == "-1" || fields[f_on_ground] == "1";
   }
-  if (const auto feet = number_in(fields[f_altitude], kAltitudeMin_ft, kAltitudeMax_ft)) {
-    seen.aircraft.height_m = from_pressure_m(*feet);
-    seen.barometric = known->has_height = true;
-  }
   const auto speed = number_in(fields[f_speed], 0.0, kSpeedMax_kn);
   const auto track = number_in(fields[f_track], 0.0, 360.0);
   if (speed && track) set_velocity(seen.aircraft, *speed, *track);
@@ -182,7 +178,14 @@ std::optional<mission::SeenAircraft> AdsbIntake::take_sbs(std::string_view line,
     seen.aircraft.time = now;
     known->has_place = true;
   }
-  const bool is_whole = known->has_place && (known->has_height || seen.on_ground);
+  if (const auto feet = number_in(fields[f_altitude], kAltitudeMin_ft, kAltitudeMax_ft)) {
+    // As it was at the time of its place, from where it is carried on.
+    const double since_place_s = known->has_place ? to_seconds(now - seen.aircraft.time) : 0.0;
+    seen.aircraft.height_m = from_pressure_m(*feet) - seen.aircraft.climb_mps * since_place_s;
+    seen.barometric = known->has_height = true;
+  }
+  const bool is_placed = known->has_place && now - seen.aircraft.time <= kPlaceAgeMax;
+  const bool is_whole = is_placed && (known->has_height || seen.on_ground);
   return is_whole ? std::optional{seen} : std::nullopt;
 }
 
@@ -221,7 +224,11 @@ std::vector<mission::SeenAircraft> AdsbIntake::take_json(std::string_view text, 
     mission::SeenAircraft seen;
     seen.aircraft.address = *address;
     seen.aircraft.position = *place;
-    const double age_s = file_age_s + number_in(one, "seen_pos", 0.0, kFileAgeMax_s).value_or(0.0);
+    // How old its place is; one that is too old is no place of now.
+    const bool tells_age = one.find("seen_pos") != one.end();
+    const auto place_age_s = number_in(one, "seen_pos", 0.0, kFileAgeMax_s);
+    if (tells_age && !place_age_s) continue;
+    const double age_s = file_age_s + place_age_s.value_or(0.0);
     seen.aircraft.time = now - from_seconds(age_s);
     const auto baro_word = one.find("alt_baro");
     seen.on_ground = baro_word != one.end() && baro_word->is_string();  // "ground"

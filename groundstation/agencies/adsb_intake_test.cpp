@@ -127,6 +127,27 @@ TEST_F(AdsbIntakeTest, ReadsAircraftJson) {
   EXPECT_EQ(intake.unreadable(), 3U);
 }
 
+TEST_F(AdsbIntakeTest, APlaceThatIsTooOldIsNoneOfNow) {
+  const auto all = file(R"({"now": 1000.0, "aircraft": [
+    {"hex": "400001", "alt_geom": 1200, "lat": 53.05, "lon": -1.5, "seen_pos": 29.0},
+    {"hex": "400002", "alt_geom": 1200, "lat": 53.05, "lon": -1.5, "seen_pos": 45.0},
+    {"hex": "400003", "alt_geom": 1200, "lat": 53.05, "lon": -1.5, "seen_pos": -1}]})");
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0].aircraft.address, 0x400001U);
+  EXPECT_TRUE(line("MSG,3,1,1,4CA2D6,1,,,,,,2000,,,53.05,-1.5,,,0,,0,0", 10.0));
+  EXPECT_TRUE(line("MSG,4,1,1,4CA2D6,1,,,,,,,100,90,,,0,,,,,0", 39.0));
+  EXPECT_FALSE(line("MSG,4,1,1,4CA2D6,1,,,,,,,100,90,,,0,,,,,0", 41.0)) << "heard, and not where";
+}
+
+TEST_F(AdsbIntakeTest, AHeightIsCarriedToTheTimeOfItsPlace) {
+  ASSERT_TRUE(line("MSG,3,1,1,4CA2D6,1,,,,,,2000,,,53.05,-1.5,,,0,,0,0", 10.0));
+  const auto climbs = line("MSG,4,1,1,4CA2D6,1,,,,,,,100,90,,,1200,,,,,0", 10.0);
+  ASSERT_TRUE(climbs);
+  const auto later = line("MSG,5,1,1,4CA2D6,1,,,,,,2200,,,,,,,0,,0,0", 20.0);
+  ASSERT_TRUE(later);
+  EXPECT_NEAR(later->aircraft.height_m, climbs->aircraft.height_m, 1.0) << "200 ft in 10 s";
+}
+
 TEST_F(AdsbIntakeTest, WhatIsNoFileIsCounted) {
   EXPECT_TRUE(file("{").empty());
   EXPECT_TRUE(file("[]").empty());

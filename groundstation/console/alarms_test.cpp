@@ -554,6 +554,26 @@ TEST(OrderAnswers, ADecisionIsAnsweredByWhoIsToDeliver) {
   EXPECT_NEAR(to_seconds(order.answered.at({2})), 0.3, 0.01);
 }
 
+TEST(OrderAnswers, WhatIsTakenBackIsSaidAsItWasOrderedAndAnsweredByItsEnd) {
+  Desk desk;
+  desk.run(1.0);
+  desk.ask(30.0);
+  desk.run(1.0);
+  desk.decide(true);
+  desk.run(1.0);
+  desk.decide(false);
+  desk.run(0.3);
+  const GivenOrder& order = desk.alarms.orders().orders().back();
+  EXPECT_EQ(line_of(order), "withdraw decision 4");
+  EXPECT_EQ(order.waiting.size(), 1U);
+  const VehicleId leader = kCoalition.leader;
+  desk.tell(leader, event::Cancelled{{coalition::Reason::grant_taken_back}}, kTask,
+            {kCoalition, desk.round});
+  EXPECT_TRUE(order.waiting.empty());
+  desk.run(15.0);
+  EXPECT_TRUE(desk.of(AlarmKind::no_answer).empty());
+}
+
 TEST(OrderAnswers, NobodyIsMissedWhereAnotherPlanIsAsked) {
   Desk desk;
   desk.run(1.0);

@@ -21,6 +21,7 @@ constexpr Duration kAtOnce = std::chrono::milliseconds{100};
 /// A vehicle's clock from ours.
 constexpr Duration kClocksDiffer = std::chrono::seconds{1};
 constexpr std::size_t kDecidedMax = 256;
+constexpr const char* kTakeBack = "take back";
 
 std::string words_of(std::string_view name) {
   std::string words{name};
@@ -73,9 +74,12 @@ bool is_answered_by(const GivenOrder& order, const mission::MissionEvent& event)
     const auto* obeyed = std::get_if<mission::event::Commanded>(&event.body);
     return obeyed != nullptr && obeyed->command == *order.command;
   }
-  const auto wanted = order.decision->granted ? mission::EventKind::authorised
-                                              : mission::EventKind::authorisation_refused;
-  return event.kind() == wanted && event.round == order.decision->round;
+  if (event.round != order.decision->round) return false;
+  if (order.decision->granted) return event.kind() == mission::EventKind::authorised;
+  // What was granted before, or is withdrawn with its site, ends with its coalition.
+  return event.kind() == mission::EventKind::authorisation_refused ||
+         event.kind() == mission::EventKind::cancelled ||
+         event.kind() == mission::EventKind::released;
 }
 
 /// By what it does.
@@ -131,7 +135,11 @@ bool is_past(const GivenOrder& order, const Picture& picture, Instant now) {
   if (order.decision->granted && now > order.decision->until) return true;
   if (order.decision->granted && is_over(order.decision->round, picture)) return true;
   const auto site = picture.sites().find(order.site);
-  if (order.decision->granted && site != picture.sites().end() && site->second.over()) return true;
+  if (site != picture.sites().end()) {
+    const auto& at = site->second;
+    if (order.decision->granted ? at.over() : at.withdrawn || at.done) return true;
+  }
+  if (!order.decision->granted && is_over(order.decision->round, picture)) return true;
   return std::ranges::any_of(picture.authorisations(), [&](const AuthorisationPicture& one) {
     return one.request.site == order.site && one.asked_at > order.given;
   });
@@ -140,6 +148,7 @@ bool is_past(const GivenOrder& order, const Picture& picture, Instant now) {
 }  // namespace
 
 std::string line_of(const GivenOrder& order) {
+  if (order.kind == kTakeBack) return fmt::format("withdraw decision {}", order.site.value);
   if (order.decision) return fmt::format("{} site {}", order.kind, order.site.value);
   const std::string verb = words_of(order.kind);
   if (order.to.empty()) return verb + " all";
@@ -192,7 +201,14 @@ void OrderAnswers::take(const mission::Authorisation& decision, Instant now) {
   // Of an earlier process of this ground station.
   if (decision.decided_at + kNewsMayTake < now) return;
   GivenOrder order;
-  order.kind = decision.granted ? "authorise" : "refuse";
+  bool was_granted = false;
+  for (GivenOrder& before : orders_) {
+    if (!before.decision || before.decision->round != decision.round) continue;
+    was_granted = was_granted || before.decision->granted;
+    before.asked = true;  // nobody is waited for any more
+    before.waiting.clear();
+  }
+  order.kind = decision.granted ? "authorise" : was_granted ? kTakeBack : "refuse";
   order.site = decision.site;
   order.given = now;
   order.decision = decision;

@@ -74,10 +74,9 @@ std::string_view to_string(CoalitionState state) {
   return kNames.at(static_cast<std::size_t>(state));
 }
 
-Picture::Picture(PictureParams params) : params_{std::move(params)} {
+Picture::Picture(PictureParams params) : params_{std::move(params)}, fence_{params_.fence} {
   for (const VehicleId id : params_.expected) vehicles_[id];
   for (const Hazard& hazard : params_.hazards) hazards_[hazard.id] = hazard;
-  fence_ = params_.fence;
 }
 
 bool Picture::is_known(VehicleId sender) const {

@@ -46,9 +46,9 @@ bool flag(const Json& object, const char* name) {
 }
 /// An empty array where there is none of that name.
 const Json& list(const Json& object, const char* name) {
-  static const Json kNone = Json::array();
+  static const Json none = Json::array();
   const Json* value = member(object, name);
-  return value != nullptr && value->is_array() ? *value : kNone;
+  return value != nullptr && value->is_array() ? *value : none;
 }
 bool has_list(const Json& object, const char* name) {
   const Json* value = member(object, name);

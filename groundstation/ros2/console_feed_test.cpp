@@ -26,8 +26,7 @@ std::vector<std::string> topics(const Result<ConsoleFeed::Heard>& heard) {
   return all;
 }
 
-class Feed : public testing::Test {
- protected:
+struct Feed : testing::Test {
   Feed() { EXPECT_TRUE(feed.on_text(hello())); }
   ConsoleFeed feed;
 };

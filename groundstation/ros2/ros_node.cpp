@@ -28,7 +28,6 @@ namespace dds = eprosima::fastdds::dds;
 namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 using Bytes = std::vector<std::uint8_t>;
-using rmw_dds_common::Gid;
 
 constexpr const char* kNodeName = "skein_bridge";
 constexpr const char* kGraphTopic = "ros_discovery_info";

@@ -250,6 +250,7 @@ class Companion::Impl {
   std::uint8_t system_ = 0;                ///< once it has been found
   bool armed_ = false;
   bool streams_granted_ = false;
+  bool renews_fence_ = false;  ///< in flight: it has another one to keep
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
   StatusText text_;
   std::optional<Instant> last_text_at_;
@@ -300,7 +301,6 @@ class Companion::Impl {
   MissionUpload upload_{MissionUpload::Kind::mission};  ///< of a plane's landing
   std::optional<Landing> uploads_;                      ///< what that is of
   bool told_fence_ = false;
-  bool renews_fence_ = false;  ///< in flight: it has another one to keep
   bool told_upload_ = false;
   bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
   Instant upload_again_at_ = Instant::min();  ///< after one that failed

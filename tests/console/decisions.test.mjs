@@ -15,7 +15,7 @@ function patient(name, lead_s, more = "") {
   mkdirSync(folder, { recursive: true });
   const text = readFileSync(join(scenarios, "coalition-6.yaml"), "utf8")
     .replace(/authorisation_lead_s: \d+/, `authorisation_lead_s: ${lead_s}`)
-    .replace(/duration_max_s: \d+/, "duration_max_s: 130");
+    .replace(/duration_max_s: \d+/, "duration_max_s: 110");
   const file = join(folder, `${name}.yaml`);
   writeFileSync(file, text + more);
   return relative(scenarios, file);

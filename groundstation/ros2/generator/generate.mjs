@@ -50,10 +50,12 @@ try {
 
 #include "skein/ros2/type_info.hpp"
 
+// NOLINTBEGIN(readability-identifier-naming): names are those of ROS 2
 namespace skein::ros2 {
 
 ${[...messages.values()].map(message => cpp_struct(message, messages)).join('\n')}
 }  // namespace skein::ros2
+// NOLINTEND(readability-identifier-naming)
 `
   if (!existsSync(out) || readFileSync(out, 'utf8') !== text) writeFileSync(out, text)
 } catch (error) {

@@ -43,7 +43,10 @@ class FormationDesk {
 
   /// After the node's. What it has to say the node says.
   void on_timeout(Instant now);
-  /// Lines of the script that are done.
+  /// Another ground station has the command: whatever the team does by now, the script's next order
+  /// is none for it.
+  void leave_script() { next_line_ = script_.size(); }
+  /// Lines of the script that are done, or left.
   [[nodiscard]] std::size_t script_line() const { return next_line_; }
 
  private:

@@ -37,7 +37,7 @@ inline constexpr Limit kWait_s{0.0, 86400.0};
 inline constexpr Limit kRoutesIn_s{5.0, 86400.0};
 inline constexpr Limit kLaneSpacing_m{1.0, 1e4};
 
-inline constexpr Limit kFenceHeight_m{1.0, 1e5};
+inline constexpr Limit kFenceHeight_m{10.0, 1e4};  ///< as in a configuration
 
 inline constexpr Limit kLatitude_deg{-90.0, 90.0};
 inline constexpr Limit kLongitude_deg{-180.0, 180.0};

@@ -101,7 +101,7 @@ export function given_of(order: Order, given: readonly GivenOrder[], since_s: nu
   const same = (one: GivenOrder) => {
     if (order.kind === "command") return one.kind === order.command && is_to(one, order.vehicle === 0 ? [] : [order.vehicle]);
     if (order.kind === "commands") return one.kind === order.command && is_to(one, order.vehicles);
-    if (order.kind === "decision") return one.kind === (order.grant ? "authorise" : "refuse") && one.site === order.site;
+    if (order.kind === "decision") return (order.grant ? one.kind === "authorise" : one.kind === "refuse" || one.kind === "take back") && one.site === order.site;
     return false;
   };
   return [...given].reverse().find((one) => one.given_s >= since_s && same(one)) ?? null;

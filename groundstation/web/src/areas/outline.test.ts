@@ -45,6 +45,16 @@ test("outlines come from GeoJSON and from a .plan file", () => {
   for (const wrong of ["{", "null", "[]", "{}", '{"type":"Polygon","coordinates":[]}', '{"type":"Polygon","coordinates":[[[8,"x"]]]}', '{"type":"Polygon","coordinates":[[[8,470],[8,47],[8.1,47]]]}', '{"type":"Polygon","coordinates":[[[80,47],[8,47],[8.1,47]]]}']) {
     assert.ok("trouble" in outline_of_file(wrong, frame), wrong);
   }
+  const polygon = places.map((at) => [at.latitude_deg, at.longitude_deg]);
+  for (const not_one of [
+    { geoFence: { polygons: [{ inclusion: false, polygon }] } },
+    { geoFence: { polygons: [{ inclusion: true, polygon }, { inclusion: true, polygon }] } },
+    { type: "Polygon", coordinates: [ring, ring] },
+    { type: "MultiPolygon", coordinates: [[ring], [ring]] },
+    { type: "FeatureCollection", features: [{ type: "Feature", geometry }, { type: "Feature", geometry }] },
+  ]) {
+    assert.ok("trouble" in outline_of_file(JSON.stringify(not_one), frame), "an outline is one, without holes, of what lies within");
+  }
 });
 
 test("a fence is written for the configuration", () => {

@@ -95,29 +95,47 @@ function is_list(value: unknown): value is unknown[] {
   return Array.isArray(value);
 }
 
-/** [longitude, latitude] of the first polygon's outer ring, wherever the file has it. */
-function ring_of(json: unknown): unknown[] | null {
-  if (typeof json !== "object" || json === null) return null;
+/** Outer rings as [longitude, latitude], or why there is none to be taken. */
+type Rings = { rings: unknown[][] } | { trouble: string };
+
+const holes = { trouble: "its polygon has holes, and an outline has none" };
+
+function rings_of_polygon(coordinates: unknown): Rings {
+  if (!is_list(coordinates) || !is_list(coordinates[0])) return { rings: [] };
+  return coordinates.length > 1 ? holes : { rings: [coordinates[0]] };
+}
+
+function all_of(parts: readonly Rings[]): Rings {
+  const rings: unknown[][] = [];
+  for (const part of parts) {
+    if ("trouble" in part) return part;
+    rings.push(...part.rings);
+  }
+  return { rings };
+}
+
+/** Of every polygon, wherever the file has it. */
+function rings_of(json: unknown): Rings {
+  if (typeof json !== "object" || json === null) return { rings: [] };
   const file = json as Record<string, unknown>;
+  const { coordinates, features } = file;
   switch (file["type"]) {
     case "Polygon":
-      return is_list(file["coordinates"]) && is_list(file["coordinates"][0]) ? file["coordinates"][0] : null;
+      return rings_of_polygon(coordinates);
     case "MultiPolygon":
-      return is_list(file["coordinates"]) && is_list(file["coordinates"][0]) && is_list(file["coordinates"][0][0]) ? file["coordinates"][0][0] : null;
+      return all_of((is_list(coordinates) ? coordinates : []).map(rings_of_polygon));
     case "Feature":
-      return ring_of(file["geometry"]);
+      return rings_of(file["geometry"]);
     case "FeatureCollection":
-      for (const feature of is_list(file["features"]) ? file["features"] : []) {
-        const ring = ring_of(feature);
-        if (ring) return ring;
-      }
-      return null;
+      return all_of((is_list(features) ? features : []).map(rings_of));
   }
   // A plan of QGroundControl: [latitude, longitude] of its fence.
-  const fence = file["geoFence"] as { polygons?: { polygon?: unknown }[] } | undefined;
-  const polygon = fence?.polygons?.[0]?.polygon;
-  if (!is_list(polygon)) return null;
-  return polygon.map((at) => (is_list(at) ? [at[1], at[0]] : at));
+  const fence = file["geoFence"] as { polygons?: { polygon?: unknown; inclusion?: unknown }[] } | undefined;
+  const polygons = is_list(fence?.polygons) ? fence.polygons : [];
+  if (polygons.some((one) => one.inclusion === false)) {
+    return { trouble: "its polygon is to be kept out of, and an outline is of what lies within" };
+  }
+  return { rings: polygons.flatMap((one) => (is_list(one.polygon) ? [one.polygon.map((at) => (is_list(at) ? [at[1], at[0]] : at))] : [])) };
 }
 
 /** The outline in a GeoJSON file, or of the fence of a .plan file. */
@@ -128,7 +146,10 @@ export function outline_of_file(text: string, frame: LocalFrame): { corners: Out
   } catch {
     return { trouble: "that is no JSON file" };
   }
-  const ring = ring_of(json);
+  const found = rings_of(json);
+  if ("trouble" in found) return found;
+  if (found.rings.length > 1) return { trouble: `there are ${found.rings.length} polygons in it, and an outline is one` };
+  const ring = found.rings[0];
   if (!ring) return { trouble: "there is no polygon in it: GeoJSON, or the fence of a .plan file, is read" };
   const corners: Corner[] = [];
   for (const at of ring) {

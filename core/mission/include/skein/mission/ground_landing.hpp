@@ -33,6 +33,12 @@ class GroundLanding {
   }
   /// Another order than to land: it waits no more, and has no turn.
   void drop(VehicleId vehicle);
+  /// Whoever waits waits for nobody any more.
+  void forget() {
+    waiting_.clear();
+    turn_.reset();
+    next_ = Instant::max();
+  }
   [[nodiscard]] const std::set<VehicleId>& waiting() const { return waiting_; }
 
   /// Who is to be told now to land.

@@ -60,6 +60,12 @@ class GroundReturn {
   /// The operator's order to these vehicles, once it is given.
   void on_order(const std::vector<VehicleId>& vehicles, CommandKind kind, const Fleet& fleet,
                 Instant now);
+  /// Plans for nobody any more; what it knows of vehicles stays.
+  void forget() {
+    homing_.clear();
+    step_ = Step::idle;
+    next_ = Instant::max();
+  }
   void on_message(const Message& message);
   void on_timeout(const Fleet& fleet, const std::vector<Hazard>& hazards, Instant now);
 
@@ -97,12 +103,12 @@ class GroundReturn {
   void review(Instant now);
   void leave_alone(VehicleId vehicle, Homing& homing, std::string why, Instant now);
 
-  GroundReturnConfig config_;
   /// For the preview; none: why there is none.
   [[nodiscard]] Result<planning::ReturningVehicle> as_if_ordered(VehicleId vehicle,
                                                                  const Fleet& fleet,
                                                                  Instant start) const;
 
+  GroundReturnConfig config_;
   std::map<VehicleId, FlightPlan> flies_;  ///< what each has told last
   std::map<VehicleId, Vec2> begun_;        ///< where each was first heard, or its first plan began
   std::map<VehicleId, Homing> homing_;

@@ -34,6 +34,8 @@ class AdsbIntake {
  public:
   static constexpr std::size_t kKnownMax = 500;  ///< whose parts are put together
   static constexpr Duration kForgotten = std::chrono::seconds{60};
+  /// A place that is older is not told: whoever is there by now is elsewhere.
+  static constexpr Duration kPlaceAgeMax = std::chrono::seconds{30};
 
   AdsbIntake(const MissionOrigin& origin, const PressureHeight& pressure);
 

@@ -18,7 +18,7 @@ namespace skein::console {
 
 /// An order that was given, and who has shown since that he obeys.
 struct GivenOrder {
-  std::string kind;        ///< a command's name, "authorise", "refuse"
+  std::string kind;        ///< a command's name, "authorise", "refuse", "take back"
   std::set<VehicleId> to;  ///< empty: all, or a decision
   SiteId site;             ///< of a decision
   Instant given{};

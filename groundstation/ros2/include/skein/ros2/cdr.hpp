@@ -51,13 +51,13 @@ class CdrWriter {
     put(static_cast<std::uint32_t>(many.size()));
     for (const T& one : many) put(one);
   }
-  template <class T, std::size_t kCount>
-  void put(const std::array<T, kCount>& many) {
+  template <class T, std::size_t Count>
+  void put(const std::array<T, Count>& many) {
     for (const T& one : many) put(one);
   }
   template <Message T>
   void put(const T& message) {
-    T::for_each_field(message, [this](const auto& field) { put(field); });
+    T::for_each_field(message, [this](const auto& field) { this->put(field); });
   }
 
  private:
@@ -100,13 +100,13 @@ class CdrReader {
     many.clear();
     for (std::uint32_t i = 0; good_ && i < size; ++i) get(many.emplace_back());
   }
-  template <class T, std::size_t kCount>
-  void get(std::array<T, kCount>& many) {
+  template <class T, std::size_t Count>
+  void get(std::array<T, Count>& many) {
     for (T& one : many) get(one);
   }
   template <Message T>
   void get(T& message) {
-    T::for_each_field(message, [this](auto& field) { get(field); });
+    T::for_each_field(message, [this](auto& field) { this->get(field); });
   }
 
  private:
