@@ -23,20 +23,6 @@ Result<std::vector<Vec2>> corners_of(const Words& words, std::size_t& next) {
   return corners;
 }
 
-Result<std::vector<VehicleId>> vehicles_of(std::string_view list) {
-  std::vector<VehicleId> all;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const auto comma = std::min(list.find(',', begin), list.size());
-    const auto id = id_of(list.substr(begin, comma - begin));
-    if (!id) {
-      return Error{fmt::format("'by' needs numbers of vehicles, such as 1,2,5, not '{}'", list)};
-    }
-    all.push_back({*id});
-    begin = comma + 1;
-  }
-  return all;
-}
-
 std::string corners_line(const std::vector<Vec2>& corners) {
   std::string line;
   for (const Vec2& corner : corners) line += fmt::format(" {},{}", corner.x(), corner.y());
@@ -105,8 +91,11 @@ Result<Input> search_order(const Words& words, bool preview) {
     if (next == words.size()) return Error{fmt::format("'{}' needs a number after it", keyword)};
     const auto word = words[next++];
     if (keyword == "by") {
-      auto vehicles = vehicles_of(word);
-      if (!vehicles) return vehicles.error();
+      auto vehicles = ids_of(word);
+      if (!vehicles) {
+        return Error{
+            fmt::format("'by' needs numbers of vehicles, such as 1,2,5-9, not '{}'", word)};
+      }
       order.wishes.vehicles = *std::move(vehicles);
       continue;
     }

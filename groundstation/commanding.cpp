@@ -14,8 +14,8 @@ constexpr Duration kTryAgain = std::chrono::seconds{5};
 /// What changes nothing of the mission.
 bool is_of_this_machine(const Input& input) {
   return std::holds_alternative<TakeCommand>(input) || std::holds_alternative<HandOver>(input) ||
-         std::holds_alternative<Record>(input) || std::holds_alternative<Quit>(input) ||
-         std::holds_alternative<Wait>(input);
+         std::holds_alternative<Record>(input) || std::holds_alternative<Acknowledge>(input) ||
+         std::holds_alternative<Quit>(input) || std::holds_alternative<Wait>(input);
 }
 
 }  // namespace

@@ -213,6 +213,7 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event, Instant now) {
 }
 
 void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now) {
+  alarms_.on_command(beside.nobody_commands, now);
   alarms_.on_timeout(picture_, fleet, now);
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));

@@ -45,23 +45,6 @@ Result<Input> decision(bool grant, const std::vector<std::string_view>& words) {
   return Input{Decision{{*site}, grant, {}, although_silent}};
 }
 
-/// "3,5-9": ascending, none twice; nothing where it is no such list.
-std::optional<std::vector<VehicleId>> ids_of(std::string_view word) {
-  std::set<VehicleId> all;
-  for (std::size_t begin = 0; begin <= word.size();) {
-    const auto comma = std::min(word.find(',', begin), word.size());
-    const auto part = word.substr(begin, comma - begin);
-    begin = comma + 1;
-    const auto hyphen = part.find('-');
-    const auto first = id_of(part.substr(0, hyphen));
-    const auto last = hyphen == std::string_view::npos ? first : id_of(part.substr(hyphen + 1));
-    if (!first || !last || *last < *first) return std::nullopt;
-    if (all.size() + (*last - *first) >= kVehiclesPerOrderMax) return std::nullopt;
-    for (int id = *first; id <= *last; ++id) all.insert({static_cast<std::uint16_t>(id)});
-  }
-  return std::vector<VehicleId>{all.begin(), all.end()};
-}
-
 Result<Input> order(mission::CommandKind kind, const std::vector<std::string_view>& words) {
   if (words.size() == 2 && words[1] == "all") return Input{Order{kGroundStation, kind}};
   const auto vehicle = words.size() == 2 ? id_of(words[1]) : std::nullopt;
@@ -217,17 +200,13 @@ Result<Input> route_order(const std::vector<std::string_view>& words, bool previ
 /// 'return all', or numbers with commas between them.
 Result<Input> return_preview(const std::vector<std::string_view>& words) {
   const Error wrong{
-      "'preview return' needs the numbers of vehicles or 'all', as in 'preview return 3,4'"};
+      "'preview return' needs the numbers of vehicles or 'all', as in 'preview return 3,5-9'"};
   if (words.size() != 2) return wrong;
   ReturnPreview preview;
   if (words[1] == "all") return Input{preview};
-  for (std::size_t begin = 0; begin <= words[1].size();) {
-    const auto end = std::min(words[1].find(',', begin), words[1].size());
-    const auto id = id_of(words[1].substr(begin, end - begin));
-    if (!id) return wrong;
-    preview.vehicles.push_back({*id});
-    begin = end + 1;
-  }
+  auto vehicles = ids_of(words[1]);
+  if (!vehicles) return wrong;
+  preview.vehicles = *std::move(vehicles);
   return Input{std::move(preview)};
 }
 

@@ -60,11 +60,12 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_EQ(parsed<View>("links"), View::links);
   EXPECT_EQ(parsed<View>("wind"), View::wind);
   EXPECT_TRUE(parsed<ReturnPreview>("preview return all").vehicles.empty());
+  EXPECT_EQ(parsed<ReturnPreview>("preview return 3-5").vehicles.size(), 3U);
   EXPECT_EQ(parsed<ReturnPreview>("preview return 3,12").vehicles,
             (std::vector{VehicleId{3}, VehicleId{12}}));
   for (const char* wrong : {"preview return", "preview return 3,", "preview return 3, 4",
                             "preview return ,3", "preview return 0"}) {
-    EXPECT_THAT(refusal_of(wrong), HasSubstr("'preview return 3,4'"));
+    EXPECT_THAT(refusal_of(wrong), HasSubstr("'preview return 3,5-9'"));
   }
   EXPECT_EQ(parsed<Record>("record runs/mine").folder, "runs/mine");
   EXPECT_EQ(parsed<Record>("record stop").folder, "");

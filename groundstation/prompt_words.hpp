@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include "skein/base/result.hpp"
 #include "skein/groundstation/orders.hpp"
@@ -31,6 +34,23 @@ inline constexpr std::size_t kReasonMax = 80;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), id);
   if (error != std::errc{} || end != word.data() + word.size() || id == 0) return std::nullopt;
   return id;
+}
+
+/// "3,5-9": ascending, none twice; nothing where it is no such list.
+[[nodiscard]] inline std::optional<std::vector<VehicleId>> ids_of(std::string_view word) {
+  std::set<VehicleId> all;
+  for (std::size_t begin = 0; begin <= word.size();) {
+    const auto comma = std::min(word.find(',', begin), word.size());
+    const auto part = word.substr(begin, comma - begin);
+    begin = comma + 1;
+    const auto hyphen = part.find('-');
+    const auto first = id_of(part.substr(0, hyphen));
+    const auto last = hyphen == std::string_view::npos ? first : id_of(part.substr(hyphen + 1));
+    if (!first || !last || *last < *first) return std::nullopt;
+    if (all.size() + (*last - *first) >= kVehiclesPerOrderMax) return std::nullopt;
+    for (int id = *first; id <= *last; ++id) all.insert({static_cast<std::uint16_t>(id)});
+  }
+  return std::vector<VehicleId>{all.begin(), all.end()};
 }
 
 /// A number after a keyword.

@@ -215,15 +215,26 @@ struct AlarmNews::Reader {
     news.drop({Topic::setup_differs, self(), e.node});
   }
   void operator()(const event::CommandHanded& e) const {
-    news.drop({Topic::command_elsewhere});
-    if (e.here) return tell();
-    news.begin({Topic::command_elsewhere}, {now, words(), {}, true});
+    const Key elsewhere{Topic::command_elsewhere};
+    const bool was_taken = news.items_.contains(elsewhere) || news.commanded_here_;
+    news.commanded_here_ = e.here;
+    news.drop(elsewhere);
+    if (e.here || !was_taken) return tell();  // who only ever watched has lost nothing
+    news.begin(elsewhere, {now, words(), {}, true});
   }
   void operator()(const event::RoutesCalledOff& /*e*/) const { tell(); }
   void operator()(const event::ReturnAlone& e) const { news.tell(e.vehicle, now, words()); }
   template <class Other>
   void operator()(const Other& /*of no concern*/) const {}
 };
+
+void AlarmNews::on_command(bool nobody, Instant now) {
+  const Key key{Topic::nobody_commands};
+  if (!nobody) return drop(key);
+  if (items_.contains(key)) return;
+  drop({Topic::command_elsewhere});
+  begin(key, {now, "nobody is in command: no ground station that has it is heard", {}, true});
+}
 
 void AlarmNews::on_event(const mission::MissionEvent& event, Instant now) {
   std::visit(Reader{*this, event, now}, event.body);

@@ -297,7 +297,16 @@ std::map<AlarmKind, Case> cases() {
                         tells(kGroundStation, event::SetupAgrees{{3}})};
   all[formation_lost] = {tells(kGroundStation, formation(event::FormationNews::lost)),
                          tells(kGroundStation, formation(event::FormationNews::back))};
-  all[command_elsewhere] = {tells(kGroundStation, event::CommandHanded{false, "ben"}),
+  all[nobody_commands] = {[](Desk& desk) {
+                            desk.alarms.on_command(true, desk.now());
+                            desk.run(0.2);
+                          },
+                          [](Desk& desk) { desk.alarms.on_command(false, desk.now()); }};
+  all[command_elsewhere] = {[](Desk& desk) {
+                              desk.tell(kGroundStation, event::CommandHanded{true, "ada"});
+                              desk.tell(kGroundStation, event::CommandHanded{false, "ben"});
+                              desk.run(0.2);
+                            },
                             tells(kGroundStation, event::CommandHanded{true, "ada"})};
   add_what_is_less(all);
   return all;
@@ -482,6 +491,18 @@ TEST(Alarms, TheirWordsAndTheirSection) {
 }
 
 // --- how long it takes until vehicles obey ---
+
+TEST(Alarms, WhoHasOnlyWatchedIsNotAlarmedThatAnotherHasTheCommand) {
+  Desk desk;
+  desk.run(0.5);
+  desk.tell(kGroundStation, event::CommandHanded{false, "ben"});
+  desk.run(0.5);
+  EXPECT_TRUE(desk.of(AlarmKind::command_elsewhere).empty());
+  EXPECT_EQ(desk.of(AlarmKind::told).size(), 1U);
+  desk.alarms.on_command(true, desk.now());
+  desk.run(0.5);
+  EXPECT_EQ(desk.of(AlarmKind::nobody_commands).size(), 1U);
+}
 
 TEST(OrderAnswers, EachVehiclesOwnWordEndsItsWait) {
   Desk desk;

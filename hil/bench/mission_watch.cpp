@@ -55,7 +55,10 @@ void MissionWatch::on_telemetry(const mission::Telemetry& telemetry) {
 
 bool MissionWatch::work_done(Instant now) const {
   if (!scenario_.flies_formation()) {
-    return sites_done_.size() == scenario_.sites.size() && now > routes_end_;
+    // Whatever sites the operator has told besides.
+    const bool all_done = std::ranges::all_of(
+        scenario_.sites, [this](const Site& site) { return sites_done_.contains(site.id); });
+    return all_done && now > routes_end_;
   }
   // Without a ground station the change that it has sent is flown to its end, and held.
   const bool left_alone =

@@ -33,6 +33,13 @@ mission::Telemetry telemetry(VehicleId vehicle, mission::Activity activity, Flig
   return t;
 }
 
+TEST(MissionWatch, SitesThatTheOperatorHasToldDoNotCount) {
+  const auto scenario = two_vehicles_one_site();
+  MissionWatch watch{scenario};
+  EXPECT_TRUE(watch.on_event(site_done({10004})));
+  EXPECT_FALSE(watch.work_done(Instant{}));
+}
+
 TEST(MissionWatch, WorkIsDoneWithTheLastSiteEachCountedOnce) {
   const auto scenario = two_vehicles_one_site();
   MissionWatch watch{scenario};

@@ -259,6 +259,7 @@ constexpr std::size_t kRuns = 28;
 
 /// SKEIN_RUNS=1000 flies as many (docs/simulation.md).
 TEST(PictureRuns, NothingOnThePageDiffersFromTheAgentsInSeededMissionsWithFaults) {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): before there is another thread
   const char* const asked = std::getenv("SKEIN_RUNS");
   const std::size_t runs = asked == nullptr ? kRuns : std::strtoul(asked, nullptr, 10);
   const auto flown =

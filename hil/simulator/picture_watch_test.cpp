@@ -44,7 +44,8 @@ std::string state_in(const std::string& table, VehicleId id) {
   constexpr std::size_t kWidth = 26;
   std::istringstream lines{table};
   for (std::string line; std::getline(lines, line);) {
-    if (std::atoi(line.c_str()) != id.value || line.size() < kFrom + kWidth) continue;
+    if (std::strtol(line.c_str(), nullptr, 10) != id.value || line.size() < kFrom + kWidth)
+      continue;
     std::string state = line.substr(kFrom, kWidth);
     state.erase(state.find_last_not_of(' ') + 1);
     std::ranges::replace(state, ' ', '_');

@@ -10,7 +10,7 @@ import { tick } from "../shell/ticker";
 import { highlighted_request, panel, panels, place_to_show, select } from "../shell/view";
 import type { Panel } from "../shell/view";
 import type { Alarm } from "../wire/protocol";
-import { current, ended, hello, in_replay, lost_s, mission_now_s, may_order, send, shown } from "../wire/store";
+import { current, ended, hello, in_replay, lost_s, mission_now_s, is_operator, may_order, send, shown } from "../wire/store";
 import { connection_alarm, counts_of, in_hand, is_open, own_number, sound_of, title_of } from "./alarm_list";
 import { AlarmSound, mute_ms, muted_for, volume_in_range } from "./sound";
 
@@ -30,7 +30,7 @@ export const alarm_counts = computed(() => counts_of(alarm_list.value));
 const taken = signal<number | null>(null);
 export const worst = computed(() => in_hand(alarm_list.value, taken.value));
 /** Those that this page can acknowledge now. */
-export const can_acknowledge = computed(() => alarm_list.value.filter((alarm) => is_open(alarm) && (alarm.number === own_number || (may_order.value && lost_s.value === 0))));
+export const can_acknowledge = computed(() => alarm_list.value.filter((alarm) => is_open(alarm) && (alarm.number === own_number || (is_operator.value && lost_s.value === 0))));
 
 /** What comes of it is seen in the list. */
 async function say_acknowledged(alarms: number[]): Promise<void> {

@@ -35,7 +35,8 @@ class AlarmNews {
     order_waits,     ///< of the script
     autopilot,       ///< vehicle
     not_landed,      ///< vehicle
-    command_elsewhere,
+    command_elsewhere,  ///< since it was taken from here
+    nobody_commands,
     told  ///< once; detail: a running number
   };
   struct Key {
@@ -54,6 +55,7 @@ class AlarmNews {
   };
 
   void on_event(const mission::MissionEvent& event, Instant now);
+  void on_command(bool nobody, Instant now);
   void drop(const Key& key) { items_.erase(key); }
 
   [[nodiscard]] const std::map<Key, Item>& items() const { return items_; }
@@ -72,6 +74,7 @@ class AlarmNews {
 
   std::map<Key, Item> items_;
   std::uint64_t told_ = 0;
+  bool commanded_here_ = false;
 };
 
 }  // namespace skein::console

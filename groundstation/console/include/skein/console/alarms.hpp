@@ -32,6 +32,7 @@ enum class AlarmLevel : std::uint8_t {
 /// One row each in alarm_kinds.cpp, in this order; the worse first within a level.
 enum class AlarmKind : std::uint8_t {
   nobody_heard,
+  nobody_commands,
   separation_no_room,
   traffic_no_room,
   left_fence,
@@ -121,6 +122,8 @@ class Alarms {
   void on_message(const mission::Message& message, VehicleId sender, Instant now);
   /// An event, once, as it was heard.
   void on_event(const mission::MissionEvent& event, Instant now);
+  /// Of several ground stations: whether none that has the command is heard. No recording tells.
+  void on_command(bool nobody, Instant now) { news_.on_command(nobody, now); }
   /// What an earlier process of this ground station was told.
   void recall(const mission::MissionEvent& event, Instant at);
   /// Before what is heard at `now` is taken.
