@@ -53,7 +53,12 @@ async function begin() {
   return { view, said: () => text };
 }
 
-const worst_of = (view) => view.page.evaluate(() => document.querySelector(".alarm-row.open:not(.over)")?.dataset.testid.slice("alarm-".length) ?? null);
+/** The one in the bar, which keys and presses are about; the list may have another on top. */
+const worst_of = (view) =>
+  view.page.evaluate(() => {
+    const number = document.querySelector('[data-testid="alarm-bar"] [data-testid^="alarm-acknowledge-"]')?.dataset.testid.slice("alarm-acknowledge-".length);
+    return document.querySelector(`.alarm-row.open[data-number="${number}"]`)?.dataset.testid.slice("alarm-".length) ?? null;
+  });
 const number_of = (view, key) => view.part(`alarm-${key}`).getAttribute("data-number");
 
 /** Keeps count of what the hands do. */
