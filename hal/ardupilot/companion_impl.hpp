@@ -250,7 +250,7 @@ class Companion::Impl {
   std::uint8_t system_ = 0;                ///< once it has been found
   bool armed_ = false;
   bool streams_granted_ = false;
-  bool renews_fence_ = false;  ///< in flight: it has another one to keep
+  bool renews_fence_ = false;     ///< in flight: it has another one to keep
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
   StatusText text_;
   std::optional<Instant> last_text_at_;

@@ -20,21 +20,21 @@ class AlarmNews {
   static constexpr Duration kTold = std::chrono::seconds{60};
 
   enum class Topic : std::uint8_t {
-    separation,      ///< vehicle: who says so; other
-    traffic,         ///< vehicle; detail: the aircraft's address
-    range_spent,     ///< vehicle
-    orders_unknown,  ///< vehicle
-    id_in_use,       ///< vehicle
-    landing_barred,  ///< vehicle
-    setup_differs,   ///< vehicle: who says so; other
-    task_lost,       ///< site and task in detail; vehicle: whose it was
-    task_unknown,    ///< the same
-    formation_lost,  ///< vehicle
-    change_refused,  ///< vehicle
-    change_waits,    ///< vehicle
-    order_waits,     ///< of the script
-    autopilot,       ///< vehicle
-    not_landed,      ///< vehicle
+    separation,         ///< vehicle: who says so; other
+    traffic,            ///< vehicle; detail: the aircraft's address
+    range_spent,        ///< vehicle
+    orders_unknown,     ///< vehicle
+    id_in_use,          ///< vehicle
+    landing_barred,     ///< vehicle
+    setup_differs,      ///< vehicle: who says so; other
+    task_lost,          ///< site and task in detail; vehicle: whose it was
+    task_unknown,       ///< the same
+    formation_lost,     ///< vehicle
+    change_refused,     ///< vehicle
+    change_waits,       ///< vehicle
+    order_waits,        ///< of the script
+    autopilot,          ///< vehicle
+    not_landed,         ///< vehicle
     command_elsewhere,  ///< since it was taken from here
     nobody_commands,
     told  ///< once; detail: a running number
