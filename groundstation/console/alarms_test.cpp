@@ -147,6 +147,17 @@ std::function<void(Desk&)> is(ActivityDetail detail) {
     desk.run(0.5);
   };
 }
+std::function<void(Desk&)> nobody(bool commands) {
+  return [commands](Desk& desk) {
+    desk.alarms.on_command(commands, desk.now());
+    desk.run(0.2);
+  };
+}
+void command_is_taken(Desk& desk) {
+  desk.tell(kGroundStation, event::CommandHanded{true, "ada"});
+  desk.tell(kGroundStation, event::CommandHanded{false, "ben"});
+  desk.run(0.2);
+}
 void is_on_ground(Desk& desk) { desk.said[{3}].detail = ActivityDetail::on_ground; }
 void is_flying(Desk& desk) { desk.said[{3}].detail = ActivityDetail::none; }
 std::function<void(Desk&)> flight(AutopilotNews news) {
@@ -297,16 +308,8 @@ std::map<AlarmKind, Case> cases() {
                         tells(kGroundStation, event::SetupAgrees{{3}})};
   all[formation_lost] = {tells(kGroundStation, formation(event::FormationNews::lost)),
                          tells(kGroundStation, formation(event::FormationNews::back))};
-  all[nobody_commands] = {[](Desk& desk) {
-                            desk.alarms.on_command(true, desk.now());
-                            desk.run(0.2);
-                          },
-                          [](Desk& desk) { desk.alarms.on_command(false, desk.now()); }};
-  all[command_elsewhere] = {[](Desk& desk) {
-                              desk.tell(kGroundStation, event::CommandHanded{true, "ada"});
-                              desk.tell(kGroundStation, event::CommandHanded{false, "ben"});
-                              desk.run(0.2);
-                            },
+  all[nobody_commands] = {nobody(true), nobody(false)};
+  all[command_elsewhere] = {command_is_taken,
                             tells(kGroundStation, event::CommandHanded{true, "ada"})};
   add_what_is_less(all);
   return all;
