@@ -21,6 +21,14 @@ GroundNode node() {
   return {config, Instant{}};
 }
 
+Telemetry telemetry_of(Activity activity) {
+  Telemetry telemetry;
+  telemetry.vehicle = kVehicle;
+  telemetry.instance = {7};
+  telemetry.activity = activity;
+  return telemetry;
+}
+
 TEST(GroundNode, AnEventCountsOnlyWhereItsVehicleSaysIt) {
   GroundNode ground = node();
   MissionEvent done;
@@ -147,10 +155,7 @@ TEST(GroundNode, SendsNoCopterHomeThatIsInAFormation) {
 
 TEST(GroundNode, OrdersToLandOnlyWhoIsOrderedHomeAndRefusesOthersWithTheRemedy) {
   GroundNode ground = node();
-  Telemetry telemetry;
-  telemetry.vehicle = kVehicle;
-  telemetry.instance = {7};
-  telemetry.activity = Activity::searching;
+  Telemetry telemetry = telemetry_of(Activity::searching);
   ground.on_message(telemetry, kVehicle, at_seconds(1.0));
   const auto land = [&](VehicleId vehicle, double s) {
     return ground.command(vehicle, CommandKind::land, at_seconds(s));
@@ -416,10 +421,7 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
 
 TEST(GroundNode, WhoHasWatchedDoesNotGoOnWithTheLandingsOfBefore) {
   GroundNode ground = node();
-  Telemetry telemetry;
-  telemetry.vehicle = kVehicle;
-  telemetry.instance = {7};
-  telemetry.activity = Activity::holding;
+  Telemetry telemetry = telemetry_of(Activity::holding);
   ground.on_message(telemetry, kVehicle, at_seconds(1.0));
   ASSERT_TRUE(ground.command(kVehicle, CommandKind::return_home, at_seconds(2.0)).ok());
   ASSERT_TRUE(ground.command(kVehicle, CommandKind::land, at_seconds(3.0)).ok());

@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "news_delay.hpp"
 #include "skein/mission/shown_state.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -21,8 +22,6 @@ using Topic = AlarmNews::Topic;
 constexpr Duration kStart = std::chrono::seconds{15};
 /// What a vehicle says of others counts no more when it is silent for longer.
 constexpr Duration kWordCounts = std::chrono::seconds{30};
-/// Telemetry may be a moment older than an event.
-constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 
 std::string name_of(VehicleId vehicle) { return wording::text_of(vehicle); }
 

@@ -85,6 +85,13 @@ class Desk {
     decision.until = now_ + from_seconds(60.0);
     hear(decision, kGroundStation);
   }
+  /// What was asked for, a second before.
+  void grant() {
+    run(1.0);
+    ask(30.0);
+    run(1.0);
+    decide(true);
+  }
   void order(CommandKind kind, VehicleId to = kGroundStation) {
     mission::Command said_now;
     said_now.vehicle = to;
@@ -493,8 +500,6 @@ TEST(Alarms, TheirWordsAndTheirSection) {
   EXPECT_EQ(alarms_text(quiet.alarms, quiet.now()), "no alarms\n");
 }
 
-// --- how long it takes until vehicles obey ---
-
 TEST(Alarms, WhoHasOnlyWatchedIsNotAlarmedThatAnotherHasTheCommand) {
   Desk desk;
   desk.run(0.5);
@@ -506,6 +511,8 @@ TEST(Alarms, WhoHasOnlyWatchedIsNotAlarmedThatAnotherHasTheCommand) {
   desk.run(0.5);
   EXPECT_EQ(desk.of(AlarmKind::nobody_commands).size(), 1U);
 }
+
+// --- how long it takes until vehicles obey ---
 
 TEST(OrderAnswers, EachVehiclesOwnWordEndsItsWait) {
   Desk desk;
@@ -565,10 +572,7 @@ TEST(OrderAnswers, AnOrderThatIsSaidAgainIsOne) {
 
 TEST(OrderAnswers, ADecisionIsAnsweredByWhoIsToDeliver) {
   Desk desk;
-  desk.run(1.0);
-  desk.ask(30.0);
-  desk.run(1.0);
-  desk.decide(true);
+  desk.grant();
   desk.run(0.3);
   EXPECT_EQ(desk.alarms.orders().orders().back().waiting, (std::set<VehicleId>{{2}}));
   desk.tell({2}, event::Authorised{"ada"}, kTask, {kCoalition, desk.round});
@@ -580,10 +584,7 @@ TEST(OrderAnswers, ADecisionIsAnsweredByWhoIsToDeliver) {
 
 TEST(OrderAnswers, WhatIsTakenBackIsSaidAsItWasOrderedAndAnsweredByItsEnd) {
   Desk desk;
-  desk.run(1.0);
-  desk.ask(30.0);
-  desk.run(1.0);
-  desk.decide(true);
+  desk.grant();
   desk.run(1.0);
   desk.decide(false);
   desk.run(0.3);
@@ -600,10 +601,7 @@ TEST(OrderAnswers, WhatIsTakenBackIsSaidAsItWasOrderedAndAnsweredByItsEnd) {
 
 TEST(OrderAnswers, NobodyIsMissedWhereAnotherPlanIsAsked) {
   Desk desk;
-  desk.run(1.0);
-  desk.ask(30.0);
-  desk.run(1.0);
-  desk.decide(true);
+  desk.grant();
   desk.run(1.0);
   desk.ask(30.0);
   desk.run(15.0);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "news_delay.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/shown_state.hpp"
 #include "skein/wording/wording.hpp"
@@ -21,8 +22,6 @@ using mission::ShownState;
 
 /// Of what the delivery and the way home need: less than that more is little.
 constexpr double kSpareShare = 0.1;
-/// What is told of a plan may be a moment older than the plan.
-constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 constexpr double kLate_s = 2.0;
 /// Nobody is faster than that times the speed that it has bid.
 constexpr double kHurry = 1.2;

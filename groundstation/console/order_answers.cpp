@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "news_delay.hpp"
 #include "skein/mission/shown_state.hpp"
 
 namespace skein::console {
@@ -14,8 +15,6 @@ namespace {
 using mission::CommandKind;
 using mission::ShownState;
 
-/// What a vehicle says in the moment after an order may have been said before it heard of it.
-constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 /// Orders to several vehicles are said within it.
 constexpr Duration kAtOnce = std::chrono::milliseconds{100};
 /// A vehicle's clock from ours.

@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "news_delay.hpp"
 #include "skein/base/overloaded.hpp"
 #include "skein/mission/ground_agent.hpp"
 #include "skein/mission/told_by.hpp"
@@ -14,8 +15,6 @@ namespace skein::console {
 namespace {
 
 constexpr Duration kDelayWindow = std::chrono::seconds{10};
-/// So long what was said to a vehicle, or of it, and its own next word may be on their way.
-constexpr Duration kNewsMayTake = std::chrono::seconds{1};
 
 /// Newer knowledge of a task never makes it less done.
 int rank(const std::optional<coalition::TaskState>& state) {
