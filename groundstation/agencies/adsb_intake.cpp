@@ -226,7 +226,7 @@ std::vector<mission::SeenAircraft> AdsbIntake::take_json(std::string_view text, 
     seen.aircraft.position = *place;
     // How old its place is; one that is too old is no place of now.
     const bool tells_age = one.find("seen_pos") != one.end();
-    const auto place_age_s = number_in(one, "seen_pos", 0.0, kFileAgeMax_s);
+    const auto place_age_s = number_in(one, "seen_pos", 0.0, to_seconds(kPlaceAgeMax));
     if (tells_age && !place_age_s) continue;
     const double age_s = file_age_s + place_age_s.value_or(0.0);
     seen.aircraft.time = now - from_seconds(age_s);
