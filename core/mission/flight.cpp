@@ -82,6 +82,12 @@ WayOut least_inside(const Pose2& from, double curvature_per_m, std::span<const H
   }
   return best;
 }
+
+/// False, and nothing added, when `path` would have more pieces than that.
+bool append_within(std::size_t pieces_max, Path& path, const Path& next) {
+  return path.segments.size() + next.segments.size() <= pieces_max && path.append(next);
+}
+
 }  // namespace
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
@@ -110,6 +116,7 @@ void Flight::start_route(const TimedPath& route) {
 
 void Flight::fly(const TimedPath& timed) {
   searching_ = homing_ = en_route_ = false;
+  search_goes_on_at_ = Instant::max();
   stands_by_.reset();
   search_marks_.clear();
   replace(timed);
@@ -201,6 +208,7 @@ TimedPath Flight::begun(Instant start, double speed_mps, double tail_curvature_p
 void Flight::take_up(const TimedPath& timed, Instant now) {
   if (searching_) pass_waypoints(now);
   searching_ = homing_ = en_route_ = false;
+  search_goes_on_at_ = Instant::max();
   stands_by_.reset();
   replace(timed);
 }
@@ -258,7 +266,8 @@ Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) c
   return path;
 }
 
-double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const {
+double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards,
+                           std::size_t pieces_max) const {
   const Pose2 from = path.end();
   const Orbit here = best_orbit(from, hazards);
   if (here.clearance_m >= kHoldClearanceM) return here.curvature_per_m;
@@ -280,7 +289,7 @@ double Flight::append_hold(Path& path, const std::vector<Hazard>& hazards) const
     way = *leg;
     curvature = room.curvature_per_m;
   }
-  return path.append(way) ? curvature : here.curvature_per_m;
+  return append_within(pieces_max, path, way) ? curvature : here.curvature_per_m;
 }
 
 void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
@@ -344,17 +353,20 @@ void Flight::search(const std::vector<Hazard>& hazards, double range_m, Instant 
 void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double range_m,
                          Instant now) {
   if (searching_) pass_waypoints(now);
+  bool goes_on = false;
   if (search_.empty()) {
     hold_from(at, hazards, now);
   } else {
-    follow(at, search_, hazards, range_m, now);
+    goes_on = follow(at, search_, hazards, range_m, now).full;
   }
   searching_ = true;
+  search_goes_on_at_ = goes_on ? plan_.timed.end_time() - 2 * handover_ : Instant::max();
 }
 
 void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
   const bool reaches =
-      follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now);
+      follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now)
+          .reaches_last;
   searching_ = false;
   homing_ = true;
   tries_home_at_ = reaches ? Instant::max() : now + kTriesHomeAgain;
@@ -439,35 +451,45 @@ bool Flight::stays_in(const FenceWay& way) const {
          fence_room_m(fence_, way.path.start, vehicle_.planning_radius_m()) < 0.0;
 }
 
-bool Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
-                    const std::vector<Hazard>& hazards, double range_m, Instant now) {
+std::size_t Flight::pieces_after(Instant at, Instant now) const {
+  const TimedPath& old = plan_.timed;
+  const auto before = old.piece(old.distance_at(now), old.distance_at(at));
+  return before ? kPathSegmentsMax - before->segments.size() : 0;
+}
+
+Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
+                                const std::vector<Hazard>& hazards, double range_m, Instant now) {
   Path route = forced_way(pose_at(at), hazards);
+  const std::size_t pieces_max = pieces_after(at, now);
   const bool homeward = std::isinf(range_m);
-  bool reaches_last = false;
+  Followed followed;
   std::vector<double> marks;
   Pose2 from = route.end();
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const auto next = i + 1 < waypoints.size() ? std::optional{waypoints[i + 1]} : std::nullopt;
     const auto leg = way_to(from, waypoints[i], next, hazards);
-    // A point that cannot be reached clear of hazards and within the fence is left out; a full path
-    // ends in an orbit, and the rest of the route is planned when that is resumed.
+    // A point that cannot be reached clear of hazards and within the fence is left out; what has no
+    // room on a path is planned before that ends.
     if (!leg || (!homeward && !stays_in(*leg))) {
       marks.push_back(route.length_m());
       continue;
     }
     const double length_m = route.length_m() + leg->path.length_m();
     if (!homeward && length_m + way_home_m(leg->end, hazards) > range_m) break;
-    if (!route.append(leg->path)) break;
+    if (!append_within(pieces_max, route, leg->path)) {
+      followed.full = !marks.empty();
+      break;
+    }
     marks.push_back(route.length_m());
     from = leg->end;
-    reaches_last = i + 1 == waypoints.size();
+    followed.reaches_last = i + 1 == waypoints.size();
   }
-  const double tail = append_hold(route, hazards);
-  if (!continue_with(at, route, tail, now)) return false;
+  const double tail = append_hold(route, hazards, pieces_max);
+  if (!continue_with(at, route, tail, now)) return {};
   const double lead = plan_.timed.path.length_m() - route.length_m();
   search_marks_.clear();
   for (const double mark : marks) search_marks_.push_back(lead + mark);
-  return reaches_last;
+  return followed;
 }
 
 std::optional<FlightPlan> Flight::poll_plan() {

@@ -96,6 +96,8 @@ class Flight {
   void stand_by(SiteId site, const std::optional<Vec2>& place, const std::vector<Hazard>& hazards,
                 double range_m, Instant now);
   [[nodiscard]] bool searching() const { return searching_; }
+  /// When search() is to be called again, as a plan has no room for the whole of the route.
+  [[nodiscard]] Instant search_goes_on_at() const { return search_goes_on_at_; }
   [[nodiscard]] bool homing() const { return homing_; }
   /// The site that stand_by() was told of, while that is flown.
   [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
@@ -128,9 +130,10 @@ class Flight {
   /// Does an orbit of that curvature from there stay outside the safety circles of the hazards?
   [[nodiscard]] bool orbit_keeps_clear(const Pose2& from, double curvature_per_m,
                                        const std::vector<Hazard>& hazards) const;
-  /// The way to where there is room for an orbit, where there is none at the path's end. The
-  /// orbit's curvature.
-  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards) const;
+  /// The way to where there is room for an orbit, where there is none at the path's end, if the
+  /// path then has no more than `pieces_max`. The orbit's curvature.
+  [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards,
+                                   std::size_t pieces_max = kPathSegmentsMax) const;
   [[nodiscard]] Orbit best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const;
   /// Where the vehicle is inside a hazard that has just become known, or no turn at the planning
   /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
@@ -149,9 +152,14 @@ class Flight {
   // The new path takes over from the present plan at `at`.
   void hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now);
   void search_from(Instant at, const std::vector<Hazard>& hazards, double range_m, Instant now);
-  /// Whether it leads to the last of them.
-  bool follow(Instant at, const std::vector<Vec2>& waypoints, const std::vector<Hazard>& hazards,
-              double range_m, Instant now);
+  struct Followed {
+    bool reaches_last = false;  ///< the plan leads to the last waypoint
+    bool full = false;          ///< it has no room for more of them
+  };
+  Followed follow(Instant at, const std::vector<Vec2>& waypoints,
+                  const std::vector<Hazard>& hazards, double range_m, Instant now);
+  /// How many pieces a path may have that begins at `at`.
+  [[nodiscard]] std::size_t pieces_after(Instant at, Instant now) const;
   /// The present plan until `way` begins, then `way` at its own times, with which others count: in
   /// the wind that it was planned with; where with none, over the ground, from the present plan's
   /// mean speed on, and the wind that was set is its hold's alone. As continue_with().
@@ -174,6 +182,7 @@ class Flight {
   Duration lead_in_{};
   FlightPlan plan_;
   bool searching_ = false;
+  Instant search_goes_on_at_ = Instant::max();
   bool homing_ = false;
   Instant tries_home_at_ = Instant::max();
   std::optional<SiteId> stands_by_;

@@ -84,6 +84,45 @@ TEST(Flight, ARouteIsTakenUpWhereItWasLeft) {
   EXPECT_LT(plan.path.length_m() - flown_m, 3500.0 + 1500.0);
 }
 
+std::vector<Vec2> long_route(Random& random) {
+  std::vector<Vec2> route;
+  for (int i = 0; i < 60; ++i) {
+    route.emplace_back(random.uniform(-6000.0, 6000.0), random.uniform(-6000.0, 6000.0));
+  }
+  return route;
+}
+
+TEST(Flight, ARouteThatHasNoRoomInOnePlanIsFlownToItsEnd) {
+  Random random{11};
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<Vec2> route = long_route(random);
+    Flight flight{vehicle_with(Recovery::anywhere), {}, route};
+    flight.start({0.0, 0.0, random.uniform(-kPi, kPi)}, {}, 1e7, Instant{});
+    std::vector<double> nearest_m(route.size(), 1e9);
+    int plans = 0;
+    Instant t{};
+    while (plans < 20) {
+      const Instant next = flight.search_goes_on_at();
+      const Instant end = std::min(next, flight.plan().timed.end_time());
+      EXPECT_GT(end, t) << "a plan that goes nowhere, route " << i;
+      for (; t < end; t += 200ms) {
+        const Vec2 here = flight.pose_at(t).position();
+        for (std::size_t k = 0; k < route.size(); ++k) {
+          nearest_m[k] = std::min(nearest_m[k], (here - route[k]).norm());
+        }
+      }
+      ++plans;
+      if (next == Instant::max()) break;
+      flight.search({}, 1e7, next);
+      t = next;
+    }
+    EXPECT_GE(plans, 3) << "60 ways of three pieces each";
+    EXPECT_LT(plans, 20);
+    for (const double m : nearest_m) EXPECT_LT(m, 10.0) << "route " << i;
+    EXPECT_NE(flight.plan().timed.tail_curvature_per_m, 0.0);
+  }
+}
+
 TEST(Flight, AChangeOfHeightKeepsPathAndTimesAndLastsOverPlans) {
   Flight flight{vehicle_with(Recovery::home), {}, {{6000.0, 0.0}}};
   flight.start({0.0, 0.0, 0.0}, {}, 1e6, Instant{});

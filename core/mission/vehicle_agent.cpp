@@ -191,8 +191,8 @@ void VehicleAgent::Impl::idle(Instant now) {
   }
   if (scout_.flying() || leader_.leading()) return;
   if (failsafe_.in(Failsafe::Action::none) && relay_.fly(now)) return;
-  if (ownship_.flight().searching()) return;
-  ownship_.search(now);
+  const Flight& flight = ownship_.flight();
+  if (!flight.searching() || now >= flight.search_goes_on_at()) ownship_.search(now);
 }
 
 /// When idle() does something next.
@@ -205,9 +205,10 @@ Instant VehicleAgent::Impl::idle_until(Instant now) const {
     if (!ownship_.comes_home()) return kNever;
     return flight.homing() ? flight.tries_home_at() : now;
   }
-  if (!failsafe_.in(Failsafe::Action::none)) return flight.searching() ? kNever : now;
+  const Instant searches_at = flight.searching() ? flight.search_goes_on_at() : now;
+  if (!failsafe_.in(Failsafe::Action::none)) return searches_at;
   const Instant next = std::min(scout_.takes_up_at(), relay_.flies_at());
-  return flight.searching() || flight.stands_by() ? next : now;
+  return flight.stands_by() ? next : std::min(next, searches_at);
 }
 
 RouteStanding VehicleAgent::Impl::route_standing() const {
