@@ -212,16 +212,26 @@ void AgencyDesk::read_file(Instant now) {
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(0, in.gcount())));
   if (text.empty()) {
-    if (!std::exchange(told_file_, true)) {
+    if (std::exchange(reads_file_, false)) {
       spdlog::warn("agencies: ADS-B: {} cannot be read; it is tried again", adsb_file_);
     }
     return;
   }
-  told_file_ = false;
+  reads_file_ = true;
   const auto since_1970 = std::chrono::system_clock::now().time_since_epoch();
   for (auto& seen : adsb_.take_json(text, std::chrono::duration<double>(since_1970).count(), now)) {
     aircraft_.push_back(std::move(seen));
   }
+}
+
+std::string AgencyDesk::receiver_trouble() const {
+  if (adsb_lines_ && !adsb_lines_->connected()) {
+    return "there is no connection to the receiver (agencies.adsb.address)";
+  }
+  if (adsb_file_.empty()) return {};
+  if (!reads_file_) return adsb_file_ + " cannot be read (agencies.adsb.file)";
+  if (adsb_.is_old()) return adsb_file_ + " is not written any more (agencies.adsb.file)";
+  return {};
 }
 
 void AgencyDesk::on_timeout(const console::Picture& picture, const mission::Fleet& fleet,

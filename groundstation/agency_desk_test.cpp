@@ -174,14 +174,26 @@ TEST(AgencyDesk, ReadsTheFileThatAReceiverWrites) {
   EXPECT_NEAR(to_seconds(seen->aircraft.time.time_since_epoch()), 9.0, 0.5);
   EXPECT_FALSE(desk.next_aircraft(at_seconds(10.5)));
   EXPECT_TRUE(desk.next_aircraft(at_seconds(11.5))) << "it is read again";
-  std::filesystem::remove(file);
+  EXPECT_EQ(desk.receiver_trouble(), "");
+  std::ofstream{file} << "{\"now\": " << std::to_string(unix_s - 60.0) << R"(, "aircraft": []})";
   EXPECT_FALSE(desk.next_aircraft(at_seconds(13.0)));
+  EXPECT_THAT(desk.receiver_trouble(), HasSubstr("is not written any more"));
+  std::filesystem::remove(file);
+  EXPECT_FALSE(desk.next_aircraft(at_seconds(15.0)));
+  EXPECT_THAT(desk.receiver_trouble(), HasSubstr("cannot be read"));
+}
+
+TEST(AgencyDesk, SaysThatItsReceiverIsNotThere) {
+  AgencyDesk desk{config("agencies: {adsb: {address: 127.0.0.1, port: 9}}\n"), origin()};
+  EXPECT_FALSE(desk.next_aircraft(at_seconds(10.0)));
+  EXPECT_THAT(desk.receiver_trouble(), HasSubstr("no connection"));
 }
 
 TEST(AgencyDesk, WithoutConfigurationItDoesNothing) {
   EXPECT_FALSE((AgencyDesk{config(""), origin()}.next_aircraft(at_seconds(1.0))));
   AgencyDesk desk{config(""), origin()};
   EXPECT_FALSE(desk.next_marker(at_seconds(1.0)));
+  EXPECT_EQ(desk.receiver_trouble(), "");
   desk.on_timeout(console::Picture{{}}, mission::Fleet{{}}, at_seconds(1.0));
 }
 

@@ -191,6 +191,40 @@ Answer AreaDesk::answer(const NewHazard& order, Instant now) {
                             id.value, what)};
 }
 
+Answer AreaDesk::answer(const WithdrawHazard& order, Instant now) {
+  const HazardId number = node_->hazards().number_of(order.hazard);
+  const auto group = node_->hazards().groups().find(number);
+  std::string of_several;
+  if (group != node_->hazards().groups().end() && group->second.circles.size() > 1) {
+    of_several = fmt::format(" with all of its {} circles", group->second.circles.size());
+  }
+  const auto withdrawn = node_->hazards().withdraw(order.hazard, now);
+  if (!withdrawn) return refusal(withdrawn.error());
+  return {true, fmt::format("hazard {} is withdrawn{}\n", number.value, of_several)};
+}
+
+std::string AreaDesk::hazards_text() const {
+  const auto& groups = node_->hazards().groups();
+  std::string text;
+  for (const Hazard& hazard : node_->hazards().known()) {
+    const HazardId number = node_->hazards().number_of(hazard.id);
+    const auto group = groups.find(number);
+    const bool of_polygon = group != groups.end() && !group->second.shape.corners.empty();
+    if (of_polygon && group->second.circles.front() != hazard.id) continue;
+    fmt::format_to(std::back_inserter(text), "hazard {}: ", number.value);
+    if (of_polygon) {
+      fmt::format_to(std::back_inserter(text), "polygon of {} corners, the first {} of the origin",
+                     group->second.shape.corners.size(),
+                     wording::place_text(group->second.shape.corners.front()));
+      fmt::format_to(std::back_inserter(text), "; {}\n", shape_text(group->second));
+    } else {
+      fmt::format_to(std::back_inserter(text), "radius {:.0f} m around {} of the origin\n",
+                     hazard.radius_m, wording::place_text(hazard.centre));
+    }
+  }
+  return text.empty() ? "no hazard is known\n" : text;
+}
+
 std::string AreaDesk::text(Instant now) const {
   std::string text;
   for (const auto& [id, group] : node_->hazards().groups()) {

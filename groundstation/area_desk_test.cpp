@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "skein/base/random.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/groundstation/prompt.hpp"
@@ -88,7 +90,20 @@ TEST_F(AreaDeskTest, APolygonIsOneHazardThatIsChangedAndWithdrawn) {
   const auto shown = codec::parse_json(desk_.json(now_));
   EXPECT_EQ(shown["hazards"][0]["hazard"], 10'010);
   EXPECT_EQ(shown["hazards"][0]["radius_m"], 50.0);
-  EXPECT_TRUE(node_.hazards().withdraw({10'010}, now_).ok());
+  const Answer again = order("hazard polygon 0,0 400,0 400,200 0,200");
+  EXPECT_TRUE(again.done);
+  const auto& group = *node_.hazards().groups().rbegin();
+  EXPECT_THAT(desk_.hazards_text(),
+              HasSubstr("hazard " + std::to_string(group.first.value) +
+                        ": polygon of 4 corners, the first 0 m east, 0 m north of the origin; "));
+  EXPECT_THAT(desk_.hazards_text(),
+              HasSubstr("hazard 10010: radius 50 m around 600 m east, 0 m north of the origin\n"));
+  EXPECT_EQ(std::ranges::count(desk_.hazards_text(), '\n'), 2) << "a polygon is one hazard";
+  const Answer gone = desk_.answer(WithdrawHazard{group.second.circles.back()}, now_);
+  EXPECT_THAT(gone.text, HasSubstr(" is withdrawn with all of its "));
+  EXPECT_THAT(desk_.answer(WithdrawHazard{{10'010}}, now_).text,
+              HasSubstr("hazard 10010 is withdrawn\n"));
+  EXPECT_FALSE(desk_.answer(WithdrawHazard{{10'010}}, now_).done);
   EXPECT_TRUE(node_.hazards().known().empty());
   EXPECT_FALSE(order("change hazard 10010 600 0 50").done);
 }

@@ -10,18 +10,22 @@
 #include <utility>
 
 #include "skein/codec/json_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::groundstation {
 namespace {
 
 constexpr std::size_t kLineMax = 200;
+constexpr std::size_t kTextMax = 500;
 constexpr double kLongest_s = 9e9;  ///< that an Instant can tell
 
 codec::Json json_of(const Audit::Entry& entry, std::uint64_t seq) {
-  return {{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
-          {"who", entry.who},   {"from", entry.from},
-          {"line", entry.line}, {"done", entry.done},
-          {"text", entry.text}};
+  codec::Json json{{"seq", seq},         {"time_s", std::round(to_seconds(entry.time) * 1e3) / 1e3},
+                   {"who", entry.who},   {"from", entry.from},
+                   {"line", entry.line}, {"done", entry.done},
+                   {"text", entry.text}};
+  if (entry.in_part) json["in_part"] = true;
+  return json;
 }
 
 /// What a line of the file has of it; what it has not is left empty.
@@ -30,20 +34,24 @@ Audit::Entry entry_of(const codec::ParsedJson& line) {
     const auto found = line.find(name);
     return found != line.end() && found->is_string() ? found->get<std::string>() : std::string{};
   };
+  const auto is_set = [&line](const char* name) {
+    const auto found = line.find(name);
+    return found != line.end() && found->is_boolean() && found->get<bool>();
+  };
   const auto time = line.find("time_s");
-  const auto done = line.find("done");
   const double time_s = time != line.end() && time->is_number() ? time->get<double>() : 0.0;
   return {at_seconds(std::clamp(time_s, -kLongest_s, kLongest_s)),
           text("who"),
           text("from"),
           text("line"),
-          done != line.end() && done->is_boolean() && done->get<bool>(),
-          text("text")};
+          is_set("done"),
+          text("text"),
+          is_set("in_part")};
 }
 
-/// Of what somebody typed: a line's worth, without what a terminal would obey.
-std::string printable(std::string line) {
-  if (line.size() > kLineMax) line = line.substr(0, kLineMax) + "...";
+/// No more than that, without what a terminal would obey.
+std::string printable(std::string line, std::size_t most) {
+  if (line.size() > most) line = line.substr(0, most) + "...";
   for (char& c : line) {
     if (static_cast<unsigned char>(c) < 0x20U || c == 0x7f) c = '?';
   }
@@ -51,6 +59,11 @@ std::string printable(std::string line) {
 }
 
 }  // namespace
+
+std::string_view outcome_word(const Audit::Entry& entry) {
+  if (entry.done) return "";
+  return entry.in_part ? "in part: " : "refused: ";
+}
 
 Result<Audit> Audit::open(const std::string& folder, std::optional<AuditKey> key) {
   Audit audit;
@@ -139,8 +152,8 @@ Result<void> Audit::write_kept() {
 }
 
 Result<void> Audit::add(Entry entry) {
-  entry.text = entry.text.substr(0, entry.text.find('\n'));
-  entry.line = printable(entry.line);
+  entry.text = printable(wording::one_line(std::move(entry.text)), kTextMax);
+  entry.line = printable(std::move(entry.line), kLineMax);
   keep(std::move(entry), next_seq_++);
   show();
   return write_kept();
@@ -161,7 +174,7 @@ std::string Audit::text() const {
   std::string text;
   for (const auto& [entry, seq] : entries_) {
     text += fmt::format("{:.1f} s  {} ({}): {} -> {}{}\n", to_seconds(entry.time), entry.who,
-                        entry.from, entry.line, entry.done ? "" : "refused: ", entry.text);
+                        entry.from, entry.line, outcome_word(entry), entry.text);
   }
   return text.empty() ? "nobody has given an order yet\n" : text;
 }

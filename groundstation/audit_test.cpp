@@ -83,7 +83,7 @@ TEST_F(AuditTest, ARunIsSignedAtItsEndAndTheNextGoesOn) {
     close(audit);  // nothing since
   }
   Audit audit = open(&ground);
-  EXPECT_THAT(audit.text(), HasSubstr("3.5 s  ada (console): hold all -> sent"));
+  EXPECT_THAT(audit.text(), HasSubstr("3.5 s  ada (console): hold all -> sent; all\n"));
   EXPECT_EQ(codec::parse_json(audit.json()).size(), 2U) << "the console shows what was before";
   add(audit, "return 3");
   EXPECT_EQ(codec::parse_json(audit.json()).back()["seq"], 3) << "2 is the signature";
@@ -100,6 +100,20 @@ TEST_F(AuditTest, ARunIsSignedAtItsEndAndTheNextGoesOn) {
   EXPECT_THAT(findings.remarks, IsEmpty());
   EXPECT_THAT(verify_audit(text_of(lines()), nullptr).remarks,
               ElementsAre(HasSubstr("2 signatures are not checked")));
+}
+
+TEST_F(AuditTest, AnAnswerIsKeptWholeAndSaysWhatWasDoneInPart) {
+  Audit audit = open();
+  EXPECT_TRUE(audit
+                  .add({at_seconds(4.0), "ada", "prompt", "hold 2,3", false,
+                        "told to 2\nnot to 3: why\n", true})
+                  .ok());
+  const char* const shown = "hold 2,3 -> in part: told to 2; not to 3: why\n";
+  EXPECT_THAT(audit.text(), HasSubstr(shown));
+  EXPECT_THAT(open().text(), HasSubstr(shown)) << "of the file";
+  EXPECT_TRUE(
+      audit.add({at_seconds(5.0), "ada", "prompt", "sites f", true, std::string(9000, 'x')}).ok());
+  EXPECT_LT(lines().back().size(), 1000U);
 }
 
 TEST_F(AuditTest, WhatIsChangedIsFound) {

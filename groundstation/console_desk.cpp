@@ -13,6 +13,7 @@
 #include "skein/codec/json_text.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/console/team_state.hpp"
+#include "skein/console/team_traffic.hpp"
 #include "skein/groundstation/logins.hpp"
 #include "skein/groundstation/orders.hpp"
 #include "skein/groundstation/vehicle_text.hpp"
@@ -108,6 +109,8 @@ std::optional<console::Section> section_of(View view) {
       return Section::links;
     case View::wind:
       return Section::wind;
+    case View::traffic:
+      return Section::traffic;
     case View::alarms:
       return Section::alarms;
     case View::help:
@@ -214,6 +217,7 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event, Instant now) {
 
 void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now) {
   alarms_.on_command(beside.nobody_commands, now);
+  alarms_.on_receivers(beside.receiver_trouble, now);
   alarms_.on_timeout(picture_, fleet, now);
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));
@@ -260,14 +264,15 @@ std::optional<console::Server::Line> ConsoleDesk::next() {
   return std::nullopt;
 }
 
-std::string links_and_wind_text(View view, const console::Picture& picture,
-                                const mission::Fleet& fleet, Instant now) {
+std::string picture_text(View view, const console::Picture& picture, const mission::Fleet& fleet,
+                         Instant now) {
   if (view == View::links) {
     return console::links_text(console::team_links(fleet, picture.receptions(), now));
   }
   if (view == View::wind) {
     return console::wind_text(picture.wind().estimate(console::without_airspeed(fleet), now), now);
   }
+  if (view == View::traffic) return console::traffic_text(picture, fleet, now);
   return "";
 }
 

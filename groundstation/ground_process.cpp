@@ -65,6 +65,7 @@ namespace {
 constexpr Duration kStepPeriod = std::chrono::milliseconds{50};
 constexpr Duration kStepSpacing = std::chrono::milliseconds{20};  // telemetry comes all the time
 constexpr Duration kReportPeriod = std::chrono::seconds{1};
+constexpr Duration kPlannedForWatchers = std::chrono::seconds{1};
 constexpr Duration kFlushPeriod = std::chrono::seconds{1};
 constexpr int kConsoleLinesPerStep = 8;  // so that a flood cannot keep the loop from its deadlines
 constexpr int kMessagesPerStep = 1000;   // nor one of messages
@@ -143,14 +144,6 @@ std::string json_of(const Answer& answer) {
   return codec::json_text(json, 2) + "\n";
 }
 
-std::string one_line(std::string lines) {
-  while (lines.ends_with('\n')) lines.pop_back();
-  for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos;) {
-    lines.replace(at, 1, "; ");
-  }
-  return lines;
-}
-
 /// Carries messages and lines to the node, and its messages, events and requests away.
 class GroundLoop {
  public:
@@ -225,7 +218,7 @@ class GroundLoop {
     recorder_.flush();
     const Instant now = clock_.now();
     const std::string summary = summary_text(console_.picture(), node_.fleet());
-    spdlog::info("the mission as it was left: {}", one_line(summary));
+    spdlog::info("the mission as it was left: {}", wording::one_line(summary));
     console_.end(node_.fleet(), {audit_.json(), areas_.json(now), commanding_.desk().json(now)},
                  summary, now);
     const auto since_1970 =
@@ -308,7 +301,7 @@ class GroundLoop {
       operator_name_ = asked.name;
       given.text = asked.name + " decides and signs at the prompt and the command line\n";
     }
-    note({now, who, "command line", line, given.done, given.text});
+    note({now, who, "command line", line, given.done, given.text, given.in_part});
     return given;
   }
 
@@ -333,18 +326,19 @@ class GroundLoop {
   Answer answer(const Result<Input>& input, std::string line, const Asker& asker, Instant now) {
     if (line.empty() && input) line = line_of(*input);
     const char* not_here = input && asker.from == kConsole ? why_not_on_console(*input) : nullptr;
-    if (input && not_here == nullptr && only_looks(*input)) return look(*input, now);
+    if (input && not_here == nullptr && only_looks(*input)) return look(*input, asker, now);
     Answer given = !input                ? refusal(input.error())
                    : not_here != nullptr ? Answer{false, not_here}
                    : !asker.may_order    ? Answer{false, "an observer gives no orders\n"}
                                          : order(*input, asker, now);
     // What an observer tries would only push the orders out of sight.
-    if (asker.may_order)
-      note({now, asker.who, asker.from, std::move(line), given.done, given.text});
+    if (asker.may_order) {
+      note({now, asker.who, asker.from, std::move(line), given.done, given.text, given.in_part});
+    }
     return given;
   }
 
-  Answer look(const Input& input, Instant now) {
+  Answer look(const Input& input, const Asker& asker, Instant now) {
     if (const auto* view = std::get_if<View>(&input)) {
       return {true, text_of(*view, now), data_of(*view, now)};
     }
@@ -356,6 +350,10 @@ class GroundLoop {
     }
     if (const auto* preview = std::get_if<ReturnPreview>(&input)) {
       return returns_.answer(*preview, now);
+    }
+    // What is planned takes a while, and who only watches keeps no operator waiting with it.
+    if (!asker.may_order && now < std::exchange(next_for_watchers_, now + kPlannedForWatchers)) {
+      return {false, "others who watch have just tried something: ask again in a second\n"};
     }
     if (const auto* preview = std::get_if<Formation>(&input)) return formed(*preview, now);
     if (const auto* preview = std::get_if<NewSite>(&input)) return sites_.answer(*preview, "", now);
@@ -383,7 +381,10 @@ class GroundLoop {
       return decision_answer(*back, node_.agent(), asker.who, now);
     }
     if (const auto* order = std::get_if<Order>(&input)) {
-      return answer_to(node_.command(order->vehicle, order->kind, now));
+      const auto given = node_.command(order->vehicle, order->kind, now);
+      if (order->vehicle != kGroundStation) return answer_to(given);
+      return told_all(given, node_.fleet(),
+                      [&](VehicleId one) { return node_.why_not_told(one, order->kind); });
     }
     if (const auto* several = std::get_if<OrderToSeveral>(&input)) {
       return tell_each(*several,
@@ -392,7 +393,7 @@ class GroundLoop {
     if (const auto* hazard = std::get_if<NewHazard>(&input)) return areas_.answer(*hazard, now);
     if (const auto* search = std::get_if<SearchArea>(&input)) return areas_.answer(*search, now);
     if (const auto* gone = std::get_if<WithdrawHazard>(&input)) {
-      return answer_to(node_.hazards().withdraw(gone->hazard, now));
+      return areas_.answer(*gone, now);
     }
     if (const auto* fence = std::get_if<NewFence>(&input)) return fence_.answer(*fence, now);
     if (const auto* site = std::get_if<NewSite>(&input))
@@ -438,7 +439,8 @@ class GroundLoop {
     if (newest.done) {
       spdlog::info("{} ({}): {}", newest.who, newest.from, newest.line);
     } else {
-      spdlog::warn("{} ({}): {}: refused: {}", newest.who, newest.from, newest.line, newest.text);
+      spdlog::warn("{} ({}): {}: {}{}", newest.who, newest.from, newest.line, outcome_word(newest),
+                   newest.text);
     }
     if (!noted) {
       spdlog::error("the audit log: {}", noted.error().message);
@@ -466,7 +468,7 @@ class GroundLoop {
       case View::coalitions:
         return coalitions_text(console_.picture());
       case View::hazards:
-        return hazards_text(console_.picture());
+        return areas_.hazards_text();
       case View::audit:
         return audit_.text();
       case View::command:
@@ -487,6 +489,7 @@ class GroundLoop {
         return console::preflight_text(console::team_preflight(node_.fleet(), now), now);
       case View::links:
       case View::wind:
+      case View::traffic:
         return console_.text(view, node_.fleet(), now);
     }
     return "";
@@ -527,7 +530,7 @@ class GroundLoop {
     console_.on_decisions(node_.agent(), now);
     console_.on_timeout(node_.fleet(),
                         {audit_.json(), areas_.json(now), commanding_.desk().json(now),
-                         commanding_.desk().nobody_commands(now)},
+                         commanding_.desk().nobody_commands(now), agencies_.receiver_trouble()},
                         now);
     if (commanding_.is_commanding()) {
       agencies_.on_timeout(console_.picture(), node_.fleet(), now);
@@ -613,6 +616,7 @@ class GroundLoop {
   AgencyDesk agencies_;
   Audit audit_;
   std::set<std::pair<SiteId, coalition::Round>> shown_;
+  Instant next_for_watchers_ = Instant::min();
   Instant next_flush_{Instant::min()};
   std::string recording_folder_;
   bool among_machines_;

@@ -17,10 +17,10 @@ namespace skein::groundstation {
 namespace {
 
 std::string_view word_of(View view) {
-  static constexpr std::array<std::string_view, 18> kWords{
-      "help",    "status", "sites",     "pending", "places",  "coalitions",
-      "hazards", "audit",  "proposals", "routes",  "search",  "preflight",
-      "fence",   "links",  "wind",      "alarms",  "command", "console"};
+  static constexpr std::array<std::string_view, 19> kWords{
+      "help",  "status",    "sites",  "pending", "places",    "coalitions", "hazards",
+      "audit", "proposals", "routes", "search",  "preflight", "fence",      "links",
+      "wind",  "traffic",   "alarms", "command", "console"};
   return kWords.at(static_cast<std::size_t>(view));
 }
 

@@ -303,6 +303,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "status") return status(words);
   if (verb == "links") return view(View::links, words);
   if (verb == "wind") return view(View::wind, words);
+  if (verb == "traffic") return view(View::traffic, words);
   if (verb == "sites" && words.size() == 2) return Input{SitesFromFile{std::string{words[1]}}};
   if (verb == "sites") return view(View::sites, words);
   if (is_of_hazard(words)) return hazard_order(words, false);
@@ -360,6 +361,7 @@ std::string help_of_sites() {
   return "status [ID]       the fleet: what each vehicle does, when it was last heard, its health\n"
          "links             who hears whom, how often, and what is lost\n"
          "wind              as the planes that fly tell it\n"
+         "traffic           aircraft that are not of the team, the nearest first\n"
          "preflight [ID]    who is ready before the flight, and what each vehicle's checks find\n"
          "sites             the sites and what was done there\n"
          "pending           deliveries that wait for your decision\n"
@@ -371,7 +373,7 @@ std::string help_of_sites() {
          "                  take back what was authorised there, but for a delivery that has "
          "begun\n"
          "coalitions        what was announced, bid and awarded, and what came of it\n"
-         "hazards           the circles to keep out of\n"
+         "hazards           what to keep out of\n"
          "hazard EAST NORTH RADIUS\n"
          "                  tell all of another one, in metres from the origin\n"
          "hazard polygon E,N E,N E,N ...\n"

@@ -59,6 +59,7 @@ TEST(Prompt, UnderstandsEveryCommand) {
   EXPECT_THAT(refusal_of("status all"), HasSubstr("a vehicle's number"));
   EXPECT_EQ(parsed<View>("links"), View::links);
   EXPECT_EQ(parsed<View>("wind"), View::wind);
+  EXPECT_EQ(parsed<View>("traffic"), View::traffic);
   EXPECT_TRUE(parsed<ReturnPreview>("preview return all").vehicles.empty());
   EXPECT_EQ(parsed<ReturnPreview>("preview return 3-5").vehicles.size(), 3U);
   EXPECT_EQ(parsed<ReturnPreview>("preview return 3,12").vehicles,

@@ -167,7 +167,7 @@ class ReplayLoop {
         return console::preflight_text(console::team_preflight(playback_.fleet(), playback_.now()),
                                        playback_.now());
       default:
-        return links_and_wind_text(view, playback_.picture(), playback_.fleet(), playback_.now());
+        return picture_text(view, playback_.picture(), playback_.fleet(), playback_.now());
     }
   }
 

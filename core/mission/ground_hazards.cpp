@@ -93,12 +93,12 @@ Result<HazardId> GroundHazards::add(const HazardShape& shape, Instant now) {
   return number;
 }
 
-std::map<HazardId, HazardGroup>::iterator GroundHazards::group_of(HazardId id) {
-  const auto named = groups_.find(id);
-  if (named != groups_.end()) return named;
-  return std::ranges::find_if(groups_, [id](const auto& group) {
-    return std::ranges::find(group.second.circles, id) != group.second.circles.end();
+HazardId GroundHazards::number_of(HazardId id) const {
+  if (groups_.contains(id)) return id;
+  const auto group = std::ranges::find_if(groups_, [id](const auto& one) {
+    return std::ranges::find(one.second.circles, id) != one.second.circles.end();
   });
+  return group == groups_.end() ? id : group->first;
 }
 
 Result<void> GroundHazards::change(HazardId number, const HazardShape& shape, Instant now) {

@@ -215,6 +215,10 @@ Result<void> GroundNode::land(VehicleId vehicle, Instant now) {
   return {};
 }
 
+std::optional<std::string> GroundNode::why_not_told(VehicleId vehicle, CommandKind kind) const {
+  return kind == CommandKind::land ? why_not_land(vehicle) : std::nullopt;
+}
+
 std::optional<std::string> GroundNode::why_not_return(VehicleId vehicle) const {
   if (!stays_in_formation(vehicle)) return std::nullopt;
   return (vehicle == kGroundStation ? "the fleet" : name_of(vehicle)) +

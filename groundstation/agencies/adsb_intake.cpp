@@ -204,7 +204,8 @@ std::vector<mission::SeenAircraft> AdsbIntake::take_json(std::string_view text, 
   }
   const auto written_s = number_in(file, "now", 0.0, 1e11);
   const double file_age_s = written_s ? std::max(0.0, unix_s - *written_s) : 0.0;
-  if (file_age_s > kFileAgeMax_s) return all;
+  is_old_ = file_age_s > kFileAgeMax_s;
+  if (is_old_) return all;
   for (const ParsedJson& one : *list) {
     if (all.size() >= kAircraftMax) break;
     const auto hex = one.is_object() ? one.find("hex") : one.end();

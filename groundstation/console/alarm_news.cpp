@@ -236,6 +236,12 @@ void AlarmNews::on_command(bool nobody, Instant now) {
   begin(key, {now, "nobody is in command: no ground station that has it is heard", {}, true});
 }
 
+void AlarmNews::on_receivers(const std::string& trouble, Instant now) {
+  const Key key{Topic::traffic_unseen};
+  if (trouble.empty()) return drop(key);
+  begin(key, {now, "aircraft are not seen: " + trouble, {}, false});
+}
+
 void AlarmNews::on_event(const mission::MissionEvent& event, Instant now) {
   std::visit(Reader{*this, event, now}, event.body);
   for (auto one = items_.lower_bound({Topic::told}); one != items_.end();) {

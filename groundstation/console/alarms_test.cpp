@@ -160,6 +160,12 @@ std::function<void(Desk&)> nobody(bool commands) {
     desk.run(0.2);
   };
 }
+std::function<void(Desk&)> receivers(const std::string& trouble) {
+  return [trouble](Desk& desk) {
+    desk.alarms.on_receivers(trouble, desk.now());
+    desk.run(2.5);
+  };
+}
 void command_is_taken(Desk& desk) {
   desk.tell(kGroundStation, event::CommandHanded{true, "ada"});
   desk.tell(kGroundStation, event::CommandHanded{false, "ben"});
@@ -315,6 +321,7 @@ std::map<AlarmKind, Case> cases() {
                         tells(kGroundStation, event::SetupAgrees{{3}})};
   all[formation_lost] = {tells(kGroundStation, formation(event::FormationNews::lost)),
                          tells(kGroundStation, formation(event::FormationNews::back))};
+  all[traffic_unseen] = {receivers("10.0.0.7:30003 is not connected"), receivers("")};
   all[nobody_commands] = {nobody(true), nobody(false)};
   all[command_elsewhere] = {command_is_taken,
                             tells(kGroundStation, event::CommandHanded{true, "ada"})};

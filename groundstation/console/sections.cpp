@@ -18,6 +18,7 @@
 #include "skein/console/team_links.hpp"
 #include "skein/console/team_preflight.hpp"
 #include "skein/console/team_state.hpp"
+#include "skein/console/team_traffic.hpp"
 #include "skein/console/team_wind.hpp"
 #include "skein/idl/autopilot_fields.hpp"
 #include "skein/idl/coalition_fields.hpp"
@@ -25,7 +26,6 @@
 #include "skein/idl/events_fields.hpp"
 #include "skein/mission/formation_ground.hpp"
 #include "skein/wording/wording.hpp"
-#include "traffic_section.hpp"
 
 namespace skein::console {
 namespace {

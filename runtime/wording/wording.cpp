@@ -612,6 +612,14 @@ std::string bearing_digits(double heading_rad) {
   return digits == "360" ? "000" : digits;
 }
 
+std::string one_line(std::string lines) {
+  while (lines.ends_with('\n')) lines.pop_back();
+  for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos;) {
+    lines.replace(at, 1, "; ");
+  }
+  return lines;
+}
+
 std::string place_text(const Vec2& position) {
   return fmt::format("{:.0f} m east, {:.0f} m north", position.x(), position.y());
 }

@@ -63,6 +63,9 @@ class AgencyDesk {
   [[nodiscard]] std::optional<mission::Detection> next_marker(Instant now);
   /// The next aircraft that a receiver of ADS-B tells of.
   [[nodiscard]] std::optional<mission::SeenAircraft> next_aircraft(Instant now);
+  /// Why no receiver of ADS-B tells of aircraft, for people; empty where one does, or none is
+  /// configured.
+  [[nodiscard]] std::string receiver_trouble() const;
   /// `now` and the system's clock.
   void on_timeout(const console::Picture& picture, const mission::Fleet& fleet, Instant now);
   /// Warnings of vehicles are passed on.
@@ -95,7 +98,7 @@ class AgencyDesk {
   std::deque<mission::SeenAircraft> aircraft_;
   Instant next_lines_{Instant::min()};
   Instant next_file_{Instant::min()};
-  bool told_file_ = false;  ///< that it cannot be read
+  bool reads_file_ = true;  ///< could it be read the last time
   Instant next_{Instant::min()};
   Instant next_complaint_{Instant::min()};
 };

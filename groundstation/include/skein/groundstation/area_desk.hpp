@@ -18,6 +18,9 @@ class AreaDesk {
   // What came of it, for the operator.
   [[nodiscard]] Answer answer(const SearchArea& order, Instant now);
   [[nodiscard]] Answer answer(const NewHazard& order, Instant now);
+  [[nodiscard]] Answer answer(const WithdrawHazard& order, Instant now);
+  /// What is kept out of: circles, and polygons by their one number.
+  [[nodiscard]] std::string hazards_text() const;
   /// The area that is searched, and each vehicle's share.
   [[nodiscard]] std::string text(Instant now) const;
   /// The section `areas` of docs/console-socket.md, as it was within the last kJsonPeriod.

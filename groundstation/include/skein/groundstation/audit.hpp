@@ -26,7 +26,8 @@ class Audit {
     std::string from;  ///< console, prompt, command line
     std::string line;  ///< as it was given
     bool done = false;
-    std::string text;  ///< the answer's first line
+    std::string text;      ///< the answer, its lines in one
+    bool in_part = false;  ///< done for some of whom it was for
   };
 
   /// `folder` empty: kept in memory only. A file of an earlier run is gone on with, and its newest
@@ -69,5 +70,8 @@ class Audit {
   bool is_unsigned_ = false;                 ///< entries follow the last signature
   std::string json_ = "[]";
 };
+
+/// Before an entry's text, for people: "refused: ", "in part: "; empty where it was done.
+[[nodiscard]] std::string_view outcome_word(const Audit::Entry& entry);
 
 }  // namespace skein::groundstation

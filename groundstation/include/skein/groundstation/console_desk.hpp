@@ -24,8 +24,8 @@
 namespace skein::groundstation {
 
 /// For people, of the views `links` and `wind`; empty of others.
-[[nodiscard]] std::string links_and_wind_text(View view, const console::Picture& picture,
-                                              const mission::Fleet& fleet, Instant now);
+[[nodiscard]] std::string picture_text(View view, const console::Picture& picture,
+                                       const mission::Fleet& fleet, Instant now);
 
 /// Where the web console meets the ground station: keeps the picture, shows it ten times a second
 /// to whoever watches, and passes the lines on that are given there. There is a picture also where
@@ -54,12 +54,13 @@ class ConsoleDesk {
   void on_traffic(const std::map<std::uint32_t, mission::SeenAircraft>& all) {
     picture_.on_traffic(all);
   }
-  /// What is shown that is not of the picture: sections, and whether nobody has the command.
+  /// What is shown that is not of the picture: sections, and what the alarms are told of.
   struct Beside {
     const std::string& audit;
     const std::string& areas;
     const std::string& command;
     bool nobody_commands = false;
+    std::string receiver_trouble = {};  ///< why aircraft are not seen
   };
   void on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now);
 
@@ -86,7 +87,7 @@ class ConsoleDesk {
   [[nodiscard]] Answer status_of(VehicleId vehicle, const mission::Fleet& fleet, Instant now) const;
   /// Of the views `links` and `wind`.
   [[nodiscard]] std::string text(View view, const mission::Fleet& fleet, Instant now) const {
-    return links_and_wind_text(view, picture_, fleet, now);
+    return picture_text(view, picture_, fleet, now);
   }
   /// What the ground station's network counts of each vehicle.
   void on_receptions(const std::vector<network::Reception>& receptions);

@@ -17,6 +17,7 @@ struct Answer {
   bool done = false;  ///< otherwise refused, and the text says why
   std::string text;
   std::string data = {};  ///< the same for programs: JSON; empty where there is no more to say
+  bool in_part = false;   ///< not done for all that it was asked for, but for some
 };
 
 /// The name under which a ground station with this network port listens, unless its configuration

@@ -65,6 +65,7 @@ enum class View {
   fence,
   links,
   wind,
+  traffic,  ///< aircraft that are not of the team
   alarms,
   command,  ///< who has it
   console   ///< its address

@@ -92,7 +92,7 @@ function Audit() {
                 <code>{entry.line}</code>
               </td>
               <td class={entry.done ? "" : "problem alarm"}>
-                {entry.done ? "" : "not done: "}
+                {entry.done ? "" : entry.in_part ? "in part: " : "not done: "}
                 {entry.text}
               </td>
             </tr>

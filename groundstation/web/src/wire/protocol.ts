@@ -263,6 +263,7 @@ export interface AuditEntry {
   from: string;
   line: string;
   done: boolean;
+  in_part?: boolean; // done for some of whom it was for
   text: string;
 }
 

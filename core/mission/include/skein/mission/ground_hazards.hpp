@@ -68,6 +68,9 @@ class GroundHazards {
   /// By their numbers. Not recalled: after a new start each circle is a hazard of its own.
   [[nodiscard]] const std::map<HazardId, HazardGroup>& groups() const { return groups_; }
 
+  /// Of the group that it is a circle of; its own where it stands alone.
+  [[nodiscard]] HazardId number_of(HazardId id) const;
+
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
   [[nodiscard]] Instant next_timeout() const { return next_; }
   [[nodiscard]] std::uint64_t dropped() const { return messages_.dropped(); }
@@ -89,7 +92,9 @@ class GroundHazards {
   [[nodiscard]] Result<HazardGroup> tell(const HazardShape& shape, Instant now);
   [[nodiscard]] std::size_t standing() const;
   /// Of which this circle is one, or that number; none where it stands alone.
-  [[nodiscard]] std::map<HazardId, HazardGroup>::iterator group_of(HazardId id);
+  [[nodiscard]] std::map<HazardId, HazardGroup>::iterator group_of(HazardId id) {
+    return groups_.find(number_of(id));
+  }
   void withdraw_circle(HazardId id, Instant now);
   [[nodiscard]] bool all_know(const Retiring& retiring, const Fleet& fleet) const;
 

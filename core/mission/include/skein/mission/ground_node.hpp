@@ -153,6 +153,9 @@ class GroundNode {
            detections_.dropped() + fence_.dropped() + returns_.dropped() + landings_.dropped();
   }
 
+  /// Why an order of that kind to all leaves that vehicle out.
+  [[nodiscard]] std::optional<std::string> why_not_told(VehicleId vehicle, CommandKind kind) const;
+
  private:
   void take_events();
   void use_fence();

@@ -45,6 +45,8 @@ class AdsbIntake {
   [[nodiscard]] std::vector<mission::SeenAircraft> take_json(std::string_view text, double unix_s,
                                                              Instant now);
 
+  /// The newest file was written so long ago that nothing is taken of it.
+  [[nodiscard]] bool is_old() const { return is_old_; }
   [[nodiscard]] std::uint64_t unreadable() const { return unreadable_; }
   /// Of those that are not in the mission's area.
   [[nodiscard]] std::uint64_t far_away() const { return far_away_; }
@@ -65,6 +67,7 @@ class AdsbIntake {
   double sea_level_m_;  ///< of the standard atmosphere's zero, above the sea
   double geoid_height_m_;
   std::map<std::uint32_t, Known> known_;
+  bool is_old_ = false;
   std::uint64_t unreadable_ = 0;
   std::uint64_t far_away_ = 0;
 };

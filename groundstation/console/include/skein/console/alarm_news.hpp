@@ -37,7 +37,8 @@ class AlarmNews {
     not_landed,         ///< vehicle
     command_elsewhere,  ///< since it was taken from here
     nobody_commands,
-    told  ///< once; detail: a running number
+    traffic_unseen,  ///< by the receivers of this ground station
+    told             ///< once; detail: a running number
   };
   struct Key {
     Topic topic{};
@@ -56,6 +57,8 @@ class AlarmNews {
 
   void on_event(const mission::MissionEvent& event, Instant now);
   void on_command(bool nobody, Instant now);
+  /// What keeps receivers from telling of aircraft; empty where nothing does.
+  void on_receivers(const std::string& trouble, Instant now);
   void drop(const Key& key) { items_.erase(key); }
 
   [[nodiscard]] const std::map<Key, Item>& items() const { return items_; }

@@ -51,6 +51,7 @@ enum class AlarmKind : std::uint8_t {
   command_elsewhere,
   separation,
   traffic,
+  traffic_unseen,
   all_held,
   formation_waits,
   order_waits,
@@ -124,6 +125,8 @@ class Alarms {
   void on_event(const mission::MissionEvent& event, Instant now);
   /// Of several ground stations: whether none that has the command is heard. No recording tells.
   void on_command(bool nobody, Instant now) { news_.on_command(nobody, now); }
+  /// What keeps this ground station's receivers from telling of aircraft; empty where nothing does.
+  void on_receivers(const std::string& trouble, Instant now) { news_.on_receivers(trouble, now); }
   /// What an earlier process of this ground station was told.
   void recall(const mission::MissionEvent& event, Instant at);
   /// Before what is heard at `now` is taken.

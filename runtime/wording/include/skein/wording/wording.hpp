@@ -32,6 +32,8 @@ namespace skein::wording {
 /// The same for a line that is typed, without its unit and with what it has beyond whole degrees:
 /// "045", "007.5".
 [[nodiscard]] std::string bearing_digits(double heading_rad);
+/// "told to 3; not to 4: ...", of lines that end alike.
+[[nodiscard]] std::string one_line(std::string lines);
 /// "1200 m east, -300 m north"
 [[nodiscard]] std::string place_text(const Vec2& position);
 /// A moment of the mission: "123.4 s (14:05:33 UTC)".

@@ -12,5 +12,8 @@ namespace skein::console {
 /// are now, the nearest first.
 [[nodiscard]] std::string traffic_json(const Picture& picture, const mission::Fleet& fleet,
                                        Instant now);
+/// The same for people, a line each.
+[[nodiscard]] std::string traffic_text(const Picture& picture, const mission::Fleet& fleet,
+                                       Instant now);
 
 }  // namespace skein::console
