@@ -145,7 +145,7 @@ void Companion::Impl::step(Instant now) {
   check_parameters(now);
   ask_others(now);
   keep_clock(now);
-  if (renews_fence_ && !machine_.in(State::preparing)) renews_fence_ = !give_fence(now);
+  if (renews_fence_ && !machine_.in(State::preparing)) renew_fence(now);
   say_remote_id(now);
   say_upload(fence_upload_, now);
   say_upload(upload_, now);

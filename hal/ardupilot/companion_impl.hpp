@@ -161,6 +161,7 @@ class Companion::Impl {
   void forget_landing();
   /// True once the autopilot has it, or there is none.
   bool give_fence(Instant now);
+  void renew_fence(Instant now);
   void forget_fence();
   void say_upload(MissionUpload& upload, Instant now);
   void fly_to(PositionSetpoint point, const VehicleState& state, double home_z_m, Instant now);

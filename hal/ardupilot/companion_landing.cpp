@@ -74,6 +74,13 @@ void Companion::Impl::keep_fence(const Fence& fence) {
   params_.fence = fence;
   forget_fence();
   renews_fence_ = true;
+  parameters_.add(ordered_fence_questions());
+}
+
+/// Until it has it, and has told how it is set: what is wrong is told, and flown on with.
+void Companion::Impl::renew_fence(Instant now) {
+  for (const std::string_view name : parameters_.due(now)) ask_parameter(name);
+  renews_fence_ = !give_fence(now) || !parameters_.all_tried();
 }
 
 void Companion::Impl::forget_fence() {

@@ -102,5 +102,18 @@ TEST(FenceUpload, ItsParametersAreLookedAtFirst) {
   }
 }
 
+TEST(FenceUpload, OneThatIsOrderedInFlightHasItsParametersLookedAtToo) {
+  Line line;
+  line.autopilot.parameters["FENCE_ENABLE"] = 0.0F;
+  line.autopilot.parameters["FENCE_ACTION"] = 1.0F;
+  line.autopilot.parameters["FENCE_TYPE"] = 7.0F;
+  ASSERT_LT(line.until(State::flying, 10.0), std::chrono::seconds{5});
+  line.companion.keep_fence(fenced().fence);
+  line.run(6.0);
+  EXPECT_EQ(line.autopilot.fence.size(), 4U);
+  EXPECT_THAT(line.warnings, Contains(HasSubstr("FENCE_ENABLE is 0, so the autopilot keeps no")));
+  EXPECT_EQ(line.companion.state(), State::flying) << "it is flown on with";
+}
+
 }  // namespace
 }  // namespace skein::ardupilot

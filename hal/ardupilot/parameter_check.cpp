@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <array>
 #include <utility>
 
@@ -38,8 +39,19 @@ ParameterQuestion question(std::string_view name, std::string_view other_name, s
 void add_fence_questions(std::vector<ParameterQuestion>& questions, const VehicleSpec& vehicle,
                          const Fence& fence) {
   if (!fence.exists()) return;
+  std::ranges::move(ordered_fence_questions(), std::back_inserter(questions));
   const double least_m = vehicle.height_m;
   const double most_m = fence.height_max_m;
+  questions.push_back(question(
+      "FENCE_ALT_MAX", "", fmt::format("{:g}", most_m),
+      fmt::format("the fence's height is {:g} m, and the vehicle's {:g} m", most_m, least_m),
+      [=](double v) { return v > least_m && v <= most_m; }));
+}
+
+}  // namespace
+
+std::vector<ParameterQuestion> ordered_fence_questions() {
+  std::vector<ParameterQuestion> questions;
   // Bits of FENCE_TYPE: 0 is the greatest height, 2 polygons.
   constexpr int kTypes = 5;
   questions.push_back(question("FENCE_ENABLE", "", "1", "the autopilot keeps no fence",
@@ -49,13 +61,8 @@ void add_fence_questions(std::vector<ParameterQuestion>& questions, const Vehicl
   questions.push_back(
       question("FENCE_TYPE", "", "5", "it does not keep both polygon and height",
                [](double v) { return v >= 0.0 && (static_cast<int>(v) & kTypes) == kTypes; }));
-  questions.push_back(question(
-      "FENCE_ALT_MAX", "", fmt::format("{:g}", most_m),
-      fmt::format("the fence's height is {:g} m, and the vehicle's {:g} m", most_m, least_m),
-      [=](double v) { return v > least_m && v <= most_m; }));
+  return questions;
 }
-
-}  // namespace
 
 std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle, std::uint8_t system_id,
                                                 const Fence& fence) {
@@ -106,6 +113,14 @@ std::vector<ParameterQuestion> limit_questions(const VehicleSpec& vehicle) {
 
 ParameterCheck::ParameterCheck(std::vector<ParameterQuestion> questions) {
   for (ParameterQuestion& question : questions) entries_.push_back({std::move(question)});
+}
+
+void ParameterCheck::add(std::vector<ParameterQuestion> questions) {
+  for (ParameterQuestion& question : questions) {
+    const bool asks = std::ranges::any_of(
+        entries_, [&](const Entry& entry) { return entry.question.name == question.name; });
+    if (!asks) entries_.push_back({std::move(question)});
+  }
 }
 
 void ParameterCheck::begin() {

@@ -36,6 +36,9 @@ struct ParameterQuestion {
 [[nodiscard]] std::vector<ParameterQuestion> safety_questions(const VehicleSpec& vehicle,
                                                               std::uint8_t system_id,
                                                               const Fence& fence);
+/// What an autopilot must be set to, to keep the outline of a fence that is ordered in flight. Its
+/// greatest height is the crew's (FENCE_ALT_MAX).
+[[nodiscard]] std::vector<ParameterQuestion> ordered_fence_questions();
 /// Where a Remote ID is required: the autopilot itself does not arm without.
 [[nodiscard]] std::vector<ParameterQuestion> remote_id_questions(const RemoteId& id);
 /// Of what limits the vehicle (flight_limits.hpp).
@@ -47,6 +50,8 @@ class ParameterCheck {
  public:
   explicit ParameterCheck(std::vector<ParameterQuestion> questions);
 
+  /// Asks for these, too, but for those that it asks for already.
+  void add(std::vector<ParameterQuestion> questions);
   /// Nothing is known any more: the autopilot is another, or has started anew.
   void begin();
   /// Names to be asked for now.
