@@ -251,6 +251,27 @@ std::vector<ArcFlown> arcs_flown(const RunRecord& record, TaskKind kind, const L
   return all;
 }
 
+std::map<TaskId, TaskFlown> tasks_flown(const RunRecord& record, const Limits& limits) {
+  std::map<TaskId, TaskFlown> flown;
+  for (const TaskRun& run : task_runs(record)) {
+    if (!run.done) continue;
+    const auto [known, is_new] = flown.emplace(run.task, TaskFlown{run.begin(), *run.done});
+    if (!is_new && *run.done < known->second.time) known->second = {run.begin(), *run.done};
+  }
+  // Events tell planned times; where the track was seen to be there, that time counts.
+  for (const DeliveryFlown& delivery : deliveries_flown(record, limits)) {
+    TaskFlown& known = flown.at(delivery.run.task);
+    if (delivery.seen && delivery.run.done == known.time) {
+      known = {delivery.run.begin(), delivery.time};
+    }
+  }
+  for (const ArcFlown& arc : arcs_flown(record, TaskKind::assess, limits)) {
+    TaskFlown& known = flown.at(arc.run.task);
+    if (arc.start && arc.run.done == known.time) known.begin = *arc.start;
+  }
+  return flown;
+}
+
 /// The recording ended with the mission, before the approach that had begun could.
 bool outlasts_recording(const RunRecord& record, const TaskRun& run) {
   const auto* recorded = recording_of(record, run.vehicle);

@@ -147,6 +147,24 @@ std::string formation_section(const Contents& contents) {
   return html + "</div>\n";
 }
 
+std::string hindsight_section(const Contents& contents) {
+  if (contents.hindsight.empty()) return "";
+  std::string html =
+      "<h2>Knowing all from the start</h2><p>What somebody could have flown with these vehicles "
+      "who "
+      "knew every site and hazard when the mission began, without searching, radio or operator. "
+      "Bound: no plan is better.</p><div class=\"wide\"><table><thead><tr><th></th>"
+      "<th class=\"number\">flown</th><th class=\"number\">best found</th>"
+      "<th class=\"number\">bound</th><th class=\"number\">flown / best</th></tr></thead><tbody>";
+  for (const hindsight::Row& row : contents.hindsight) {
+    html += fmt::format(
+        R"~(<tr><td>{}</td><td class="number">{}</td><td class="number">{}</td><td class="number">{}</td><td class="number">{}</td></tr>)~",
+        escaped(row.what), escaped(row.flown), escaped(row.best), escaped(row.bound),
+        escaped(row.ratio));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
 std::string truth_section(const Contents& contents) {
   const TruthTable table = truth_table(contents.record, contents.limits);
   if (table.rows.empty()) return "";
@@ -194,6 +212,7 @@ std::string html(const Contents& contents) {
             "</section>";
   }
   page += "</div>\n" + formation_section(contents);
+  page += hindsight_section(contents);
   page += truth_section(contents);
   page +=
       "<h2>Checks</h2><p>Each time is a link into the replay: it opens there where the replay runs "

@@ -272,5 +272,15 @@ TEST(Drawing, AnAxisOfRoundingErrorsHasNoTicks) {
   EXPECT_TRUE((Axis{1.0, next, 0.0, 100.0}.ticks(6)).empty());
 }
 
+TEST(Report, HasWhatCouldHaveBeenFlownWhereItIsKnown) {
+  Contents contents = small_contents();
+  EXPECT_THAT(html(contents), Not(HasSubstr("Knowing all from the start")));
+  contents.hindsight = {{"last task <done>", "201.1 s", "98.3 s", "proven", "2.05"}};
+  const std::string page = html(contents);
+  EXPECT_THAT(page, HasSubstr("Knowing all from the start"));
+  EXPECT_THAT(page, HasSubstr("<td>last task &lt;done&gt;</td><td class=\"number\">201.1 s</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"number\">2.05</td>"));
+}
+
 }  // namespace
 }  // namespace skein::report

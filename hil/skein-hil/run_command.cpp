@@ -16,6 +16,7 @@
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/hindsight/hindsight.hpp"
 #include "skein/process/token.hpp"
 #include "skein/recording/merge.hpp"
 #include "skein/recording/recording.hpp"
@@ -140,12 +141,20 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
   contents.checks = judge_run(scenario, record, outcome);
   contents.comparison = compare(site_figures(record, contents.limits), scenario.reference);
   contents.record = record;
+  std::string compared;
+  if (!record.sites.empty()) {
+    const auto hindsight = hindsight::look_back(record, contents.limits);
+    if (hindsight) contents.hindsight = hindsight::table_of(*hindsight);
+    compared = hindsight ? hindsight::text_of(*hindsight)
+                         : "not compared with the best: " + hindsight.error().message + "\n";
+    compared += "\n";
+  }
   const auto page = folder / "report.html";
   std::ofstream{page} << report::html(contents);
   std::ofstream{folder / "map.svg"} << report::mission_svg(record);
   fmt::print("\nreport: {}\nrecord: {} (MCAP: all that was said and flown)\nreplay: {}\n\n{}",
              page.string(), (folder / recording::kRunFileName).string(), contents.replay,
-             report::truth_text(record, contents.limits) +
+             report::truth_text(record, contents.limits) + compared +
                  report::text_table(contents.checks, contents.comparison));
   return std::all_of(contents.checks.begin(), contents.checks.end(),
                      [](const auto& check) { return check.held(); });

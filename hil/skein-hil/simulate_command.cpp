@@ -14,6 +14,7 @@
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/hindsight/hindsight.hpp"
 
 namespace skein::hil {
 namespace {
@@ -61,11 +62,18 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
     if (arguments.trace || of_interest(event.kind())) fmt::print("{}\n", trace_line(event));
   };
   watcher.fault = [](const FaultEvent& event) { fmt::print("{}\n", trace_line(event)); };
-  const auto run = fly_judged(*mission, limits_of(scenario.expect), watcher);
+  const auto limits = limits_of(scenario.expect);
+  checks::RunRecord record;
+  const auto run = fly_judged(*mission, limits, watcher, &record);
   fmt::print(
       "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
       run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
       to_seconds(run.result.ended_at), run.result.messages, run.result.protocol_errors);
+  if (const auto hindsight = hindsight::look_back(record, limits, hindsight::kFewSteps)) {
+    fmt::print("\n{}\n", hindsight::text_of(*hindsight));
+  } else {
+    fmt::print("not compared with the best: {}\n", hindsight.error().message);
+  }
   for (const auto& excused : run.excused) fmt::print("EXCUSED: {}\n", excused.sentence);
   if (!run.held()) fmt::print("VIOLATED:\n");
   print_broken(run);

@@ -18,8 +18,10 @@ const [url, epoch_ms] = line.split(" ");
 
 // Before the page's own scripts: notes each state, and when the frame after it has been drawn.
 const watch = ([epoch, pace]) => {
-  const watched = { ages: [], frames: 0, longest: 0 };
+  // Counts by milliseconds: a list of all would be the page's growth.
+  const watched = { ages: new Uint32Array(10_000), frames: 0, longest: 0 };
   globalThis.watched = watched;
+  const note = (age_ms) => ++watched.ages[Math.max(0, Math.min(watched.ages.length - 1, Math.round(age_ms)))];
   const native = globalThis.WebSocket;
   globalThis.WebSocket = class extends native {
     constructor(...all) {
@@ -28,7 +30,7 @@ const watch = ([epoch, pace]) => {
         const first = /"vehicles":\[\{"id":1,.*?"x":(-?[\d.]+)/.exec(data);
         if (!first) return;
         // The first frame draws it; at the begin of the second it is on the screen.
-        requestAnimationFrame(() => requestAnimationFrame(() => watched.ages.push(Date.now() - epoch - (Number(first[1]) * 100) / pace)));
+        requestAnimationFrame(() => requestAnimationFrame(() => note(Date.now() - epoch - (Number(first[1]) * 100) / pace)));
       });
     }
   };
@@ -55,12 +57,20 @@ const heap = async () => {
   const { metrics } = await cdp.send("Performance.getMetrics");
   return metrics.find(({ name }) => name === "JSHeapUsedSize").value / 2 ** 20;
 };
-const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+/** The age that such a share of them does not exceed, ms. */
+const quantile = (ages, share) => {
+  const all = ages.reduce((sum, count) => sum + count, 0);
+  let passed = 0;
+  return ages.findIndex((count) => (passed += count) > share * all);
+};
 
 // What is kept of ten minutes is full after ten minutes: before, memory has to grow.
 const settle = Math.min(seconds / 2, 600 / pace);
 await page.waitForTimeout(Math.min(5000, 1000 * settle));
-await page.evaluate(() => Object.assign(globalThis.watched, { ages: [], frames: 0, longest: 0 }));
+await page.evaluate(() => {
+  globalThis.watched.ages.fill(0);
+  Object.assign(globalThis.watched, { frames: 0, longest: 0 });
+});
 const begun = Date.now();
 const worked_before = await worked_s();
 await page.waitForTimeout(1000 * settle);
@@ -69,12 +79,11 @@ await page.waitForTimeout(1000 * (seconds - settle));
 const worked = (await worked_s()) - worked_before;
 const after = await heap();
 const spent = (Date.now() - begun) / 1000;
-const { ages, frames, longest } = await page.evaluate(() => globalThis.watched);
-ages.sort((a, b) => a - b);
+const { ages, frames, longest } = await page.evaluate(() => ({ ...globalThis.watched, ages: [...globalThis.watched.ages] }));
 console.log(`${vehicles} vehicles, ${spent.toFixed(0)} s${pace > 1 ? ` at ${pace} times the pace: ${(spent * pace).toFixed(0)} s of the mission` : ""}`);
 console.log(`frames a second     ${(frames / spent).toFixed(1)} (longest without one: ${longest.toFixed(0)} ms)`);
 console.log(`processor time      ${((1000 * worked) / spent).toFixed(0)} ms a second of the page's thread`);
-console.log(`telemetry to pixel  median ${quantile(ages, 0.5).toFixed(0)} ms, 95 % ${quantile(ages, 0.95).toFixed(0)} ms, ${ages.length} states`);
+console.log(`telemetry to pixel  median ${quantile(ages, 0.5).toFixed(0)} ms, 95 % ${quantile(ages, 0.95).toFixed(0)} ms, ${ages.reduce((sum, count) => sum + count, 0)} states`);
 console.log(`memory of the page  ${before.toFixed(1)} MB after ${(settle * pace).toFixed(0)} s, ${after.toFixed(1)} MB at the end (${((after / before - 1) * 100).toFixed(1)} %)`);
 await browser.close();
 server.stdin.end();

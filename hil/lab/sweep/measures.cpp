@@ -5,43 +5,13 @@
 #include <cmath>
 
 #include "skein/checks/flown.hpp"
-#include "skein/checks/task_runs.hpp"
 
 namespace skein::experiments {
 namespace {
 
 using mission::EventKind;
 
-/// A task that was done, as its track shows it.
-struct Done {
-  Instant begin{};  ///< of an arc
-  Instant time{};   ///< over the site, or the end of the arc
-};
-using DoneTasks = std::map<TaskId, Done>;
-
-void keep_first(DoneTasks& done, const TaskId& task, const Done& new_one) {
-  const auto [known, is_new] = done.emplace(task, new_one);
-  if (!is_new && new_one.time < known->second.time) known->second = new_one;
-}
-
-/// The first time that each task was done.
-DoneTasks done_tasks(const checks::RunRecord& record, const checks::Limits& limits) {
-  DoneTasks done;
-  for (const checks::TaskRun& run : checks::task_runs(record)) {
-    if (run.done) keep_first(done, run.task, {run.begin(), *run.done});
-  }
-  // Events tell planned times; where the track was seen to be there, that time counts.
-  for (const auto& delivery : checks::deliveries_flown(record, limits)) {
-    Done& known = done.at(delivery.run.task);
-    if (delivery.seen && delivery.run.done == known.time)
-      known = {delivery.run.begin(), delivery.time};
-  }
-  for (const auto& arc : checks::arcs_flown(record, TaskKind::assess, limits)) {
-    Done& known = done.at(arc.run.task);
-    if (arc.start && arc.run.done == known.time) known.begin = *arc.start;
-  }
-  return done;
-}
+using DoneTasks = std::map<TaskId, checks::TaskFlown>;
 
 /// J3 of one site.
 double timing_error_s(const Site& site, const DoneTasks& done) {
@@ -130,7 +100,7 @@ const std::array<MeasureColumn, kMeasureColumns>& measure_columns() {
 Measures measures_of(const hil::TeamMission& mission, const checks::RunRecord& record,
                      const checks::Limits& limits, const hil::JudgedRun& run) {
   Measures m;
-  const auto done = done_tasks(record, limits);
+  const auto done = checks::tasks_flown(record, limits);
   m.value = value_of(mission, run.result, done);
   m.tasks_done = static_cast<double>(done.size());
   for (const Site& site : mission.sites)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -43,5 +44,14 @@ struct ArcFlown {
 /// Of every survey or assessment that was reported done, by begin.
 [[nodiscard]] std::vector<ArcFlown> arcs_flown(const RunRecord& record, TaskKind kind,
                                                const Limits& limits);
+
+/// A task that was done, as its track shows it; where that was not seen, as was planned.
+struct TaskFlown {
+  Instant begin{};  ///< of an arc
+  Instant time{};   ///< over the site, or the end of the arc
+};
+/// The first time that each task was done.
+[[nodiscard]] std::map<TaskId, TaskFlown> tasks_flown(const RunRecord& record,
+                                                      const Limits& limits);
 
 }  // namespace skein::checks

@@ -7,6 +7,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/checks/checks.hpp"
 #include "skein/checks/run_record.hpp"
+#include "skein/hindsight/hindsight.hpp"
 
 /// A judged mission, told to people.
 namespace skein::report {
@@ -28,8 +29,9 @@ struct Contents {
   std::string run;         ///< how that page calls the recording
   checks::RunRecord record;
   checks::Limits limits;
-  std::vector<checks::CheckResult> checks;  ///< passed when every one of them held
-  std::vector<ComparisonRow> comparison;    ///< by site
+  std::vector<checks::CheckResult> checks;     ///< passed when every one of them held
+  std::vector<ComparisonRow> comparison;       ///< by site
+  std::vector<hindsight::Row> hindsight = {};  ///< empty where nothing was compared
 };
 
 /// One HTML file that needs nothing else and may ask nobody: verdict, tables, map, distance curves,
