@@ -65,8 +65,7 @@ class Reader {
       all.push_back({static_cast<std::uint16_t>(id)});
     }
     std::ranges::sort(all);
-    const auto twice = std::ranges::unique(all);
-    all.erase(twice.begin(), twice.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
   }
   bool flag(const char* name) {

@@ -382,7 +382,7 @@ std::vector<VehicleId> silent_in(const AuthorisationRequest& request, const Flee
   std::vector<VehicleId> named{request.round.coalition.leader};
   for (const auto& delivery : request.deliveries) named.push_back(delivery.assignment.vehicle);
   std::ranges::sort(named);
-  named.erase(std::ranges::unique(named).begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
   std::erase_if(named, [&fleet](VehicleId vehicle) {
     const auto known = fleet.vehicles().find(vehicle);
     return known != fleet.vehicles().end() && known->second.telemetry && !known->second.silent;

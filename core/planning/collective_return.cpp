@@ -478,7 +478,7 @@ class Planner {
   /// Who has found no way goes first.
   [[nodiscard]] std::vector<std::size_t> promoted(const CollectiveReturn& found,
                                                   std::vector<std::size_t> order) const {
-    std::ranges::stable_partition(order, [&](std::size_t i) {
+    std::stable_partition(order.begin(), order.end(), [&](std::size_t i) {
       return std::ranges::any_of(
           found.failures, [&](const ReturnFailure& f) { return f.vehicle == vehicles_[i].id; });
     });
