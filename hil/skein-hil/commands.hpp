@@ -103,6 +103,15 @@ struct SwapArguments {
 };
 int swap(const SwapArguments& arguments);
 
+struct ToursArguments {
+  std::vector<std::filesystem::path> files;
+  double radius_m = 0.0;
+  std::uint64_t steps = 6000;
+  std::uint64_t seed = 1;
+  std::filesystem::path plots;  ///< folder; empty: none
+};
+int tours(const ToursArguments& arguments);
+
 struct RoutesArguments {
   std::vector<std::string> what{"all"};  ///< as route_figures::find_experiments() takes them
   bool paper = false;                    ///< the paper's numbers of runs

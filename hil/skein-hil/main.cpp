@@ -224,6 +224,27 @@ void add_sweep(CLI::App& app, int& status) {
   command->callback([arguments, &status] { status = sweep(*arguments); });
 }
 
+void add_tours(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<ToursArguments>();
+  auto* command = app.add_subcommand(
+      "tours", "Plan round trips of one vehicle that touch every circle of a file");
+  command->add_option("file", arguments->files, "A circle in each line: x y radius, in metres")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--radius", arguments->radius_m, "Least turn radius, m")
+      ->required()
+      ->check(CLI::Range(1e-6, 1e6));
+  command->add_option("--steps", arguments->steps, "Of the search")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of the search")->capture_default_str();
+  command->add_option("--plots", arguments->plots, "Folder for a picture of each, as SVG")
+      ->check(CLI::ExistingDirectory);
+  command->footer(
+      "Prints a row of CSV for each file: length, seconds, and the order in which its circles are\n"
+      "met. The same seed gives the same tour.\n"
+      "Example: skein-hil tours circles.txt --radius 40 --plots .");
+  command->callback([arguments, &status] { status = tours(*arguments); });
+}
+
 void add_swap(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<SwapArguments>();
   auto* command = app.add_subcommand(
@@ -398,6 +419,7 @@ int main(int argc, char** argv) {
   skein::hil::add_sweep(app, status);
   skein::hil::add_swap(app, status);
   skein::hil::add_routes(app, status);
+  skein::hil::add_tours(app, status);
   skein::hil::add_shapes(app, status);
   skein::hil::add_can(app, status);
   try {
