@@ -21,7 +21,7 @@
 #define STAMP byte
 #define NEVER 0
 #define EVER  255
-#define CLK   (LEASE + AHEAD + 3 * GUARD + 1)   /* now */
+#define CLK   (LEASE + AHEAD + GUARD + 1)   /* now */
 #define NOW(v) (CLK + skew[v])
 #define OWNERS short
 #define COALITIONS byte
@@ -29,14 +29,13 @@
 #define RUN 1                            /* from gate to delivery */
 #define BROKEN(what) assert(false)
 #define PLAN_IS_DUE(v, q) false
-/* STANDS: two of the three tasks make electors of their owners, and no more: these leases may be taken
- * for ended at any time, and the tasks are given to nobody else. */
-#ifdef STANDS
-#define UNTIL(t, u) ((t) == 0 -> (u) : EVER)
-#define ROUNDS_OF(c) ((c) == 0 -> 1 : ROUNDS_MAX)
+/* AUTHORITY: who may lead, and no leases: a coalition of V stands, each with a task that it keeps. Clocks
+ * need not agree for it; that leases end by other clocks is the guard in the invariant. */
+#ifdef AUTHORITY
+#define UNTIL(t, u) EVER
+#define CLAIMS
 #else
 #define UNTIL(t, u) (u)
-#define ROUNDS_OF(c) ROUNDS_MAX
 #endif
 
 byte skew[V];
@@ -78,7 +77,7 @@ inline reply() {
 inline load(n) {
   m_k = air_p[n] & 15; m_c = (air_p[n] >> 4) & 1; m_r = (air_p[n] >> 5) & 7; m_v = (air_p[n] >> 8) & 3;
   m_t = (air_p[n] >> 10) & 3; m_x = (air_p[n] >> 12) & 7; m_i = (air_p[n] >> 15) & 3; m_n = (air_p[n] >> 17) & 3;
-  m_a = air_q[n] & 15; m_b = (air_q[n] >> 4) & 15; m_d = (air_q[n] >> 8) & 15; m_w = (air_q[n] >> 12) & 4095;
+  m_a = air_q[n] & 15; m_b = (air_q[n] >> 4) & 15; m_d = (air_q[n] >> 8) & 15; m_w = (air_q[n] >> 12) & 65535;
   m_s = air_s[n]; m_u = air_u[n]
 }
 
@@ -151,6 +150,7 @@ inline hear(v, n, willing) {
     :: else
     fi
   :: m_k == CLAIM -> on_claim(v)
+  :: m_k == DECISION -> on_decision(v); on_decision_leader(v)
   :: m_k == ALLEGIANCE ->
     if
     :: LEADS(v, m_c) -> on_allegiance_leader(m_c)
@@ -158,7 +158,25 @@ inline hear(v, n, willing) {
     fi;
     on_allegiance_claimant(v)
   :: else
+  fi;
+  one_authority()
+}
+
+/* While one may lease tasks, the leases of the other have ended, by whatever clock. */
+inline one_authority() {
+#ifdef AUTHORITY
+  if
+  :: leader[1] != 0 && alive[leader[1] - 1] && state[1] != CLOSED && alive[leader[0] - 1] && state[0] != CLOSED ->
+    authority(1);
+    if
+    :: au > NOW(leader[1] - 1) -> authority(0); assert(au + GUARD <= NOW(leader[0] - 1))
+    :: else
+    fi
+  :: else
   fi
+#else
+  skip
+#endif
 }
 
 /* ---- what leaders do by themselves ---- */
@@ -194,7 +212,7 @@ inline renew(c, whom) {
     heartbeat(c);
     tasks_that_are(c, DONE);
     o_k = RENEWAL; o_c = c; o_r = round[c]; o_a = m_a; o_b = (promised[c] == EVER -> electors[c] : 0);
-    o_d = au; o_s = NOW(leader[c] - 1); o_u = m_u;
+    o_d = au; o_s = NOW(leader[c] - 1); o_u = UNTIL(0, m_u);
     reply()
   :: else
   fi
@@ -236,11 +254,16 @@ inline succeed(v) {
     take_over(1, v);
     m_u = (best + LEASE < NOW(v) + FIRST -> best + LEASE : NOW(v) + FIRST);
     send_award(1);
-    o_k = AWARD; o_c = 1; o_r = 1; o_w = m_w; o_s = NOW(v); o_u = m_u; o_n = m_n;
-    reply()
+    o_k = AWARD; o_c = 1; o_r = 1; o_w = m_w; o_s = NOW(v); o_u = UNTIL(0, m_u); o_n = m_n;
+    reply();
+    one_authority()
   :: else
   fi
 }
+
+#ifdef GATE
+#include "gate.pml"
+#endif
 
 /* All instants are one tick further back; those not after `dead` decide nothing any more, and are one. */
 #define AGE(x, dead) if :: x > NEVER && x != EVER -> x--; x = (x <= (dead) -> NEVER : x) :: else fi
@@ -249,7 +272,10 @@ inline succeed(v) {
 #else
 #define OVER (CLK - GUARD)
 #endif
-#ifdef WITHOUT_ELECTORS
+#if DELIVERIES > 0
+#define STALE 0
+#define USELESS(n) false
+#elif defined(WITHOUT_ELECTORS)
 #define STALE (CLK - LEASE)              /* a renewal of then reaches no further than now */
 #define USELESS(n) ((air_p[n] & 15) == RENEWAL && air_u[n] == NEVER)
 #else
@@ -263,13 +289,16 @@ inline tick() {
     for (z : 0 .. V - 1) { AGE(ack[M(q, z)], CLK - LEASE) }
   }
   for (q : 0 .. V - 1) {
-    AGE(pat[q], STALE); AGE(lun[q], CLK); AGE(prom[q], CLK - GUARD); AGE(ren[q], STALE); AGE(fgate[q], 0); AGE(fend[q], 0);
+    AGE(pat[q], STALE); AGE(lun[q], (DELIVERIES > 0 -> 0 : CLK)); AGE(prom[q], CLK - GUARD); AGE(ren[q], STALE); AGE(fgate[q], 0); AGE(fend[q], 0);
     AGE(refused_at[q], 0); AGE(decided_at[q], 0);
     for (z : 0 .. V - 1) { AGE(sack[q * V + z], CLK - SILENCE) }
   }
+#ifdef GATE
+  AGE(ptime[0], 0); AGE(ptime[1], 0); AGE(gtime, 0); AGE(gat, 0);
+#endif
   for (q : 0 .. K - 1) {
     AGE(air_s[q], STALE);
-    AGE(air_u[q], CLK);
+    AGE(air_u[q], (DELIVERIES > 0 -> 0 : CLK));
     if
     :: (air_p[q] & 15) == AWARD && air_u[q] == NEVER -> air_s[q] = NEVER
     :: else
@@ -297,8 +326,8 @@ inline tick() {
 #define VANISH(n) :: d_step { air_p[n] != 0 -> vanish(n); skip }
 #define AWARDS(c, t, b) :: d_step { LEADS(v, c) && state[c] == ANNOUNCING && IN(bids[c], b) -> award(c, t, b); skip }
 #define RENEW(c, whom)  :: d_step { LEADS(v, c) -> renew(c, whom); skip }
-#if defined(STANDS)                      /* all, or all but the owner of the task that is looked at */
-#define RENEWALS(c) RENEW(c, au) RENEW(c, au & ~ONLY(owner[E(c, 0)]))
+#if defined(AUTHORITY)
+#define RENEWALS(c) RENEW(c, au)
 #elif T == 1
 #define RENEWALS(c) RENEW(c, ONLY(owner[E(c, 0)]))
 #else
@@ -306,12 +335,17 @@ inline tick() {
 #endif
 #define EXPIRE(c, t)    :: d_step { LEADS(v, c) && HAS_EXPIRED(c, E(c, t)) -> expire_entry(c, t); skip }
 
+#ifdef AUTHORITY
 #define LEADS_AS(c) \
-  :: d_step { LEADS(v, c) && (state[c] == EXECUTING || state[c] == MONITORING) && round[c] < ROUNDS_OF(c) -> try_again(c); skip } \
+  RENEWALS(c)
+#else
+#define LEADS_AS(c) \
+  :: d_step { LEADS(v, c) && (state[c] == EXECUTING || state[c] == MONITORING) && round[c] < ROUNDS_MAX -> try_again(c); skip } \
   :: d_step { LEADS(v, c) && state[c] == ANNOUNCING -> say_announcement(c); skip } \
   :: d_step { LEADS(v, c) && (state[c] == ANNOUNCING || state[c] == AWARDING) -> not_formed(c); skip } \
   :: d_step { LEADS(v, c) && owes[c] -> cancel(c); skip } \
   RENEWALS(c)
+#endif
 
 proctype Vehicle(byte v) {
   do
@@ -331,8 +365,8 @@ proctype Vehicle(byte v) {
   :: d_step { alive[v] && pst[v] == BIDDING -> leave(v); skip }
 #endif
 #ifdef CLAIMS
-  :: d_step { alive[v] && MAY_CLAIM(v) && !LEADS_ANY(v) -> claim(v); skip }
-  :: d_step { alive[v] && MAY_CLAIM(v) && !LEADS_ANY(v) && state[1] == NONE -> succeed(v); skip }
+  :: d_step { alive[v] && MAY_CLAIM(v) && pln[v] == 1 && !LEADS_ANY(v) -> claim(v); skip }
+  :: d_step { alive[v] && fol[v] == v + 1 && pln[v] == 1 && !LEADS_ANY(v) && state[1] == NONE -> succeed(v); skip }
 #endif
 #ifdef WORKS
   :: d_step { alive[v] && lt[v] != 0 && !IS_DELIVERY(lt[v] - 1) && !begun[v] && pst[v] == MEMBER && lun[v] > NOW(v) ->
@@ -348,20 +382,35 @@ proctype Vehicle(byte v) {
   :: d_step { alive[v] && crashes > 0 -> crashes--; crash(v); skip }
   :: d_step { !alive[v] -> restart(v); skip }
 #endif
+#ifdef GATE
+  LEADS_GATE(0)
+#ifdef TWO_LEADERS
+  LEADS_GATE(1)
+#endif
+  :: d_step { MAY_COMMIT_NOW(v) -> fst[v] = COMMITTED; skip }
+  :: d_step { FLIES(v) && fst[v] == COMMITTED -> begins_delivery(v); skip }
+  :: d_step { FLIES(v) && NOW(v) > fgate[v] && (fst[v] == PLANNED || fst[v] == AUTHORISED) -> is_late(v); skip }
+  :: d_step { AT_END(v) -> finish(v, S_DONE); skip }
+#else
   LEADS_AS(0)
+#ifdef TENDERS
   AWARDS(0, 0, 0) AWARDS(0, 0, 1) AWARDS(0, 0, 2)
   EXPIRE(0, 0)
-#if T > 1 && !defined(STANDS)
+#if T > 1
   AWARDS(0, 1, 0) AWARDS(0, 1, 1) AWARDS(0, 1, 2)
   EXPIRE(0, 1)
 #endif
+#endif
 #if C > 1
   LEADS_AS(1)
+#ifdef TENDERS
   AWARDS(1, 0, 0) AWARDS(1, 0, 1) AWARDS(1, 0, 2)
   EXPIRE(1, 0)
-#if T > 1 && !defined(STANDS)
+#if T > 1
   AWARDS(1, 1, 0) AWARDS(1, 1, 1) AWARDS(1, 1, 2)
   EXPIRE(1, 1)
+#endif
+#endif
 #endif
 #endif
 #ifdef GIVES_UP
@@ -372,7 +421,11 @@ proctype Vehicle(byte v) {
 
 proctype World() {
   do
+#ifdef GATE
+  :: d_step { !FLIGHT_IS_DUE -> tick(); skip }
+#else
   :: d_step { tick(); skip }
+#endif
   VANISH(0) VANISH(1)
 #if K > 2
   VANISH(2)
@@ -385,23 +438,36 @@ proctype World() {
 
 init {
   atomic {
+#ifndef AUTHORITY
     if                                   /* the leader's clock is ahead of the others, or behind */
     :: skew[0] = GUARD
     :: skew[1] = GUARD; skew[2] = GUARD
     fi;
+#endif
     d_step {
-#ifdef STANDS                            /* a coalition of three that has just been founded, a task each */
-      leader[0] = 1; state[0] = EXECUTING; round[0] = 1; promised[0] = EVER; electors[0] = 7; asked[0] = 7; confirmed[0] = 7;
-      ack[0] = NOW(0);
-      for (q : 0 .. 2) {
-        ownership[q] = LEASED; owner[q] = q; eround[q] = 1; elease[q] = UNTIL(q, NOW(0) + FIRST);
-        pst[q] = MEMBER; pc[q] = 1; pr[q] = 1; pat[q] = NOW(0); answered[q] = 1; lt[q] = q + 1; lun[q] = UNTIL(q, NOW(0) + FIRST);
-        fst[q] = PLANNED; pln[q] = 1; prnd[q] = 1; pown[q] = 1 | (2 << 4) | (3 << 8)
+#ifdef AUTHORITY
+      leader[0] = 1; state[0] = EXECUTING; round[0] = 1; promised[0] = EVER;
+      electors[0] = ONLY(V) - 1; asked[0] = electors[0]; confirmed[0] = electors[0]; ack[0] = NOW(0);
+      for (q : 0 .. V - 1) {
+        ownership[q] = LEASED; owner[q] = q; eround[q] = 1; elease[q] = EVER;
+        pst[q] = MEMBER; pc[q] = 1; pr[q] = 1; pat[q] = NEVER; answered[q] = 1; lt[q] = q + 1; lun[q] = EVER;
+        fst[q] = PLANNED; pln[q] = 1; prnd[q] = 1;
+        for (z : 0 .. V - 1) { pown[q] = pown[q] | ((z + 1) << (4 * z)) }
       }
 #else
       lead(0, 0, 0);
+#ifdef TWO_LEADERS
+      lead(1, 1, 0);
+#endif
 #endif
     }
-    run Vehicle(0); run Vehicle(1); run Vehicle(2); run World()
+    run Vehicle(0); run Vehicle(1); run Vehicle(2);
+#if V > 3
+    run Vehicle(3);
+#endif
+#ifdef GATE
+    run Operator();
+#endif
+    run World()
   }
 }
