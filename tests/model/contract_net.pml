@@ -68,7 +68,7 @@ hidden byte q, z, many, needed;
 hidden int  au, best;
 hidden byte ok;
 
-byte inst[V];                            /* of a vehicle's program */
+byte inst[V] = 1;                        /* of a vehicle's program */
 bool alive[V] = true;
 
 /* ---- Initiator ---- */
@@ -539,6 +539,12 @@ inline follow(v, whom) {
   reply()
 }
 
+/* The code takes such a renewal; it is one half of what would mend a fault (docs/model.md). */
+#ifdef MENDED
+#define BEFORE_ITS_AWARD(v) (m_s <= pat[v])
+#else
+#define BEFORE_ITS_AWARD(v) false
+#endif
 inline elector_on_renewal(v) {
   if
   :: leader[m_c] == v + 1 -> skip
@@ -550,8 +556,8 @@ inline elector_on_renewal(v) {
   :: leader[m_c] != v + 1 && !IN(left[v], m_c) && pln[v] == m_c + 1 ->
     known_done[v] = known_done[v] | m_d;
     if
-    :: m_s < ren[v] || !IN(m_b, v) -> skip
-    :: m_s >= ren[v] && IN(m_b, v) && elec[v] && fol[v] != leader[m_c] && !PROMISE_OVER(v) -> skip
+    :: m_s < ren[v] || !IN(m_b, v) || BEFORE_ITS_AWARD(v) -> skip
+    :: m_s >= ren[v] && !BEFORE_ITS_AWARD(v) && IN(m_b, v) && elec[v] && fol[v] != leader[m_c] && !PROMISE_OVER(v) -> skip
     :: else ->
       elec[v] = true; ren[v] = m_s; els[v] = m_b;
       clear_supporters(v);

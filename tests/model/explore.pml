@@ -162,6 +162,30 @@ inline hear(v, n, willing) {
   one_authority()
 }
 
+#define HAS_AUTHORITY(c) (au > NOW(leader[c] - 1))
+
+/* The whole way back of a vehicle that is free into the coalition of the founder: a round, its bid and award. */
+inline rejoins(v) {
+  authority(0);
+  if
+  :: HAS_AUTHORITY(0) ->
+    m_c = 0; m_r = round[0]; m_w = (v + 1) << (4 * v); m_n = 0; m_s = NOW(0); m_u = EVER; ok = false; many = v + 1;
+    ownership[E(0, v)] = LEASED; owner[E(0, v)] = v;
+    accept(v);
+    asked[0] = ONLY(v); confirmed[0] = ONLY(v);
+    bids[0] = ONLY(v); binst[M(0, v)] = inst[v];
+    found(0);
+#ifdef MENDED                            /* the other half: the leader forgets what the earlier start said */
+    if
+    :: IN(electors[0], v) && elinst[M(0, v)] != inst[v] -> elinst[M(0, v)] = inst[v]; ack[M(0, v)] = NEVER
+    :: else
+    fi;
+#endif
+    bids[0] = 0; binst[M(0, v)] = 0
+  :: else
+  fi
+}
+
 /* While one may lease tasks, the leases of the other have ended, by whatever clock. */
 inline one_authority() {
 #ifdef AUTHORITY
@@ -180,8 +204,6 @@ inline one_authority() {
 }
 
 /* ---- what leaders do by themselves ---- */
-
-#define HAS_AUTHORITY(c) (au > NOW(leader[c] - 1))
 
 inline say_announcement(c) {
   open_tasks(c);
@@ -347,6 +369,17 @@ inline tick() {
   RENEWALS(c)
 #endif
 
+/* REJOINS: one vehicle goes, starts anew and comes back; another claims the lead. */
+#ifdef REJOINS
+#define GOES(v) (v == 1)
+#define CLAIMS_IT(v) (v == 2)
+#define WAITS_ON(v) false
+#else
+#define GOES(v) true
+#define CLAIMS_IT(v) true
+#define WAITS_ON(v) true
+#endif
+
 proctype Vehicle(byte v) {
   do
   HEAR(0) HEAR(1)
@@ -360,12 +393,12 @@ proctype Vehicle(byte v) {
   REFUSE(0) REFUSE(1)
 #endif
   :: d_step { alive[v] && (RAN_OUT(v) || (lun[v] == EVER && elec[v] && pst[v] == MEMBER)) -> expire(v); skip }
-  :: d_step { alive[v] && pst[v] == ORPHANED -> no_successor(v); skip }
+  :: d_step { WAITS_ON(v) && alive[v] && pst[v] == ORPHANED -> no_successor(v); skip }
 #ifdef TENDERS
   :: d_step { alive[v] && pst[v] == BIDDING -> leave(v); skip }
 #endif
 #ifdef CLAIMS
-  :: d_step { alive[v] && MAY_CLAIM(v) && pln[v] == 1 && !LEADS_ANY(v) -> claim(v); skip }
+  :: d_step { CLAIMS_IT(v) && alive[v] && MAY_CLAIM(v) && pln[v] == 1 && !LEADS_ANY(v) -> claim(v); skip }
   :: d_step { alive[v] && fol[v] == v + 1 && pln[v] == 1 && !LEADS_ANY(v) && state[1] == NONE -> succeed(v); skip }
 #endif
 #ifdef WORKS
@@ -375,11 +408,14 @@ proctype Vehicle(byte v) {
       reply(); skip }
   :: d_step { alive[v] && begun[v] && lun[v] > NOW(v) -> finish(v, S_DONE); skip }
 #endif
+#ifdef REJOINS
+  :: d_step { v == 1 && alive[v] && pst[v] == FREE && LEADS(0, 0) -> rejoins(v); skip }
+#endif
 #ifdef WITHDRAWALS
-  :: d_step { alive[v] && pst[v] != FREE -> withdraw(v); skip }
+  :: d_step { GOES(v) && alive[v] && pst[v] != FREE -> withdraw(v); skip }
 #endif
 #if CRASHES > 0
-  :: d_step { alive[v] && crashes > 0 -> crashes--; crash(v); skip }
+  :: d_step { GOES(v) && alive[v] && crashes > 0 -> crashes--; crash(v); skip }
   :: d_step { !alive[v] -> restart(v); skip }
 #endif
 #ifdef GATE
@@ -451,7 +487,7 @@ init {
       for (q : 0 .. V - 1) {
         ownership[q] = LEASED; owner[q] = q; eround[q] = 1; elease[q] = EVER;
         pst[q] = MEMBER; pc[q] = 1; pr[q] = 1; pat[q] = NEVER; answered[q] = 1; lt[q] = q + 1; lun[q] = EVER;
-        fst[q] = PLANNED; pln[q] = 1; prnd[q] = 1;
+        fst[q] = PLANNED; pln[q] = 1; prnd[q] = 1; elinst[q] = 1;
         for (z : 0 .. V - 1) { pown[q] = pown[q] | ((z + 1) << (4 * z)) }
       }
 #else

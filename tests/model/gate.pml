@@ -128,8 +128,9 @@ inline is_late(v) {
 #define FLIGHT_IS_DUE (AT_GATE(0) || AT_END(0) || AT_GATE(1) || AT_END(1) || AT_GATE(2) || AT_END(2))
 
 #define FORMS(c, b) :: d_step { LEADS(v, c) && (state[c] == EXECUTING || state[c] == ANNOUNCING) && MAY_FORM(c, b) -> forms(c, b); skip }
+#define FORMS_OF_THIRD(c) FORMS(c, 2)
 #define LEADS_GATE(c) \
-  FORMS(c, c) FORMS(c, 2) \
+  FORMS(c, c) FORMS_OF_THIRD(c) \
   :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED -> renew_owner(c, true); skip } \
   :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED -> renew_owner(c, false); skip } \
   :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED && state[c] == EXECUTING -> ask(c); skip } \
