@@ -304,23 +304,24 @@ inline succeed(v) {
 #define STALE (CLK - LEASE - 1)          /* too old for a promise; of older ones none is the newer */
 #define USELESS(n) false
 #endif
+#define PAST (CLK - GUARD - 1)
 inline tick() {
   for (q : 0 .. C - 1) {
     AGE(promised[q], CLK);
-    for (z : 0 .. T - 1) { AGE(elease[E(q, z)], OVER); AGE(begins[E(q, z)], 0); AGE(due[E(q, z)], 0) }
+    for (z : 0 .. T - 1) { AGE(elease[E(q, z)], OVER); AGE(begins[E(q, z)], CLK); AGE(due[E(q, z)], 0) }
     for (z : 0 .. V - 1) { AGE(ack[M(q, z)], CLK - LEASE) }
   }
   for (q : 0 .. V - 1) {
-    AGE(pat[q], STALE); AGE(lun[q], (DELIVERIES > 0 -> 0 : CLK)); AGE(prom[q], CLK - GUARD); AGE(ren[q], STALE); AGE(fgate[q], 0); AGE(fend[q], 0);
+    AGE(pat[q], STALE); AGE(lun[q], CLK); AGE(prom[q], CLK - GUARD); AGE(ren[q], STALE); AGE(fgate[q], PAST); AGE(fend[q], PAST);
     AGE(refused_at[q], 0); AGE(decided_at[q], 0);
     for (z : 0 .. V - 1) { AGE(sack[q * V + z], CLK - SILENCE) }
   }
 #ifdef GATE
-  AGE(ptime[0], 0); AGE(ptime[1], 0); AGE(gtime, 0); AGE(gat, 0);
+  AGE(ptime[0], PAST); AGE(ptime[1], PAST); AGE(gtime, PAST); AGE(gat, 0);
 #endif
   for (q : 0 .. K - 1) {
     AGE(air_s[q], STALE);
-    AGE(air_u[q], (DELIVERIES > 0 -> 0 : CLK));
+    AGE(air_u[q], (DELIVERIES > 0 -> PAST : CLK));
     if
     :: (air_p[q] & 15) == AWARD && air_u[q] == NEVER -> air_s[q] = NEVER
     :: else

@@ -80,7 +80,7 @@ inline ground_on_status(n) {
 inline forms(c, b) {
   start_round(c);
   bids[c] = ONLY(b); binst[M(c, b)] = inst[b] + 1;
-  m_c = c; m_r = round[c]; m_w = b + 1; m_s = NOW(leader[c] - 1); m_u = m_s + LEASE; m_n = 0;
+  m_c = c; m_r = round[c]; m_w = b + 1; m_s = NOW(leader[c] - 1); m_u = m_s + FIRST; m_n = 0;
   send_award(c);
   confirmed[c] = asked[c];
   state[c] = EXECUTING;
@@ -128,11 +128,21 @@ inline is_late(v) {
 #define FLIGHT_IS_DUE (AT_GATE(0) || AT_END(0) || AT_GATE(1) || AT_END(1) || AT_GATE(2) || AT_END(2))
 
 #define FORMS(c, b) :: d_step { LEADS(v, c) && (state[c] == EXECUTING || state[c] == ANNOUNCING) && MAY_FORM(c, b) -> forms(c, b); skip }
-#define FORMS_OF_THIRD(c) FORMS(c, 2)
-#define LEADS_GATE(c) \
-  FORMS(c, c) FORMS_OF_THIRD(c) \
+#ifdef TWO_LEADERS                       /* their first leases reach to the end */
+#define RENEWS_OWNER(c)
+#else
+#define RENEWS_OWNER(c) \
   :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED -> renew_owner(c, true); skip } \
-  :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED -> renew_owner(c, false); skip } \
+  :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED -> renew_owner(c, false); skip }
+#endif
+#ifdef TWO_LEADERS                       /* the first of them takes no part itself */
+#define FORMS_OF_OWN(c) FORMS(1, 1)
+#else
+#define FORMS_OF_OWN(c) FORMS(c, c)
+#endif
+#define LEADS_GATE(c) \
+  FORMS_OF_OWN(c) FORMS(c, 2) \
+  RENEWS_OWNER(c) \
   :: d_step { LEADS(v, c) && ownership[E(c, 0)] == LEASED && state[c] == EXECUTING -> ask(c); skip } \
   :: d_step { LEADS(v, c) && HAS_EXPIRED(c, E(c, 0)) -> expire_entry(c, 0); skip } \
   :: d_step { LEADS(v, c) && (HOLDS_AT_GATE(c) || KNOWS_NOTHING(c)) -> bids_again(c); skip }
@@ -158,10 +168,11 @@ proctype Operator() {
 #if K > 2
   GROUND_HEARS(2)
 #endif
+/* A no is later than the grant that it takes back, also in ticks. */
 #define DECIDES(c) \
   :: d_step { pending[c] != 0 && decision[c] == 0 -> decide(c, true); skip } \
-  :: d_step { pending[c] != 0 && decision[c] == 0 && noes > 0 -> noes--; decide(c, false); skip } \
-  :: d_step { decision[c] == 1 && noes > 0 && !gbegun && !gdone && ptime[c] > CLK -> noes--; decide(c, false); skip }
+  :: d_step { pending[c] != 0 && decision[c] == 0 && noes > 0 && (gc == 0 || gat < CLK) -> noes--; decide(c, false); skip } \
+  :: d_step { decision[c] == 1 && noes > 0 && !gbegun && !gdone && ptime[c] > CLK && gat < CLK -> noes--; decide(c, false); skip }
   DECIDES(0)
 #ifdef TWO_LEADERS
   DECIDES(1)

@@ -99,9 +99,10 @@ inline leader_looks(c) {
     fi
   };
   if
-  :: electors[c] != 0 && promised[c] == EVER -> start_anew(c)
+  :: electors[c] != 0 -> start_anew(c)
   :: else
-  fi
+  fi;
+  finish_if_done(c)
 }
 inline looks(v) {
   if
@@ -169,6 +170,10 @@ inline leader_said() {
     :: else
     fi
   :: kind == RENEWAL && who < V && m_x == 1 ->
+    if
+    :: LEADS(who, m_c) -> clk = clk + KNOWS_LATER; leader_looks(m_c); clk = clk - KNOWS_LATER
+    :: else
+    fi;
     CHECK(m_v == who && state[m_c] == CLOSED, "it is not over");
     tasks_that_are(m_c, DONE);
     CHECK((m_d & ~au) == 0, "it knows of more than was done")
@@ -325,7 +330,8 @@ inline told() {
   :: kind == 42 ->
     if
     :: pst[who] == BIDDING -> leave(who)
-    :: pst[who] == MEMBER || pst[who] == ORPHANED -> looks(who);
+    :: pst[who] == ORPHANED -> no_successor(who)
+    :: pst[who] == MEMBER -> looks(who);
       CHECK(pst[who] == FREE, "it bids elsewhere, and is a member")
     :: else
     fi;

@@ -22,16 +22,17 @@ declare -Ar configurations=(
   [leases-crash]="$times -DT=1 -DC=1 -DFIRST=1 -DTENDERS -DWITHOUT_ELECTORS -DROUNDS_MAX=1 -DCRASHES=1 -DWORKS"
   [authority]="$times -DT=3 -DC=2 -DFIRST=1 -DAUTHORITY -DROUNDS_MAX=1"
   [rejoining]="-DLEASE=1 -DGUARD=0 -DV=3 -DK=2 -DT=3 -DC=2 -DFIRST=1 -DAUTHORITY -DROUNDS_MAX=1 -DCRASHES=1 -DWITHDRAWALS -DREJOINS"
-  [gate]="$times -DT=1 -DC=2 -DFIRST=2 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTAKE_BACKS=1"
+  [gate]="$times -DT=1 -DC=2 -DFIRST=1 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTAKE_BACKS=1"
   [two-leaders]="-DLEASE=2 -DGUARD=0 -DV=3 -DK=2 -DT=1 -DC=2 -DFIRST=2 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTWO_LEADERS"
 )
-readonly order=(leases leases-crash authority gate two-leaders)
+# Not two-leaders: it is larger than 4 GB.
+readonly order=(leases leases-crash authority gate)
 
 # mutant configuration: where it is found
 readonly mutants=(
   "LEASE_TOO_LONG=1 leases" "NO_CLOCK_GUARD leases" "BID_KEEPS_TASK leases"
   "NO_PROMISES authority" "SUCCESSOR_DOES_NOT_WAIT authority" "HALF_IS_ENOUGH authority"
-  "GATE_WITHOUT_GRANT gate" "GATE_WITHOUT_LEASE gate" "LATE_COPY_GRANTS gate" "GRANTED_TWICE two-leaders"
+  "GATE_WITHOUT_GRANT gate" "GATE_WITHOUT_LEASE gate" "LATE_COPY_GRANTS gate"
 )
 
 # A fault of the protocol that the model has found, and what would mend it: docs/model.md.
