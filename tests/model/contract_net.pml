@@ -766,7 +766,8 @@ inline refuse(v) {
 inline on_cancel(v) {
   if
   :: m_c + 1 != pc[v] || m_r != pr[v] || pst[v] == FREE -> skip
-  :: m_c + 1 == pc[v] && m_r == pr[v] && pst[v] != FREE && m_x == 1 && begun[v] -> elector_leave(v)
+  :: m_c + 1 == pc[v] && m_r == pr[v] && pst[v] != FREE && m_x == 1 && begun[v] && IS_DELIVERY(lt[v] - 1) ->
+    elector_leave(v)                     /* that one is not broken off */
   :: else ->
     if
     :: begun[v] -> say_failed(v)

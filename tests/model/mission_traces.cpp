@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// Flies seeded missions with faults and prints, site by site, what is said and heard of the contract
-// net and what its vehicles tell of their leases: the words of replay.pml, one row of numbers each. What
-// changes nothing in the model (a status of a task that is only planned) is left out.
+// Flies seeded missions with faults and prints, site by site, what is said and heard of the
+// contract net and what its vehicles tell of their leases: the words of replay.pml, one row of
+// numbers each. What changes nothing in the model (a status of a task that is only planned) is left
+// out.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -12,6 +13,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "skein/coalition/messages.hpp"
@@ -50,6 +52,7 @@ enum Kind : int {
   kAuthorised,
   kTaskLost,
   kTaskUnknown,
+  kLate,  ///< at its gate
 };
 constexpr int kGround = 15;
 
@@ -206,7 +209,8 @@ class Tracer {
       return now_us_ > us(m->bids_until) + kAnnouncedLater_us;
     }
     const auto* m = std::get_if<coalition::LeaseRenewal>(said);
-    return m != nullptr && !renewals_.emplace(m->round, m->sent_at).second;
+    return m != nullptr &&
+           !renewals_.emplace(m->round, m->sent_at, m->lease_until, m->done.size()).second;
   }
 
   static int sender_of(const mission::Message& message) {
@@ -287,7 +291,8 @@ class Tracer {
       put(bid->round, *site, made);
       made.v = bid->bidder.value - 1;
       made.i = start_of(bid->bidder, bid->instance);
-      made.u_us = std::chrono::duration_cast<std::chrono::microseconds>(approach_time(*bid)).count();
+      made.u_us =
+          std::chrono::duration_cast<std::chrono::microseconds>(approach_time(*bid)).count();
       if (heard == 0) engage(bid->bidder, site);
     } else if (const auto* award = std::get_if<coalition::Award>(&message)) {
       made.kind = kAward + heard;
@@ -385,6 +390,8 @@ class Tracer {
     } else if (const auto* lost = std::get_if<mission::event::TaskLost>(&e.body)) {
       made.kind = kTaskLost;
       made.x = lost->why.reason == Reason::owner_silent ? 1 : 0;
+    } else if (e.kind() == EventKind::authorisation_late && site.task(e.task) >= 0) {
+      made.kind = kLate;
     } else if (e.kind() == EventKind::task_unknown) {
       made.kind = kTaskUnknown;
     }
@@ -407,7 +414,7 @@ class Tracer {
   std::int64_t now_us_ = 0;
   std::map<SiteId, SiteTrace> sites_;
   static constexpr std::int64_t kAnnouncedLater_us = 5'000'000;
-  std::set<std::pair<coalition::Round, Instant>> renewals_;
+  std::set<std::tuple<coalition::Round, Instant, Instant, std::size_t>> renewals_;
   std::map<CoalitionId, SiteId> led_;
   std::map<VehicleId, std::vector<InstanceId>> starts_;
   std::map<VehicleId, std::size_t> restarts_;
