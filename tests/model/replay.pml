@@ -352,7 +352,7 @@ inline told() {
       no_successor(who)
     fi
   :: kind == 52 && pc[who] == m_c + 1 && pr[who] == m_r && pst[who] != FREE -> withdraw(who)
-  :: kind == 53 -> CHECK(fst[who] == AUTHORISED, "it takes for granted what is not")
+  :: kind == 53 -> CHECK(fst[who] != PLANNED && fst[who] != 0, "it takes for granted what is not")
   :: kind == 56 && lt[who] == m_t + 1 && fst[who] != BEGUN -> fst[who] = LATE
   :: kind == 54 && m_x == 1 && state[m_c] != CLOSED -> leader_looks(m_c); CHECK(ownership[E(m_c, m_t)] != LEASED || eround[E(m_c, m_t)] != m_r, "given up before its lease was over")
   :: kind == 55 && state[m_c] != CLOSED -> leader_looks(m_c); CHECK(ownership[E(m_c, m_t)] == UNKNOWN, "unknown, and it is not")
