@@ -13,6 +13,13 @@
  *   FORMED_AT(c)  when its newest round was to stand, noted by round_begins(c)
  *   EXISTS(t)  the site has that task
  *   UNTIL(t, u)  u, the end of a lease on task t, where that is looked at
+ *   note_plan(v)  v has accepted the award m_*
+ *   note_award(c, v)  an award of c to v is sent now
+ *   SENT_BEFORE_AWARD(v)  the renewal m_* was sent before the award by which v holds its plan
+ *   LEFT_BEFORE_AWARD(c, v)  what the allegiance m_* acknowledges was sent before the newest award to v
+ *   note_award(c, v)  v is part of an award of c, made now
+ *   SENT_BEFORE_AWARD(c, v)  the renewal m_* was sent before the award that v holds its plan by
+ *   LEFT_BEFORE_AWARD(c, v)  v acknowledges by m_* something of before the newest award to it
  *   reply() puts what o_* says in the air
  */
 
@@ -39,6 +46,17 @@
 #define PROMISE_OVER(v) (NOW(v) >= prom[v] + GUARD)
 #endif
 
+#ifdef MUTANT_OLD_RENEWAL_COUNTS         /* a vote by a renewal that was sent before the award */
+#define IS_OF_BEFORE_AWARD(v) false
+#else
+#define IS_OF_BEFORE_AWARD(v) SENT_BEFORE_AWARD(v)
+#endif
+#ifdef MUTANT_OLD_LEAVING_COUNTS         /* who is awarded anew is let go by what it said before */
+#define HAS_LEFT(c, v) true
+#else
+#define HAS_LEFT(c, v) (!LEFT_BEFORE_AWARD(c, v))
+#endif
+
 /* Kinds of messages. */
 #define ANNOUNCEMENT 1
 #define BID          2
@@ -54,13 +72,13 @@
 
 /* A message as it is being handled, and one that answers it. Used within one step, so no part of
  * the state. c: coalition, r: its round, v: of whom it speaks, t: task, x: accepted, state, follows ..,
- * a, b, d: sets, w: owners, i: instance, s: stamp of its sender, u: until, n: coalition that it continues + 1. */
+ * a, b, d, e: sets, w: owners, i: instance, s: stamp of its sender, u: until, n: coalition that it continues + 1. */
 hidden byte m_k, m_c, m_r, m_v, m_t, m_x, m_i, m_n;
-hidden int  m_a, m_b, m_d;
+hidden int  m_a, m_b, m_d, m_e;
 hidden int  m_w;
 hidden int  m_s, m_u;
 hidden byte o_k, o_c, o_r, o_v, o_t, o_x, o_i;
-hidden int  o_a, o_b, o_d, o_w, o_s, o_u;
+hidden int  o_a, o_b, o_d, o_e, o_w, o_s, o_u;
 hidden byte o_n;
 
 /* Scratch of one step. */
@@ -99,7 +117,7 @@ STAMP begins[C * T], due[C * T];         /* gate and time of a delivery */
 byte  bids[C], binst[C * V];
 byte  asked[C], confirmed[C];            /* members of the award */
 byte  electors[C], elinst[C * V];
-STAMP ack[C * V];
+STAMP ack[C * V];                        /* of ElectorEntry; its awarded_at is the driver's */
 STAMP promised[C];
 byte  majority[C];
 int   granted[C];                        /* rounds that the operator authorised, as the leader heard */
@@ -293,6 +311,17 @@ inline on_bid(c) {
   fi
 }
 
+/* An award of c to v. */
+inline goes_to(c, v) {
+#ifdef MUTANT_NEW_START_COUNTS           /* who has started anew is an elector as it was before */
+  if
+  :: IN(electors[c], v) -> elinst[M(c, v)] = inst[v]
+  :: else
+  fi;
+#endif
+  note_award(c, v)
+}
+
 /* send_award() of the owners m_w until m_u: instances by bid, or as electors. */
 inline send_award(c) {
   asked[c] = 0; confirmed[c] = 0;
@@ -307,7 +336,8 @@ inline send_award(c) {
       started[E(c, q)] = false;
       elease[E(c, q)] = UNTIL(q, m_u);
       plan_times(c, q);
-      asked[c] = asked[c] | ONLY(z)
+      asked[c] = asked[c] | ONLY(z);
+      goes_to(c, z)
     :: else
     fi
   };
@@ -351,7 +381,7 @@ inline found(c) {
     electors[c] = confirmed[c] | ONLY(leader[c] - 1);
     for (q : 0 .. V - 1) {
       ack[M(c, q)] = NEVER;
-      elinst[M(c, q)] = (IN(bids[c], q) && IN(electors[c], q) -> binst[M(c, q)] : 0)
+      elinst[M(c, q)] = (IN(electors[c], q) -> (IN(bids[c], q) -> binst[M(c, q)] : elinst[M(c, q)]) : 0)
     }
     ack[M(c, leader[c] - 1)] = NOW(leader[c] - 1)
   :: else
@@ -472,11 +502,11 @@ inline heartbeat(c) {
 inline on_allegiance_leader(c) {
   if
   :: !IN(electors[c], m_v) || m_v + 1 == leader[c] || m_s > NOW(leader[c] - 1) -> skip
-  :: elinst[M(c, m_v)] != 0 && elinst[M(c, m_v)] != m_i -> skip
+  :: elinst[M(c, m_v)] != m_i -> skip
   :: else ->
-    elinst[M(c, m_v)] = m_i;
     if
-    :: m_x == 0 -> electors[c] = electors[c] & ~ONLY(m_v); ack[M(c, m_v)] = NEVER; elinst[M(c, m_v)] = 0
+    :: m_x == 0 && !HAS_LEFT(c, m_v) -> skip
+    :: m_x == 0 && HAS_LEFT(c, m_v) -> electors[c] = electors[c] & ~ONLY(m_v); ack[M(c, m_v)] = NEVER; elinst[M(c, m_v)] = 0
     :: m_x == leader[c] ->
       if
       :: m_s > ack[M(c, m_v)] -> ack[M(c, m_v)] = m_s
@@ -525,7 +555,8 @@ inline elector_accepted(v) {
     elector_leave(v)
   :: else
   fi;
-  pln[v] = m_c + 1; prnd[v] = m_r; pown[v] = m_w
+  pln[v] = m_c + 1; prnd[v] = m_r; pown[v] = m_w;
+  note_plan(v)
 #else
   skip
 #endif
@@ -539,25 +570,19 @@ inline follow(v, whom) {
   reply()
 }
 
-/* The code takes such a renewal; it is one half of what would mend a fault (docs/model.md). */
-#ifdef MENDED
-#define BEFORE_ITS_AWARD(v) (m_s <= pat[v])
-#else
-#define BEFORE_ITS_AWARD(v) false
-#endif
 inline elector_on_renewal(v) {
   if
   :: leader[m_c] == v + 1 -> skip
   :: leader[m_c] != v + 1 && IN(left[v], m_c) ->
     if
-    :: IN(m_b, v) -> o_k = ALLEGIANCE; o_c = m_c; o_v = v; o_i = inst[v]; o_x = 0; o_s = m_s; reply()
+    :: IN(m_b, v) -> o_k = ALLEGIANCE; o_c = m_c; o_v = v; o_i = inst[v]; o_x = 0; o_s = m_s; o_e = m_e & ONLY(v); reply()
     :: else
     fi
   :: leader[m_c] != v + 1 && !IN(left[v], m_c) && pln[v] == m_c + 1 ->
     known_done[v] = known_done[v] | m_d;
     if
-    :: m_s < ren[v] || !IN(m_b, v) || BEFORE_ITS_AWARD(v) -> skip
-    :: m_s >= ren[v] && !BEFORE_ITS_AWARD(v) && IN(m_b, v) && elec[v] && fol[v] != leader[m_c] && !PROMISE_OVER(v) -> skip
+    :: m_s < ren[v] || !IN(m_b, v) || IS_OF_BEFORE_AWARD(v) -> skip
+    :: m_s >= ren[v] && !IS_OF_BEFORE_AWARD(v) && IN(m_b, v) && elec[v] && fol[v] != leader[m_c] && !PROMISE_OVER(v) -> skip
     :: else ->
       elec[v] = true; ren[v] = m_s; els[v] = m_b;
       clear_supporters(v);

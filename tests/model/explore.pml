@@ -47,6 +47,12 @@ int  air_p[K], air_q[K];
 byte air_s[K], air_u[K];
 hidden int new_p, new_q, new_s, new_u, old;
 
+/* Of each message: the vehicles that were awarded something after what it is about was sent. Stamps are
+ * whole ticks, and at last all the same: they do not tell. */
+#define AWARDED_SINCE 19
+#define SENT_BEFORE_AWARD(v)    IN(m_e, v)
+#define LEFT_BEFORE_AWARD(c, v) IN(m_e, v)
+
 #include "contract_net.pml"
 
 inline swap(new, all) { old = all; all = new; new = old }
@@ -55,7 +61,7 @@ inline swap(new, all) { old = all; all = new; new = old }
 #define SAME(n) (new_p == air_p[n] && new_q == air_q[n] && new_s == air_s[n] && new_u == air_u[n])
 
 inline reply() {
-  new_p = o_k | (o_c << 4) | (o_r << 5) | (o_v << 8) | (o_t << 10) | (o_x << 12) | (o_i << 15) | (o_n << 17);
+  new_p = o_k | (o_c << 4) | (o_r << 5) | (o_v << 8) | (o_t << 10) | (o_x << 12) | (o_i << 15) | (o_n << 17) | (o_e << AWARDED_SINCE);
   new_q = o_a | (o_b << 4) | (o_d << 8) | (o_w << 12);
   new_s = o_s; new_u = o_u;
   if
@@ -71,12 +77,13 @@ inline reply() {
     }
   fi;
   o_k = 0; o_c = 0; o_r = 0; o_v = 0; o_t = 0; o_x = 0; o_i = 0; o_n = 0;
-  o_a = 0; o_b = 0; o_d = 0; o_s = 0; o_u = 0; o_w = 0
+  o_a = 0; o_b = 0; o_d = 0; o_e = 0; o_s = 0; o_u = 0; o_w = 0
 }
 
 inline load(n) {
   m_k = air_p[n] & 15; m_c = (air_p[n] >> 4) & 1; m_r = (air_p[n] >> 5) & 7; m_v = (air_p[n] >> 8) & 3;
   m_t = (air_p[n] >> 10) & 3; m_x = (air_p[n] >> 12) & 7; m_i = (air_p[n] >> 15) & 3; m_n = (air_p[n] >> 17) & 3;
+  m_e = (air_p[n] >> AWARDED_SINCE) & 15;
   m_a = air_q[n] & 15; m_b = (air_q[n] >> 4) & 15; m_d = (air_q[n] >> 8) & 15; m_w = (air_q[n] >> 12) & 65535;
   m_s = air_s[n]; m_u = air_u[n]
 }
@@ -103,6 +110,21 @@ inline set_out(v) {
   fi
 }
 inline lease_over(v) { skip }
+inline note_plan(v) { skip }
+inline note_award(c, v) {
+#ifdef REJOINS
+  for (old : 0 .. K - 1) {
+    if
+    :: ((air_p[old] & 15) == RENEWAL && ((air_p[old] >> 4) & 1) == c) ||
+       ((air_p[old] & 15) == ALLEGIANCE && ((air_p[old] >> 4) & 1) == c && ((air_p[old] >> 8) & 3) == v) ->
+      air_p[old] = air_p[old] | (ONLY(v) << AWARDED_SINCE)
+    :: else
+    fi
+  }
+#else
+  skip
+#endif
+}
 inline round_begins(c) { skip }
 
 /* What a closed coalition held says nothing any more. */
@@ -169,18 +191,13 @@ inline rejoins(v) {
   authority(0);
   if
   :: HAS_AUTHORITY(0) ->
+    goes_to(0, v);
     m_c = 0; m_r = round[0]; m_w = (v + 1) << (4 * v); m_n = 0; m_s = NOW(0); m_u = EVER; ok = false; many = v + 1;
     ownership[E(0, v)] = LEASED; owner[E(0, v)] = v;
     accept(v);
     asked[0] = ONLY(v); confirmed[0] = ONLY(v);
     bids[0] = ONLY(v); binst[M(0, v)] = inst[v];
     found(0);
-#ifdef MENDED                            /* the other half: the leader forgets what the earlier start said */
-    if
-    :: IN(electors[0], v) && elinst[M(0, v)] != inst[v] -> elinst[M(0, v)] = inst[v]; ack[M(0, v)] = NEVER
-    :: else
-    fi;
-#endif
     bids[0] = 0; binst[M(0, v)] = 0
   :: else
   fi

@@ -48,8 +48,12 @@ int skew[V];
 
 #define PLAN_IS_DUE(v, q) (plan_time[(v) * T + (q)] <= NOW(v))
 
+#define SENT_BEFORE_AWARD(v)    (m_s <= plan_at[v])
+#define LEFT_BEFORE_AWARD(c, v) (m_s <= awarded_at[M(c, v)])
+
 #include "contract_net.pml"
 
+int  plan_at[V], awarded_at[C * V];      /* of the award that v has accepted, and of the newest to it */
 int  plan_time[V * T];                   /* of the plan that v is part of */
 int  approach[C * V];
 byte sv_c[V], sv_r[V], sv_n[V], sv_many[V], deciding[V];   /* an award that is being answered */
@@ -80,6 +84,8 @@ inline lease_over(v) {
   :: else
   fi
 }
+inline note_plan(v) { plan_at[v] = m_s }
+inline note_award(c, v) { awarded_at[M(c, v)] = NOW(leader[c] - 1) }
 inline round_begins(c) { formed_at[c] = NOW(leader[c] - 1) + FORMATION }
 inline plan_times(c, q) {
   due[E(c, q)] = m_times[q];
@@ -365,7 +371,7 @@ inline begin() {
   for (lk : 0 .. C - 1) {
     leader[lk] = 1; lead(lk, 0, 0); state[lk] = NONE; leader[lk] = 0; round[lk] = 0; owes[lk] = false; called[lk] = 0; asked_for[lk] = 0
     majority[lk] = 0;
-    for (q : 0 .. V - 1) { ack[M(lk, q)] = NEVER; elinst[M(lk, q)] = 0; approach[M(lk, q)] = 0 }
+    for (q : 0 .. V - 1) { ack[M(lk, q)] = NEVER; elinst[M(lk, q)] = 0; approach[M(lk, q)] = 0; awarded_at[M(lk, q)] = NEVER }
   };
   for (lk : 0 .. V - 1) {
     alive[lk] = true; crash(lk); alive[lk] = true; inst[lk] = 1; deciding[lk] = 0; passed_on_at[lk] = NEVER
