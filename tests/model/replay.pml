@@ -369,7 +369,7 @@ inline told() {
 /* Before a trace nothing is, and every vehicle's program has begun. */
 inline begin() {
   for (lk : 0 .. C - 1) {
-    leader[lk] = 1; lead(lk, 0, 0); state[lk] = NONE; leader[lk] = 0; round[lk] = 0; owes[lk] = false; called[lk] = 0; asked_for[lk] = 0
+    leader[lk] = 1; lead(lk, 0, 0); state[lk] = NONE; leader[lk] = 0; round[lk] = 0; owes[lk] = false; called[lk] = 0; asked_for[lk] = 0;
     majority[lk] = 0;
     for (q : 0 .. V - 1) { ack[M(lk, q)] = NEVER; elinst[M(lk, q)] = 0; approach[M(lk, q)] = 0; awarded_at[M(lk, q)] = NEVER }
   };
