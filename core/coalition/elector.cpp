@@ -53,8 +53,9 @@ void Elector::on_lease_renewal(const LeaseRenewal& message, Instant now) {
     if (!contains(done_, task)) done_.push_back(task);
   }
   // Who has promised to follow a claimant is deaf to the old leader until that promise is over.
-  // A renewal that comes late, or twice, names electors that may have left since.
-  if (message.sent_at < renewed_at_) return;
+  // A renewal that comes late, or twice, names electors that may have left since: as this vehicle
+  // may have, by an earlier start, before it was awarded anew.
+  if (message.sent_at < renewed_at_ || message.sent_at <= plan_->awarded_at) return;
   if (!named || (elector_ && follows_ != coalition.leader && !promise_over(now))) return;
   elector_ = true;
   renewed_at_ = message.sent_at;

@@ -22,6 +22,8 @@ struct Claimant {
     LeaseRenewal renewal;
     renewal.round = award.round;
     renewal.electors = {kLeader, kSelf, kOther};
+    now += 1s;
+    renewal.sent_at = now;
     elector.on_lease_renewal(renewal, now);
     now += 20s;
     elector.on_timeout(now);

@@ -42,7 +42,7 @@ Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const 
   make_ledger(won.done);
   promised_until_ = won.promised_from + params_.lease;
   for (const auto& [elector, instance] : won.supporters) {
-    electors_[elector] = {won.promised_from, instance};
+    electors_[elector] = {won.promised_from, instance, Instant::min()};
     heard_[elector] = now;
   }
   std::vector<TaskAssignment> held;
@@ -198,6 +198,8 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
     entry->reported = TaskState::planned;
     entry->lease_until = award.lease_until;
     confirmed_[a.vehicle] = false;
+    const auto elector = electors_.find(a.vehicle);
+    if (elector != electors_.end()) elector->second.awarded_at = now;
   }
   deadline_ = std::max(announcement_.formed_at, now) + 2 * params_.message_delay + params_.margin;
   next_repeat_ = now + params_.message_delay;
@@ -227,12 +229,12 @@ void Initiator::on_allegiance(const Allegiance& message, Instant now) {
     ++bad_messages_;
     return;
   }
+  auto& [acknowledged, instance, awarded_at] = elector->second;
   // One that has started anew does not know what it had promised to whom.
-  auto& [acknowledged, instance] = elector->second;
-  if (instance != InstanceId{} && instance != message.instance) return;
-  instance = message.instance;
+  if (instance != message.instance) return;
   if (message.follows == VehicleId{}) {
-    electors_.erase(elector);
+    // Said before its newest award, and perhaps by an earlier start: by that award it has a vote.
+    if (message.acknowledges > awarded_at) electors_.erase(elector);
   } else if (message.follows == message.coalition.leader) {
     heard_[message.elector] = now;
     acknowledged = std::max(acknowledged, message.acknowledges);
@@ -342,6 +344,7 @@ void Initiator::on_confirmation(const Confirmation& message, Instant now) {
 /// where nobody is left who could.
 void Initiator::found(Instant now) {
   const VehicleId self = announcement_.round.coalition.leader;
+  std::map<VehicleId, ElectorEntry> supporters;
   const bool taken_over = promised_until_ != Instant::max();
   if (taken_over) {
     const auto came_over = std::count_if(confirmed_.begin(), confirmed_.end(), [&](const auto& c) {
@@ -349,15 +352,15 @@ void Initiator::found(Instant now) {
     });
     if (static_cast<std::size_t>(came_over) + 1 < majority_) return;
     promised_until_ = Instant::max();
-    electors_.clear();
+    supporters.swap(electors_);
   }
   if (electors_.size() > 1) return;
   electors_[self].acknowledged = now;
   for (const auto& [vehicle, yes] : confirmed_) {
-    const auto bid = bids_.find(vehicle);
-    electors_.try_emplace(
-        vehicle,
-        ElectorEntry{Instant::min(), bid == bids_.end() ? InstanceId{} : bid->second.instance});
+    const auto bid = bids_.find(vehicle);  // none of who came over with the plan that it held
+    const InstanceId instance =
+        bid == bids_.end() ? supporters[vehicle].instance : bid->second.instance;
+    electors_.try_emplace(vehicle, ElectorEntry{Instant::min(), instance, award_->awarded_at});
   }
 }
 

@@ -167,7 +167,8 @@ class Initiator {
   };
   struct ElectorEntry {
     Instant acknowledged{Instant::min()};  ///< the stamp of the newest heartbeat that it answered
-    InstanceId instance;                   ///< the one that was chosen; 0 until it has spoken
+    InstanceId instance;                   ///< the one that was chosen: no other counts
+    Instant awarded_at{Instant::min()};    ///< the newest award that it is part of
   };
   void make_ledger(const std::vector<TaskId>& done);
   void start_round(Instant now);
