@@ -11,6 +11,9 @@
 
 namespace skein::mission {
 namespace {
+
+/// So often all open tasks of a site are tried at once.
+constexpr int kRoundsForAll = 3;
 /// The decision must be there this long before the first gate, so that it reaches every member.
 constexpr Duration kDecisionMargin = std::chrono::seconds{2};
 constexpr Duration kRequestPeriod = std::chrono::seconds{1};
@@ -30,6 +33,16 @@ std::uint64_t seed_of(const coalition::Round& round) {
       (std::uint64_t{round.coalition.leader.value} << 32U) | round.coalition.number;
   return (coalition << 8U) ^ round.number;
 }
+
+/// Deliveries are made together; assessments, where nobody more can be had, one after another.
+void leave_for_later(std::vector<TaskId>& tasks, const std::vector<coalition::Bid>& bids) {
+  if (std::ranges::any_of(tasks, [](const TaskId& task) { return task.kind == TaskKind::deliver; }))
+    return;
+  const auto able = std::ranges::count_if(
+      bids, [](const coalition::Bid& bid) { return bid.capabilities.has(TaskKind::assess); });
+  const auto most = static_cast<std::size_t>(able);
+  if (most > 0 && most < tasks.size()) tasks.resize(most);
+}
 }  // namespace
 
 using coalition::Reason;
@@ -46,6 +59,7 @@ void Leader::lead(const SurveyedSite& what, Instant now) {
     return;
   }
   fire(Event::taken_up);
+  rounds_failed_ = 0;
   initiator_.emplace(protocol_, next_coalition(), what.site, what.over, position_at_formation(now),
                      now);
   outbox_.report(event::Announced{count_of(initiator_->announcement().tasks), {}},
@@ -55,6 +69,7 @@ void Leader::lead(const SurveyedSite& what, Instant now) {
 void Leader::take_over(const coalition::Participant::LeadershipWon& won, Instant now) {
   if (leading()) return;
   fire(Event::taken_up);
+  rounds_failed_ = 0;
   bids_.clear();  // of a site that was led here before
   initiator_.emplace(protocol_, next_coalition(), won, contains(granted_, won.plan.round),
                      position_at_formation(now), now);
@@ -193,6 +208,7 @@ void Leader::answer(const Initiator::AllocationWanted& wanted, Instant /*now*/) 
   auto& problem = request.problem;
   problem.site = initiator_->site();
   problem.open_tasks = wanted.tasks;
+  if (rounds_failed_ >= kRoundsForAll) leave_for_later(problem.open_tasks, wanted.bids);
   problem.seed = seed_of(wanted.round);
   problem.hazards = ownship_.hazards();
   problem.start = wanted.formed_at;
@@ -234,6 +250,7 @@ bool Leader::on_planning_result(const PlanningResult& result, Instant now) {
 }
 
 void Leader::answer(const Initiator::Formed& formed, Instant now) {
+  rounds_failed_ = 0;
   std::set<VehicleId> vehicles{ownship_.spec().id};
   for (const auto& a : formed.assignments) vehicles.insert(a.vehicle);
   outbox_.report(event::CoalitionFormed{count_of(vehicles)}, formed.round, about_site(), now);
@@ -241,6 +258,7 @@ void Leader::answer(const Initiator::Formed& formed, Instant now) {
 }
 
 void Leader::answer(const Initiator::NotFormed& failed, Instant now) {
+  ++rounds_failed_;
   fire(Event::round_ended);
   const std::uint8_t tasks = count_of(initiator_->announcement().tasks);
   outbox_.report(monitoring() ? EventBody{event::Monitoring{tasks, failed.why}}

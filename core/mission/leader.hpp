@@ -139,6 +139,7 @@ class Leader {
   std::vector<Farewell> farewells_;        ///< of the coalitions that were led here to the end
   BoundedQueue<coalition::Message> last_words_{64};  ///< of one that has been given up
   std::uint32_t coalitions_led_ = 0;
+  int rounds_failed_ = 0;   ///< of this site, one after another
   coalition::Tally tally_;  ///< of coalitions that were led here before
 };
 [[nodiscard]] std::string_view to_string(Leader::State state);

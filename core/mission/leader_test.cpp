@@ -121,6 +121,51 @@ TEST(Leader, PlansWithoutTheBidsThatNothingCanBePlannedFor) {
   EXPECT_EQ(plan->assignments.front().vehicle, bid.bidder);
 }
 
+TEST(Leader, AssessmentsForWhichTooFewCanBeHadAreFlownOneAfterAnother) {
+  PartsBench bench;
+  Leader leader{bench.ownship, bench.outbox};
+  Site site = test_site(1);
+  site.deliveries.clear();
+  site.assessments.resize(3);
+  leader.lead({site, {}}, bench.now);
+  std::vector<std::size_t> asked;
+  const auto round = [&] {
+    std::optional<coalition::Announcement> call;
+    while (auto said = leader.poll_message()) {
+      if (const auto* announced = std::get_if<coalition::Announcement>(&*said)) call = *announced;
+    }
+    ASSERT_TRUE(call);
+    EXPECT_EQ(call->tasks.size(), 3U) << "all are told of";
+    for (const VehicleId bidder : {VehicleId{5}, VehicleId{6}}) {
+      coalition::Bid bid;
+      bid.round = call->round;
+      bid.bidder = bidder;
+      bid.capabilities.add(TaskKind::assess);
+      bid.speed_mps = kTestSpeed_mps;
+      bid.planning_radius_m = 60.0;
+      EXPECT_FALSE(leader.on_message(coalition::Message{bid}, bench.now));
+    }
+    bench.be_at(to_seconds(call->bids_until));
+    leader.on_timeout(bench.now);
+    while (leader.answer_next(bench.now)) {
+    }
+    const auto request = bench.outbox.planning_requests.pop();
+    ASSERT_TRUE(request);
+    asked.push_back(request->problem.open_tasks.size());
+    EXPECT_TRUE(leader.on_planning_result({request->round, Error{"too few"}}, bench.now));
+    while (leader.answer_next(bench.now)) {
+    }
+    while (leader.monitoring()) {
+      bench.be_at(to_seconds(leader.next_timeout()));
+      leader.on_timeout(bench.now);
+      while (leader.answer_next(bench.now)) {
+      }
+    }
+  };
+  for (int i = 0; i < 4; ++i) round();
+  EXPECT_EQ(asked, (std::vector<std::size_t>{3, 3, 3, 2}));
+}
+
 TEST(Leader, ARefusalEndsItsCoalition) {
   Leading l;
   l.form();
