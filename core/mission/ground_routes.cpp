@@ -175,7 +175,7 @@ Result<void> GroundRoutes::check(const Routes& routes, const std::vector<Hazard>
 }
 
 Result<std::uint32_t> GroundRoutes::give(const Routes& routes, const std::vector<Hazard>& hazards,
-                                         const Fleet& fleet, Instant now) {
+                                         const Fleet& fleet, Instant now, RouteBond bond) {
   if (auto good = check(routes, hazards, fleet, now); !good) return good.error();
   // Numbers grow also over a restart of this process, or vehicles would take a new plan for old.
   const auto since_epoch = std::chrono::duration_cast<std::chrono::milliseconds>(
@@ -186,6 +186,7 @@ Result<std::uint32_t> GroundRoutes::give(const Routes& routes, const std::vector
   given_->plan = std::max(last, static_cast<std::uint32_t>(since_epoch)) + 1;
   given_->begins = routes.begin()->second.start_time;
   given_->step_at = now;
+  given_->bond = bond;
   for (const auto& [id, timed] : routes) given_->routes[id].timed = timed;
   report(event::RoutesGiven{given_->plan, static_cast<std::uint16_t>(routes.size()), given_->begins,
                             false},
@@ -198,6 +199,7 @@ Result<void> GroundRoutes::call_off(Instant now) {
   if (!stands() || given_->step == RouteStep::call_off) {
     return Error{"there are no routes to be called off"};
   }
+  given_->by_operator = true;
   call_off({given_->plan, RoutesEnd::by_operator, {}, RouteObstacle::nothing}, now);
   return {};
 }
@@ -208,11 +210,16 @@ bool GroundRoutes::release(VehicleId vehicle, Instant now) {
   if (known == given_->routes.end() || known->second.released || has_ended(known->second)) {
     return false;
   }
-  known->second.released = true;
-  known->second.told_since = false;
-  known->second.next = now;
+  leave_out(known->second, now);
   next_ = now;
   return true;
+}
+
+void GroundRoutes::leave_out(GivenRoute& route, Instant now) {
+  route.released = true;
+  route.released_at = now;
+  route.told_since = false;
+  route.next = now;
 }
 
 // --- what becomes of them ---
@@ -234,16 +241,27 @@ void GroundRoutes::call_off(const event::RoutesCalledOff& why, Instant now) {
 
 void GroundRoutes::decide_offer(Instant now) {
   GivenRoutes& plan = *given_;
+  const bool alone = plan.bond == RouteBond::each_alone;
   const VehicleId* silent = nullptr;
+  std::size_t taken = 0;
   for (const auto& [id, route] : plan.routes) {
-    if (has_ended(route)) {
+    const bool ended = has_ended(route);
+    const bool last = ended && alone && taken == 0 && &id == &plan.routes.rbegin()->first;
+    if (ended && (!alone || (last && silent == nullptr))) {
       return call_off({plan.plan, RoutesEnd::route_refused, id, route.why}, now);
     }
+    if (ended) continue;
+    taken += route.answer ? 1 : 0;
     if (!route.answer && silent == nullptr) silent = &id;
   }
   if (silent != nullptr) {
     if (now < plan.begins - kAllTakenBefore - telling_takes(plan.routes.size())) return;
-    return call_off({plan.plan, RoutesEnd::not_answered, *silent, RouteObstacle::nothing}, now);
+    if (!alone || taken == 0) {
+      return call_off({plan.plan, RoutesEnd::not_answered, *silent, RouteObstacle::nothing}, now);
+    }
+    for (auto& [id, route] : plan.routes) {
+      if (!route.answer) leave_out(route, now);
+    }
   }
   take_step(RouteStep::fly, now);
   report(event::RoutesGiven{plan.plan, static_cast<std::uint16_t>(plan.routes.size()), plan.begins,
@@ -254,15 +272,17 @@ void GroundRoutes::decide_offer(Instant now) {
 void GroundRoutes::decide_flight(Instant now) {
   GivenRoutes& plan = *given_;
   if (plan.begun) return;
+  const bool alone = plan.bond == RouteBond::each_alone;
   for (const auto& [id, route] : plan.routes) {
-    if (route.answer == RouteState::flown || !has_ended(route)) continue;
+    if (alone || route.answer == RouteState::flown || !has_ended(route)) continue;
     return call_off({plan.plan, RoutesEnd::route_refused, id, route.why}, now);
   }
   if (now < plan.begins + kBegunWithin) return;
   plan.begun = true;
-  for (const auto& [id, route] : plan.routes) {
+  for (auto& [id, route] : plan.routes) {
     if (route.answer == RouteState::flies || route.answer == RouteState::flown) continue;
-    return call_off({plan.plan, RoutesEnd::not_begun, id, RouteObstacle::nothing}, now);
+    if (!alone) return call_off({plan.plan, RoutesEnd::not_begun, id, RouteObstacle::nothing}, now);
+    if (!has_ended(route) && !route.released) leave_out(route, now);
   }
 }
 
@@ -272,8 +292,10 @@ void GroundRoutes::decide(Instant now) {
   if (plan.step == RouteStep::fly) decide_flight(now);
   Instant end = plan.begins;
   for (const auto& [id, route] : plan.routes) end = std::max(end, route.timed.end_time());
-  const bool all_ended =
-      std::ranges::all_of(plan.routes, [](const auto& r) { return has_ended(r.second); });
+  const bool all_ended = std::ranges::all_of(plan.routes, [now](const auto& r) {
+    const bool given_up = r.second.released && now >= r.second.released_at + kCalledOffFor;
+    return has_ended(r.second) || given_up;
+  });
   plan.over = (plan.step == RouteStep::call_off && now >= plan.step_at + kCalledOffFor) ||
               (plan.step != RouteStep::offer && all_ended) || now >= end + kOverAfter;
 }

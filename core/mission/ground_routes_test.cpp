@@ -313,5 +313,22 @@ TEST(GroundRoutes, AsManyAsThereMayBeAreToldInTurnAndAllFly) {
   EXPECT_EQ(routes.dropped(), 0U);
 }
 
+TEST_F(GroundRoutesTest, WhereEachFliesForItselfWhoCannotIsLeftOut) {
+  deaf = {kTwo};
+  ASSERT_TRUE(routes
+                  .give({{kOne, north(0.0, 130.0)}, {kTwo, north(300.0, 130.0)}}, {}, fleet, now,
+                        RouteBond::each_alone)
+                  .ok());
+  run_until(140.0);
+  EXPECT_FALSE(called_off());
+  EXPECT_EQ(routes.given()->routes.at(kOne).answer, RouteState::flies);
+  EXPECT_TRUE(routes.given()->routes.at(kTwo).released);
+  EXPECT_GE(told(kTwo, RouteStep::call_off), 1U) << "it may hear that it is too late";
+  EXPECT_EQ(told(kOne, RouteStep::call_off), 0U);
+  status(kOne, RouteState::flown);
+  run_until(191.0);
+  EXPECT_TRUE(routes.given()->over) << "who is not heard is not waited for";
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -19,6 +19,8 @@ constexpr double kSegmentsALane = 4.0;
 constexpr Duration kHeardAgain = std::chrono::seconds{3};
 /// To answer, be told, and hear of it again where a message is lost.
 constexpr double kTelling_s = 8.0;
+/// From the end of one route to the begin of the next, about.
+constexpr double kBetweenParts_s = 30.0;
 
 bool has_task(const Telemetry& telemetry) {
   return telemetry.task.site != SiteId{} || telemetry.activity == Activity::surveying ||
@@ -65,6 +67,12 @@ std::optional<Path> joined(const planning::SearchRoute& route, double first_m) {
     begun_m = ends_m;
   }
   return rest;
+}
+
+void leave(SearchShare& share, std::string why, Instant now) {
+  share.state = SearchShare::State::left;
+  share.why = std::move(why);
+  share.left_at = now;
 }
 
 /// How long a vehicle has before its route begins: told, and turned round once.
@@ -242,7 +250,6 @@ Result<AreaSearch> GroundSearch::preview(const SearchWishes& wishes,
   // Whoever has flown one route is told the next, and turns round meanwhile.
   area.ends += static_cast<std::int64_t>(area.parts - 1) * from_seconds(in_s + kTelling_s);
   const auto part = next_part(area, fleet, routes.fence(), area.begins, now);
-  for (const auto& [id, timed] : part) area.shares[id].route = timed.path;
   if (part.empty()) return Error{"no vehicle has a way to its share"};
   if (auto good = routes.check(part, hazards, fleet, now); !good) return good.error();
   return area;
@@ -266,11 +273,11 @@ GroundRoutes::Routes GroundSearch::next_part(AreaSearch& area, const Fleet& flee
     parts_left = std::max(parts_left, std::ceil(segments / static_cast<double>(kSegmentsEach)));
   }
   for (auto& [id, share] : area.shares) {
+    if (share.state == SearchShare::State::left) continue;
     share.given = 0;
-    if (share.state == SearchShare::State::left || share.lanes.empty()) continue;
+    if (share.lanes.empty()) continue;
     if (auto why = why_not(id, fleet, false)) {
-      share.state = SearchShare::State::left;
-      share.why = *why;
+      leave(share, *std::move(why), now);
       continue;
     }
     const planning::Searcher one = searcher(id, *fleet.vehicles().at(id).telemetry);
@@ -279,8 +286,7 @@ GroundRoutes::Routes GroundSearch::next_part(AreaSearch& area, const Fleet& flee
     const std::span<const planning::Lane> lanes{share.lanes.data(), count};
     const auto route = planning::route_over(problem, one, lanes, kSegmentsEach);
     if (route.lanes.empty()) {
-      share.state = SearchShare::State::left;
-      share.why = "it has no way to the rest of its share, or not the range for it";
+      leave(share, "it has no way to the rest of its share, or not the range for it", now);
       continue;
     }
     // What it flies before the route begins; not into the first lane.
@@ -290,8 +296,7 @@ GroundRoutes::Routes GroundSearch::next_part(AreaSearch& area, const Fleet& flee
     auto path = joined(route, first_m);
     const auto hold = path ? planning::way_to_hold(problem, one, path->end()) : std::nullopt;
     if (!hold || !path->append(*hold)) {
-      share.state = SearchShare::State::left;
-      share.why = "there is no room for its turn at the end";
+      leave(share, "there is no room for its turn at the end", now);
       continue;
     }
     share.given = route.lanes.size();
@@ -307,6 +312,13 @@ GroundRoutes::Routes GroundSearch::next_part(AreaSearch& area, const Fleet& flee
     timed.speed_mps = one.speed_mps;
     timed.tail_curvature_per_m = 1.0 / one.radius_m;
     timed.path = *path;
+    share.route = timed;
+    share.route_lanes.clear();
+    double flown_m = -first_m;
+    for (std::size_t i = 0; i < route.legs.size(); ++i) {
+      flown_m += route.legs[i].length_m();
+      share.route_lanes.push_back({flown_m, route.lanes[i].length_m});
+    }
     routes.emplace(id, timed);
   }
   return routes;
@@ -319,7 +331,7 @@ Result<AreaSearch> GroundSearch::give(const SearchWishes& wishes,
   if (!planned) return planned;
   AreaSearch area = *std::move(planned);
   const auto part = next_part(area, fleet, routes.fence(), area.begins, now);
-  const auto plan = routes.give(part, hazards, fleet, now);
+  const auto plan = routes.give(part, hazards, fleet, now, RouteBond::each_alone);
   if (!plan) return plan.error();
   area.plan = *plan;
   area.state = AreaSearch::State::flown;
@@ -329,6 +341,7 @@ Result<AreaSearch> GroundSearch::give(const SearchWishes& wishes,
   if (!wishes.corners.empty()) cells_.emplace(area.corners, area.sensor_radius_m, hazards);
   area_ = std::move(area);
   found_.clear();
+  released_.clear();
   rest_ = false;
   return *area_;
 }
@@ -353,26 +366,29 @@ void GroundSearch::on_message(const Message& message, Instant now) {
   found_.insert(event->vehicle);
 }
 
-void GroundSearch::take_answers(const GivenRoutes& given) {
+void GroundSearch::take_answers(const GivenRoutes& given, Instant now) {
   for (const auto& [id, route] : given.routes) {
     const auto known = area_->shares.find(id);
     if (known == area_->shares.end() || known->second.state != SearchShare::State::flies) continue;
     SearchShare& share = known->second;
-    if (route.released) {
-      share.state = SearchShare::State::left;
-      share.why = "it has found a site, and surveys it";
+    share.has_found = released_.contains(id);
+    if (share.has_found) {
+      leave(share, "it has found a site, and surveys it", now);
+    } else if (route.released) {
+      leave(share, route.answer ? "it has not begun its route" : "it has not answered", now);
     } else if (route.answer == RouteState::left || route.answer == RouteState::refused) {
-      share.state = SearchShare::State::left;
-      share.why = route.why == RouteObstacle::has_task ? "it has a task"
-                  : route.why == RouteObstacle::obeys_others
-                      ? "it holds or comes home, or its range is spent"
-                  : route.why == RouteObstacle::into_hazard ? "a hazard or the fence is in its way"
-                                                            : "it does not fly its route";
+      leave(share,
+            route.why == RouteObstacle::has_task ? "it has a task"
+            : route.why == RouteObstacle::obeys_others
+                ? "it holds or comes home, or its range is spent"
+            : route.why == RouteObstacle::into_hazard ? "a hazard or the fence is in its way"
+                                                      : "it does not fly its route",
+            now);
     }
   }
 }
 
-void GroundSearch::end_part(const GivenRoutes& given) {
+void GroundSearch::end_part(const GivenRoutes& given, Instant now) {
   for (auto& [id, share] : area_->shares) {
     const auto route = given.routes.find(id);
     if (share.state != SearchShare::State::flies || route == given.routes.end()) continue;
@@ -381,21 +397,20 @@ void GroundSearch::end_part(const GivenRoutes& given) {
       share.lanes.erase(share.lanes.begin(), flown);
       share.state = share.lanes.empty() ? SearchShare::State::done : SearchShare::State::waits;
     } else {
-      share.state = SearchShare::State::left;
-      share.why = "it was not heard to have flown its route";
+      leave(share, "it was not heard to have flown its route", now);
     }
     share.given = 0;
   }
 }
 
-void GroundSearch::stop(std::string why) {
+void GroundSearch::stop(std::string why, Instant now) {
   area_->state = AreaSearch::State::called_off;
   area_->why = std::move(why);
+  area_->called_off_at = now;
   for (auto& [id, share] : area_->shares) {
     if (share.state == SearchShare::State::done || share.state == SearchShare::State::left)
       continue;
-    share.state = SearchShare::State::left;
-    share.why = "the search is called off";
+    leave(share, "the search is called off", now);
   }
   look_for_rest();
 }
@@ -404,26 +419,25 @@ void GroundSearch::on_timeout(const std::vector<Hazard>& hazards, const Fleet& f
                               GroundRoutes& routes, Instant now) {
   const auto& given = routes.given();
   if (!area_ || area_->state != AreaSearch::State::flown || !given) return;
-  if (given->plan != area_->plan) return stop("other routes were given");
+  if (given->plan != area_->plan) return stop("other routes were given", now);
   if (given->begun) {
     for (auto one = found_.begin(); one != found_.end();) {
-      (void)routes.release(*one, now);
+      if (routes.release(*one, now)) released_.insert(*one);
       one = found_.erase(one);
     }
   }
-  take_answers(*given);
+  take_answers(*given, now);
   if (given->step == RouteStep::call_off) {
-    std::string why = "its routes are called off";
-    for (const auto& [id, route] : given->routes) {
-      if (route.answer == RouteState::refused)
-        why = name_of(id) + " has refused its route";
-      else if (!route.answer)
-        why = name_of(id) + " has not answered";
+    area_->by_operator = given->by_operator;
+    std::string why = given->by_operator ? "by the operator" : "nobody flies it";
+    for (const auto& [id, share] : area_->shares) {
+      const bool is_left = !given->by_operator && share.state == SearchShare::State::left;
+      if (is_left) why += "; " + name_of(id) + ": " + share.why;
     }
-    return stop(std::move(why));
+    return stop(std::move(why), now);
   }
   if (!given->over) return;
-  end_part(*given);
+  end_part(*given, now);
   double in_s = 0.0;
   for (const auto& [id, share] : area_->shares) {
     if (share.state != SearchShare::State::waits) continue;
@@ -433,18 +447,90 @@ void GroundSearch::on_timeout(const std::vector<Hazard>& hazards, const Fleet& f
     }
   }
   area_->hazards = hazards;
-  const auto part = next_part(*area_, fleet, routes.fence(), now + from_seconds(in_s), now);
+  auto part = next_part(*area_, fleet, routes.fence(), now + from_seconds(in_s), now);
+  // Who cannot keeps nobody else from the next one.
+  std::erase_if(part, [&](const auto& one) {
+    const auto good = routes.check({one}, hazards, fleet, now);
+    if (!good) leave(area_->shares[one.first], good.error().message, now);
+    return !good;
+  });
   if (part.empty()) {
     area_->state = AreaSearch::State::over;
     return look_for_rest();
   }
-  const auto plan = routes.give(part, hazards, fleet, now);
-  if (!plan) return stop(plan.error().message);
+  const auto plan = routes.give(part, hazards, fleet, now, RouteBond::each_alone);
+  if (!plan) return stop(plan.error().message, now);
   area_->plan = *plan;
   for (const auto& [id, timed] : part) {
     area_->shares[id].state = SearchShare::State::flies;
-    area_->shares[id].route = timed.path;
   }
+}
+
+std::vector<VehicleId> GroundSearch::searching() const {
+  std::vector<VehicleId> all;
+  if (!area_ || area_->state != AreaSearch::State::flown) return all;
+  for (const auto& [id, share] : area_->shares) {
+    const bool is_in =
+        share.state == SearchShare::State::flies || share.state == SearchShare::State::waits;
+    if (is_in) all.push_back(id);
+  }
+  return all;
+}
+
+std::vector<VehicleId> GroundSearch::barred_by(const std::vector<Hazard>& hazards,
+                                               Instant now) const {
+  std::vector<VehicleId> all = searching();
+  std::erase_if(all, [&](VehicleId id) {
+    const SearchShare& share = area_->shares.at(id);
+    if (share.state != SearchShare::State::flies) return true;  // its next route goes around them
+    const double end_m = share.route.path.length_m();
+    const double flown_m = std::clamp(share.route.distance_at(now), 0.0, end_m);
+    const auto rest = share.route.piece(flown_m, end_m);
+    return !rest || planning::is_clear(*rest, hazards);
+  });
+  return all;
+}
+
+// --- how far it is ---
+
+ShareProgress progress_of(const AreaSearch& area, const SearchShare& share, Instant now) {
+  using enum SearchShare::State;
+  ShareProgress progress;
+  const Instant at = share.state == left ? share.left_at : now;
+  // A route that was flown to its end has taken its lanes out of these.
+  const bool is_on_route = share.given > 0 && area.state != AreaSearch::State::previewed;
+  const std::size_t beyond = is_on_route ? share.given : 0;
+  const double flown_m = share.route.distance_at(at);
+  for (const SearchShare::RouteLane& lane : share.route_lanes) {
+    if (!is_on_route || flown_m >= lane.ends_m) continue;
+    ++progress.lanes_left;
+    progress.left_m += std::min(lane.length_m, lane.ends_m - flown_m);
+  }
+  for (std::size_t i = beyond; i < share.lanes.size(); ++i) {
+    ++progress.lanes_left;
+    progress.left_m += share.lanes[i].length_m;
+  }
+  if (share.state == done || share.state == left || area.state != AreaSearch::State::flown) {
+    return progress;
+  }
+  Instant ends = share.state == flies ? std::max(share.route.end_time(), now) : now;
+  // What no route is given for yet takes as long as its part of the way that is left.
+  if (beyond < share.lanes.size()) {
+    const double rest =
+        static_cast<double>(share.lanes.size() - beyond) / static_cast<double>(share.all);
+    ends += from_seconds(rest * share.time_s + kBetweenParts_s);
+  }
+  progress.ends = ends;
+  return progress;
+}
+
+std::optional<Instant> expected_end(const AreaSearch& area, Instant now) {
+  std::optional<Instant> last;
+  for (const auto& [id, share] : area.shares) {
+    const auto ends = progress_of(area, share, now).ends;
+    if (ends && (!last || *ends > *last)) last = ends;
+  }
+  return last;
 }
 
 void GroundSearch::look_for_rest() { rest_ = !planning::lanes_left(area_->lanes, *cells_).empty(); }

@@ -76,6 +76,11 @@ struct GroundSearchTest : ::testing::Test {
     }
   }
   void answer(const Route& route) {
+    if (deaf.contains(route.vehicle)) return;
+    if (held.contains(route.vehicle)) {
+      flown.erase(route.vehicle);
+      return status(route.vehicle, RouteState::refused, RouteObstacle::obeys_others);
+    }
     if (route.step == RouteStep::offer) {
       done.erase(route.vehicle);
       flown.erase(route.vehicle);  // it circles where that has ended
@@ -90,9 +95,16 @@ struct GroundSearchTest : ::testing::Test {
       status(route.vehicle, RouteState::called_off);
     }
   }
-  void status(VehicleId id, RouteState state) {
-    routes.on_message(Message{RouteStatus{id, heard[id].instance, routes.given()->plan, state, {}}},
-                      now);
+  void status(VehicleId id, RouteState state, RouteObstacle why = RouteObstacle::nothing) {
+    routes.on_message(
+        Message{RouteStatus{id, heard[id].instance, routes.given()->plan, state, why}}, now);
+  }
+  /// By order; who has begun leaves its route.
+  void hold(VehicleId id) {
+    held.insert(id);
+    flown.erase(id);
+    heard[id].activity = Activity::holding;
+    status(id, RouteState::left, RouteObstacle::obeys_others);
   }
   Result<AreaSearch> give(std::vector<Vec2> corners) {
     return search.give({std::move(corners), {}, {}, {}}, hazards, fleet, routes, now);
@@ -108,6 +120,8 @@ struct GroundSearchTest : ::testing::Test {
   std::map<VehicleId, TimedPath> flown;
   std::map<VehicleId, std::map<std::uint32_t, int>> offers;
   std::set<VehicleId> done;
+  std::set<VehicleId> deaf;
+  std::set<VehicleId> held;
 };
 
 const std::vector<Vec2> kSmall{{0.0, 0.0}, {1200.0, 0.0}, {1200.0, 1000.0}, {0.0, 1000.0}};
@@ -188,8 +202,102 @@ TEST_F(GroundSearchTest, TheOperatorCallsItOff) {
   ASSERT_TRUE(routes.call_off(now).ok());
   run(5.0);
   EXPECT_EQ(area().state, AreaSearch::State::called_off);
+  EXPECT_TRUE(area().by_operator);
   EXPECT_TRUE(search.leaves_rest());
   EXPECT_TRUE(flown.empty());
+}
+
+TEST_F(GroundSearchTest, WhoIsHeldBeforeItBeginsLeavesItAlone) {
+  ASSERT_TRUE(give(kSmall).ok());
+  run(3.0);
+  ASSERT_FALSE(routes.given()->begun);
+  hold(kOne);
+  run(60.0);
+  EXPECT_EQ(area().state, AreaSearch::State::flown) << area().why;
+  EXPECT_EQ(area().shares.at(kOne).state, SearchShare::State::left);
+  EXPECT_THAT(area().shares.at(kOne).why, HasSubstr("it holds"));
+  EXPECT_TRUE(flown.contains(kTwo));
+  EXPECT_EQ(search.searching(), std::vector<VehicleId>{kTwo});
+  run(400.0);
+  EXPECT_EQ(area().state, AreaSearch::State::over);
+  EXPECT_EQ(area().shares.at(kTwo).state, SearchShare::State::done);
+  EXPECT_TRUE(search.leaves_rest());
+}
+
+TEST_F(GroundSearchTest, WhoDoesNotAnswerLeavesItAloneAndNobodyIsWaitedForForever) {
+  deaf = {kTwo};
+  ASSERT_TRUE(give(kSmall).ok());
+  run(60.0);
+  EXPECT_EQ(area().shares.at(kTwo).state, SearchShare::State::left);
+  EXPECT_THAT(area().shares.at(kTwo).why, HasSubstr("not answered"));
+  EXPECT_TRUE(flown.contains(kOne));
+  run(400.0);
+  EXPECT_EQ(area().state, AreaSearch::State::over);
+}
+
+TEST_F(GroundSearchTest, WhereNobodyFliesItIsCalledOffAndSaysWhyOfEach) {
+  held = {kOne, kTwo};
+  ASSERT_TRUE(give(kSmall).ok());
+  run(5.0);
+  EXPECT_EQ(area().state, AreaSearch::State::called_off);
+  EXPECT_FALSE(area().by_operator);
+  EXPECT_THAT(area().why, HasSubstr("vehicle 1: it holds"));
+  EXPECT_THAT(area().why, HasSubstr("vehicle 2: it holds"));
+}
+
+TEST_F(GroundSearchTest, WhoHoldsBetweenTwoRoutesKeepsNobodyFromTheNext) {
+  const auto given = give(kLarge);
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  run(3.0);
+  run(to_seconds(area().shares.at(kOne).route.end_time() - now) - 10.0);
+  hold(kOne);
+  const auto first = routes.given()->plan;
+  run(to_seconds(given->ends - given->begins));
+  EXPECT_NE(routes.given()->plan, first);
+  EXPECT_EQ(area().state, AreaSearch::State::over) << area().why;
+  EXPECT_EQ(area().shares.at(kTwo).state, SearchShare::State::done);
+  EXPECT_THAT(area().shares.at(kOne).why, HasSubstr("it holds"));
+  EXPECT_GE(offers[kTwo].size(), 2U);
+}
+
+TEST_F(GroundSearchTest, TellsHowFarEachIsAndWhenItIsDone) {
+  const auto given = give(kSmall);
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  const SearchShare& share = area().shares.at(kOne);
+  const auto whole = progress_of(area(), share, now);
+  EXPECT_EQ(whole.lanes_left, share.all);
+  EXPECT_EQ(whole.ends, share.route.end_time());
+  double lanes_m = 0.0;
+  for (const auto& lane : share.lanes) lanes_m += lane.length_m;
+  EXPECT_NEAR(whole.left_m, lanes_m, 1e-6);
+  run(to_seconds(given->begins - now));
+  run(0.5 * to_seconds(share.route.end_time() - now));
+  const auto half = progress_of(area(), share, now);
+  EXPECT_LT(half.left_m, 0.75 * lanes_m);
+  EXPECT_GT(half.left_m, 0.25 * lanes_m);
+  EXPECT_LE(half.lanes_left, whole.lanes_left);
+  EXPECT_EQ(*expected_end(area(), now),
+            std::max(share.route.end_time(), area().shares.at(kTwo).route.end_time()));
+  hold(kOne);
+  run(20.0);
+  const auto left = progress_of(area(), share, now);
+  EXPECT_FALSE(left.ends);
+  EXPECT_NEAR(left.left_m, half.left_m, 20.0) << "what it has not flown stays so";
+  run(400.0);
+  EXPECT_EQ(progress_of(area(), area().shares.at(kTwo), now).lanes_left, 0U);
+  EXPECT_FALSE(expected_end(area(), now));
+}
+
+TEST_F(GroundSearchTest, KnowsWhomAHazardWouldBar) {
+  ASSERT_TRUE(give(kSmall).ok());
+  const Vec2 on_its_way = area()
+                              .shares.at(kOne)
+                              .route.pose_at_distance(area().shares.at(kOne).route.path.length_m())
+                              .position();
+  EXPECT_EQ(search.barred_by({{HazardId{9}, on_its_way, 20.0}}, now), std::vector<VehicleId>{kOne});
+  EXPECT_TRUE(search.barred_by({{HazardId{9}, {9000.0, 9000.0}, 20.0}}, now).empty());
+  run(to_seconds(area().ends - now) + 30.0);
+  EXPECT_TRUE(search.barred_by({{HazardId{9}, on_its_way, 20.0}}, now).empty());
 }
 
 TEST_F(GroundSearchTest, SaysWhyNot) {

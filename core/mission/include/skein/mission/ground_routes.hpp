@@ -24,10 +24,17 @@ struct GivenRoute {
   std::optional<InstanceId> instance{};  ///< of the program that has answered
   bool told_since = false;               ///< it has answered the plan's step
   bool released = false;                 ///< it alone is told to leave its route
-  Instant next{};                        ///< when it is told again
+  Instant released_at{};
+  Instant next{};  ///< when it is told again
 };
 
-/// A plan of the operator's: routes that are flown together, or not at all.
+/// What routes of a plan have to do with each other.
+enum class RouteBond : std::uint8_t {
+  together,   ///< all are flown, or none
+  each_alone  ///< who cannot fly its own leaves it, and the others fly
+};
+
+/// A plan of the operator's.
 struct GivenRoutes {
   std::uint32_t plan = 0;
   RouteStep step = RouteStep::offer;
@@ -35,6 +42,8 @@ struct GivenRoutes {
   bool begun = false;  ///< from here on each flies its own
   bool over = false;   ///< nobody is told any more
   Instant step_at{};   ///< when the step was decided on
+  RouteBond bond = RouteBond::together;
+  bool by_operator = false;  ///< he has called it off
   std::map<VehicleId, GivenRoute> routes;
 };
 
@@ -43,7 +52,8 @@ struct GivenRoutes {
 /// same way. Where one refuses, does not answer until shortly before the plan begins, or has not
 /// taken up the word to fly when it does, the plan is called off for all. From its begin on a
 /// vehicle that leaves its route leaves it alone; one whose program starts anew is told again.
-/// One plan at a time. Calling rules as of GroundAgent.
+/// Where each flies for itself (RouteBond::each_alone) all that holds from the offer on: who
+/// refuses or is not heard is left out. One plan at a time. Calling rules as of GroundAgent.
 class GroundRoutes {
  public:
   /// A plan must begin this much later, so that all can answer; of more than 32 vehicles, as much
@@ -68,7 +78,7 @@ class GroundRoutes {
                                    const Fleet& fleet, Instant now) const;
   /// Gives the plan's number. Fails as check() does, and while another plan is given.
   Result<std::uint32_t> give(const Routes& routes, const std::vector<Hazard>& hazards,
-                             const Fleet& fleet, Instant now);
+                             const Fleet& fleet, Instant now, RouteBond bond = RouteBond::together);
   /// Of the operator. Fails where there is none.
   Result<void> call_off(Instant now);
   /// That vehicle alone leaves its route, for something else; the others fly on. Not before the
@@ -91,6 +101,7 @@ class GroundRoutes {
   void decide(Instant now);
   void decide_offer(Instant now);
   void decide_flight(Instant now);
+  static void leave_out(GivenRoute& route, Instant now);
   void take_step(RouteStep step, Instant now);
   void call_off(const event::RoutesCalledOff& why, Instant now);
   /// False where there is somebody to tell yet.

@@ -38,10 +38,17 @@ struct SearchShare {
   std::size_t given = 0;              ///< of them those of the route that it has; the first
   std::size_t all = 0;                ///< that it was to fly
   State state = State::waits;
-  std::string why;        ///< it has left
+  std::string why;         ///< it has left
+  bool has_found = false;  ///< that is: a site, which it surveys
+  Instant left_at{};
   double length_m = 0.0;  ///< of its whole way, as planned
   double time_s = 0.0;
-  Path route;  ///< of the routes that are given, or would be
+  TimedPath route;  ///< that it is given, or would be
+  struct RouteLane {
+    double ends_m = 0.0;  ///< along the route
+    double length_m = 0.0;
+  };
+  std::vector<RouteLane> route_lanes = {};  ///< in their order
 };
 [[nodiscard]] std::string_view to_string(SearchShare::State state);
 
@@ -61,11 +68,25 @@ struct AreaSearch {
   Instant ends{};         ///< as planned
   std::size_t parts = 0;  ///< routes that follow each other, since one has few pieces
   State state = State::previewed;
-  std::string why;              ///< it is called off
+  std::string why;           ///< it is called off
+  bool by_operator = false;  ///< and that by him
+  Instant called_off_at{};
   std::uint32_t plan = 0;       ///< of the routes that are given
   std::vector<Hazard> hazards;  ///< that it was planned with
 };
 [[nodiscard]] std::string_view to_string(AreaSearch::State state);
+
+/// How far one vehicle is with its share, by its route.
+struct ShareProgress {
+  std::size_t lanes_left = 0;
+  double left_m = 0.0;  ///< of lanes
+  std::optional<Instant>
+      ends;  ///< when it has flown all of it, as far as is known; none: it does not
+};
+[[nodiscard]] ShareProgress progress_of(const AreaSearch& area, const SearchShare& share,
+                                        Instant now);
+/// When all shares that are flown will be; none where nobody flies.
+[[nodiscard]] std::optional<Instant> expected_end(const AreaSearch& area, Instant now);
 
 struct GroundSearchConfig {
   std::vector<VehicleSpec> vehicles;  ///< what each can do
@@ -74,8 +95,9 @@ struct GroundSearchConfig {
 
 /// Shares a search area out among vehicles, and gives each its way over the air as routes
 /// (GroundRoutes): as many after each other as its way has pieces. What was seen is what vehicles
-/// were over by their telemetry. Who detects a site while it flies its route is released from it,
-/// to survey the site; what is left of its share then is shared out when the operator asks.
+/// were over by their telemetry. Each flies for itself: who leaves its route, refuses it or is not
+/// heard leaves its share, and the others fly on. Who detects a site while it flies its route is
+/// released from it, to survey the site; what is left is shared out when the operator asks.
 /// Not recalled: who starts this program anew draws the area again. Calling rules as of
 /// GroundAgent.
 class GroundSearch {
@@ -100,6 +122,11 @@ class GroundSearch {
   [[nodiscard]] double seen() const { return cells_ ? cells_->share() : 0.0; }
   /// Is there something left that nobody flies?
   [[nodiscard]] bool leaves_rest() const { return rest_; }
+  /// Who flies a share now, or is to: ascending.
+  [[nodiscard]] std::vector<VehicleId> searching() const;
+  /// Those of them whose way from now on enters one of these hazards: they leave it.
+  [[nodiscard]] std::vector<VehicleId> barred_by(const std::vector<Hazard>& hazards,
+                                                 Instant now) const;
 
  private:
   struct Known {
@@ -118,9 +145,9 @@ class GroundSearch {
   [[nodiscard]] GroundRoutes::Routes next_part(AreaSearch& area, const Fleet& fleet,
                                                const Fence& fence, Instant begins,
                                                Instant now) const;
-  void take_answers(const GivenRoutes& given);
-  void end_part(const GivenRoutes& given);
-  void stop(std::string why);
+  void take_answers(const GivenRoutes& given, Instant now);
+  void end_part(const GivenRoutes& given, Instant now);
+  void stop(std::string why, Instant now);
   void look_for_rest();
 
   GroundSearchConfig config_;
@@ -128,7 +155,8 @@ class GroundSearch {
   std::optional<AreaSearch> area_;
   std::optional<planning::AreaCells> cells_;
   bool rest_ = false;
-  std::set<VehicleId> found_;  ///< who has detected a site, and is to be released
+  std::set<VehicleId> found_;     ///< who has detected a site, and is to be released
+  std::set<VehicleId> released_;  ///< who was, of the area
 };
 
 }  // namespace skein::mission
