@@ -98,6 +98,7 @@ void Playback::take(const recording::Entry& entry) {
     seen_.picture.on_message(*message, entry.sender, entry.time);
     seen_.alarms.on_message(*message, entry.sender, entry.time);
   } else if (const auto* event = std::get_if<mission::MissionEvent>(&entry.content)) {
+    seen_.fleet.on_message(*event, entry.time);
     seen_.picture.on_event(*event);
     seen_.alarms.on_event(*event, entry.time);
   }

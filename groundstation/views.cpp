@@ -40,9 +40,9 @@ std::string health_of(const mission::FleetEntry& entry) {
 }
 
 std::string state_of(const mission::FleetEntry& entry) {
-  const auto& told = *entry.telemetry;
-  return words_of(entry.silent ? mission::ShownState::silent
-                               : mission::shown_state(told.activity, told.detail));
+  if (entry.silent) return words_of(mission::ShownState::silent);
+  return words_of(mission::shown_state(entry)) +
+         (mission::keeps_clear_besides(entry) ? ", keeps clear" : "");
 }
 
 /// That it has by its own word; a dash also where an older release does not say.
@@ -178,17 +178,17 @@ std::string place_text(const Vec2& position, const MissionOrigin& origin) {
 }
 
 std::string fleet_table(const std::map<VehicleId, mission::FleetEntry>& fleet, Instant now) {
-  std::string text = fmt::format("{:>7}  {:<26}{:<18}{:>9}{:>12}{:>7}  {}\n", "vehicle", "state",
+  std::string text = fmt::format("{:>7}  {:<30}{:<18}{:>9}{:>12}{:>7}  {}\n", "vehicle", "state",
                                  "task", "heard", "range left", "loads", "health");
   for (const auto& [vehicle, entry] : fleet) {
     auto line = std::back_inserter(text);
     if (entry.telemetry) {
-      fmt::format_to(line, "{:>7}  {:<26}{:<18}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
+      fmt::format_to(line, "{:>7}  {:<30}{:<18}{:>7.1f} s{:>9.1f} km{:>7}  {}\n", vehicle.value,
                      state_of(entry), task_of(*entry.telemetry), to_seconds(now - entry.heard_at),
                      entry.telemetry->range_left_m / 1000.0, entry.telemetry->loads,
                      health_of(entry));
     } else {
-      fmt::format_to(line, "{:>7}  {:<26}{:<18}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-",
+      fmt::format_to(line, "{:>7}  {:<30}{:<18}{:>9}{:>12}{:>7}  {}\n", vehicle.value, "-", "-",
                      "-", "-", "-", health_of(entry));
     }
   }

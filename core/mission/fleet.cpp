@@ -27,6 +27,23 @@ void Fleet::on_message(const Message& message, Instant now) {
     known->second.preflight = *preflight;
     known->second.preflight_at = now;
   }
+  if (const auto* event = std::get_if<MissionEvent>(&message)) on_event(*event);
+}
+
+void Fleet::on_event(const MissionEvent& event) {
+  const auto known = vehicles_.find(event.vehicle);
+  if (known == vehicles_.end()) return;
+  FleetEntry& entry = known->second;
+  if (const auto* commanded = std::get_if<event::Commanded>(&event.body)) {
+    entry.obeys = commanded->command;
+  } else if (const auto* warning = std::get_if<event::TrafficWarning>(&event.body)) {
+    const bool fits = entry.aircraft.size() < kAircraftKnownMax;
+    if (fits || entry.aircraft.contains(warning->address)) {
+      entry.aircraft[warning->address] = warning->gives_way;
+    }
+  } else if (const auto* clear = std::get_if<event::TrafficClear>(&event.body)) {
+    entry.aircraft.erase(clear->address);
+  }
 }
 
 void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
@@ -49,6 +66,8 @@ void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
     warn(FleetNews::duplicate, vehicle);
   } else if (changed && !known && !entry.duplicate) {
     warn(FleetNews::restarted, vehicle);
+    entry.obeys.reset();
+    entry.aircraft.clear();
   }
 
   if (!entry.telemetry || entry.silent || changed) due_ = Instant::min();

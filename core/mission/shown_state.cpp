@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "skein/mission/fleet.hpp"
+
 namespace skein::mission {
 namespace {
 
@@ -76,6 +78,23 @@ ShownState shown_state(Activity activity, ActivityDetail in_detail) {
   static_assert(kStates.size() + 1 == static_cast<std::size_t>(ActivityDetail::count));
   if (in_detail == ActivityDetail::none) return of_activity(activity);
   return kStates.at(static_cast<std::size_t>(in_detail) - 1);
+}
+
+ShownState shown_state(const FleetEntry& entry) {
+  const Telemetry& told = *entry.telemetry;
+  const ActivityDetail in_detail = told.detail;
+  if (in_detail == ActivityDetail::avoiding_traffic && told.activity == Activity::holding) {
+    if (entry.obeys == CommandKind::hold) return ShownState::holding_by_order;
+    if (entry.obeys == CommandKind::return_home) return ShownState::returning;
+  }
+  return shown_state(told.activity, in_detail);
+}
+
+bool keeps_clear_besides(const FleetEntry& entry) {
+  if (!entry.telemetry) return false;
+  const ActivityDetail in_detail = entry.telemetry->detail;
+  return in_detail == ActivityDetail::avoiding_traffic &&
+         shown_state(entry) != ShownState::keeping_clear_of_traffic;
 }
 
 }  // namespace skein::mission

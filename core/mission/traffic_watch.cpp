@@ -250,8 +250,12 @@ void TrafficWatch::choose(const Self& self) {
 void TrafficWatch::tell(Known& known, const Self& self, Instant now) {
   if (!known.conflict || !known.encounter) return;
   const bool gives_way = target_ && in_time(self, *known.encounter, *target_);
+  const Duration closest_in = from_seconds(known.encounter->closest_s);
+  // It has come back, or was later than expected: what was told is no more so.
+  const bool is_past = known.told && now > known.told_closest + kToldEvery &&
+                       closest_in > kToldEvery && now >= known.told_at + kToldEvery;
   // That it will not do after all is told at once.
-  const bool is_news = !known.told || (known.told_way && !gives_way);
+  const bool is_news = !known.told || (known.told_way && !gives_way) || is_past;
   if (!is_news) return;
   const bool too_soon = !known.told && known.told_at != Instant::min() &&
                         now - known.told_at < kToldEvery && gives_way;
@@ -259,9 +263,9 @@ void TrafficWatch::tell(Known& known, const Self& self, Instant now) {
   known.told = true;
   known.told_way = gives_way;
   known.told_at = now;
+  known.told_closest = now + closest_in;
   events_.emplace_back(event::TrafficWarning{known.aircraft.address, known.encounter->horizontal_m,
-                                             known.encounter->vertical_m,
-                                             from_seconds(known.encounter->closest_s), gives_way});
+                                             known.encounter->vertical_m, closest_in, gives_way});
 }
 
 }  // namespace skein::mission

@@ -41,6 +41,14 @@ struct Meeting {
     for (const Instant until = now + from_seconds(seconds); now < until; now += kTick) tick();
   }
 
+  /// From now on, from where it is.
+  void other_flies(const Vec2& velocity_mps) {
+    const Vec2 at = there().position;
+    other_.position = at - to_seconds(now.time_since_epoch()) * velocity_mps;
+    other_.east_mps = velocity_mps.x();
+    other_.north_mps = velocity_mps.y();
+  }
+
   TrafficWatch::Self self;
   TrafficWatch watch;
   Instant now{};
@@ -126,6 +134,22 @@ TEST(TrafficWatch, ItGivesWayDownwardsAndComesBack) {
   EXPECT_EQ(meeting.cleared, 1);
   EXPECT_FALSE(meeting.watch.gives_way());
   EXPECT_NEAR(meeting.self.state.z_m, kLayer_m, 1.0);
+}
+
+TEST(TrafficWatch, WhereItsMomentHasPassedAndItIsStillToComeItIsToldAnew) {
+  Meeting meeting{aircraft({6000.0, 100.0}, {-60.0, 0.0}, 220.0)};
+  meeting.fly(30.0);
+  ASSERT_EQ(meeting.warnings.size(), 1U);
+  const double first_s = to_seconds(meeting.warnings[0].in);
+  EXPECT_LT(first_s, 75.0);
+  meeting.other_flies({-15.0, 0.0});  // it has slowed down, and is there half a minute later
+  meeting.fly(60.0);
+  ASSERT_EQ(meeting.warnings.size(), 2U);
+  EXPECT_TRUE(meeting.warnings[1].gives_way);
+  EXPECT_GT(to_seconds(meeting.warnings[1].in), 10.0);
+  meeting.fly(200.0);
+  EXPECT_EQ(meeting.warnings.size(), 2U);
+  EXPECT_EQ(meeting.cleared, 1);
 }
 
 TEST(TrafficWatch, BelowTheFloorThereIsNoRoom) {

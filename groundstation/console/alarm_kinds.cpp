@@ -25,6 +25,7 @@ constexpr Duration kWordCounts = std::chrono::seconds{30};
 
 std::string name_of(VehicleId vehicle) { return wording::text_of(vehicle); }
 
+ShownState state_of(const FleetEntry& entry) { return mission::shown_state(entry); }
 ShownState state_of(const mission::Telemetry& told) {
   return mission::shown_state(told.activity, told.detail);
 }
@@ -95,9 +96,8 @@ void find_held(const Scene& in, std::vector<Found>& found) {
   Instant since{Instant::min()};
   std::size_t held = 0;
   for (const auto& [id, entry] : in.fleet.vehicles()) {
-    if (!entry.expected || !is_heard(entry, in) || is_on_ground(state_of(*entry.telemetry)))
-      continue;
-    if (state_of(*entry.telemetry) != ShownState::holding_by_order) return;
+    if (!entry.expected || !is_heard(entry, in) || is_on_ground(state_of(entry))) continue;
+    if (state_of(entry) != ShownState::holding_by_order) return;
     ++held;
     const auto picture = in.picture.vehicles().find(id);
     if (picture != in.picture.vehicles().end() && !picture->second.spans.empty()) {
@@ -180,6 +180,8 @@ void find_revoked(const Scene& in, std::vector<Found>& found) {
 void find_problems(const Scene& in, std::vector<Found>& found) {
   for (const auto& [id, entry] : in.fleet.vehicles()) {
     if (!entry.health || entry.health->problems.empty() || !is_heard(entry, in)) continue;
+    // It has said that before it has told that it is clear: no news.
+    if (entry.health->time <= in.news.clear_since(id)) continue;
     const auto told_of = [v = id](const Found& other) {
       return other.key.vehicle == v || other.key.other == v;
     };
@@ -264,6 +266,15 @@ void find_no_answer(const Scene& in, std::vector<Found>& found) {
   }
 }
 
+void find_search(const Scene& in, std::vector<Found>& found) {
+  if (!in.search) return;
+  found.push_back({{AlarmKind::search_ended},
+                   in.search->since,
+                   in.search->what,
+                   in.search->edition,
+                   in.search->is_wanted ? std::optional{AlarmLevel::notice} : std::nullopt});
+}
+
 void find_proposals(const Scene& in, std::vector<Found>& found) {
   for (const auto& [number, proposal] : in.picture.proposals()) {
     found.push_back(
@@ -292,7 +303,10 @@ void find_graded(const Scene& in, std::vector<Found>& found) {
   for (auto one = first; one != last; ++one) {
     const auto& [key, item] = *one;
     if (item.grave != Grave) continue;
-    found.push_back({{Kind, key.vehicle, key.other, key.site, key.detail}, item.since, item.what});
+    found.push_back({.key = {Kind, key.vehicle, key.other, key.site, key.detail},
+                     .since = item.since,
+                     .what = item.what,
+                     .closest = item.closest});
   }
 }
 
@@ -308,7 +322,10 @@ void find_separation(const Scene& in, std::vector<Found>& found) {
   }
   for (const auto& [pair, item] : pairs) {
     if (item->grave != Grave) continue;
-    found.push_back({{Kind, pair.first, pair.second}, item->since, item->what});
+    found.push_back({.key = {.kind = Kind, .vehicle = pair.first, .other = pair.second},
+                     .since = item->since,
+                     .what = item->what,
+                     .closest = item->closest});
   }
 }
 
@@ -540,6 +557,15 @@ constexpr std::array<KindRow, static_cast<std::size_t>(AlarmKind::count)> kRows{
      {kNone, kNone},
      "see whether another vehicle takes it up",
      &find_news<Topic::task_lost, task_lost>},
+    {search_ended,
+     "search_ended",
+     kWarning,
+     kAtOnce,
+     "areas",
+     {kNone, kNone},
+     "have what was not seen shared out again ('search rest') when they are free; acknowledge to "
+     "dismiss it",
+     &find_search},
     {proposal_waits,
      "proposal_waits",
      kWarning,

@@ -17,7 +17,8 @@ struct Scene {
   const mission::Fleet& fleet;
   const AlarmNews& news;
   const OrderAnswers& orders;
-  Instant begun{};  ///< this ground station, or the recording
+  const std::optional<EndedSearch>& search;  ///< that nobody has acknowledged
+  Instant begun{};                           ///< this ground station, or the recording
   Instant now{};
 };
 
@@ -28,6 +29,7 @@ struct Found {
   std::string what;
   std::uint32_t edition = 0;             ///< greater: it has become worse, and is told anew
   std::optional<AlarmLevel> level = {};  ///< another than its kind's
+  std::optional<Instant> closest = {};   ///< as Alarm::closest
 };
 
 struct KindRow {

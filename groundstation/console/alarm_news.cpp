@@ -105,22 +105,31 @@ struct AlarmNews::Reader {
   [[nodiscard]] Item item(bool grave = false) const {
     return {now, words_of_vehicle(), told.task, grave};
   }
+  /// Of what goes on for longer than until its moment.
+  [[nodiscard]] Item encounter(bool grave) const {
+    return {now, wording::text_of(told.vehicle) + ": " + wording::lasting_news_of(told), told.task,
+            grave, wording::closest_of(told)};
+  }
+  void clear(const Key& key) const {
+    news.drop(key);
+    news.clear_since_[self()] = told.time;
+  }
   void tell() const {
     news.tell(self(), now, self() == kGroundStation ? words() : words_of_vehicle());
   }
 
   void operator()(const event::SeparationWarning& e) const {
-    news.begin({Topic::separation, self(), e.other}, item(e.gives_way == VehicleId{}));
+    news.begin({Topic::separation, self(), e.other}, encounter(e.gives_way == VehicleId{}));
   }
   void operator()(const event::SeparationRestored& e) const {
-    news.drop({Topic::separation, self(), e.other});
+    clear({Topic::separation, self(), e.other});
   }
   void operator()(const event::TrafficWarning& e) const {
     news.begin({.topic = Topic::traffic, .vehicle = self(), .detail = e.address},
-               item(!e.gives_way));
+               encounter(!e.gives_way));
   }
   void operator()(const event::TrafficClear& e) const {
-    news.drop({.topic = Topic::traffic, .vehicle = self(), .detail = e.address});
+    clear({.topic = Topic::traffic, .vehicle = self(), .detail = e.address});
   }
   void operator()(const event::RangeSpent& /*e*/) const {
     news.begin({Topic::range_spent, self()}, item(true));
@@ -247,6 +256,11 @@ void AlarmNews::on_event(const mission::MissionEvent& event, Instant now) {
   for (auto one = items_.lower_bound({Topic::told}); one != items_.end();) {
     one = now >= one->second.since + kTold ? items_.erase(one) : std::next(one);
   }
+}
+
+Instant AlarmNews::clear_since(VehicleId vehicle) const {
+  const auto known = clear_since_.find(vehicle);
+  return known == clear_since_.end() ? Instant::min() : known->second;
 }
 
 void AlarmNews::begin(const Key& key, Item item) {

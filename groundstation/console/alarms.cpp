@@ -11,6 +11,7 @@
 
 #include "alarm_kinds.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/wording/wording.hpp"
 
 namespace skein::console {
 namespace {
@@ -56,6 +57,7 @@ Json alarm_json(const Alarm& alarm) {
           {"over_s", alarm.over ? seconds(*alarm.over) : Json(nullptr)},
           {"what", alarm.what},
           {"remedy", alarm.remedy},
+          {"closest_s", alarm.closest && !alarm.over ? seconds(*alarm.closest) : Json(nullptr)},
           {"times", alarm.times},
           {"vehicle", id_or_null(alarm.key.vehicle)},
           {"other", id_or_null(alarm.key.other)},
@@ -143,7 +145,10 @@ void Alarms::look(const Picture& picture, const mission::Fleet& fleet, Instant n
   settle(news_, picture, fleet, now);
   orders_.on_timeout(picture, fleet, now);
   std::vector<Found> all;
-  const Scene scene{picture, fleet, news_, orders_, *begun_, now};
+  const bool is_read = search_ && read_search_ && search_->begun == read_search_->begun &&
+                       search_->edition <= read_search_->edition;
+  const std::optional<EndedSearch> search = is_read ? std::nullopt : search_;
+  const Scene scene{picture, fleet, news_, orders_, search, *begun_, now};
   for (const KindRow& row : alarm_kinds()) row.find(scene, all);
   for (auto& [key, alarm] : standing_) {
     if (!alarm.gone_since) alarm.gone_since = now;
@@ -155,7 +160,10 @@ void Alarms::look(const Picture& picture, const mission::Fleet& fleet, Instant n
       ++one;
       continue;
     }
-    if (!alarm.acknowledged && alarm.level != AlarmLevel::notice) {
+    // Of a search another one has been ordered, or it was never to be told.
+    const bool stays =
+        alarm.level != AlarmLevel::notice && one->first.kind != AlarmKind::search_ended;
+    if (!alarm.acknowledged && stays) {
       alarm.over = alarm.gone_since;
       over_.insert_or_assign(one->first, std::move(alarm));
     }
@@ -189,6 +197,7 @@ void Alarms::take(Found found) {
   alarm.level = found.level.value_or(row.level);
   alarm.what = std::move(found.what);
   alarm.remedy = row.remedy;
+  alarm.closest = found.closest;
   alarm.gone_since.reset();
 }
 
@@ -202,6 +211,7 @@ Result<std::vector<Alarm>> Alarms::acknowledge(const std::vector<std::uint32_t>&
     if (alarm.acknowledged || !is_meant(alarm)) continue;
     alarm.acknowledged = Acknowledgement{by, now};
     done.push_back(alarm);
+    if (key.kind == AlarmKind::search_ended) read_search_ = search_;
     // What is told once is read now.
     if (key.kind == AlarmKind::told) {
       news_.drop({AlarmNews::Topic::told, key.vehicle, {}, {}, key.detail});
@@ -261,9 +271,11 @@ std::string alarms_json(const Alarms& alarms) {
 std::string alarms_text(const Alarms& alarms, Instant now) {
   std::string text;
   for (const Alarm* alarm : alarms.list()) {
-    text += fmt::format("{:>4}  {:<8} {:>7.1f} s  {}{}{}\n", alarm->number,
+    const bool is_closing = alarm->closest && !alarm->over;
+    text += fmt::format("{:>4}  {:<8} {:>7.1f} s  {}{}{}{}\n", alarm->number,
                         alarm->over ? "over" : to_string(alarm->level),
                         to_seconds((alarm->over ? *alarm->over : now) - alarm->since), alarm->what,
+                        is_closing ? "; " + wording::closest_text(*alarm->closest, now) : "",
                         alarm->times > 1 ? fmt::format(" ({} times)", alarm->times) : "",
                         alarm->acknowledged ? "; acknowledged by " + alarm->acknowledged->by : "");
     if (!alarm->remedy.empty() && !alarm->over) text += "      what to do: " + alarm->remedy + "\n";

@@ -68,6 +68,7 @@ class Desk {
   void tell(VehicleId who, mission::EventBody body, const TaskId& task = {},
             const coalition::Round& of = {}) {
     const mission::MissionEvent event{who, now_, of, task, std::move(body)};
+    fleet_.on_message(event, now_);
     picture_.on_event(event);
     alarms.on_event(event, now_);
   }
@@ -109,6 +110,7 @@ class Desk {
   void be_ill(const std::vector<std::string>& problems) {
     mission::Health health;
     health.vehicle = {3};
+    health.time = now_;
     health.problems = problems;
     hear(health, {3});
   }
@@ -193,6 +195,17 @@ void holds(Desk& desk, ActivityDetail detail) {
   for (auto& [id, telemetry] : desk.said) telemetry.detail = detail;
 }
 
+std::function<void(Desk&)> searches(std::optional<EndedSearch> ended) {
+  return [ended](Desk& desk) {
+    desk.alarms.on_search(ended);
+    desk.run(0.2);
+  };
+}
+/// To acknowledge it is to have done with it.
+bool is_read_once(AlarmKind kind) {
+  return kind == AlarmKind::told || kind == AlarmKind::search_ended;
+}
+
 /// Those that are no alarms.
 void add_what_is_less(std::map<AlarmKind, Case>& all) {
   using enum AlarmKind;
@@ -216,6 +229,8 @@ void add_what_is_less(std::map<AlarmKind, Case>& all) {
         desk.run(0.2);
       },
       [](Desk& desk) { desk.award(coalition::TaskState::planned); }, false};
+  all[search_ended] = {searches(EndedSearch{at_seconds(5.0), at_seconds(6.0), "ended", 1, false}),
+                       searches(std::nullopt)};
   all[proposal_waits] = {
       tells(kGroundStation,
             event::SiteProposed{1, {3}, mission::IncidentKind::fire, 1, 2, "d", 0.9}),
@@ -357,14 +372,14 @@ TEST_P(Kinds, LiveAsTheirConditions) {
   EXPECT_EQ(desk.of(kind)[0]->since, begun.since);
   desk.acknowledge(kind);
   desk.run(0.2);
-  if (kind != AlarmKind::told) {
+  if (!is_read_once(kind)) {
     ASSERT_EQ(desk.of(kind).size(), 1U) << "acknowledged, it stays";
     EXPECT_EQ(desk.of(kind)[0]->acknowledged->by, "ada");
   }
   one.end(desk);
   desk.run(3.0);
   EXPECT_TRUE(desk.of(kind).empty()) << "over, and it was acknowledged";
-  if (!one.comes_back) return;
+  if (!one.comes_back || kind == AlarmKind::search_ended) return;
 
   one.begin(desk);
   ASSERT_EQ(desk.of(kind).size(), 1U);
@@ -406,6 +421,84 @@ TEST(Alarms, WhatComesAndGoesIsOne) {
   ASSERT_EQ(desk.of(AlarmKind::vehicle_silent).size(), 1U);
   EXPECT_NE(desk.of(AlarmKind::vehicle_silent)[0]->number, number);
   EXPECT_EQ(desk.of(AlarmKind::vehicle_silent)[0]->times, 2U);
+}
+
+TEST(Alarms, ASearchThatEndedStandsUntilItIsReadOrOrderedAgain) {
+  const auto kind = AlarmKind::search_ended;
+  EndedSearch ended{at_seconds(5.0), at_seconds(6.0), "3 searches no more", 1, false};
+  Desk desk;
+  searches(ended)(desk);
+  ASSERT_EQ(desk.of(kind).size(), 1U);
+  const auto number = desk.of(kind)[0]->number;
+  desk.acknowledge(kind);
+  desk.run(1.0);
+  EXPECT_TRUE(desk.of(kind).empty());
+  ended.edition = 2;  // another one has left
+  searches(ended)(desk);
+  ASSERT_EQ(desk.of(kind).size(), 1U);
+  EXPECT_GT(desk.of(kind)[0]->number, number);
+  EXPECT_EQ(desk.of(kind)[0]->level, AlarmLevel::warning);
+  searches(std::nullopt)(desk);  // it is ordered again
+  EXPECT_TRUE(desk.of(kind).empty()) << "nobody needs to acknowledge what was mended";
+  ended.begun = at_seconds(50.0);
+  ended.edition = 1;
+  ended.is_wanted = true;
+  searches(ended)(desk);
+  ASSERT_EQ(desk.of(kind).size(), 1U) << "of another search";
+  EXPECT_EQ(desk.of(kind)[0]->level, AlarmLevel::notice);
+}
+
+TEST(Alarms, WhatComesNearHasAMomentThatIsCountedDownTo) {
+  Desk desk;
+  desk.run(1.0);
+  const Instant closest = desk.now() + from_seconds(78.0);
+  desk.tell({3}, event::TrafficWarning{0xabc, 100, 20, from_seconds(78.0), true});
+  desk.run(0.5);
+  ASSERT_EQ(desk.of(AlarmKind::traffic).size(), 1U);
+  const Alarm alarm = *desk.of(AlarmKind::traffic)[0];
+  EXPECT_EQ(alarm.closest, closest);
+  EXPECT_THAT(alarm.what, ::testing::Not(HasSubstr("78 s")));
+  EXPECT_THAT(alarm.what, HasSubstr("aircraft 000abc: 100 m to the side"));
+  EXPECT_THAT(alarms_text(desk.alarms, closest - from_seconds(40.0)), HasSubstr("closest in 40 s"));
+  EXPECT_THAT(alarms_text(desk.alarms, closest + from_seconds(3.0)),
+              HasSubstr("was closest 3 s ago"));
+  const Json json = Json::parse(alarms_json(desk.alarms));
+  EXPECT_DOUBLE_EQ(json["list"][0]["closest_s"], to_seconds(closest));
+  // It is told anew.
+  desk.tell({3}, event::TrafficWarning{0xabc, 90, 20, from_seconds(30.0), true});
+  desk.run(0.2);
+  EXPECT_LT(desk.of(AlarmKind::traffic).at(0)->closest, closest);
+  EXPECT_EQ(desk.of(AlarmKind::traffic)[0]->number, alarm.number);
+}
+
+TEST(Alarms, ToBeClearAgainIsNoNewWarning) {
+  Desk desk;
+  desk.run(1.0);
+  desk.tell({3}, event::TrafficWarning{0xabc, 100, 20, {}, true});
+  desk.run(0.5);
+  desk.be_ill({"aircraft 000abc comes too near: it gives way by its height"});
+  desk.run(1.0);
+  desk.tell({3}, event::TrafficClear{0xabc});
+  desk.run(4.0);
+  EXPECT_TRUE(desk.of(AlarmKind::vehicle_problem).empty()) << "that was said before";
+  EXPECT_TRUE(desk.of(AlarmKind::told).empty());
+  ASSERT_EQ(desk.of(AlarmKind::traffic).size(), 1U);
+  EXPECT_TRUE(desk.of(AlarmKind::traffic)[0]->over);
+  desk.be_ill({"3 control periods missed"});
+  desk.run(0.5);
+  EXPECT_EQ(desk.of(AlarmKind::vehicle_problem).size(), 1U) << "what it says since is heeded";
+}
+
+TEST(Alarms, WhoHoldsByOrderAndKeepsClearIsHeld) {
+  Desk desk;
+  desk.run(1.0);
+  for (auto& [id, telemetry] : desk.said) {
+    telemetry.activity = mission::Activity::holding;
+    telemetry.detail = ActivityDetail::avoiding_traffic;
+    desk.tell(id, event::Commanded{CommandKind::hold});
+  }
+  desk.run(0.5);
+  EXPECT_EQ(desk.of(AlarmKind::all_held).size(), 1U);
 }
 
 TEST(Alarms, AShortGapDoesNotEndIt) {

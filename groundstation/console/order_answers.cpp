@@ -107,7 +107,7 @@ std::set<VehicleId> asked_by(const GivenOrder& order, const Picture& picture,
   } else {
     for (const auto& [id, entry] : fleet.vehicles()) {
       if (!entry.expected || !entry.telemetry) continue;
-      const auto state = mission::shown_state(entry.telemetry->activity, entry.telemetry->detail);
+      const auto state = mission::shown_state(entry);
       if (!is_on_ground(state)) all.insert(id);
     }
   }

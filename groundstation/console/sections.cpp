@@ -146,7 +146,13 @@ Json problems_of(VehicleId id, const mission::FleetEntry& entry,
 
 mission::ShownState state_of(const mission::FleetEntry& entry) {
   if (entry.silent) return mission::ShownState::silent;
-  return mission::shown_state(entry.telemetry->activity, entry.telemetry->detail);
+  return mission::shown_state(entry);
+}
+
+/// What it does besides that.
+Json besides_of(const mission::FleetEntry& entry) {
+  if (entry.silent || !mission::keeps_clear_besides(entry)) return nullptr;
+  return to_string(mission::ShownState::keeping_clear_of_traffic);
 }
 
 Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const std::string& version,
@@ -169,6 +175,7 @@ Json vehicles_json(const Picture& picture, const mission::Fleet& fleet, const st
     set("airspeed", [&] { return metres(t->state.airspeed_mps); });
     set("activity", [&] { return Json(to_string(t->activity)); });
     set("state", [&] { return Json(to_string(state_of(entry))); });
+    set("besides", [&] { return besides_of(entry); });
     set("measured_s", [&] { return seconds(t->state.time); });
     const auto task = t ? picture.told_task(*t) : std::nullopt;
     v["task"] = task ? task_json(task->first, task->second) : Json(nullptr);

@@ -32,6 +32,12 @@ const std::array<TeamStateRow, kStates> kRows{{
      "Look at this ground station's radio and antenna first; then move to where vehicles are "
      "heard.",
      {}},
+    {TeamState::in_the_way,
+     "alarm",
+     "In the way of other aircraft",
+     "They come too near to an aircraft that is not of the team, and do not give way.",
+     "Move them now, or tell its pilot; 'alarms' says how near and when.",
+     {}},
     {TeamState::held,
      "warning",
      "All hold",
@@ -62,6 +68,12 @@ const std::array<TeamStateRow, kStates> kRows{{
      "They come home by order.",
      "'land' has those land that are at home.",
      {}},
+    {TeamState::keeps_clear,
+     "info",
+     "Some keep clear of other aircraft",
+     "They give way by their height, and go on with what they did.",
+     "",
+     {}},
     {TeamState::on_ground, "info", "On the ground", "All who are heard are on the ground.", "", {}},
     {TeamState::normal, "info", "Normal", "All are heard and do their part.", "", {}},
 }};
@@ -80,7 +92,7 @@ bool is_out_of_work(ShownState state) {
 }
 
 struct Counted {
-  std::vector<VehicleId> heard, silent, held, recalled, down, degraded;
+  std::vector<VehicleId> heard, silent, held, recalled, down, degraded, in_the_way, keep_clear;
 };
 
 Counted count(const mission::Fleet& fleet, Instant now) {
@@ -92,8 +104,7 @@ Counted count(const mission::Fleet& fleet, Instant now) {
       if (now >= Instant{}) all.degraded.push_back(id);
       continue;
     }
-    const ShownState state =
-        mission::shown_state(entry.telemetry->activity, entry.telemetry->detail);
+    const ShownState state = mission::shown_state(entry);
     if (entry.silent) {
       all.silent.push_back(id);
       if (!is_down(state)) all.degraded.push_back(id);
@@ -101,6 +112,12 @@ Counted count(const mission::Fleet& fleet, Instant now) {
     }
     all.heard.push_back(id);
     if (entry.duplicate || entry.differs || is_out_of_work(state)) all.degraded.push_back(id);
+    const auto does_not = [](const auto& aircraft) { return !aircraft.second; };
+    if (std::ranges::any_of(entry.aircraft, does_not)) {
+      all.in_the_way.push_back(id);
+    } else if (!entry.aircraft.empty()) {
+      all.keep_clear.push_back(id);
+    }
     if (holds(state)) all.held.push_back(id);
     if (is_recalled(state)) all.recalled.push_back(id);
     if (is_down(state)) all.down.push_back(id);
@@ -112,8 +129,8 @@ Counted count(const mission::Fleet& fleet, Instant now) {
 
 std::string_view to_string(TeamState state) {
   static constexpr std::array<std::string_view, kStates> kNames{
-      "no_command", "lost_link",   "held",      "recall", "degraded",
-      "part_held",  "part_recall", "on_ground", "normal"};
+      "no_command", "lost_link",   "in_the_way",  "held",      "recall", "degraded",
+      "part_held",  "part_recall", "keeps_clear", "on_ground", "normal"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -131,11 +148,13 @@ std::vector<TeamStateRow> team_state(const mission::Fleet& fleet, const TeamFact
   };
   if (facts.nobody_commands) add(TeamState::no_command);
   if (heard == 0 && !team.silent.empty()) add(TeamState::lost_link);
+  if (!team.in_the_way.empty()) add(TeamState::in_the_way, team.in_the_way);
   if (all_held) add(TeamState::held);
   if (all_recalled) add(TeamState::recall);
   if (!team.degraded.empty()) add(TeamState::degraded, team.degraded);
   if (!all_held && !team.held.empty()) add(TeamState::part_held, team.held);
   if (!all_recalled && !team.recalled.empty()) add(TeamState::part_recall, team.recalled);
+  if (!team.keep_clear.empty()) add(TeamState::keeps_clear, team.keep_clear);
   if (heard > 0 && team.down.size() == heard) add(TeamState::on_ground);
   if (rows.empty()) add(TeamState::normal);
   return rows;

@@ -94,5 +94,35 @@ TEST_F(TeamStateTest, WhoIsSilentOnTheGroundIsNotMissed) {
   EXPECT_THAT(states(), ElementsAre(TeamState::normal));
 }
 
+TEST_F(TeamStateTest, WhoDoesNotGiveWayToAnAircraftIsNotNormal) {
+  all(Activity::searching, ActivityDetail::none);
+  const auto tell = [&](std::uint16_t id, mission::EventBody body) {
+    fleet_.on_message(mission::MissionEvent{{id}, at_seconds(10.0), {}, {}, std::move(body)},
+                      at_seconds(10.0));
+  };
+  tell(2, mission::event::TrafficWarning{0xabc, 100, 20, {}, true});
+  EXPECT_THAT(states(), ElementsAre(TeamState::keeps_clear));
+  tell(2, mission::event::TrafficWarning{0xdef, 100, 20, {}, false});
+  tell(3, mission::event::TrafficWarning{0xabc, 100, 20, {}, true});
+  EXPECT_THAT(states(), ElementsAre(TeamState::in_the_way, TeamState::keeps_clear));
+  tell(2, mission::event::TrafficClear{0xdef});
+  EXPECT_THAT(states(), ElementsAre(TeamState::keeps_clear));
+  tell(2, mission::event::TrafficClear{0xabc});
+  tell(3, mission::event::TrafficClear{0xabc});
+  EXPECT_THAT(states(), ElementsAre(TeamState::normal));
+}
+
+TEST_F(TeamStateTest, WhoHoldsByOrderIsHeldWhileItKeepsClear) {
+  all(Activity::holding, ActivityDetail::avoiding_traffic);
+  EXPECT_THAT(states(), ElementsAre(TeamState::normal));
+  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{1, 2, 3}) {
+    fleet_.on_message(
+        mission::MissionEvent{
+            {id}, at_seconds(10.0), {}, {}, mission::event::Commanded{mission::CommandKind::hold}},
+        at_seconds(10.0));
+  }
+  EXPECT_THAT(states(), ElementsAre(TeamState::held));
+}
+
 }  // namespace
 }  // namespace skein::console

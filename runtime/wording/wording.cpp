@@ -284,6 +284,21 @@ constexpr std::array kAutopilotNews{
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 
 /// One for each alternative of EventBody: one that is missing does not compile.
+/// What stays so of who comes too near to whom.
+std::string how_near(const event::SeparationWarning& e) {
+  const std::string who = e.gives_way == VehicleId{}
+                              ? "neither has room to give way"
+                              : text_of(e.gives_way) + " gives way by its height";
+  return fmt::format("{} to the side, {} in height; {}", metres(e.horizontal_m),
+                     metres(e.vertical_m), who);
+}
+std::string how_near(const event::TrafficWarning& e) {
+  return fmt::format("{} to the side, {} in height; {}", metres(e.horizontal_m),
+                     metres(e.vertical_m),
+                     e.gives_way ? "gives way by its height"
+                                 : "it does not give way (no room, no time, or it may not)");
+}
+
 struct News {
   std::string operator()(const event::SiteDetected& e) const {
     return fmt::format("{:.0f} m away", e.range_m);
@@ -506,11 +521,7 @@ struct News {
         e.plan, e.vehicles, to_seconds(e.takes));
   }
   std::string operator()(const event::SeparationWarning& e) const {
-    const std::string who = e.gives_way == VehicleId{}
-                                ? "neither has room to give way"
-                                : text_of(e.gives_way) + " gives way by its height";
-    return fmt::format("{} in {:.0f} s: {} to the side, {} in height; {}", text_of(e.other),
-                       to_seconds(e.in), metres(e.horizontal_m), metres(e.vertical_m), who);
+    return fmt::format("{} in {:.0f} s: {}", text_of(e.other), to_seconds(e.in), how_near(e));
   }
   std::string operator()(const event::SeparationRestored& e) const {
     return "clear of " + text_of(e.other);
@@ -524,10 +535,7 @@ struct News {
                : because(fmt::format("does not take the fence of order {}", e.number), e.detail);
   }
   std::string operator()(const event::TrafficWarning& e) const {
-    return fmt::format("aircraft {:06x} in {:.0f} s: {} to the side, {} in height; {}", e.address,
-                       to_seconds(e.in), metres(e.horizontal_m), metres(e.vertical_m),
-                       e.gives_way ? "gives way by its height"
-                                   : "it does not give way (no room, no time, or it may not)");
+    return fmt::format("aircraft {:06x} in {:.0f} s: {}", e.address, to_seconds(e.in), how_near(e));
   }
   std::string operator()(const event::TrafficClear& e) const {
     return fmt::format("clear of aircraft {:06x}", e.address);
@@ -587,6 +595,31 @@ std::string text_of(const AutopilotNotice& notice) {
 }
 
 std::string news_of(const mission::MissionEvent& event) { return std::visit(News{}, event.body); }
+
+std::string lasting_news_of(const mission::MissionEvent& event) {
+  if (const auto* near = std::get_if<event::SeparationWarning>(&event.body)) {
+    return text_of(near->other) + ": " + how_near(*near);
+  }
+  if (const auto* near = std::get_if<event::TrafficWarning>(&event.body)) {
+    return fmt::format("aircraft {:06x}: {}", near->address, how_near(*near));
+  }
+  return news_of(event);
+}
+
+std::optional<Instant> closest_of(const mission::MissionEvent& event) {
+  if (const auto* near = std::get_if<event::SeparationWarning>(&event.body)) {
+    return event.time + near->in;
+  }
+  if (const auto* near = std::get_if<event::TrafficWarning>(&event.body)) {
+    return event.time + near->in;
+  }
+  return std::nullopt;
+}
+
+std::string closest_text(Instant closest, Instant now) {
+  return now < closest ? fmt::format("closest in {:.0f} s", to_seconds(closest - now))
+                       : fmt::format("was closest {:.0f} s ago", to_seconds(now - closest));
+}
 
 std::string text_of(const mission::MissionEvent& event) {
   const bool warning = mission::is_warning(event.kind());

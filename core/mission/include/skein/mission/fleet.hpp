@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,6 +29,9 @@ struct FleetEntry {
   bool duplicate = false;                        ///< two instances speak with this id
   bool revoked = false;                          ///< put out of the mission: nobody hears it
   std::map<InstanceId, Instant> instances = {};  ///< who spoke with it lately, and when
+  std::optional<CommandKind> obeys = {};         ///< the newest order that it has told to obey
+  /// That it has told to come too near to it, by their addresses: whether it gives way.
+  std::map<std::uint32_t, bool> aircraft = {};
 };
 
 struct FleetParams {
@@ -42,10 +46,11 @@ class Fleet {
  public:
   static constexpr std::size_t kStrangersMax = 64;
   static constexpr std::size_t kInstancesMax = 8;
+  static constexpr std::size_t kAircraftKnownMax = 64;  ///< of each vehicle
 
   explicit Fleet(const FleetParams& params);
 
-  /// Takes telemetry, health and what checks find from it.
+  /// Takes telemetry, health, what checks find and what vehicles tell of themselves from it.
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
   /// What the operator should know.
@@ -68,6 +73,7 @@ class Fleet {
 
  private:
   void on_telemetry(const Telemetry& telemetry, Instant now);
+  void on_event(const MissionEvent& event);
   void warn(event::FleetNews news, VehicleId vehicle, Duration silence = {});
   void forget_instances(FleetEntry& entry, Instant now) const;
 

@@ -10,6 +10,8 @@
 
 namespace skein::mission {
 
+struct FleetEntry;
+
 /// What a person reads of a vehicle's state. Their names, with spaces, are the words that page and
 /// command line show.
 enum class ShownState : std::uint8_t {
@@ -48,5 +50,10 @@ enum class ShownState : std::uint8_t {
 
 /// As a vehicle has told it last.
 [[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail in_detail);
+/// The same of one that was heard, where it is known what it goes on with after it has kept clear
+/// of traffic: that it holds or comes home by order, which lasts longer.
+[[nodiscard]] ShownState shown_state(const FleetEntry& entry);
+/// It keeps clear of traffic besides what shown_state() says.
+[[nodiscard]] bool keeps_clear_besides(const FleetEntry& entry);
 
 }  // namespace skein::mission

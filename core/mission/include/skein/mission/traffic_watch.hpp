@@ -84,6 +84,7 @@ class TrafficWatch {
     bool told = false;
     bool told_way = false;
     Instant told_at = Instant::min();
+    Instant told_closest = Instant::min();  ///< when they are closest, as it was told
   };
   [[nodiscard]] std::optional<Encounter> encounter(const Self& self, const Aircraft& aircraft,
                                                    double factor, Instant now) const;

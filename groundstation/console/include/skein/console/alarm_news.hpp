@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -52,7 +53,8 @@ class AlarmNews {
     Instant since{};
     std::string what;
     TaskId task = {};
-    bool grave = false;  ///< act now
+    bool grave = false;                   ///< act now
+    std::optional<Instant> closest = {};  ///< when two come closest to each other
   };
 
   void on_event(const mission::MissionEvent& event, Instant now);
@@ -61,6 +63,9 @@ class AlarmNews {
   void on_receivers(const std::string& trouble, Instant now);
   void drop(const Key& key) { items_.erase(key); }
 
+  /// Until when, by its own clock, what a vehicle says of itself may still have a conflict that it
+  /// has told to be over since.
+  [[nodiscard]] Instant clear_since(VehicleId vehicle) const;
   [[nodiscard]] const std::map<Key, Item>& items() const { return items_; }
   /// Those of one topic: [first, last).
   [[nodiscard]] auto of(Topic topic) const {
@@ -76,6 +81,7 @@ class AlarmNews {
   void forget(VehicleId vehicle);
 
   std::map<Key, Item> items_;
+  std::map<VehicleId, Instant> clear_since_;
   std::uint64_t told_ = 0;
   bool commanded_here_ = false;
 };

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "skein/base/result.hpp"
@@ -56,6 +57,7 @@ enum class AlarmKind : std::uint8_t {
   formation_waits,
   order_waits,
   task_lost,
+  search_ended,
   proposal_waits,
   not_landed,
   vehicle_missing,
@@ -92,13 +94,23 @@ struct Alarm {
   std::uint32_t number = 0;
   AlarmLevel level{};
   Instant since{};
-  std::string what;    ///< a sentence, with vehicle and site
-  std::string remedy;  ///< what to do
+  std::string what;                ///< a sentence, with vehicle and site
+  std::string remedy;              ///< what to do
+  std::optional<Instant> closest;  ///< of two that come too near to each other: when that is
   std::uint32_t edition = 0;
   std::uint32_t times = 1;  ///< that it came, since it was acknowledged last
   std::optional<Instant> gone_since;
   std::optional<Instant> over;  ///< it is not so any more, and nobody has acknowledged it
   std::optional<Acknowledgement> acknowledged;
+};
+
+/// A search that some or all of those who flew it do not fly to its end.
+struct EndedSearch {
+  Instant begun{};  ///< tells it from others
+  Instant since{};
+  std::string what;           ///< a sentence
+  std::uint32_t edition = 0;  ///< greater: more of it has ended
+  bool is_wanted = false;     ///< the operator has called it off
 };
 
 struct Found;
@@ -127,12 +139,16 @@ class Alarms {
   void on_command(bool nobody, Instant now) { news_.on_command(nobody, now); }
   /// What keeps this ground station's receivers from telling of aircraft; empty where nothing does.
   void on_receivers(const std::string& trouble, Instant now) { news_.on_receivers(trouble, now); }
+  /// What has become of the search of an area; none: nothing that it should not. No recording
+  /// tells.
+  void on_search(std::optional<EndedSearch> search) { search_ = std::move(search); }
   /// What an earlier process of this ground station was told.
   void recall(const mission::MissionEvent& event, Instant at);
   /// Before what is heard at `now` is taken.
   void on_timeout(const Picture& picture, const mission::Fleet& fleet, Instant now);
 
-  /// Silences those numbers; none given: all. Fails where none of them is there, or waits for it.
+  /// Silences those numbers; none given: all. What is told once, and that a search has ended, is
+  /// gone then. Fails where none of them is there, or waits for it.
   [[nodiscard]] Result<std::vector<Alarm>> acknowledge(const std::vector<std::uint32_t>& numbers,
                                                        const std::string& by, Instant now);
 
@@ -148,6 +164,8 @@ class Alarms {
 
   AlarmNews news_;
   OrderAnswers orders_;
+  std::optional<EndedSearch> search_;
+  std::optional<EndedSearch> read_search_;  ///< as it was when it was acknowledged
   std::map<AlarmKey, Alarm> standing_;
   std::map<AlarmKey, Alarm> over_;
   std::uint32_t last_number_ = 0;

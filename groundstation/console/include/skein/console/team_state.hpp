@@ -16,11 +16,13 @@ namespace skein::console {
 enum class TeamState : std::uint8_t {
   no_command,   ///< no ground station is heard that commands
   lost_link,    ///< none of the vehicles that were heard is
+  in_the_way,   ///< somebody comes too near to an aircraft and does not give way: named
   held,         ///< all who are heard hold by order
   recall,       ///< all who are heard come home, are there or land by order, and not all are down
   degraded,     ///< somebody is silent, was never heard, or cannot work: named
   part_held,    ///< some hold by order
   part_recall,  ///< some come home by order
+  keeps_clear,  ///< some give way to an aircraft
   on_ground,    ///< all who are heard are on the ground
   normal,
   count

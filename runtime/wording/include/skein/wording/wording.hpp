@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -47,6 +48,13 @@ namespace skein::wording {
 /// What an event says besides its kind, its vehicle and its task: "planned for 60.0 s". May be
 /// empty.
 [[nodiscard]] std::string news_of(const mission::MissionEvent& event);
+/// The same without how long it is from then to its moment, for what is shown for longer: "aircraft
+/// 4ca2d6: 120 m to the side, 40 m in height; gives way by its height".
+[[nodiscard]] std::string lasting_news_of(const mission::MissionEvent& event);
+/// The moment that an event foresees: when two come closest to each other; none of most.
+[[nodiscard]] std::optional<Instant> closest_of(const mission::MissionEvent& event);
+/// From now to that moment, or since: "closest in 42 s", "was closest 12 s ago".
+[[nodiscard]] std::string closest_text(Instant closest, Instant now);
 /// An event as one line: "vehicle 7: task done, site 1 deliver 3: planned for 60.0 s".
 [[nodiscard]] std::string text_of(const mission::MissionEvent& event);
 
