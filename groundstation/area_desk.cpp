@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "search_words.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/planning/circle_cover.hpp"
 #include "skein/wording/wording.hpp"
@@ -16,7 +17,6 @@ namespace {
 
 using codec::Json;
 using mission::AreaSearch;
-using mission::SearchShare;
 
 constexpr double kRouteStep_m = 25.0;  ///< of a polyline, on arcs
 constexpr std::size_t kRoutePointsMax = 500;
@@ -51,9 +51,10 @@ Json points_of(const Path& path) {
   return points;
 }
 
-Json area_json(const AreaSearch& area) {
+Json area_json(const AreaSearch& area, Instant now) {
   Json shares = Json::array();
   for (const auto& [id, share] : area.shares) {
+    const auto progress = mission::progress_of(area, share, now);
     Json lanes = Json::array();
     for (const auto& lane : share.lanes) {
       const Vec2 from = lane.start.position();
@@ -65,16 +66,21 @@ Json area_json(const AreaSearch& area) {
                       {"state", to_string(share.state)},
                       {"why", share.why},
                       {"lanes", share.all},
-                      {"lanes_left", share.lanes.size()},
+                      {"lanes_left", progress.lanes_left},
+                      {"left_m", number(progress.left_m, 0)},
+                      {"done_s", progress.ends ? number(to_seconds(*progress.ends), 0) : nullptr},
                       {"length_m", number(share.length_m, 0)},
                       {"time_s", number(share.time_s, 0)},
                       {"ways", std::move(lanes)},
-                      {"points", points_of(share.route)}});
+                      {"points", points_of(share.route.path)}});
   }
   Json without = Json::array();
   for (const auto& [id, why] : area.without) without.push_back({{"id", id.value}, {"why", why}});
+  const auto expected = mission::expected_end(area, now);
   return {{"state", to_string(area.state)},
           {"why", area.why},
+          {"area_m2", number(planning::area_m2(area.corners), 0)},
+          {"expected_s", expected ? number(to_seconds(*expected), 0) : nullptr},
           {"corners", places(area.corners)},
           {"sensor_radius_m", number(area.sensor_radius_m, 1)},
           {"spacing_m", number(area.spacing_m, 1)},
@@ -87,19 +93,14 @@ Json area_json(const AreaSearch& area) {
           {"without", std::move(without)}};
 }
 
-std::string minutes(double seconds) {
-  const auto whole = std::lround(seconds);
-  return fmt::format("{}:{:02} min", whole / 60, whole % 60);
-}
-
 /// What will be, or is.
 std::string plan_text(const AreaSearch& area, Instant now) {
   std::string text = fmt::format(
-      "{:.2f} km2 in lanes {:.0f} m apart, by {} vehicles: begins in {:.0f} s, covered in {} ({} "
+      "{:.1f} ha in lanes {:.0f} m apart, by {} vehicles: begins in {:.0f} s, covered in {} ({} "
       "without turns); {:.1f} % of it\n",
-      planning::area_m2(area.corners) / 1e6, area.spacing_m, area.shares.size(),
-      to_seconds(area.begins - now), minutes(to_seconds(area.ends - now)), minutes(area.bound_s),
-      100.0 * area.planned);
+      planning::area_m2(area.corners) / 1e4, area.spacing_m, area.shares.size(),
+      to_seconds(area.begins - now), duration_text(to_seconds(area.ends - now)),
+      duration_text(area.bound_s), 100.0 * area.planned);
   if (area.planned < 0.9995) {
     text += "the rest is out of range, or there is no room for turns\n";
   }
@@ -110,29 +111,12 @@ std::string plan_text(const AreaSearch& area, Instant now) {
   }
   for (const auto& [id, share] : area.shares) {
     fmt::format_to(std::back_inserter(text), "{}: {} lanes, {:.1f} km, {}\n", wording::text_of(id),
-                   share.all, share.length_m / 1000.0, minutes(share.time_s));
+                   share.all, share.length_m / 1000.0, duration_text(share.time_s));
   }
   for (const auto& [id, why] : area.without) {
     fmt::format_to(std::back_inserter(text), "without {}: {}\n", wording::text_of(id), why);
   }
   return text;
-}
-
-std::string share_text(const SearchShare& share) {
-  switch (share.state) {
-    case SearchShare::State::waits:
-      return "waits for its next route";
-    case SearchShare::State::flies:
-      return fmt::format("flies {} of {} lanes", share.given, share.all);
-    case SearchShare::State::done:
-      return "has flown its share";
-    case SearchShare::State::left:
-      return fmt::format("flies it no more: {}; {} of {} lanes are not flown", share.why,
-                         share.lanes.size(), share.all);
-    case SearchShare::State::count:
-      break;
-  }
-  return "";
 }
 
 std::string shape_text(const mission::HazardGroup& group) {
@@ -148,7 +132,7 @@ Answer AreaDesk::answer(const SearchArea& order, Instant now) {
   const auto area = order.preview ? node_->preview_search(order.wishes, now)
                                   : node_->give_search(order.wishes, now);
   if (!area) return refusal(area.error());
-  Json data = area_json(*area);
+  Json data = area_json(*area, now);
   data["kind"] = "search";
   return {true,
           (order.preview ? "" : fmt::format("plan {} is offered; ", area->plan)) +
@@ -159,7 +143,7 @@ Answer AreaDesk::answer(const SearchArea& order, Instant now) {
 Answer AreaDesk::answer(const NewHazard& order, Instant now) {
   const mission::HazardShape shape{order.corners, order.centre_m, order.radius_m};
   if (order.preview) {
-    if (order.corners.empty()) return {true, "a circle\n"};
+    if (order.corners.empty()) return {true, "a circle\n" + bars_text(order, now)};
     const auto cover = planning::cover_with_circles(order.corners);
     if (!cover) return refusal(cover.error());
     Json data{{"kind", "hazard"}, {"circles", Json::array()}};
@@ -170,9 +154,11 @@ Answer AreaDesk::answer(const NewHazard& order, Instant now) {
     }
     return {true,
             fmt::format("{} circles hold the polygon, and shut out {:.0f} % more\n",
-                        cover->circles.size(), 100.0 * cover->more()),
+                        cover->circles.size(), 100.0 * cover->more()) +
+                bars_text(order, now),
             codec::json_text(data)};
   }
+  const std::string bars = bars_text(order, now);
   HazardId id = order.changes.value_or(HazardId{});
   if (order.changes) {
     const auto changed = node_->hazards().change(id, shape, now);
@@ -185,10 +171,24 @@ Answer AreaDesk::answer(const NewHazard& order, Instant now) {
   const auto group = node_->hazards().groups().find(id);
   const bool is_polygon = group != node_->hazards().groups().end() && !order.corners.empty();
   const std::string what = is_polygon ? "; " + shape_text(group->second) : "";
-  if (!order.changes) return {true, fmt::format("hazard {} is told to all{}\n", id.value, what)};
+  if (!order.changes) {
+    return {true, fmt::format("hazard {} is told to all{}\n{}", id.value, what, bars)};
+  }
   return {true, fmt::format("hazard {} is changed; the old one stands until all know the new "
-                            "one{}\n",
-                            id.value, what)};
+                            "one{}\n{}",
+                            id.value, what, bars)};
+}
+
+/// Whose search it ends.
+std::string AreaDesk::bars_text(const NewHazard& order, Instant now) const {
+  std::vector<Hazard> hazards;
+  if (order.corners.empty()) {
+    hazards.push_back({{}, order.centre_m, order.radius_m});
+  } else if (const auto cover = planning::cover_with_circles(order.corners)) {
+    for (const auto& circle : cover->circles)
+      hazards.push_back({{}, circle.centre, circle.radius_m});
+  }
+  return ends_search_text(node_->searches(), node_->searches().barred_by(hazards, now));
 }
 
 Answer AreaDesk::answer(const WithdrawHazard& order, Instant now) {
@@ -230,37 +230,20 @@ std::string AreaDesk::text(Instant now) const {
   for (const auto& [id, group] : node_->hazards().groups()) {
     fmt::format_to(std::back_inserter(text), "hazard {}: {}\n", id.value, shape_text(group));
   }
-  const auto& area = node_->searches().area();
-  if (!area) return text + "no area is searched\n";
-  const double left_s = to_seconds(area->ends - now);
-  text += fmt::format(
-      "area of {:.2f} km2, {}{}: {:.1f} % seen\n", planning::area_m2(area->corners) / 1e6,
-      area->state == AreaSearch::State::flown  ? "searched"
-      : area->state == AreaSearch::State::over ? "flown"
-                                               : "called off",
-      area->why.empty() ? "" : " (" + area->why + ")", 100.0 * node_->searches().seen());
-  if (area->state == AreaSearch::State::flown) {
-    text += left_s > 0.0 ? fmt::format("planned to be covered in {}\n", minutes(left_s))
-                         : fmt::format("{} later than planned\n", minutes(-left_s));
-  }
-  for (const auto& [id, share] : area->shares) {
-    fmt::format_to(std::back_inserter(text), "{:>7}  {}\n", id.value, share_text(share));
-  }
-  if (node_->searches().leaves_rest()) {
-    text += "'search rest' shares out what was not seen\n";
-  }
-  return text;
+  if (!node_->searches().area()) return text + "no area is searched\n";
+  return text + progress_text(node_->searches(), epoch_unix_ns_, now);
 }
 
 const std::string& AreaDesk::json(Instant now) {
   if (now >= json_until_) {
-    json_ = made_json();
+    json_ = made_json(now);
+    ended_ = ended_search(node_->searches());
     json_until_ = now + kJsonPeriod;
   }
   return json_;
 }
 
-std::string AreaDesk::made_json() const {
+std::string AreaDesk::made_json(Instant now) const {
   Json hazards = Json::array();
   for (const auto& [id, group] : node_->hazards().groups()) {
     Json circles = Json::array();
@@ -275,7 +258,7 @@ std::string AreaDesk::made_json() const {
   }
   Json search = nullptr;
   if (const auto& area = node_->searches().area()) {
-    search = area_json(*area);
+    search = area_json(*area, now);
     search["seen"] = number(node_->searches().seen(), 3);
     search["rest"] = node_->searches().leaves_rest();
   }

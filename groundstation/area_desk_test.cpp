@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "search_words.hpp"
 #include "skein/base/random.hpp"
 #include "skein/codec/json_text.hpp"
 #include "skein/groundstation/prompt.hpp"
@@ -13,6 +14,7 @@
 namespace skein::groundstation {
 namespace {
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 class AreaDeskTest : public ::testing::Test {
@@ -50,14 +52,14 @@ class AreaDeskTest : public ::testing::Test {
                               return config;
                             }(),
                             Instant{}};
-  AreaDesk desk_{node_};
+  AreaDesk desk_{node_, 0};
 };
 
 TEST_F(AreaDeskTest, PreviewsAndGivesASearch) {
   EXPECT_THAT(desk_.text(now_), HasSubstr("no area is searched"));
   const Answer preview = order("preview search 0,200 1000,200 1000,1000 0,1000 by 1,2");
   EXPECT_TRUE(preview.done) << preview.text;
-  EXPECT_THAT(preview.text, HasSubstr("0.80 km2 in lanes 180 m apart, by 2 vehicles"));
+  EXPECT_THAT(preview.text, HasSubstr("80.0 ha in lanes 180 m apart, by 2 vehicles"));
   EXPECT_THAT(preview.text, HasSubstr("100.0 % of it"));
   const auto data = codec::parse_json(preview.data);
   EXPECT_EQ(data["kind"], "search");
@@ -67,11 +69,52 @@ TEST_F(AreaDeskTest, PreviewsAndGivesASearch) {
   const Answer given = order("search 0,200 1000,200 1000,1000 0,1000 in 40");
   EXPECT_TRUE(given.done) << given.text;
   EXPECT_THAT(given.text, HasSubstr("begins in 40 s"));
-  EXPECT_THAT(desk_.text(now_), HasSubstr("searched: 0.0 % seen"));
+  EXPECT_THAT(desk_.text(now_),
+              HasSubstr("0.0 of 80.0 ha searched (0 %), 100 % when all is flown"));
   EXPECT_TRUE(node_.routes().given());
   const auto shown = codec::parse_json(desk_.json(now_));
   EXPECT_EQ(shown["search"]["state"], "flown");
   EXPECT_FALSE(order("search rest").done) << "routes stand";
+}
+
+TEST_F(AreaDeskTest, TellsHowFarItIsWhoHasWhatLeftAndWhenItIsDone) {
+  ASSERT_TRUE(order("search 0,200 1000,200 1000,1000 0,1000 in 40").done);
+  const std::string text = desk_.text(now_);
+  EXPECT_THAT(text, HasSubstr("the area is being searched: "));
+  EXPECT_THAT(text, ContainsRegex("expected to be done in [0-9]+ min [0-9]+ s, at [0-9.]+ s \\("));
+  EXPECT_THAT(text,
+              ContainsRegex("1  flies: [0-9]+ lanes with [0-9.]+ km of [0-9]+ left, done in"));
+  const auto search = codec::parse_json(desk_.json(now_))["search"];
+  EXPECT_EQ(search["area_m2"], 800'000.0);
+  EXPECT_GT(search["expected_s"], 50.0);
+  EXPECT_GT(search["shares"][0]["left_m"], 1000.0);
+  EXPECT_GT(search["shares"][0]["done_s"], 50.0);
+  EXPECT_FALSE(desk_.ended());
+}
+
+TEST_F(AreaDeskTest, SaysWhoseSearchAnOrderEndsBeforeItIsGivenAndThatItEnded) {
+  const auto ends = [&](const std::string& line) {
+    return ends_search_text(node_.searches(), *parse_input(line));
+  };
+  EXPECT_EQ(ends("hold all"), "");
+  ASSERT_TRUE(order("search 0,200 1000,200 1000,1000 0,1000 in 40").done);
+  EXPECT_THAT(ends("hold all"), HasSubstr("ends the search of vehicles 1,2: 0.0 of 80.0 ha"));
+  EXPECT_THAT(ends("return 2"), HasSubstr("ends the search of vehicle 2: "));
+  EXPECT_THAT(ends("preview return all"), HasSubstr("ends the search of vehicles 1,2: "));
+  EXPECT_EQ(ends("resume all"), "");
+  EXPECT_EQ(ends("hold 9"), "");
+  // Where both have their lanes, and where nobody is.
+  EXPECT_THAT(order("preview hazard 500 600 450").text, HasSubstr("ends the search of vehicle"));
+  EXPECT_EQ(order("preview hazard 9000 9000 50").text, "a circle\n");
+  EXPECT_THAT(order("hazard polygon 0,200 1000,200 1000,1000 0,1000").text,
+              HasSubstr("ends the search of vehicles 1,2: "));
+  ASSERT_TRUE(node_.call_off_routes(now_).ok());
+  node_.on_timeout(now_);
+  now_ += AreaDesk::kJsonPeriod;
+  (void)desk_.json(now_);
+  ASSERT_TRUE(desk_.ended());
+  EXPECT_TRUE(desk_.ended()->is_wanted);
+  EXPECT_THAT(desk_.ended()->what, HasSubstr("search called off: 0.0 of 80.0 ha searched"));
 }
 
 TEST_F(AreaDeskTest, APolygonIsOneHazardThatIsChangedAndWithdrawn) {

@@ -218,6 +218,7 @@ void ConsoleDesk::on_event(const mission::MissionEvent& event, Instant now) {
 void ConsoleDesk::on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now) {
   alarms_.on_command(beside.nobody_commands, now);
   alarms_.on_receivers(beside.receiver_trouble, now);
+  alarms_.on_search(beside.search);
   alarms_.on_timeout(picture_, fleet, now);
   if (!server_) return;
   if (!events_.empty()) server_->append(std::exchange(events_, {}));

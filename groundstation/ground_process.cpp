@@ -17,6 +17,7 @@
 #include "commanding.hpp"
 #include "ground_start.hpp"
 #include "input_rules.hpp"
+#include "search_words.hpp"
 #include "skein/base/stations.hpp"
 #include "skein/codec/codec.hpp"
 #include "skein/codec/json_text.hpp"
@@ -171,7 +172,7 @@ class GroundLoop {
         routes_{node},
         fence_{node, origin_},
         returns_{node},
-        areas_{node},
+        areas_{node, clock.epoch_unix_ns()},
         control_{std::move(control)},
         console_{std::move(console)},
         agencies_{config, origin},
@@ -326,11 +327,18 @@ class GroundLoop {
   Answer answer(const Result<Input>& input, std::string line, const Asker& asker, Instant now) {
     if (line.empty() && input) line = line_of(*input);
     const char* not_here = input && asker.from == kConsole ? why_not_on_console(*input) : nullptr;
-    if (input && not_here == nullptr && only_looks(*input)) return look(*input, asker, now);
+    // Before it is given: what it asks of whom is told by then.
+    const std::string ends = input ? ends_search_text(node_.searches(), *input) : "";
+    if (input && not_here == nullptr && only_looks(*input)) {
+      Answer seen = look(*input, asker, now);
+      if (seen.done) seen.text += ends;
+      return seen;
+    }
     Answer given = !input                ? refusal(input.error())
                    : not_here != nullptr ? Answer{false, not_here}
                    : !asker.may_order    ? Answer{false, "an observer gives no orders\n"}
                                          : order(*input, asker, now);
+    if (given.done || given.in_part) given.text += ends;
     // What an observer tries would only push the orders out of sight.
     if (asker.may_order) {
       note({now, asker.who, asker.from, std::move(line), given.done, given.text, given.in_part});
@@ -530,7 +538,8 @@ class GroundLoop {
     console_.on_decisions(node_.agent(), now);
     console_.on_timeout(node_.fleet(),
                         {audit_.json(), areas_.json(now), commanding_.desk().json(now),
-                         commanding_.desk().nobody_commands(now), agencies_.receiver_trouble()},
+                         commanding_.desk().nobody_commands(now), agencies_.receiver_trouble(),
+                         areas_.ended()},
                         now);
     if (commanding_.is_commanding()) {
       agencies_.on_timeout(console_.picture(), node_.fleet(), now);

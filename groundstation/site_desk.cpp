@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "search_words.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/groundstation/views.hpp"
 #include "skein/wording/wording.hpp"
@@ -192,6 +193,18 @@ std::string SiteDesk::surveyor_text(SiteId site) const {
                         : "told to nobody yet: " + nobody_text();
 }
 
+/// Whose search it ends: who surveys leaves its share, and so does who takes up its tasks.
+std::string SiteDesk::ends_text(const std::optional<VehicleId>& surveyor, const Site& site) const {
+  const auto& search = node_->searches();
+  std::string text = surveyor ? ends_search_text(search, {*surveyor}) : "";
+  const std::size_t tasks = tasks_after_survey(site).size();
+  if (tasks > 0 && !search.searching().empty()) {
+    text += fmt::format("its {} {} that of whoever takes {} up\n", tasks,
+                        tasks == 1 ? "task ends" : "tasks end", tasks == 1 ? "it" : "them");
+  }
+  return text;
+}
+
 Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now) {
   auto site = completed(order);
   if (!site) return refusal(site.error());
@@ -208,12 +221,14 @@ Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now
     const auto surveyor = order.wishes.surveyor
                               ? order.wishes.surveyor
                               : node_->sites().nearest_surveyor(site->position, node_->fleet());
-    return {true, fmt::format("{}\n{}\n{}", what,
-                              surveyor ? wording::text_of(*surveyor) + " would survey it"
-                                       : "nobody would be told now: " + nobody_text(),
-                              twice.empty() ? "" : "but " + twice + "\n")};
+    return {true,
+            fmt::format("{}\n{}\n{}{}", what,
+                        surveyor ? wording::text_of(*surveyor) + " would survey it"
+                                 : "nobody would be told now: " + nobody_text(),
+                        twice.empty() ? "" : "but " + twice + "\n", ends_text(surveyor, *site))};
   }
   if (!twice.empty()) return {false, twice + "\n"};
+  const Site told = *site;
   const auto given = order.changes ? node_->change_site(*order.changes, *std::move(site),
                                                         order.wishes.surveyor, by, now)
                                    : node_->add_site(*std::move(site), order.wishes.surveyor, now);
@@ -221,8 +236,8 @@ Answer SiteDesk::answer(const NewSite& order, const std::string& by, Instant now
   const std::string instead =
       order.changes ? fmt::format(" in place of site {}, which is withdrawn", order.changes->value)
                     : "";
-  return {true,
-          fmt::format("site {}{}, {}\n{}\n", given->value, instead, surveyor_text(*given), what)};
+  return {true, fmt::format("site {}{}, {}\n{}\n{}", given->value, instead, surveyor_text(*given),
+                            what, ends_text(node_->sites().sites().at(*given).surveyor, told))};
 }
 
 Answer SiteDesk::answer(const SitesFromFile& order, Instant now) {

@@ -61,6 +61,7 @@ class ConsoleDesk {
     const std::string& command;
     bool nobody_commands = false;
     std::string receiver_trouble = {};  ///< why aircraft are not seen
+    std::optional<console::EndedSearch> search = {};
   };
   void on_timeout(const mission::Fleet& fleet, const Beside& beside, Instant now);
 

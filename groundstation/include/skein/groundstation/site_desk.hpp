@@ -44,6 +44,8 @@ class SiteDesk {
   [[nodiscard]] std::string why_no_metres(const SiteWishes& wishes) const;
   [[nodiscard]] std::string nobody_text() const;
   [[nodiscard]] std::string surveyor_text(SiteId site) const;
+  [[nodiscard]] std::string ends_text(const std::optional<VehicleId>& surveyor,
+                                      const Site& site) const;
 
   MissionOrigin origin_;
   std::map<std::string, Site> templates_;
