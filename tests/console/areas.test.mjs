@@ -27,7 +27,7 @@ after(async () => {
 });
 
 const text_of = (id) => view.part(id).innerText();
-const percent = async () => Number(/([\d.]+)/.exec(await text_of("search-seen"))[1]);
+const percent = async () => Number(/\((\d+) %\)/.exec(await text_of("search-seen"))[1]);
 
 async function take(corners) {
   await view.part("outline-typed").fill(corners);
@@ -98,7 +98,7 @@ test("an area is previewed with its time and shares", async () => {
   await view.part("search-preview").click();
   await until("the preview", () => view.part("search-outcome").isVisible());
   const text = await text_of("search-outcome");
-  assert.match(text, /0\.65 km2 in lanes 2\d\d m apart, by 3 vehicles: .* covered in \d+:\d\d min .* 100\.0 % of it/);
+  assert.match(text, /65\.0 ha in lanes 2\d\d m apart, by 3 vehicles: .* covered in (\d+ min )?\d+ s .* 100\.0 % of it/);
   for (const id of [1, 2, 3]) assert.match(text, new RegExp(`vehicle ${id}: \\d+ lanes, [\\d.]+ km`));
   await view.picture("areas-preview");
   assert.deepEqual(await barriers(view.page), []);
@@ -112,11 +112,55 @@ test("it is given, taken by all, flown, and seen", async () => {
     return states.every((state) => state.includes("flies"));
   });
   await until("a part that is seen", async () => (await percent()) > 5, 90_000);
+  assert.match(await text_of("search-seen"), /^\d+\.\d of 65\.0 ha searched \(\d+ %\)$/);
+  assert.match(await text_of("search-expected"), /^expected to be done in .* s, at \d\d:\d\d \(\d\d:\d\d:\d\d UTC\)/);
+  assert.match(await text_of("share-1"), /\d+ of \d+, \d+(\.\d)? k?m\s+in .* s, at \d\d:\d\d\s+flies/);
+  const prompt = (await say(view.page, { line: "search" })).text;
+  assert.match(prompt, /the area is being searched: \d+\.\d of 65\.0 ha searched \(\d+ %\), 100 % when all is flown/);
+  assert.match(prompt, /expected to be done in .* at [\d.]+ s \(\d\d:\d\d:\d\d UTC\)/);
+  assert.match(prompt, /1  flies: \d+ lanes? with \d+\.\d km of \d+ left, done in/);
   const first = await percent();
   await until("more of it", async () => (await percent()) > first + 20, 90_000);
   await view.picture("areas-flown");
   await until("all of it", async () => (await text_of("search-progress")).includes("flown to its end"), 180_000);
   assert.ok((await percent()) >= 99, `${await percent()} % seen`);
+});
+
+const given_line = async (line) => {
+  const answer = await say(view.page, { line });
+  assert.equal(answer.done, true, answer.text);
+  return answer.text;
+};
+const alarm_text = async () => {
+  const row = view.part("alarm-search_ended");
+  return (await row.count()) === 1 ? row.innerText() : "";
+};
+
+test("who is held before a search begins leaves it alone: said before, and standing until it is dealt with", async () => {
+  await given_line("search -100,200 900,200 900,850 -100,850 in 40");
+  await until("three that fly it", async () => (await Promise.all([1, 2, 3].map((id) => text_of(`share-${id}`)))).every((state) => state.includes("flies")));
+  await view.part("tab-fleet").click();
+  await view.part("vehicle-3").click();
+  await until("what a hold would end", async () => /Hold, return and land end the search of vehicle 3: \d+\.\d of 65\.0 ha searched/.test(await text_of("ends-search")));
+  assert.deepEqual(await barriers(view.page), []);
+  assert.match((await say(view.page, { type: "order", order: { kind: "hazard", preview: true, x: 400, y: 500, radius_m: 200 } })).text, /it ends the search of vehicles? [\d,-]+: /);
+  await view.part("vehicle-hold").click();
+  await until("the answer", async () => (await view.page.locator(".notice, [data-testid^=notice]").allInnerTexts()).some((text) => /it ends the search of vehicle 3/.test(text)));
+  await view.part("alarm-counts").click();
+  await until("the alarm", async () => /some search no more: .* vehicle 3: it holds/.test(await alarm_text()));
+  await view.part("tab-areas").click();
+  await until("its share", async () => (await text_of("share-3")).includes("left: it holds"));
+  for (const id of [1, 2]) assert.match(await text_of(`share-${id}`), /flies/, "the others fly on");
+  await until("the begin", async () => (await percent()) > 5, 90_000);
+  for (const id of [1, 2]) assert.match(await text_of(`share-${id}`), /flies|done/);
+  await view.picture("areas-one-held");
+  const number = await view.part("alarm-search_ended").getAttribute("data-number");
+  await view.part(`alarm-acknowledge-${number}`).click();
+  await until("no alarm", async () => (await alarm_text()) === "");
+  await given_line("resume 3");
+  await given_line("withdraw routes");
+  await until("that it is called off", async () => /search called off: \d+\.\d of 65\.0 ha searched \(\d+ %\); by the operator/.test(await alarm_text()));
+  await view.part("alarm-counts").click();
 });
 
 test("a hazard is drawn as a polygon, shown as one, and ways keep out of it", async () => {
@@ -213,7 +257,7 @@ test("who finds a site is released to survey it, and the rest is shared out agai
     return (await text_of("search-outcome")).includes("covered in");
   }, 120_000);
   await hold(view.part("search-give"));
-  await until("all of it", async () => (await percent()) > 99, 240_000);
+  await until("all of it", async () => (await percent()) >= 99, 240_000);
 });
 
 test("a fence can be drawn, copied for the configuration, and given to all in flight", async () => {

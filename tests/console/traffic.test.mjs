@@ -9,7 +9,7 @@ import { join, relative } from "node:path";
 import { after, before, test } from "node:test";
 
 import { fly, scenarios, until, work } from "./bench.mjs";
-import { barriers, browse } from "./browser.mjs";
+import { barriers, browse, say } from "./browser.mjs";
 
 const kAddress = "4CA2D6";
 const kOrigin = { latitude_deg: 31.522062, longitude_deg: 105.044327, height_m: 480 };
@@ -106,6 +106,38 @@ test("vehicles that it comes too near to give way, and the page says so", async 
   await view.picture("traffic");
 });
 
+/** Of the alarms that stand about the aircraft. */
+const alarms = async () => (await say(view.page, { line: "alarms" })).data.list.filter(({ kind, over_s }) => kind === "traffic" && over_s === null);
+
+test("its alarm counts down to when it is closest, and the team is not normal", async () => {
+  await view.part("alarm-counts").click();
+  const [{ key, closest_s }] = await until("an alarm", async () => {
+    const all = await alarms();
+    return all.length > 0 && all;
+  });
+  assert.ok(closest_s > 0);
+  const text = () => view.part(`alarm-${key}`).innerText();
+  const left = async () => Number(/closest in (\d+) s/.exec(await text())?.[1] ?? Number.NaN);
+  const first = await left();
+  assert.ok(first > 5 && first < 90, await text());
+  await until("less", async () => (await left()) < first - 2);
+  assert.match(await text(), /m to the side, \d+ m in height; gives way/);
+  assert.match((await say(view.page, { line: "alarms" })).text, /gives way by its height; closest in \d+ s/);
+  assert.match(await view.part("team-state").innerText(), /keep clear of other aircraft/);
+  await view.part("alarm-counts").click();
+});
+
+test("who is held by order while it keeps clear is shown to be held, too", async () => {
+  const [{ vehicle }] = await alarms();
+  const answer = await say(view.page, { line: `hold ${vehicle}` });
+  assert.equal(answer.done, true, answer.text);
+  await view.part("tab-fleet").click();
+  const fleet = () => view.part("fleet").innerText();
+  await until("both words", async () => /holding by order, keeping clear of traffic/.test(await fleet()));
+  assert.match((await say(view.page, { line: "status" })).text, new RegExp(`^ +${vehicle}  holding by order, keeps clear`, "m"));
+  await view.picture("traffic-held");
+});
+
 test("its layer of the map can be taken away, and the list be used by keys and at any size", async () => {
   await view.part("layers-open").click();
   assert.equal(await view.part("layer-traffic").isChecked(), true);
@@ -128,6 +160,7 @@ test("its layer of the map can be taken away, and the list be used by keys and a
 test("when it has passed they come back, and it is forgotten half a minute after its last word", async () => {
   await view.part("tab-fleet").click();
   await until("nobody who gives way", async () => !(await avoiding()), 120_000);
+  assert.match(await view.part("fleet").innerText(), /holding by order/, "who was held stands");
   await view.part("tab-log").click();
   await view.part("log-text").fill("clear of aircraft");
   await until("the log", async () => /clear of aircraft 4ca2d6/.test(await view.part("log").innerText()));

@@ -11,7 +11,7 @@ import { tick } from "../shell/ticker";
 import type { Alarm } from "../wire/protocol";
 import { in_replay, lost_s, may_order, mission_now_s } from "../wire/store";
 import { acknowledge, alarm_counts, alarm_list, can_acknowledge, go_to, list_open, mute, muted_ms, set_volume, sound, sound_allowed, unmute, volume, watch_alarms, worst } from "./alarm_state";
-import { counts_text, is_open, lasted, own_number } from "./alarm_list";
+import { closest_text, counts_text, is_open, lasted, own_number } from "./alarm_list";
 import { least_volume } from "./sound";
 
 const signs = { alarm: "!", warning: "▲", notice: "i" } as const;
@@ -64,11 +64,18 @@ function AcknowledgeButton({ alarm }: { alarm: Alarm }) {
   );
 }
 
+function Closest({ alarm }: { alarm: Alarm }) {
+  void tick.value;
+  const text = closest_text(alarm, mission_now_s());
+  return text === "" ? null : <b class="alarm-closest">; {text}</b>;
+}
+
 function What({ alarm, testid }: { alarm: Alarm; testid: string }) {
   return (
     <button type="button" class="alarm-what" data-testid={testid} onClick={() => go_to(alarm)} title="Show it, and where to act">
       <span>
         {alarm.what}
+        <Closest alarm={alarm} />
         {alarm.times > 1 && ` (${alarm.times} times)`}
       </span>
       {alarm.remedy && alarm.over_s === null && <span class="alarm-remedy">{alarm.remedy}</span>}

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { command } from "../orders/orders";
 import { an_alarm } from "../wire/samples";
 import type { GivenOrder } from "../wire/protocol";
-import { answers_text, connection_alarm, counts_of, counts_text, fresh_of, given_of, in_hand, lasted, sound_of, title_of, worst_of } from "./alarm_list";
+import { answers_text, closest_text, connection_alarm, counts_of, counts_text, fresh_of, given_of, in_hand, lasted, sound_of, title_of, worst_of } from "./alarm_list";
 
 const seen = { by: "ada", at_s: 70 };
 
@@ -87,4 +87,13 @@ test("who obeys, and the slowest of them", () => {
   assert.equal(answers_text(given({ answered: [{ vehicle: 1, after_s: 0.42 }], waiting: [2] })), "1 of 2 obey; the last (1) after 0.4 s; not yet 2");
   assert.equal(answers_text(given({ answered: [{ vehicle: 1, after_s: 0.42 }], waiting: [] })), "1 of 1 obey; after 0.4 s");
   assert.equal(answers_text(given({ waiting: [] })), "nobody in the air is asked");
+});
+
+test("what comes near is counted down to its moment, and past it", () => {
+  const alarm = an_alarm(1, { closest_s: 100 });
+  assert.equal(closest_text(alarm, 22), "closest in 78 s");
+  assert.equal(closest_text(alarm, 99.2), "closest in 1 s");
+  assert.equal(closest_text(alarm, 112), "was closest 12 s ago");
+  assert.equal(closest_text({ ...alarm, over_s: 110 }, 112), "");
+  assert.equal(closest_text(an_alarm(1), 112), "");
 });

@@ -21,6 +21,7 @@ export function connection_alarm(lost_s: number, now_s: number, acknowledged: bo
     over_s: null,
     what: "This page has no connection to the ground station: nothing here is known to be so now",
     remedy: "look at the ground station and the network; its prompt and other pages may still work",
+    closest_s: null,
     times: 1,
     vehicle: null,
     other: null,
@@ -116,6 +117,13 @@ export function answers_text({ answered, waiting }: GivenOrder): string {
   if (slowest) parts.push(all === 1 ? `after ${slowest.after_s.toFixed(1)} s` : `the last (${slowest.vehicle}) after ${slowest.after_s.toFixed(1)} s`);
   if (waiting.length > 0) parts.push(`not yet ${waiting.join(", ")}`);
   return parts.join("; ");
+}
+
+/** From now to when two are closest to each other, or since; empty of all else, and of what is over. */
+export function closest_text({ closest_s, over_s }: Alarm, now_s: number | null): string {
+  if (closest_s === null || over_s !== null || now_s === null) return "";
+  const in_s = closest_s - now_s;
+  return in_s > 0 ? `closest in ${Math.round(in_s)} s` : `was closest ${Math.round(-in_s)} s ago`;
 }
 
 /** How long it has been so, or was. */

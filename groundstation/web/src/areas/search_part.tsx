@@ -5,8 +5,10 @@ import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { words_of_order } from "../orders/orders";
 import type { SearchArea } from "../wire/protocol";
-import { areas, may_order, mission_now_s, send } from "../wire/store";
+import { areas, hello, may_order, mission_now_s, send } from "../wire/store";
+import { tick } from "../shell/ticker";
 import { outline } from "./outline";
+import { done_text, expected_text, left_text, searched_text } from "./progress";
 import { no_search_fields, search_order, search_preview } from "./search";
 import type { SearchFields } from "./search";
 
@@ -18,27 +20,26 @@ const state_words: Record<SearchArea["state"], string> = {
 };
 
 function Shares({ search }: { search: SearchArea }) {
+  void tick.value;
+  const now_s = mission_now_s();
+  const is_preview = search.state === "previewed";
   return (
     <table>
       <thead>
         <tr>
           <th scope="col">Vehicle</th>
-          <th scope="col">Lanes</th>
-          <th scope="col">Way</th>
-          <th scope="col">Time</th>
-          <th scope="col">State</th>
+          <th scope="col">{is_preview ? "Lanes" : "Lanes left"}</th>
+          <th scope="col">{is_preview ? "Way" : "Done"}</th>
+          <th scope="col">{is_preview ? "Time" : "State"}</th>
         </tr>
       </thead>
       <tbody>
         {search.shares.map((share) => (
           <tr key={share.id} data-testid={`share-${share.id}`}>
             <th scope="row">{share.id}</th>
-            <td>
-              {share.lanes - share.lanes_left}/{share.lanes}
-            </td>
-            <td>{distance(share.length_m)}</td>
-            <td>{duration(share.time_s)}</td>
-            <td>{share.state === "left" ? `left: ${share.why}` : words(share.state)}</td>
+            <td>{is_preview ? share.lanes : left_text(share)}</td>
+            <td>{is_preview ? distance(share.length_m) : done_text(share, now_s)}</td>
+            <td>{is_preview ? duration(share.time_s) : share.state === "left" ? `left: ${share.why}` : words(share.state)}</td>
           </tr>
         ))}
       </tbody>
@@ -47,16 +48,17 @@ function Shares({ search }: { search: SearchArea }) {
 }
 
 function Progress({ search }: { search: SearchArea }) {
+  void tick.value;
   const seen = search.seen ?? 0;
-  const left_s = search.ends_s - (mission_now_s() ?? 0);
+  const expected = expected_text(search, mission_now_s(), hello.value?.epoch_unix_s ?? null);
   return (
     <section aria-labelledby="progress-title" data-testid="search-progress">
       <h2 id="progress-title">The area is {state_words[search.state]}</h2>
       {search.why && <p class="problem warning">{search.why}</p>}
       <p>
-        <b data-testid="search-seen">{number(100 * seen, 1)} %</b> seen by where vehicles were heard; {number(100 * search.planned, 1)} % when all is flown
-        {search.state === "flown" && (left_s > 0 ? `, in ${duration(left_s)}` : `, ${duration(-left_s)} later than planned`)}
+        <b data-testid="search-seen">{searched_text(search)}</b> by where vehicles were heard; {number(100 * search.planned, 1)} % when all is flown
       </p>
+      {expected && <p data-testid="search-expected">{expected}</p>}
       <progress value={seen} max={1} aria-label="Share of the area that was seen" />
       <Shares search={search} />
     </section>

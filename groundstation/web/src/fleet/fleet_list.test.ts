@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { a_vehicle } from "../wire/samples";
 import type { Vehicle } from "../wire/protocol";
 import { between, columns_for, counts_by_state, least_width, next_sorting, no_filter, numbers_in, passes, slice_of, sorted } from "./fleet_list";
+import { state_text } from "./texts";
 import type { Filter } from "./fleet_list";
 import { all_groups, groups_of, read_groups, with_group, write_groups } from "./groups";
 
@@ -111,4 +112,14 @@ test("an own group stands in place of a configured one of its name", () => {
   const all = all_groups([{ name: "a", vehicles: [1] }, { name: "b", vehicles: [2] }], [{ name: "b", vehicles: [3], own: true }, { name: "c", vehicles: [1], own: true }]);
   assert.deepEqual(all.map(({ name, vehicles }) => [name, ...vehicles]), [["a", 1], ["b", 3], ["c", 1]]);
   assert.deepEqual(groups_of(all, 1), ["a", "c"]);
+});
+
+test("who keeps clear of traffic besides is found by either word", () => {
+  const held = a_vehicle(7, { state: "holding_by_order", besides: "keeping_clear_of_traffic" });
+  assert.equal(state_text(held), "holding by order, keeping clear of traffic");
+  assert.equal(state_text(a_vehicle(8)), "searching");
+  for (const text of ["holding", "keeping clear"]) {
+    assert.ok(passes({ ...no_filter, text }, [])(held), text);
+    assert.ok(!passes({ ...no_filter, text }, [])(a_vehicle(8)), text);
+  }
 });

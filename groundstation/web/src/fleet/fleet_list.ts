@@ -74,7 +74,7 @@ export function numbers_in(text: string): Set<number> | null {
 
 function text_of(vehicle: Vehicle, groups: readonly Group[]): string {
   return [
-    words(state_of(vehicle)), task_text(vehicle), vehicle.mode ?? "", vehicle.version ?? "", vehicle.flight_controller ?? "",
+    words(state_of(vehicle)), vehicle.besides ? words(vehicle.besides) : "", task_text(vehicle), vehicle.mode ?? "", vehicle.version ?? "", vehicle.flight_controller ?? "",
     ...groups_of(groups, vehicle.id), ...problems_of(vehicle).map((problem) => problem.text),
   ].join("\n").toLowerCase();
 }

@@ -4,7 +4,7 @@
 import { signal } from "@preact/signals";
 import type { ComponentChildren } from "preact";
 import { useLayoutEffect, useRef, useState } from "preact/hooks";
-import { age, distance, number, words } from "../shell/format";
+import { age, distance, number } from "../shell/format";
 import { for_fingers } from "../shell/layout";
 import { select, select_all, selected, selection, toggle_selected } from "../shell/view";
 import { Badge } from "../theme/badge";
@@ -17,7 +17,7 @@ import { groups, sorting, wanted_columns } from "./chosen";
 import { between, column_names, columns_for, least_width, next_sorting, slice_of } from "./fleet_list";
 import type { Column } from "./fleet_list";
 import { groups_of } from "./groups";
-import { task_text } from "./texts";
+import { state_text, task_text } from "./texts";
 
 export const column_titles: Record<Column, string> = {
   id: "Id", state: "State", task: "Task", heard: "Heard", range: "Range", loads: "Loads", mode: "Mode", version: "Version", clock: "Clock", groups: "Groups",
@@ -69,7 +69,7 @@ function cell(vehicle: Vehicle, column: Column, odd: ReadonlySet<string>): Shown
       return {
         content: (
           <>
-            {words(vehicle.state)}
+            {state_text(vehicle)}
             {sign && <Badge sign={sign} />}
           </>
         ),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several are selected: one order for all of them.
 
+import { EndsSearch } from "../areas/ends_search";
 import { command_to } from "../orders/orders";
 import { ids } from "../shell/format";
 import { give } from "../shell/give";
@@ -43,6 +44,7 @@ export function SelectionBar() {
           </HoldButton>
         </div>
       )}
+      {may_order.value && <EndsSearch vehicles={chosen} />}
     </section>
   );
 }

@@ -2,6 +2,11 @@
 import { clock, words } from "../shell/format";
 import type { Vehicle } from "../wire/protocol";
 
+/** What it does, and what besides: "holding by order, keeping clear of traffic". */
+export function state_text(vehicle: Vehicle): string {
+  return vehicle.besides ? `${words(vehicle.state)}, ${words(vehicle.besides)}` : words(vehicle.state);
+}
+
 export function task_text(vehicle: Vehicle): string {
   const { task } = vehicle;
   if (!task) return "–";

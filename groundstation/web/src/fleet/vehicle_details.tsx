@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One vehicle: its figures, and the orders to it alone.
 
-import { bearing, distance, ids, number, words } from "../shell/format";
+import { EndsSearch } from "../areas/ends_search";
+import { bearing, distance, ids, number } from "../shell/format";
 import { command } from "../orders/orders";
 import { give } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
@@ -9,6 +10,7 @@ import { follow, select } from "../shell/view";
 import type { Vehicle } from "../wire/protocol";
 import { words_of_wind } from "../wind/wind";
 import { hello, may_order, wind } from "../wire/store";
+import { state_text } from "./texts";
 
 function Orders({ vehicle }: { vehicle: Vehicle }) {
   const { id } = vehicle;
@@ -54,7 +56,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
     <section class="details" aria-label={`Vehicle ${vehicle.id}`} data-testid="vehicle-details">
       <header>
         <h2>Vehicle {vehicle.id}</h2>
-        <span class="muted">{words(vehicle.state)}</span>
+        <span class="muted">{state_text(vehicle)}</span>
         <span class="grow" />
         <button type="button" class="quiet" aria-pressed={follow.value} onClick={() => (follow.value = !follow.value)}>
           Follow
@@ -64,6 +66,7 @@ export function VehicleDetails({ vehicle }: { vehicle: Vehicle }) {
         </button>
       </header>
       {may_order.value && <Orders vehicle={vehicle} />}
+      {may_order.value && <EndsSearch vehicles={[vehicle.id]} />}
       <dl class="figures">
         {rows.map(([name, value]) => (
           <div key={name}>

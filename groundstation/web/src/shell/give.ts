@@ -17,6 +17,7 @@ export interface Notice {
 export const notices = signal<Notice[]>([]);
 let next_id = 1;
 const notices_kept = 4;
+const shown_ms = 6000;
 
 function put(notice: Notice): void {
   const known = notices.value.some((one) => one.id === notice.id);
@@ -43,17 +44,18 @@ export async function give(order: Order): Promise<Answer> {
   put({ id, line, text: "sent", state: "sent" });
   const answer = await send(order);
   put({ id, line, text: answer.text.trim() || (answer.done ? "done" : "refused"), state: answer.done ? "done" : "refused" });
-  if (answer.done && ["command", "commands", "decision"].includes(order.kind)) watch_answers(id, order, line, since_s);
+  // Its first line says that it was told, which is shown better by who obeys.
+  const more = answer.text.trim().split("\n").slice(1).join("; ");
+  if (answer.done && ["command", "commands", "decision"].includes(order.kind)) watch_answers(id, order, line, since_s, more);
   // A refusal stays until it is dismissed.
-  else if (answer.done) window.setTimeout(() => dismiss(id), 6000);
+  else if (answer.done) window.setTimeout(() => dismiss(id), more === "" ? shown_ms : 2 * shown_ms);
   return answer;
 }
 
-const shown_ms = 6000;
 const patience_ms = 10_000;
 
 /** Shows who obeys, and how long that took, as the ground station finds it in what vehicles say. It stays until all do. */
-function watch_answers(id: number, order: Order, line: string, since_s: number): void {
+function watch_answers(id: number, order: Order, line: string, since_s: number, more: string): void {
   const begun_ms = performance.now();
   const stop = on_picture(({ alarms }) => {
     const before = notices.value.find((notice) => notice.id === id);
@@ -63,7 +65,7 @@ function watch_answers(id: number, order: Order, line: string, since_s: number):
     if (!given) return waited_ms > shown_ms ? end() : undefined;
     const obeyed = given.waiting.length === 0;
     const state = obeyed ? "done" : waited_ms > patience_ms ? "refused" : "sent";
-    const text = answers_text(given);
+    const text = more === "" ? answers_text(given) : `${answers_text(given)}; ${more}`;
     if (before.text !== text || before.state !== state) put({ id, line, text, state });
     // Whom it asks is known a moment after it was given.
     if (obeyed && (given.answered.length > 0 || waited_ms > 1000)) end();

@@ -7,7 +7,9 @@ import { dismiss, notices } from "./give";
 const marks = { sent: "…", done: "✓", refused: "✕", note: "i" } as const;
 
 /** What was done is told shortly; what was not, in full. */
-const first_line = (text: string) => text.split("\n", 1)[0]!.replace(/[:,]$/, "");
+/** What else comes of it is in the lines after the first. */
+const lines_shown = 3;
+const first_lines = (text: string) => text.split("\n", lines_shown).join("\n").replace(/[:,]$/, "");
 
 export function Notices() {
   return (
@@ -18,7 +20,7 @@ export function Notices() {
             {marks[notice.state]}
           </span>
           <span class="notice-text" title={notice.text}>
-            {notice.line && <code>{notice.line}</code>} {notice.state === "done" ? first_line(notice.text) : notice.text}
+            {notice.line && <code>{notice.line}</code>} {notice.state === "done" ? first_lines(notice.text) : notice.text}
           </span>
           <button type="button" class="quiet" aria-label="Dismiss" onClick={() => dismiss(notice.id)}>
             ✕

@@ -113,6 +113,8 @@ export interface Vehicle {
   activity: Activity | null;
   /** What a person reads of it: its activity told apart, or `silent`. */
   state: string | null;
+  /** What it does besides that state, in the same words. */
+  besides: string | null;
   task: VehicleTask | null;
   heard_age_s: number | null;
   clock_offset_ms: number | null;
@@ -352,7 +354,11 @@ export interface SearchShare {
   /** It has left. */
   why: string;
   lanes: number;
+  /** By its route, as are the metres of lanes. */
   lanes_left: number;
+  left_m: number;
+  /** When it will have flown all of it, as far as is known. */
+  done_s: number | null;
   length_m: number;
   time_s: number;
   /** The lanes that it has not flown. */
@@ -365,6 +371,9 @@ export interface SearchArea {
   kind?: "search";
   state: "previewed" | "flown" | "over" | "called_off";
   why: string;
+  area_m2: number;
+  /** When all that is flown will be; null: nobody flies. */
+  expected_s: number | null;
   corners: Corners;
   sensor_radius_m: number;
   spacing_m: number;
@@ -416,6 +425,8 @@ export interface Alarm {
   over_s: number | null;
   what: string;
   remedy: string;
+  /** When two that come too near to each other are closest; null of all else. */
+  closest_s: number | null;
   times: number;
   vehicle: number | null;
   /** Of two vehicles. */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples for the tests.
 
-import type { Alarm, Alarms, Coalition, Hello, MissionEvent, PreflightVehicle, TrafficAircraft, Vehicle } from "./protocol";
+import type { Alarm, Alarms, Coalition, Hello, MissionEvent, PreflightVehicle, SearchArea, SearchShare, TrafficAircraft, Vehicle } from "./protocol";
 
 export function a_hello(): Hello {
   return {
@@ -51,6 +51,7 @@ export function a_vehicle(id: number, other: Partial<Vehicle> = {}): Vehicle {
     airspeed: 20,
     activity: "searching",
     state: "searching",
+    besides: null,
     task: null,
     heard_age_s: 0.1,
     clock_offset_ms: 30,
@@ -96,6 +97,32 @@ export function a_coalition(key: string, other: Partial<Coalition> = {}): Coalit
     members: [],
     rounds: [],
     lease_until_s: null,
+    ...other,
+  };
+}
+
+export function a_share(id: number, other: Partial<SearchShare> = {}): SearchShare {
+  return { id, state: "flies", why: "", lanes: 5, lanes_left: 5, left_m: 3000, done_s: 300, length_m: 4000, time_s: 200, ways: [], points: [], ...other };
+}
+
+export function a_search(other: Partial<SearchArea> = {}): SearchArea {
+  return {
+    state: "flown",
+    why: "",
+    area_m2: 650_000,
+    expected_s: 300,
+    corners: [[0, 0], [1000, 0], [1000, 650], [0, 650]],
+    sensor_radius_m: 120,
+    spacing_m: 216,
+    planned: 1,
+    seen: 0,
+    least_s: 100,
+    begins_s: 40,
+    ends_s: 300,
+    parts: 1,
+    shares: [a_share(1)],
+    without: [],
+    rest: false,
     ...other,
   };
 }
@@ -148,6 +175,7 @@ export function an_alarm(number: number, other: Partial<Alarm> = {}): Alarm {
     over_s: null,
     what: "vehicle 7 is silent",
     remedy: "look for it",
+    closest_s: null,
     times: 1,
     vehicle: 7,
     other: null,
