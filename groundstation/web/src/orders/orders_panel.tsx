@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+import { EndsSearch } from "../areas/ends_search";
 import { give, hold_all } from "../shell/give";
 import { HoldButton } from "../shell/hold_button";
 import { ReturnForm } from "../returns/return_preview";
@@ -26,6 +27,7 @@ function ToAll() {
           Land all
         </HoldButton>
       </div>
+      <EndsSearch vehicles={null} />
       <p class="muted">Orders to one vehicle: select it in the fleet or on the map.</p>
     </section>
   );

@@ -2,6 +2,7 @@
 // Everybody home: seen first, with times and separation, then given by holding.
 
 import { useEffect, useState } from "preact/hooks";
+import { EndsSearch } from "../areas/ends_search";
 import { command, command_to } from "../orders/orders";
 import { clock, distance, duration, ids, number } from "../shell/format";
 import { give } from "../shell/give";
@@ -24,6 +25,7 @@ function Ways({ data }: { data: ReturnPreview }) {
         {data.ways.length > 0 && `, the last in ${duration(data.last_s - now_s)}`}
         {data.least_separation_m !== null && `, least separation ${distance(data.least_separation_m)}`}
       </p>
+      <EndsSearch vehicles={data.ways.map(({ id }) => id)} />
       {data.ways.length > 0 && (
         <table class="return-ways">
           <thead>
