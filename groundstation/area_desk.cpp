@@ -110,8 +110,9 @@ std::string plan_text(const AreaSearch& area, Instant now) {
         area.parts);
   }
   for (const auto& [id, share] : area.shares) {
-    fmt::format_to(std::back_inserter(text), "{}: {} lanes, {:.1f} km, {}\n", wording::text_of(id),
-                   share.all, share.length_m / 1000.0, duration_text(share.time_s));
+    fmt::format_to(std::back_inserter(text), "{}: {} {}, {:.1f} km, {}\n", wording::text_of(id),
+                   share.all, share.all == 1 ? "lane" : "lanes", share.length_m / 1000.0,
+                   duration_text(share.time_s));
   }
   for (const auto& [id, why] : area.without) {
     fmt::format_to(std::back_inserter(text), "without {}: {}\n", wording::text_of(id), why);
