@@ -76,5 +76,36 @@ TEST(RunParallel, AsksTheMachineOnlyWhereNobodySaysHowManyJobs) {
   EXPECT_GE(jobs_of(0), 1U);
 }
 
+TEST(EachParallel, HandsOverWhatEndsUntilItIsAskedToStop) {
+  std::set<std::size_t> taken;
+  const auto take = [&](std::size_t i, std::size_t&& run) -> Result<void> {
+    EXPECT_EQ(run, i * i);
+    taken.insert(i);
+    return {};
+  };
+  EXPECT_TRUE(each_parallel<std::size_t>(100, 3, square, take));
+  EXPECT_EQ(taken.size(), 100U);
+  taken.clear();
+  const auto stopped = [&] { return taken.size() == 5; };
+  EXPECT_TRUE(each_parallel<std::size_t>(100, 1, square, take, stopped));
+  EXPECT_EQ(taken, (std::set<std::size_t>{0, 1, 2, 3, 4}));
+}
+
+TEST(EachParallel, EndsWhereARunCannotBeTaken) {
+  std::size_t flown = 0;
+  const auto fly = [&](std::size_t i) {
+    ++flown;
+    return square(i);
+  };
+  const auto take = [](std::size_t i, std::size_t&&) -> Result<void> {
+    if (i == 5) return Error{"the disk is full"};
+    return {};
+  };
+  const auto done = each_parallel<std::size_t>(100, 1, fly, take);
+  ASSERT_FALSE(done);
+  EXPECT_EQ(done.error().message, "the disk is full");
+  EXPECT_EQ(flown, 6U);
+}
+
 }  // namespace
 }  // namespace skein::hil

@@ -2,7 +2,6 @@
 #include "skein/hil/judged_runs.hpp"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 #include "skein/base/assert.hpp"
@@ -69,27 +68,6 @@ std::vector<JudgedRun> fly_series(const configuration::Scenario& scenario, const
   auto runs = run_parallel<JudgedRun>(series.runs, series.jobs, fly, on_done);
   SKEIN_ASSERT(runs.ok());
   return std::move(*runs);
-}
-
-SeriesSummary summarise(const std::vector<JudgedRun>& runs) {
-  SeriesSummary summary;
-  std::map<std::string, std::size_t> broken;
-  for (const JudgedRun& run : runs) {
-    ++summary.runs;
-    if (run.held()) ++summary.held;
-    if (!run.excused.empty()) ++summary.excused;
-    summary.excused_all += run.excused.size();
-    for (const auto& check : run.broken) ++broken[check.name];
-    if (!run.sites_done) continue;
-    const double t = to_seconds(run.result.ended_at);
-    summary.time_min_s = summary.finished == 0 ? t : std::min(summary.time_min_s, t);
-    summary.time_max_s = std::max(summary.time_max_s, t);
-    summary.time_mean_s += t;
-    ++summary.finished;
-  }
-  if (summary.finished > 0) summary.time_mean_s /= static_cast<double>(summary.finished);
-  for (const auto& [check, count] : broken) summary.broken.push_back({check, count});
-  return summary;
 }
 
 }  // namespace skein::hil

@@ -101,24 +101,5 @@ TEST(JudgedRuns, ASeriesIsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(JudgedRuns, TheSummaryCounts) {
-  std::vector<JudgedRun> runs(3);
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    runs[i].sites_done = i < 2;
-    runs[i].result.ended_at = at_seconds(10.0 * static_cast<double>(i + 1));
-  }
-  runs[2].broken = {{"leases", "", 1, "", "", {{VehicleId{1}, {}, "twice"}}}};
-  const auto summary = summarise(runs);
-  EXPECT_EQ(summary.runs, 3U);
-  EXPECT_EQ(summary.held, 2U);
-  EXPECT_EQ(summary.finished, 2U);
-  EXPECT_DOUBLE_EQ(summary.time_min_s, 10.0);
-  EXPECT_DOUBLE_EQ(summary.time_mean_s, 15.0);
-  EXPECT_DOUBLE_EQ(summary.time_max_s, 20.0);
-  ASSERT_EQ(summary.broken.size(), 1U);
-  EXPECT_EQ(summary.broken[0].check, "leases");
-  EXPECT_EQ(summary.broken[0].runs, 1U);
-}
-
 }  // namespace
 }  // namespace skein::hil

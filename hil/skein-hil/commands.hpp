@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "skein/base/result.hpp"
+#include "skein/configuration/experiment.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/experiments/run_table.hpp"
+#include "skein/shards/shard.hpp"
 
 namespace skein::hil {
 
@@ -60,9 +63,13 @@ struct SimulateArguments {
   std::string faults = "none";
   std::optional<std::size_t> runs;  ///< without: one, with its events
   std::size_t jobs = 0;             ///< 0: one for each core
+  std::filesystem::path folder;     ///< that keeps the runs; empty: none
+  shards::Shard shard;              ///< with a folder
 };
 int simulate(const SimulateArguments& arguments);
-/// What simulate() does with a scenario of a formation.
+/// What simulate() does with --runs.
+int simulate_many(const configuration::Scenario& scenario, const SimulateArguments& arguments);
+/// What simulate() does with one run of a formation.
 int simulate_formation(const configuration::Scenario& scenario, const SimulateArguments& arguments);
 
 struct ReexecuteArguments {
@@ -84,8 +91,19 @@ struct SweepArguments {
   std::filesystem::path folder;
   std::optional<std::size_t> runs;  ///< in place of the experiment's
   std::size_t jobs = 0;             ///< 0: one for each core
+  shards::Shard shard;
 };
 int sweep(const SweepArguments& arguments);
+/// Writes tables and plots of what the table has, prints the main ones, and gives the status.
+int tell_of_sweep(const configuration::Experiment& experiment, const experiments::RunTable& table,
+                  const std::filesystem::path& folder);
+
+struct MergeArguments {
+  std::string program;  ///< as it was called
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path out;
+};
+int merge(const MergeArguments& arguments);
 
 struct SwapArguments {
   std::vector<std::string> methods{"passage"};

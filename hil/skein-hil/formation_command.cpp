@@ -30,7 +30,10 @@ void print_violations(const FormationRun& run) {
   }
 }
 
-int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
+}  // namespace
+
+int simulate_formation(const configuration::Scenario& scenario,
+                       const SimulateArguments& arguments) {
   const auto mission = seeded_mission(scenario, scenario.seed, arguments.faults);
   if (!mission) {
     fmt::print(stderr, "{}\n", mission.error().message);
@@ -65,66 +68,6 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
   if (!run->held()) fmt::print("VIOLATED:\n");
   print_violations(*run);
   return run->held() ? kExitHeld : kExitViolated;
-}
-
-/// Numbers taken out: what differs only in them is one reason.
-std::string kind_of(const std::string& reason) {
-  std::string text;
-  for (const char c : reason) {
-    const bool digit = (c >= '0' && c <= '9') || c == '.';
-    if (!digit) text += c;
-    if (digit && (text.empty() || text.back() != '#')) text += '#';
-  }
-  return text;
-}
-
-int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
-  FormationSeries series{arguments.faults, scenario.seed, *arguments.runs, jobs_of(arguments.jobs)};
-  ProgressLine line{series.runs};
-  const auto runs =
-      fly_formations(scenario, series, [&](const FormationRun& run) { line.count(run.held()); });
-  line.clear();
-  if (!runs) {
-    fmt::print(stderr, "{}\n", runs.error().message);
-    return kExitBadInput;
-  }
-  std::size_t violated = 0;
-  std::size_t done = 0;
-  std::size_t lost = 0;
-  double least = 1e9;
-  double time_s = 0.0;
-  std::map<std::string, std::size_t> reasons;
-  for (const FormationRun& run : *runs) {
-    least = std::min(least, run.least_m);
-    time_s += to_seconds(run.ended_at);
-    lost += run.lost;
-    if (run.script_done) ++done;
-    if (!run.script_done) ++reasons[kind_of(run.reason)];
-    if (run.held() || ++violated > kFailuresShown) continue;
-    fmt::print("seed {} VIOLATED\n", run.seed);
-    print_violations(run);
-    fmt::print("  again: {} simulate {} --seed {}{} --trace\n", arguments.program,
-               arguments.scenario.string(), run.seed,
-               arguments.faults == "none" ? "" : " --faults " + arguments.faults);
-  }
-  fmt::print("runs       {}, seeds {} to {}, {:.0f} s of mission time each on average\n",
-             runs->size(), runs->front().seed, runs->back().seed,
-             time_s / static_cast<double>(runs->size()));
-  fmt::print("violated   {}\n", violated);
-  fmt::print("separation {:.2f} m at least; {:g} m are wanted\n", least,
-             scenario.formation.separation.horizontal_m);
-  fmt::print("lost       {} vehicles\n", lost);
-  fmt::print("script     done in {} runs\n", done);
-  for (const auto& [reason, count] : reasons) fmt::print("held       {}: {}\n", count, reason);
-  fmt::print("{}\n", violated == 0 ? "PASS" : "FAIL");
-  return violated == 0 ? kExitHeld : kExitViolated;
-}
-
-}  // namespace
-
-int simulate_formation(const configuration::Scenario& scenario,
-                       const SimulateArguments& arguments) {
-  return arguments.runs ? fly_many(scenario, arguments) : fly_one(scenario, arguments);
 }
 
 int changes(const ChangesArguments& arguments) {

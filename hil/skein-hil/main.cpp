@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "skein/hil/fault_profiles.hpp"
+#include "skein/shards/shard.hpp"
 #include "skein/version/version.hpp"
 
 namespace skein::hil {
@@ -26,6 +27,18 @@ std::string why_no_seed(const std::string& text) {
   return error == std::errc{} && end == text.data() + text.size()
              ? ""
              : "'" + text + "' is no seed, which is a whole number from 0 to 18446744073709551615";
+}
+
+CLI::Option* add_shard(CLI::App& command, shards::Shard& shard) {
+  return command
+      .add_option_function<std::string>(
+          "--shard", [&shard](const std::string& text) { shard = *shards::parse_shard(text); },
+          "Only every Nth run, of which this is the Kth part; skein-hil merge puts them together")
+      ->type_name("K/N")
+      ->check([](const std::string& text) {
+        const auto parsed = shards::parse_shard(text);
+        return parsed ? std::string{} : parsed.error().message;
+      });
 }
 
 template <class Count>
@@ -157,18 +170,29 @@ void add_simulate(CLI::App& app, const std::string& program, int& status) {
                                fmt::join(fault_profiles(MissionKind::sites), ", "),
                                fmt::join(fault_profiles(MissionKind::formation), ", ")))
       ->capture_default_str();
-  command
-      ->add_option("--runs", arguments->runs,
-                   "Fly it so often, with the seeds SEED, SEED + 1, ..., and print a summary")
-      ->check(CLI::Range(1, 10'000'000))
-      ->excludes(trace);
+  auto* runs = command
+                   ->add_option("--runs", arguments->runs,
+                                "Fly it so often, with the seeds SEED, SEED + 1, ..., and print a "
+                                "summary")
+                   ->check(CLI::Range(1, 10'000'000))
+                   ->excludes(trace);
   add_jobs(*command, arguments->jobs, "Missions");
+  auto* folder = command
+                     ->add_option("--out", arguments->folder,
+                                  "Folder that keeps a row of every run; what it has is not flown "
+                                  "again")
+                     ->needs(runs);
+  add_shard(*command, arguments->shard)->needs(folder);
   command->footer(
       "The same file and seed print the same bytes. Every mission is judged; ends with status 0\n"
-      "only if every check held; 1 if one failed, 2 for bad input.\n"
+      "only if every check held; 1 if one failed, 2 for bad input. A shard ends with 0 when all "
+      "of\n"
+      "its runs are flown, whatever became of them.\n"
       "Examples: skein-hil simulate scenarios/coalition-32.yaml --seed 7 --trace\n"
       "          skein-hil simulate scenarios/faults-8.yaml --runs 1000 --faults mixed\n"
-      "          skein-hil simulate scenarios/formation-5.yaml --runs 1000 --faults mixed");
+      "          skein-hil simulate scenarios/formation-5.yaml --runs 1000 --faults mixed\n"
+      "          skein-hil simulate scenarios/faults-8.yaml --runs 1000000 --shard 3/500 --out "
+      "runs/f8/3");
   command->callback([arguments, &status] { status = simulate(*arguments); });
 }
 
@@ -213,15 +237,35 @@ void add_sweep(CLI::App& app, int& status) {
   command->add_option("--runs", arguments->runs, "Draws of each cell, in place of the file's")
       ->check(CLI::Range(1, 1'000'000));
   add_jobs(*command, arguments->jobs, "Missions");
+  add_shard(*command, arguments->shard)->needs("--out");
   command->footer(
       "Writes runs.csv (a row after every run), cells.csv (means with 95 % intervals) and a plot\n"
       "of each measure. What is in the folder is not flown again: after an interruption, or to "
       "add\n"
       "draws, call it again. Ends with status 0 if all was flown and every check but completion\n"
-      "held, 1 if not, 2 for bad input.\n"
+      "held, 1 if not, 2 for bad input. A shard ends with 0 when all of its runs are flown,\n"
+      "whatever became of them.\n"
       "Examples: skein-hil sweep scenarios/experiments/mission-32.yaml\n"
-      "          skein-hil sweep scenarios/experiments/radio.yaml --runs 10 --out runs/radio-10");
+      "          skein-hil sweep scenarios/experiments/radio.yaml --runs 10 --out runs/radio-10\n"
+      "          skein-hil sweep scenarios/experiments/radio.yaml --shard 3/20 --out runs/radio/3");
   command->callback([arguments, &status] { status = sweep(*arguments); });
+}
+
+void add_merge(CLI::App& app, const std::string& program, int& status) {
+  const auto arguments = std::make_shared<MergeArguments>();
+  arguments->program = program;
+  auto* command = app.add_subcommand(
+      "merge",
+      "Put the shards of a simulate or a sweep together, as if one machine had flown them");
+  command->add_option("folders", arguments->folders, "Folders of the shards")->required();
+  command->add_option("--out", arguments->out, "Folder of the whole")->required();
+  command->footer(
+      "Tables, plots and what is printed have the same bytes as those of one machine. A run that\n"
+      "two folders tell of differently is an error that names both. What is missing is told, with\n"
+      "the shards that have it. Ends with status 0 if all was flown and every check held (of a\n"
+      "sweep: but completion), 1 if not, 2 for bad input.\n"
+      "Example: skein-hil merge runs/f8/* --out runs/f8-whole");
+  command->callback([arguments, &status] { status = merge(*arguments); });
 }
 
 void add_tours(CLI::App& app, int& status) {
@@ -417,6 +461,7 @@ int main(int argc, char** argv) {
   skein::hil::add_reexecute(app, status);
   skein::hil::add_changes(app, program, status);
   skein::hil::add_sweep(app, status);
+  skein::hil::add_merge(app, program, status);
   skein::hil::add_swap(app, status);
   skein::hil::add_routes(app, status);
   skein::hil::add_tours(app, status);

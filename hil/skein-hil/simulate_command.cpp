@@ -5,22 +5,16 @@
 #include <array>
 #include <cstdio>
 #include <string>
-#include <vector>
 
 #include "commands.hpp"
-#include "progress_line.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/judged_runs.hpp"
-#include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hindsight/hindsight.hpp"
 
 namespace skein::hil {
 namespace {
-
-/// Failing seeds that are told of in full.
-constexpr std::size_t kFailuresShown = 20;
 
 /// What a reader of a mission wants to see first.
 bool of_interest(mission::EventKind kind) {
@@ -80,62 +74,6 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
   return run.held() ? kExitHeld : kExitViolated;
 }
 
-void print_failures(const std::vector<JudgedRun>& runs, const SimulateArguments& arguments) {
-  std::size_t shown = 0;
-  for (const auto& run : runs) {
-    if (run.held()) continue;
-    if (++shown > kFailuresShown) continue;
-    fmt::print("seed {} VIOLATED\n", run.seed);
-    print_broken(run);
-    fmt::print("  again: {} simulate {} --seed {}{} --trace\n", arguments.program,
-               arguments.scenario.string(), run.seed,
-               arguments.faults == "none" ? "" : " --faults " + arguments.faults);
-  }
-  if (shown > kFailuresShown) fmt::print("... and {} seeds more\n", shown - kFailuresShown);
-}
-
-/// " seeds 3, 5, ..."
-std::string excused_seeds(const std::vector<JudgedRun>& runs) {
-  std::string text;
-  std::size_t shown = 0;
-  for (const auto& run : runs) {
-    if (run.excused.empty()) continue;
-    if (++shown > kFailuresShown) return text + ", ...";
-    text += fmt::format("{} {}", shown == 1 ? " seeds" : ",", run.seed);
-  }
-  return text;
-}
-
-int fly_many(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
-  RunSeries series;
-  series.faults = arguments.faults;
-  series.first_seed = scenario.seed;
-  series.runs = *arguments.runs;
-  series.jobs = jobs_of(arguments.jobs);
-  ProgressLine line{series.runs};
-  const auto runs =
-      fly_series(scenario, series, [&](const JudgedRun& run) { line.count(run.held()); });
-  line.clear();
-  print_failures(runs, arguments);
-
-  const auto summary = summarise(runs);
-  fmt::print("runs       {}, seeds {} to {}\n", summary.runs, runs.front().seed, runs.back().seed);
-  fmt::print("violated   {}", summary.runs - summary.held);
-  for (const auto& broken : summary.broken) fmt::print("; {} {}", broken.check, broken.runs);
-  if (summary.excused > 0) {
-    fmt::print("\nexcused    {} in {} runs, proven unavoidable:{}", summary.excused_all,
-               summary.excused, excused_seeds(runs));
-  }
-  fmt::print("\nall sites  done in {} runs", summary.finished);
-  if (summary.finished > 0) {
-    fmt::print(", after {:.1f} s at least, {:.1f} s on average, {:.1f} s at most",
-               summary.time_min_s, summary.time_mean_s, summary.time_max_s);
-  }
-  const bool held = summary.held == summary.runs;
-  fmt::print("\n{}\n", held ? "PASS" : "FAIL");
-  return held ? kExitHeld : kExitViolated;
-}
-
 }  // namespace
 
 int simulate(const SimulateArguments& arguments) {
@@ -154,12 +92,13 @@ int simulate(const SimulateArguments& arguments) {
                "nobody is there to authorise deliveries, so none is flown: the scenario has no "
                "operator_decisions\n");
   }
+  if (arguments.runs) return simulate_many(*scenario, arguments);
   if (scenario->flies_formation()) return simulate_formation(*scenario, arguments);
   if (const auto faults = fault_params(arguments.faults, scenario->seed); !faults) {
     fmt::print(stderr, "{}\n", faults.error().message);
     return kExitBadInput;
   }
-  return arguments.runs ? fly_many(*scenario, arguments) : fly_one(*scenario, arguments);
+  return fly_one(*scenario, arguments);
 }
 
 }  // namespace skein::hil

@@ -2,30 +2,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <string>
 
 #include "commands.hpp"
 #include "skein/configuration/experiment.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/experiments/grid.hpp"
 #include "skein/experiments/run_table.hpp"
 #include "skein/experiments/sweep.hpp"
 #include "skein/hil/run_parallel.hpp"
+#include "skein/shards/shard.hpp"
+#include "stop_signal.hpp"
 
 namespace skein::hil {
 namespace {
-
-std::atomic<bool> g_asked_to_stop{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-/// The second signal ends the program as ever.
-void stop(int signal) {
-  g_asked_to_stop = true;
-  std::signal(signal, SIG_DFL);
-}
 
 int complain(const std::string& sentence) {
   fmt::print(stderr, "{}\n", sentence);
@@ -54,7 +46,6 @@ class Progress {
   void clear() const {
     if (terminal_) fmt::print(stderr, "\r{:60}\r", "");
   }
-  [[nodiscard]] std::size_t broken() const { return broken_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -83,30 +74,40 @@ int sweep(const SweepArguments& arguments) {
                        ? arguments.folder
                        : std::filesystem::path{"runs"} / arguments.experiment.stem();
   options.jobs = jobs_of(arguments.jobs);
-  auto table = experiments::RunTable::open(options.folder, *experiment, *base);
+  options.shard = arguments.shard;
+  auto table = experiments::RunTable::open(options.folder, *experiment, *base, options.shard,
+                                           arguments.experiment);
   if (!table) return complain(table.error().message);
 
-  const std::size_t lacking = experiments::missing(*experiment, *table);
-  Progress progress{lacking};
+  Progress progress{experiments::missing(*experiment, *table, options.shard).size()};
   options.on_done = [&](const experiments::Measures& m) { progress.count(m.safe); };
-  options.stopped = [] { return g_asked_to_stop.load(); };
-  std::signal(SIGINT, stop);
-  std::signal(SIGTERM, stop);
+  options.stopped = asked_to_stop;
+  listen_for_stop();
   const auto outcome = experiments::sweep(*experiment, *base, options, *table);
   progress.clear();
   if (!outcome) return complain(arguments.experiment.string() + ": " + outcome.error().message);
-  if (const auto written = experiments::write_results(*experiment, *table, options.folder);
-      !written) {
+  fmt::print(stderr, "{} runs flown now\n", outcome->flown);
+  const bool whole = outcome->present == outcome->wanted;
+  int status = whole ? kExitHeld : kExitViolated;
+  if (options.shard.whole()) {
+    status = tell_of_sweep(*experiment, *table, options.folder);
+  } else {
+    fmt::print("shard {}: {} of {} runs; {}\n", shards::to_string(options.shard), outcome->present,
+               outcome->wanted, options.folder.string());
+  }
+  if (!whole) fmt::print(stderr, "interrupted; the same command goes on where it was\n");
+  return status;
+}
+
+int tell_of_sweep(const configuration::Experiment& experiment, const experiments::RunTable& table,
+                  const std::filesystem::path& folder) {
+  if (const auto written = experiments::write_results(experiment, table, folder); !written)
     return complain(written.error().message);
-  }
-  fmt::print("{}\n{}\n{} of {} runs, {} of them flown now; tables and plots: {}\n",
-             experiment->title, experiments::text_table(*experiment, *table), outcome->present,
-             outcome->wanted, outcome->flown, options.folder.string());
-  if (outcome->present < outcome->wanted) {
-    fmt::print(stderr, "interrupted; the same command goes on where it was\n");
-    return kExitViolated;
-  }
-  return progress.broken() == 0 ? kExitHeld : kExitViolated;
+  const std::size_t wanted = experiments::cells_of(experiment).size() * experiment.runs;
+  const std::size_t present = wanted - experiments::missing(experiment, table).size();
+  fmt::print("{}\n{}\n{} of {} runs; tables and plots: {}\n", experiment.title,
+             experiments::text_table(experiment, table), present, wanted, folder.string());
+  return present == wanted && experiments::all_safe(experiment, table) ? kExitHeld : kExitViolated;
 }
 
 }  // namespace skein::hil

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "csv.hpp"
 #include "skein/experiments/grid.hpp"
 #include "skein/experiments/measures.hpp"
 #include "skein/experiments/plots.hpp"
@@ -80,13 +79,6 @@ TEST(Estimates, OfOneValueHaveNoIntervalAndOfNoneNoMean) {
   const std::vector<double> one{7.0};
   EXPECT_EQ(estimate(one).mean, 7.0);
   EXPECT_EQ(estimate(one).half_width, 0.0);
-}
-
-TEST(Csv, GivesBackWhatWasWritten) {
-  const std::vector<std::string> fields{"24", "ours, all in range", "say \"so\"", "", "1.5"};
-  const std::string line = csv_line(fields);
-  ASSERT_EQ(line.back(), '\n');
-  EXPECT_EQ(csv_fields(line.substr(0, line.size() - 1)), fields);
 }
 
 TEST(Grid, HasEveryCombinationAndTheLastAxisChangesFastest) {

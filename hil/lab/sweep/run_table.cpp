@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <iterator>
-#include <sstream>
+#include <cmath>
+#include <limits>
 
-#include "csv.hpp"
 #include "skein/experiments/grid.hpp"
+#include "skein/shards/csv.hpp"
+#include "skein/version/version.hpp"
 
 namespace skein::experiments {
 namespace {
@@ -17,16 +17,10 @@ namespace {
 using configuration::Experiment;
 using configuration::Scenario;
 
-template <class T>
-bool parse(const std::string& text, T& value) {
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  return end.ec == std::errc{} && end.ptr == text.data() + text.size();
-}
-
-std::string text_of(const std::filesystem::path& file) {
-  std::ifstream in{file, std::ios::binary};
-  return {std::istreambuf_iterator<char>{in}, {}};
-}
+constexpr const char* kExperimentFile = "experiment.yaml";
+constexpr const char* kScenarioFile = "scenario.yaml";
+constexpr const char* kRunsFile = "runs.csv";
+constexpr double kNoValue = std::numeric_limits<double>::quiet_NaN();
 
 /// The text by which two experiments are told apart.
 std::string identity(Experiment experiment) {
@@ -40,46 +34,46 @@ std::string identity(Scenario scenario) {
   return configuration::to_yaml(scenario);
 }
 
-/// Writes the text where there is no file yet; fails where the file has another text.
-Result<void> keep(const std::filesystem::path& file, const std::string& text,
-                  std::string_view what) {
-  if (!std::filesystem::exists(file)) {
-    std::ofstream out{file, std::ios::binary};
-    out << text << std::flush;
-    if (!out) return not_written(file.string());
-    return {};
+/// The experiment with its title and its number of runs, as they were asked for last.
+Result<void> keep(const std::filesystem::path& file, const Experiment& experiment) {
+  const std::string text = configuration::to_yaml(experiment);
+  if (std::filesystem::exists(file)) {
+    if (shards::text_of(file) == text) return {};
+    const auto before = configuration::load_experiment(file);
+    if (!before || identity(*before) != identity(experiment))
+      return shards::has_changed(file, "experiment");
   }
-  if (text_of(file) == text) return {};
-  return Error{
-      fmt::format("{}: the {} has changed since the runs in this folder were flown; name "
-                  "another folder with --out, or remove this one to begin anew",
-                  file.string(), what)};
+  return shards::put_text(file, text);
 }
 
 }  // namespace
 
-std::string RunTable::header() const {
+std::vector<std::string> RunTable::header() const {
   std::vector<std::string> names = axes_;
   names.emplace_back("seed");
   names.insert(names.end(), columns_.begin(), columns_.end());
   names.emplace_back("broken_checks");
-  return csv_line(names);
+  return names;
 }
 
 Result<RunTable> RunTable::open(const std::filesystem::path& folder, const Experiment& experiment,
-                                const Scenario& base) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    return Error{folder.string() + ": cannot be made: " + error.message() +
-                 "; name another folder with --out"};
-  }
-  if (auto kept = keep(folder / "experiment.yaml", identity(experiment), "experiment"); !kept)
-    return kept.error();
-  if (auto kept = keep(folder / "scenario.yaml", identity(base), "scenario"); !kept)
+                                const Scenario& base, const shards::Shard& shard,
+                                const std::filesystem::path& file) {
+  shards::Series series;
+  series.kind = "sweep";
+  series.program = version();
+  series.file = file.string();
+  series.first_seed = experiment.first_seed;
+  series.runs = experiment.runs;
+  series.shard = shard;
+  auto opened = shards::RunFolder::open(folder, series);
+  if (!opened) return opened.error();
+  if (auto kept = keep(folder / kExperimentFile, experiment); !kept) return kept.error();
+  if (auto kept = shards::keep_text(folder / kScenarioFile, identity(base), "scenario"); !kept)
     return kept.error();
 
   RunTable table;
+  table.folder_ = std::move(*opened);
   for (const auto& axis : experiment.axes) table.axes_.push_back(axis.name);
   for (const Cell& cell : cells_of(experiment)) table.labels_.push_back(labels(experiment, cell));
   for (const auto& column : measure_columns()) table.columns_.emplace_back(column.name);
@@ -87,84 +81,80 @@ Result<RunTable> RunTable::open(const std::filesystem::path& folder, const Exper
     table.sites_.push_back(site.id);
     table.columns_.push_back(fmt::format("formed_site_{}_s", site.id.value));
   }
-  const auto file = folder / "runs.csv";
-  table.name_ = file.string();
-  if (auto read = table.read(file); !read) return read.error();
-  table.out_.open(file, std::ios::binary | std::ios::app);
-  if (std::filesystem::file_size(file, error) == 0) table.out_ << table.header() << std::flush;
-  if (!table.out_) return not_written(table.name_);
+  auto rows = shards::RowFile::open(folder / kRunsFile, table.header(),
+                                    [&](const auto& fields) { return table.read(fields); });
+  if (!rows) return rows.error();
+  table.file_ = std::move(*rows);
   return table;
 }
 
-Result<void> RunTable::read(const std::filesystem::path& file) {
-  if (!std::filesystem::exists(file)) return {};
-  std::string text = text_of(file);
-  // A program that was ended while it wrote leaves half a row.
-  text.resize(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
-  std::error_code error;
-  std::filesystem::resize_file(file, text.size(), error);
-  if (error) return Error{name_ + ": cannot be written: " + error.message()};
-  std::istringstream lines{text};
-  std::string line;
-  if (!std::getline(lines, line)) return {};
-  if (line + "\n" != header()) {
-    return Error{name_ +
-                 ":1: has other columns than this program writes; name another folder with --out"};
+Result<shards::RowKey> RunTable::read(const std::vector<std::string>& fields) {
+  const std::size_t axes = axes_.size();
+  const std::vector<std::string> of(fields.begin(),
+                                    fields.begin() + static_cast<std::ptrdiff_t>(axes));
+  const auto cell = std::find(labels_.begin(), labels_.end(), of);
+  if (cell == labels_.end()) return Error{"is of a cell that the experiment does not have"};
+  const auto seed = shards::number_of<std::uint64_t>(fields[axes]);
+  if (!seed) return Error{"has no seed"};
+  Values values(columns_.size(), kNoValue);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string& field = fields[axes + 1 + i];
+    if (field.empty()) continue;
+    const auto value = shards::number_of<double>(field);
+    if (!value) return Error{"has \"" + field + "\" in place of a number"};
+    values[i] = *value;
   }
-  for (std::size_t number = 2; std::getline(lines, line); ++number) {
-    const auto bad = [&](std::string_view what) {
-      return Error{fmt::format("{}:{}: {}; remove the line", name_, number, what)};
-    };
-    const std::vector<std::string> fields = csv_fields(line);
-    const std::size_t axes = axes_.size();
-    if (fields.size() != axes + columns_.size() + 2) return bad("has not one field a column");
-    const std::vector<std::string> of(fields.begin(),
-                                      fields.begin() + static_cast<std::ptrdiff_t>(axes));
-    const auto cell = std::find(labels_.begin(), labels_.end(), of);
-    std::uint64_t seed = 0;
-    if (cell == labels_.end()) return bad("is of a cell that the experiment does not have");
-    if (!parse(fields[axes], seed)) return bad("has no seed");
-    Values values(columns_.size());
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::string& field = fields[axes + 1 + i];
-      double value = 0.0;
-      if (field.empty()) continue;
-      if (!parse(field, value)) return bad("has \"" + field + "\" in place of a number");
-      values[i] = value;
-    }
-    rows_.emplace(std::pair{seed, static_cast<std::size_t>(cell - labels_.begin())},
-                  std::move(values));
-  }
-  return {};
+  const auto at = static_cast<std::size_t>(cell - labels_.begin());
+  rows_.emplace(std::pair{at, *seed}, std::move(values));
+  return shards::RowKey{*seed, at};
 }
 
 Result<void> RunTable::append(std::size_t cell, std::uint64_t seed, const Measures& measures) {
   Values values;
-  for (const auto& column : measure_columns()) values.push_back(column.of(measures));
+  for (const auto& column : measure_columns())
+    values.push_back(column.of(measures).value_or(kNoValue));
   for (const SiteId site : sites_) {
     const auto formed = measures.formed_s.find(site);
-    values.push_back(formed == measures.formed_s.end() ? std::nullopt
-                                                       : std::optional{formed->second});
+    values.push_back(formed == measures.formed_s.end() ? kNoValue : formed->second);
   }
   std::vector<std::string> fields = labels_.at(cell);
   fields.push_back(std::to_string(seed));
   // The shortest text that reads back as the same number.
-  for (const auto& value : values) fields.push_back(value ? fmt::format("{}", *value) : "");
+  for (const double value : values)
+    fields.push_back(std::isnan(value) ? "" : fmt::format("{}", value));
   fields.push_back(fmt::format("{}", fmt::join(measures.broken, ";")));
-  rows_.emplace(std::pair{seed, cell}, std::move(values));
-  out_ << csv_line(fields) << std::flush;
-  if (!out_) return not_written(name_);
-  return {};
+  rows_.emplace(std::pair{cell, seed}, std::move(values));
+  return file_->append({seed, cell}, fields);
+}
+
+Result<void> RunTable::take_over(const std::filesystem::path& folder) {
+  return file_->take_over(folder / kRunsFile, [this](const auto& fields) { return read(fields); });
 }
 
 std::vector<double> RunTable::values(std::size_t cell, std::size_t column,
                                      std::uint64_t seed_end) const {
   std::vector<double> all;
-  for (const auto& [key, values] : rows_) {
-    if (key.second == cell && key.first < seed_end && values[column])
-      all.push_back(*values[column]);
+  const auto end = rows_.lower_bound({cell, seed_end});
+  for (auto row = rows_.lower_bound({cell, 0}); row != end; ++row) {
+    if (!std::isnan(row->second[column])) all.push_back(row->second[column]);
   }
   return all;
+}
+
+Result<void> same_experiment(const std::filesystem::path& folder,
+                             const std::filesystem::path& other) {
+  const auto differ = [&](const char* name) {
+    return Error{fmt::format("{} and {} differ: their runs are of different experiments",
+                             (folder / name).string(), (other / name).string())};
+  };
+  const auto one = configuration::load_experiment(folder / kExperimentFile);
+  if (!one) return one.error();
+  const auto two = configuration::load_experiment(other / kExperimentFile);
+  if (!two) return two.error();
+  if (identity(*one) != identity(*two)) return differ(kExperimentFile);
+  if (shards::text_of(folder / kScenarioFile) != shards::text_of(other / kScenarioFile))
+    return differ(kScenarioFile);
+  return {};
 }
 
 }  // namespace skein::experiments

@@ -5,19 +5,17 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <mutex>
-#include <optional>
 #include <string_view>
-#include <thread>
 #include <utility>
 #include <vector>
 
-#include "csv.hpp"
 #include "skein/experiments/grid.hpp"
 #include "skein/experiments/plots.hpp"
 #include "skein/experiments/statistics.hpp"
+#include "skein/hil/run_parallel.hpp"
 #include "skein/hil/team_mission.hpp"
+#include "skein/shards/csv.hpp"
+#include "skein/shards/run_folder.hpp"
 
 namespace skein::experiments {
 namespace {
@@ -25,98 +23,16 @@ namespace {
 using configuration::Experiment;
 using configuration::Scenario;
 
-struct Draw {
-  std::size_t cell = 0;
-  std::uint64_t seed = 0;
-};
-
 std::uint64_t seed_end(const Experiment& experiment) {
   return experiment.first_seed + experiment.runs;
 }
-
-std::vector<Draw> missing_draws(const Experiment& experiment, const RunTable& table) {
-  const std::size_t cells = cells_of(experiment).size();
-  std::vector<Draw> draws;
-  for (std::uint64_t seed = experiment.first_seed; seed < seed_end(experiment); ++seed) {
-    for (std::size_t cell = 0; cell < cells; ++cell) {
-      if (!table.has(cell, seed)) draws.push_back({cell, seed});
-    }
-  }
-  return draws;
-}
-
-Result<void> write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out{file, std::ios::binary};
-  out << text << std::flush;
-  if (!out) return not_written(file.string());
-  return {};
-}
-
-/// Takes draws one after the other, from several threads.
-class Flights {
- public:
-  Flights(const Experiment& experiment, const Scenario& base, const SweepOptions& options,
-          RunTable& table)
-      : experiment_{experiment},
-        base_{base},
-        options_{options},
-        table_{table},
-        limits_{hil::limits_of(base.expect)},
-        cells_{cells_of(experiment)},
-        draws_{missing_draws(experiment, table)} {}
-
-  [[nodiscard]] std::size_t size() const { return draws_.size(); }
-  [[nodiscard]] std::size_t flown() const { return flown_; }
-  [[nodiscard]] const std::optional<Error>& error() const { return error_; }
-
-  void work() {
-    while (const auto draw = take()) {
-      const auto mission = mission_of(experiment_, base_, cells_[draw->cell], draw->seed);
-      if (!mission) {
-        fail(mission.error());
-        return;
-      }
-      const Measures measures = measure(*mission, limits_);
-      const std::lock_guard lock{mutex_};
-      if (const auto kept = table_.append(draw->cell, draw->seed, measures); !kept) {
-        error_ = kept.error();
-        return;
-      }
-      ++flown_;
-      if (options_.on_done) options_.on_done(measures);
-    }
-  }
-
- private:
-  std::optional<Draw> take() {
-    const std::lock_guard lock{mutex_};
-    if (error_ || next_ == draws_.size() || (options_.stopped && options_.stopped())) return {};
-    return draws_[next_++];
-  }
-  void fail(const Error& error) {
-    const std::lock_guard lock{mutex_};
-    error_ = error;
-  }
-
-  const Experiment& experiment_;
-  const Scenario& base_;
-  const SweepOptions& options_;
-  RunTable& table_;
-  checks::Limits limits_;
-  std::vector<Cell> cells_;
-  std::vector<Draw> draws_;
-  std::mutex mutex_;
-  std::size_t next_ = 0;
-  std::size_t flown_ = 0;
-  std::optional<Error> error_;
-};
 
 std::string cells_csv(const Experiment& experiment, const RunTable& table) {
   std::vector<std::string> head;
   for (const auto& axis : experiment.axes) head.push_back(axis.name);
   for (const auto* name : {"measure", "runs", "mean", "half_width_95", "deviation"})
     head.emplace_back(name);
-  std::string text = csv_line(head);
+  std::string text = shards::csv_line(head);
   const std::vector<Cell> cells = cells_of(experiment);
   for (std::size_t cell = 0; cell < cells.size(); ++cell) {
     for (std::size_t column = 0; column < table.columns().size(); ++column) {
@@ -128,7 +44,7 @@ std::string cells_csv(const Experiment& experiment, const RunTable& table) {
       row.push_back(e.count > 0 ? fmt::format("{}", e.mean) : "");
       row.push_back(e.count > 1 ? fmt::format("{}", e.half_width) : "");
       row.push_back(e.count > 1 ? fmt::format("{}", e.deviation) : "");
-      text += csv_line(row);
+      text += shards::csv_line(row);
     }
   }
   return text;
@@ -160,8 +76,27 @@ Plot plot_of(const Experiment& experiment, const RunTable& table, std::size_t co
 
 }  // namespace
 
-std::size_t missing(const Experiment& experiment, const RunTable& table) {
-  return missing_draws(experiment, table).size();
+std::vector<Draw> missing(const Experiment& experiment, const RunTable& table,
+                          const shards::Shard& shard) {
+  const std::size_t cells = cells_of(experiment).size();
+  std::vector<Draw> draws;
+  Draw draw{0, 0, experiment.first_seed};
+  for (; draw.seed < seed_end(experiment); ++draw.seed) {
+    for (draw.cell = 0; draw.cell < cells; ++draw.cell, ++draw.number) {
+      if (shard.has(draw.number) && !table.has(draw.cell, draw.seed)) draws.push_back(draw);
+    }
+  }
+  return draws;
+}
+
+bool all_safe(const Experiment& experiment, const RunTable& table) {
+  const auto at = std::find(table.columns().begin(), table.columns().end(), "safe");
+  const auto column = static_cast<std::size_t>(at - table.columns().begin());
+  for (std::size_t cell = 0; cell < cells_of(experiment).size(); ++cell) {
+    const auto safe = table.values(cell, column, seed_end(experiment));
+    if (std::find(safe.begin(), safe.end(), 0.0) != safe.end()) return false;
+  }
+  return true;
 }
 
 Result<SweepOutcome> sweep(const Experiment& experiment, const Scenario& base,
@@ -171,24 +106,40 @@ Result<SweepOutcome> sweep(const Experiment& experiment, const Scenario& base,
     if (const auto one = mission_of(experiment, base, cell, experiment.first_seed); !one)
       return one.error();
   }
-  Flights flights{experiment, base, options, table};
-  std::vector<std::jthread> others;
-  for (std::size_t i = 1; i < std::min(options.jobs, flights.size()); ++i)
-    others.emplace_back([&flights] { flights.work(); });
-  flights.work();
-  others.clear();  // joins them
-  if (flights.error()) return *flights.error();
-  const std::size_t wanted = cells.size() * experiment.runs;
-  return SweepOutcome{wanted, wanted - missing(experiment, table), flights.flown()};
+  const checks::Limits limits = hil::limits_of(base.expect);
+  const std::vector<Draw> draws = missing(experiment, table, options.shard);
+  const auto fly = [&](std::size_t i) -> Result<Measures> {
+    const auto mission = mission_of(experiment, base, cells[draws[i].cell], draws[i].seed);
+    if (!mission) return mission.error();
+    return measure(*mission, limits);
+  };
+  std::size_t flown = 0;
+  const auto take = [&](std::size_t i, Measures&& measures) -> Result<void> {
+    if (auto kept = table.append(draws[i].cell, draws[i].seed, measures); !kept) return kept;
+    ++flown;
+    if (options.on_done) options.on_done(measures);
+    return {};
+  };
+  if (const auto done =
+          hil::each_parallel<Measures>(draws.size(), options.jobs, fly, take, options.stopped);
+      !done) {
+    return done.error();
+  }
+  if (const auto sorted = table.sort(); !sorted) return sorted.error();
+  const std::uint64_t all = cells.size() * experiment.runs;
+  const std::size_t wanted = static_cast<std::size_t>(all / options.shard.count) +
+                             (options.shard.number <= all % options.shard.count ? 1 : 0);
+  return SweepOutcome{wanted, wanted - (draws.size() - flown), flown};
 }
 
 Result<void> write_results(const Experiment& experiment, const RunTable& table,
                            const std::filesystem::path& folder) {
-  if (auto done = write(folder / "cells.csv", cells_csv(experiment, table)); !done) return done;
+  if (auto done = shards::put_text(folder / "cells.csv", cells_csv(experiment, table)); !done)
+    return done;
   for (std::size_t column = 0; column < table.columns().size(); ++column) {
     const Plot plot = plot_of(experiment, table, column);
     const bool bars = experiment.chart == configuration::ExperimentChart::bars;
-    auto done = write(folder / (table.columns()[column] + ".svg"), svg(plot, bars));
+    auto done = shards::put_text(folder / (table.columns()[column] + ".svg"), svg(plot, bars));
     if (!done) return done;
   }
   return {};

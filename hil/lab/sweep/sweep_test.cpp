@@ -47,14 +47,16 @@ class Sweeps : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(root_); }
 
   /// Flies until `runs` are flown, or all, and writes the results.
-  SweepOutcome fly(const std::string& folder, std::size_t jobs = 1, std::size_t runs = 1000) {
+  SweepOutcome fly(const std::string& folder, std::size_t jobs = 1, std::size_t runs = 1000,
+                   const shards::Shard& shard = {}) {
     SweepOptions options;
+    options.shard = shard;
     options.folder = root_ / folder;
     options.jobs = jobs;
     std::size_t flown = 0;
     options.on_done = [&](const Measures&) { ++flown; };
     options.stopped = [&] { return flown >= runs; };
-    auto table = RunTable::open(options.folder, experiment_, base_);
+    auto table = RunTable::open(options.folder, experiment_, base_, shard);
     EXPECT_TRUE(table) << table.error().message;
     const auto outcome = sweep(experiment_, base_, options, *table);
     EXPECT_TRUE(outcome) << outcome.error().message;
@@ -89,6 +91,48 @@ TEST_F(Sweeps, GiveTheSameWithAnyNumberOfJobs) {
   fly("one", 1);
   fly("three", 3);
   EXPECT_EQ(text("one/cells.csv"), text("three/cells.csv"));
+  EXPECT_EQ(text("one/runs.csv"), text("three/runs.csv"));
+}
+
+TEST_F(Sweeps, AreTheSameInShards) {
+  fly("whole");
+  const auto second = fly("2", 1, 1000, {2, 2});
+  EXPECT_EQ(second.wanted, 6U);
+  EXPECT_EQ(second.flown, 6U);
+  EXPECT_EQ(fly("1", 1, 2, {1, 2}).present, 2U);  // interrupted
+  {
+    auto table = RunTable::open(root_ / "merged", experiment_, base_);
+    ASSERT_TRUE(table);
+    for (const char* folder : {"2", "1"}) ASSERT_TRUE(table->take_over(root_ / folder));
+    const auto lacking = missing(experiment_, *table);
+    ASSERT_EQ(lacking.size(), 4U);
+    EXPECT_EQ(lacking.front().number, 4U);
+    EXPECT_EQ(lacking.front().seed, 2U);
+    EXPECT_EQ(fly("1", 1, 1000, {1, 2}).flown, 4U);
+    ASSERT_TRUE(table->take_over(root_ / "1"));
+    ASSERT_TRUE(table->sort());
+    EXPECT_TRUE(missing(experiment_, *table).empty());
+    ASSERT_TRUE(write_results(experiment_, *table, root_ / "merged"));
+    EXPECT_TRUE(all_safe(experiment_, *table));
+  }
+  EXPECT_EQ(text("merged/runs.csv"), text("whole/runs.csv"));
+  EXPECT_EQ(text("merged/cells.csv"), text("whole/cells.csv"));
+  EXPECT_EQ(text("merged/value.svg"), text("whole/value.svg"));
+}
+
+TEST_F(Sweeps, OfDifferentExperimentsAreToldApart) {
+  fly("a", 1, 1);
+  experiment_.title = "Another";
+  experiment_.runs = 2;
+  fly("b", 1, 1);
+  EXPECT_TRUE(same_experiment(root_ / "a", root_ / "b"));
+  EXPECT_THAT(text("b/experiment.yaml"), HasSubstr("Another"));
+  experiment_.axes[1].points[0].settings.formation_margin_s = 0.4;
+  fly("c", 1, 1);
+  const auto differ = same_experiment(root_ / "a", root_ / "c");
+  ASSERT_FALSE(differ);
+  EXPECT_THAT(differ.error().message, HasSubstr("/a/experiment.yaml and "));
+  EXPECT_THAT(differ.error().message, HasSubstr("/c/experiment.yaml differ"));
 }
 
 TEST_F(Sweeps, GoOnWhereTheyWereInterrupted) {
@@ -155,6 +199,25 @@ TEST_F(Sweeps, TellOfARowThatIsNoRun) {
   EXPECT_THAT(table.error().message, HasSubstr("runs.csv:3: has not one field a column"));
 }
 
+TEST_F(Sweeps, AreNotSafeWhereACheckWasBrokenBefore) {
+  fly("a");
+  std::string rows = text("a/runs.csv");
+  const auto line = rows.find('\n') + 1;
+  const auto safe = rows.substr(line, rows.find('\n', line) - line);
+  // The last of the measures that every scenario has.
+  std::string header = rows.substr(0, line - 1);
+  std::size_t column = 0;
+  for (std::size_t at = 0; at < header.find("safe"); ++at) column += header[at] == ',' ? 1 : 0;
+  std::size_t at = line;
+  for (std::size_t i = 0; i < column; ++i) at = rows.find(',', at) + 1;
+  ASSERT_EQ(rows[at], '1') << safe;
+  rows[at] = '0';
+  std::ofstream{root_ / "a/runs.csv", std::ios::binary} << rows;
+  const auto table = RunTable::open(root_ / "a", experiment_, base_);
+  ASSERT_TRUE(table) << table.error().message;
+  EXPECT_FALSE(all_safe(experiment_, *table));
+}
+
 TEST_F(Sweeps, FlyNothingWhereACellCannotBeFlown) {
   experiment_.axes[1].points[1].settings.message_delay_s = 0.2;
   experiment_.axes[1].points[1].settings.vehicles = std::uint16_t{4};
@@ -165,7 +228,7 @@ TEST_F(Sweeps, FlyNothingWhereACellCannotBeFlown) {
   const auto outcome = sweep(experiment_, base_, options, *table);
   ASSERT_FALSE(outcome);
   EXPECT_THAT(outcome.error().message, HasSubstr("method ours, margin long"));
-  EXPECT_EQ(missing(experiment_, *table), 12U);
+  EXPECT_EQ(missing(experiment_, *table).size(), 12U);
 }
 
 }  // namespace

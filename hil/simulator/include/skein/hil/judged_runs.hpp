@@ -46,22 +46,4 @@ struct RunSeries {
     const configuration::Scenario& scenario, const RunSeries& series,
     const std::function<void(const JudgedRun&)>& on_done = {});
 
-/// Mission times of the runs that finished all their sites, and what was broken how often.
-struct SeriesSummary {
-  std::size_t runs = 0;
-  std::size_t held = 0;
-  std::size_t finished = 0;  ///< all sites done
-  double time_min_s = 0.0;   ///< of those that finished; 0 when none did
-  double time_mean_s = 0.0;
-  double time_max_s = 0.0;
-  struct Broken {
-    std::string check;
-    std::size_t runs = 0;
-  };
-  std::vector<Broken> broken;   ///< by name
-  std::size_t excused = 0;      ///< in how many runs something was
-  std::size_t excused_all = 0;  ///< and how much in all
-};
-[[nodiscard]] SeriesSummary summarise(const std::vector<JudgedRun>& runs);
-
 }  // namespace skein::hil

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "csv.hpp"
+#include "skein/shards/csv.hpp"
 
 #include <cerrno>
 #include <system_error>
 
-namespace skein::experiments {
+namespace skein::shards {
 
 std::string csv_line(const std::vector<std::string>& fields) {
   std::string line;
@@ -39,9 +39,36 @@ std::vector<std::string> csv_fields(std::string_view line) {
   return fields;
 }
 
+std::string joined(const std::vector<std::string>& texts) {
+  std::string field;
+  for (const std::string& text : texts) {
+    if (&text != &texts.front()) field += '|';
+    for (const char c : text) {
+      if (c == '|' || c == '\\') field += '\\';
+      field += c == '\n' ? "\\n" : c == '\r' ? "\\r" : std::string{c};
+    }
+  }
+  return field;
+}
+
+std::vector<std::string> parted(std::string_view field) {
+  std::vector<std::string> texts{""};
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (field[i] == '|') {
+      texts.emplace_back();
+    } else if (field[i] == '\\' && i + 1 < field.size()) {
+      const char c = field[++i];
+      texts.back() += c == 'n' ? '\n' : c == 'r' ? '\r' : c;
+    } else {
+      texts.back() += field[i];
+    }
+  }
+  return texts;
+}
+
 Error not_written(const std::string& file) {
   return {file + ": cannot be written: " + std::generic_category().message(errno) +
           "; make room or name another folder with --out"};
 }
 
-}  // namespace skein::experiments
+}  // namespace skein::shards
