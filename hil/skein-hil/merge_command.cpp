@@ -64,18 +64,27 @@ shards::Series whole_of(const std::vector<Part>& parts) {
   return whole;
 }
 
+/// That the shard has, or would have where folders are named by their shards' numbers.
+std::string folder_of(const shards::Shard& shard, const std::vector<Part>& parts) {
+  for (const Part& part : parts) {
+    if (part.series.shard.number == shard.number && part.series.shard.count == shard.count)
+      return part.folder.string();
+  }
+  const Part& first = parts.front();
+  if (first.folder.filename() == std::to_string(first.series.shard.number))
+    return (first.folder.parent_path() / std::to_string(shard.number)).string();
+  return "FOLDER";
+}
+
 /// How the shard is flown, into the folder that it has or a new one.
 std::string command_of(const MergeArguments& arguments, const shards::Series& whole,
                        const shards::Shard& shard, const std::vector<Part>& parts) {
-  const auto of = std::find_if(parts.begin(), parts.end(), [&](const Part& part) {
-    return part.series.shard.number == shard.number && part.series.shard.count == shard.count;
-  });
   std::string text = fmt::format("{} {} {} --runs {}", arguments.program,
                                  is_sweep(whole) ? "sweep" : "simulate", whole.file, whole.runs);
   if (!is_sweep(whole)) text += fmt::format(" --seed {}", whole.first_seed);
   if (whole.faults != "none") text += " --faults " + whole.faults;
-  return text + fmt::format(" --shard {} --out {}", shards::to_string(shard),
-                            of == parts.end() ? "FOLDER" : of->folder.string());
+  return text +
+         fmt::format(" --shard {} --out {}", shards::to_string(shard), folder_of(shard, parts));
 }
 
 /// Of draws that are in no folder: which, and who flies them.
