@@ -83,22 +83,28 @@ Result<RowFile> RowFile::open(const std::filesystem::path& file,
   }
   table.out_.open(file, std::ios::binary | std::ios::app);
   if (table.end_ == 0) {
-    if (auto written = table.write(table.header_); !written) return written.error();
+    table.out_ << table.header_;
+    table.end_ = table.header_.size();
   }
-  if (!table.out_) return not_written(file.string());
+  if (auto written = table.flush(); !written) return written.error();
   return table;
 }
 
-Result<void> RowFile::write(const std::string& line) {
-  out_ << line << std::flush;
-  if (!out_) return not_written(file_.string());
+void RowFile::add(const RowKey& key, const std::string& line) {
+  at_.emplace(key, end_);
+  out_ << line;
   end_ += line.size();
+}
+
+Result<void> RowFile::flush() {
+  out_.flush();
+  if (!out_) return not_written(file_.string());
   return {};
 }
 
 Result<void> RowFile::append(const RowKey& key, const std::vector<std::string>& fields) {
-  at_.emplace(key, end_);
-  return write(csv_line(fields));
+  add(key, csv_line(fields));
+  return flush();
 }
 
 Result<void> RowFile::take_over(const std::filesystem::path& file, const Reader& reader) {
@@ -111,18 +117,24 @@ Result<void> RowFile::take_over(const std::filesystem::path& file, const Reader&
       return bad_line(file.string(), number, "has not one field a column");
     const auto key = reader(fields);
     if (!key) return bad_line(file.string(), number, key.error().message);
-    if (!has(*key)) return append(*key, fields);
+    if (!has(*key)) {
+      add(*key, line + "\n");
+      return {};
+    }
+    if (auto flushed = flush(); !flushed) return flushed;  // to be read
     return line_at(at_.at(*key)) == line ? Result<void>{} : differs(*key, file.string(), number);
   };
-  if (const auto end = lines(file, row); !end) return end.error();
-  return {};
+  const auto end = lines(file, row);
+  if (auto flushed = flush(); !flushed) return flushed;
+  return end ? Result<void>{} : end.error();
 }
 
 std::string RowFile::line_at(std::uint64_t offset) const {
-  std::ifstream in{file_, std::ios::binary};
-  in.seekg(static_cast<std::streamoff>(offset));
+  if (!again_.is_open()) again_.open(file_, std::ios::binary);
+  again_.clear();
+  again_.seekg(static_cast<std::streamoff>(offset));
   std::string line;
-  std::getline(in, line);
+  std::getline(again_, line);
   return line;
 }
 
@@ -155,7 +167,7 @@ Result<void> RowFile::sort() {
   {
     std::ofstream out{sorted, std::ios::binary};
     out << header_;
-    const auto copied = each_line([&](const std::string& line) -> Result<void> {
+    auto copied = each_line([&](const std::string& line) -> Result<void> {
       out << line << '\n';
       offsets.push_back(end);
       end += line.size() + 1;
@@ -168,6 +180,7 @@ Result<void> RowFile::sort() {
   std::error_code error;
   std::filesystem::rename(sorted, file_, error);
   if (error) return Error{file_.string() + ": cannot be written: " + error.message()};
+  again_.close();
   out_.close();
   out_.open(file_, std::ios::binary | std::ios::app);
   if (!out_) return not_written(file_.string());

@@ -140,16 +140,16 @@ class Shards : public testing::Test {
 
 TEST_F(Shards, OfACoalitionAreOneMachines) {
   const std::string scenario = std::string{kScenarios} + "faults-8.yaml";
-  try_shards({"simulate", scenario, "--runs", "24", "--faults", "mixed"}, "exit status 0");
+  try_shards({"simulate", scenario, "--runs", "15", "--faults", "mixed"}, "exit status 0");
   // With or without a folder the same is printed.
   const std::string kept = out();
-  EXPECT_EQ(run(std::string{kProgram} + " simulate " + scenario + " --runs 24 --faults mixed"),
+  EXPECT_EQ(run(std::string{kProgram} + " simulate " + scenario + " --runs 15 --faults mixed"),
             "exit status 0");
   EXPECT_EQ(out(), kept);
 
   // Other faults are another experiment.
   EXPECT_EQ(
-      run(std::string{kProgram} + " simulate " + scenario + " --runs 24 --out " + path("one")),
+      run(std::string{kProgram} + " simulate " + scenario + " --runs 15 --out " + path("one")),
       "exit status 2");
   EXPECT_NE(err().find("of the faults mixed"), std::string::npos) << err();
 

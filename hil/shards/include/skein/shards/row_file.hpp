@@ -71,7 +71,9 @@ class RowFile {
   /// In the order of keys, with the lines' ends.
   [[nodiscard]] Result<void> each_line(
       const std::function<Result<void>(const std::string& line)>& line) const;
-  [[nodiscard]] Result<void> write(const std::string& line);
+  /// Appends a line with its end, which the system has after flush().
+  void add(const RowKey& key, const std::string& line);
+  [[nodiscard]] Result<void> flush();
 
   std::filesystem::path file_;
   std::string header_;
@@ -80,6 +82,7 @@ class RowFile {
   /// From which offset on the rows are those of another file.
   std::vector<std::pair<std::uint64_t, std::string>> sources_;
   std::ofstream out_;
+  mutable std::ifstream again_;  ///< the same file, for rows that come twice
 };
 
 }  // namespace skein::shards
