@@ -366,13 +366,14 @@ TEST(Picture, StatesAreToldApart) {
 TEST(Picture, ASilentVehicleIsSilentOnTheTimeLineToo) {
   Desk desk;
   desk.telemetry({1}, 1.0, 1.0);
-  const auto spans = [&](double seconds) {
-    return desk.section(Section::timeline, seconds)[0]["spans"];
-  };
-  EXPECT_EQ(spans(8.0), Json::parse(R"([["searching",1.0,1.0,null],["silent",1.0,null,null]])"));
+  const Json silent = desk.section(Section::timeline, 8.0);
+  EXPECT_EQ(silent["states"], Json::parse(R"(["searching", "silent"])"));
+  EXPECT_EQ(silent["vehicles"][0], Json::parse(R"({"id": 1, "states": [0, 1],
+                "from_s": [1.0, 1.0], "sites": [null, null]})"));
   desk.telemetry({1}, 9.0, 9.0);
-  EXPECT_EQ(spans(9.5), Json::parse(R"([["searching",1.0,1.0,null],["silent",1.0,9.0,null],
-                                       ["searching",9.0,null,null]])"));
+  EXPECT_EQ(desk.section(Section::timeline, 9.5)["vehicles"][0],
+            Json::parse(R"({"id": 1, "states": [0, 1, 0], "from_s": [1.0, 1.0, 9.0],
+                            "sites": [null, null, null]})"));
 }
 
 /// A request of the plan that award() has, with one of its two deliveries.
@@ -660,10 +661,19 @@ TEST(Picture, ActivitiesMakeATimeLine) {
     desk.telemetry({1}, t, t, 1,
                    t < 10 ? mission::Activity::searching : mission::Activity::surveying);
   }
-  const Json spans = desk.section(Section::timeline, 30.0)[0]["spans"];
-  ASSERT_EQ(spans.size(), 2U);
-  EXPECT_EQ(spans[0], Json::parse(R"(["searching", 0.0, 10.0, null])"));
-  EXPECT_EQ(spans[1][2], nullptr);
+  mission::Telemetry assesses;
+  assesses.vehicle = {2};
+  assesses.instance = {2};
+  assesses.state.time = at_seconds(20.0);
+  assesses.activity = mission::Activity::executing;
+  assesses.detail = mission::ActivityDetail::assessing;
+  assesses.task = {{4}, TaskKind::assess, 1};
+  desk.hear(assesses, {2}, 20.0);
+  EXPECT_EQ(desk.section(Section::timeline, 30.0),
+            Json::parse(R"({"states": ["searching", "surveying", "assessing", "silent"],
+      "vehicles": [{"id": 1, "states": [0, 1], "from_s": [0.0, 10.0], "sites": [null, null]},
+                   {"id": 2, "states": [2, 3], "from_s": [20.0, 20.0], "sites": [4, null]},
+                   {"id": 3, "states": [], "from_s": [], "sites": []}]})"));
   EXPECT_EQ(Json::parse(series_of(desk.picture))[0]["t"].size(), 30U);
 }
 

@@ -538,41 +538,53 @@ Json formation_json(const Picture& picture, Instant now) {
           {"places", std::move(places)}};
 }
 
-/// A state until the next one; the last one as long as its vehicle is heard. As text at once: of an
-/// hour of many vehicles it is what is longest.
+/// Each state until the next one. By columns, with states as places in a list of those that there
+/// are: of an hour of many vehicles it is what is longest, and a page holds columns of numbers in a
+/// tenth of what it takes for lists of spans. As text at once, for the same reason.
 std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
-  fmt::memory_buffer text;
-  const auto to = std::back_inserter(text);
-  const char* between_lines = "";
-  fmt::format_to(to, "[");
-  for (const auto& [id, vehicle] : picture.vehicles()) {
-    const auto entry = fleet.vehicles().find(id);
-    const bool silent = entry != fleet.vehicles().end() && entry->second.silent;
-    const std::string heard_s =
-        silent ? fmt::format("{:.1f}", to_seconds(entry->second.heard_at)) : "null";
-    fmt::format_to(to, R"({}{{"id":{},"spans":[)", between_lines, id.value);
-    between_lines = ",";
+  using Spans = decltype(VehiclePicture::spans);
+  using Span = Spans::value_type;
+  std::vector<mission::ShownState> states;
+  const auto place_of = [&states](mission::ShownState state) {
+    const auto found = std::find(states.begin(), states.end(), state);
+    const auto place = found - states.begin();
+    if (found == states.end()) states.push_back(state);
+    return place;
+  };
+  fmt::memory_buffer rows;
+  const auto to = std::back_inserter(rows);
+  const auto column = [&to](std::string_view name, const Spans& spans, const auto& cell) {
+    fmt::format_to(to, R"(,"{}":[)", name);
     const char* between = "";
-    for (std::size_t i = 0; i < vehicle.spans.size(); ++i) {
-      const auto& span = vehicle.spans[i];
-      fmt::format_to(to, R"({}["{}",{:.1f},)", between, to_string(span.state),
-                     to_seconds(span.from));
+    for (const Span& span : spans) {
+      fmt::format_to(to, "{}", between);
+      cell(span);
       between = ",";
-      if (i + 1 == vehicle.spans.size()) {
-        fmt::format_to(to, "{},", heard_s);
-      } else {
-        fmt::format_to(to, "{:.1f},", to_seconds(vehicle.spans[i + 1].from));
-      }
-      span.site ? fmt::format_to(to, "{}]", span.site->value) : fmt::format_to(to, "null]");
     }
-    if (silent) {
-      fmt::format_to(to, R"({}["{}",{},null,null])", between,
-                     to_string(mission::ShownState::silent), heard_s);
+    fmt::format_to(to, "]");
+  };
+  const char* between = "";
+  for (const auto& [id, vehicle] : picture.vehicles()) {
+    Spans spans = vehicle.spans;
+    const auto entry = fleet.vehicles().find(id);
+    if (entry != fleet.vehicles().end() && entry->second.silent) {
+      spans.push_back({mission::ShownState::silent, entry->second.heard_at, std::nullopt});
     }
-    fmt::format_to(to, "]}}");
+    fmt::format_to(to, R"({}{{"id":{})", between, id.value);
+    between = ",";
+    column("states", spans, [&](const Span& s) { fmt::format_to(to, "{}", place_of(s.state)); });
+    column("from_s", spans,
+           [&](const Span& s) { fmt::format_to(to, "{:.1f}", to_seconds(s.from)); });
+    column("sites", spans, [&](const Span& s) {
+      s.site ? fmt::format_to(to, "{}", s.site->value) : fmt::format_to(to, "null");
+    });
+    fmt::format_to(to, "}}");
   }
-  fmt::format_to(to, "]");
-  return fmt::to_string(text);
+  std::string names;
+  for (const mission::ShownState state : states) {
+    names += fmt::format(R"({}"{}")", names.empty() ? "" : ",", to_string(state));
+  }
+  return fmt::format(R"({{"states":[{}],"vehicles":[{}]}})", names, fmt::to_string(rows));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ const sections = {
   vehicles, plans: [], hazards: [{ id: 1, x: 500, y: 500, radius_m: 100 }], preflight,
   sites: [a_site(1, 200, 300, { leader: 1, tasks: [{ kind: "deliver", index: 0, bearing_deg: 7, vehicle: 1, time_s: 90, state: "planned" }] }), a_site(2, 900, 200, { status: "done" })],
   coalitions: [coalition], authorisations: [a_request(1), a_request(2, { silent: [2] })],
-  timeline: vehicles.map(({ id }) => ({ id, spans: [["searching", 0, 40, null], ["surveying", 40, null, 1]] })),
+  timeline: { states: ["searching", "surveying"], vehicles: vehicles.map(({ id }) => ({ id, states: [0, 1], from_s: [0, 40], sites: [null, 1] })) },
   audit: [{ seq: 1, time_s: 12, who: "ada", from: "console", line: "hold 1-3", done: true, text: "told to 1-3" }],
   proposals: [{ number: 1, kind: "fire", x: 10, y: 20, seen_by: 2, confidence: 0.8, detector: "thermal", time_s: 60 }],
 };

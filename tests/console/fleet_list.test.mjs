@@ -20,7 +20,10 @@ const fleet = (count, more = () => ({})) =>
       ...more(id),
     });
   });
-const timeline = (count) => Array.from({ length: count }, (_, i) => ({ id: i + 1, spans: [["searching", 0, 40, null], ["surveying", 40, null, null]] }));
+const timeline = (count) => ({
+  states: ["searching", "surveying"],
+  vehicles: Array.from({ length: count }, (_, i) => ({ id: i + 1, states: [0, 1], from_s: [0, 40], sites: [null, null] })),
+});
 const nothing = { plans: [], sites: [], coalitions: [], authorisations: [], hazards: [], audit: [], proposals: [] };
 
 describe("50 vehicles", () => {
@@ -254,7 +257,7 @@ describe("versions and digests of 50 vehicles", () => {
   });
   before(async () => {
     const rows = Array.from({ length: 50 }, (_, i) => row(i + 1, i === 36 ? { parameters: "0a1b2c3e", odd: ["parameters"] } : i === 4 ? { release: "0.1.0", odd: ["release"] } : {}));
-    station = await pretend("digests", a_hello(50), { ...nothing, vehicles: fleet(50), timeline: [], preflight: { summary: "50 armed or in the air", groups: ["clock"], vehicles: rows } });
+    station = await pretend("digests", a_hello(50), { ...nothing, vehicles: fleet(50), timeline: timeline(0), preflight: { summary: "50 armed or in the air", groups: ["clock"], vehicles: rows } });
     ({ view } = station);
     await view.part("tab-preflight").click();
     await view.part("preflight-versions").click();

@@ -59,7 +59,8 @@ const number_px = 10;
 function paint_row(view: TimelineView, picture: Picture, row: Row, at: (time_s: number) => number): void {
   const { context, width, height, colours } = view;
   const y = axis_px + row.y - view.scroll;
-  const line = picture.timeline[row.index];
+  const { states, vehicles } = picture.timeline;
+  const line = vehicles[row.index];
   if (!line || y < axis_px - row.height || y > height) return;
   const is_selected = view.selection.has(row.id);
   if (is_selected) {
@@ -67,12 +68,13 @@ function paint_row(view: TimelineView, picture: Picture, row: Row, at: (time_s: 
     context.fillRect(0, y, width, row.height);
   }
   const edge = row.height >= 6 ? 1.5 : row.height >= 3 ? 0.5 : 0;
-  for (let i = first_span(line.spans, view.window.from_s); i < line.spans.length; ++i) {
-    const [state, from_s, to_s, site] = line.spans[i]!;
-    const left = Math.max(names_px, at(from_s));
+  for (let i = first_span(line.from_s, view.window.from_s); i < line.from_s.length; ++i) {
+    const left = Math.max(names_px, at(line.from_s[i]!));
     if (left > width) break;
-    const right = Math.min(width, at(to_s ?? view.known_s));
+    const right = Math.min(width, at(line.from_s[i + 1] ?? view.known_s));
     if (right <= left) continue;
+    const state = states[line.states[i]!]!;
+    const site = line.sites[i];
     context.fillStyle = state_colour(state);
     context.fillRect(left, y + edge, Math.max(1, right - left - 0.5), row.height - 2 * edge);
     if (row.height >= words_px) paint_word(view, `${words(state)}${site === null ? "" : ` ${site}`}`, left, right, y + row.height / 2);
@@ -156,11 +158,13 @@ function known_until(view: TimelineView): string {
 
 /** What is under the pointer, in words. */
 export function span_text(view: TimelineView, picture: Picture, x: number, y: number, time_s: number): string | null {
-  const line = picture.timeline[row_at(view.rows.rows, y - axis_px + view.scroll)?.index ?? -1];
+  const { states, vehicles } = picture.timeline;
+  const line = vehicles[row_at(view.rows.rows, y - axis_px + view.scroll)?.index ?? -1];
   if (!line || x < names_px || y < axis_px) return null;
-  const span = line.spans.find(([, from_s, to_s]) => from_s <= time_s && time_s < (to_s ?? view.known_s));
-  if (!span) return `Vehicle ${line.id}`;
-  const [state, from_s, to_s, site] = span;
+  const i = first_span(line.from_s, time_s);
+  const [from_s, next_s] = [line.from_s[i], line.from_s[i + 1]];
+  if (from_s === undefined || time_s < from_s || time_s >= (next_s ?? view.known_s)) return `Vehicle ${line.id}`;
+  const site = line.sites[i];
   const where = site === null ? "" : `, site ${site}`;
-  return `Vehicle ${line.id}: ${words(state)}${where}, ${clock(from_s)} – ${to_s === null ? known_until(view) : clock(to_s)}`;
+  return `Vehicle ${line.id}: ${words(states[line.states[i]!]!)}${where}, ${clock(from_s)} – ${next_s === undefined ? known_until(view) : clock(next_s)}`;
 }

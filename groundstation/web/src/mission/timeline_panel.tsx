@@ -66,8 +66,8 @@ class TimelineCanvas {
     const context = this.canvas.getContext("2d");
     if (!context) return null;
     const now_s = mission_now_s() ?? 0;
-    const { timeline: lines, vehicles } = current();
-    const first_s = lines.reduce((least, { spans }) => Math.min(least, spans[0]?.[1] ?? 0), 0);
+    const { timeline: { vehicles: lines }, vehicles } = current();
+    const first_s = lines.reduce((least, { from_s }) => Math.min(least, from_s[0] ?? 0), 0);
     const first = new Set(selection.value);
     for (const vehicle of vehicles) if (needs_attention(vehicle)) first.add(vehicle.id);
     const rows = rows_of(lines.map(({ id }) => id), first, this.height - axis_px, condensed.value);
@@ -143,10 +143,9 @@ const key_moves: Record<string, [number, number]> = {
 };
 
 function Legend() {
-  const names = new Set(timeline.value.flatMap(({ spans }) => spans.map(([state]) => state)));
   return (
     <span class="legend" aria-hidden="true">
-      {[...names].sort().map((name) => (
+      {[...timeline.value.states].sort().map((name) => (
         <span key={name}>
           <i ref={(element) => element?.style.setProperty("background", state_colour(name))} />
           {words(name)}

@@ -4,7 +4,7 @@
 export const row_px = 15;
 
 export interface Row {
-  /** Of the picture's `timeline`. */
+  /** Of the time line's `vehicles`. */
   index: number;
   id: number;
   y: number;
@@ -56,13 +56,14 @@ export function row_at(rows: readonly Row[], y: number): Row | null {
   return null;
 }
 
-/** The first of `spans`, sorted by their begin, that can be seen from `from_s` on. */
-export function first_span(spans: readonly (readonly [string, number, ...unknown[]])[], from_s: number): number {
+/** Of spans that begin at `begin_s`, ascending, and last until the next one, the first that can be seen from
+ *  `from_s` on. */
+export function first_span(begin_s: readonly number[], from_s: number): number {
   let low = 0;
-  let high = spans.length;
+  let high = begin_s.length;
   while (low < high) {
     const middle = (low + high) >> 1;
-    if (spans[middle]![1] <= from_s) low = middle + 1;
+    if (begin_s[middle]! <= from_s) low = middle + 1;
     else high = middle;
   }
   return Math.max(0, low - 1);

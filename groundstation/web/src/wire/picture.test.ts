@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { empty_picture, reduce } from "./picture";
+import { empty_picture, newest_events, reduce } from "./picture";
 import type { Picture } from "./picture";
 import type { Coalition, FromServer, Hello, MissionEvent } from "./protocol";
 import { a_coalition, a_hello, an_event, a_vehicle } from "./samples";
@@ -44,6 +44,18 @@ test("events that the server no longer has are counted", () => {
   const picture = after(events(an_event(1), an_event(2)), history(10, 20));
   assert.equal(picture.events_missed, 7);
   assert.equal(after(history(10, 20)).events_missed, 0);
+});
+
+test("of a mission the newest events are kept, and every warning", () => {
+  const list = Array.from({ length: newest_events + 100 }, (_, seq) => ({ ...an_event(seq), level: seq % 10 === 0 ? "warning" : "info" }) as const);
+  const seqs = ({ events: all }: Picture) => all.map(({ seq }) => seq);
+  const newest = list.slice(100).map(({ seq }) => seq);
+  const picture = after(...list.map((event) => events(event)));
+  assert.deepEqual(seqs(picture), [0, 10, 20, 30, 40, 50, 60, 70, 80, 90, ...newest]);
+  assert.equal(picture.events_missed, 90);
+  assert.deepEqual(seqs(after(events(...list))), seqs(picture));
+  const replay: Hello = { ...a_hello(), replay: { name: "m", from_s: 0, to_s: 9 } };
+  assert.equal(after(replay, ...list.map((event) => events(event))).events.length, list.length);
 });
 
 test("another run of the server: all is forgotten, and asked for anew", () => {

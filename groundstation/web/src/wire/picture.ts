@@ -7,11 +7,12 @@ export interface Picture extends Sections {
   hello: Hello | null;
   /** Mission time of the newest state; null before the first. */
   time_s: number | null;
-  /** Ascending by seq, none twice. */
+  /** Ascending by seq, none twice. In a mission the newest, and older warnings. */
   events: MissionEvent[];
   /** The first event that the page has not seen. */
   next_seq: number;
-  /** Events that the server no longer had when the page asked for them. */
+  /** Events that are only in the recording: the server no longer had them when the page asked, or the page
+   *  has not kept them. */
   events_missed: number;
   /** Where a coalition stands in the palette: by its key, in the order of appearance. */
   coalition_slots: ReadonlyMap<string, number>;
@@ -21,8 +22,11 @@ export interface Picture extends Sections {
   generation: number;
 }
 
-// Enough for hours of a mission; the oldest are left out of memory, not of the server's log.
-export const events_kept = 20000;
+// As many as the server has.
+const most_events = 20000;
+/** Of a mission, whatever they say: lest memory grow for as long as it lasts. Of older ones warnings alone
+ *  are kept. A recording has an end, and is read from wherever one likes: of it all are kept. */
+export const newest_events = 1000;
 
 export const section_names = [
   "vehicles",
@@ -58,7 +62,7 @@ export function empty_picture(): Picture {
     authorisations: [],
     hazards: [],
     formation: null,
-    timeline: [],
+    timeline: { states: [], vehicles: [] },
     audit: [],
     replay: null,
     proposals: [],
@@ -149,6 +153,13 @@ function on_events(picture: Picture, arrived: MissionEvent[]): Picture {
     next_seq = event.seq + 1;
   }
   if (fresh.length === 0) return picture;
-  const events = picture.events.concat(fresh);
-  return { ...picture, events: events.slice(-events_kept), next_seq };
+  const all = picture.events.concat(fresh);
+  const events = kept(all, Boolean(picture.hello?.replay));
+  return { ...picture, events, next_seq, events_missed: picture.events_missed + all.length - events.length };
+}
+
+function kept(events: MissionEvent[], all: boolean): MissionEvent[] {
+  if (all || events.length <= newest_events) return events.slice(-most_events);
+  const warnings = events.slice(0, -newest_events).filter(({ level }) => level === "warning");
+  return [...warnings, ...events.slice(-newest_events)].slice(-most_events);
 }

@@ -256,7 +256,21 @@ export interface Formation {
   places: Place[];
 }
 
-export type Span = [state: string, from_s: number, to_s: number | null, site: number | null];
+/** What each vehicle did. */
+export interface Timeline {
+  /** Those that there are. */
+  states: string[];
+  vehicles: TimelineRow[];
+}
+
+/** Of a vehicle, in columns of one length: each state until the next one begins. */
+export interface TimelineRow {
+  id: number;
+  /** Places in the time line's `states`. */
+  states: number[];
+  from_s: number[];
+  sites: (number | null)[];
+}
 
 export interface AuditEntry {
   seq: number;
@@ -284,7 +298,7 @@ export interface Sections {
   authorisations: Authorisation[];
   hazards: Hazard[];
   formation: Formation | null;
-  timeline: { id: number; spans: Span[] }[];
+  timeline: Timeline;
   audit: AuditEntry[];
   replay: ReplayState | null;
   proposals: Proposal[];
