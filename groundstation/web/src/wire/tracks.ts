@@ -53,14 +53,13 @@ export class Tracks {
       const last = track.t[track.t.length - 1];
       // A millisecond less, so that a period of one second in rounded numbers is one.
       if (last !== undefined && heard_s - last < sample_every_s - 0.001) continue;
-      track.t.push(heard_s);
-      track.x.push(vehicle.x);
-      track.y.push(vehicle.y);
-      track.z.push(vehicle.z ?? 0);
-      track.speed.push(vehicle.groundspeed);
-      track.range.push(vehicle.range_left_m);
-      track.delay.push(vehicle.clock_offset_ms);
-      if (track.t.length > samples_kept) for (const column of columns) track[column].shift();
+      append(track, "t", heard_s);
+      append(track, "x", vehicle.x);
+      append(track, "y", vehicle.y);
+      append(track, "z", vehicle.z ?? 0);
+      append(track, "speed", vehicle.groundspeed);
+      append(track, "range", vehicle.range_left_m);
+      append(track, "delay", vehicle.clock_offset_ms);
       added = true;
     }
     return added;
@@ -71,6 +70,21 @@ export class Tracks {
     this.tracks.set(id, track);
     return track;
   }
+}
+
+/** In the place of the oldest where it is full. `shift` and `push` would have the array made anew every few
+ *  minutes, half as long again as it is: as much memory for nothing as for what is kept. */
+function append<Column extends keyof Track>(track: Track, column: Column, value: Track[Column][number]): void {
+  const values: (number | null)[] = track[column];
+  if (values.length < samples_kept) {
+    values.push(value);
+    // A copy has no room for more.
+    if (values.length === samples_kept) track[column] = values.slice() as Track[Column];
+    return;
+  }
+  const last = values.length - 1;
+  for (let i = 0; i < last; ++i) values[i] = values[i + 1]!;
+  values[last] = value;
 }
 
 /** One column of several tracks over common whole seconds, as a plot wants them: times, then a row
