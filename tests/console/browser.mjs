@@ -6,7 +6,7 @@ import { join } from "node:path";
 
 import { chromium } from "playwright-core";
 
-/** A page that notes what it asks of others and what it complains about. */
+/** SKEIN_JS_FLAGS is what V8 is told. A page that notes what it asks of others and what it complains about. */
 export async function browse(url, options = {}) {
   const browser = await chromium.launch({
     executablePath: process.env.SKEIN_CHROMIUM ?? "/usr/bin/chromium",
@@ -19,6 +19,7 @@ export async function browse(url, options = {}) {
       "--disable-background-networking",
       "--disable-component-update",
       "--disable-sync",
+      ...(process.env.SKEIN_JS_FLAGS ? [`--js-flags=${process.env.SKEIN_JS_FLAGS}`] : []),
     ],
   });
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, ...options });

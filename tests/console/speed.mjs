@@ -3,6 +3,8 @@
 // node speed.mjs CONSOLE_LOAD VEHICLES SECONDS [PACE [PANEL]]: how fast the page is drawn, how old what it
 // shows is, and whether its memory grows, with so many vehicles that report ten times a second, for so many
 // seconds of their mission, which goes PACE times as fast as the clock: with the messages of an hour in less.
+// Memory has V8's machine code in it, some of which an hour in less compiles after its ten minutes; without:
+// SKEIN_JS_FLAGS="--no-opt --no-maglev --no-sparkplug".
 import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createInterface } from "node:readline";
@@ -52,10 +54,15 @@ const cdp = await page.context().newCDPSession(page);
 // Processor time of the page's thread, which does not depend on what else the machine does.
 await cdp.send("Performance.enable", { timeDomain: "threadTicks" });
 const worked_s = async () => (await cdp.send("Performance.getMetrics")).metrics.find(({ name }) => name === "TaskDuration").value;
+/** What is in use, MB. A state that comes before it is read has left what nobody uses any more: the least of several. */
 const heap = async () => {
-  await cdp.send("HeapProfiler.collectGarbage");
-  const { metrics } = await cdp.send("Performance.getMetrics");
-  return metrics.find(({ name }) => name === "JSHeapUsedSize").value / 2 ** 20;
+  const readings = [];
+  while (readings.length < 5) {
+    await cdp.send("HeapProfiler.collectGarbage");
+    const { metrics } = await cdp.send("Performance.getMetrics");
+    readings.push(metrics.find(({ name }) => name === "JSHeapUsedSize").value / 2 ** 20);
+  }
+  return Math.min(...readings);
 };
 /** The age that such a share of them does not exceed, ms. */
 const quantile = (ages, share) => {
