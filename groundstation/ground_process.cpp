@@ -536,11 +536,11 @@ class GroundLoop {
     }
     console_.on_traffic(node_.traffic().all());
     console_.on_decisions(node_.agent(), now);
-    console_.on_timeout(node_.fleet(),
-                        {audit_.json(), areas_.json(now), commanding_.desk().json(now),
-                         commanding_.desk().nobody_commands(now), agencies_.receiver_trouble(),
-                         areas_.ended()},
-                        now);
+    console_.on_timeout(
+        node_.fleet(),
+        {audit_.json(), areas_.json(now), commanding_.desk().json(now),
+         commanding_.desk().nobody_commands(now), agencies_.receiver_trouble(), areas_.ended()},
+        now);
     if (commanding_.is_commanding()) {
       agencies_.on_timeout(console_.picture(), node_.fleet(), now);
       ask_operator(now);
