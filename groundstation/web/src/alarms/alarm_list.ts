@@ -121,7 +121,7 @@ export function answers_text({ answered, waiting }: GivenOrder): string {
 
 /** From now to when two are closest to each other, or since; empty of all else, and of what is over. */
 export function closest_text({ closest_s, over_s }: Alarm, now_s: number | null): string {
-  if (closest_s === null || over_s !== null || now_s === null) return "";
+  if (typeof closest_s !== "number" || over_s !== null || now_s === null) return "";
   const in_s = closest_s - now_s;
   return in_s > 0 ? `closest in ${Math.round(in_s)} s` : `was closest ${Math.round(-in_s)} s ago`;
 }
