@@ -196,7 +196,7 @@ void holds(Desk& desk, ActivityDetail detail) {
 }
 
 std::function<void(Desk&)> searches(std::optional<EndedSearch> ended) {
-  return [ended](Desk& desk) {
+  return [ended = std::move(ended)](Desk& desk) {
     desk.alarms.on_search(ended);
     desk.run(0.2);
   };
