@@ -251,7 +251,12 @@ class Companion::Impl {
   std::uint8_t system_ = 0;                ///< once it has been found
   bool armed_ = false;
   bool streams_granted_ = false;
-  bool renews_fence_ = false;     ///< in flight: it has another one to keep
+  bool renews_fence_ = false;  ///< in flight: it has another one to keep
+  bool climbed_ = false;       ///< by its own launch, and has not been flown since
+  bool told_fence_ = false;
+  bool told_upload_ = false;
+  bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
+  bool told_too_low_ = false;
   std::optional<Duration> boot_;  ///< the newest time on the autopilot's clock
   StatusText text_;
   std::optional<Instant> last_text_at_;
@@ -280,7 +285,6 @@ class Companion::Impl {
   std::optional<Instant> streams_asked_at_;
   Instant taken_at_;
   Instant climb_by_;
-  bool climbed_ = false;  ///< by its own launch, and has not been flown since
   std::optional<Instant> duplicate_at_;
   std::optional<Demand> demand_;
   Instant demand_at_;
@@ -301,11 +305,7 @@ class Companion::Impl {
   std::string fence_failed_;                            ///< why, while it is so
   MissionUpload upload_{MissionUpload::Kind::mission};  ///< of a plane's landing
   std::optional<Landing> uploads_;                      ///< what that is of
-  bool told_fence_ = false;
-  bool told_upload_ = false;
-  bool may_land_ = false;  ///< the autopilot has the mission, and stands at its landing
-  Instant upload_again_at_ = Instant::min();  ///< after one that failed
-  bool told_too_low_ = false;
+  Instant upload_again_at_ = Instant::min();            ///< after one that failed
   std::optional<Outcome> refusal_;
   Instant refusal_at_;
   std::optional<AutopilotNotice> said_refusal_;

@@ -16,7 +16,6 @@
 namespace skein::hindsight {
 namespace {
 
-using planning::CoupledPlan;
 using planning::CoupledProblem;
 using planning::CoupledVehicle;
 using planning::Criterion;
