@@ -52,10 +52,9 @@ std::string svg_of(const TourProblem& problem, const Tour& tour) {
     const Pose2& to = tour.visits[(i + 1) % tour.visits.size()].at;
     const Path way =
         planning::shortest_dubins(tour.visits[i].at, to, problem.turn_radius_m).to_path();
-    const double length_m = way.length_m();
-    for (double at = 0.0; at < length_m; at += kStepOfRadius * problem.turn_radius_m) {
-      line.push_back(way.pose_at(at).position());
-    }
+    const double step_m = kStepOfRadius * problem.turn_radius_m;
+    const auto steps = static_cast<int>(std::ceil(way.length_m() / step_m));
+    for (int k = 0; k < steps; ++k) line.push_back(way.pose_at(k * step_m).position());
     line.push_back(way.end().position());
   }
   Vec2 low = line.front();

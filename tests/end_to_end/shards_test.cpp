@@ -103,9 +103,9 @@ class Shards : public testing::Test {
 
     fly_and_kill(command, "2/3", path("shard-2"));
     for (const std::string number : {"1", "3"}) {
-      ASSERT_EQ(run(words + " --shard " + number + "/3 --out " + path("shard-" + number)),
-                "exit status 0")
-          << err();
+      std::string order = words;
+      order.append(" --shard ").append(number).append("/3 --out ").append(path("shard-" + number));
+      ASSERT_EQ(run(order), "exit status 0") << err();
     }
     const std::string merge = std::string{kProgram} + " merge " + path("shard-1") + " " +
                               path("shard-2") + " " + path("shard-3") + " --out " + path("whole");

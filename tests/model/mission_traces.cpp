@@ -31,6 +31,7 @@ using mission::EventKind;
 
 constexpr std::size_t kTasks = 7;  ///< of a site, as the model packs their owners
 constexpr int kHeard = 20;         ///< more than the kind of what is said
+// Numbers that the model counts with: NOLINTBEGIN(readability-identifier-naming)
 enum Kind : int {
   kAnnouncement = 1,
   kBid,
@@ -54,6 +55,7 @@ enum Kind : int {
   kTaskUnknown,
   kLate,  ///< at its gate
 };
+// NOLINTEND(readability-identifier-naming)
 constexpr int kGround = 15;
 
 struct Row {
@@ -93,7 +95,8 @@ class SiteTrace {
   [[nodiscard]] int tasks(const std::vector<TaskId>& some) const {
     int set = 0;
     for (const TaskId& one : some) {
-      if (task(one) >= 0) set |= 1 << task(one);
+      const int index = task(one);
+      if (index >= 0) set |= 1 << index;
     }
     return set;
   }
@@ -434,7 +437,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "%s\n", scenario.error().message.c_str());
     return 2;
   }
-  for (long seed = std::atol(argv[3]); seed <= std::atol(argv[4]); ++seed) {
+  for (long seed = std::strtol(argv[3], nullptr, 10); seed <= std::strtol(argv[4], nullptr, 10);
+       ++seed) {
     const auto mission =
         skein::hil::seeded_mission(*scenario, static_cast<std::uint64_t>(seed), argv[2]);
     if (!mission) {
