@@ -272,6 +272,18 @@ std::map<TaskId, TaskFlown> tasks_flown(const RunRecord& record, const Limits& l
   return flown;
 }
 
+Reward reward_flown(const std::vector<Site>& sites, const std::map<TaskId, TaskFlown>& flown) {
+  Reward reward;
+  for (const Site& site : sites) {
+    reward.all += site.reward * static_cast<double>(1 + tasks_after_survey(site).size());
+    for (const auto& [task, run] : flown) {
+      if (task.site != site.id) continue;
+      reward.flown += site.reward * std::exp(-site.reward_decay_per_s * to_seconds(run.time));
+    }
+  }
+  return reward;
+}
+
 /// The recording ended with the mission, before the approach that had begun could.
 bool outlasts_recording(const RunRecord& record, const TaskRun& run) {
   const auto* recorded = recording_of(record, run.vehicle);

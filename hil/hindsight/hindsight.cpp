@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -82,20 +81,6 @@ std::optional<double> flown_end_s(const std::map<TaskId, checks::TaskFlown>& don
   return end_s;
 }
 
-double flown_reward(const std::map<TaskId, checks::TaskFlown>& done,
-                    const std::vector<Site>& sites) {
-  double earned = 0.0;
-  double all = 0.0;
-  for (const Site& site : sites) {
-    all += site.reward * static_cast<double>(1 + tasks_after_survey(site).size());
-    for (const auto& [task, flown] : done) {
-      if (task.site != site.id) continue;
-      earned += site.reward * std::exp(-site.reward_decay_per_s * to_seconds(flown.time));
-    }
-  }
-  return all > 0.0 ? earned / all : 0.0;
-}
-
 Row row_of(std::string what, const Figure& f, const char* unit, int digits) {
   const auto number = [digits, unit](double value) {
     return fmt::format("{:.{}f}{}", value, digits, unit);
@@ -124,7 +109,8 @@ Result<Hindsight> look_back(const checks::RunRecord& record, const checks::Limit
   all.end_s = *end;
   all.end_s.flown = flown_end_s(done, record.sites);
   all.reward = *reward;
-  all.reward.flown = flown_reward(done, record.sites);
+  const checks::Reward earned = checks::reward_flown(record.sites, done);
+  all.reward.flown = earned.all > 0.0 ? earned.flown / earned.all : 0.0;
   for (const Site& site : record.sites) {
     auto alone = best_of(problem_of(record, {site}), Criterion::makespan, steps);
     if (!alone) return alone.error();
@@ -151,6 +137,10 @@ std::string text_of(const Hindsight& hindsight) {
   std::string text = line({"knowing all from the start", "flown", "best found", "bound", "ratio"});
   for (const Row& row : table_of(hindsight)) text += line(row);
   return text;
+}
+
+std::string comparison_text(const Result<Hindsight>& looked) {
+  return looked ? text_of(*looked) : "not compared with the best: " + looked.error().message + "\n";
 }
 
 }  // namespace skein::hindsight

@@ -41,6 +41,16 @@ Result<void> RowFile::header(const std::filesystem::path& file, const std::strin
       fmt::format("{}:1: has other columns than this program writes; {}", file.string(), advice)};
 }
 
+Result<RowKey> RowFile::key_of(const std::filesystem::path& file, const std::string& line,
+                               std::size_t number, const Reader& reader) const {
+  const auto fields = csv_fields(line);
+  if (fields.size() != columns_)
+    return bad_line(file.string(), number, "has not one field a column");
+  const auto key = reader(fields);
+  if (!key) return bad_line(file.string(), number, key.error().message);
+  return key;
+}
+
 Error RowFile::differs(const RowKey& key, const std::string& other, std::size_t number) const {
   const std::uint64_t offset = at_.at(key);
   const auto later =
@@ -60,15 +70,13 @@ Result<RowFile> RowFile::open(const std::filesystem::path& file,
   RowFile table;
   table.file_ = file;
   table.header_ = csv_line(columns);
+  table.columns_ = columns.size();
   if (std::filesystem::exists(file)) {
     const auto row = [&](const std::string& line, std::uint64_t offset,
                          std::size_t number) -> Result<void> {
       if (number == 1) return table.header(file, line, "name another folder with --out");
-      const auto fields = csv_fields(line);
-      if (fields.size() != columns.size())
-        return bad_line(file.string(), number, "has not one field a column");
-      const auto key = reader(fields);
-      if (!key) return bad_line(file.string(), number, key.error().message);
+      const auto key = table.key_of(file, line, number, reader);
+      if (!key) return key.error();
       const bool added = table.at_.emplace(*key, offset).second;
       if (!added && table.line_at(table.at_.at(*key)) != line)
         return table.differs(*key, file.string(), number);
@@ -109,14 +117,10 @@ Result<void> RowFile::append(const RowKey& key, const std::vector<std::string>& 
 
 Result<void> RowFile::take_over(const std::filesystem::path& file, const Reader& reader) {
   sources_.emplace_back(end_, file.string());
-  const std::size_t columns = csv_fields(header_.substr(0, header_.size() - 1)).size();
   const auto row = [&](const std::string& line, std::uint64_t, std::size_t number) -> Result<void> {
     if (number == 1) return header(file, line, "fly its shard again in another folder");
-    const auto fields = csv_fields(line);
-    if (fields.size() != columns)
-      return bad_line(file.string(), number, "has not one field a column");
-    const auto key = reader(fields);
-    if (!key) return bad_line(file.string(), number, key.error().message);
+    const auto key = key_of(file, line, number, reader);
+    if (!key) return key.error();
     if (!has(*key)) {
       add(*key, line + "\n");
       return {};

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -19,6 +20,13 @@ namespace skein::hil {
 inline constexpr int kExitHeld = 0;      ///< every check held
 inline constexpr int kExitViolated = 1;  ///< one did not
 inline constexpr int kExitBadInput = 2;  ///< nothing was flown
+
+/// What a command ends with that cannot go on.
+inline int complain(const std::string& sentence) {
+  std::fputs((sentence + "\n").c_str(), stderr);
+  return kExitBadInput;
+}
+inline int complain(const Error& error) { return complain(error.message); }
 
 struct RunArguments {
   std::filesystem::path scenario;

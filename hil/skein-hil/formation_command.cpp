@@ -11,6 +11,8 @@
 #include "skein/hil/formation_runs.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/run_parallel.hpp"
+#include "skein/series/run_row.hpp"
+#include "skein/series/summary.hpp"
 #include "skein/wording/wording.hpp"
 
 namespace skein::hil {
@@ -23,22 +25,12 @@ std::string who(VehicleId vehicle) {
   return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
 }
 
-void print_violations(const FormationRun& run) {
-  for (const FormationViolation& violation : run.violations) {
-    fmt::print("  {}: {:.2f} s, {}\n", violation.check, to_seconds(violation.time),
-               violation.sentence);
-  }
-}
-
 }  // namespace
 
 int simulate_formation(const configuration::Scenario& scenario,
                        const SimulateArguments& arguments) {
   const auto mission = seeded_mission(scenario, scenario.seed, arguments.faults);
-  if (!mission) {
-    fmt::print(stderr, "{}\n", mission.error().message);
-    return kExitBadInput;
-  }
+  if (!mission) return complain(mission.error());
   if (arguments.trace) {
     for (const auto& line : mission->formation->script) fmt::print("script: {}\n", line);
     fmt::print("{}", describe(*mission));
@@ -55,10 +47,7 @@ int simulate_formation(const configuration::Scenario& scenario,
                text_of(event));
   };
   const auto run = fly_formation(*mission, watcher);
-  if (!run) {
-    fmt::print(stderr, "{}\n", run.error().message);
-    return kExitBadInput;
-  }
+  if (!run) return complain(run.error());
   fmt::print(
       "{} after {:.1f} s of mission time: {} changes, {:.2f} m between two vehicles at least, "
       "{} messages\n",
@@ -66,7 +55,7 @@ int simulate_formation(const configuration::Scenario& scenario,
       run->messages);
   if (!run->script_done) fmt::print("why: {}\n", run->reason);
   if (!run->held()) fmt::print("VIOLATED:\n");
-  print_violations(*run);
+  fmt::print("{}", series::broken_lines(series::row_of(*run), true));
   return run->held() ? kExitHeld : kExitViolated;
 }
 

@@ -25,17 +25,12 @@ namespace {
 
 constexpr std::size_t kShown = 20;  ///< missing runs, and commands, that are named
 
-int complain(const Error& error) {
-  fmt::print(stderr, "{}\n", error.message);
-  return kExitBadInput;
-}
-
 struct Part {
   std::filesystem::path folder;
   shards::Series series;
 };
 
-bool is_sweep(const shards::Series& series) { return series.kind == "sweep"; }
+bool is_sweep(const shards::Series& series) { return series.kind == experiments::kSweep; }
 
 /// The folders with what they are of, if they are all of one experiment and none of them is `out`.
 Result<std::vector<Part>> parts_of(const MergeArguments& arguments) {

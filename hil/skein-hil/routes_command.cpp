@@ -14,11 +14,6 @@
 namespace skein::hil {
 namespace {
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 bool write(const std::filesystem::path& file, const std::string& text) {
   return (std::ofstream{file, std::ios::binary} << text).flush().good();
 }

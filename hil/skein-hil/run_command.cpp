@@ -27,11 +27,6 @@ namespace {
 
 constexpr std::uint8_t kRelayHops = 16;
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 /// One line that is written over, and news above it.
 class ProgressLine {
  public:
@@ -145,9 +140,7 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
   if (!record.sites.empty()) {
     const auto hindsight = hindsight::look_back(record, contents.limits);
     if (hindsight) contents.hindsight = hindsight::table_of(*hindsight);
-    compared = hindsight ? hindsight::text_of(*hindsight)
-                         : "not compared with the best: " + hindsight.error().message + "\n";
-    compared += "\n";
+    compared = hindsight::comparison_text(hindsight) + "\n";
   }
   const auto page = folder / "report.html";
   std::ofstream{page} << report::html(contents);

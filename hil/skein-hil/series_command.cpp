@@ -24,11 +24,6 @@ namespace {
 
 using series::RunRow;
 
-int complain(const Error& error) {
-  fmt::print(stderr, "{}\n", error.message);
-  return kExitBadInput;
-}
-
 shards::Series series_of(const configuration::Scenario& scenario,
                          const SimulateArguments& arguments) {
   shards::Series series;

@@ -20,11 +20,6 @@ namespace {
 constexpr std::size_t kColumns = 4;
 constexpr std::size_t kNamed = 5;  ///< vehicles that are drawn full
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 /// A shape by its name, or of a file.
 Result<formation::ShapeSpec> shape_of(const std::string& name) {
   formation::ShapeSpec shape;

@@ -12,6 +12,8 @@
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hindsight/hindsight.hpp"
+#include "skein/series/run_row.hpp"
+#include "skein/series/summary.hpp"
 
 namespace skein::hil {
 namespace {
@@ -33,21 +35,6 @@ bool of_interest(mission::EventKind kind) {
   return mission::is_warning(kind) || std::find(kKinds.begin(), kKinds.end(), kind) != kKinds.end();
 }
 
-std::string who(VehicleId vehicle) {
-  return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
-}
-
-/// What was broken: the first violation of each check.
-void print_broken(const JudgedRun& run) {
-  for (const auto& check : run.broken) {
-    const auto& first = check.violations.front();
-    fmt::print("  {}: {:.2f} s, {}: {}", check.name, to_seconds(first.time), who(first.vehicle),
-               first.sentence);
-    if (check.violations.size() > 1) fmt::print(" (and {} more)", check.violations.size() - 1);
-    fmt::print("\n");
-  }
-}
-
 int fly_one(const configuration::Scenario& scenario, const SimulateArguments& arguments) {
   const auto mission = seeded_mission(scenario, scenario.seed, arguments.faults);
   if (arguments.trace) fmt::print("{}", describe(*mission));
@@ -63,14 +50,12 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
       "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
       run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
       to_seconds(run.result.ended_at), run.result.messages, run.result.protocol_errors);
-  if (const auto hindsight = hindsight::look_back(record, limits, hindsight::kFewSteps)) {
-    fmt::print("\n{}\n", hindsight::text_of(*hindsight));
-  } else {
-    fmt::print("not compared with the best: {}\n", hindsight.error().message);
-  }
+  const auto hindsight = hindsight::look_back(record, limits, hindsight::kFewSteps);
+  const std::string compared = hindsight::comparison_text(hindsight);
+  fmt::print("{}", hindsight ? "\n" + compared + "\n" : compared);
   for (const auto& excused : run.excused) fmt::print("EXCUSED: {}\n", excused.sentence);
   if (!run.held()) fmt::print("VIOLATED:\n");
-  print_broken(run);
+  fmt::print("{}", series::broken_lines(series::row_of(run), false));
   return run.held() ? kExitHeld : kExitViolated;
 }
 

@@ -14,11 +14,6 @@
 namespace skein::hil {
 namespace {
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 std::string ratio_text(const std::optional<double>& value) {
   return value ? fmt::format("{:.3f}", *value) : "-";
 }

@@ -19,11 +19,6 @@
 namespace skein::hil {
 namespace {
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 /// How far, and how long still: a line that is written over, or one now and then in a log.
 class Progress {
  public:

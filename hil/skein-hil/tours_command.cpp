@@ -94,11 +94,6 @@ std::string order_text(const Tour& tour) {
   return text;
 }
 
-int complain(const std::string& sentence) {
-  fmt::print(stderr, "{}\n", sentence);
-  return kExitBadInput;
-}
-
 }  // namespace
 
 int tours(const ToursArguments& arguments) {

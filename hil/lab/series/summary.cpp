@@ -17,19 +17,6 @@ std::string who(VehicleId vehicle) {
   return vehicle == kGroundStation ? "-" : fmt::format("U{}", vehicle.value);
 }
 
-/// What was broken: the first violation of each check; of a formation every pair's.
-std::string broken_lines(const RunRow& row, bool formation) {
-  std::string text;
-  for (const Broken& check : row.broken) {
-    text += fmt::format("  {}: {:.2f} s, ", check.check, check.first_s);
-    if (!formation) text += who(check.vehicle) + ": ";
-    text += check.sentence;
-    if (check.violations > 1) text += fmt::format(" (and {} more)", check.violations - 1);
-    text += '\n';
-  }
-  return text;
-}
-
 /// Numbers taken out: what differs only in them is one reason.
 std::string kind_of(const std::string& reason) {
   std::string text;
@@ -42,6 +29,18 @@ std::string kind_of(const std::string& reason) {
 }
 
 }  // namespace
+
+std::string broken_lines(const RunRow& row, bool formation) {
+  std::string text;
+  for (const Broken& check : row.broken) {
+    text += fmt::format("  {}: {:.2f} s, ", check.check, check.first_s);
+    if (!formation) text += who(check.vehicle) + ": ";
+    text += check.sentence;
+    if (check.violations > 1) text += fmt::format(" (and {} more)", check.violations - 1);
+    text += '\n';
+  }
+  return text;
+}
 
 Summary::Summary(shards::Series series, std::string program)
     : series_{std::move(series)},

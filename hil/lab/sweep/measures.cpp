@@ -45,16 +45,11 @@ double share(double part, double whole) { return whole > 0.0 ? part / whole : 0.
 planning::PlanValue value_of(const hil::TeamMission& mission, const hil::TeamResult& result,
                              const DoneTasks& done) {
   planning::PlanValue value;
-  double reward = 0.0;
+  const checks::Reward reward = checks::reward_flown(mission.sites, done);
+  value.reward = reward.flown;
   double tasks = 0.0;
   for (const Site& site : mission.sites) {
-    const auto count = static_cast<double>(1 + tasks_after_survey(site).size());
-    tasks += count;
-    reward += site.reward * count;
-    for (const auto& [task, run] : done) {
-      if (task.site != site.id) continue;
-      value.reward += site.reward * std::exp(-site.reward_decay_per_s * to_seconds(run.time));
-    }
+    tasks += static_cast<double>(1 + tasks_after_survey(site).size());
     value.timing_error_s += timing_error_s(site, done);
   }
   double range_m = 0.0;
@@ -62,7 +57,7 @@ planning::PlanValue value_of(const hil::TeamMission& mission, const hil::TeamRes
   for (const auto& end : result.vehicles) value.range_left_m += std::max(0.0, end.range_left_m);
 
   const planning::ValueWeights& weights = mission.planning.weights;
-  value.reward_share = share(value.reward, reward);
+  value.reward_share = share(value.reward, reward.all);
   value.range_share = share(value.range_left_m, range_m);
   value.timing_share = share(value.timing_error_s, to_seconds(weights.timing_reference) * tasks);
   value.total = weights.reward * value.reward_share + weights.range * value.range_share -

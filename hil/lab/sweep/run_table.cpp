@@ -60,7 +60,7 @@ Result<RunTable> RunTable::open(const std::filesystem::path& folder, const Exper
                                 const Scenario& base, const shards::Shard& shard,
                                 const std::filesystem::path& file) {
   shards::Series series;
-  series.kind = "sweep";
+  series.kind = kSweep;
   series.program = version();
   series.file = file.string();
   series.first_seed = experiment.first_seed;

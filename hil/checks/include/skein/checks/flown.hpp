@@ -54,4 +54,12 @@ struct TaskFlown {
 [[nodiscard]] std::map<TaskId, TaskFlown> tasks_flown(const RunRecord& record,
                                                       const Limits& limits);
 
+/// J1 of Wang 2022, eq. (9): of each task of the sites F exp(-beta t), t when it was done.
+struct Reward {
+  double flown = 0.0;
+  double all = 0.0;  ///< the sum of F
+};
+[[nodiscard]] Reward reward_flown(const std::vector<Site>& sites,
+                                  const std::map<TaskId, TaskFlown>& flown);
+
 }  // namespace skein::checks

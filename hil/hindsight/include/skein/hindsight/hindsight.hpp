@@ -59,5 +59,7 @@ struct Row {
 [[nodiscard]] std::vector<Row> table_of(const Hindsight& hindsight);
 /// The same as text, with a head.
 [[nodiscard]] std::string text_of(const Hindsight& hindsight);
+/// The same of what look_back() gave, or why nothing is compared.
+[[nodiscard]] std::string comparison_text(const Result<Hindsight>& looked);
 
 }  // namespace skein::hindsight

@@ -65,6 +65,9 @@ class RowFile {
                                        std::size_t number)>& line);
   [[nodiscard]] Result<void> header(const std::filesystem::path& file, const std::string& line,
                                     std::string_view advice) const;
+  /// Which run a line after the first is of.
+  [[nodiscard]] Result<RowKey> key_of(const std::filesystem::path& file, const std::string& line,
+                                      std::size_t number, const Reader& reader) const;
   [[nodiscard]] Error differs(const RowKey& key, const std::string& other,
                               std::size_t number) const;
   [[nodiscard]] std::string line_at(std::uint64_t offset) const;
@@ -77,6 +80,7 @@ class RowFile {
 
   std::filesystem::path file_;
   std::string header_;
+  std::size_t columns_ = 0;
   std::map<RowKey, std::uint64_t> at_;
   std::uint64_t end_ = 0;
   /// From which offset on the rows are those of another file.

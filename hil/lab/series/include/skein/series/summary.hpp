@@ -15,6 +15,9 @@ namespace skein::series {
 inline constexpr const char* kSites = "sites";
 inline constexpr const char* kFormation = "formation";
 
+/// What was broken, a line each: the first violation of each check; of a formation every pair's.
+[[nodiscard]] std::string broken_lines(const RunRow& row, bool formation);
+
 /// What a series of runs came to, for people: failures first, each with the command that flies it
 /// again. It grows with the failures that it shows, not with the runs.
 class Summary {

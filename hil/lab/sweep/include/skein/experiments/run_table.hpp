@@ -19,6 +19,9 @@
 
 namespace skein::experiments {
 
+/// Kind of shards::Series.
+inline constexpr const char* kSweep = "sweep";
+
 /// Runs that were flown, on disk as they come: FOLDER/runs.csv, a row a run, axes' labels first.
 /// Beside it lie experiment.yaml, scenario.yaml and series.txt: what was flown.
 class RunTable {
