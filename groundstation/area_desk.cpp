@@ -9,6 +9,7 @@
 
 #include "search_words.hpp"
 #include "skein/codec/json_text.hpp"
+#include "skein/groundstation/views.hpp"
 #include "skein/planning/circle_cover.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -219,8 +220,7 @@ std::string AreaDesk::hazards_text() const {
                      wording::place_text(group->second.shape.corners.front()));
       fmt::format_to(std::back_inserter(text), "; {}\n", shape_text(group->second));
     } else {
-      fmt::format_to(std::back_inserter(text), "radius {:.0f} m around {} of the origin\n",
-                     hazard.radius_m, wording::place_text(hazard.centre));
+      text += circle_text(hazard) + "\n";
     }
   }
   return text.empty() ? "no hazard is known\n" : text;

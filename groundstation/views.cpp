@@ -263,11 +263,15 @@ std::string coalitions_text(const console::Picture& picture) {
   return text.empty() ? "no coalition is known yet\n" : text;
 }
 
+std::string circle_text(const Hazard& hazard) {
+  return fmt::format("radius {:.0f} m around {} of the origin", hazard.radius_m,
+                     wording::place_text(hazard.centre));
+}
+
 std::string hazards_text(const console::Picture& picture) {
   std::string text;
   for (const auto& [id, hazard] : picture.hazards()) {
-    fmt::format_to(std::back_inserter(text), "hazard {}: radius {:.0f} m around {} of the origin\n",
-                   id.value, hazard.radius_m, wording::place_text(hazard.centre));
+    fmt::format_to(std::back_inserter(text), "hazard {}: {}\n", id.value, circle_text(hazard));
   }
   return text.empty() ? "no hazard is known\n" : text;
 }

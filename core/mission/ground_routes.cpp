@@ -243,16 +243,21 @@ void GroundRoutes::decide_offer(Instant now) {
   GivenRoutes& plan = *given_;
   const bool alone = plan.bond == RouteBond::each_alone;
   const VehicleId* silent = nullptr;
+  const VehicleId* refused = nullptr;
   std::size_t taken = 0;
   for (const auto& [id, route] : plan.routes) {
-    const bool ended = has_ended(route);
-    const bool last = ended && alone && taken == 0 && &id == &plan.routes.rbegin()->first;
-    if (ended && (!alone || (last && silent == nullptr))) {
-      return call_off({plan.plan, RoutesEnd::route_refused, id, route.why}, now);
+    if (has_ended(route)) {
+      if (alone || refused == nullptr) refused = &id;
+    } else if (route.answer) {
+      ++taken;
+    } else if (silent == nullptr) {
+      silent = &id;
     }
-    if (ended) continue;
-    taken += route.answer ? 1 : 0;
-    if (!route.answer && silent == nullptr) silent = &id;
+  }
+  const bool none_left = taken == 0 && silent == nullptr;
+  if (refused != nullptr && (!alone || none_left)) {
+    const RouteObstacle why = plan.routes.at(*refused).why;
+    return call_off({plan.plan, RoutesEnd::route_refused, *refused, why}, now);
   }
   if (silent != nullptr) {
     if (now < plan.begins - kAllTakenBefore - telling_takes(plan.routes.size())) return;

@@ -565,11 +565,14 @@ std::string timeline_text(const Picture& picture, const mission::Fleet& fleet) {
   };
   const char* between = "";
   for (const auto& [id, vehicle] : picture.vehicles()) {
-    Spans spans = vehicle.spans;
+    Spans with_silence;
     const auto entry = fleet.vehicles().find(id);
-    if (entry != fleet.vehicles().end() && entry->second.silent) {
-      spans.push_back({mission::ShownState::silent, entry->second.heard_at, std::nullopt});
+    const bool silent = entry != fleet.vehicles().end() && entry->second.silent;
+    if (silent) {
+      with_silence = vehicle.spans;
+      with_silence.push_back({mission::ShownState::silent, entry->second.heard_at, std::nullopt});
     }
+    const Spans& spans = silent ? with_silence : vehicle.spans;
     fmt::format_to(to, R"({}{{"id":{})", between, id.value);
     between = ",";
     column("states", spans, [&](const Span& s) { fmt::format_to(to, "{}", place_of(s.state)); });

@@ -283,7 +283,6 @@ constexpr std::array kAutopilotNews{
 };
 static_assert(kAutopilotNews.size() == static_cast<std::size_t>(AutopilotNews::count));
 
-/// One for each alternative of EventBody: one that is missing does not compile.
 /// What stays so of who comes too near to whom.
 std::string how_near(const event::SeparationWarning& e) {
   const std::string who = e.gives_way == VehicleId{}
@@ -299,6 +298,7 @@ std::string how_near(const event::TrafficWarning& e) {
                                  : "it does not give way (no room, no time, or it may not)");
 }
 
+/// One for each alternative of EventBody: one that is missing does not compile.
 struct News {
   std::string operator()(const event::SiteDetected& e) const {
     return fmt::format("{:.0f} m away", e.range_m);

@@ -23,7 +23,7 @@
 
 namespace skein::groundstation {
 
-/// For people, of the views `links` and `wind`; empty of others.
+/// For people, of the views `links`, `wind` and `traffic`; empty of others.
 [[nodiscard]] std::string picture_text(View view, const console::Picture& picture,
                                        const mission::Fleet& fleet, Instant now);
 
@@ -86,7 +86,7 @@ class ConsoleDesk {
                                     Instant now) const;
   /// All of one vehicle.
   [[nodiscard]] Answer status_of(VehicleId vehicle, const mission::Fleet& fleet, Instant now) const;
-  /// Of the views `links` and `wind`.
+  /// As picture_text().
   [[nodiscard]] std::string text(View view, const mission::Fleet& fleet, Instant now) const {
     return picture_text(view, picture_, fleet, now);
   }

@@ -39,6 +39,8 @@ namespace skein::groundstation {
 
 /// What was announced, bid and awarded, and what came of it; newest last.
 [[nodiscard]] std::string coalitions_text(const console::Picture& picture);
+/// "radius 50 m around 600 m east, 0 m north of the origin"
+[[nodiscard]] std::string circle_text(const Hazard& hazard);
 [[nodiscard]] std::string hazards_text(const console::Picture& picture);
 
 /// What the mission has come to, where the ground station ends: sites, tasks, and where vehicles

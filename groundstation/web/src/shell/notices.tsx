@@ -6,8 +6,7 @@ import { dismiss, notices } from "./give";
 
 const marks = { sent: "…", done: "✓", refused: "✕", note: "i" } as const;
 
-/** What was done is told shortly; what was not, in full. */
-/** What else comes of it is in the lines after the first. */
+/** What was done is told shortly, with what else comes of it in the lines after the first; what was not, in full. */
 const lines_shown = 3;
 const first_lines = (text: string) => text.split("\n", lines_shown).join("\n").replace(/[:,]$/, "");
 
