@@ -30,6 +30,12 @@ std::string text_of(const mission::FormationPreview& preview) {
     text += fmt::format("  vehicle {:<3} ({:7.1f} {:7.1f} {:6.1f}) to ({:7.1f} {:7.1f} {:6.1f})\n",
                         mover.vehicle.value, from.x(), from.y(), from.z(), to.x(), to.y(), to.z());
   }
+  if (preview.makes_room) {
+    text += fmt::format(
+        "  some rest too near to each other: first only vehicle {} makes room, then the order is "
+        "given\n",
+        preview.makes_room->value);
+  }
   for (const VehicleId vehicle : preview.lost) {
     text += fmt::format("  vehicle {} is silent; its way is kept clear\n", vehicle.value);
   }
@@ -45,6 +51,7 @@ std::string data_of(const mission::FormationPreview& preview, bool only_preview)
     for (const Vec3& p : mover.points) points.push_back({p.x(), p.y(), p.z()});
     data["movers"].push_back({{"id", mover.vehicle.value}, {"points", std::move(points)}});
   }
+  if (preview.makes_room) data["makes_room"] = preview.makes_room->value;
   return codec::json_text(data);
 }
 

@@ -134,7 +134,8 @@ bool must_outlast(const mission::Message& message) {
          std::holds_alternative<mission::SiteReport>(message) ||
          std::holds_alternative<mission::HazardReport>(message) ||
          std::holds_alternative<mission::FenceOrder>(message) ||
-         std::holds_alternative<mission::Route>(message);
+         std::holds_alternative<mission::Route>(message) ||
+         std::holds_alternative<formation::Change>(message);
 }
 
 /// The answer for programs: one JSON object.

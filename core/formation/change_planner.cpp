@@ -24,6 +24,11 @@ constexpr double kRounding_m = 1e-3;
 /// With less reserve than the way of so long at full speed they would wait for each other for ever:
 /// more than the error of clocks and a slot.
 constexpr double kCreep_s = 0.1;
+/// Ways out for who makes room: up, and so many to the side, in such parts of what is to be between
+/// two.
+constexpr int kRoomDirections = 16;
+constexpr int kRoomSteps = 4;
+constexpr int kRoomStepsMax = 5 * kRoomSteps;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -77,8 +82,15 @@ class Planner {
         height_factor_{height_factor(request.separation)} {}
 
   Result<PlannedChange> plan();
+  [[nodiscard]] std::optional<PlannedChange> make_room(
+      const std::function<bool(const Transfer&)>& allowed) const;
 
  private:
+  [[nodiscard]] double at_start_m(std::size_t a, std::size_t b) const {
+    return stretched(request_.transfers[a].from - request_.transfers[b].from).norm();
+  }
+  [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
+  [[nodiscard]] bool leads_clear(const Transfer& way, std::size_t vehicle) const;
   [[nodiscard]] Change straight() const;
   [[nodiscard]] Change layers(const std::vector<int>& layer) const;
   [[nodiscard]] std::optional<PlannedChange> around(const Nearness& straight) const;
@@ -87,10 +99,14 @@ class Planner {
   [[nodiscard]] Nearness nearness(const Change& change, bool complete) const;
   [[nodiscard]] double keep_out_distance(const ChangeMotion& motion, std::size_t mover,
                                          const KeepOut& keep_out, double enough_m) const;
-  /// Of two vehicles that start so far apart.
-  [[nodiscard]] double wanted_m(double at_start_m) const {
+  /// Two vehicles that start nearer than that cannot be led by one plan.
+  [[nodiscard]] double least_at_start_m() const {
     const double least = request_.separation.horizontal_m + kCreep_s * request_.limits.speed_mps;
-    return std::clamp(at_start_m - kRounding_m, std::min(least, apart_m_), apart_m_);
+    return std::min(least, apart_m_);
+  }
+  /// Of two vehicles that start so far apart.
+  [[nodiscard]] double wanted_m(double start_m) const {
+    return std::clamp(start_m - kRounding_m, least_at_start_m(), apart_m_);
   }
   [[nodiscard]] PlannedChange planned(Change change, Way way, double least_m) const;
   [[nodiscard]] Error too_near(const Nearness& nearness) const;
@@ -141,7 +157,7 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
   for (std::size_t a = 0; a < count_; ++a) {
     const Vec3& from = request_.transfers[a].from;
     for (std::size_t b = a + 1; b < count_; ++b) {
-      const double wanted = wanted_m(stretched(from - request_.transfers[b].from).norm());
+      const double wanted = wanted_m(at_start_m(a, b));
       see(motion.least_distance_m(a, b, height_factor_, complete ? 0.0 : wanted), wanted, {a, b});
       if (!complete && !result.conflicts.empty()) return result;
     }
@@ -261,6 +277,64 @@ Error Planner::too_near(const Nearness& nearness) const {
                " are needed; choose a larger spacing or another place"};
 }
 
+bool Planner::rests_too_near(std::size_t vehicle) const {
+  for (std::size_t other = 0; other < count_; ++other) {
+    if (other != vehicle && at_start_m(vehicle, other) - kRounding_m < least_at_start_m())
+      return true;
+  }
+  return false;
+}
+
+/// Of who moves alone: never nearer to anybody than at its start, and at its end far enough from
+/// all.
+bool Planner::leads_clear(const Transfer& way, std::size_t vehicle) const {
+  const KeepOut flown{way.vehicle, way.from, way.to};
+  for (std::size_t other = 0; other < count_; ++other) {
+    if (other == vehicle) continue;
+    const Vec3& there = request_.transfers[other].from;
+    const double wanted = std::min(apart_m_, at_start_m(vehicle, other) - kRounding_m);
+    if (distance_m(there, flown, height_factor_) < wanted) return false;
+    if (stretched(way.to - there).norm() < apart_m_) return false;
+  }
+  return true;
+}
+
+std::optional<PlannedChange> Planner::make_room(
+    const std::function<bool(const Transfer&)>& allowed) const {
+  Change stays = straight();
+  for (Mover& mover : stays.movers) mover.points.back() = mover.points.front();
+  if (!valid(stays)) return std::nullopt;
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (rests_too_near(i)) near.push_back(i);
+  }
+  if (near.empty()) return std::nullopt;
+  const double step_m = apart_m_ / kRoomSteps;
+  for (int steps = 1; steps <= kRoomStepsMax; ++steps) {
+    for (const std::size_t vehicle : near) {
+      for (int direction = 0; direction <= kRoomDirections; ++direction) {
+        Transfer way = request_.transfers[vehicle];
+        way.to = way.from;
+        if (direction == 0) {
+          way.to.z() += steps * step_m / height_factor_;
+          if (way.to.z() > std::max(request_.ceiling_m, way.from.z())) continue;
+        } else {
+          way.to.head<2>() += steps * step_m * unit_vector(2.0 * kPi * direction / kRoomDirections);
+        }
+        if (!leads_clear(way, vehicle) || !allowed(way)) continue;
+        Change change = stays;
+        change.movers[vehicle].points.back() = way.to;
+        const Nearness found = nearness(change, true);
+        // Those that stay are as near as they are; who moves must not come near a keep-out.
+        const bool barred = std::ranges::any_of(
+            found.conflicts, [this](const Pair& pair) { return pair.second >= count_; });
+        if (!barred) return planned(std::move(change), Way::straight, found.least_m);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 Result<PlannedChange> Planner::plan() {
   if (count_ == 0) return Error{"there is no vehicle to move"};
   if (count_ > kMoversMax) {
@@ -329,5 +403,10 @@ double distance_m(const Vec3& position, const KeepOut& keep_out, double height_f
 }
 
 Result<PlannedChange> plan_change(const ChangeRequest& request) { return Planner{request}.plan(); }
+
+std::optional<PlannedChange> make_room(const ChangeRequest& request,
+                                       const std::function<bool(const Transfer&)>& allowed) {
+  return Planner{request}.make_room(allowed);
+}
 
 }  // namespace skein::formation

@@ -214,5 +214,83 @@ TEST(PlanChange, LetsGoWhoIsNearSomebodySilentAlready) {
   EXPECT_EQ(over->way, Way::layers);
 }
 
+// --- who rests too near to be led ---
+
+bool anywhere(const Transfer& /*way*/) { return true; }
+
+ChangeRequest request_of(const std::vector<Vec3>& places) {
+  ChangeRequest request;
+  request.limits = kLimits;
+  request.separation = {3.0, 3.0};
+  for (const Vec3& place : places) {
+    const VehicleId id{static_cast<std::uint16_t>(request.transfers.size() + 1)};
+    request.transfers.push_back({id, place, place + Vec3{30.0, 0.0, 0.0}});
+  }
+  return request;
+}
+
+TEST(MakeRoom, IsForThoseOnlyThatRestTooNear) {
+  EXPECT_FALSE(make_room(request_of({{0, 0, 20}, {4, 0, 20}}), anywhere));
+  const auto near = request_of({{0, 0, 20}, {3, 0, 20}});
+  EXPECT_FALSE(plan_change(near).ok());
+  EXPECT_TRUE(make_room(near, anywhere));
+}
+
+TEST(MakeRoom, LeadsOneOutAndNobodyNearer) {
+  Random random{7};
+  for (int round = 0; round < 200; ++round) {
+    // A crowd in which the last rests beside the first.
+    auto places = spread(6, 4.0, 16.0, random);
+    const Vec2 beside = random.uniform(2.2, 3.2) * unit_vector(random.uniform(-3.0, 3.0));
+    places.push_back(places.front() + Vec3{beside.x(), beside.y(), 0.0});
+    ChangeRequest request = request_of(places);
+    const auto near = [&] {
+      return (request.transfers.front().from - request.transfers.back().from).norm() < 3.3;
+    };
+    for (int made = 0; near(); ++made) {
+      ASSERT_LT(made, 2);
+      const auto room = make_room(request, anywhere);
+      ASSERT_TRUE(room) << "round " << round;
+      ASSERT_TRUE(valid(room->change));
+      int moved = 0;
+      const ChangeMotion motion{room->change};
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        const Mover& mover = room->change.movers[i];
+        moved += mover.points.front() == mover.points.back() ? 0 : 1;
+        for (std::size_t j = i + 1; j < places.size(); ++j) {
+          const double before = (request.transfers[i].from - request.transfers[j].from).norm();
+          EXPECT_GE(motion.least_distance_m(i, j, 1.0), std::min(4.0, before) - 6e-3);
+        }
+        request.transfers[i].from = mover.points.back();
+      }
+      EXPECT_EQ(moved, 1);
+    }
+  }
+}
+
+TEST(MakeRoom, TakesOnlyWaysThatAreAllowed) {
+  const auto near = request_of({{0, 0, 20}, {3, 0, 20}});
+  EXPECT_FALSE(make_room(near, [](const Transfer& /*way*/) { return false; }));
+  const auto room = make_room(
+      near, [](const Transfer& way) { return way.vehicle.value == 2 && way.to.y() < -1.0; });
+  ASSERT_TRUE(room);
+  EXPECT_LT(room->change.movers[1].points.back().y(), -1.0);
+}
+
+TEST(MakeRoom, KeepsOutOfWhereASilentOneMayBe) {
+  ChangeRequest near = request_of({{0, 0, 20}, {3, 0, 20}});
+  near.ceiling_m = 20.0;
+  near.keep_outs = {{{9}, {6.5, 0, 20}, {6.5, 0, 0}}, {{10}, {-3.5, 0, 20}, {-3.5, 0, 0}}};
+  const auto room = make_room(near, anywhere);
+  ASSERT_TRUE(room);
+  const ChangeMotion motion{room->change};
+  for (const KeepOut& keep_out : near.keep_outs) {
+    for (Duration t{}; t <= motion.duration(); t += std::chrono::milliseconds{20}) {
+      EXPECT_GE(distance_m(motion.position(0, t), keep_out, 1.0), 3.0);
+      EXPECT_GE(distance_m(motion.position(1, t), keep_out, 1.0), 3.0);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace skein::formation

@@ -60,7 +60,10 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
   for (std::size_t i = 0; i < others_.size(); ++i) {
     others_[i].slot = start_;
     others_[i].speed_mps = stretch * motion_.speed_max_mps(i);
-    if (i != self_) others_[i].least_m = motion_.least_distance_m(self_, i, height_factor_);
+    if (i == self_) continue;
+    others_[i].least_m = motion_.least_distance_m(self_, i, height_factor_);
+    const double at_start_m = (place(self_, 0) - place(i, 0)).norm();
+    others_[i].apart_m = std::min(separation_m_, at_start_m - 2.0 * kExact_m);
   }
   look_at_[self_] = std::numeric_limits<std::int32_t>::max();
   block_look_at_.assign((look_at_.size() + kBlock - 1) / kBlock, 0);
@@ -134,7 +137,7 @@ bool Passage::keeps_clear(Clearance what, std::size_t mover, Grains own_from, Gr
 
 bool Passage::clear_of(std::size_t mover, const Future& future) const {
   const Other& other = others_[mover];
-  const double apart_m = separation_m_ + other.off_m + off_m_;
+  const double apart_m = other.apart_m + other.off_m + off_m_;
   const auto own = [&](std::int64_t slots) { return std::min(end_, future.at(slots)); };
   const std::int64_t own_stop = future.stops_after();
   const std::int64_t its_stop = other.slot + other.rate - slot_;

@@ -99,9 +99,13 @@ Result<std::vector<Transfer>> FormationGround::transfers(const FormationOrder& o
   if (auto done = assign(order.shape, 0, wanted); !done) return done.error();
   if (auto done = assign(config_.rally, wanted, transfers.size() - wanted); !done)
     return done.error();
-  if (auto low_enough = within_heights(transfers); !low_enough) return low_enough.error();
-  if (auto high_enough = above_ground(transfers); !high_enough) return high_enough.error();
+  if (auto may_be = may_be_flown(transfers); !may_be) return may_be.error();
   return transfers;
+}
+
+Result<void> FormationGround::may_be_flown(const std::vector<Transfer>& transfers) const {
+  if (auto low_enough = within_heights(transfers); !low_enough) return low_enough;
+  return above_ground(transfers);
 }
 
 Result<std::vector<Vec3>> FormationGround::free_places(const formation::ShapeSpec& shape,
@@ -203,9 +207,20 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   }
   request.keep_outs = keep_outs();
   auto planned = formation::plan_change(request);
-  if (!planned) return planned.error();
-  if (auto inside = within_fence(planned->change); !inside) return inside.error();
-  return FormationPreview{order, std::move(*planned), std::move(lost)};
+  if (planned) {
+    if (auto inside = within_fence(planned->change); !inside) return inside.error();
+    return FormationPreview{order, std::move(*planned), std::move(lost), std::nullopt};
+  }
+  std::optional<VehicleId> who;
+  auto room = formation::make_room(request, [&](const Transfer& way) {
+    who = way.vehicle;
+    // Those that stand on the ground are put further apart.
+    if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
+    const Change alone{.movers = {{way.vehicle, {way.from, way.to}, false}}};
+    return may_be_flown({way}).ok() && within_fence(alone).ok();
+  });
+  if (!room) return planned.error();
+  return FormationPreview{order, std::move(*room), std::move(lost), who};
 }
 
 /// References are so much further apart as both vehicles may be beside them.
@@ -272,7 +287,7 @@ std::string FormationGround::unknown() const {
     }
     const std::uint32_t number = found->second.status.progress.change;
     const bool ours = number == 0 || std::any_of(sent_.begin(), sent_.end(), [&](const auto& sent) {
-                        return sent.number == number;
+                        return sent.number == number && number > recalled_;
                       });
     if (found->second.lost && !ours) {
       return name_of(vehicle) + " is silent, where it flew to is not known,";
@@ -310,13 +325,10 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   change_->number = number_;
   change_->start = now + config_.lead;
   for (auto& [vehicle, member] : members_) member.arrived_at.reset();
-  std::erase_if(sent_, [this](const Change& old) {
-    return std::none_of(members_.begin(), members_.end(), [&](const auto& entry) {
-      return may_fly(old, entry.first, entry.second).has_value();
-    });
-  });
+  forget_flown();
   sent_.push_back(*change_);
-  give_again_ = false;
+  makes_room_ = preview.makes_room.has_value();
+  give_again_ = makes_room_;
   withdrawn_ = false;
   stuck_since_.reset();
   near_since_.reset();
@@ -336,7 +348,30 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   report(begun, now);
 }
 
+/// What nobody flies any more.
+void FormationGround::forget_flown() {
+  std::erase_if(sent_, [this](const Change& old) {
+    return std::none_of(members_.begin(), members_.end(), [&](const auto& entry) {
+      return may_fly(old, entry.first, entry.second).has_value();
+    });
+  });
+}
+
 // --- what is heard -------------------------------------------------------------------------------
+
+void FormationGround::recall(const Message& message, VehicleId sender) {
+  if (const auto* change = std::get_if<Change>(&message); change != nullptr) {
+    if (sender != kGroundStation || !formation::valid(*change) || change->number <= number_) return;
+    number_ = recalled_ = change->number;
+    forget_flown();
+    sent_.push_back(*change);
+  } else if (const auto* status = std::get_if<FormationStatus>(&message)) {
+    if (!contains(config_.vehicles, status->vehicle)) return;
+    Member& member = members_[status->vehicle];
+    member.status = *status;
+    member.heard_at = next_;  // it has its time to be heard by this one
+  }
+}
 
 void FormationGround::on_message(const Message& message, Instant now) {
   if (const auto* status = std::get_if<FormationStatus>(&message)) {
@@ -473,6 +508,7 @@ void FormationGround::give_again(Instant now) {
 }
 
 void FormationGround::judge_places(Instant now) {
+  if (makes_room_) return;
   std::optional<Instant> first;
   std::optional<Instant> last;
   for (const auto& mover : change_->movers) {
@@ -517,7 +553,7 @@ void FormationGround::correct_drift(Instant now) {
   if (drifting.empty()) return;
   held_since_ = now;  // again after as long
   auto again = plan(*order_, transfers);
-  if (!again) return;
+  if (!again || again->makes_room) return;
   for (const Transfer& transfer : transfers) {
     members_[transfer.vehicle].trim_m += transfer.to - transfer.from;
     members_[transfer.vehicle].drift_m = Vec3::Zero();

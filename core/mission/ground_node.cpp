@@ -48,6 +48,7 @@ void GroundNode::take_in(const Message& message, VehicleId sender, Instant at) {
   if (fence_.ordered()) use_fence();
   routes_.recall(message, sender, at);
   detections_.recall(message, sender);
+  formation_.recall(message, sender);
   const auto* command = std::get_if<Command>(&message);
   if (command != nullptr && sender == kGroundStation) orders_.note(*command);
   const auto* decision = std::get_if<Authorisation>(&message);

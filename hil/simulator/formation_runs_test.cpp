@@ -66,7 +66,7 @@ TEST(FormationRuns, AHundredTeamsWithFaultsHold) {
                             << " --faults mixed --trace --seed " << run.seed;
     done += run.script_done ? 1 : 0;
   }
-  EXPECT_GT(done, 40U);
+  EXPECT_GT(done, 80U);
 }
 
 TEST(FormationRuns, TheSameSeedGivesTheSameBytes) {
@@ -127,11 +127,11 @@ TEST(FormationRuns, ANewGroundStationGoesOnOnceAllAreHeard) {
   EXPECT_TRUE(run.script_done) << run.reason;
 }
 
-TEST(FormationRuns, ANewGroundStationGivesNoOrderWhileOneMayBeInTheWay) {
+TEST(FormationRuns, ANewGroundStationRecallsWhoMayBeInTheWay) {
   const auto run =
       fly({fault({kGroundStation}, 4.0, 6.0), fault({VehicleId{4}}, 5.0, std::nullopt)});
-  EXPECT_FALSE(run.script_done);
-  EXPECT_NE(run.reason.find("not heard yet: 4"), std::string::npos) << run.reason;
+  EXPECT_TRUE(run.script_done) << run.reason;
+  EXPECT_EQ(run.lost, 1U);
 }
 
 TEST(FormationRuns, WithoutGroundStationEverybodyComesToItsPlace) {

@@ -38,7 +38,10 @@ function Outcome() {
           <b>
             {words(data.way)}, {duration(data.duration_s)}
           </b>
-          , {data.movers.length} move, least separation {distance(data.least_separation_m)}
+          {data.makes_room === undefined
+            ? `, ${data.movers.length} move`
+            : `, only ${ids([data.makes_room])} moves, out of the way of others that it rests too near; then the order is given`}
+          , least separation {distance(data.least_separation_m)}
           {data.lost.length > 0 && <span class="problem alarm"> Lost, and left out: {ids(data.lost)}</span>}
         </>
       ) : (

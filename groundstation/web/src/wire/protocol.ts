@@ -614,6 +614,8 @@ export interface Preview {
   least_separation_m: number | null;
   movers: Mover[];
   lost: number[];
+  /** Only this one moves, out of the way of others that rest too near it; then the order is given. */
+  makes_room?: number;
 }
 
 /** The ways home of those that would be ordered there now. */

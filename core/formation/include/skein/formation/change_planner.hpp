@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -65,5 +67,12 @@ struct PlannedChange {
 /// heights at most. Fails, with the two that come nearest, where the starts or the places
 /// themselves are too near, or the ceiling too low. Cost: of n^2 pairs.
 [[nodiscard]] Result<PlannedChange> plan_change(const ChangeRequest& request);
+
+/// A change after which fewer vehicles rest nearer to each other than plan_change() can begin from,
+/// as who waited for each other may: one of them is led out, straight, away from all, to where
+/// nobody is nearer than separation and reserve; the others stay. The shortest such way of the
+/// least that `allowed` lets be flown. None where nobody rests so near, or no way out is free.
+[[nodiscard]] std::optional<PlannedChange> make_room(
+    const ChangeRequest& request, const std::function<bool(const Transfer&)>& allowed);
 
 }  // namespace skein::formation

@@ -24,7 +24,8 @@ struct PassageParams {
 /// brake in finite time and messages are late or lost: all vehicles slow down by at most one rate a
 /// slot, so that every message, however old, says how far its sender is by now at least. The
 /// reference speeds up only when, should it brake one slot later, it would at every moment keep the
-/// change's separation from wherever everyone behind it may be at that moment. Whoever is ahead in
+/// change's separation (from who starts nearer, as much as at the start) from wherever everyone
+/// behind it may be at that moment. Whoever is ahead in
 /// plan time does so; so one of each two always does, and no breach is possible while references
 /// are followed within tolerance. The last of all never waits, for what it needs is the separation
 /// that the plan has in plan time, so there is no deadlock once messages come through;
@@ -74,6 +75,7 @@ class Passage final : public Execution {
     Grains done = 0;
     Grains rate = 0;
     double off_m = 0.0;      ///< beyond what is allowed for
+    double apart_m = 0.0;    ///< that is kept; not more than there is at the start
     double least_m = 0.0;    ///< from this vehicle, in the plan
     double speed_mps = 0.0;  ///< heights stretched
   };

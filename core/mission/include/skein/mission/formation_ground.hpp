@@ -51,6 +51,9 @@ struct FormationPreview {
   FormationOrder order;
   formation::PlannedChange planned;
   std::vector<VehicleId> lost;  ///< of whom the change keeps clear
+  /// Some rest too near to each other to be led anywhere. `planned` leads that one out from between
+  /// them only; then the order is given again.
+  std::optional<VehicleId> makes_room;
 };
 
 /// The ground station's side of formations, without I/O: turns orders into changes that were
@@ -73,6 +76,9 @@ class FormationGround {
   /// Nobody is led out of that one from now on.
   void set_fence(const Fence& fence) { config_.fence = fence; }
 
+  /// What this ground station, or one before it, said or heard then: it knows who flies what, and
+  /// whom it does not hear. Before anything else.
+  void recall(const Message& message, VehicleId sender);
   /// Of who may say it (may_say()).
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
@@ -108,11 +114,13 @@ class FormationGround {
   [[nodiscard]] Result<void> above_ground(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
+  [[nodiscard]] Result<void> may_be_flown(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,
                                                           VehicleId vehicle, const Member& member);
   [[nodiscard]] std::vector<Vec3> may_be(VehicleId vehicle, const Member& member) const;
   [[nodiscard]] std::string unknown() const;
   void begin(FormationPreview preview, Instant now);
+  void forget_flown();
   void on_status(const FormationStatus& status, Instant now);
   void find_lost(Instant now);
   void lose(VehicleId vehicle, Member& member, event::FormationNews why, Instant now);
@@ -133,9 +141,11 @@ class FormationGround {
   Instant send_next_{};
   bool correcting_ = false;              ///< the newest change is against drift only
   std::vector<formation::Change> sent_;  ///< that somebody may fly yet
-  bool succeeds_ = false;                ///< another ground station commanded before
+  std::uint32_t recalled_ = 0;           ///< the newest change of an earlier process
+  bool succeeds_ = false;                ///< somebody flies what this one does not know
   bool give_again_ = false;              ///< somebody was lost in the change, or has not begun it
-  bool withdrawn_ = false;               ///< nobody begins the newest change any more
+  bool makes_room_ = false;  ///< the newest change leads one out of the others' way only
+  bool withdrawn_ = false;   ///< nobody begins the newest change any more
   std::optional<Instant> stuck_since_;
   bool told_refused_ = false;          ///< that the order cannot be given again
   std::optional<Instant> near_since_;  ///< all within tolerance
