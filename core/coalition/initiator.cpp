@@ -532,11 +532,15 @@ void Initiator::on_timeout(Instant now) {
       const bool owned_by_anyone = std::any_of(ledger_.begin(), ledger_.end(), [](const Entry& e) {
         return e.ownership == Ownership::leased;
       });
+      // Who is heard and does not bid, since what it hears comes too late, is not asked on and on:
+      // the air would be full of it, and no decision of the operator's in time.
+      const bool may_ask_again = now >= announcement_.announced_at + params_.monitoring_interval;
       const auto needs_round = [&](const Entry& e) {
         // An owner that is heard and has not begun in time holds at its gate. One that is not heard
         // keeps its lease until that runs out.
         const bool overdue = e.ownership == Ownership::leased && e.reported == TaskState::planned &&
-                             now > e.assignment.time + kOverdue && hears(e.assignment.vehicle, now);
+                             now > due(e) + kOverdue && hears(e.assignment.vehicle, now) &&
+                             may_ask_again;
         const bool waits = e.left_over && owned_by_anyone;
         return overdue || (e.ownership == Ownership::open && !waits);
       };
@@ -549,6 +553,14 @@ void Initiator::on_timeout(Instant now) {
     case State::count:
       break;
   }
+}
+
+/// An assessment waits for deliveries that were awarded again after it.
+Instant Initiator::due(const Entry& entry) const {
+  if (entry.task.kind == TaskKind::deliver) return entry.assignment.time;
+  const auto delivered = last_delivery();
+  return delivered ? std::max(entry.assignment.time, *delivered + announcement_.site.assess_wait)
+                   : entry.assignment.time;
 }
 
 Instant Initiator::next_timeout() const {

@@ -46,6 +46,7 @@ class Aircraft {
     if (!battery_) return;
     battery_ = SimulatedBattery{std::min(percent, battery_percent()), state_.distance_flown_m};
   }
+  [[nodiscard]] bool battery_fell() const { return battery_ && battery_->at_m > 0.0; }
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;

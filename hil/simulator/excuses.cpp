@@ -87,7 +87,7 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
   std::vector<const VehicleSpec*> specs;
   std::vector<const VehicleEnd*> left;
   for (const auto& end : vehicles) {
-    if (end.gone || end.barred) continue;
+    if (end.gone || end.barred || end.spent) continue;
     left.push_back(&end);
     specs.push_back(&*std::find_if(record.vehicles.begin(), record.vehicles.end(),
                                    [&](const auto& spec) { return spec.id == end.vehicle; }));

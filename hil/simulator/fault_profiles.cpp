@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/base/random.hpp"
@@ -25,6 +26,15 @@ constexpr std::uint64_t kMixStream = 0x6661756c74730002;
 constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
+constexpr double kGustMax_mps = 1.5;
+/// Of all together: as much as a coalition of eight needs for its bids to arrive in time.
+constexpr double kNarrow_bytes_per_s = 12e3;
+/// What the operator orders whose battery has fallen, and when; once more where it was not heard.
+constexpr std::array<std::pair<Duration, mission::CommandKind>, 4> kBringDown{
+    {{seconds{40}, mission::CommandKind::return_home},
+     {seconds{80}, mission::CommandKind::land},
+     {seconds{120}, mission::CommandKind::return_home},
+     {seconds{160}, mission::CommandKind::land}}};
 
 FaultParams phase_only() {
   FaultParams p;
@@ -100,6 +110,21 @@ FaultParams wrong_clock() {
 FaultParams grants_taken_back() {
   FaultParams p = phase_only();
   p.taken_back = 2;
+  return p;
+}
+FaultParams batteries() {
+  FaultParams p = phase_only();
+  p.batteries = 2;
+  return p;
+}
+FaultParams wind() {
+  FaultParams p = phase_only();
+  p.wind_mps = 5.0;
+  return p;
+}
+FaultParams narrow() {
+  FaultParams p = phase_only();
+  p.narrow = true;
   return p;
 }
 FaultParams slow_planner() {
@@ -214,6 +239,7 @@ struct Profile {
   std::string_view name;
   FaultParams (*sites)() = nullptr;  ///< null: not of missions with sites
   void (*formation)(Draw&) = nullptr;
+  bool alone = false;  ///< `mixed` does not draw it
 
   [[nodiscard]] bool of(MissionKind kind) const {
     return kind == MissionKind::sites ? sites != nullptr : formation != nullptr;
@@ -221,7 +247,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 19> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 22> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -239,17 +265,22 @@ constexpr std::array<Profile, 19> kProfiles{{{"none", nullptr, no_fault},
                                              {"sites", sites_told},
                                              {"orders", orders},
                                              {"clock", wrong_clock},
-                                             {"taken-back", grants_taken_back}}};
+                                             {"taken-back", grants_taken_back},
+                                             {"battery", batteries},
+                                             {"wind", wind, nullptr, true},
+                                             {"narrow", narrow}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
   FaultParams all = phase_only();
   for (const Profile& profile : kProfiles) {
-    if (profile.sites != nullptr && random.chance(0.45)) all.add(profile.sites());
+    if (profile.sites != nullptr && !profile.alone && random.chance(0.45)) all.add(profile.sites());
   }
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
-  if (all.wrong_clock) all.crashes = std::min<std::size_t>(all.crashes, 1);
+  const std::size_t barred = all.wrong_clock ? 1 : 0;
+  all.batteries = std::min<std::size_t>(all.batteries, 1);
+  all.crashes = std::min(all.crashes, 2 - barred - all.batteries);
   return all;
 }
 
@@ -347,7 +378,8 @@ bool is_free(const Hazard& hazard, const TeamMission& mission) {
     if ((h.hazard.centre - hazard.centre).norm() < h.hazard.radius_m + hazard.radius_m + 4.0 * turn)
       return false;
   }
-  for (const auto& v : mission.vehicles) {  // where it waits, it must be able to wait
+  for (const auto& v : mission.vehicles) {  // where it waits, and at home, it must be able to wait
+    if ((v.start.position() - hazard.centre).norm() < hazard.radius_m + 3.0 * turn) return false;
     if (v.search.empty()) continue;
     if ((v.search.back() - hazard.centre).norm() < hazard.radius_m + 3.0 * turn) return false;
   }
@@ -449,6 +481,9 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   withdrawn = std::max(withdrawn, other.withdrawn);
   taken_back = std::max(taken_back, other.taken_back);
   slow_operator = slow_operator || other.slow_operator;
+  batteries = std::max(batteries, other.batteries);
+  narrow = narrow || other.narrow;
+  wind_mps = std::max(wind_mps, other.wind_mps);
   sites_together = sites_together || other.sites_together;
   return *this;
 }
@@ -593,6 +628,23 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
+  for (std::size_t n = count(random, params.batteries); n > 0; --n) {
+    const VehicleId whose = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+    const Instant at = Instant{} + between(random, seconds{1}, params.phase);
+    faults.push_back({{.not_before = at}, {}, BatteryFalls{whose, random.uniform(20.0, 40.0)}});
+    // It comes home by itself; there the operator lands it.
+    for (const auto& [after, kind] : kBringDown) {
+      faults.push_back({{.not_before = at + after}, {}, Ordered{whose, kind}});
+    }
+  }
+  if (params.wind_mps > 0.0) {
+    const double speed_mps = random.uniform(0.0, params.wind_mps);
+    mission.wind.steady_mps = speed_mps * unit_vector(random.uniform(-kPi, kPi));
+    mission.wind.gust_mps = random.uniform(0.0, kGustMax_mps);
+    mission.heeds_wind = true;
+  }
+  if (params.narrow)
+    mission.radio.bytes_per_s = random.uniform(kNarrow_bytes_per_s, 2.0 * kNarrow_bytes_per_s);
 }
 
 }  // namespace skein::hil

@@ -75,18 +75,18 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft
   return all;
 }
 
-/// What nobody has found, or only vehicles that do not work with the others.
+/// What nobody has found, or only vehicles that do not work with the others, or fly home.
 std::vector<Site> SiteFinder::unattended(const std::vector<Aircraft>& vehicles) const {
   std::vector<Site> all = sensors_.hidden();
-  const auto barred = [&](VehicleId id) {
+  const auto leaves_it = [&](VehicleId id) {
     const auto v = std::find_if(vehicles.begin(), vehicles.end(),
                                 [id](const Aircraft& a) { return a.spec().id == id; });
-    return v != vehicles.end() && v->running() && !v->takes_part();
+    return v != vehicles.end() && ((v->running() && !v->takes_part()) || v->battery_fell());
   };
   for (const Site& site : mission_.sites) {
     const auto knowing = knowing_.find(site.id);
     if (knowing == knowing_.end() || knowing->second.empty() || done_.contains(site.id)) continue;
-    if (std::all_of(knowing->second.begin(), knowing->second.end(), barred)) all.push_back(site);
+    if (std::all_of(knowing->second.begin(), knowing->second.end(), leaves_it)) all.push_back(site);
   }
   return all;
 }
@@ -102,7 +102,8 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft
     };
     const auto consider = [&](bool also_busy) {
       for (std::size_t i = 0; i < vehicles.size(); ++i) {
-        const bool can = vehicles[i].takes_part() && specs_[i].capabilities.has(TaskKind::survey) &&
+        const bool can = vehicles[i].takes_part() && !vehicles[i].battery_fell() &&
+                         specs_[i].capabilities.has(TaskKind::survey) &&
                          (also_busy || !busy.contains(i));
         if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
       }

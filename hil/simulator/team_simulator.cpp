@@ -606,6 +606,7 @@ class Team {
     VehicleEnd end;
     end.vehicle = v.spec().id;
     end.gone = gone_at_[i].has_value();
+    end.spent = v.battery_fell();
     end.barred = v.in_coalitions() && !v.takes_part();
     end.loads = v.loads_left();
     end.in_place = v.in_place();

@@ -180,6 +180,7 @@ class Initiator {
   void collect_open_tasks(Instant now);
   void close_bids(Instant now);
   void take_back(Entry& entry, const Bid& bid, Instant now);
+  [[nodiscard]] Instant due(const Entry& entry) const;
   void expire(Instant now);
   void reopen(Entry& entry);
   void lose(Entry& entry, Reason why);

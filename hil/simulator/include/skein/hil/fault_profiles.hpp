@@ -38,15 +38,18 @@ struct FaultParams {
   double held_back = 0.0;  ///< share of messages that arrive up to 2 s later than those after them
   std::size_t partitions = 0;
   // Vehicles:
-  std::size_t crashes = 0;   ///< silent for good
-  std::size_t restarts = 0;  ///< silent for some seconds, then with an agent without memory
-  std::size_t joiners = 0;   ///< take off only during the phase
-  Duration clock_offset{};   ///< of each vehicle's clock, to either side
-  std::size_t ground = 0;    ///< times that the ground station's program ends and starts anew
-  Duration planning{};       ///< a plan takes up to so long, in every vehicle
-  std::size_t orders = 0;    ///< of the operator: to hold, to come home, to go on
-  bool wrong_clock = false;  ///< one vehicle's, by seconds
+  std::size_t crashes = 0;    ///< silent for good
+  std::size_t restarts = 0;   ///< silent for some seconds, then with an agent without memory
+  std::size_t joiners = 0;    ///< take off only during the phase
+  Duration clock_offset{};    ///< of each vehicle's clock, to either side
+  std::size_t ground = 0;     ///< times that the ground station's program ends and starts anew
+  Duration planning{};        ///< a plan takes up to so long, in every vehicle
+  std::size_t orders = 0;     ///< of the operator: to hold, to come home, to go on
+  bool wrong_clock = false;   ///< one vehicle's, by seconds
+  std::size_t batteries = 0;  ///< a cell of them fails: whose it is must come home
+  bool narrow = false;        ///< the air carries some ten kilobytes a second, of all together
   // World:
+  double wind_mps = 0.0;        ///< from anywhere, all the mission long, with gusts
   std::size_t hazards = 0;      ///< appear in flight
   std::size_t seen = 0;         ///< places that detectors tell of: false, doubled
   std::size_t withdrawn = 0;    ///< sites of the mission that the operator withdraws

@@ -148,6 +148,7 @@ struct TeamObserver {
 struct VehicleEnd {
   VehicleId vehicle;
   bool gone = false;    ///< its agent ended for good
+  bool spent = false;   ///< its battery has fallen: it comes home
   bool barred = false;  ///< it does not work with the others (mission::Bar)
   std::uint8_t loads = 0;
   double range_left_m = 0.0;
