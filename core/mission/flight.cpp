@@ -464,12 +464,14 @@ Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
   const bool homeward = std::isinf(range_m);
   Followed followed;
   std::vector<double> marks;
+  std::vector<Path> before;  // each mark
   Pose2 from = route.end();
   for (std::size_t i = 0; i < waypoints.size(); ++i) {
     const auto next = i + 1 < waypoints.size() ? std::optional{waypoints[i + 1]} : std::nullopt;
     const auto leg = way_to(from, waypoints[i], next, hazards);
     // A point that cannot be reached clear of hazards and within the fence is left out; what has no
     // room on a path is planned before that ends.
+    before.push_back(route);
     if (!leg || (!homeward && !stays_in(*leg))) {
       marks.push_back(route.length_m());
       continue;
@@ -484,7 +486,20 @@ Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
     from = leg->end;
     followed.reaches_last = i + 1 == waypoints.size();
   }
-  const double tail = append_hold(route, hazards, pieces_max);
+  double tail = append_hold(route, hazards, pieces_max);
+  // It may end where one cannot orbit, and have no room for the way to where one can, or there may be
+  // none: it ends before, and goes on from there.
+  while (!orbit_keeps_clear(route.end(), tail, hazards) && !marks.empty()) {
+    marks.pop_back();
+    route = before[marks.size()];
+    followed.full = !marks.empty() || waypoints.size() > 1;
+    followed.reaches_last = false;
+    tail = append_hold(route, hazards, pieces_max);
+    if (marks.empty()) {  // even the first: it is left out
+      marks.push_back(route.length_m());
+      break;
+    }
+  }
   if (!continue_with(at, route, tail, now)) return {};
   const double lead = plan_.timed.path.length_m() - route.length_m();
   search_marks_.clear();

@@ -123,6 +123,36 @@ TEST(Flight, ARouteThatHasNoRoomInOnePlanIsFlownToItsEnd) {
   }
 }
 
+/// With the orbit at its end: nobody says when the next plan comes.
+TEST(Flight, NoPlanOfALongRouteLeadsIntoAHazard) {
+  Random random{12};
+  for (int i = 0; i < 200; ++i) {
+    const std::vector<Vec2> route = long_route(random);
+    std::vector<Hazard> hazards;
+    for (std::uint16_t id = 1; id <= 12; ++id) {
+      // Many lie beside a waypoint, where one cannot orbit.
+      const Vec2& beside = route[random.index(route.size())];
+      const double radius_m = random.uniform(20.0, 60.0);
+      const Vec2 centre = beside + random.uniform(radius_m + 15.0, radius_m + 100.0) *
+                                       unit_vector(random.uniform(-kPi, kPi));
+      if (centre.norm() > radius_m + 250.0) hazards.push_back({HazardId{id}, centre, radius_m});
+    }
+    Flight flight{vehicle_with(Recovery::anywhere), {}, route};
+    flight.start({0.0, 0.0, random.uniform(-kPi, kPi)}, hazards, 1e7, Instant{});
+    for (int plans = 0; plans < 40; ++plans) {
+      const TimedPath& timed = flight.plan().timed;
+      EXPECT_TRUE(planning::is_clear(timed.path, hazards)) << "route " << i << ", plan " << plans;
+      Path orbit{timed.path.end(), {}};
+      const double curvature_per_m = timed.tail_curvature_per_m;
+      ASSERT_TRUE(orbit.append(Segment{curvature_per_m, kTwoPi / std::abs(curvature_per_m)}));
+      EXPECT_TRUE(planning::is_clear(orbit, hazards)) << "route " << i << ", after plan " << plans;
+      const Instant next = flight.search_goes_on_at();
+      if (next == Instant::max()) break;
+      flight.search(hazards, 1e7, next);
+    }
+  }
+}
+
 TEST(Flight, AChangeOfHeightKeepsPathAndTimesAndLastsOverPlans) {
   Flight flight{vehicle_with(Recovery::home), {}, {{6000.0, 0.0}}};
   flight.start({0.0, 0.0, 0.0}, {}, 1e6, Instant{});
