@@ -28,6 +28,7 @@
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
 #include "skein/onboard/control_loop.hpp"
+#include "skein/onboard/load_book.hpp"
 #include "skein/onboard/node_config.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/preflight_watch.hpp"
@@ -208,7 +209,7 @@ class Threads {
  public:
   Threads(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
-          InstanceId instance, std::optional<recording::Writer> writer,
+          InstanceId instance, std::optional<recording::Writer> writer, LoadBook loads,
           FlightControllers flight_controllers, std::optional<detectors::DetectorSocket> detectors,
           HealthBoard& health, PreflightWatch& preflight, Instant now)
       : clock_{clock},
@@ -224,7 +225,7 @@ class Threads {
                planner_,
                events_,
                now},
-        recorder_{std::move(writer), ports_, events_, records_} {
+        recorder_{std::move(writer), ports_, events_, records_, std::move(loads)} {
     recorder_thread_ = start_thread(ThreadRole::recorder, [this] { recorder_.run(); });
     planner_thread_ = start_thread(ThreadRole::planner, [this] { planner_.run(); });
     if (flight_controllers_.on_can != nullptr) {
@@ -509,6 +510,14 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
   const InstanceId instance = start->instance;
+  LoadBook loads{config.recording_folder, clock.epoch_unix_ns()};
+  configuration::VehicleConfig left = config;
+  if (const std::size_t used = loads.used(); used > 0) {
+    left.vehicle.loads -=
+        static_cast<std::uint8_t>(std::min<std::size_t>(used, left.vehicle.loads));
+    spdlog::info("goes on with this mission: {} of its {} loads are used", used,
+                 config.vehicle.loads);
+  }
   auto writer = open_recording(config, instance, clock);
   if (!writer) {
     spdlog::critical("cannot record: {}", writer.error().message);
@@ -542,7 +551,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   PreflightWatch preflight{config, preflight_base(config, instance), clock,
                            [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
-      config, *route, clock, **node, wake_agent, instance, std::move(*writer),
+      left, *route, clock, **node, wake_agent, instance, std::move(*writer), std::move(loads),
       std::move(controllers).value(), std::move(*detectors), health, preflight, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};
