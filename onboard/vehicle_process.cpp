@@ -446,7 +446,8 @@ class Ear {
   mission::SetupFilter filter_;
 };
 
-/// Nothing where nothing is to be recorded.
+/// Nothing where nothing is to be recorded, nor where nothing can be and the mission has begun: who
+/// starts anew has an aircraft to fly.
 Result<std::optional<recording::Writer>> open_recording(const configuration::VehicleConfig& config,
                                                         InstanceId instance,
                                                         const process::MissionClock& clock) {
@@ -456,8 +457,21 @@ Result<std::optional<recording::Writer>> open_recording(const configuration::Veh
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   auto opened = recording::Writer::open(config.recording_folder, options);
-  if (!opened) return opened.error();
-  return std::optional<recording::Writer>{std::move(*opened)};
+  if (opened) return std::optional<recording::Writer>{std::move(*opened)};
+  if (clock.now() < Instant{}) return opened.error();
+  spdlog::error("nothing is recorded: {}", opened.error().message);
+  return std::optional<recording::Writer>{};
+}
+
+/// The loads that its earlier programs in this mission have used are gone.
+configuration::VehicleConfig with_loads_left(configuration::VehicleConfig config,
+                                             const LoadBook& loads) {
+  if (loads.used() == 0) return config;
+  spdlog::info("goes on with this mission: {} of its {} loads are used", loads.used(),
+               config.vehicle.loads);
+  config.vehicle.loads -=
+      static_cast<std::uint8_t>(std::min<std::size_t>(loads.used(), config.vehicle.loads));
+  return config;
 }
 
 /// What does not change of what the vehicle's checks find.
@@ -511,13 +525,6 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   }
   const InstanceId instance = start->instance;
   LoadBook loads{config.recording_folder, clock.epoch_unix_ns()};
-  configuration::VehicleConfig left = config;
-  if (const std::size_t used = loads.used(); used > 0) {
-    left.vehicle.loads -=
-        static_cast<std::uint8_t>(std::min<std::size_t>(used, left.vehicle.loads));
-    spdlog::info("goes on with this mission: {} of its {} loads are used", used,
-                 config.vehicle.loads);
-  }
   auto writer = open_recording(config, instance, clock);
   if (!writer) {
     spdlog::critical("cannot record: {}", writer.error().message);
@@ -551,8 +558,9 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   PreflightWatch preflight{config, preflight_base(config, instance), clock,
                            [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
-      left, *route, clock, **node, wake_agent, instance, std::move(*writer), std::move(loads),
-      std::move(controllers).value(), std::move(*detectors), health, preflight, clock.now());
+      with_loads_left(config, loads), *route, clock, **node, wake_agent, instance,
+      std::move(*writer), std::move(loads), std::move(controllers).value(), std::move(*detectors),
+      health, preflight, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};
   service.ready();

@@ -24,9 +24,11 @@
 #include "mission_watch.hpp"
 #include "nemesis.hpp"
 #include "orders_to_land.hpp"
+#include "other_release.hpp"
 #include "ports.hpp"
 #include "run_keys.hpp"
 #include "second_station.hpp"
+#include "session_record.hpp"
 #include "site_reports.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/groundstation/ground_process.hpp"
@@ -70,6 +72,8 @@ constexpr double kLead_s = 0.3;
 constexpr double kIsolatedLead_s = 0.8;
 /// What configuring and starting external hosts takes, all at once.
 constexpr double kExternalLead_s = 6.0;
+
+std::string seconds_text(double s) { return fmt::format("{:.1f} s", s); }
 
 class Bench {
  public:
@@ -138,7 +142,7 @@ class Bench {
       configs_.emplace(config.vehicle.id, config);
       const Duration off = clock_offset(options_.faults, config.vehicle.id);
       nemesis_.set_clock(config.vehicle.id, off);
-      write_configuration(config.vehicle.id, off);
+      if (auto written = write_configuration(config.vehicle.id, off); !written) return written;
     }
     if (auto up = launch(kGroundStation, "skein-ground"); !up) return up;
     if (second_) {
@@ -172,7 +176,7 @@ class Bench {
       if (now >= Instant{}) {
         play_faults(now);
         move_radio(now);
-        flood();
+        for (const auto& by : timeline_.interference().floods) flooder_->say(by, kPeriod);
         sense(now);
         land_at_the_end(now);
       } else if (links_ && outcome_.all_heard_s) {
@@ -365,25 +369,32 @@ class Bench {
     return options_.run_folder / (log_name(id) + ".yaml");
   }
 
-  /// Where the node's clock is ahead, its mission begins as much earlier.
-  void write_configuration(VehicleId id, Duration clock_off) {
-    configuration::VehicleConfig config = configs_.at(id);
-    config.time.epoch_unix_ns -= clock_off.count();
-    std::ofstream{configuration_of(id)} << configuration::to_yaml(config);
+  Result<void> write_configuration(VehicleId id, Duration clock_off) {
+    return hil::write_configuration(configs_.at(id), configuration_of(id), clock_off,
+                                    programs_of(id));
+  }
+
+  /// Another release's, where faults say so; null: ours.
+  [[nodiscard]] const std::filesystem::path* programs_of(VehicleId id) const {
+    return is_of_other_release(options_.faults, id) ? &options_.other_programs : nullptr;
   }
 
   Result<void> start_anew(VehicleId id, const StartAnew& anew) {
     processes_.erase(id);
-    if (configs_.contains(id)) write_configuration(id, anew.clock_off);
-    return launch(id, id == kGroundStation ? "skein-ground" : "skein-onboard", anew.file_bytes_max);
+    const bool vehicle = configs_.contains(id);
+    if (vehicle) {
+      if (auto written = write_configuration(id, anew.clock_off); !written) return written;
+    }
+    return launch(id, vehicle ? "skein-onboard" : "skein-ground", anew.file_bytes_max);
   }
 
   Result<void> launch(VehicleId id, const std::string& program,
                       std::optional<std::size_t> file_bytes_max = {}) {
     const auto file = configuration_of(id);
     const bool terminal = options_.prompt && id == kGroundStation;
-    std::vector<std::string> command{(options_.programs / program).string(), "--config",
-                                     file.string()};
+    const bool other = is_of_other_release(options_.faults, id);
+    const auto& programs = other ? options_.other_programs : options_.programs;
+    std::vector<std::string> command{(programs / program).string(), "--config", file.string()};
     if (id == kGroundStation && external_.ground() != nullptr) {
       const std::vector<std::string> before{"/bin/sh", "-c",
                                             "exec " + external_.ground()->run + " \"$@\"", "sh"};
@@ -464,10 +475,12 @@ class Bench {
           say("all " + std::to_string(last_.size()) + " vehicles heard " +
               seconds_text(*outcome_.all_heard_s) + " after the start; the mission begins at 0 s");
         }
+      } else if (const auto* decision = std::get_if<mission::Authorisation>(&received->message)) {
+        note_heard(event_of(*decision, mission_now()));
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
         (void)mission_.on_event(*event);
         sensors_.on_event(*event);
-        if (!options_.faults.empty()) outcome_.heard.push_back({mission_now(), *event});
+        note_heard(*event);
         progress_.sites_done = mission_.sites_done();
         // At its prompt the ground station tells of it.
         if (!options_.prompt && is_news(event->kind())) {
@@ -475,6 +488,10 @@ class Bench {
         }
       }
     }
+  }
+
+  void note_heard(const mission::MissionEvent& event) {
+    if (!options_.faults.empty()) outcome_.heard.push_back({mission_now(), event});
   }
 
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
@@ -553,14 +570,6 @@ class Bench {
     return team;
   }
 
-  [[nodiscard]] std::vector<VehicleId> having(Role role) const {
-    std::vector<VehicleId> some;
-    for (const auto& [id, telemetry] : team()) {
-      if (has_role(telemetry.activity, role)) some.push_back(id);
-    }
-    return some;
-  }
-
   /// Hazards that have appeared: as it would be by the operator, who goes on telling of them.
   void tell_who_starts_anew(const mission::Telemetry& telemetry) {
     const auto known = last_.find(telemetry.vehicle);
@@ -573,7 +582,7 @@ class Bench {
   void play_faults(Instant now) {
     if (const auto news = second_ ? second_->play(now) : std::nullopt) say(*news);
     timeline_.play(
-        now, [this](Role role) { return having(role); },
+        now, [this](Role role) { return having(team(), role); },
         [this, now](const Fault& fault, const std::vector<VehicleId>& who) {
           if (nemesis_.begin(fault, who, now)) {
             for (const VehicleId id : who) {
@@ -616,14 +625,6 @@ class Bench {
     }
     radio_.move({positions(), silent, timeline_.interference(), options_.rate, now}, external_,
                 links_ ? &*links_ : nullptr);
-  }
-
-  void flood() {
-    constexpr auto kDatagrams = static_cast<std::size_t>(
-        radio::Flood::kDatagrams_per_s * std::chrono::duration<double>{kPeriod}.count());
-    for (const radio::Flood& by : timeline_.interference().floods) {
-      flooder_->say(by.vehicle, kDatagrams, radio::Flood::kBytes);
-    }
   }
 
   void sense(Instant now) {
@@ -726,8 +727,6 @@ class Bench {
     progress_.news = news;
     if (on_progress_) on_progress_(progress_);
   }
-
-  static std::string seconds_text(double s) { return fmt::format("{:.1f} s", s); }
 
   const configuration::Scenario& scenario_;
   const BenchOptions& options_;

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "site_reports.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/hil/excuses.hpp"
 #include "skein/hil/fault.hpp"
@@ -88,6 +89,20 @@ void fill(std::vector<TrackPoint>& track, const std::vector<TrackPoint>& truth) 
 
 }  // namespace
 
+mission::MissionEvent event_of(const mission::Authorisation& decision, Instant heard) {
+  mission::MissionEvent event;
+  event.time = std::min(heard, decision.decided_at);
+  event.vehicle = kGroundStation;
+  event.round = decision.round;
+  event.task.site = decision.site;
+  if (decision.granted) {
+    event.body = mission::event::Authorised{decision.decided_by};
+  } else {
+    event.body = mission::event::AuthorisationRefused{decision.decided_by};
+  }
+  return event;
+}
+
 Recording whole_recording(const std::filesystem::path& run_folder, VehicleId node,
                           const BenchOutcome& outcome) {
   Recording whole;
@@ -145,7 +160,7 @@ void add_faults_done(checks::RunRecord& record, const BenchOutcome& outcome) {
     end.gone = contains(outcome.killed, vehicle.id);
     const auto last = outcome.last.find(vehicle.id);
     if (last != outcome.last.end()) {
-      end.barred = last->second.detail == mission::ActivityDetail::barred;
+      end.barred = is_barred(last->second);
       end.loads = last->second.loads;
     }
     ends.push_back(end);

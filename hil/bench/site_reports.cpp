@@ -4,13 +4,19 @@
 #include <algorithm>
 
 namespace skein::hil {
-namespace {
 
-bool takes_part(const mission::Telemetry& telemetry) {
-  return telemetry.detail != mission::ActivityDetail::barred;
+bool is_barred(const mission::Telemetry& telemetry) {
+  const mission::ActivityDetail does = telemetry.detail;
+  return does == mission::ActivityDetail::barred;
 }
 
-}  // namespace
+std::vector<VehicleId> having(const SiteReports::Team& team, Role role) {
+  std::vector<VehicleId> some;
+  for (const auto& [id, telemetry] : team) {
+    if (has_role(telemetry.activity, role)) some.push_back(id);
+  }
+  return some;
+}
 
 void SiteReports::on_event(const mission::MissionEvent& event) {
   if (event.kind() == mission::EventKind::site_done) done_.insert(event.task.site);
@@ -42,7 +48,7 @@ std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team
   std::vector<mission::SiteReport> reports;
   const auto attends = [&team](VehicleId id) {
     const auto at = team.find(id);
-    return at != team.end() && takes_part(at->second);
+    return at != team.end() && !is_barred(at->second);
   };
   for (const Site& site : sites_) {
     const auto& knowing = knowing_[site.id];

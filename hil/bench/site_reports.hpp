@@ -6,10 +6,14 @@
 #include <vector>
 
 #include "skein/configuration/scenario.hpp"
+#include "skein/hil/fault.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/mission/messages.hpp"
 
 namespace skein::hil {
+
+/// It holds, by its own word, until it may work with the others.
+[[nodiscard]] bool is_barred(const mission::Telemetry& telemetry);
 
 /// Which sites the team is told of: by its sensors, and, once the radio has healed, by somebody who
 /// reports those that nobody is at work on. As the simulator's finder, by what is heard.
@@ -41,5 +45,8 @@ class SiteReports {
   std::map<SiteId, std::set<VehicleId>> knowing_;
   std::set<SiteId> done_;
 };
+
+/// Those of them that have the role.
+[[nodiscard]] std::vector<VehicleId> having(const SiteReports::Team& team, Role role);
 
 }  // namespace skein::hil

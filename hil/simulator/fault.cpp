@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 
@@ -161,6 +162,13 @@ Duration clock_offset(const std::vector<Fault>& faults, VehicleId node) {
     if (clock != nullptr && clock->node == node) return clock->offset;
   }
   return {};
+}
+
+bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle) {
+  return std::ranges::any_of(faults, [vehicle](const Fault& fault) {
+    const auto* other = std::get_if<OtherRelease>(&fault.what);
+    return other != nullptr && other->vehicle == vehicle;
+  });
 }
 
 Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle) {

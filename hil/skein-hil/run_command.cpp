@@ -174,12 +174,16 @@ int run(const RunArguments& arguments) {
   if (const auto given = give_hosts(*scenario, options, arguments); !given) {
     return complain(given.error().message);
   }
-  const bool other = !arguments.other_programs.empty();
-  auto faults = spoil(*scenario, arguments.faults, other);
+  auto faults = spoil(*scenario, arguments.faults, !arguments.other_programs.empty());
   if (!faults) return complain(faults.error().message);
   options.faults = std::move(*faults);
   options.other_programs = arguments.other_programs;
-  if (other) options.sealed = false;
+  // Not every release has keys.
+  if (std::ranges::any_of(options.faults, [](const Fault& fault) {
+        return std::holds_alternative<OtherRelease>(fault.what);
+      })) {
+    options.sealed = false;
+  }
   if (!std::filesystem::exists(options.radio_plugin)) {
     return complain(options.radio_plugin.string() + ": not there; build it with ./dev build");
   }

@@ -133,6 +133,7 @@ struct Fault {
 [[nodiscard]] Duration clock_offset(const std::vector<Fault>& faults, VehicleId node);
 /// Does a vehicle that does that have the role?
 [[nodiscard]] bool has_role(mission::Activity activity, Role role);
+[[nodiscard]] bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle);
 /// When a vehicle takes off: at the epoch, unless a fault says otherwise.
 [[nodiscard]] Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle);
 /// When the radio heals; nothing: it does not.
