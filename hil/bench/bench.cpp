@@ -28,7 +28,6 @@
 #include "ports.hpp"
 #include "run_keys.hpp"
 #include "second_station.hpp"
-#include "session_record.hpp"
 #include "site_reports.hpp"
 #include "skein/configuration/deployment.hpp"
 #include "skein/groundstation/ground_process.hpp"
@@ -475,12 +474,10 @@ class Bench {
           say("all " + std::to_string(last_.size()) + " vehicles heard " +
               seconds_text(*outcome_.all_heard_s) + " after the start; the mission begins at 0 s");
         }
-      } else if (const auto* decision = std::get_if<mission::Authorisation>(&received->message)) {
-        note_heard(event_of(*decision, mission_now()));
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
         (void)mission_.on_event(*event);
         sensors_.on_event(*event);
-        note_heard(*event);
+        if (!options_.faults.empty()) outcome_.heard.push_back({mission_now(), *event});
         progress_.sites_done = mission_.sites_done();
         // At its prompt the ground station tells of it.
         if (!options_.prompt && is_news(event->kind())) {
@@ -488,10 +485,6 @@ class Bench {
         }
       }
     }
-  }
-
-  void note_heard(const mission::MissionEvent& event) {
-    if (!options_.faults.empty()) outcome_.heard.push_back({mission_now(), event});
   }
 
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.

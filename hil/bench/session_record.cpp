@@ -87,21 +87,20 @@ void fill(std::vector<TrackPoint>& track, const std::vector<TrackPoint>& truth) 
   track = std::move(filled);
 }
 
-}  // namespace
-
-mission::MissionEvent event_of(const mission::Authorisation& decision, Instant heard) {
-  mission::MissionEvent event;
-  event.time = std::min(heard, decision.decided_at);
-  event.vehicle = kGroundStation;
-  event.round = decision.round;
-  event.task.site = decision.site;
-  if (decision.granted) {
-    event.body = mission::event::Authorised{decision.decided_by};
-  } else {
-    event.body = mission::event::AuthorisationRefused{decision.decided_by};
+/// A ground station with a full disk has no record of its grants; vehicles have, and fly by none
+/// that it has not signed.
+void add_grants_heard(checks::RunRecord& record) {
+  for (const Recording& recorded : record.recordings) {
+    for (mission::MissionEvent event : recorded.events) {
+      if (event.kind() != mission::EventKind::authorised) continue;
+      event.vehicle = kGroundStation;
+      record.ground_events.push_back(std::move(event));
+    }
   }
-  return event;
+  std::ranges::stable_sort(record.ground_events, {}, &mission::MissionEvent::time);
 }
+
+}  // namespace
 
 Recording whole_recording(const std::filesystem::path& run_folder, VehicleId node,
                           const BenchOutcome& outcome) {
@@ -146,6 +145,11 @@ void add_faults_done(checks::RunRecord& record, const BenchOutcome& outcome) {
     }
   }
   std::ranges::stable_sort(record.agent_ends, {}, &checks::AgentEnd::at);
+  if (std::ranges::any_of(outcome.spans, [](const ProgramSpan& span) {
+        return span.node == kGroundStation && span.kind == Kind::disk_full;
+      })) {
+    add_grants_heard(record);
+  }
   for (Recording& recorded : record.recordings) {
     const auto of_it = [&](const ProgramSpan& span) { return span.node == recorded.vehicle; };
     if (std::ranges::none_of(outcome.spans, of_it)) continue;

@@ -9,9 +9,6 @@
 
 namespace skein::hil {
 
-/// What the ground station notes of a decision that it tells: of who cannot record it, heard.
-[[nodiscard]] mission::MissionEvent event_of(const mission::Authorisation& decision, Instant heard);
-
 /// What a node's programs have recorded, one after the other, as one recording in true time, with
 /// what others heard of it and its own files have not: of who is killed the last second, of who has
 /// a full disk all that comes then.
