@@ -19,12 +19,12 @@ rows=$folder/runs.csv
 
 count() { grep -cE "$1" "$2" || true; }
 
-# fly SEED SLOT: each slot has ports, and thereby buses, of its own
+# fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have others that run this
 fly() {
   local seed=$1 log=$folder/$1.log at=$SECONDS status=0 broken outcome
   rm -rf "${folder:?}/$seed"
   "$programs/skein-hil" run "$scenario" --headless --dds "${arguments[@]}" --seed "$seed" \
-    --port-base $((20000 + 24 * $2)) --out "$folder/$seed" >"$log" 2>&1 || status=$?
+    --port-base $((20000 + 24 * ($2 + jobs * ($$ % 100)))) --out "$folder/$seed" >"$log" 2>&1 || status=$?
   broken=$(sed -nE 's/^FAIL (.{20}).*/\1/; T; s/ +$//; p' "$log" | paste -sd ';')
   case $status in
     0) outcome=held ;;
