@@ -15,7 +15,7 @@ arguments=("$@")
 [[ " ${arguments[*]-} " == *" --faults "* ]] || arguments+=(--faults nemesis)
 mkdir -p "$folder"
 rows=$folder/runs.csv
-[[ -s $rows ]] || echo 'seed,outcome,seconds,late_s,killed,started_anew,stood_still,slow,disks_full,clocks_set,cuts,other_release,broken' >"$rows"
+echo 'seed,outcome,seconds,late_s,killed,started_anew,stood_still,slow,disks_full,clocks_set,cuts,other_release,broken' >"$rows"
 
 count() { grep -cE "$1" "$2" || true; }
 
