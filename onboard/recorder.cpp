@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
+#include <type_traits>
 #include <utility>
 
 #include "skein/onboard/threads.hpp"
@@ -11,8 +12,12 @@
 namespace skein::onboard {
 
 Recorder::Recorder(std::optional<recording::Writer> writer, ControlPorts& control,
-                   EventRing& events, AgentRing& agent)
-    : writer_{std::move(writer)}, control_{&control}, events_{&events}, agent_{&agent} {}
+                   EventRing& events, AgentRing& agent, LoadBook loads)
+    : writer_{std::move(writer)},
+      control_{&control},
+      events_{&events},
+      agent_{&agent},
+      loads_{std::move(loads)} {}
 
 void Recorder::run() {
   const auto period = spec_of(ThreadRole::recorder).period;
@@ -38,6 +43,9 @@ void Recorder::stop() {
 void Recorder::empty_rings() {
   const auto empty = [this](auto& ring) {
     while (const auto item = ring.pop()) {
+      if constexpr (std::is_same_v<decltype(*item), const mission::MissionEvent&>) {
+        note_load(*item);
+      }
       if (writer_) writer_->write(*item);
     }
   };
@@ -49,6 +57,16 @@ void Recorder::empty_rings() {
                              events_->dropped() + agent_->dropped();
   if (writer_ && lost > lost_) writer_->write(recording::Gap{lost - lost_});
   lost_ = lost;
+}
+
+void Recorder::note_load(const mission::MissionEvent& event) {
+  if (event.kind() != mission::EventKind::task_started || event.task.kind != TaskKind::deliver) {
+    return;
+  }
+  if (const auto noted = loads_.use(); !noted) {
+    spdlog::error("a program that starts anew will not know of the load that is used now: {}",
+                  noted.error().message);
+  }
 }
 
 void Recorder::flush() {

@@ -28,6 +28,7 @@
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/can_flight_controller.hpp"
 #include "skein/onboard/control_loop.hpp"
+#include "skein/onboard/load_book.hpp"
 #include "skein/onboard/node_config.hpp"
 #include "skein/onboard/planner.hpp"
 #include "skein/onboard/preflight_watch.hpp"
@@ -208,7 +209,7 @@ class Threads {
  public:
   Threads(const configuration::VehicleConfig& config, const std::optional<TimedPath>& route,
           const process::MissionClock& clock, network::Node& node, process::Wake& wake_agent,
-          InstanceId instance, std::optional<recording::Writer> writer,
+          InstanceId instance, std::optional<recording::Writer> writer, LoadBook loads,
           FlightControllers flight_controllers, std::optional<detectors::DetectorSocket> detectors,
           HealthBoard& health, PreflightWatch& preflight, Instant now)
       : clock_{clock},
@@ -224,7 +225,7 @@ class Threads {
                planner_,
                events_,
                now},
-        recorder_{std::move(writer), ports_, events_, records_} {
+        recorder_{std::move(writer), ports_, events_, records_, std::move(loads)} {
     recorder_thread_ = start_thread(ThreadRole::recorder, [this] { recorder_.run(); });
     planner_thread_ = start_thread(ThreadRole::planner, [this] { planner_.run(); });
     if (flight_controllers_.on_can != nullptr) {
@@ -445,7 +446,8 @@ class Ear {
   mission::SetupFilter filter_;
 };
 
-/// Nothing where nothing is to be recorded.
+/// Nothing where nothing is to be recorded, nor where nothing can be and the mission has begun: who
+/// starts anew has an aircraft to fly.
 Result<std::optional<recording::Writer>> open_recording(const configuration::VehicleConfig& config,
                                                         InstanceId instance,
                                                         const process::MissionClock& clock) {
@@ -455,8 +457,21 @@ Result<std::optional<recording::Writer>> open_recording(const configuration::Veh
                      clock.epoch_unix_ns(), to_yaml(config)};
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   auto opened = recording::Writer::open(config.recording_folder, options);
-  if (!opened) return opened.error();
-  return std::optional<recording::Writer>{std::move(*opened)};
+  if (opened) return std::optional<recording::Writer>{std::move(*opened)};
+  if (clock.now() < Instant{}) return opened.error();
+  spdlog::error("nothing is recorded: {}", opened.error().message);
+  return std::optional<recording::Writer>{};
+}
+
+/// The loads that its earlier programs in this mission have used are gone.
+configuration::VehicleConfig with_loads_left(configuration::VehicleConfig config,
+                                             const LoadBook& loads) {
+  if (loads.used() == 0) return config;
+  spdlog::info("goes on with this mission: {} of its {} loads are used", loads.used(),
+               config.vehicle.loads);
+  config.vehicle.loads -=
+      static_cast<std::uint8_t>(std::min<std::size_t>(loads.used(), config.vehicle.loads));
+  return config;
 }
 
 /// What does not change of what the vehicle's checks find.
@@ -509,6 +524,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
   const InstanceId instance = start->instance;
+  LoadBook loads{config.recording_folder, clock.epoch_unix_ns()};
   auto writer = open_recording(config, instance, clock);
   if (!writer) {
     spdlog::critical("cannot record: {}", writer.error().message);
@@ -542,8 +558,9 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   PreflightWatch preflight{config, preflight_base(config, instance), clock,
                            [on_can = controllers->on_can] { return on_can->facts(); }};
   const auto threads = std::make_unique<Threads>(
-      config, *route, clock, **node, wake_agent, instance, std::move(*writer),
-      std::move(controllers).value(), std::move(*detectors), health, preflight, clock.now());
+      with_loads_left(config, loads), *route, clock, **node, wake_agent, instance,
+      std::move(*writer), std::move(loads), std::move(controllers).value(), std::move(*detectors),
+      health, preflight, clock.now());
   const process::Service service;
   HostDesk desk{config, host, clock, **node, health, *threads, service};
   service.ready();

@@ -2,10 +2,8 @@
 #include "skein/hil/bench.hpp"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -16,24 +14,25 @@
 #include <thread>
 #include <utility>
 
+#include "bench_options.hpp"
+#include "bench_radio.hpp"
 #include "external_hosts.hpp"
 #include "flight_controllers.hpp"
 #include "flooder.hpp"
 #include "interrupt_watch.hpp"
 #include "link_listener.hpp"
 #include "mission_watch.hpp"
+#include "nemesis.hpp"
+#include "orders_to_land.hpp"
+#include "other_release.hpp"
 #include "ports.hpp"
 #include "run_keys.hpp"
 #include "second_station.hpp"
+#include "site_reports.hpp"
 #include "skein/configuration/deployment.hpp"
-#include "skein/groundstation/control_socket.hpp"
 #include "skein/groundstation/ground_process.hpp"
 #include "skein/hil/child_process.hpp"
 #include "skein/hil/fault_timeline.hpp"
-#include "skein/hil/radio/link_table.hpp"
-#include "skein/hil/radio/mesh.hpp"
-#include "skein/hil/radio/radio_model.hpp"
-#include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/identity/team.hpp"
 #include "skein/mission/may_say.hpp"
@@ -56,15 +55,11 @@ using std::chrono::system_clock;
 constexpr VehicleId kBench = mission::kSensors;
 constexpr auto kPeriod = std::chrono::milliseconds{50};
 constexpr Duration kAfterwards = std::chrono::seconds{3};
-/// How the operator of a scenario ends it that is to end on the ground.
-constexpr std::array kOrdersToLand{"return all", "land all"};
-constexpr auto kAnswerWithin = std::chrono::milliseconds{500};
-constexpr Duration kOrderAgain = std::chrono::seconds{2};
+constexpr Duration kReportAgain = std::chrono::seconds{10};
 constexpr auto kStopWithin = std::chrono::seconds{8};
 /// Node ids for them and their companions on one bus.
 constexpr std::size_t kCanVehiclesMax = 50;
 
-constexpr const char* kLoopback = "127.0.0.1";
 /// Where there are more, Fast DDS stays in the agents' processes: twice as many processes would
 /// measure the machine.
 constexpr std::size_t kNodesPerProcessor = 4;
@@ -77,6 +72,8 @@ constexpr double kIsolatedLead_s = 0.8;
 /// What configuring and starting external hosts takes, all at once.
 constexpr double kExternalLead_s = 6.0;
 
+std::string seconds_text(double s) { return fmt::format("{:.1f} s", s); }
+
 class Bench {
  public:
   Bench(const configuration::Scenario& scenario, const BenchOptions& options,
@@ -87,25 +84,24 @@ class Bench {
         autopilots_{std::move(autopilots)},
         on_progress_{on_progress},
         external_{std::move(external)},
-        sensors_{scenario.sites, specs(scenario)},
+        sensors_{scenario},
         radio_{radio_params(scenario.radio)},
-        mesh_{radio_.mesh ? std::optional<radio::Mesh>{*radio_.mesh} : std::nullopt},
-        timeline_{faults_of(scenario)},
-        mission_{scenario} {
+        timeline_{all_faults(scenario, options)},
+        mission_{scenario},
+        nemesis_{{processes_,
+                  [this](VehicleId id, const StartAnew& anew) { return start_anew(id, anew); },
+                  [this](const std::string& news) { say(news); }}} {
     progress_.now = Instant{Duration::min()};
   }
 
   Result<void> start() {
     const std::size_t nodes = scenario_.vehicles.size() + 2;
-    if (const auto possible = check_options(); !possible) return possible;
     const auto base = options_.dds ? port_block(options_.address, options_.port_base, 2 * nodes)
                                    : port_block(scenario_.air.group, options_.port_base, 1);
     if (!base) return base.error();
     const auto buses = can_buses(*base);
     if (!buses) return buses.error();
-    auto table = radio::LinkTable::create();
-    if (!table) return table.error();
-    table_.emplace(std::move(table).value());
+    if (auto made = radio_.open(); !made) return made;
     if (Flooder::is_wanted(scenario_)) {
       if (options_.dds) return Error{"a flood_vehicle floods the air; leave --dds out"};
       auto flooder = Flooder::open(scenario_.air.group, *base, options_.address);
@@ -142,15 +138,18 @@ class Bench {
     std::ofstream{configuration_of(kGroundStation)} << configuration::to_yaml(ground);
     for (const auto& config : configs) {
       if (external_.has(config.vehicle.id)) continue;
-      std::ofstream{configuration_of(config.vehicle.id)} << configuration::to_yaml(config);
+      configs_.emplace(config.vehicle.id, config);
+      const Duration off = clock_offset(options_.faults, config.vehicle.id);
+      nemesis_.set_clock(config.vehicle.id, off);
+      if (auto written = write_configuration(config.vehicle.id, off); !written) return written;
     }
     if (auto up = launch(kGroundStation, "skein-ground"); !up) return up;
     if (second_) {
       if (auto up = launch(SecondStation::kNode, "skein-ground"); !up) return up;
     }
-    nodes_.push_back(kGroundStation);
+    radio_.add(kGroundStation);
     for (const auto& config : configs) {
-      nodes_.push_back(config.vehicle.id);
+      radio_.add(config.vehicle.id);
       if (auto up = launch_vehicle(config); !up) return up;
     }
     configuration::NetworkConfig own = ground.network;
@@ -168,13 +167,15 @@ class Bench {
   BenchOutcome run() {
     for (auto next = steady_clock::now(); !finished(); next += kPeriod) {
       std::this_thread::sleep_until(next);
+      const std::chrono::duration<double> late = steady_clock::now() - next;
+      if (late.count() > outcome_.late_s) outcome_.late_s = late.count();
       const Instant now = mission_now();
       hear();
       watch(now);
       if (now >= Instant{}) {
         play_faults(now);
         move_radio(now);
-        flood();
+        for (const auto& by : timeline_.interference().floods) flooder_->say(by, kPeriod);
         sense(now);
         land_at_the_end(now);
       } else if (links_ && outcome_.all_heard_s) {
@@ -190,46 +191,6 @@ class Bench {
   }
 
  private:
-  static std::vector<VehicleSpec> specs(const configuration::Scenario& scenario) {
-    std::vector<VehicleSpec> all;
-    for (const auto& v : scenario.vehicles) all.push_back(v.spec);
-    return all;
-  }
-
-  /// What can be told before anything is started.
-  [[nodiscard]] Result<void> check_options() const {
-    if (!port_free(SOCK_DGRAM, options_.address, 0)) {
-      return Error{"no network interface of this machine has the address " + options_.address +
-                   "; give --address the one where the hosts reach it"};
-    }
-    if (options_.console_port != 0 && !port_free(SOCK_STREAM, kLoopback, options_.console_port)) {
-      return Error{"port " + std::to_string(options_.console_port) +
-                   " of loopback is in use; name another for --console, or stop who uses it "
-                   "(ss -tlpn shows who)"};
-    }
-    if (!options_.autopilots.empty()) {
-      if (auto possible = check_autopilots(); !possible) return possible;
-    }
-    for (const auto& vehicle : scenario_.vehicles) {
-      if (vehicle.spec.id.value < radio::LinkTable::kNodes) continue;
-      return Error{"vehicle " + std::to_string(vehicle.spec.id.value) +
-                   " is beyond the bench's radio, which has ids 1 to " +
-                   std::to_string(radio::LinkTable::kNodes - 1) + "; give it a smaller one"};
-    }
-    return batteries_can_fall(scenario_, autopilots_);
-  }
-
-  [[nodiscard]] Result<void> check_autopilots() const {
-    if (std::ranges::none_of(scenario_.vehicles, [this](const auto& vehicle) {
-          return user_flown(vehicle.spec, vehicle.flight_controller);
-        })) {
-      return Error{
-          "--autopilot: no vehicle of the scenario has a flight controller of that kind; give one "
-          "flight_controller: {kind: ardupilot}"};
-    }
-    return autopilot_bus_is_free();
-  }
-
   /// From the start of the programs: all have started and found each other before.
   [[nodiscard]] double lead_s(const configuration::Deployment& deployment) const {
     if (options_.lead_s > 0.0) return options_.lead_s;
@@ -252,12 +213,12 @@ class Bench {
     deployment.time.epoch_unix_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(
                                         (system_clock::now() + lead).time_since_epoch())
                                         .count();
+    outcome_.epoch_unix_ns = deployment.time.epoch_unix_ns;
   }
 
   [[nodiscard]] bool user_flown(const VehicleSpec& spec,
                                 const configuration::FlightControllerConfig& controller) const {
-    return controller.kind == configuration::FlightControllerKind::ardupilot &&
-           autopilots_.of(spec) != nullptr && external_.host_of(spec.id) == nullptr;
+    return hil::user_flown(spec, controller, external_, autopilots_);
   }
 
   /// A user's autopilot begins there, and an emulated copter that flies in formation. When an
@@ -407,11 +368,32 @@ class Bench {
     return options_.run_folder / (log_name(id) + ".yaml");
   }
 
-  Result<void> launch(VehicleId id, const std::string& program) {
+  Result<void> write_configuration(VehicleId id, Duration clock_off) {
+    return hil::write_configuration(configs_.at(id), configuration_of(id), clock_off,
+                                    programs_of(id));
+  }
+
+  /// Another release's, where faults say so; null: ours.
+  [[nodiscard]] const std::filesystem::path* programs_of(VehicleId id) const {
+    return is_of_other_release(options_.faults, id) ? &options_.other_programs : nullptr;
+  }
+
+  Result<void> start_anew(VehicleId id, const StartAnew& anew) {
+    processes_.erase(id);
+    const bool vehicle = configs_.contains(id);
+    if (vehicle) {
+      if (auto written = write_configuration(id, anew.clock_off); !written) return written;
+    }
+    return launch(id, vehicle ? "skein-onboard" : "skein-ground", anew.file_bytes_max);
+  }
+
+  Result<void> launch(VehicleId id, const std::string& program,
+                      std::optional<std::size_t> file_bytes_max = {}) {
     const auto file = configuration_of(id);
     const bool terminal = options_.prompt && id == kGroundStation;
-    std::vector<std::string> command{(options_.programs / program).string(), "--config",
-                                     file.string()};
+    const bool other = is_of_other_release(options_.faults, id);
+    const auto& programs = other ? options_.other_programs : options_.programs;
+    std::vector<std::string> command{(programs / program).string(), "--config", file.string()};
     if (id == kGroundStation && external_.ground() != nullptr) {
       const std::vector<std::string> before{"/bin/sh", "-c",
                                             "exec " + external_.ground()->run + " \"$@\"", "sh"};
@@ -419,8 +401,9 @@ class Bench {
     }
     auto child = ChildProcess::start(
         command, terminal ? std::filesystem::path{} : options_.run_folder / (log_name(id) + ".log"),
-        {{"SKEIN_RADIO_TABLE", table_->name()},
-         {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}});
+        {{"SKEIN_RADIO_TABLE", radio_.table()},
+         {"SKEIN_RADIO_SEED", std::to_string(scenario_.seed)}},
+        -1, file_bytes_max);
     if (!child) return child.error();
     processes_.emplace(id, std::move(child).value());
     return {};
@@ -480,6 +463,7 @@ class Bench {
   void hear() {
     while (const auto received = node_->poll()) {
       if (const auto* telemetry = std::get_if<mission::Telemetry>(&received->message)) {
+        tell_who_starts_anew(*telemetry);
         last_[telemetry->vehicle] = *telemetry;
         mission_.on_telemetry(*telemetry);
         if (external_.has(telemetry->vehicle)) heard_at_[telemetry->vehicle] = steady_clock::now();
@@ -492,6 +476,8 @@ class Bench {
         }
       } else if (const auto* event = std::get_if<mission::MissionEvent>(&received->message)) {
         (void)mission_.on_event(*event);
+        sensors_.on_event(*event);
+        if (!options_.faults.empty()) outcome_.heard.push_back({mission_now(), *event});
         progress_.sites_done = mission_.sites_done();
         // At its prompt the ground station tells of it.
         if (!options_.prompt && is_news(event->kind())) {
@@ -504,7 +490,7 @@ class Bench {
   /// A dead process ends the run; so does a vehicle that nobody has heard when the mission begins.
   void watch(Instant now) {
     for (auto& [id, process] : processes_) {
-      if (killed_.contains(id) || reported_.contains(id)) continue;
+      if (killed_.contains(id) || reported_.contains(id) || nemesis_.is_down(id)) continue;
       const auto how = process.ended();
       if (!how) continue;
       reported_.insert(id);
@@ -513,30 +499,28 @@ class Bench {
         say("the operator has ended the run");
         continue;
       }
-      outcome_.deaths.push_back(name_of(id) + " ended by itself: " + *how + "; its log is " +
-                                (options_.run_folder / (log_name(id) + ".log")).string());
-      say(outcome_.deaths.back());
+      note_death(name_of(id), *how, log_name(id));
     }
     for (auto& [id, process] : flight_controllers_) {
       if (killed_.contains(id) || fc_reported_.contains(id)) continue;
       const auto how = process.ended();
       if (!how) continue;
       fc_reported_.insert(id);
-      outcome_.deaths.push_back(
-          "the flight controller of " + name_of(id) + " ended by itself: " + *how +
-          "; its log is " +
-          (options_.run_folder / ("fc-" + std::to_string(id.value) + ".log")).string());
-      say(outcome_.deaths.back());
+      note_death("the flight controller of " + name_of(id), *how, "fc-" + std::to_string(id.value));
     }
     if (links_ && !links_reported_) {
       if (const auto how = links_->ended()) {
         links_reported_ = true;
-        outcome_.deaths.push_back("the program of --links ended by itself: " + *how +
-                                  "; its log is " + (options_.run_folder / "links.log").string());
-        say(outcome_.deaths.back());
+        note_death("the program of --links", *how, "links");
       }
     }
     watch_for_silence(now);
+  }
+
+  void note_death(const std::string& who, const std::string& how, const std::string& log) {
+    outcome_.deaths.push_back(who + " ended by itself: " + how + "; its log is " +
+                              (options_.run_folder / (log + ".log")).string());
+    say(outcome_.deaths.back());
   }
 
   void watch_for_silence(Instant now) {
@@ -570,72 +554,84 @@ class Bench {
     return at;
   }
 
+  /// Of who is there to see something: its program runs.
+  [[nodiscard]] SiteReports::Team team() const {
+    SiteReports::Team team;
+    for (const auto& [id, telemetry] : last_) {
+      if (!killed_.contains(id) && !nemesis_.is_down(id)) team.emplace(id, telemetry);
+    }
+    return team;
+  }
+
+  /// Hazards that have appeared: as it would be by the operator, who goes on telling of them.
+  void tell_who_starts_anew(const mission::Telemetry& telemetry) {
+    const auto known = last_.find(telemetry.vehicle);
+    if (known == last_.end() || known->second.instance == telemetry.instance) return;
+    for (const auto& h : scenario_.hazards) {
+      if (told_.contains(h.hazard.id)) publish(mission::HazardReport{h.hazard});
+    }
+  }
+
   void play_faults(Instant now) {
     if (const auto news = second_ ? second_->play(now) : std::nullopt) say(*news);
     timeline_.play(
-        now, [](Role) { return std::vector<VehicleId>{}; },
-        [this](const Fault& fault, const std::vector<VehicleId>& who) {
-          if (std::holds_alternative<ProgramsEnd>(fault.what)) {
-            for (const VehicleId id : who) kill(id);
+        now, [this](Role role) { return having(team(), role); },
+        [this, now](const Fault& fault, const std::vector<VehicleId>& who) {
+          if (nemesis_.begin(fault, who, now)) {
+            for (const VehicleId id : who) {
+              if (nemesis_.is_down(id)) sensors_.on_program_end(id);
+            }
+          } else if (std::holds_alternative<ProgramsEnd>(fault.what)) {
+            for (const VehicleId id : who) kill(id, now);
           } else {
+            if (std::holds_alternative<Healing>(fault.what)) outcome_.healed_at = now;
             say("fault: " + describe(fault));
           }
           return true;
         });
+    if (const auto up = nemesis_.step(now); !up) {
+      outcome_.deaths.push_back("cannot be started anew: " + up.error().message);
+    }
   }
 
-  void kill(VehicleId id) {
+  void kill(VehicleId id, Instant now) {
     const auto process = processes_.find(id);
     if (process == processes_.end() || !killed_.insert(id).second) return;
     process->second.signal(SIGKILL);
     const auto fc = flight_controllers_.find(id);
-    if (fc != flight_controllers_.end()) fc->second.signal(SIGKILL);
+    if (!options_.faults.empty()) {
+      nemesis_.note_gone(id, now);
+    } else if (fc != flight_controllers_.end()) {
+      fc->second.signal(SIGKILL);
+    }
     outcome_.killed.push_back(id);
     mission_.on_killed(id);
+    sensors_.on_program_end(id);
     say("fault: " + name_of(id) + " is killed");
   }
 
   void move_radio(Instant now) {
-    const auto at = positions();
-    places_.clear();
-    for (const VehicleId id : nodes_) {
-      const auto found = at.find(id);
-      const bool is_there = !killed_.contains(id) || (id == kGroundStation && second_);
-      places_.push_back(
-          {id, found == at.end() ? std::nullopt : std::optional{found->second}, is_there});
+    std::set<VehicleId> silent = killed_;
+    if (second_) silent.erase(kGroundStation);
+    for (const auto& [id, process] : processes_) {
+      if (nemesis_.is_down(id)) silent.insert(id);
     }
-    const auto& interference = timeline_.interference();
-    if (mesh_) mesh_->move(radio_, interference, places_, now);
-    const auto hop = radio::in_real_time(radio::link_when_up(radio_, interference), options_.rate);
-    table_->set(hop);
-    for (std::size_t to = 0; to < places_.size(); ++to) {
-      radio::Hearing hearing{places_[to].id, hop, {}};
-      for (std::size_t from = 0; from < places_.size(); ++from) {
-        if (from == to) continue;
-        const bool direct = is_up(radio_, interference, places_[from], places_[to]);
-        const int hops = mesh_ ? mesh_->hops(from, to) : int{direct};
-        table_->set_hops(places_[from].id, places_[to].id, hops);
-        hearing.hops.at(places_[from].id.value) = static_cast<std::uint8_t>(hops);
-        if (links_)
-          links_->tell(places_[from].id, places_[to].id, radio::over_hops(hop, int{direct}));
-      }
-      external_.tell(hearing);
-    }
-    if (links_) links_->hand_on();
-  }
-
-  void flood() {
-    constexpr auto kDatagrams = static_cast<std::size_t>(
-        radio::Flood::kDatagrams_per_s * std::chrono::duration<double>{kPeriod}.count());
-    for (const radio::Flood& by : timeline_.interference().floods) {
-      flooder_->say(by.vehicle, kDatagrams, radio::Flood::kBytes);
-    }
+    radio_.move({positions(), silent, timeline_.interference(), options_.rate, now}, external_,
+                links_ ? &*links_ : nullptr);
   }
 
   void sense(Instant now) {
-    for (const auto& report : sensors_.update(positions())) {
+    for (const auto& report : sensors_.look(team())) {
       publish(report);
       ++progress_.sites_found;
+    }
+    if (outcome_.healed_at && now >= report_again_at_) {
+      report_again_at_ = now + kReportAgain;
+      for (const auto& report : sensors_.report_unattended(team())) {
+        say("site " + std::to_string(report.site.id.value) + " is reported to " +
+            name_of(report.finder));
+        publish(report);
+      }
     }
     for (const auto& h : scenario_.hazards) {
       if (h.known_from <= Instant{} || now < h.known_from || !told_.insert(h.hazard.id).second)
@@ -644,18 +640,10 @@ class Bench {
     }
   }
 
-  /// Where the scenario ends on the ground: the operator's orders, once the work is done.
+  /// Where the scenario ends on the ground.
   void land_at_the_end(Instant now) {
     if (scenario_.ends != configuration::Ending::landed || !mission_.work_done(now)) return;
-    if (next_order_ == kOrdersToLand.size() || now < order_again_at_) return;
-    const std::string order = kOrdersToLand.at(next_order_);
-    const auto answer = groundstation::ask(control_socket_, order, kAnswerWithin);
-    if (answer && answer->done) {
-      ++next_order_;
-      return say("the bench orders '" + order + "'");
-    }
-    order_again_at_ = now + kOrderAgain;
-    say("'" + order + "' was refused: " + (answer ? answer->text : answer.error().message));
+    if (const auto news = to_land_.give(control_socket_, now)) say(*news);
   }
 
   [[nodiscard]] bool mission_done() const {
@@ -666,7 +654,8 @@ class Bench {
   [[nodiscard]] bool finished() {
     if (InterruptWatch::interrupted() || outcome_.quit || !outcome_.deaths.empty()) return true;
     if (progress_.now >= Instant{} + scenario_.duration_max) return true;
-    if (!mission_done()) return false;
+    if (!mission_done() || nemesis_.anybody_down()) return false;
+    if (!options_.faults.empty() && !outcome_.healed_at) return false;
     if (!stop_at_) stop_at_ = progress_.now + kAfterwards;
     return progress_.now >= *stop_at_;
   }
@@ -678,7 +667,11 @@ class Bench {
   }
 
   BenchOutcome stop() {
+    nemesis_.let_go();
     hear();
+    outcome_.spans = nemesis_.spans();
+    outcome_.clocks_off = nemesis_.clocks_off();
+    outcome_.last = last_;
     writer_.reset();
     truth_.reset();
     for (const auto& [id, telemetry] : last_) {
@@ -696,7 +689,7 @@ class Bench {
     std::vector<ChildProcess*> controllers;
     std::vector<ChildProcess*> autopilots;
     for (auto& [id, process] : flight_controllers_) {
-      if (killed_.contains(id)) continue;
+      if (killed_.contains(id) && options_.faults.empty()) continue;
       (user_flown_.contains(id) ? autopilots : controllers).push_back(&process);
     }
     const bool controllers_clean = stop_all(controllers, kStopWithin);
@@ -728,15 +721,12 @@ class Bench {
     if (on_progress_) on_progress_(progress_);
   }
 
-  static std::string seconds_text(double s) { return fmt::format("{:.1f} s", s); }
-
   const configuration::Scenario& scenario_;
   const BenchOptions& options_;
   UserAutopilots autopilots_;
   const std::function<void(const BenchProgress&)>& on_progress_;
   InterruptWatch interrupts_;
   ExternalHosts external_;
-  std::optional<radio::LinkTable> table_;
   std::optional<LinkListener> links_;
   bool links_reported_ = false;           ///< that it has ended
   std::unique_ptr<TruthRecorder> truth_;  ///< none where no aircraft is simulated
@@ -746,25 +736,24 @@ class Bench {
   std::set<VehicleId> user_flown_;  ///< of these by autopilots of the user's own
   std::unique_ptr<network::Node> node_;
   std::optional<recording::Writer> writer_;  ///< of what the bench itself says
-  SurveySensors sensors_;
+  SiteReports sensors_;
+  Instant report_again_at_{};
   steady_clock::time_point started_;
   steady_clock::time_point epoch_;
-  std::vector<VehicleId> nodes_;  ///< all of the radio
+  std::map<VehicleId, configuration::VehicleConfig> configs_;
   std::map<VehicleId, mission::Telemetry> last_;
   std::map<VehicleId, steady_clock::time_point> heard_at_;  ///< external vehicles
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;
   std::set<VehicleId> reported_;
   std::set<VehicleId> fc_reported_;
-  radio::RadioParams radio_;
-  std::optional<radio::Mesh> mesh_;  ///< none: only who is in range is heard
-  std::vector<radio::Node> places_;  ///< of nodes_
-  std::optional<Flooder> flooder_;   ///< where the scenario has floods
+  BenchRadio radio_;
+  std::optional<Flooder> flooder_;  ///< where the scenario has floods
   FaultTimeline timeline_;
   MissionWatch mission_;
+  Nemesis nemesis_;
   std::string control_socket_;  ///< of the ground station
-  std::size_t next_order_ = 0;  ///< of kOrdersToLand
-  Instant order_again_at_{};
+  OrdersToLand to_land_;
   std::optional<Instant> stop_at_;
   BenchProgress progress_;
   BenchOutcome outcome_;
@@ -790,6 +779,9 @@ Result<BenchOutcome> fly(const configuration::Scenario& scenario, const BenchOpt
   auto autopilots =
       user_autopilots(options.autopilots, options.autopilot_parameters, options.autopilot_model);
   if (!autopilots) return autopilots.error();
+  if (const auto possible = check_options(here, options, *external, *autopilots); !possible) {
+    return possible.error();
+  }
   Bench bench{here, options, std::move(external).value(), std::move(autopilots).value(),
               on_progress};
   if (const auto started = bench.start(); !started) return started.error();

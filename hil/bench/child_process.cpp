@@ -5,6 +5,7 @@
 #include <poll.h>
 #include <sched.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -20,7 +21,7 @@ namespace skein::hil {
 Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
                                          const std::filesystem::path& log,
                                          const std::map<std::string, std::string>& environment,
-                                         int input) {
+                                         int input, std::optional<std::size_t> file_bytes_max) {
   if (argv.empty() || ::access(argv[0].c_str(), X_OK) != 0) {
     return Error{(argv.empty() ? std::string{"an empty command"} : argv[0]) +
                  ": not an executable program; build it with ./dev build"};
@@ -56,6 +57,12 @@ Result<ChildProcess> ChildProcess::start(const std::vector<std::string>& argv,
   if (pid == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (::getppid() != parent) ::_exit(127);  // the bench died before the line above
+    // What is refused for a limit is an error then, and no end.
+    ::signal(SIGXFSZ, SIG_IGN);
+    if (file_bytes_max) {
+      const rlimit limit{*file_bytes_max, *file_bytes_max};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
     if (!terminal) {
       ::setpgid(0, 0);  // Ctrl-C goes to the bench, which stops them in order
       ::dup2(input >= 0 ? input : nothing, STDIN_FILENO);
@@ -109,6 +116,15 @@ std::optional<std::string> ChildProcess::ended() {
 
 void ChildProcess::signal(int number) const {
   if (pid_ > 0 && !status_) ::kill(pid_, number);
+}
+
+void ChildProcess::signal_group(int number) const {
+  if (pid_ > 0 && !status_ && ::kill(-pid_, number) != 0) ::kill(pid_, number);
+}
+
+void ChildProcess::limit_files(std::size_t bytes_max) const {
+  const rlimit limit{bytes_max, bytes_max};
+  if (pid_ > 0 && !status_) (void)::prlimit(pid_, RLIMIT_FSIZE, &limit, nullptr);
 }
 
 void ChildProcess::make_realtime() const {

@@ -47,13 +47,15 @@ Flooder::~Flooder() {
 Flooder::Flooder(Flooder&& other) noexcept
     : socket_{std::exchange(other.socket_, -1)}, random_{other.random_} {}
 
-void Flooder::say(VehicleId as, std::size_t datagrams, std::size_t bytes_each) {
-  std::vector<std::uint8_t> datagram(std::max<std::size_t>(bytes_each, seal::kOverheadBytes));
+void Flooder::say(const radio::Flood& flood, std::chrono::duration<double> time) {
+  const auto datagrams = static_cast<std::size_t>(radio::Flood::kDatagrams_per_s * time.count());
+  std::vector<std::uint8_t> datagram(
+      std::max<std::size_t>(radio::Flood::kBytes, seal::kOverheadBytes));
   for (std::size_t i = 0; i < datagrams; ++i) {
     for (std::uint8_t& byte : datagram) byte = static_cast<std::uint8_t>(random_.index(256));
     seal::Header header;
     header.epoch = 1;
-    header.from = {as, 1, static_cast<std::uint32_t>(random_.index(1U << 24U))};
+    header.from = {flood.vehicle, 1, static_cast<std::uint32_t>(random_.index(1U << 24U))};
     header.counter = random_.index(1'000'000);
     std::ranges::copy(to_bytes(header), datagram.begin());
     (void)::send(socket_, datagram.data(), datagram.size(), MSG_NOSIGNAL);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <cstddef>
+#include <chrono>
 #include <cstdint>
 #include <string>
 
@@ -9,6 +9,7 @@
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/hil/radio/radio_model.hpp"
 
 namespace skein::hil {
 
@@ -27,7 +28,8 @@ class Flooder {
   Flooder(const Flooder&) = delete;
   Flooder& operator=(const Flooder&) = delete;
 
-  void say(VehicleId as, std::size_t datagrams, std::size_t bytes_each);
+  /// What is said of that flood in so long.
+  void say(const radio::Flood& flood, std::chrono::duration<double> time);
 
  private:
   explicit Flooder(int socket) : socket_{socket} {}

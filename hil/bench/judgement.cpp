@@ -7,6 +7,7 @@
 #include <set>
 
 #include "second_station.hpp"
+#include "session_record.hpp"
 #include "skein/checks/flown.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/recording/reader.hpp"
@@ -20,7 +21,7 @@ using mission::MissionEvent;
 
 Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
                                       const std::filesystem::path& run_folder,
-                                      const std::vector<VehicleId>& killed) {
+                                      const BenchOutcome& outcome) {
   checks::RunRecord record;
   for (const auto& end : configuration::route_ends(scenario)) {
     record.route_ends.push_back(
@@ -30,10 +31,11 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
   for (const auto& h : scenario.hazards) record.hazards.push_back({h.hazard, h.known_from});
   record.fence = scenario.fence;
   for (const auto& v : scenario.vehicles) record.vehicles.push_back(v.spec);
-  record.lost = killed;
+  record.lost = outcome.killed;
   auto recordings = recording::read_run(run_folder);
   if (!recordings) return recordings.error();
   for (auto& r : *recordings) {
+    if (!outcome.spans.empty()) r = whole_recording(run_folder, r.vehicle, outcome);
     if (r.vehicle == kGroundStation) {
       record.ground_events = std::move(r.events);
       record.places = std::move(r.places);
@@ -56,6 +58,7 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
     if (!read) return read.error();
     record.truths = std::move(read).value();
   }
+  if (!outcome.heard.empty()) add_faults_done(record, outcome);
   return record;
 }
 
@@ -102,7 +105,10 @@ CheckResult script_flown(const configuration::Scenario& scenario, const BenchOut
 
 std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                    const checks::RunRecord& record, const BenchOutcome& outcome) {
-  const checks::Limits limits = limits_of(scenario.expect);
+  checks::Limits limits = limits_of(scenario.expect);
+  const bool clocks_differ = std::ranges::any_of(
+      outcome.clocks_off, [](const auto& off) { return off.second != Duration{}; });
+  if (clocks_differ) allow_for_clocks(limits, scenario.protocol);
   auto results = scenario.formation.planes    ? checks::judge_tracks(record, limits)
                  : scenario.flies_formation() ? checks::judge_formation(record, limits)
                  : scenario.sites.empty()     ? checks::judge_routes(record, limits)
@@ -119,10 +125,12 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
       outcome.all_heard_s && found <= 15.0,
       outcome.all_heard_s ? fmt::format("the last vehicle was heard only after {:.1f} s", found)
                           : "not every vehicle was heard"));
-  results.push_back(bench_check(
-      "messages", "no message is dropped for want of time or room", vehicles, "vehicles",
-      fmt::format("{} dropped", outcome.messages_dropped), outcome.messages_dropped == 0,
-      fmt::format("{} messages were dropped", outcome.messages_dropped)));
+  // Who stands still, or has ended, loses some.
+  if (outcome.spans.empty())
+    results.push_back(bench_check(
+        "messages", "no message is dropped for want of time or room", vehicles, "vehicles",
+        fmt::format("{} dropped", outcome.messages_dropped), outcome.messages_dropped == 0,
+        fmt::format("{} messages were dropped", outcome.messages_dropped)));
   std::string deaths;
   for (const auto& death : outcome.deaths) deaths += (deaths.empty() ? "" : "; ") + death;
   results.push_back(
@@ -137,7 +145,7 @@ std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
     results.push_back(script_flown(scenario, outcome));
     return results;
   }
-  if (scenario.sites.empty()) return results;
+  if (scenario.sites.empty() || outcome.healed_at) return results;
   std::set<SiteId> formed;
   std::set<SiteId> waited;
   for (const auto& event : events_of(record)) {

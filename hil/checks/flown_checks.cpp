@@ -75,6 +75,20 @@ void measure_ring(const std::vector<TrackPoint>& track, const Vec2& site, const 
   }
 }
 
+/// Its vehicle was left alone on the way to it, or within: how well it was flown then is no word of
+/// the program's.
+bool was_disturbed(const RunRecord& record, const TaskRun& run, const Limits& limits) {
+  return was_left_alone(record, run.vehicle, run.begin() - from_seconds(limits.taken_up_s),
+                        run.done.value_or(run.begin()));
+}
+
+void excuse(const TaskRun& run, CheckResult& result) {
+  result.excused.push_back({run.vehicle, run.begin(),
+                            to_string(run.task) + " by " + vehicle_name(run.vehicle) + ", begun " +
+                                at(run.begin()) +
+                                ", is not judged by how it was flown: its program stood still"});
+}
+
 std::string delivery_name(const DeliveryFlown& d) {
   return to_string(d.run.task) + " by " + vehicle_name(d.run.vehicle);
 }
@@ -165,6 +179,10 @@ CheckResult check_arcs(const RunRecord& record, const Limits& limits, TaskKind k
   Worst worst_time;
   double worst_radius = 0.0;
   for (const ArcFlown& arc : arcs_flown(record, kind, limits)) {
+    if (was_disturbed(record, arc.run, limits)) {
+      excuse(arc.run, result);
+      continue;
+    }
     ++result.judged;
     const std::string who = to_string(arc.run.task) + " by " + vehicle_name(arc.run.vehicle);
     const auto violate = [&](const std::string& what) {
@@ -306,7 +324,7 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
                      {}};
   for (const TaskRun& run : task_runs(record)) {
     const bool delivered = run.task.kind == TaskKind::deliver && run.flown() && !run.cut_off &&
-                           !outlasts_recording(record, run);
+                           !outlasts_recording(record, run) && !was_disturbed(record, run, limits);
     const Site* site = site_of(record, run.task.site);
     if (delivered &&
         (!run.planned || site == nullptr || run.task.index >= site->deliveries.size())) {
@@ -324,6 +342,10 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
   double miss = 0.0;
   double bearing = 0.0;
   for (const DeliveryFlown& d : flown) {
+    if (was_disturbed(record, d.run, limits)) {
+      excuse(d.run, result);
+      continue;
+    }
     ++result.judged;
     judge_pass(d, limits, result);
     groups[{d.run.task.site, d.run.round}].push_back(&d);

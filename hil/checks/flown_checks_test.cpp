@@ -49,6 +49,20 @@ TEST(FlownChecks, ALatePassIsFound) {
   EXPECT_THAT(result.violations[1].sentence, HasSubstr("1.20 s after the simultaneous"));
 }
 
+TEST(FlownChecks, WhoWasLeftAloneOnItsWayIsExcusedAndTold) {
+  RunRecord record = good_record();
+  delay(of(record, kFromWest), 1.2);
+  const auto flown = deliveries_flown(record, {});
+  record.left_alone = {{kFromWest, flown[0].run.begin() - std::chrono::seconds{5},
+                        flown[0].run.begin() - std::chrono::seconds{4}}};
+  const CheckResult result = check_deliveries(record, {});
+  EXPECT_TRUE(result.held());
+  ASSERT_EQ(result.excused.size(), 1U);
+  EXPECT_THAT(result.excused[0].sentence, HasSubstr("its program stood still"));
+  record.left_alone.front().vehicle = kFromSouth;
+  EXPECT_FALSE(check_deliveries(record, {}).held());
+}
+
 TEST(FlownChecks, SimultaneousMeansOfEachOther) {
   RunRecord record = good_record();
   delay(of(record, kFromWest), 0.6);

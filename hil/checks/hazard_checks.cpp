@@ -207,8 +207,9 @@ struct Stay {
 };
 
 /// The least clearance of the track outside what is excused, metres; negative inside.
-Worst judge_track(const Recording& recorded, const KnownHazard& known, const Held& held,
-                  const std::optional<Excused>& excuse, CheckResult& result) {
+Worst judge_track(const RunRecord& record, const Limits& limits, const Recording& recorded,
+                  const KnownHazard& known, const Held& held, const std::optional<Excused>& excuse,
+                  CheckResult& result) {
   ++result.judged;
   Worst nearest{.value = std::numeric_limits<double>::infinity(), .at = {}};
   Stay stay;
@@ -217,6 +218,9 @@ Worst judge_track(const Recording& recorded, const KnownHazard& known, const Hel
   for (std::size_t i = first_at(track, held.from); i < track.size(); ++i) {
     const VehicleState& s = track[i].state;
     const double clear = clearance_m(s, known.hazard);
+    // Its autopilot knows of none.
+    const Instant since = s.time - from_seconds(limits.taken_up_s);
+    if (was_left_alone(record, recorded.vehicle, since, s.time)) continue;
     if (excuse && s.time == excuse->since) leaving = true;
     if (leaving) stay.left = s.time;
     if (clear >= 0.0) leaving = false;
@@ -266,7 +270,7 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
       for (std::size_t i = 0; i < recorded.plans.size(); ++i) {
         judge_plan(recorded, i, known, *from, excuse, result);
       }
-      const Worst of_track = judge_track(recorded, known, *from, excuse, result);
+      const Worst of_track = judge_track(record, limits, recorded, known, *from, excuse, result);
       if (of_track.at) least.lower(of_track.value, *of_track.at);
     }
   }

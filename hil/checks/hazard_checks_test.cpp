@@ -144,6 +144,19 @@ TEST(HazardChecks, WhoComesBackIsNotExcused) {
   EXPECT_THAT(result.violations[0].sentence, HasSubstr("plan 2 of vehicle 3"));
 }
 
+TEST(HazardChecks, WhomItsAutopilotHasAloneIsNotHeldToAnyButItsPlansAre) {
+  RunRecord record = good_record();
+  record.hazards = {{{HazardId{3}, {0.0, -1500.0}, 100.0}, Instant{}}};
+  record.left_alone = {{kFromSouth, at_seconds(20.0), at_seconds(23.0)}};
+  // In it from 28 s to 32 s, and for 10 s after the program goes on it may still be on its way
+  // back.
+  const CheckResult result = check_hazards(record, {});
+  ASSERT_EQ(result.violations.size(), 1U);
+  EXPECT_THAT(result.violations[0].sentence, HasSubstr("plan 1 of vehicle 3"));
+  record.left_alone.front().until = at_seconds(20.5);
+  EXPECT_THAT(check_hazards(record, {}).violations, SizeIs(2));
+}
+
 TEST(HazardChecks, WhoHasNoProgramKnowsOfAHazardFromItsNextStartOn) {
   RunRecord record = record_with_hazard(20.0);
   record.agent_ends = {{kFromSouth, at_seconds(19.0), at_seconds(25.5)}};

@@ -144,7 +144,17 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
           std::any_of(record.agent_ends.begin(), record.agent_ends.end(), [&](const AgentEnd& end) {
             return end.vehicle == recorded.vehicle && end.at == plan.since;
           });
-      if (i > 0 && !program_ended) {
+      // And who was left alone, from where that has brought it, where it finds that out.
+      const auto from_old = [&] {
+        return plan_pose(recorded.plans[i - 1].plan,
+                         plan_distance_m(recorded.plans[i - 1].plan, plan.since));
+      };
+      const bool taken_up =
+          i > 0 &&
+          was_left_alone(record, recorded.vehicle, recorded.plans[i - 1].since, plan.since) &&
+          ((here.position() - from_old().position()).norm() > limits.plan_jump_m ||
+           std::abs(wrap_pi(here.heading_rad - from_old().heading_rad)) > limits.plan_jump_rad);
+      if (i > 0 && !program_ended && !taken_up) {
         const PlanRecord& old = recorded.plans[i - 1];
         before = plan_pose(old.plan, plan_distance_m(old.plan, plan.since));
         // Who was blown off its plan plans on from where it is.

@@ -38,6 +38,17 @@ TEST(PlanChecks, AGapInATrackIsFound) {
   EXPECT_THAT(only_sentence(check_recordings(record, {})), HasSubstr("a gap of 2.05 s"));
 }
 
+TEST(PlanChecks, AGapWhileItsAutopilotHadItAloneIsNone) {
+  RunRecord record = good_record();
+  auto& track = of(record, kSurveyor).track;
+  const Instant from = track[1600].state.time;
+  track.erase(track.begin() + 1600, track.begin() + 1640);
+  record.left_alone = {{kSurveyor, from, from + std::chrono::seconds{2}}};
+  EXPECT_TRUE(check_recordings(record, {}).held());
+  record.left_alone.front().vehicle = kFromWest;
+  EXPECT_FALSE(check_recordings(record, {}).held());
+}
+
 TEST(PlanChecks, ATightSegmentIsFoundHoweverShort) {
   RunRecord record = good_record();
   auto& plan = of(record, kSurveyor).plans.front().plan;
@@ -119,6 +130,22 @@ TEST(PlanChecks, WhatFliesOnWithoutItsProgramStartsFromTheVehicle) {
   EXPECT_TRUE(check_continuity(record, {}).held());
   recorded.plans.back().plan.path.start.y_m += 12.0;
   EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("from the vehicle"));
+}
+
+TEST(PlanChecks, WhoWasLeftAloneGoesOnFromTheOldPlanOrFromWhereItIs) {
+  RunRecord record = good_record();
+  auto& recorded = of(record, kFromWest);
+  const auto since = recorded.plans.back().since;
+  record.left_alone = {{kFromWest, since - std::chrono::seconds{5}, since}};
+  EXPECT_TRUE(check_continuity(record, {}).held());  // from the old plan
+  recorded.plans.back().plan.path.start.y_m += 12.0;
+  EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("from the vehicle"));
+  for (auto& point : recorded.track) {
+    if (point.state.time >= since) point.state.y_m += 12.0;
+  }
+  EXPECT_TRUE(check_continuity(record, {}).held());
+  record.left_alone.clear();
+  EXPECT_FALSE(check_continuity(record, {}).held());
 }
 
 TEST(PlanChecks, AFirstPlanAwayFromTheVehicleIsFound) {

@@ -11,4 +11,10 @@ const recording::Recording* recording_of(const std::vector<recording::Recording>
   return found == recordings.end() ? nullptr : &*found;
 }
 
+bool was_left_alone(const RunRecord& record, VehicleId vehicle, Instant from, Instant until) {
+  return std::ranges::any_of(record.left_alone, [&](const LeftAlone& alone) {
+    return alone.vehicle == vehicle && alone.from <= until && from <= alone.until;
+  });
+}
+
 }  // namespace skein::checks

@@ -3,17 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 #include <utility>
-#include <variant>
 
 #include "multirotor_body.hpp"
 #include "skein/hal/simulated_flight_controller.hpp"
 #include "skein/hal/simulated_multirotor.hpp"
-#include "skein/idl/autopilot_fields.hpp"
-#include "skein/idl/coalition_fields.hpp"
-#include "skein/idl/domain_fields.hpp"
-#include "skein/idl/events_fields.hpp"
 #include "skein/onboard/node_config.hpp"
 
 namespace skein::hil {
@@ -174,15 +168,7 @@ void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
 }
 
 mission::MissionEvent Aircraft::in_true_time(mission::MissionEvent event) const {
-  event.time -= clock_;
-  std::visit(
-      [this](auto& body) {
-        codec::for_each_field(body, [this](auto /*name*/, auto& value) {
-          if constexpr (std::is_same_v<decltype(value), Instant&>) value -= clock_;
-        });
-      },
-      event.body);
-  return event;
+  return shifted(std::move(event), -clock_);
 }
 
 VehicleState Aircraft::local_state() const {

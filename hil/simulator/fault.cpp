@@ -3,7 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <type_traits>
+
+#include "skein/idl/coalition_fields.hpp"
+#include "skein/idl/domain_fields.hpp"
+#include "skein/idl/events_fields.hpp"
 
 namespace skein::hil {
 namespace {
@@ -88,6 +94,24 @@ struct Sentence {
     return fmt::format("{} vehicles are given routes", what.routes.size());
   }
   std::string operator()(const Healing& /*what*/) const { return "the radio heals"; }
+  std::string operator()(const ProgramsStall& what) const {
+    return (what.who.empty() ? "its program" : "the program of " + names_of(what.who)) +
+           " stands still";
+  }
+  std::string operator()(const ProgramSlow& what) const {
+    return fmt::format("the program of {} stands still for {:.0f} % of the time",
+                       names_of({what.node}), 100.0 * what.stopped_share);
+  }
+  std::string operator()(const DiskFull& what) const {
+    return "the disk of " + names_of({what.node}) + " is full";
+  }
+  std::string operator()(const ClockStep& what) const {
+    return fmt::format("the clock of {} is set by {:+.3f} s", names_of({what.vehicle}),
+                       to_seconds(what.by));
+  }
+  std::string operator()(const OtherRelease& what) const {
+    return names_of({what.vehicle}) + " flies with another release";
+  }
 };
 
 }  // namespace
@@ -119,6 +143,19 @@ std::vector<Fault> faults_of(const configuration::Scenario& scenario) {
   return faults;
 }
 
+bool has_role(mission::Activity activity, Role role) {
+  using mission::Activity;
+  switch (role) {
+    case Role::any:
+      return true;
+    case Role::leader:
+      return activity == Activity::leading || activity == Activity::monitoring;
+    case Role::member:
+      return activity == Activity::executing || activity == Activity::bidding;
+  }
+  return false;
+}
+
 Duration clock_offset(const std::vector<Fault>& faults, VehicleId node) {
   for (const Fault& fault : faults) {
     const auto* clock = std::get_if<ClockOff>(&fault.what);
@@ -127,12 +164,31 @@ Duration clock_offset(const std::vector<Fault>& faults, VehicleId node) {
   return {};
 }
 
+bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle) {
+  return std::ranges::any_of(faults, [vehicle](const Fault& fault) {
+    const auto* other = std::get_if<OtherRelease>(&fault.what);
+    return other != nullptr && other->vehicle == vehicle;
+  });
+}
+
 Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle) {
   for (const Fault& fault : faults) {
     const auto* late = std::get_if<LateStart>(&fault.what);
     if (late != nullptr && late->vehicle == vehicle) return fault.when.not_before;
   }
   return {};
+}
+
+mission::MissionEvent shifted(mission::MissionEvent event, Duration by) {
+  event.time += by;
+  std::visit(
+      [by](auto& body) {
+        codec::for_each_field(body, [by](auto /*name*/, auto& value) {
+          if constexpr (std::is_same_v<decltype(value), Instant&>) value += by;
+        });
+      },
+      event.body);
+  return event;
 }
 
 std::optional<Instant> healing_of(const std::vector<Fault>& faults) {

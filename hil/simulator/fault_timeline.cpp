@@ -14,11 +14,28 @@ bool of_radio(const Fault& fault) {
          std::holds_alternative<Healing>(fault.what);
 }
 
+bool of_whole_mission(const Fault& fault) {
+  return std::holds_alternative<ClockOff>(fault.what) ||
+         std::holds_alternative<OtherRelease>(fault.what);
+}
+
+/// Whom a fault is done to, and who of several has to be chosen by.
+struct Whom {
+  const std::vector<VehicleId>* who = nullptr;
+  std::uint64_t pick = 0;
+};
+Whom whom(const Fault& fault) {
+  if (const auto* ended = std::get_if<ProgramsEnd>(&fault.what)) return {&ended->who, ended->pick};
+  if (const auto* still = std::get_if<ProgramsStall>(&fault.what))
+    return {&still->who, still->pick};
+  return {};
+}
+
 }  // namespace
 
 FaultTimeline::FaultTimeline(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
-    if (std::holds_alternative<ClockOff>(fault.what)) continue;  // of the whole mission
+    if (of_whole_mission(fault)) continue;
     coming_.push_back({fault, std::nullopt, {}, false});
     const When& when = fault.when;
     if (when.change || when.role) continue;
@@ -28,12 +45,12 @@ FaultTimeline::FaultTimeline(const std::vector<Fault>& faults) {
 
 void FaultTimeline::plan(Coming& coming, Instant now, const Having& having) const {
   const When& when = coming.fault.when;
-  auto* const ended = std::get_if<ProgramsEnd>(&coming.fault.what);
-  if (ended != nullptr) coming.who = ended->who;
+  const Whom named = whom(coming.fault);
+  if (named.who != nullptr) coming.who = *named.who;
   if (when.role) {
     const auto candidates = having(*when.role);
     if (candidates.empty()) return;
-    coming.who = {candidates[ended != nullptr ? ended->pick % candidates.size() : 0]};
+    if (coming.who.empty()) coming.who = {candidates[named.pick % candidates.size()]};
     coming.at = now + when.after;
   } else if (when.change) {
     if (*when.change < changes_.size()) coming.at = changes_[*when.change] + when.after;

@@ -41,10 +41,7 @@ JudgedRun fly_judged(const TeamMission& mission, const checks::Limits& limits,
   checks::Limits held_to = limits;
   const auto off = [](const Fault& fault) { return std::holds_alternative<ClockOff>(fault.what); };
   if (std::any_of(mission.faults.begin(), mission.faults.end(), off)) {
-    // Times are agreed by clocks that differ, and judged by the true one.
-    const double differ = to_seconds(mission.protocol.clock_guard);
-    held_to.planned_time_s += differ;
-    held_to.arrival_s += differ;
+    allow_for_clocks(held_to, mission.protocol);
   }
   const checks::RunRecord& recorded = recorder.finish(run.result);
   run.broken = checks::judge(recorded, held_to);

@@ -176,4 +176,10 @@ checks::Limits limits_of(const configuration::Expectations& expect) {
   return limits;
 }
 
+void allow_for_clocks(checks::Limits& limits, const coalition::ProtocolParams& protocol) {
+  const double differ = to_seconds(protocol.clock_guard);
+  limits.planned_time_s += differ;
+  limits.arrival_s += differ;
+}
+
 }  // namespace skein::hil

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "excuses.hpp"
+#include "skein/hil/excuses.hpp"
 
 namespace skein::hil {
 

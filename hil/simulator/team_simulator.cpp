@@ -82,19 +82,6 @@ std::size_t bytes_of(const mission::Message& message) {
   return codec::encode(message).value_or(codec::Bytes{}).size() + kHeaders;
 }
 
-bool has_role(mission::Activity activity, Role role) {
-  using mission::Activity;
-  switch (role) {
-    case Role::any:
-      return true;
-    case Role::leader:
-      return activity == Activity::leading || activity == Activity::monitoring;
-    case Role::member:
-      return activity == Activity::executing || activity == Activity::bidding;
-  }
-  return false;
-}
-
 /// A node of the simulated network.
 struct Station {
   radio::Node node;

@@ -42,6 +42,8 @@ struct RunArguments {
   std::string autopilot_model;                    ///< of its simulator's planes
   std::filesystem::path routes;  ///< a plan for a mission of routes; empty: one is made
   bool headless = false;
+  std::string faults = "none";
+  std::filesystem::path other_programs;  ///< of another release; empty: none
   bool dds = false;
   bool relay = false;  ///< in place of the scenario's air.hops_max
   std::string links;   ///< a program that makes the links of a real network; empty: none

@@ -12,6 +12,7 @@
 
 #include "commands.hpp"
 #include "skein/hil/fault_profiles.hpp"
+#include "skein/hil/process_faults.hpp"
 #include "skein/shards/shard.hpp"
 #include "skein/version/version.hpp"
 
@@ -86,6 +87,23 @@ void add_autopilot(CLI::App& command, RunArguments& arguments) {
       ->needs(autopilot);
 }
 
+/// What goes wrong with processes.
+void add_process_faults(CLI::App& command, RunArguments& arguments) {
+  auto* faults = command
+                     .add_option("--faults", arguments.faults,
+                                 fmt::format("What goes wrong, drawn from the seed, several with "
+                                             "commas:\n{}",
+                                             fmt::join(process_profiles(), ", ")))
+                     ->capture_default_str()
+                     ->excludes("--rate");
+  command
+      .add_option("--other-bin", arguments.other_programs,
+                  "Folder of another release's programs, for vehicles that the faults 'versions' "
+                  "draw; the mission is flown in clear then")
+      ->check(CLI::ExistingDirectory)
+      ->needs(faults);
+}
+
 void add_run(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<RunArguments>();
   arguments->programs = std::filesystem::canonical("/proc/self/exe").parent_path();
@@ -100,6 +118,7 @@ void add_run(CLI::App& app, int& status) {
                       "is made)");
   command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
   command->add_option("--out", arguments->folder, "Folder of the run (default: runs/NAME-TIME)");
+  add_process_faults(*command, *arguments);
   command
       ->add_option("--port-base", arguments->port_base,
                    "First UDP port (default: free ports are looked for)")
@@ -151,6 +170,7 @@ void add_run(CLI::App& app, int& status) {
   command->footer(
       "Ends with status 0 only if every check held; 1 if one failed, 2 for bad input.\n"
       "Examples: skein-hil run scenarios/coalition-6.yaml --rate 2\n"
+      "          skein-hil run scenarios/nemesis-8.yaml --dds --faults crash,stall --seed 7\n"
       "          skein-hil run scenarios/hil-5-27.yaml --external 1-5 --fleet fleet.yaml");
   command->callback([arguments, &status] { status = run(*arguments); });
 }

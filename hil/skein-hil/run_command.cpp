@@ -15,6 +15,7 @@
 #include "skein/fleet/fleet.hpp"
 #include "skein/hil/bench.hpp"
 #include "skein/hil/judgement.hpp"
+#include "skein/hil/process_faults.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/hindsight/hindsight.hpp"
 #include "skein/process/token.hpp"
@@ -173,6 +174,16 @@ int run(const RunArguments& arguments) {
   if (const auto given = give_hosts(*scenario, options, arguments); !given) {
     return complain(given.error().message);
   }
+  auto faults = spoil(*scenario, arguments.faults, !arguments.other_programs.empty());
+  if (!faults) return complain(faults.error().message);
+  options.faults = std::move(*faults);
+  options.other_programs = arguments.other_programs;
+  // Not every release has keys.
+  if (std::ranges::any_of(options.faults, [](const Fault& fault) {
+        return std::holds_alternative<OtherRelease>(fault.what);
+      })) {
+    options.sealed = false;
+  }
   if (!std::filesystem::exists(options.radio_plugin)) {
     return complain(options.radio_plugin.string() + ": not there; build it with ./dev build");
   }
@@ -193,6 +204,7 @@ int run(const RunArguments& arguments) {
         "nobody is there to authorise deliveries, so none is flown: the scenario has no "
         "operator_decisions; --prompt or --console lets you decide\n");
   }
+  for (const Fault& fault : options.faults) fmt::print("drawn: {}\n", describe(fault));
   ProgressLine line{!arguments.headless && !arguments.prompt, scenario->vehicles.size(),
                     scenario->sites.size()};
   const auto outcome = fly(*scenario, options, [&](const BenchProgress& p) { line.update(p); });
@@ -202,12 +214,22 @@ int run(const RunArguments& arguments) {
 
   const auto merged = recording::merge_run(options.run_folder);
   if (!merged) fmt::print(stderr, "{}\n", merged.error().message);
-  const auto record = read_record(*scenario, options.run_folder, outcome->killed);
+  const auto record = read_record(*scenario, options.run_folder, *outcome);
   if (!record) {
     for (const auto& death : outcome->deaths) fmt::print(stderr, "{}\n", death);
     return complain(record.error().message);
   }
   const bool held = report_on(*scenario, *record, *outcome, arguments, options.run_folder);
+  if (!options.faults.empty()) {
+    fmt::print("the bench was late by {:.2f} s at most\n", outcome->late_s);
+  }
+  if (!options.faults.empty() && !held) {
+    fmt::print(
+        "\nThe same faults again, at the same moments of the mission:\n  {} run {} --faults "
+        "{} --seed {}{}\n",
+        (arguments.programs / "skein-hil").string(), arguments.scenario.string(), arguments.faults,
+        scenario->seed, options.dds ? " --dds" : "");
+  }
   return held && !outcome->interrupted ? kExitHeld : kExitViolated;
 }
 

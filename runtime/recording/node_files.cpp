@@ -55,13 +55,14 @@ Result<std::vector<NodeFile>> open_node(const std::filesystem::path& folder) {
 }
 
 std::vector<NodeFile> open_mission(const std::filesystem::path& folder, VehicleId node,
-                                   std::int64_t epoch_unix_ns) {
+                                   std::optional<std::int64_t> epoch_unix_ns) {
   std::vector<NodeFile> files;
   const auto take = [&](const std::filesystem::path& path) {
     auto file = open_file(path);
     if (!file) return;
     const Session& session = file->sessions.front();
-    if (session.node == node && session.epoch_unix_ns == epoch_unix_ns) {
+    if (session.node == node &&
+        session.epoch_unix_ns == epoch_unix_ns.value_or(session.epoch_unix_ns)) {
       files.push_back(std::move(*file));
     }
   };

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "channel_book.hpp"
@@ -25,9 +26,11 @@ struct NodeFile {
 
 /// The files of the newest process in a node's folder, the older first.
 [[nodiscard]] Result<std::vector<NodeFile>> open_node(const std::filesystem::path& folder);
-/// Those of all processes of that node in the mission with that epoch; none that cannot be read.
+/// Those of all processes of that node in the mission with that epoch (without one: in any); none
+/// that cannot be read.
 [[nodiscard]] std::vector<NodeFile> open_mission(const std::filesystem::path& folder,
-                                                 VehicleId node, std::int64_t epoch_unix_ns);
+                                                 VehicleId node,
+                                                 std::optional<std::int64_t> epoch_unix_ns);
 
 /// The folders in that of a run that have a recording, by name.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> node_folders(

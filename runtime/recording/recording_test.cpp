@@ -152,6 +152,26 @@ TEST_F(RecordingTest, AnEarlierProcessDoesNotCount) {
   EXPECT_EQ(read_back->events.size(), 1U);
 }
 
+TEST_F(RecordingTest, EachProcessThatHadTheFolderIsReadByItself) {
+  for (const std::uint64_t instance : {11U, 12U}) {
+    Writer::Options options;
+    options.session.node = VehicleId{7};
+    options.session.instance = InstanceId{instance};
+    options.session.epoch_unix_ns += static_cast<std::int64_t>(instance);
+    auto writer = Writer::open(folder_, options);
+    ASSERT_TRUE(writer.ok());
+    for (std::uint64_t i = 10; i < instance; ++i) writer->write(awkward_event());
+  }
+  const auto sessions = read_sessions(folder_, VehicleId{7});
+  ASSERT_EQ(sessions.size(), 2U);
+  EXPECT_EQ(sessions[0].session.instance, InstanceId{11});
+  EXPECT_EQ(sessions[0].recording.events.size(), 1U);
+  EXPECT_EQ(sessions[1].session.instance, InstanceId{12});
+  EXPECT_EQ(sessions[1].recording.events.size(), 2U);
+  EXPECT_EQ(sessions[1].session.epoch_unix_ns, Session::kEpochOfTests + 12);
+  EXPECT_TRUE(read_sessions(folder_ / "nowhere", VehicleId{7}).empty());
+}
+
 TEST_F(RecordingTest, ManyNewStartsTakeNothingOfTheMissionWhileThereIsRoom) {
   const auto start = [this](std::uint64_t instance, std::int64_t epoch_unix_ns) {
     Writer::Options options;

@@ -6,6 +6,7 @@
 
 #include "skein/onboard/agent_loop.hpp"
 #include "skein/onboard/control_loop.hpp"
+#include "skein/onboard/load_book.hpp"
 #include "skein/process/wake.hpp"
 #include "skein/recording/writer.hpp"
 
@@ -16,9 +17,10 @@ namespace skein::onboard {
 /// on.
 class Recorder {
  public:
-  /// The rings must outlive this object.
+  /// The rings must outlive this object. In the book it notes each load as it is used: when its
+  /// approach begins.
   Recorder(std::optional<recording::Writer> writer, ControlPorts& control, EventRing& events,
-           AgentRing& agent);
+           AgentRing& agent, LoadBook loads);
 
   /// Works until stop(), then writes what is left. Flushes every second.
   void run();
@@ -27,11 +29,13 @@ class Recorder {
  private:
   void empty_rings();
   void flush();
+  void note_load(const mission::MissionEvent& event);
 
   std::optional<recording::Writer> writer_;
   ControlPorts* control_;
   EventRing* events_;
   AgentRing* agent_;
+  LoadBook loads_;
   std::uint64_t lost_ = 0;  ///< as far as the recording says
   process::Wake wake_;
   std::atomic<bool> stopping_{false};

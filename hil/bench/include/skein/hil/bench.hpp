@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,9 @@
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/configuration/scenario.hpp"
+#include "skein/hil/fault.hpp"
+#include "skein/hil/program_spans.hpp"
+#include "skein/mission/messages.hpp"
 
 namespace skein::hil {
 
@@ -38,9 +42,13 @@ struct BenchOptions {
   /// Of a shell: a program that makes a real network's links as the bench says (docs/mesh.md);
   /// empty: none.
   std::string links;
-  bool sealed = true;                      ///< with keys that are made for the run
-  std::uint16_t console_port = 0;          ///< of the ground station's page; 0: it has none
-  std::string console_token;               ///< that opens it
+  bool sealed = true;              ///< with keys that are made for the run
+  std::uint16_t console_port = 0;  ///< of the ground station's page; 0: it has none
+  std::string console_token;       ///< that opens it
+  /// Besides those of the scenario (spoil()). An aircraft outlives its program then, and flies on
+  /// by its flight controller.
+  std::vector<Fault> faults;
+  std::filesystem::path other_programs;    ///< of another release, for whom faults say so
   int ground_stations = 1;                 ///< 2: the second watches; its page is at the next port
   std::optional<Instant> take_command_at;  ///< when the second takes the command; none: never
   bool prompt =
@@ -56,6 +64,11 @@ struct BenchProgress {
   std::string news;  ///< a line worth printing, or empty
 };
 
+struct HeardEvent {
+  Instant at{};
+  mission::MissionEvent event;
+};
+
 /// What happened on the bench besides what the processes recorded.
 struct BenchOutcome {
   bool finished = false;              ///< all sites done, or the script of a formation
@@ -67,9 +80,16 @@ struct BenchOutcome {
   bool interrupted = false;           ///< by Ctrl-C
   bool quit = false;                  ///< by the operator at the ground station's prompt
   std::size_t external = 0;           ///< vehicles on other machines
-  std::vector<std::string> not_collected;  ///< why, of each of these without its recording
-  std::uint64_t control_overruns = 0;      ///< missed control periods, all vehicles together
-  std::uint64_t messages_dropped = 0;      ///< by full queues or as damaged, all vehicles together
+  std::vector<std::string> not_collected;    ///< why, of each of these without its recording
+  std::uint64_t control_overruns = 0;        ///< missed control periods, all vehicles together
+  ProgramSpans spans;                        ///< what faults did to programs
+  std::int64_t epoch_unix_ns = 0;            ///< mission time 0
+  std::map<VehicleId, Duration> clocks_off;  ///< by faults, so far ahead; of who has started so
+  std::optional<Instant> healed_at;          ///< the radio; nothing: it does not in this mission
+  std::vector<HeardEvent> heard;             ///< with BenchOptions::faults, by the bench
+  std::map<VehicleId, mission::Telemetry> last;  ///< of each vehicle
+  double late_s = 0.0;                 ///< the bench itself, at most: the machine was busy
+  std::uint64_t messages_dropped = 0;  ///< by full queues or as damaged, all vehicles together
 };
 
 /// User's own autopilots speak on a multicast bus, whose frames are to stay on this machine: unless

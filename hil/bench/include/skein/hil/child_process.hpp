@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -20,10 +21,11 @@ class ChildProcess {
  public:
   /// Starts argv[0] (a path) with `environment` added to ours, its output appended to `log`; an
   /// empty `log` gives it our terminal, input and output. `input`, where it is one, is its input;
-  /// else there is nothing to read.
+  /// else there is nothing to read. `file_bytes_max`: as limit_files(), from its start.
   [[nodiscard]] static Result<ChildProcess> start(
       const std::vector<std::string>& argv, const std::filesystem::path& log,
-      const std::map<std::string, std::string>& environment, int input = -1);
+      const std::map<std::string, std::string>& environment, int input = -1,
+      std::optional<std::size_t> file_bytes_max = {});
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
@@ -36,6 +38,11 @@ class ChildProcess {
   /// Did it end by itself with status 0? Precondition: ended().
   [[nodiscard]] bool clean() const { return status_ == 0; }
   void signal(int number) const;
+  /// It, and what it has started that is still of its group.
+  void signal_group(int number) const;
+  /// From now on the kernel refuses what it writes beyond that length of a file (EFBIG), as a full
+  /// disk does. Where we may not, nothing changes.
+  void limit_files(std::size_t bytes_max) const;
   /// Before all that is not real-time, as a machine of its own would be; without the right to it,
   /// as before.
   void make_realtime() const;

@@ -14,10 +14,11 @@
 
 namespace skein::hil {
 
-/// What the processes recorded in the run's folder, with what the mission was to be.
+/// What the processes recorded in the run's folder, with what the mission was to be, and what
+/// faults were done to them.
 [[nodiscard]] Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
                                                     const std::filesystem::path& run_folder,
-                                                    const std::vector<VehicleId>& killed);
+                                                    const BenchOutcome& outcome);
 
 /// All checks of the record, and those that only the bench can make: that everybody found
 /// everybody, kept up and stopped cleanly, that as many coalitions formed as the scenario expects,

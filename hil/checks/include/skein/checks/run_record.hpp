@@ -31,6 +31,14 @@ struct AgentEnd {
   std::optional<Instant> restarted_at;  ///< with a new agent that remembers nothing
 };
 
+/// For so long no program of a vehicle ran, or it stood still, for all or much of that time: its
+/// autopilot had it alone.
+struct LeftAlone {
+  VehicleId vehicle;
+  Instant from{};
+  Instant until{};
+};
+
 /// A task that need not be done.
 struct Excuse {
   TaskId task;
@@ -68,7 +76,9 @@ struct RunRecord {
   std::vector<recording::PlaceRecord> places = {};  ///< of a formation, by the ground station
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
   std::vector<AgentEnd> agent_ends;  ///< in the order of time
-  std::vector<Excuse> excused;
+  /// Of processes. In virtual time a program ends only where what its autopilot does then is safe.
+  std::vector<LeftAlone> left_alone = {};
+  std::vector<Excuse> excused = {};
   /// As whoever watches the network saw it, where somebody did; in the order of time.
   std::vector<RefusalHeard> refusals = {};
 };
@@ -80,6 +90,10 @@ struct RunRecord {
                                                               VehicleId vehicle) {
   return recording_of(record.recordings, vehicle);
 }
+
+/// The vehicle was, somewhere within that time.
+[[nodiscard]] bool was_left_alone(const RunRecord& record, VehicleId vehicle, Instant from,
+                                  Instant until);
 
 /// What a mission is held to.
 struct Limits {
@@ -101,6 +115,9 @@ struct Limits {
   double arrival_spread_s = 0.3;  ///< from the first vehicle in its place to the last
   Capabilities copters_fly;       ///< kinds of tasks of which copters have flown one at least
   double track_gap_s = 1.0;       ///< a longer gap in a track cannot be judged
+  /// From the start of a program, or from when it goes on, until it has its vehicle where it wants
+  /// it: it waits for the link to the autopilot, plans, and flies back from where that had it.
+  double taken_up_s = 10.0;
 };
 
 }  // namespace skein::checks

@@ -29,7 +29,8 @@ struct When {
   std::optional<Instant> not_after = std::nullopt;  ///< then it does not begin any more
   /// That a ground station has begun so many changes of the formation before, and then this one.
   std::optional<std::size_t> change = std::nullopt;
-  /// That some vehicle has this role; it is the one that the fault is done to.
+  /// That some vehicle has this role; it is the one that the fault is done to, unless that names
+  /// others.
   std::optional<Role> role = std::nullopt;
   Duration after{};
 };
@@ -90,12 +91,38 @@ struct RoutesOrdered {
 /// of the team must finish its work.
 struct Healing {};
 
+// What only processes have; the simulator passes over it.
+
+/// The programs of nodes stand still, and go on where they stood. Empty: as with ProgramsEnd.
+struct ProgramsStall {
+  std::vector<VehicleId> who;
+  std::uint64_t pick = 0;
+};
+/// A node's program runs for the rest of the time only.
+struct ProgramSlow {
+  VehicleId node;
+  double stopped_share = 0.0;
+};
+/// What a node's program writes to files is refused from now on.
+struct DiskFull {
+  VehicleId node;
+};
+/// A vehicle's clock is set, by so much: what starts anew there goes by that.
+struct ClockStep {
+  VehicleId vehicle;
+  Duration by{};
+};
+/// A vehicle's program is of another release, all the mission long.
+struct OtherRelease {
+  VehicleId vehicle;
+};
+
 struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
   std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff,
                Ordered, SitesReported, PlaceSeen, SiteWithdrawal, GrantTakenBack, RoutesOrdered,
-               BatteryFalls, Healing>
+               BatteryFalls, Healing, ProgramsStall, ProgramSlow, DiskFull, ClockStep, OtherRelease>
       what;
 };
 
@@ -104,10 +131,16 @@ struct Fault {
 
 /// How far a node's clock is off; 0 unless a fault says otherwise.
 [[nodiscard]] Duration clock_offset(const std::vector<Fault>& faults, VehicleId node);
+/// Does a vehicle that does that have the role?
+[[nodiscard]] bool has_role(mission::Activity activity, Role role);
+[[nodiscard]] bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle);
 /// When a vehicle takes off: at the epoch, unless a fault says otherwise.
 [[nodiscard]] Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle);
 /// When the radio heals; nothing: it does not.
 [[nodiscard]] std::optional<Instant> healing_of(const std::vector<Fault>& faults);
+
+/// All of its times, by so much.
+[[nodiscard]] mission::MissionEvent shifted(mission::MissionEvent event, Duration by);
 
 /// One line.
 [[nodiscard]] std::string describe(const Fault& fault);

@@ -33,5 +33,7 @@ namespace skein::hil {
 
 /// The scenario's expectations as the judges' limits.
 [[nodiscard]] checks::Limits limits_of(const configuration::Expectations& expect);
+/// Times are agreed by clocks that differ, and judged by the true one.
+void allow_for_clocks(checks::Limits& limits, const coalition::ProtocolParams& protocol);
 
 }  // namespace skein::hil

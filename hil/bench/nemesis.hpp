@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "skein/base/result.hpp"
+#include "skein/hil/child_process.hpp"
+#include "skein/hil/fault.hpp"
+#include "skein/hil/program_spans.hpp"
+
+namespace skein::hil {
+
+/// In what state of its machine a program starts anew.
+struct StartAnew {
+  std::optional<std::size_t> file_bytes_max;  ///< its disk is full
+  Duration clock_off{};                       ///< its clock is so far ahead
+};
+
+/// Does to the programs of nodes what faults say, and notes it. Whatever it has stopped goes on
+/// when the object goes.
+class Nemesis {
+ public:
+  struct Hands {
+    std::map<VehicleId, ChildProcess>& programs;
+    std::function<Result<void>(VehicleId, const StartAnew&)> start;  ///< in place of what ended
+    std::function<void(const std::string&)> say;
+  };
+  explicit Nemesis(Hands hands) : hands_{std::move(hands)} {}
+  ~Nemesis() { let_go(); }
+  Nemesis(const Nemesis&) = delete;
+  Nemesis& operator=(const Nemesis&) = delete;
+
+  /// How far its clock is ahead from the start, which a later step adds to.
+  void set_clock(VehicleId node, Duration off) { clock_off_[node] = off; }
+  /// A fault begins. False: it is none of these, and nothing is done. A program that is down or
+  /// gone for good is left alone.
+  [[nodiscard]] bool begin(const Fault& fault, const std::vector<VehicleId>& who, Instant now);
+  /// What is due by then: starts, what goes on, and the turns of who is slow. Several times in each
+  /// kTurn. Fails where a program cannot be started.
+  [[nodiscard]] Result<void> step(Instant now);
+
+  [[nodiscard]] bool is_down(VehicleId node) const { return start_at_.contains(node); }
+  [[nodiscard]] bool anybody_down() const { return !start_at_.empty(); }
+  /// It was killed for good.
+  void note_gone(VehicleId node, Instant now);
+  /// Everything goes on, for good.
+  void let_go();
+  [[nodiscard]] const ProgramSpans& spans() const { return spans_; }
+  [[nodiscard]] const std::map<VehicleId, Duration>& clocks_off() const { return clock_off_; }
+
+  /// What a full disk leaves room for in a file: a start's number, and a few lines of a log.
+  static constexpr std::size_t kRoom_bytes = 16384;
+  /// Of who is slow.
+  static constexpr Duration kTurn = std::chrono::milliseconds{200};
+
+ private:
+  struct Slow {
+    double stopped_share = 0.0;
+    Instant until{};
+  };
+  void end(VehicleId node, Duration down_for, Instant now);
+  void stand_still(VehicleId node, Duration time, Instant now);
+  void set_running(VehicleId node, bool runs);
+  [[nodiscard]] bool should_run(VehicleId node, Instant now) const;
+  [[nodiscard]] ChildProcess* running(VehicleId node);
+
+  Hands hands_;
+  std::map<VehicleId, Instant> start_at_;
+  std::map<VehicleId, Instant> still_until_;
+  std::map<VehicleId, Slow> slow_;
+  std::map<VehicleId, bool> stopped_;  ///< true: it was sent SIGSTOP last
+  std::map<VehicleId, Duration> clock_off_;
+  std::map<VehicleId, bool> disk_full_;
+  ProgramSpans spans_;
+};
+
+}  // namespace skein::hil

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "site_reports.hpp"
+
+#include <algorithm>
+
+namespace skein::hil {
+
+bool is_barred(const mission::Telemetry& telemetry) {
+  const mission::ActivityDetail does = telemetry.detail;
+  return does == mission::ActivityDetail::barred;
+}
+
+std::vector<VehicleId> having(const SiteReports::Team& team, Role role) {
+  std::vector<VehicleId> some;
+  for (const auto& [id, telemetry] : team) {
+    if (has_role(telemetry.activity, role)) some.push_back(id);
+  }
+  return some;
+}
+
+void SiteReports::on_event(const mission::MissionEvent& event) {
+  if (event.kind() == mission::EventKind::site_done) done_.insert(event.task.site);
+  // Whoever announces, bids or declines has heard of the site.
+  if (event.vehicle != kGroundStation) knowing_[event.task.site].insert(event.vehicle);
+}
+
+void SiteReports::on_program_end(VehicleId vehicle) {
+  std::vector<Site> hidden = sensors_.hidden();
+  for (const Site& site : sites_) {
+    auto& knowing = knowing_[site.id];
+    const bool forgets = knowing.erase(vehicle) > 0 && knowing.empty();
+    if (forgets && !done_.contains(site.id)) hidden.push_back(site);
+  }
+  sensors_ = SurveySensors{hidden, vehicles_};
+}
+
+std::vector<mission::SiteReport> SiteReports::look(const Team& team) {
+  std::map<VehicleId, Vec2> positions;
+  for (const auto& [id, telemetry] : team) {
+    positions.emplace(id, telemetry.state.position().horizontal());
+  }
+  auto reports = sensors_.update(positions);
+  for (const auto& report : reports) knowing_[report.site.id].insert(report.finder);
+  return reports;
+}
+
+std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team) {
+  std::vector<mission::SiteReport> reports;
+  const auto attends = [&team](VehicleId id) {
+    const auto at = team.find(id);
+    return at != team.end() && !is_barred(at->second);
+  };
+  for (const Site& site : sites_) {
+    const auto& knowing = knowing_[site.id];
+    if (done_.contains(site.id) || std::ranges::any_of(knowing, attends)) continue;
+    const VehicleSpec* nearest = nullptr;
+    double least_m = 0.0;
+    for (const VehicleSpec& vehicle : vehicles_) {
+      if (!attends(vehicle.id) || !vehicle.capabilities.has(TaskKind::survey)) continue;
+      const double away_m =
+          (team.at(vehicle.id).state.position().horizontal() - site.position).norm();
+      if (nearest != nullptr && away_m >= least_m) continue;
+      nearest = &vehicle;
+      least_m = away_m;
+    }
+    if (nearest != nullptr) reports.push_back({nearest->id, site});
+  }
+  for (const auto& report : reports) knowing_[report.site.id].insert(report.finder);
+  return reports;
+}
+
+}  // namespace skein::hil
