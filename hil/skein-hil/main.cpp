@@ -96,8 +96,8 @@ void add_run(CLI::App& app, int& status) {
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
   command->add_option("--routes", arguments->routes,
-                      "A plan of `skein-ground plan`, for a mission of routes (without it one "
-                      "is made)");
+                      "A plan of `skein-ground plan`: of a mission of routes (without it one "
+                      "is made), or of tasks, with which they begin");
   command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
   command->add_option("--out", arguments->folder, "Folder of the run (default: runs/NAME-TIME)");
   command
@@ -162,6 +162,8 @@ void add_simulate(CLI::App& app, const std::string& program, int& status) {
       app.add_subcommand("simulate", "Fly a scenario in virtual time with the same agents");
   command->add_option("scenario", arguments->scenario, "Scenario file (YAML)")->required();
   command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
+  command->add_option("--routes", arguments->routes,
+                      "A plan of tasks of `skein-ground plan`, with which they begin");
   auto* trace = command->add_flag("--trace", arguments->trace, "Print every event");
   command
       ->add_option("--faults", arguments->faults,

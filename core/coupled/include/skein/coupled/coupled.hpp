@@ -11,6 +11,7 @@
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/coupled/criterion.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/site.hpp"
@@ -55,17 +56,6 @@ struct CoupledVehicle {
   double assess_radius_m = 0.0;   ///< of the assessment arc
   Capabilities capabilities;
   std::uint8_t loads = 0;
-};
-
-/// What is optimised. Every criterion can only get worse when a task ends later; so for given
-/// orders of tasks the earliest times are the best, and what remains to be found is the orders.
-enum class Criterion : std::uint8_t {
-  /// J of Wang 2022, eq. (8)-(12), maximised: reward that decays with the time at which a task
-  /// ends, over the sum of rewards, and range left, over the sum of ranges; weighted. J3 is 0
-  /// because the times that deliveries require of each other are constraints here.
-  value,
-  completion,  ///< seconds, minimised: the mean of the ends of the tasks, weighted by reward
-  makespan,    ///< seconds, minimised: the end of the last task
 };
 
 /// As ValueWeights (plan_value.hpp).

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "skein/base/geometry.hpp"
+#include "skein/base/ids.hpp"
+#include "skein/coupled/coupled.hpp"
+#include "skein/domain/site.hpp"
+#include "skein/domain/task.hpp"
+#include "skein/domain/vehicle.hpp"
+
+/// From vehicles and sites to a coupled problem, and from its plan to where vehicles go first.
+namespace skein::planning {
+
+/// As a vehicle plans: at cruise speed, with its planning radius and its whole range.
+[[nodiscard]] CoupledVehicle coupled_vehicle(const VehicleSpec& spec, const Pose2& pose);
+
+/// All tasks of the sites, as the open ones of a problem.
+[[nodiscard]] std::vector<TaskId> tasks_of(const std::vector<Site>& sites);
+
+/// Where a vehicle goes before anybody has awarded it anything: to the sites that it is to survey,
+/// in their order; who surveys none, to where it can begin its first task from.
+struct Intention {
+  VehicleId vehicle;
+  std::vector<Vec2> way;  ///< empty: it has no task
+};
+
+/// One for each vehicle of the problem. A site is gone to on the side where its survey begins, and
+/// so near that it is found; who waits does so short of its task's entry, where there is no hazard.
+[[nodiscard]] std::vector<Intention> intentions_of(const CoupledProblem& problem,
+                                                   const CoupledPlan& plan);
+
+}  // namespace skein::planning
