@@ -27,6 +27,7 @@ TaskingPlan file_of(const Scenario& scenario, const CoupledProblem& problem,
   file.objective = plan.objective;
   file.bound = plan.bound.value_or(0.0);
   file.proven = plan.proven;
+  file.left_out = plan.left_out;
   for (const planning::Intention& intention : planning::intentions_of(problem, plan)) {
     configuration::VehicleTasks part{intention.vehicle, intention.way, {}};
     for (const CoupledTask& task : plan.tasks) {
@@ -78,6 +79,9 @@ CoupledProblem tasking_problem(const Scenario& scenario) {
     if (known.known_from <= Instant{}) problem.hazards.push_back(known.hazard);
   }
   problem.criterion = scenario.tasking.criterion;
+  problem.optional_sites = scenario.tasking.optional;
+  problem.one_task_a_site = true;
+  problem.flyable_waits = false;  // who is early waits on an orbit
   problem.weights = {1.0, 0.0};
   return problem;
 }
@@ -94,6 +98,7 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
                  "; add vehicles, loads or range, or leave sites out of tasking.known"};
   }
   planned.plan = *std::move(plan);
+  planning::settle_ties(planned.problem, planned.plan);
   planned.file = file_of(scenario, planned.problem, planned.plan);
   return planned;
 }
@@ -121,6 +126,7 @@ std::string tasks_text(const PlannedTasks& planned) {
   }
   text += fmt::format("\nthe last task ends at {:.1f} s; {:.3f} of all reward\n", plan.makespan_s,
                       plan.reward / reward_of(planned.problem));
+  for (const SiteId site : plan.left_out) text += fmt::format("left out: site {}\n", site.value);
   if (!free.empty()) text += fmt::format("without a task: {}\n", fmt::join(free, ", "));
   return text;
 }

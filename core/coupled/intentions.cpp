@@ -2,6 +2,12 @@
 #include "skein/coupled/intentions.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "skein/planning/assignment.hpp"
+#include "skein/planning/avoidance.hpp"
+#include "skein/planning/dubins.hpp"
 
 namespace skein::planning {
 namespace {
@@ -10,6 +16,7 @@ namespace {
 constexpr double kFound_radii = 0.85;
 /// Short of the entry, in planning radii: room to turn into it from anywhere on an orbit.
 constexpr double kWaits_radii = 2.0;
+constexpr double kRounding_m = 1e-6;
 
 bool is_clear_of(const std::vector<Hazard>& hazards, const Vec2& place, double room_m) {
   return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
@@ -33,7 +40,65 @@ Vec2 waits_at(const CoupledProblem& problem, const CoupledVehicle& vehicle,
   return task.entry.position();
 }
 
+/// Flies the tasks of the other in the same time.
+bool alike(const CoupledVehicle& a, const CoupledVehicle& b) {
+  return a.speed_mps == b.speed_mps && a.planning_radius_m == b.planning_radius_m &&
+         a.final_approach_m == b.final_approach_m && a.assess_radius_m == b.assess_radius_m;
+}
+
+double way_m(const CoupledProblem& problem, const CoupledVehicle& vehicle, const Pose2& to) {
+  const double radius_m = vehicle.planning_radius_m;
+  if (problem.hazards.empty()) return shortest_dubins_length(vehicle.pose, to, radius_m);
+  const auto length_m =
+      shortest_clear_length(problem.avoidance, vehicle.pose, to, radius_m, problem.hazards);
+  return length_m ? *length_m : std::numeric_limits<double>::infinity();
+}
+
 }  // namespace
+
+void settle_ties(const CoupledProblem& problem, CoupledPlan& plan) {
+  const auto vehicle_of = [&](VehicleId id) -> const CoupledVehicle& {
+    return *std::ranges::find(problem.vehicles, id, &CoupledVehicle::id);
+  };
+  const auto tasks_of_vehicle = [&](VehicleId id) {
+    return std::ranges::count(plan.tasks, id, &CoupledTask::vehicle);
+  };
+  std::vector<CoupledTask*> tasks;
+  std::vector<const CoupledVehicle*> vehicles;
+  for (CoupledTask& task : plan.tasks) {
+    const bool single = tasks_of_vehicle(task.vehicle) == 1;
+    if (single && task.task.kind != TaskKind::survey) tasks.push_back(&task);
+  }
+  for (const CoupledVehicle& vehicle : problem.vehicles) {
+    const bool moves = std::ranges::any_of(
+        tasks, [&](const CoupledTask* task) { return task->vehicle == vehicle.id; });
+    if (moves || tasks_of_vehicle(vehicle.id) == 0) vehicles.push_back(&vehicle);
+  }
+  if (tasks.empty()) return;
+  std::vector<double> costs;
+  for (const CoupledTask* task : tasks) {
+    for (const CoupledVehicle* vehicle : vehicles) {
+      const double there_m = way_m(problem, *vehicle, task->entry);
+      const bool able = alike(*vehicle, vehicle_of(task->vehicle)) &&
+                        vehicle->capabilities.has(task->task.kind) &&
+                        (task->task.kind != TaskKind::deliver || vehicle->loads > 0) &&
+                        there_m <= task->transit_m + kRounding_m &&
+                        task->end_s * vehicle->speed_mps <= vehicle->range_left_m;
+      costs.push_back(able ? there_m : std::numeric_limits<double>::infinity());
+    }
+  }
+  std::vector<int> who(tasks.size());
+  if (!AssignmentSolver{}.least_sum(costs, vehicles.size(), who)) return;
+  for (std::size_t k = 0; k < tasks.size(); ++k) {
+    const auto i = static_cast<std::size_t>(who[k]);
+    tasks[k]->vehicle = vehicles[i]->id;
+    tasks[k]->least_transit_m = costs[k * vehicles.size() + i];
+  }
+  const auto place = [&](const CoupledTask& task) { return &vehicle_of(task.vehicle); };
+  std::ranges::stable_sort(plan.tasks, [&](const CoupledTask& a, const CoupledTask& b) {
+    return place(a) < place(b) || (place(a) == place(b) && a.time_s < b.time_s);
+  });
+}
 
 CoupledVehicle coupled_vehicle(const VehicleSpec& spec, const Pose2& pose) {
   CoupledVehicle v;

@@ -139,6 +139,14 @@ struct ToursArguments {
 };
 int tours(const ToursArguments& arguments);
 
+struct OrienteeringArguments {
+  std::vector<std::filesystem::path> files;
+  std::uint64_t nodes = 300;
+  std::uint64_t steps = 3000;
+  std::uint64_t seed = 1;
+};
+int orienteering(const OrienteeringArguments& arguments);
+
 struct RoutesArguments {
   std::vector<std::string> what{"all"};  ///< as route_figures::find_experiments() takes them
   bool paper = false;                    ///< the paper's numbers of runs

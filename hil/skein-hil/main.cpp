@@ -291,6 +291,28 @@ void add_tours(CLI::App& app, int& status) {
   command->callback([arguments, &status] { status = tours(*arguments); });
 }
 
+void add_orienteering(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<OrienteeringArguments>();
+  auto* command = app.add_subcommand(
+      "orienteering", "Plan who of a team goes where, if there is no time to go everywhere");
+  command
+      ->add_option("file", arguments->files,
+                   "Lines of n, m and tmax, then x, y and score of each place")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--nodes", arguments->nodes, "Of the search for a proof")
+      ->capture_default_str();
+  command->add_option("--steps", arguments->steps, "Of ruin and recreate, where that proves none")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of ruin and recreate")->capture_default_str();
+  command->footer(
+      "Prints a row of CSV for each file: the score, and what no team can get more than. All "
+      "begin\n"
+      "at the first place and end at the last. The same seed gives the same row, but for seconds.\n"
+      "Example: skein-hil orienteering p4.2.a.txt p4.2.b.txt --steps 20000");
+  command->callback([arguments, &status] { status = orienteering(*arguments); });
+}
+
 void add_swap(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<SwapArguments>();
   auto* command = app.add_subcommand(
@@ -467,6 +489,7 @@ int main(int argc, char** argv) {
   skein::hil::add_swap(app, status);
   skein::hil::add_routes(app, status);
   skein::hil::add_tours(app, status);
+  skein::hil::add_orienteering(app, status);
   skein::hil::add_shapes(app, status);
   skein::hil::add_can(app, status);
   try {

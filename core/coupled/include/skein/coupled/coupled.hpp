@@ -49,13 +49,16 @@ struct CoupledVehicle {
   VehicleId id;
   Pose2 pose;
   double speed_mps = 0.0;
-  double planning_radius_m = 0.0;
+  double planning_radius_m = 0.0;  ///< 0: it turns on the spot, and may wait anywhere
   double range_left_m = 0.0;
   double final_approach_m = 0.0;  ///< of a delivery
   double sensor_radius_m = 0.0;   ///< of the survey arc
   double assess_radius_m = 0.0;   ///< of the assessment arc
   Capabilities capabilities;
   std::uint8_t loads = 0;
+  /// Where its range must still take it after its last task; none: it ends
+  /// where that leaves it.
+  std::optional<Vec2> home;
 };
 
 /// As ValueWeights (plan_value.hpp).
@@ -73,6 +76,14 @@ struct CoupledProblem {
   std::vector<Site> sites;
   /// At most kCoupledTasksMax. A task of a site that is not named here was done before the start.
   std::vector<TaskId> open_tasks;
+  /// Sites of which all open tasks are done, or none of them; by
+  /// Criterion::value alone. The reward of what is left out is lost.
+  std::vector<SiteId> optional_sites;
+  /// Sites whose survey is a service: Site::survey.dwell over the site itself,
+  /// entered and left on any heading, without an arc.
+  std::vector<SiteId> service_sites;
+  /// Beside its survey a vehicle does one task of a site at most, as in a coalition.
+  bool one_task_a_site = false;
   Instant start{};
   Duration decide_wait{};  ///< from the end of a survey to the first delivery: the operator decides
   std::vector<Hazard> hazards;  ///< no run of a task enters one
@@ -80,7 +91,8 @@ struct CoupledProblem {
   TransitLength transit_length_m;
   AvoidanceParams avoidance;
   bool flyable_waits = true;  ///< see above; false, or a transit_length_m: any wait can be flown
-  /// Start angles tried, each in both senses, where a survey or assessment leaves it free.
+  /// Start angles tried, each in both senses, where a survey or assessment
+  /// leaves it free; headings of a service, and of coming home.
   int free_starts = 8;
   /// A survey with a given start angle may be flown in either sense. Assessments are always flown
   /// counter-clockwise, so that vehicles on one circle keep their spacing.
@@ -89,7 +101,7 @@ struct CoupledProblem {
   CoupledWeights weights;
 };
 inline constexpr std::size_t kCoupledVehiclesMax = 64;
-inline constexpr std::size_t kCoupledTasksMax = 64;
+inline constexpr std::size_t kCoupledTasksMax = 128;
 
 /// One task of a plan.
 struct CoupledTask {
@@ -107,6 +119,7 @@ struct CoupledTask {
 
 struct CoupledPlan {
   std::vector<CoupledTask> tasks;  ///< by vehicle as in the problem, then by time
+  std::vector<SiteId> left_out;    ///< of the optional sites
   double objective = 0.0;          ///< by the problem's criterion
   /// No plan is better than this: an upper bound of J, a lower bound of seconds. Equal to the
   /// objective when proven; nothing where the method has none.

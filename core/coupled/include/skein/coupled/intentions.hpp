@@ -19,6 +19,11 @@ namespace skein::planning {
 /// All tasks of the sites, as the open ones of a problem.
 [[nodiscard]] std::vector<TaskId> tasks_of(const std::vector<Site>& sites);
 
+/// Of the many plans that are equally good, one with short ways: among vehicles that fly alike and
+/// have one task or none, the tasks but for surveys go to those who are nearest in sum. Every task
+/// keeps its time. The problem is one without coming home, and of waits of any length.
+void settle_ties(const CoupledProblem& problem, CoupledPlan& plan);
+
 /// Where a vehicle goes before anybody has awarded it anything: to the sites that it is to survey,
 /// in their order; who surveys none, to where it can begin its first task from.
 struct Intention {
