@@ -80,7 +80,6 @@ CoupledProblem tasking_problem(const Scenario& scenario) {
   }
   problem.criterion = scenario.tasking.criterion;
   problem.optional_sites = scenario.tasking.optional;
-  problem.one_task_a_site = true;
   problem.flyable_waits = false;  // who is early waits on an orbit
   problem.weights = {1.0, 0.0};
   return problem;
@@ -92,7 +91,12 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
   }
   PlannedTasks planned;
   planned.problem = tasking_problem(scenario);
+  planned.problem.share = planning::TaskShare::one;
   auto plan = planning::branch_and_bound(planned.problem, budget);
+  if (!plan) {
+    planned.problem.share = planning::TaskShare::one_a_site;
+    plan = planning::branch_and_bound(planned.problem, budget);
+  }
   if (!plan) {
     return Error{plan.error().message +
                  "; add vehicles, loads or range, or leave sites out of tasking.known"};
@@ -106,9 +110,12 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
 std::string tasks_text(const PlannedTasks& planned) {
   const CoupledPlan& plan = planned.plan;
   std::string text =
-      fmt::format("{} tasks at {} sites by {} of {} vehicles: {}\n\n", plan.tasks.size(),
+      fmt::format("{} tasks at {} sites by {} of {} vehicles: {}.\n", plan.tasks.size(),
                   planned.problem.sites.size(), planned.file.vehicles.size(),
                   planned.problem.vehicles.size(), goodness(plan, planned.problem.criterion));
+  if (planned.problem.share == planning::TaskShare::one) {
+    text += "Among plans in which each vehicle has one task beside surveys, and waits for it.\n\n";
+  }
   text += fmt::format("{:<8}  {:<20}  {:>8}  {:>8}  {:>8}\n", "vehicle", "task", "begins s",
                       "ends s", "waits s");
   for (const CoupledTask& task : plan.tasks) {

@@ -94,7 +94,7 @@ class Tender {
       const Vehicle& vehicle = model_.vehicles[at(i)];
       if ((excluded & bit(i)) != 0) continue;
       if (its.id.kind == TaskKind::deliver && deliveries_[at(i)] >= vehicle.loads) continue;
-      if (has_other_task_there(model_, orders_[at(i)], its)) continue;
+      if (has_its_share(model_, orders_[at(i)], its)) continue;
       const double* reach_s = model_.reach_from(i, last_of(i));
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
         const double time_s = model_.flyable_s(i, last_of(i), v, free_s_[at(i)],

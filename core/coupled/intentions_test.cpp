@@ -20,7 +20,7 @@ CoupledProblem mission(std::uint64_t seed) {
       draw_problem(random, {.sites = 2, .vehicles = 9, .deliveries = 2, .assessments = 1});
   problem.criterion = Criterion::makespan;
   problem.flyable_waits = false;
-  problem.one_task_a_site = true;
+  problem.share = TaskShare::one_a_site;
   problem.decide_wait = std::chrono::seconds{10};
   return problem;
 }

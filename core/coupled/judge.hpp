@@ -68,7 +68,7 @@ class CoupledJudge {
     for (const CoupledVehicle& v : problem_.vehicles) flies(v);
     for (const Site& site : problem_.sites) {
       keeps_order(site);
-      if (problem_.one_task_a_site) shares_out(site);
+      if (problem_.share != TaskShare::any) shares_out(site);
     }
     if (std::abs(objective_of(problem_, plan_) - plan_.objective) >
         1e-9 * std::max(1.0, std::abs(plan_.objective))) {
@@ -202,10 +202,11 @@ class CoupledJudge {
   void shares_out(const Site& site) {
     std::map<std::uint16_t, int> tasks;
     for (const CoupledTask& t : plan_.tasks) {
-      if (t.task.site == site.id && t.task.kind != TaskKind::survey) ++tasks[t.vehicle.value];
+      const bool counts = t.task.site == site.id || problem_.share == TaskShare::one;
+      if (counts && t.task.kind != TaskKind::survey) ++tasks[t.vehicle.value];
     }
     for (const auto& [vehicle, count] : tasks) {
-      if (count > 1) faults_.emplace_back("a vehicle does two tasks of one site");
+      if (count > 1) faults_.emplace_back("a vehicle does more than its share");
     }
   }
 

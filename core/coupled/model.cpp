@@ -368,7 +368,7 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   if (auto error = refusal(problem)) return *error;
   Model model;
   model.criterion = problem.criterion;
-  model.one_task_a_site = problem.one_task_a_site;
+  model.share = problem.share;
   model.decide_wait_s = to_seconds(problem.decide_wait);
   model.sites.resize(problem.sites.size());
   std::vector<TaskId> open = problem.open_tasks;
@@ -441,11 +441,12 @@ double Model::cost_of(Index task, double end_s) const {
   return end_s;
 }
 
-bool has_other_task_there(const Model& model, const std::vector<Index>& order, const Task& task) {
-  if (!model.one_task_a_site || task.id.kind == TaskKind::survey) return false;
+bool has_its_share(const Model& model, const std::vector<Index>& order, const Task& task) {
+  if (model.share == TaskShare::any || task.id.kind == TaskKind::survey) return false;
   return std::any_of(order.begin(), order.end(), [&](Index v) {
     const Task& other = model.tasks[at(model.task_of[at(v)])];
-    return other.site == task.site && other.id.kind != TaskKind::survey;
+    return (other.site == task.site || model.share == TaskShare::one) &&
+           other.id.kind != TaskKind::survey;
   });
 }
 

@@ -126,7 +126,7 @@ class Model {
   Criterion criterion = Criterion::value;
   bool offsets = false;  ///< is any offset not 0?
   bool any_optional = false;
-  bool one_task_a_site = false;
+  TaskShare share = TaskShare::any;
   static constexpr std::size_t kChords = 256;
   std::vector<double> chords;  ///< by decay and cell: the part of the reward that is lost
   double chords_per_s = 0.0;
@@ -198,9 +198,9 @@ class Model {
 /// The visits of every vehicle, in order.
 using Orders = std::vector<std::vector<Index>>;
 
-/// Does an order keep the task from whom it is of?
-[[nodiscard]] bool has_other_task_there(const Model& model, const std::vector<Index>& order,
-                                        const Task& task);
+/// May who has these orders not do that task, too?
+[[nodiscard]] bool has_its_share(const Model& model, const std::vector<Index>& order,
+                                 const Task& task);
 
 /// By site: is it optional, and no task of it in the orders?
 [[nodiscard]] std::vector<bool> left_out_of(const Model& model, const Orders& orders);

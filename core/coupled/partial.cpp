@@ -42,7 +42,7 @@ double PartialPlan::time_of(const Step& step) const {
 bool PartialPlan::allows(const Step& step) const {
   const Task& task = model_.tasks[at(model_.task_of[at(step.visit)])];
   const coupled::Vehicle& its = model_.vehicles[at(step.vehicle)];
-  if (has_other_task_there(model_, orders_[at(step.vehicle)], task)) return false;
+  if (has_its_share(model_, orders_[at(step.vehicle)], task)) return false;
   const double time_s = time_of(step);
   const double end_s = time_s + model_.class_of(step.vehicle).after_s[at(step.visit)];
   if (!(end_s <= its.latest_s[at(step.visit)])) return false;

@@ -326,7 +326,7 @@ void Search::leave_out_dropped(Solution& plan) {
 
 bool Search::may_take(const Solution& plan, Index vehicle, const Task& task) const {
   const auto& order = plan.orders[at(vehicle)];
-  if (has_other_task_there(model_, order, task)) return false;
+  if (has_its_share(model_, order, task)) return false;
   if (task.id.kind != TaskKind::deliver) return true;
   const auto used = std::count_if(order.begin(), order.end(), [&](Index v) {
     return model_.tasks[at(model_.task_of[at(v)])].id.kind == TaskKind::deliver;

@@ -30,8 +30,10 @@ inline constexpr std::uint64_t kTaskingSteps = 20'000;
 /// asking the operator take.
 [[nodiscard]] planning::CoupledProblem tasking_problem(const configuration::Scenario& scenario);
 
-/// With a budget of steps alone the same scenario gives the same plan, byte for byte. Fails with a
-/// sentence where no site is known, or nobody can do what has to be done.
+/// Of plans that give each vehicle one task beside surveys, so that all can wait where theirs
+/// begin; where none is found, one task of each site. With a budget of steps alone the same
+/// scenario gives the same plan, byte for byte. Fails with a sentence where no site is known, or
+/// nobody can do what has to be done.
 [[nodiscard]] Result<PlannedTasks> plan_tasks(const configuration::Scenario& scenario,
                                               const planning::PlanningBudget& budget = {
                                                   kTaskingSteps, {}});

@@ -56,8 +56,7 @@ struct CoupledVehicle {
   double assess_radius_m = 0.0;   ///< of the assessment arc
   Capabilities capabilities;
   std::uint8_t loads = 0;
-  /// Where its range must still take it after its last task; none: it ends
-  /// where that leaves it.
+  /// Where its range must still take it after its last task; none: it ends where that leaves it.
   std::optional<Vec2> home;
 };
 
@@ -71,19 +70,25 @@ struct CoupledWeights {
 /// where there is none.
 using TransitLength = std::function<double(const Pose2& from, const Pose2& to, double radius_m)>;
 
+/// What a vehicle may do, beside surveys.
+enum class TaskShare : std::uint8_t {
+  any,
+  one_a_site,  ///< one task of each site, as in a coalition
+  one,         ///< one task in all, so that each can be where its task begins
+};
+
 struct CoupledProblem {
   std::vector<CoupledVehicle> vehicles;  ///< at most kCoupledVehiclesMax
   std::vector<Site> sites;
   /// At most kCoupledTasksMax. A task of a site that is not named here was done before the start.
   std::vector<TaskId> open_tasks;
-  /// Sites of which all open tasks are done, or none of them; by
-  /// Criterion::value alone. The reward of what is left out is lost.
+  /// Sites of which all open tasks are done, or none of them; by Criterion::value alone. The reward
+  /// of what is left out is lost.
   std::vector<SiteId> optional_sites;
-  /// Sites whose survey is a service: Site::survey.dwell over the site itself,
-  /// entered and left on any heading, without an arc.
+  /// Sites whose survey is a service: Site::survey.dwell over the site itself, entered and left on
+  /// any heading, without an arc.
   std::vector<SiteId> service_sites;
-  /// Beside its survey a vehicle does one task of a site at most, as in a coalition.
-  bool one_task_a_site = false;
+  TaskShare share = TaskShare::any;
   Instant start{};
   Duration decide_wait{};  ///< from the end of a survey to the first delivery: the operator decides
   std::vector<Hazard> hazards;  ///< no run of a task enters one
@@ -91,8 +96,8 @@ struct CoupledProblem {
   TransitLength transit_length_m;
   AvoidanceParams avoidance;
   bool flyable_waits = true;  ///< see above; false, or a transit_length_m: any wait can be flown
-  /// Start angles tried, each in both senses, where a survey or assessment
-  /// leaves it free; headings of a service, and of coming home.
+  /// Start angles tried, each in both senses, where a survey or assessment leaves it free; headings
+  /// of a service, and of coming home.
   int free_starts = 8;
   /// A survey with a given start angle may be flown in either sense. Assessments are always flown
   /// counter-clockwise, so that vehicles on one circle keep their spacing.
