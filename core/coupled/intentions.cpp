@@ -2,9 +2,11 @@
 #include "skein/coupled/intentions.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "skein/planning/assignment.hpp"
 #include "skein/planning/avoidance.hpp"
 #include "skein/planning/dubins.hpp"
@@ -17,6 +19,11 @@ constexpr double kFound_radii = 0.85;
 /// Short of the entry, in planning radii: room to turn into it from anywhere on an orbit.
 constexpr double kWaits_radii = 2.0;
 constexpr double kRounding_m = 1e-6;
+/// Who is not awarded anything so long after its planned end looks who else needs it.
+constexpr double kPatience_s = 60.0;
+constexpr double kLap_radii = 1.2;
+constexpr int kLapPoints = 4;
+constexpr int kLapsMax = 40;
 
 bool is_clear_of(const std::vector<Hazard>& hazards, const Vec2& place, double room_m) {
   return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
@@ -38,6 +45,39 @@ Vec2 waits_at(const CoupledProblem& problem, const CoupledVehicle& vehicle,
     if (is_clear_of(problem.hazards, place, 2.0 * vehicle.planning_radius_m)) return place;
   }
   return task.entry.position();
+}
+
+/// Laps through a place, which is passed as its task is entered, of so many seconds at least.
+void add_laps(std::vector<Vec2>& way, const CoupledVehicle& vehicle, const Vec2& place,
+              double heading_rad, double seconds) {
+  const double radius_m = kLap_radii * vehicle.planning_radius_m;
+  const Vec2 centre = place + radius_m * left_of(unit_vector(heading_rad));
+  const double laps = seconds * vehicle.speed_mps / (kTwoPi * radius_m);
+  const int count = std::clamp(static_cast<int>(std::ceil(laps)), 0, kLapsMax);
+  for (int k = 1; k <= count * kLapPoints; ++k) {
+    const double turned_rad = k * kTwoPi / kLapPoints - kPi / 2.0;
+    way.push_back(centre + radius_m * unit_vector(heading_rad + turned_rad));
+  }
+}
+
+/// The other sites, that of the most tasks at last: its coalition is the hardest to form.
+void add_other_sites(std::vector<Vec2>& way, const CoupledProblem& problem,
+                     const CoupledVehicle& vehicle, const CoupledPlan& plan,
+                     const std::vector<SiteId>& own) {
+  std::vector<std::pair<std::ptrdiff_t, const Site*>> others;
+  for (const Site& site : problem.sites) {
+    const auto tasks = std::ranges::count_if(
+        plan.tasks, [&](const CoupledTask& task) { return task.task.site == site.id; });
+    const bool is_own = std::ranges::find(own, site.id) != own.end();
+    if (tasks > 0 && !is_own) others.emplace_back(tasks, &site);
+  }
+  std::ranges::stable_sort(others, {}, [](const auto& other) { return other.first; });
+  for (const auto& [tasks, site] : others) {
+    const Vec2 off = way.back() - site->position;
+    const double beside_m = kWaits_radii * vehicle.planning_radius_m;
+    const Vec2 place = site->position + std::min(1.0, beside_m / std::max(off.norm(), 1.0)) * off;
+    if (is_clear_of(problem.hazards, place, beside_m)) way.push_back(place);
+  }
 }
 
 /// Flies the tasks of the other in the same time.
@@ -129,14 +169,25 @@ std::vector<Intention> intentions_of(const CoupledProblem& problem, const Couple
   for (const CoupledVehicle& vehicle : problem.vehicles) {
     Intention intention{vehicle.id, {}};
     const CoupledTask* first = nullptr;
+    std::vector<SiteId> own;
     for (const CoupledTask& task : plan.tasks) {
       if (task.vehicle != vehicle.id) continue;
       if (first == nullptr) first = &task;
-      if (task.task.kind == TaskKind::survey) intention.way.push_back(found_from(problem, task));
+      if (task.task.kind != TaskKind::survey) continue;
+      intention.way.push_back(found_from(problem, task));
+      own.push_back(task.task.site);
     }
-    if (first != nullptr && intention.way.empty()) {
-      intention.way.push_back(waits_at(problem, vehicle, *first));
+    if (first != nullptr && own.empty()) {
+      const Vec2 place = waits_at(problem, vehicle, *first);
+      const double there_s = first->least_transit_m / vehicle.speed_mps;
+      intention.way.push_back(place);
+      own.push_back(first->task.site);
+      if (problem.sites.size() > 1) {
+        add_laps(intention.way, vehicle, place, first->entry.heading_rad,
+                 first->end_s + kPatience_s - there_s);
+      }
     }
+    if (first != nullptr) add_other_sites(intention.way, problem, vehicle, plan, own);
     intentions.push_back(std::move(intention));
   }
   return intentions;

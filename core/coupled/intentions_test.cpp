@@ -69,11 +69,11 @@ TEST(Intentions, SurveyorsFindTheirSitesAndTheOthersWaitBeforeTheirTasks) {
       if (first == nullptr) {
         EXPECT_TRUE(intentions[i].way.empty());
       } else if (surveys == 0) {
-        ASSERT_EQ(intentions[i].way.size(), 1U);
+        ASSERT_GT(intentions[i].way.size(), 8U) << "laps, then the other site";
         const Vec2 to_entry = first->entry.position() - intentions[i].way.front();
         EXPECT_GT(to_entry.dot(unit_vector(first->entry.heading_rad)), 0.0) << "it is before it";
       } else {
-        EXPECT_EQ(intentions[i].way.size(), surveys);
+        EXPECT_EQ(intentions[i].way.size(), 2U) << "the other site, too";
       }
     }
   }
@@ -86,7 +86,7 @@ TEST(Intentions, NobodyWaitsInAHazard) {
   const auto open = intentions_of(problem, *plan);
   const auto waits = std::ranges::find_if(plan->tasks, [&](const CoupledTask& task) {
     const auto& own = *std::ranges::find(open, task.vehicle, &Intention::vehicle);
-    return task.task.kind == TaskKind::deliver && own.way.size() == 1 &&
+    return task.task.kind == TaskKind::deliver && own.way.size() > 2 &&
            (own.way.front() - task.entry.position()).norm() > 1.0;
   });
   ASSERT_NE(waits, plan->tasks.end());
