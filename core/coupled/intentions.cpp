@@ -23,7 +23,8 @@ constexpr double kRounding_m = 1e-6;
 constexpr double kPatience_s = 60.0;
 constexpr double kLap_radii = 1.2;
 constexpr int kLapPoints = 4;
-constexpr int kLapsMax = 40;
+constexpr int kLapsMax = 20;
+constexpr int kVisits = 3;  ///< of the site that may need it
 
 bool is_clear_of(const std::vector<Hazard>& hazards, const Vec2& place, double room_m) {
   return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
@@ -60,23 +61,32 @@ void add_laps(std::vector<Vec2>& way, const CoupledVehicle& vehicle, const Vec2&
   }
 }
 
-/// The other sites, that of the most tasks at last: its coalition is the hardest to form.
-void add_other_sites(std::vector<Vec2>& way, const CoupledProblem& problem,
-                     const CoupledVehicle& vehicle, const CoupledPlan& plan,
-                     const std::vector<SiteId>& own) {
-  std::vector<std::pair<std::ptrdiff_t, const Site*>> others;
+/// That of the most tasks: its coalition is the hardest to form. None where there is one site.
+const Site* hardest_of(const CoupledProblem& problem, const CoupledPlan& plan) {
+  const Site* hardest = nullptr;
+  std::ptrdiff_t most = 0;
   for (const Site& site : problem.sites) {
     const auto tasks = std::ranges::count_if(
         plan.tasks, [&](const CoupledTask& task) { return task.task.site == site.id; });
-    const bool is_own = std::ranges::find(own, site.id) != own.end();
-    if (tasks > 0 && !is_own) others.emplace_back(tasks, &site);
+    if (tasks <= most) continue;
+    most = tasks;
+    hardest = &site;
   }
-  std::ranges::stable_sort(others, {}, [](const auto& other) { return other.first; });
-  for (const auto& [tasks, site] : others) {
-    const Vec2 off = way.back() - site->position;
-    const double beside_m = kWaits_radii * vehicle.planning_radius_m;
-    const Vec2 place = site->position + std::min(1.0, beside_m / std::max(off.norm(), 1.0)) * off;
-    if (is_clear_of(problem.hazards, place, beside_m)) way.push_back(place);
+  return problem.sites.size() > 1 ? hardest : nullptr;
+}
+
+/// To and fro between there and where the vehicle waits first, as somebody may be needed.
+void add_other_site(std::vector<Vec2>& way, const CoupledProblem& problem,
+                    const CoupledVehicle& vehicle, const Site& other, double heading_rad) {
+  const Vec2 own = way.front();
+  const Vec2 off = own - other.position;
+  const double beside_m = kWaits_radii * vehicle.planning_radius_m;
+  const Vec2 place = other.position + std::min(1.0, beside_m / std::max(off.norm(), 1.0)) * off;
+  if (!is_clear_of(problem.hazards, place, beside_m)) return;
+  for (int k = 0; k < kVisits; ++k) {
+    if (k > 0) way.push_back(own);
+    way.push_back(place);
+    add_laps(way, vehicle, place, heading_rad, kPatience_s);
   }
 }
 
@@ -166,28 +176,26 @@ std::vector<TaskId> tasks_of(const std::vector<Site>& sites) {
 
 std::vector<Intention> intentions_of(const CoupledProblem& problem, const CoupledPlan& plan) {
   std::vector<Intention> intentions;
+  const Site* const hardest = hardest_of(problem, plan);
   for (const CoupledVehicle& vehicle : problem.vehicles) {
     Intention intention{vehicle.id, {}};
     const CoupledTask* first = nullptr;
-    std::vector<SiteId> own;
     for (const CoupledTask& task : plan.tasks) {
       if (task.vehicle != vehicle.id) continue;
       if (first == nullptr) first = &task;
       if (task.task.kind != TaskKind::survey) continue;
       intention.way.push_back(found_from(problem, task));
-      own.push_back(task.task.site);
     }
-    if (first != nullptr && own.empty()) {
+    if (first != nullptr && intention.way.empty()) {
       const Vec2 place = waits_at(problem, vehicle, *first);
       const double there_s = first->least_transit_m / vehicle.speed_mps;
       intention.way.push_back(place);
-      own.push_back(first->task.site);
-      if (problem.sites.size() > 1) {
-        add_laps(intention.way, vehicle, place, first->entry.heading_rad,
-                 first->end_s + kPatience_s - there_s);
+      if (hardest != nullptr && hardest->id != first->task.site) {
+        const double heading_rad = first->entry.heading_rad;
+        add_laps(intention.way, vehicle, place, heading_rad, first->end_s + kPatience_s - there_s);
+        add_other_site(intention.way, problem, vehicle, *hardest, heading_rad);
       }
     }
-    if (first != nullptr) add_other_sites(intention.way, problem, vehicle, plan, own);
     intentions.push_back(std::move(intention));
   }
   return intentions;

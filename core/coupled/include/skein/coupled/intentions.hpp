@@ -25,8 +25,8 @@ namespace skein::planning {
 void settle_ties(const CoupledProblem& problem, CoupledPlan& plan);
 
 /// Where a vehicle goes before anybody has awarded it anything: to the sites that it is to survey,
-/// in their order; who surveys none, to where it can begin its first task from, and around there
-/// until a minute after that should have ended. Then by the other sites, where it may be needed.
+/// in their order; who surveys none, to where it can begin its first task from, and around there.
+/// A minute after that should have ended it also goes to the site of the most tasks, to and fro.
 struct Intention {
   VehicleId vehicle;
   std::vector<Vec2> way;  ///< empty: it has no task
