@@ -3,12 +3,15 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <chrono>
+#include <cstdio>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -29,6 +32,7 @@
 #include "skein/groundstation/prompt.hpp"
 #include "skein/groundstation/replay_process.hpp"
 #include "skein/groundstation/route_planning.hpp"
+#include "skein/groundstation/task_planning.hpp"
 #include "skein/identity/identity.hpp"
 #include "skein/identity/operator_key.hpp"
 #include "skein/network/carrier_process.hpp"
@@ -50,6 +54,10 @@ struct PlanArguments {
   std::string scenario;
   std::string folder;
   std::optional<std::uint64_t> seed;
+  // Of tasks.
+  double seconds = 0.0;                                 ///< 0: by steps, the same on every machine
+  bool all_known = false;                               ///< every site of the mission is
+  std::optional<skein::planning::Criterion> criterion;  ///< in place of the mission's
 };
 
 struct Arguments {
@@ -167,10 +175,22 @@ int unlock(const Arguments& arguments, bool locks) {
   return answer->done ? 0 : kExitRefused;
 }
 
-int plan(const PlanArguments& arguments) {
-  auto scenario = skein::configuration::load_flyable_scenario(arguments.scenario);
-  if (!scenario) return fail(scenario.error().message, skein::process::kExitBadInput);
-  if (arguments.seed) scenario->seed = *arguments.seed;
+/// The folder that a plan is written into.
+std::filesystem::path folder_of(const PlanArguments& arguments) {
+  if (!arguments.folder.empty()) return arguments.folder;
+  return std::filesystem::path{"runs"} / std::filesystem::path{arguments.scenario}.stem();
+}
+
+int tell_written(const PlanArguments& arguments,
+                 const skein::Result<std::vector<std::string>>& files) {
+  if (!files) return fail(files.error().message, skein::process::kExitCannotStart);
+  std::printf("into %s:", folder_of(arguments).c_str());
+  for (const std::string& file : *files) std::printf(" %s", file.c_str());
+  std::printf("\n");
+  return 0;
+}
+
+int plan_routes(const PlanArguments& arguments, const skein::configuration::Scenario& scenario) {
   skein::routes::RoutePlannerParams params;
   const bool shows = ::isatty(STDERR_FILENO) == 1;
   params.go_on = [shows](const skein::routes::RoutePlanProgress& progress) {
@@ -181,21 +201,52 @@ int plan(const PlanArguments& arguments) {
     }
     return true;
   };
-  const auto planned = groundstation::plan_routes(*scenario, params);
+  const auto planned = groundstation::plan_routes(scenario, params);
   if (shows) std::fputs("\r\033[K", stderr);
   if (!planned) return fail(planned.error().message, kExitRefused);
   std::fputs(groundstation::routes_text(*planned).c_str(), stdout);
   if (!planned->check.ok()) return fail("the plan breaks a rule; nothing is written", kExitRefused);
-  const std::filesystem::path folder =
-      arguments.folder.empty()
-          ? std::filesystem::path{"runs"} / std::filesystem::path{arguments.scenario}.stem()
-          : std::filesystem::path{arguments.folder};
-  const auto files = groundstation::write_routes(*planned, *scenario, folder);
-  if (!files) return fail(files.error().message, skein::process::kExitCannotStart);
-  std::printf("into %s:", folder.c_str());
-  for (const std::string& file : *files) std::printf(" %s", file.c_str());
-  std::printf("\n");
-  return 0;
+  return tell_written(arguments,
+                      groundstation::write_routes(*planned, scenario, folder_of(arguments)));
+}
+
+int plan_tasks(const PlanArguments& arguments, const skein::configuration::Scenario& scenario) {
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  const auto begun = Clock::now();
+  const bool shows = ::isatty(STDERR_FILENO) == 1;
+  skein::planning::PlanningBudget budget{groundstation::kTaskingSteps, {}};
+  if (arguments.seconds > 0.0) budget.steps_max = std::numeric_limits<std::uint64_t>::max();
+  int told_s = 0;
+  budget.expired = [&] {
+    const double gone_s = Seconds{Clock::now() - begun}.count();
+    if (shows && gone_s >= told_s + 1) {
+      std::fprintf(stderr, "\rplanning for %d s ", told_s = static_cast<int>(gone_s));
+    }
+    return arguments.seconds > 0.0 && gone_s >= arguments.seconds;
+  };
+  const auto planned = groundstation::plan_tasks(scenario, budget);
+  if (shows) std::fputs("\r\033[K", stderr);
+  if (!planned) return fail(planned.error().message, kExitRefused);
+  std::fputs(groundstation::tasks_text(*planned).c_str(), stdout);
+  return tell_written(arguments, groundstation::write_tasks(*planned, folder_of(arguments)));
+}
+
+/// Of a mission of routes its routes; else the tasks at its known sites.
+int plan(const PlanArguments& arguments) {
+  auto scenario = skein::configuration::load_flyable_scenario(arguments.scenario);
+  if (!scenario) return fail(scenario.error().message, skein::process::kExitBadInput);
+  if (arguments.seed) scenario->seed = *arguments.seed;
+  if (scenario->flies_routes()) return plan_routes(arguments, *scenario);
+  if (arguments.all_known) {
+    scenario->tasking.known.clear();
+    for (const skein::Site& site : scenario->sites) scenario->tasking.known.push_back(site.id);
+  }
+  if (arguments.criterion) scenario->tasking.criterion = *arguments.criterion;
+  if (auto good = skein::configuration::check(*scenario); !good) {
+    return fail(good.error().message, skein::process::kExitBadInput);
+  }
+  return plan_tasks(arguments, *scenario);
 }
 
 /// A line for a password file, from a password on standard input.
@@ -431,17 +482,39 @@ class CommandLine {
   }
 
   void add_plan() {
-    CLI::App& command = add("plan", "Plans the routes of a mission file before the mission",
-                            [this] { return plan(planning_); });
-    command.add_option("scenario", planning_.scenario, "A mission with `routes`, YAML")->required();
+    CLI::App& command =
+        add("plan", "Plans a mission file's routes, or the tasks at its known sites, before it",
+            [this] { return plan(planning_); });
+    command
+        .add_option("scenario", planning_.scenario,
+                    "A mission with `routes`, or with sites that `tasking` knows; YAML")
+        ->required();
     command.add_option("--out", planning_.folder, "Folder for the plan (default: runs/NAME)");
-    command.add_option("--seed", planning_.seed, "In place of the mission's")->check(why_no_seed);
+    command.add_option("--seed", planning_.seed, "Of routes, in place of the mission's")
+        ->check(why_no_seed);
+    command.add_flag("--all-known", planning_.all_known, "Every site of the mission is known");
+    std::map<std::string, skein::planning::Criterion> criteria;
+    for (std::size_t k = 0; k < skein::configuration::kCriteria.size(); ++k) {
+      criteria.emplace(skein::configuration::kCriteria.at(k),
+                       static_cast<skein::planning::Criterion>(k));
+    }
+    command
+        .add_option("--criterion", planning_.criterion,
+                    "Of tasks, in place of the mission's: reward, completion or makespan")
+        ->transform(CLI::CheckedTransformer(criteria));
+    command
+        .add_option("--time", planning_.seconds,
+                    "Of tasks: seconds to plan for (default: some seconds of work, with which the "
+                    "same mission gives the same plan on every machine)")
+        ->check(CLI::Range(0.01, 86400.0));
     command.footer(
-        "Example:\n"
-        "  skein-ground plan scenarios/routes-3.yaml\n\n"
-        "Writes plan.yaml, which `skein-hil run --routes` flies, GeoJSON, KML, a .plan for each\n"
-        "vehicle that QGroundControl reads, and a picture. Exit status 1: no plan, or a rule is\n"
-        "broken.");
+        "Examples:\n"
+        "  skein-ground plan scenarios/routes-3.yaml\n"
+        "  skein-ground plan scenarios/coalition-32.yaml --all-known --criterion makespan\n\n"
+        "Writes plan.yaml, which `skein-hil run --routes` flies (of tasks `simulate --routes`, "
+        "too).\n"
+        "Of routes also GeoJSON, KML, a .plan for each vehicle that QGroundControl reads, and a\n"
+        "picture. Exit status 1: no plan, or a rule is broken; 2: bad arguments or mission.");
   }
 
   void add_password() {

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <system_error>
 
+#include "plan_folder.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 
@@ -63,14 +63,6 @@ Result<void> delete_vehicle_plans(const std::filesystem::path& folder) {
   }
   if (failed)
     return Error{folder.string() + ": an old plan cannot be deleted: " + failed.message()};
-  return {};
-}
-
-Result<void> write(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream out{file, std::ios::binary};
-  out << text;
-  out.close();
-  if (!out) return Error{file.string() + ": cannot be written; check the folder and the disk"};
   return {};
 }
 
@@ -134,25 +126,17 @@ Result<std::vector<std::string>> write_routes(const PlannedRoutes& planned,
                                               const std::filesystem::path& folder) {
   const auto origin = MissionOrigin::make(scenario.origin);
   if (!origin) return origin.error();
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  if (failed) return Error{folder.string() + ": cannot be made: " + failed.message()};
+  if (auto made = make_folder(folder); !made) return made.error();
   if (auto deleted = delete_vehicle_plans(folder); !deleted) return deleted.error();
-  std::vector<std::pair<std::string, std::string>> files{
-      {"plan.yaml", to_yaml(planned.file)},
-      {"routes.geojson", routes_geojson(planned, scenario, *origin)},
-      {"routes.kml", routes_kml(planned, scenario, *origin)},
-      {"routes.svg", routes_svg(planned)}};
+  NamedTexts files{{"plan.yaml", to_yaml(planned.file)},
+                   {"routes.geojson", routes_geojson(planned, scenario, *origin)},
+                   {"routes.kml", routes_kml(planned, scenario, *origin)},
+                   {"routes.svg", routes_svg(planned)}};
   for (const configuration::VehicleRoute& route : planned.file.routes) {
     files.emplace_back(fmt::format("vehicle-{}.plan", route.vehicle.value),
                        routes_qgc(route, scenario, *origin));
   }
-  std::vector<std::string> names;
-  for (const auto& [name, text] : files) {
-    if (auto written = write(folder / name, text); !written) return written.error();
-    names.push_back(name);
-  }
-  return names;
+  return write_files(folder, files);
 }
 
 }  // namespace skein::groundstation

@@ -2,7 +2,6 @@
 #include "bounds.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 namespace skein::planning::coupled {
@@ -16,7 +15,8 @@ Bounds::Bounds(const Model& model)
       survey_end_s_(model.vehicles.size()),
       delivery_s_(model.vehicles.size()),
       packed_(model.classes.size()),
-      penalty_(model.tasks.size() * kPlacesMax, kInfinity) {
+      places_max_{std::clamp<std::size_t>(model.tasks.size(), 64, kPlacesMax)},
+      penalty_(model.tasks.size() * places_max_, kInfinity) {
   make_tails();
   make_least_range_costs();
 }
@@ -86,27 +86,34 @@ double Bounds::chains(const PartialPlan& plan) {
   for (Index s = 0; s < static_cast<Index>(plan.sites().size()); ++s) {
     const PartialPlan::Site& site = plan.sites()[at(s)];
     if (!site.is_open() && plan.group_site() != s) continue;
-    const SiteTasks& tasks = model_.sites[at(s)];
-    double ready_s = site.ready_s;
-    surveyed_ = {};
-    delivered_ = {};
-    one_delivery_open_ = false;
-    if (site.survey_open) {
-      cost = add_survey(plan, cost, s);
-      ready_s = surveyed_.least + (tasks.deliveries.empty() ? 0.0 : model_.decide_wait_s);
-    }
-    if (site.deliveries_open > 0) {
-      const double common_s = std::max(plan.group_site() == s ? plan.common_s() : 0.0, ready_s);
-      cost = add_deliveries(plan, cost, s, common_s);
-      double last_s = 0.0;
-      for (const Index t : tasks.deliveries) last_s = std::max(last_s, head_s_[at(t)]);
-      ready_s = last_s + tasks.assess_wait_s;
-    }
-    cost = add_assessments(plan, cost, s, ready_s);
+    // The reward of tasks is a sum, where one may be left out.
+    cost = site.untouched ? cost + std::min(add_site(plan, 0.0, s), model_.sites[at(s)].reward_cost)
+                          : add_site(plan, cost, s);
     if (cost == kInfinity) break;
   }
   chains_cost_ = cost;
   return cost;
+}
+
+double Bounds::add_site(const PartialPlan& plan, double cost, Index s) {
+  const PartialPlan::Site& site = plan.sites()[at(s)];
+  const SiteTasks& tasks = model_.sites[at(s)];
+  double ready_s = site.ready_s;
+  surveyed_ = {};
+  delivered_ = {};
+  one_delivery_open_ = false;
+  if (site.survey_open) {
+    cost = add_survey(plan, cost, s);
+    ready_s = surveyed_.least + (tasks.deliveries.empty() ? 0.0 : model_.decide_wait_s);
+  }
+  if (site.deliveries_open > 0) {
+    const double common_s = std::max(plan.group_site() == s ? plan.common_s() : 0.0, ready_s);
+    cost = add_deliveries(plan, cost, s, common_s);
+    double last_s = 0.0;
+    for (const Index t : tasks.deliveries) last_s = std::max(last_s, head_s_[at(t)]);
+    ready_s = last_s + tasks.assess_wait_s;
+  }
+  return add_assessments(plan, cost, s, ready_s);
 }
 
 double Bounds::add_survey(const PartialPlan& plan, double cost, Index site) {
@@ -115,7 +122,7 @@ double Bounds::add_survey(const PartialPlan& plan, double cost, Index site) {
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
     const double time_s = arrival_s(plan, i, t);
     double end_s = time_s + model_.class_of(i).least_after_s[at(t)];
-    if (!in_time(i, end_s)) end_s = kInfinity;
+    if (!in_time(i, t, end_s)) end_s = kInfinity;
     least_s = std::min(least_s, time_s);
     survey_end_s_[at(i)] = end_s;
     surveyed_.take(end_s, i);
@@ -146,7 +153,7 @@ double Bounds::add_deliveries(const PartialPlan& plan, double cost, Index s, dou
         } else {
           time_s = std::max(time_s, ready_s);
         }
-        if (!in_time(i, time_s)) time_s = kInfinity;
+        if (!in_time(i, t, time_s)) time_s = kInfinity;
       }
       delivery_s_[at(i)] = time_s;
       delivered_.take(time_s, i);
@@ -162,8 +169,8 @@ double Bounds::add_deliveries(const PartialPlan& plan, double cost, Index s, dou
 
 double Bounds::add_assessments(const PartialPlan& plan, double cost, Index s, double ready_s) {
   const SiteTasks& tasks = model_.sites[at(s)];
-  for (Mask open = plan.sites()[at(s)].assessments_open; open != 0; open &= open - 1) {
-    const Index t = std::countr_zero(open);
+  for (const Index t : tasks.assessments) {
+    if (plan.done().has(t)) continue;
     double least_s = kInfinity;
     double least_end_s = kInfinity;
     for (Index i = 0; i < model_.vehicle_count(); ++i) {
@@ -178,7 +185,7 @@ double Bounds::add_assessments(const PartialPlan& plan, double cost, Index s, do
         time_s = std::max(time_s, ready_s);
       }
       const double end_s = time_s + model_.class_of(i).least_after_s[at(t)];
-      if (!in_time(i, end_s)) continue;
+      if (!in_time(i, t, end_s)) continue;
       least_s = std::min(least_s, time_s);
       least_end_s = std::min(least_end_s, end_s);
     }
@@ -191,7 +198,7 @@ double Bounds::add_assessments(const PartialPlan& plan, double cost, Index s, do
 bool Bounds::places_suffice(const PartialPlan& plan, double limit) {
   if (chains(plan) >= limit) return false;
   find_open(plan);
-  double own_cost = 0.0;
+  double own_cost = forgone_;
   for (std::size_t row = 0; row < open_count_; ++row) {
     own_cost = model_.add(own_cost, open_[row].cost);
   }
@@ -207,15 +214,26 @@ bool Bounds::places_suffice(const PartialPlan& plan, double limit) {
 
 void Bounds::find_open(const PartialPlan& plan) {
   open_count_ = 0;
+  forgone_ = 0.0;
   double last_head_s = 0.0;
   for (Index t = 0; t < model_.task_count(); ++t) {
-    if ((plan.done() & bit(t)) != 0) continue;
+    if (plan.done().has(t)) continue;
     double after_s = kInfinity;
     for (const VehicleClass& kind : model_.classes) {
       after_s = std::min(after_s, kind.least_after_s[at(t)]);
     }
-    const double cost = model_.least_cost_of(t, head_s_[at(t)] + after_s) + range_cost_[at(t)];
-    open_[open_count_++] = {t, cost, 0.0};
+    double cost = model_.least_cost_of(t, head_s_[at(t)] + after_s) + range_cost_[at(t)];
+    double left_out = kInfinity;
+    if (plan.sites()[at(model_.tasks[at(t)].site)].untouched) {
+      const double weight = model_.tasks[at(t)].weight;
+      if (head_s_[at(t)] == kInfinity) {
+        forgone_ += weight;
+        continue;
+      }
+      cost = std::min(cost, weight);
+      left_out = weight - cost;
+    }
+    open_[open_count_++] = {t, cost, 0.0, left_out};
     last_head_s = std::max(last_head_s, head_s_[at(t)]);
   }
   for (std::size_t row = 0; row < open_count_; ++row) {
@@ -283,8 +301,8 @@ void Bounds::next_place(const Packed& can, double weight_per_s, Place& place) co
 void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
   const double most = model_.criterion == Criterion::makespan ? limit : room;
   PerTask least_penalty;
-  std::fill_n(least_penalty.begin(), open_count_, kInfinity);
-  std::fill_n(allowed_.begin(), open_count_, Mask{0});
+  for (std::size_t row = 0; row < open_count_; ++row) least_penalty[row] = open_[row].left_out;
+  std::fill_n(allowed_.begin(), open_count_, Set128{});
   places_ = 0;
   too_many_ = false;
   Place place;
@@ -293,7 +311,7 @@ void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
     const Packed& can = packed_[at(its.kind)];
     const bool loaded = plan.vehicles()[at(i)].loads > 0;
     for (std::size_t position = 0; position < can.count; ++position) {
-      if (places_ == kPlacesMax) {
+      if (places_ == places_max_) {
         too_many_ = true;
         return;
       }
@@ -303,7 +321,7 @@ void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
         next_place(can, its.range_weight_per_s, place);
       }
       for (std::size_t row = 0; row < open_count_; ++row) {
-        penalty_[row * kPlacesMax + places_] = kInfinity;
+        penalty_[row * places_max_ + places_] = kInfinity;
       }
       bool any = false;
       for (std::size_t c = 0; c < can.count; ++c) {
@@ -316,8 +334,8 @@ void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
         place.end_s[c] = kInfinity;
         if (!(more < most)) continue;
         place.end_s[c] = end_s;
-        penalty_[row * kPlacesMax + places_] = more;
-        allowed_[row] |= Mask{1} << places_;
+        penalty_[row * places_max_ + places_] = more;
+        allowed_[row].add(static_cast<int>(places_));
         any = true;
         least_penalty[row] = std::min(least_penalty[row], more);
       }
@@ -333,40 +351,50 @@ void Bounds::make_places(const PartialPlan& plan, double room, double limit) {
 /// of all.
 double Bounds::penalty(const Open& open, const Vehicle& vehicle, double end_s,
                        double range_cost) const {
-  if (!(end_s <= vehicle.deadline_s)) return kInfinity;
+  if (!(end_s <= vehicle.latest_of_task_s[at(open.task)])) return kInfinity;
   if (model_.criterion == Criterion::makespan) return end_s + tail_s_[at(open.task)];
   return std::max(0.0, model_.least_cost_of(open.task, end_s) + range_cost - open.cost);
 }
 
 bool Bounds::least_sum_is_below(double room) {
-  cost_.clear();
+  // Of what may be left out each row has a place of its own for that.
+  std::size_t columns = places_;
   for (std::size_t row = 0; row < open_count_; ++row) {
-    const auto first = penalty_.begin() + static_cast<std::ptrdiff_t>(row * kPlacesMax);
+    if (open_[row].left_out < kInfinity) ++columns;
+  }
+  cost_.clear();
+  std::size_t out = places_;
+  for (std::size_t row = 0; row < open_count_; ++row) {
+    const auto first = penalty_.begin() + static_cast<std::ptrdiff_t>(row * places_max_);
     cost_.insert(cost_.end(), first, first + static_cast<std::ptrdiff_t>(places_));
+    cost_.resize((row + 1) * columns, kInfinity);
+    if (open_[row].left_out < kInfinity) cost_[row * columns + out++] = open_[row].left_out;
   }
   const auto place_of = std::span{place_of_}.first(open_count_);
-  if (!solver_.least_sum(cost_, places_, place_of)) return false;
+  if (!solver_.least_sum(cost_, columns, place_of)) return false;
   double sum = 0.0;
   for (std::size_t row = 0; row < open_count_; ++row) {
-    sum += cost_[row * places_ + static_cast<std::size_t>(place_of[row])];
+    sum += cost_[row * columns + static_cast<std::size_t>(place_of[row])];
   }
   return sum < room;
 }
 
-/// Is there any way to give every open task a place? Kuhn's augmenting paths.
+/// Is there any way to give a place to every open task that cannot be left out?
+/// Kuhn's augmenting paths.
 bool Bounds::give_places() {
   holder_.fill(kNone);
   for (std::size_t row = 0; row < open_count_; ++row) {
-    Mask tried = 0;
+    if (open_[row].left_out < kInfinity) continue;
+    Set128 tried;
     if (!match(row, tried)) return false;
   }
   return true;
 }
 
-bool Bounds::match(std::size_t row, Mask& tried) {
-  while (const Mask left = allowed_[row] & ~tried) {
-    const int place = std::countr_zero(left);
-    tried |= bit(place);
+bool Bounds::match(std::size_t row, Set128& tried) {
+  for (int place = allowed_[row].first_without(tried); place != Set128::kNone;
+       place = allowed_[row].first_without(tried)) {
+    tried.add(place);
     int& holder = holder_[at(place)];
     if (holder == kNone || match(at(holder), tried)) {
       holder = static_cast<int>(row);

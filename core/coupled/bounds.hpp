@@ -42,6 +42,7 @@ class Bounds {
     Index task = 0;
     double cost = 0.0;               ///< by its chain
     double least_slope_per_s = 0.0;  ///< of its cost, as long as any task may have to wait
+    double left_out = kInfinity;     ///< what it costs beyond `cost` not to be done
   };
   using PerTask = std::array<double, kCoupledTasksMax>;
   /// The open tasks that a class can do, side by side.
@@ -62,13 +63,14 @@ class Bounds {
 
   void make_tails();
   void make_least_range_costs();
+  double add_site(const PartialPlan& plan, double cost, Index site);
   double add_survey(const PartialPlan& plan, double cost, Index site);
   double add_deliveries(const PartialPlan& plan, double cost, Index site, double ready_s);
   double add_assessments(const PartialPlan& plan, double cost, Index site, double ready_s);
   [[nodiscard]] double arrival_s(const PartialPlan& plan, Index vehicle, Index task) const;
   [[nodiscard]] double between_s(Index vehicle, Index from, Index to) const;
-  [[nodiscard]] bool in_time(Index vehicle, double end_s) const {
-    return end_s <= model_.vehicles[at(vehicle)].deadline_s;
+  [[nodiscard]] bool in_time(Index vehicle, Index task, double end_s) const {
+    return end_s <= model_.vehicles[at(vehicle)].latest_of_task_s[at(task)];
   }
   void find_open(const PartialPlan& plan);
   void pack();
@@ -79,7 +81,7 @@ class Bounds {
   void next_place(const Packed& can, double weight_per_s, Place& place) const;
   [[nodiscard]] bool least_sum_is_below(double room);
   [[nodiscard]] bool give_places();
-  [[nodiscard]] bool match(std::size_t row, Mask& tried);
+  [[nodiscard]] bool match(std::size_t row, Set128& tried);
 
   const Model& model_;
   std::vector<double> tail_s_;        ///< by task: from its end to the end of what waits for it
@@ -98,7 +100,9 @@ class Bounds {
   std::array<Open, kCoupledTasksMax> open_{};
   std::size_t open_count_ = 0;
   std::vector<Packed> packed_;  ///< by class
-  static constexpr std::size_t kPlacesMax = 64;
+  static constexpr std::size_t kPlacesMax = 128;
+  std::size_t places_max_ = 64;  ///< more cost more than they prune
+  double forgone_ = 0.0;         ///< cost of open tasks that can only be left out
   std::size_t places_ = 0;
   bool too_many_ = false;
   double row_sum_ = 0.0;         ///< of the least penalty of every task
@@ -106,7 +110,7 @@ class Bounds {
   std::vector<double> cost_;     ///< the part of it in use
   std::array<int, kCoupledTasksMax> place_of_{};
   AssignmentSolver solver_;
-  std::array<Mask, kCoupledTasksMax> allowed_{};
+  std::array<Set128, kCoupledTasksMax> allowed_{};
   std::array<int, kPlacesMax> holder_{};
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -99,9 +98,10 @@ void Tree::explore(double bound) {
     search(nodes_ / kNodesPerSearchStep);
     next_search_ *= 2;
   }
-  if (plan_.is_complete()) {
-    if (plan_.cost() < best_cost_) take(plan_.orders(), plan_.cost());
-    return;
+  if (plan_.may_end()) {
+    const double cost = plan_.cost() + plan_.left_out_cost();
+    if (cost < best_cost_) take(plan_.orders(), cost);
+    if (plan_.left() == 0) return;
   }
   const bool between_groups = plan_.group_site() == kNone;
   if (between_groups && best_cost_ < kInfinity && !bounds_.places_suffice(plan_, threshold())) {
@@ -133,8 +133,8 @@ void Tree::make_children(std::vector<Child>& children) {
     } else if (site.deliveries_open > 0) {
       try_task(children, model_.sites[s].deliveries.front());
     } else {
-      for (Mask open = site.assessments_open; open != 0; open &= open - 1) {
-        try_task(children, std::countr_zero(open));
+      for (const Index t : model_.sites[s].assessments) {
+        if (!plan_.done().has(t)) try_task(children, t);
       }
     }
   }

@@ -29,7 +29,10 @@ class Tender {
   [[nodiscard]] std::optional<Orders> run() {
     for (std::size_t left = model_.tasks.size(); left > 0;) {
       const Bid best = best_of_open();
-      if (best.vehicle == kNone) return std::nullopt;
+      if (best.vehicle == kNone) {
+        if (!may_end()) return std::nullopt;
+        break;
+      }
       const Task& task = model_.tasks[at(model_.task_of[at(best.visit)])];
       if (task.id.kind == TaskKind::deliver) {
         if (!award_deliveries(task.site)) return std::nullopt;
@@ -49,6 +52,15 @@ class Tender {
  private:
   [[nodiscard]] bool is_awarded(const std::vector<Index>& tasks) const {
     return std::all_of(tasks.begin(), tasks.end(), [&](Index t) { return awarded_[at(t)]; });
+  }
+
+  /// Is all that is left of optional sites of which nothing was awarded?
+  [[nodiscard]] bool may_end() const {
+    const std::vector<bool> left_out = left_out_of(model_, orders_);
+    for (std::size_t t = 0; t < awarded_.size(); ++t) {
+      if (!awarded_[t] && !left_out[at(model_.tasks[t].site)]) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] Bid best_of_open() const {
@@ -82,12 +94,13 @@ class Tender {
       const Vehicle& vehicle = model_.vehicles[at(i)];
       if ((excluded & bit(i)) != 0) continue;
       if (its.id.kind == TaskKind::deliver && deliveries_[at(i)] >= vehicle.loads) continue;
+      if (has_its_share(model_, orders_[at(i)], its)) continue;
       const double* reach_s = model_.reach_from(i, last_of(i));
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
         const double time_s = model_.flyable_s(i, last_of(i), v, free_s_[at(i)],
                                                std::max(free_s_[at(i)] + reach_s[v], from_s));
         const double end_s = time_s + model_.class_of(i).after_s[at(v)];
-        if (end_s < best.end_s && end_s <= vehicle.deadline_s) best = {i, v, time_s, end_s};
+        if (end_s < best.end_s && end_s <= vehicle.latest_s[at(v)]) best = {i, v, time_s, end_s};
       }
     }
   }
@@ -123,7 +136,8 @@ class Tender {
     for (Bid& member : members) {
       const Task& task = model_.tasks[at(model_.task_of[at(member.visit)])];
       member.end_s = common_s + task.offset_s;
-      if (member.end_s > model_.vehicles[at(member.vehicle)].deadline_s) return false;
+      if (member.end_s > model_.vehicles[at(member.vehicle)].latest_s[at(member.visit)])
+        return false;
       last_s = std::max(last_s, member.end_s);
       award(member);
     }

@@ -40,9 +40,9 @@ inline double objective_of(const CoupledProblem& problem, const CoupledPlan& pla
   double completion = 0.0;
   double makespan = 0.0;
   std::map<std::uint16_t, double> last_end_s;
+  for (const TaskId& task : problem.open_tasks) rewards += site_of(problem, task.site)->reward;
   for (const CoupledTask& t : plan.tasks) {
     const Site& site = *site_of(problem, t.task.site);
-    rewards += site.reward;
     decayed += site.reward * std::exp(-site.reward_decay_per_s * t.end_s);
     completion += site.reward * t.end_s;
     makespan = std::max(makespan, t.end_s);
@@ -66,7 +66,10 @@ class CoupledJudge {
       : problem_{problem}, plan_{plan} {
     tasks_are_those_asked_for();
     for (const CoupledVehicle& v : problem_.vehicles) flies(v);
-    for (const Site& site : problem_.sites) keeps_order(site);
+    for (const Site& site : problem_.sites) {
+      keeps_order(site);
+      if (problem_.share != TaskShare::any) shares_out(site);
+    }
     if (std::abs(objective_of(problem_, plan_) - plan_.objective) >
         1e-9 * std::max(1.0, std::abs(plan_.objective))) {
       faults_.emplace_back("the objective is not that of the plan");
@@ -83,11 +86,26 @@ class CoupledJudge {
     faults_.push_back(to_string(t.task) + " by " + std::to_string(t.vehicle.value) + ": " + what);
   }
 
+  static bool has(const std::vector<SiteId>& sites, SiteId id) {
+    return std::find(sites.begin(), sites.end(), id) != sites.end();
+  }
+  [[nodiscard]] bool is_left_out(SiteId id) const { return has(plan_.left_out, id); }
+  [[nodiscard]] bool is_service(const CoupledTask& t) const {
+    return t.task.kind == TaskKind::survey && has(problem_.service_sites, t.task.site);
+  }
+
   void tasks_are_those_asked_for() {
     std::vector<TaskId> done;
     for (const CoupledTask& t : plan_.tasks) done.push_back(t.task);
     std::sort(done.begin(), done.end());
-    std::vector<TaskId> asked = problem_.open_tasks;
+    std::vector<TaskId> asked;
+    for (const TaskId& task : problem_.open_tasks) {
+      if (!is_left_out(task.site)) asked.push_back(task);
+    }
+    for (const SiteId site : plan_.left_out) {
+      if (!has(problem_.optional_sites, site))
+        faults_.emplace_back("a site is left out that must not be");
+    }
     std::sort(asked.begin(), asked.end());
     if (done != asked) faults_.emplace_back("not every open task is done exactly once");
   }
@@ -99,7 +117,8 @@ class CoupledJudge {
     for (const CoupledTask& t : plan_.tasks) {
       if (t.vehicle != v.id) continue;
       if (!v.capabilities.has(t.task.kind)) say(t, "not capable");
-      const double run_s = t.run.length_m / v.speed_mps;
+      const double run_s = is_service(t) ? to_seconds(site_of(problem_, t.task.site)->survey.dwell)
+                                         : t.run.length_m / v.speed_mps;
       const bool deliver = t.task.kind == TaskKind::deliver;
       const double run_start_s = deliver ? t.time_s - run_s : t.time_s;
       if (std::abs(run_start_s + run_s - t.end_s) > kTime_s) say(t, "the run has not its length");
@@ -107,6 +126,8 @@ class CoupledJudge {
       if (deliver) {
         ++deliveries;
         delivers(t, v, exit);
+      } else if (is_service(t)) {
+        serves(t);
       } else {
         flies_arc(t, v);
       }
@@ -114,7 +135,12 @@ class CoupledJudge {
       pose = exit;
       free_s = t.end_s;
     }
-    if (free_s * v.speed_mps > v.range_left_m + kLength_m) {
+    double home_m = 0.0;
+    if (v.home && free_s > 0.0) {
+      // Straight: no way is shorter.
+      home_m = (*v.home - pose.position()).norm();
+    }
+    if (free_s * v.speed_mps + home_m > v.range_left_m + kLength_m) {
       faults_.push_back("vehicle " + std::to_string(v.id.value) + ": range");
     }
     if (deliveries > v.loads) {
@@ -130,6 +156,12 @@ class CoupledJudge {
     }
     if (std::abs(wrap_pi(exit.heading_rad - want.bearing_rad)) > 1e-9) say(t, "bearing");
     if (std::abs(t.run.length_m - v.final_approach_m) > kLength_m) say(t, "approach");
+  }
+
+  void serves(const CoupledTask& t) {
+    const Site& site = *site_of(problem_, t.task.site);
+    if ((t.entry.position() - site.position).norm() > kLength_m) say(t, "not over the site");
+    if (t.run.length_m != 0.0) say(t, "a service has no run");
   }
 
   void flies_arc(const CoupledTask& t, const CoupledVehicle& v) {
@@ -152,16 +184,29 @@ class CoupledJudge {
   }
 
   void arrives(const CoupledTask& t, const CoupledVehicle& v, const Pose2& pose, double transit_s) {
-    const double least_m = shortest_dubins_length(pose, t.entry, v.planning_radius_m);
+    const double least_m = v.planning_radius_m == 0.0
+                               ? (t.entry.position() - pose.position()).norm()
+                               : shortest_dubins_length(pose, t.entry, v.planning_radius_m);
     if (std::abs(t.transit_m - transit_s * v.speed_mps) > kLength_m) {
       say(t, "the transit does not fill its time");
     }
     if (t.transit_m < least_m - kLength_m) say(t, "cannot be there in time");
-    if (problem_.flyable_waits &&
+    if (problem_.flyable_waits && v.planning_radius_m > 0.0 &&
         (t.transit_m > least_m + kLength_m || !problem_.hazards.empty())) {
       const Transit transit{pose, t.entry, v.planning_radius_m, v.range_left_m, problem_.hazards};
       const auto path = path_of_length(problem_.avoidance, transit, t.transit_m);
       if (!path) say(t, path.error().message);
+    }
+  }
+
+  void shares_out(const Site& site) {
+    std::map<std::uint16_t, int> tasks;
+    for (const CoupledTask& t : plan_.tasks) {
+      const bool counts = t.task.site == site.id || problem_.share == TaskShare::one;
+      if (counts && t.task.kind != TaskKind::survey) ++tasks[t.vehicle.value];
+    }
+    for (const auto& [vehicle, count] : tasks) {
+      if (count > 1) faults_.emplace_back("a vehicle does more than its share");
     }
   }
 

@@ -20,18 +20,39 @@ constexpr int kCounterClockwise = 1;
 constexpr int kClockwise = -1;
 constexpr double kWaitless_m = 1e-5;  ///< a transit this little above the least has no wait
 constexpr int kHoldPassesMax = 50;
-constexpr double kNoGap_radii = 6.0;  ///< poses farther apart have none, see length_gap
+constexpr double kSearchWeight = 1e-4;  ///< of the range, over that of all reward
+constexpr double kNoGap_radii = 6.0;    ///< poses farther apart have none, see length_gap
 
 /// A way of flying a task, before it is known by which vehicle.
 struct Way {
   Index task = 0;
-  double start_rad = 0.0;  ///< of an arc
+  double start_rad = 0.0;  ///< of an arc; of a service the heading
   int turn = kCounterClockwise;
 };
+
+bool has(const std::vector<SiteId>& sites, SiteId id) {
+  return std::find(sites.begin(), sites.end(), id) != sites.end();
+}
+
+bool is_service(const CoupledProblem& problem, const TaskId& id) {
+  return id.kind == TaskKind::survey && has(problem.service_sites, id.site);
+}
+
+/// Every vehicle does, so that headings are all one.
+bool turns_on_the_spot(const CoupledProblem& problem) {
+  return std::all_of(problem.vehicles.begin(), problem.vehicles.end(),
+                     [](const CoupledVehicle& v) { return v.planning_radius_m == 0.0; });
+}
 
 std::vector<Way> ways_of(const CoupledProblem& problem, const Site& site, const TaskId& id,
                          Index task) {
   if (id.kind == TaskKind::deliver) return {{task}};
+  if (is_service(problem, id)) {
+    std::vector<Way> ways;
+    const int headings = turns_on_the_spot(problem) ? 1 : problem.free_starts;
+    for (int i = 0; i < headings; ++i) ways.push_back({task, wrap_pi(i * kTwoPi / headings), 0});
+    return ways;
+  }
   const bool survey = id.kind == TaskKind::survey;
   const ArcRequirement& arc = survey ? site.survey : site.assessments[id.index];
   const bool both = survey && (problem.survey_in_both_senses || !arc.start_angle_rad);
@@ -55,7 +76,7 @@ bool alike(const CoupledVehicle& a, const CoupledVehicle& b) {
 bool equal(const CoupledVehicle& a, const CoupledVehicle& b) {
   return alike(a, b) && a.loads == b.loads && a.range_left_m == b.range_left_m &&
          a.pose.x_m == b.pose.x_m && a.pose.y_m == b.pose.y_m &&
-         a.pose.heading_rad == b.pose.heading_rad;
+         a.pose.heading_rad == b.pose.heading_rad && a.home == b.home;
 }
 
 bool can(const CoupledVehicle& vehicle, TaskKind kind) {
@@ -73,6 +94,7 @@ class Lengths {
 
   [[nodiscard]] double transit_m(const Pose2& from, const Pose2& to, double radius_m) const {
     if (problem_.transit_length_m) return problem_.transit_length_m(from, to, radius_m);
+    if (radius_m == 0.0) return (to.position() - from.position()).norm();
     if (problem_.hazards.empty()) return shortest_dubins_length(from, to, radius_m);
     const auto path = shortest_clear_path(problem_.avoidance, from, to, radius_m, problem_.hazards);
     return path ? path->length_m() : kInfinity;
@@ -81,6 +103,7 @@ class Lengths {
   [[nodiscard]] Gap gap(const Pose2& from, const Pose2& to, const CoupledVehicle& vehicle,
                         double reach_s, double before_s) const {
     if (!problem_.flyable_waits || problem_.transit_length_m || reach_s == kInfinity) return {};
+    if (vehicle.planning_radius_m == 0.0) return {};
     const double apart_m = kNoGap_radii * vehicle.planning_radius_m;
     if ((to.position() - from.position()).squaredNorm() > apart_m * apart_m) return {};
     const auto lengths = length_gap(from, to, vehicle.planning_radius_m);
@@ -90,8 +113,26 @@ class Lengths {
     const double high_s = (lengths->high_m + kWaitless_m) / vehicle.speed_mps + before_s;
     return reach_s < high_s ? Gap{std::max(reach_s, low_s), high_s} : Gap{};
   }
+  /// From a pose to the vehicle's home, where it may arrive on any heading; 0
+  /// without one.
+  [[nodiscard]] double home_m(const Pose2& from, const CoupledVehicle& vehicle) const {
+    if (!vehicle.home) return 0.0;
+    double least_m = kInfinity;
+    const int headings = vehicle.planning_radius_m == 0.0 ? 1 : problem_.free_starts;
+    for (int i = 0; i < headings; ++i) {
+      const Pose2 home{vehicle.home->x(), vehicle.home->y(), wrap_pi(i * kTwoPi / headings)};
+      least_m = std::min(least_m, transit_m(from, home, vehicle.planning_radius_m));
+    }
+    return least_m;
+  }
   [[nodiscard]] bool run_is_clear(const TaskPath& task) const {
     if (problem_.hazards.empty()) return true;
+    if (task.run.length_m == 0.0) {
+      return std::all_of(problem_.hazards.begin(), problem_.hazards.end(),
+                         [&](const Hazard& hazard) {
+                           return (hazard.centre - task.entry.position()).norm() >= hazard.radius_m;
+                         });
+    }
     Path run{.start = task.entry, .segments = {}};
     return run.append(task.run) && is_clear(run, problem_.hazards);
   }
@@ -125,7 +166,13 @@ VehicleClass Compiler::make_class(const CoupledVehicle& vehicle) const {
     const Site& site = problem.sites[at(task.site)];
     TaskPath path;
     double before_m = 0.0;
-    if (task.id.kind == TaskKind::deliver) {
+    double serves_s = 0.0;
+    if (is_service(problem, task.id)) {
+      path.entry = {site.position.x(), site.position.y(), way.start_rad};
+      path.run = {};
+      serves_s = to_seconds(site.survey.dwell);
+      possible[v] = can(vehicle, task.id.kind);
+    } else if (task.id.kind == TaskKind::deliver) {
       path = delivery_path(site, site.deliveries[task.id.index], vehicle.final_approach_m);
       before_m = path.run.length_m;
       possible[v] = can(vehicle, task.id.kind);
@@ -141,7 +188,7 @@ VehicleClass Compiler::make_class(const CoupledVehicle& vehicle) const {
     possible[v] = possible[v] && lengths.run_is_clear(path);
     kind.paths.push_back(path);
     kind.before_s.push_back(before_m / vehicle.speed_mps);
-    kind.after_s.push_back((path.run.length_m - before_m) / vehicle.speed_mps);
+    kind.after_s.push_back((path.run.length_m - before_m) / vehicle.speed_mps + serves_s);
     exits.push_back(advance(path.entry, path.run.curvature_per_m, path.run.length_m));
   }
   for (std::size_t a = 0; a < visits; ++a) {
@@ -232,10 +279,23 @@ void Compiler::add_vehicles() {
       }
     }
     vehicle.deadline_s = given.range_left_m / given.speed_mps;
+    vehicle.latest_of_task_s.assign(model.tasks.size(), -kInfinity);
+    for (std::size_t v = 0; v < ways.size(); ++v) {
+      const TaskPath& path = kind.paths[v];
+      const Pose2 exit = advance(path.entry, path.run.curvature_per_m, path.run.length_m);
+      vehicle.latest_s.push_back(vehicle.deadline_s -
+                                 lengths.home_m(exit, given) / given.speed_mps);
+      double& latest_s = vehicle.latest_of_task_s[at(ways[v].task)];
+      latest_s = std::max(latest_s, vehicle.latest_s.back());
+    }
     vehicle.loads = given.loads;
     vehicle.capabilities = given.capabilities;
     if (problem.criterion == Criterion::value && range_sum_m > 0.0) {
       vehicle.range_weight_per_s = problem.weights.range * given.speed_mps / range_sum_m;
+    }
+    vehicle.search_weight_per_s = vehicle.range_weight_per_s;
+    if (model.any_optional && range_sum_m > 0.0) {
+      vehicle.search_weight_per_s += kSearchWeight * given.speed_mps / range_sum_m;
     }
     for (std::size_t j = i; j-- > 0;) {
       if (!equal(problem.vehicles[j], given)) continue;
@@ -277,9 +337,27 @@ std::optional<Error> refusal(const CoupledProblem& problem) {
                  " open tasks, not " + std::to_string(problem.open_tasks.size())};
   }
   for (const CoupledVehicle& v : problem.vehicles) {
-    if (v.speed_mps > 0.0 && v.planning_radius_m > 0.0) continue;
-    return Error{"Vehicle " + std::to_string(v.id.value) +
-                 " needs a speed and a turn radius above 0"};
+    if (!(v.speed_mps > 0.0 && v.planning_radius_m >= 0.0)) {
+      return Error{"Vehicle " + std::to_string(v.id.value) +
+                   " needs a speed above 0 and a turn radius that is not below it"};
+    }
+    if (v.planning_radius_m == 0.0 && !problem.hazards.empty()) {
+      return Error{"Vehicle " + std::to_string(v.id.value) +
+                   " turns on the spot; among hazards it needs a turn radius above 0"};
+    }
+  }
+  if (!problem.optional_sites.empty() && problem.criterion != Criterion::value) {
+    return Error{"Sites can be left out where the criterion is value, and no other"};
+  }
+  for (const auto* const named : {&problem.optional_sites, &problem.service_sites}) {
+    for (const SiteId id : *named) {
+      if (std::any_of(problem.sites.begin(), problem.sites.end(),
+                      [&](const Site& s) { return s.id == id; })) {
+        continue;
+      }
+      return Error{"Site " + std::to_string(id.value) +
+                   ", which is optional or a service, is none of the problem's"};
+    }
   }
   return std::nullopt;
 }
@@ -290,6 +368,7 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   if (auto error = refusal(problem)) return *error;
   Model model;
   model.criterion = problem.criterion;
+  model.share = problem.share;
   model.decide_wait_s = to_seconds(problem.decide_wait);
   model.sites.resize(problem.sites.size());
   std::vector<TaskId> open = problem.open_tasks;
@@ -316,6 +395,9 @@ Result<Model> Model::make(const CoupledProblem& problem) {
     ways.insert(ways.end(), its_ways.begin(), its_ways.end());
     SiteTasks& tasks = model.sites[at(made.site)];
     tasks.assess_wait_s = to_seconds(site->assess_wait);
+    tasks.optional = has(problem.optional_sites, id.site);
+    ++tasks.tasks;
+    model.any_optional = model.any_optional || tasks.optional;
     if (id.kind == TaskKind::survey) tasks.survey = task;
     if (id.kind == TaskKind::assess) tasks.assessments.push_back(task);
     if (id.kind == TaskKind::deliver) {
@@ -335,6 +417,7 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   const double reward_weight = problem.criterion == Criterion::value ? problem.weights.reward : 1.0;
   for (Task& task : model.tasks) {
     task.weight = reward_sum > 0.0 ? reward_weight * task.weight / reward_sum : 0.0;
+    model.sites[at(task.site)].reward_cost += task.weight;
   }
   for (const Way& way : ways) model.task_of.push_back(way.task);
   model.best_value_ = (reward_sum > 0.0 ? problem.weights.reward : 0.0) + problem.weights.range;
@@ -356,6 +439,36 @@ double Model::cost_of(Index task, double end_s) const {
       break;
   }
   return end_s;
+}
+
+bool has_its_share(const Model& model, const std::vector<Index>& order, const Task& task) {
+  if (model.share == TaskShare::any || task.id.kind == TaskKind::survey) return false;
+  return std::any_of(order.begin(), order.end(), [&](Index v) {
+    const Task& other = model.tasks[at(model.task_of[at(v)])];
+    return (other.site == task.site || model.share == TaskShare::one) &&
+           other.id.kind != TaskKind::survey;
+  });
+}
+
+std::vector<bool> left_out_of(const Model& model, const Orders& orders) {
+  std::vector<bool> left_out;
+  for (const SiteTasks& site : model.sites) left_out.push_back(site.optional && site.tasks > 0);
+  for (const auto& order : orders) {
+    for (const Index visit : order) {
+      left_out[at(model.tasks[at(model.task_of[at(visit)])].site)] = false;
+    }
+  }
+  return left_out;
+}
+
+double left_out_cost(const Model& model, const Orders& orders) {
+  if (!model.any_optional) return 0.0;
+  const std::vector<bool> left_out = left_out_of(model, orders);
+  double cost = 0.0;
+  for (std::size_t s = 0; s < left_out.size(); ++s) {
+    if (left_out[s]) cost += model.sites[s].reward_cost;
+  }
+  return cost;
 }
 
 Timing::Timing(const Model& model, Costs costs)
@@ -444,7 +557,7 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
   const Vehicle& its = model_.vehicles[at(vehicle)];
   const Index task = model_.task_of[at(visit)];
   const double end_s = time_s + model_.classes[at(its.kind)].after_s[at(visit)];
-  if (!(end_s <= its.deadline_s)) {
+  if (!(end_s <= its.latest_s[at(visit)])) {
     cost_ = kInfinity;
     ready_ = 0;
     return false;
@@ -454,7 +567,9 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
   end_sum_s_ += end_s;
   cost_ = model_.add(cost_, costs_ == Costs::exact ? model_.cost_of(task, end_s)
                                                    : model_.least_cost_of(task, end_s));
-  if (its.range_weight_per_s > 0.0) cost_ += its.range_weight_per_s * (end_s - state.free_s);
+  const double weight_per_s =
+      costs_ == Costs::exact ? its.range_weight_per_s : its.search_weight_per_s;
+  if (weight_per_s > 0.0) cost_ += weight_per_s * (end_s - state.free_s);
   state.free_s = end_s;
   state.before = visit;
   ++state.next;
@@ -527,7 +642,8 @@ Pose2 end_of(const CoupledTask& task) {
 /// The least length from the one asked for that can be flown; nothing where none can.
 std::optional<double> flyable_m(const CoupledProblem& problem, const CoupledVehicle& vehicle,
                                 const Pose2& from, const CoupledTask& task) {
-  const bool any = !problem.flyable_waits || problem.transit_length_m;
+  const bool any =
+      !problem.flyable_waits || problem.transit_length_m || vehicle.planning_radius_m == 0.0;
   if (any || task.transit_m <= task.least_transit_m + kWaitless_m) {
     return task.transit_m;
   }
@@ -580,10 +696,16 @@ Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
     if (settled == false) cost = timing.evaluate(orders);
   }
   if (settled != true) {
-    return Error{"The plan that was found has a wait for which no path was found within the range"};
+    return Error{
+        "The plan that was found has a wait for which no path was "
+        "found within the range"};
   }
   CoupledPlan plan;
-  plan.objective = model.objective(cost);
+  plan.objective = model.objective(cost + left_out_cost(model, orders));
+  const std::vector<bool> left_out = left_out_of(model, orders);
+  for (std::size_t s = 0; s < left_out.size(); ++s) {
+    if (left_out[s]) plan.left_out.push_back(problem.sites[s].id);
+  }
   double weight_sum = 0.0;
   for (Index i = 0; i < model.vehicle_count(); ++i) {
     const CoupledVehicle& vehicle = problem.vehicles[at(i)];
@@ -609,11 +731,11 @@ Result<CoupledPlan> make_plan(const Model& model, const CoupledProblem& problem,
 
 Error no_plan(const Model& model, Sought sought) {
   for (Index t = 0; t < model.task_count(); ++t) {
-    bool any = false;
+    bool any = model.sites[at(model.tasks[at(t)].site)].optional;
     for (Index i = 0; i < model.vehicle_count(); ++i) {
       const Vehicle& vehicle = model.vehicles[at(i)];
       const double end_s = vehicle.least_s[at(t)] + model.class_of(i).least_after_s[at(t)];
-      any = any || end_s <= vehicle.deadline_s;
+      any = any || end_s <= vehicle.latest_of_task_s[at(t)];
     }
     if (!any) {
       return Error{"No vehicle is able to do '" + to_string(model.tasks[at(t)].id) +

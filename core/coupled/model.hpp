@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -19,9 +20,32 @@ namespace skein::planning::coupled {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr int kNone = -1;
 
-/// A set of tasks, or of vehicles.
+/// A set of vehicles.
 using Mask = std::uint64_t;
 [[nodiscard]] constexpr Mask bit(int index) { return Mask{1} << static_cast<unsigned>(index); }
+
+/// A set of 128 tasks, or places.
+class Set128 {
+ public:
+  static constexpr int kNone = 128;
+  [[nodiscard]] constexpr bool has(int i) const { return (word(i) >> (i & 63) & 1U) != 0; }
+  constexpr void add(int i) { word(i) |= bit(i & 63); }
+  constexpr void remove(int i) { word(i) &= ~bit(i & 63); }
+  constexpr void clear() { low_ = high_ = 0; }
+  [[nodiscard]] constexpr bool empty() const { return (low_ | high_) == 0; }
+  /// The least that is not in `others`; kNone where there is none.
+  [[nodiscard]] constexpr int first_without(const Set128& others) const {
+    if (const std::uint64_t low = low_ & ~others.low_; low != 0) return std::countr_zero(low);
+    return 64 + std::countr_zero(high_ & ~others.high_);
+  }
+
+ private:
+  [[nodiscard]] constexpr const std::uint64_t& word(int i) const { return i < 64 ? low_ : high_; }
+  [[nodiscard]] constexpr std::uint64_t& word(int i) { return i < 64 ? low_ : high_; }
+
+  std::uint64_t low_ = 0;
+  std::uint64_t high_ = 0;
+};
 
 /// An index of the problem in hand. Plain integers, because they count in flat arrays.
 using Index = int;
@@ -44,6 +68,9 @@ struct SiteTasks {
   std::vector<Index> deliveries;
   std::vector<Index> assessments;
   double assess_wait_s = 0.0;
+  bool optional = false;
+  int tasks = 0;             ///< of all kinds
+  double reward_cost = 0.0;  ///< of leaving it out: all of its weights
 };
 
 /// From the end of a visit to the time of the next, the seconds between these two cannot be flown;
@@ -70,15 +97,20 @@ struct VehicleClass {
 };
 
 struct Vehicle {
-  Index kind = 0;               ///< of Model::classes
-  std::vector<double> reach_s;  ///< by visit: from its pose at the start
-  std::vector<Gap> gaps;        ///< as reach_s
-  std::vector<double> least_s;  ///< by task, as VehicleClass::least_s
-  double deadline_s = 0.0;      ///< its range
+  Index kind = 0;                        ///< of Model::classes
+  std::vector<double> reach_s;           ///< by visit: from its pose at the start
+  std::vector<Gap> gaps;                 ///< as reach_s
+  std::vector<double> least_s;           ///< by task, as VehicleClass::least_s
+  double deadline_s = 0.0;               ///< its range
+  std::vector<double> latest_s;          ///< by visit: its end, so that the range takes it home
+  std::vector<double> latest_of_task_s;  ///< the latest of its visits
   int loads = 0;
   Capabilities capabilities;
   double range_weight_per_s = 0.0;  ///< cost of a second in flight
-  Index twin = kNone;               ///< the vehicle before it that equals it in everything
+  /// The same for who searches: a little, where nothing else says that less is
+  /// better.
+  double search_weight_per_s = 0.0;
+  Index twin = kNone;  ///< the vehicle before it that equals it in everything
 };
 
 class Model {
@@ -93,6 +125,8 @@ class Model {
   double decide_wait_s = 0.0;
   Criterion criterion = Criterion::value;
   bool offsets = false;  ///< is any offset not 0?
+  bool any_optional = false;
+  TaskShare share = TaskShare::any;
   static constexpr std::size_t kChords = 256;
   std::vector<double> chords;  ///< by decay and cell: the part of the reward that is lost
   double chords_per_s = 0.0;
@@ -164,6 +198,15 @@ class Model {
 /// The visits of every vehicle, in order.
 using Orders = std::vector<std::vector<Index>>;
 
+/// May who has these orders not do that task, too?
+[[nodiscard]] bool has_its_share(const Model& model, const std::vector<Index>& order,
+                                 const Task& task);
+
+/// By site: is it optional, and no task of it in the orders?
+[[nodiscard]] std::vector<bool> left_out_of(const Model& model, const Orders& orders);
+/// What that costs.
+[[nodiscard]] double left_out_cost(const Model& model, const Orders& orders);
+
 /// The earliest times for given orders. Tasks that are in no order are as if they did not exist.
 class Timing {
  public:
@@ -234,7 +277,8 @@ enum class Sought : std::uint8_t { everywhere, within_the_budget, in_one_way };
 /// Why a problem has no plan, as far as is easily said; whether that is proven.
 [[nodiscard]] Error no_plan(const Model& model, Sought sought);
 
-/// The orders of greedy_awards; nothing where a task is left.
+/// The orders of greedy_awards; nothing where a task is left that is not of a
+/// site left out.
 [[nodiscard]] std::optional<Orders> greedy_orders(const Model& model);
 
 }  // namespace skein::planning::coupled

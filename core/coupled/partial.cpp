@@ -15,8 +15,18 @@ PartialPlan::PartialPlan(const Model& model)
   for (std::size_t s = 0; s < sites_.size(); ++s) {
     sites_[s].survey_open = model.sites[s].survey != kNone;
     sites_[s].deliveries_open = static_cast<int>(model.sites[s].deliveries.size());
-    for (const Index t : model.sites[s].assessments) sites_[s].assessments_open |= bit(t);
+    sites_[s].assessments_open = static_cast<int>(model.sites[s].assessments.size());
+    sites_[s].untouched = model.sites[s].optional && model.sites[s].tasks > 0;
+    if (!sites_[s].untouched) must_ += model.sites[s].tasks;
   }
+}
+
+double PartialPlan::left_out_cost() const {
+  double cost = 0.0;
+  for (std::size_t s = 0; s < sites_.size(); ++s) {
+    if (sites_[s].untouched) cost += model_.sites[s].reward_cost;
+  }
+  return cost;
 }
 
 double PartialPlan::time_of(const Step& step) const {
@@ -32,9 +42,10 @@ double PartialPlan::time_of(const Step& step) const {
 bool PartialPlan::allows(const Step& step) const {
   const Task& task = model_.tasks[at(model_.task_of[at(step.visit)])];
   const coupled::Vehicle& its = model_.vehicles[at(step.vehicle)];
+  if (has_its_share(model_, orders_[at(step.vehicle)], task)) return false;
   const double time_s = time_of(step);
   const double end_s = time_s + model_.class_of(step.vehicle).after_s[at(step.visit)];
-  if (!(end_s <= its.deadline_s)) return false;
+  if (!(end_s <= its.latest_s[at(step.visit)])) return false;
   if (task.id.kind != TaskKind::deliver) {
     return comes_after_all({time_s, bit(step.vehicle), task.site});
   }
@@ -70,13 +81,16 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
   const Task& task = model_.tasks[at(index)];
   Site& site = sites_[at(task.site)];
   Vehicle& vehicle = vehicles_[at(step.vehicle)];
-  const Before before{vehicle,      cost_,       floor_s_,     common_s_,
-                      site.ready_s, group_site_, group_begin_, jobs_.size()};
+  const Before before{vehicle,     cost_,        floor_s_,     common_s_,     site.ready_s,
+                      group_site_, group_begin_, jobs_.size(), site.untouched};
   const double time_s = time_of(step);
   orders_[at(step.vehicle)].push_back(step.visit);
   vehicle.last = step.visit;
   --left_;
-  done_ |= bit(index);
+  if (site.untouched) must_ += model_.sites[at(task.site)].tasks;
+  site.untouched = false;
+  --must_;
+  done_.add(index);
   if (task.id.kind == TaskKind::deliver) {
     --vehicle.loads;
     --site.deliveries_open;
@@ -96,7 +110,7 @@ PartialPlan::Before PartialPlan::apply(const Step& step) {
     site.survey_open = false;
     site.ready_s = site.deliveries_open > 0 ? end_s + model_.decide_wait_s : end_s;
   } else {
-    site.assessments_open &= ~bit(index);
+    --site.assessments_open;
   }
   return before;
 }
@@ -120,9 +134,10 @@ void PartialPlan::close_group() {
     const coupled::Vehicle& its = model_.vehicles[at(m.vehicle)];
     last_s = std::max(last_s, end_s);
     vehicles |= bit(m.vehicle);
-    cost_ = end_s <= its.deadline_s ? model_.add(cost_, model_.cost_of(m.task, end_s)) +
-                                          its.range_weight_per_s * (end_s - m.free_s)
-                                    : kInfinity;
+    cost_ = end_s <= its.latest_s[at(vehicles_[at(m.vehicle)].last)]
+                ? model_.add(cost_, model_.cost_of(m.task, end_s)) +
+                      its.range_weight_per_s * (end_s - m.free_s)
+                : kInfinity;
   }
   const Job job{common_s_, vehicles, group_site_};
   if (!comes_after_all(job)) cost_ = kInfinity;  // this plan is built in another way
@@ -138,7 +153,10 @@ void PartialPlan::undo(const Step& step, const Before& before) {
   Site& site = sites_[at(task.site)];
   orders_[at(step.vehicle)].pop_back();
   ++left_;
-  done_ &= ~bit(index);
+  ++must_;
+  if (before.untouched) must_ -= model_.sites[at(task.site)].tasks;
+  site.untouched = before.untouched;
+  done_.remove(index);
   cost_ = before.cost;
   floor_s_ = before.floor_s;
   jobs_.erase(jobs_.begin() + static_cast<std::ptrdiff_t>(before.jobs), jobs_.end());
@@ -152,7 +170,7 @@ void PartialPlan::undo(const Step& step, const Before& before) {
   } else if (task.id.kind == TaskKind::survey) {
     site.survey_open = true;
   } else {
-    site.assessments_open |= bit(index);
+    ++site.assessments_open;
   }
   vehicles_[at(step.vehicle)] = before.vehicle;
 }

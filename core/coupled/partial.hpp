@@ -25,11 +25,12 @@ class PartialPlan {
   struct Site {
     bool survey_open = false;
     int deliveries_open = 0;
-    Mask assessments_open = 0;
-    double ready_s = 0.0;  ///< when what comes next may be done
+    int assessments_open = 0;
+    bool untouched = false;  ///< optional, and nothing of it is done: it may be left out
+    double ready_s = 0.0;    ///< when what comes next may be done
 
     [[nodiscard]] bool is_open() const {
-      return survey_open || deliveries_open > 0 || assessments_open != 0;
+      return survey_open || deliveries_open > 0 || assessments_open > 0;
     }
   };
   struct Vehicle {
@@ -47,6 +48,7 @@ class PartialPlan {
     Index group_site = kNone;
     std::size_t group_begin = 0;
     std::size_t jobs = 0;
+    bool untouched = false;
   };
 
   explicit PartialPlan(const Model& model);
@@ -61,8 +63,11 @@ class PartialPlan {
   [[nodiscard]] const std::vector<Site>& sites() const { return sites_; }
   [[nodiscard]] const std::vector<Vehicle>& vehicles() const { return vehicles_; }
   [[nodiscard]] const Orders& orders() const { return orders_; }
-  [[nodiscard]] Mask done() const { return done_; }
-  [[nodiscard]] bool is_complete() const { return left_ == 0; }
+  [[nodiscard]] const Set128& done() const { return done_; }
+  /// What is left may be left out.
+  [[nodiscard]] bool may_end() const { return must_ == 0 && group_site_ == kNone; }
+  /// Of leaving it out.
+  [[nodiscard]] double left_out_cost() const;
   [[nodiscard]] Index left() const { return left_; }
   /// Of what has its final time; infinite when the plan came to nothing.
   [[nodiscard]] double cost() const { return cost_; }
@@ -99,8 +104,9 @@ class PartialPlan {
   std::vector<Site> sites_;
   std::vector<Vehicle> vehicles_;
   Orders orders_;
-  Mask done_ = 0;
+  Set128 done_;
   Index left_ = 0;
+  int must_ = 0;  ///< tasks that are left, and cannot be left out
   double cost_ = 0.0;
   double floor_s_ = 0.0;
   Index group_site_ = kNone;

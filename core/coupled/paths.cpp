@@ -93,7 +93,7 @@ double Paths::through_s(const std::vector<Index>& order, const Timing& timing, I
   const double free_s = before == kNone ? 0.0 : timing.ends_s()[at(model_.task_of[at(before)])];
   const double time_s = std::max(free_s + model_.reach_from(vehicle, before)[visit], ready_s(task));
   const double end_s = time_s + model_.class_of(vehicle).after_s[at(visit)];
-  if (!(end_s <= model_.vehicles[at(vehicle)].deadline_s)) return kInfinity;
+  if (!(end_s <= model_.vehicles[at(vehicle)].latest_s[at(visit)])) return kInfinity;
   double after_s = site_tail_s(task);
   if (position < order.size()) {
     const Index next = order[position];

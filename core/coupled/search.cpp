@@ -26,6 +26,8 @@ constexpr double kAccepted = 0.5;
 
 constexpr std::size_t kRuins = 5;
 constexpr std::size_t kSorts = 3;
+constexpr std::size_t kSortsOfOptional = 4;
+constexpr double kLeaveOut = 0.03;  ///< chance that an optional site is not put back, for variety
 
 // Where the criterion is the makespan.
 constexpr double kMeanEnd = 0.1;  ///< of the score
@@ -56,14 +58,16 @@ Search::Search(const Model& model, Random& random)
       random_{random},
       timing_{model, Timing::Costs::approximate},
       ruins_{kRuins},
-      sorts_{kSorts},
+      sorts_{model.any_optional ? kSortsOfOptional : kSorts},
       paths_{model},
       vehicle_of_(model.tasks.size(), kNone),
-      chosen_(model.tasks.size(), 0) {
+      chosen_(model.tasks.size(), 0),
+      dropped_(model.sites.size(), 0) {
   current_.orders.assign(model_.vehicles.size(), {});
   if (auto orders = greedy_orders(model_)) {
     current_.orders = std::move(*orders);
-    current_.score = score_of(current_.orders);
+    current_.missing = missing_of(current_.orders);
+    current_.score = score_of(current_.orders) + left_out_cost(model_, current_.orders);
   } else {
     for (Index t = 0; t < model_.task_count(); ++t) current_.missing.push_back(t);
     recreate(current_, kInfinity);
@@ -81,14 +85,33 @@ double Search::score_of(const Orders& orders, double limit) {
 
 /// Keeps `current_` if it is the best; by its true cost, so that more steps are never worse.
 void Search::accept_best() {
-  if (!current_.missing.empty() || current_.score == kInfinity) {
+  if (must(current_) > 0 || current_.score == kInfinity) {
     if (best_cost_ == kInfinity) best_ = current_;
     return;
   }
-  const double cost = Timing{model_}.evaluate(current_.orders);
+  const double cost =
+      Timing{model_}.evaluate(current_.orders) + left_out_cost(model_, current_.orders);
   if (cost > best_cost_) return;
   best_cost_ = cost;
   best_ = current_;
+}
+
+std::vector<Index> Search::missing_of(const Orders& orders) const {
+  std::vector<char> done(model_.tasks.size(), 0);
+  for (const auto& order : orders) {
+    for (const Index v : order) done[at(model_.task_of[at(v)])] = 1;
+  }
+  std::vector<Index> missing;
+  for (Index t = 0; t < model_.task_count(); ++t) {
+    if (done[at(t)] == 0) missing.push_back(t);
+  }
+  return missing;
+}
+
+/// How many tasks are missing that cannot be left out.
+std::size_t Search::must(const Solution& plan) const {
+  return static_cast<std::size_t>(std::count_if(plan.missing.begin(), plan.missing.end(),
+                                                [this](Index t) { return !is_optional(t); }));
 }
 
 void Search::step() {
@@ -96,7 +119,7 @@ void Search::step() {
   const std::uint64_t phase = steps_++ % cycle;
   if (phase == 0) current_ = best_;
   const double part = static_cast<double>(phase) / static_cast<double>(cycle);
-  const double heat = best_.missing.empty() ? kHot * std::pow(kCold / kHot, part) : 0.0;
+  const double heat = best_cost_ < kInfinity ? kHot * std::pow(kCold / kHot, part) : 0.0;
   const double limit = current_.score - heat * best_.score * std::log(1.0 - random_.uniform());
   next_ = current_;
   ruin(next_);
@@ -255,14 +278,23 @@ void Search::recreate(Solution& plan, double limit) {
       for (const Vehicle& v : model_.vehicles) soonest = std::min(soonest, v.least_s[at(t)]);
       key = -soonest * (0.5 + key);
     }
+    if (sort == 3) key = -task.weight * (0.5 + key);
     sorted_.emplace_back(key, t);
   }
   std::sort(sorted_.begin(), sorted_.end());
   plan.missing.clear();
   plan.score = score_of(plan.orders);
+  std::fill(dropped_.begin(), dropped_.end(), 0);
   for (const auto& [key, task] : sorted_) {
+    const Index site = model_.tasks[at(task)].site;
+    if (is_optional(task) && random_.chance(kLeaveOut)) dropped_[at(site)] = 1;
+    if (dropped_[at(site)] != 0) continue;
     const Place place = best_place(plan, task);
     if (place.vehicle == kNone) {
+      if (is_optional(task)) {
+        dropped_[at(site)] = 1;
+        continue;
+      }
       plan.missing.push_back(task);
       if (limit < kMissing) break;
       continue;
@@ -272,14 +304,30 @@ void Search::recreate(Solution& plan, double limit) {
     plan.score = place.score;
     if (plan.score >= limit) break;  // it only grows
   }
-  plan.score = plan.score >= limit
-                   ? kInfinity
-                   : plan.score + kMissing * static_cast<double>(plan.missing.size());
+  if (model_.any_optional && plan.score < limit) leave_out_dropped(plan);
+  plan.score =
+      plan.score >= limit ? kInfinity : plan.score + kMissing * static_cast<double>(must(plan));
 }
 
-bool Search::has_load(const Solution& plan, Index vehicle, const Task& task) const {
-  if (task.id.kind != TaskKind::deliver) return true;
+/// What could not be put back is left out with all of its site.
+void Search::leave_out_dropped(Solution& plan) {
+  bool any = false;
+  for (auto& order : plan.orders) {
+    any = std::erase_if(order,
+                        [this](Index v) {
+                          return dropped_[at(model_.tasks[at(model_.task_of[at(v)])].site)] != 0;
+                        }) > 0 ||
+          any;
+  }
+  if (any) plan.score = score_of(plan.orders);
+  plan.score += left_out_cost(model_, plan.orders);
+  plan.missing = missing_of(plan.orders);
+}
+
+bool Search::may_take(const Solution& plan, Index vehicle, const Task& task) const {
   const auto& order = plan.orders[at(vehicle)];
+  if (has_its_share(model_, order, task)) return false;
+  if (task.id.kind != TaskKind::deliver) return true;
   const auto used = std::count_if(order.begin(), order.end(), [&](Index v) {
     return model_.tasks[at(model_.task_of[at(v)])].id.kind == TaskKind::deliver;
   });
@@ -294,7 +342,7 @@ Search::Place Search::best_place_by_paths(Solution& plan, Index task) {
   paths_.find(plan.orders, timing_);
   places_.clear();
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
-    if (!has_load(plan, i, its)) continue;
+    if (!may_take(plan, i, its)) continue;
     for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
       for (std::size_t p = 0; p <= plan.orders[at(i)].size(); ++p) {
         if (random_.chance(kBlink)) continue;
@@ -332,7 +380,7 @@ Search::Place Search::best_place(Solution& plan, Index task) {
   places_.clear();
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
     const auto& order = plan.orders[at(i)];
-    if (!has_load(plan, i, its)) continue;
+    if (!may_take(plan, i, its)) continue;
     for (std::size_t p = 0; p <= order.size(); ++p) {
       for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
         const double least = least_score_at(plan, i, p, v);
@@ -366,7 +414,7 @@ double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t p
   const Index before = position == 0 ? kNone : order[position - 1];
   const double free_s = position == 0 ? 0.0 : end_s_[at(model_.task_of[at(before)])];
   double end_s = free_s + model_.reach_from(vehicle, before)[visit] + after_s[at(visit)];
-  if (!(end_s <= its.deadline_s)) return kInfinity;
+  if (!(end_s <= its.latest_s[at(visit)])) return kInfinity;
   double score = model_.add(plan.score, model_.least_cost_of(model_.task_of[at(visit)], end_s));
   Index last = visit;
   double last_end_s = free_s;
@@ -375,11 +423,11 @@ double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t p
     last_end_s = end_s_[at(next)];
     end_s += model_.reach_from(vehicle, last)[order[p]] + after_s[at(order[p])];
     if (end_s <= last_end_s) return score;
-    if (!(end_s <= its.deadline_s)) return kInfinity;
+    if (!(end_s <= its.latest_s[at(order[p])])) return kInfinity;
     score += model_.least_cost_of(next, end_s) - model_.least_cost_of(next, last_end_s);
     last = order[p];
   }
-  return score + its.range_weight_per_s * (end_s - last_end_s);
+  return score + its.search_weight_per_s * (end_s - last_end_s);
 }
 
 }  // namespace skein::planning::coupled

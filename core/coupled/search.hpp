@@ -27,7 +27,7 @@ class Search {
  private:
   struct Solution {
     Orders orders;
-    std::vector<Index> missing;  ///< tasks
+    std::vector<Index> missing;  ///< tasks, with those of sites left out
     double score = kInfinity;
   };
   struct Place {
@@ -62,9 +62,15 @@ class Search {
   [[nodiscard]] Index any_task() { return static_cast<Index>(random_.index(model_.tasks.size())); }
 
   void recreate(Solution& plan, double limit);
+  void leave_out_dropped(Solution& plan);
+  [[nodiscard]] std::vector<Index> missing_of(const Orders& orders) const;
+  [[nodiscard]] std::size_t must(const Solution& plan) const;
+  [[nodiscard]] bool is_optional(Index task) const {
+    return model_.sites[at(model_.tasks[at(task)].site)].optional;
+  }
   [[nodiscard]] Place best_place(Solution& plan, Index task);
   [[nodiscard]] Place best_place_by_paths(Solution& plan, Index task);
-  [[nodiscard]] bool has_load(const Solution& plan, Index vehicle, const Task& task) const;
+  [[nodiscard]] bool may_take(const Solution& plan, Index vehicle, const Task& task) const;
   [[nodiscard]] double least_score_at(const Solution& plan, Index vehicle, std::size_t position,
                                       Index visit) const;
 
@@ -85,6 +91,7 @@ class Search {
   std::vector<double> time_s_;
   std::vector<double> end_s_;
   std::vector<char> chosen_;
+  std::vector<char> dropped_;  ///< by site: optional, and left out
   std::vector<std::pair<double, Index>> sorted_;
   std::vector<Place> places_;  ///< each with the least that it could score
 };

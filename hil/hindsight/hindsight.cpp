@@ -10,6 +10,7 @@
 
 #include "skein/checks/flown.hpp"
 #include "skein/coupled/coupled.hpp"
+#include "skein/coupled/intentions.hpp"
 #include "skein/domain/site.hpp"
 
 namespace skein::hindsight {
@@ -29,18 +30,7 @@ std::vector<CoupledVehicle> vehicles_of(const checks::RunRecord& record) {
     const auto in_mission = std::ranges::find_if(
         recorded->track, [](const auto& point) { return point.state.time >= Instant{}; });
     const auto& first = in_mission == recorded->track.end() ? recorded->track.back() : *in_mission;
-    CoupledVehicle v;
-    v.id = spec.id;
-    v.pose = first.state.pose();
-    v.speed_mps = spec.cruise_speed_mps;
-    v.planning_radius_m = spec.planning_radius_m();
-    v.range_left_m = spec.range_m;
-    v.final_approach_m = spec.final_approach_m;
-    v.sensor_radius_m = spec.sensor_radius_m;
-    v.assess_radius_m = spec.assess_radius_m;
-    v.capabilities = spec.capabilities;
-    v.loads = spec.loads;
-    vehicles.push_back(v);
+    vehicles.push_back(planning::coupled_vehicle(spec, first.state.pose()));
   }
   return vehicles;
 }
@@ -49,10 +39,7 @@ CoupledProblem problem_of(const checks::RunRecord& record, const std::vector<Sit
   CoupledProblem problem;
   problem.vehicles = vehicles_of(record);
   problem.sites = sites;
-  for (const Site& site : sites) {
-    problem.open_tasks.push_back({site.id, TaskKind::survey, 0});
-    for (const TaskId& task : tasks_after_survey(site)) problem.open_tasks.push_back(task);
-  }
+  problem.open_tasks = planning::tasks_of(sites);
   for (const auto& known : record.hazards) problem.hazards.push_back(known.hazard);
   problem.weights = {1.0, 0.0};
   return problem;
@@ -69,14 +56,10 @@ Result<Figure> best_of(CoupledProblem problem, Criterion criterion, std::uint64_
 std::optional<double> flown_end_s(const std::map<TaskId, checks::TaskFlown>& done,
                                   const std::vector<Site>& sites) {
   double end_s = 0.0;
-  for (const Site& site : sites) {
-    std::vector<TaskId> tasks = tasks_after_survey(site);
-    tasks.push_back({site.id, TaskKind::survey, 0});
-    for (const TaskId& task : tasks) {
-      const auto flown = done.find(task);
-      if (flown == done.end()) return std::nullopt;
-      end_s = std::max(end_s, to_seconds(flown->second.time));
-    }
+  for (const TaskId& task : planning::tasks_of(sites)) {
+    const auto flown = done.find(task);
+    if (flown == done.end()) return std::nullopt;
+    end_s = std::max(end_s, to_seconds(flown->second.time));
   }
   return end_s;
 }

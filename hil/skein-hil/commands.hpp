@@ -57,7 +57,7 @@ struct RunArguments {
   std::string address;          ///< of this machine; empty: as that file says of the ground station
 };
 /// Gives the vehicles the routes of the plan's file, or of a plan that is made and printed, where
-/// the mission asks for routes.
+/// the mission asks for routes; else the search routes of a plan of tasks, where one is given.
 [[nodiscard]] Result<void> give_routes(configuration::Scenario& scenario,
                                        const std::filesystem::path& plan);
 /// Nothing is delivered in such a mission unless an operator takes part: it has deliveries, and no
@@ -69,6 +69,7 @@ struct SimulateArguments {
   std::string program;  ///< as it was called, for the line that flies a seed again
   std::filesystem::path scenario;
   std::optional<std::uint64_t> seed;
+  std::filesystem::path routes;  ///< a plan of tasks; empty: none
   bool trace = false;
   std::string faults = "none";
   std::optional<std::size_t> runs;  ///< without: one, with its events
@@ -139,6 +140,14 @@ struct ToursArguments {
   std::filesystem::path plots;  ///< folder; empty: none
 };
 int tours(const ToursArguments& arguments);
+
+struct OrienteeringArguments {
+  std::vector<std::filesystem::path> files;
+  std::uint64_t nodes = 300;
+  std::uint64_t steps = 3000;
+  std::uint64_t seed = 1;
+};
+int orienteering(const OrienteeringArguments& arguments);
 
 struct RoutesArguments {
   std::vector<std::string> what{"all"};  ///< as route_figures::find_experiments() takes them

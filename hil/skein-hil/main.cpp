@@ -114,8 +114,8 @@ void add_run(CLI::App& app, int& status) {
       ->check(CLI::Range(0.1, 20.0))
       ->capture_default_str();
   command->add_option("--routes", arguments->routes,
-                      "A plan of `skein-ground plan`, for a mission of routes (without it one "
-                      "is made)");
+                      "A plan of `skein-ground plan`: of a mission of routes (without it one "
+                      "is made), or of tasks, with which they begin");
   command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
   command->add_option("--out", arguments->folder, "Folder of the run (default: runs/NAME-TIME)");
   add_process_faults(*command, *arguments);
@@ -182,6 +182,8 @@ void add_simulate(CLI::App& app, const std::string& program, int& status) {
       app.add_subcommand("simulate", "Fly a scenario in virtual time with the same agents");
   command->add_option("scenario", arguments->scenario, "Scenario file (YAML)")->required();
   command->add_option("--seed", arguments->seed, "In place of the scenario's")->check(why_no_seed);
+  command->add_option("--routes", arguments->routes,
+                      "A plan of tasks of `skein-ground plan`, with which they begin");
   auto* trace = command->add_flag("--trace", arguments->trace, "Print every event");
   command
       ->add_option("--faults", arguments->faults,
@@ -307,6 +309,28 @@ void add_tours(CLI::App& app, int& status) {
       "met. The same seed gives the same tour.\n"
       "Example: skein-hil tours circles.txt --radius 40 --plots .");
   command->callback([arguments, &status] { status = tours(*arguments); });
+}
+
+void add_orienteering(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<OrienteeringArguments>();
+  auto* command = app.add_subcommand(
+      "orienteering", "Plan who of a team goes where, if there is no time to go everywhere");
+  command
+      ->add_option("file", arguments->files,
+                   "Lines of n, m and tmax, then x, y and score of each place")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--nodes", arguments->nodes, "Of the search for a proof")
+      ->capture_default_str();
+  command->add_option("--steps", arguments->steps, "Of ruin and recreate, where that proves none")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Of ruin and recreate")->capture_default_str();
+  command->footer(
+      "Prints a row of CSV for each file: the score, and what no team can get more than. All "
+      "begin\n"
+      "at the first place and end at the last. The same seed gives the same row, but for seconds.\n"
+      "Example: skein-hil orienteering p4.2.a.txt p4.2.b.txt --steps 20000");
+  command->callback([arguments, &status] { status = orienteering(*arguments); });
 }
 
 void add_swap(CLI::App& app, int& status) {
@@ -485,6 +509,7 @@ int main(int argc, char** argv) {
   skein::hil::add_swap(app, status);
   skein::hil::add_routes(app, status);
   skein::hil::add_tours(app, status);
+  skein::hil::add_orienteering(app, status);
   skein::hil::add_shapes(app, status);
   skein::hil::add_can(app, status);
   try {

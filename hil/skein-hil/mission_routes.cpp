@@ -9,7 +9,14 @@ namespace skein::hil {
 Result<void> give_routes(configuration::Scenario& scenario, const std::filesystem::path& plan) {
   if (!scenario.flies_routes()) {
     if (plan.empty()) return {};
-    return Error{"--routes: the mission has no routes; name its vehicles under routes.approaches"};
+    if (scenario.sites.empty()) {
+      return Error{
+          "--routes: the mission has neither routes nor sites; name vehicles under "
+          "routes.approaches, or sites"};
+    }
+    const auto loaded = configuration::load_tasking_plan(plan);
+    if (!loaded) return loaded.error();
+    return configuration::give_tasks(*loaded, scenario);
   }
   if (!plan.empty()) {
     const auto loaded = configuration::load_route_plan(plan);

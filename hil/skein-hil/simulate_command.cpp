@@ -72,6 +72,9 @@ int simulate(const SimulateArguments& arguments) {
     return kExitBadInput;
   }
   if (arguments.seed) scenario->seed = *arguments.seed;
+  if (const auto given = give_routes(*scenario, arguments.routes); !given) {
+    return complain(given.error());
+  }
   if (wants_an_operator(*scenario)) {
     fmt::print(stderr,
                "nobody is there to authorise deliveries, so none is flown: the scenario has no "

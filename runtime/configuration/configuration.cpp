@@ -124,6 +124,14 @@ Result<RoutePlan> parse_route_plan(std::string_view yaml, const std::string& nam
 }
 std::string to_yaml(const RoutePlan& plan) { return written(plan); }
 
+Result<TaskingPlan> load_tasking_plan(const std::filesystem::path& file) {
+  return load<TaskingPlan>(file);
+}
+Result<TaskingPlan> parse_tasking_plan(std::string_view yaml, const std::string& name) {
+  return parse<TaskingPlan>(yaml, name);
+}
+std::string to_yaml(const TaskingPlan& plan) { return written(plan); }
+
 Result<ShapeFile> load_shape(const std::filesystem::path& file) { return load<ShapeFile>(file); }
 Result<ShapeFile> parse_shape(std::string_view yaml, const std::string& name) {
   return parse<ShapeFile>(yaml, name);

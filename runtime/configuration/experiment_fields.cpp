@@ -36,11 +36,24 @@ void mesh_field(FieldVisitor& v, std::optional<MeshKind>& mesh) {
   mesh = chosen > 0 ? std::optional{static_cast<MeshKind>(chosen - 1)} : std::nullopt;
 }
 
+void tasked_by_field(FieldVisitor& v, std::optional<planning::Criterion>& criterion) {
+  std::array<std::string_view, kCriteria.size() + 1> names{"nobody"};
+  std::ranges::copy(kCriteria, names.begin() + 1);
+  std::size_t chosen = criterion ? static_cast<std::size_t>(*criterion) + 1 : 0;
+  v.choice({"tasked_by",
+            "all sites are known, and tasked before take-off by this criterion; `nobody`: the team "
+            "searches"},
+           names, chosen);
+  criterion =
+      chosen > 0 ? std::optional{static_cast<planning::Criterion>(chosen - 1)} : std::nullopt;
+}
+
 void settings_fields(FieldVisitor& v, ExperimentSettings& s) {
   const Range short_time{0.001, 60.0, "s"};
   const Range long_time{0.1, 600.0, "s"};
   whole(v, {"vehicles", "how many a random team has"}, {1.0, double{kVehiclesMax}}, s.vehicles);
   allocation_field(v, s.allocation);
+  tasked_by_field(v, s.tasked_by);
   mesh_field(v, s.mesh);
   v.number({"radio_range_m", "r_n, of the radio and of the protocol"}, {10.0, 1e6, "m"},
            s.radio_range_m);

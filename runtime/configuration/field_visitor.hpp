@@ -16,6 +16,7 @@
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/configuration/shape_file.hpp"
+#include "skein/configuration/tasking.hpp"
 #include "skein/configuration/track_file.hpp"
 
 namespace skein::configuration {
@@ -87,5 +88,6 @@ void fields(FieldVisitor& v, ShapeFile& shape);
 void fields(FieldVisitor& v, SitesFile& file);
 void fields(FieldVisitor& v, TrackFile& track);
 void fields(FieldVisitor& v, RoutePlan& plan);
+void fields(FieldVisitor& v, TaskingPlan& plan);
 
 }  // namespace skein::configuration

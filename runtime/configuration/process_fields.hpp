@@ -19,6 +19,7 @@
 namespace skein::configuration {
 
 struct PassingAircraft;
+struct TaskingConfig;
 
 inline constexpr int kVersion = 1;
 
@@ -46,6 +47,7 @@ void planning_fields(FieldVisitor& v, planning::AllocationParams& planning);
 void flight_route_fields(FieldVisitor& v, FlightRoute& route);
 void flight_route_section(FieldVisitor& v, FlightRoute& route);
 void routes_section(FieldVisitor& v, RoutesConfig& config);
+void tasking_section(FieldVisitor& v, TaskingConfig& config);
 void formation_section(FieldVisitor& v, FormationConfig& formation);
 void ipv4(FieldVisitor& v, const Field& field, std::string& address);
 void air_fields(FieldVisitor& v, AirConfig& air);

@@ -162,7 +162,9 @@ std::string configuration_reference() {
          "\n# Shapes: `scenarios/shapes/*.yaml`\n\nWhat formations make of them stands in "
          "[formation.md](formation.md).\n" +
          page_of<ShapeFile>() + "\n# Tracks: `scenarios/tracks/*.yaml`\n" + page_of<TrackFile>() +
-         "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" + page_of<RoutePlan>();
+         "\n# Plans of routes: `plan.yaml` of `skein-ground plan`\n" + page_of<RoutePlan>() +
+         "\n# Plans of tasks: `plan.yaml` of `skein-ground plan`, of a mission with known sites\n" +
+         page_of<TaskingPlan>();
 }
 
 }  // namespace skein::configuration

@@ -355,6 +355,18 @@ class Check {
     }
     for (const RouteApproach& a : s_.routes.approaches)
       need_vehicle(a.vehicle, "routes.approaches");
+    for (const SiteId id : s_.tasking.known) need_site(id, "tasking.known");
+    for (const SiteId id : s_.tasking.optional) {
+      if (std::ranges::find(s_.tasking.known, id) != s_.tasking.known.end()) continue;
+      problem("tasking.optional has site " + std::to_string(id.value) +
+              ", which is not known before take-off; add it to tasking.known");
+    }
+    if (!s_.tasking.optional.empty() && s_.tasking.criterion != planning::Criterion::value) {
+      problem("tasking.optional is for the criterion reward; choose it or take the sites away");
+    }
+    if (s_.tasks_sites() && (s_.flies_routes() || s_.flies_formation())) {
+      problem("a mission of routes or of a formation tasks no sites; take tasking.known away");
+    }
     for (const SiteId id : s_.expect.first_attempt_fails)
       need_site(id, "expect.first_attempt_fails");
     for (const VehicleId id : s_.expect.vehicles_lost) need_vehicle(id, "expect.vehicles_lost");

@@ -236,6 +236,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   operator_decisions_list(v, s.operator_decisions);
   formation_section(v, s.formation);
   routes_section(v, s.routes);
+  tasking_section(v, s.tasking);
   auto ends = static_cast<std::size_t>(s.ends);
   v.choice({"ends", "where the work leaves everybody, or ordered home and landed"}, kEndings, ends);
   s.ends = static_cast<Ending>(ends);

@@ -9,6 +9,8 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
+#include "skein/configuration/tasking.hpp"
+#include "skein/groundstation/task_planning.hpp"
 #include "skein/hil/team_mission.hpp"
 #include "skein/mission/may_say.hpp"
 
@@ -39,6 +41,7 @@ ExperimentSettings settings_of(const Experiment& experiment, const Cell& cell) {
     const ExperimentSettings& own = experiment.axes.at(axis).points.at(cell.points[axis]).settings;
     put(own.vehicles, all.vehicles);
     put(own.allocation, all.allocation);
+    put(own.tasked_by, all.tasked_by);
     put(own.mesh, all.mesh);
     put(own.radio_range_m, all.radio_range_m);
     put(own.relay_orbit_m, all.relay_orbit_m);
@@ -224,6 +227,23 @@ Result<Scenario> scenario_of(const Experiment& experiment, const Scenario& base,
   return scenario;
 }
 
+namespace {
+
+/// So many nodes: less than a second for 32 vehicles.
+constexpr std::uint64_t kTaskingSteps = 2'000;
+
+/// Where there is no plan, the team flies as it would without.
+Result<void> task(Scenario& scenario, planning::Criterion criterion) {
+  scenario.tasking = {};
+  scenario.tasking.criterion = criterion;
+  for (const Site& site : scenario.sites) scenario.tasking.known.push_back(site.id);
+  const auto planned = groundstation::plan_tasks(scenario, {kTaskingSteps, {}});
+  if (!planned) return {};
+  return configuration::give_tasks(planned->file, scenario);
+}
+
+}  // namespace
+
 Result<hil::TeamMission> mission_of(const Experiment& experiment, const Scenario& base,
                                     const Cell& cell, std::uint64_t seed) {
   if (base.flies_routes()) {
@@ -236,8 +256,11 @@ Result<hil::TeamMission> mission_of(const Experiment& experiment, const Scenario
         "scenario: its vehicles fly a formation, and a sweep flies coalitions; name a "
         "mission of sites"};
   }
-  const auto scenario = scenario_of(experiment, base, cell, seed);
+  auto scenario = scenario_of(experiment, base, cell, seed);
   if (!scenario) return scenario.error();
+  if (const auto by = settings_of(experiment, cell).tasked_by) {
+    if (const auto tasked = task(*scenario, *by); !tasked) return tasked.error();
+  }
   hil::TeamMission mission = hil::team_mission(*scenario);
   mission.allocation_takes =
       std::min(mission.allocation_takes, scenario->protocol.allocation_time / 2);

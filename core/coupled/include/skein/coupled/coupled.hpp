@@ -11,6 +11,7 @@
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
+#include "skein/coupled/criterion.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/site.hpp"
@@ -48,24 +49,15 @@ struct CoupledVehicle {
   VehicleId id;
   Pose2 pose;
   double speed_mps = 0.0;
-  double planning_radius_m = 0.0;
+  double planning_radius_m = 0.0;  ///< 0: it turns on the spot, and may wait anywhere
   double range_left_m = 0.0;
   double final_approach_m = 0.0;  ///< of a delivery
   double sensor_radius_m = 0.0;   ///< of the survey arc
   double assess_radius_m = 0.0;   ///< of the assessment arc
   Capabilities capabilities;
   std::uint8_t loads = 0;
-};
-
-/// What is optimised. Every criterion can only get worse when a task ends later; so for given
-/// orders of tasks the earliest times are the best, and what remains to be found is the orders.
-enum class Criterion : std::uint8_t {
-  /// J of Wang 2022, eq. (8)-(12), maximised: reward that decays with the time at which a task
-  /// ends, over the sum of rewards, and range left, over the sum of ranges; weighted. J3 is 0
-  /// because the times that deliveries require of each other are constraints here.
-  value,
-  completion,  ///< seconds, minimised: the mean of the ends of the tasks, weighted by reward
-  makespan,    ///< seconds, minimised: the end of the last task
+  /// Where its range must still take it after its last task; none: it ends where that leaves it.
+  std::optional<Vec2> home;
 };
 
 /// As ValueWeights (plan_value.hpp).
@@ -78,11 +70,25 @@ struct CoupledWeights {
 /// where there is none.
 using TransitLength = std::function<double(const Pose2& from, const Pose2& to, double radius_m)>;
 
+/// What a vehicle may do, beside surveys.
+enum class TaskShare : std::uint8_t {
+  any,
+  one_a_site,  ///< one task of each site, as in a coalition
+  one,         ///< one task in all, so that each can be where its task begins
+};
+
 struct CoupledProblem {
   std::vector<CoupledVehicle> vehicles;  ///< at most kCoupledVehiclesMax
   std::vector<Site> sites;
   /// At most kCoupledTasksMax. A task of a site that is not named here was done before the start.
   std::vector<TaskId> open_tasks;
+  /// Sites of which all open tasks are done, or none of them; by Criterion::value alone. The reward
+  /// of what is left out is lost.
+  std::vector<SiteId> optional_sites;
+  /// Sites whose survey is a service: Site::survey.dwell over the site itself, entered and left on
+  /// any heading, without an arc.
+  std::vector<SiteId> service_sites;
+  TaskShare share = TaskShare::any;
   Instant start{};
   Duration decide_wait{};  ///< from the end of a survey to the first delivery: the operator decides
   std::vector<Hazard> hazards;  ///< no run of a task enters one
@@ -90,7 +96,8 @@ struct CoupledProblem {
   TransitLength transit_length_m;
   AvoidanceParams avoidance;
   bool flyable_waits = true;  ///< see above; false, or a transit_length_m: any wait can be flown
-  /// Start angles tried, each in both senses, where a survey or assessment leaves it free.
+  /// Start angles tried, each in both senses, where a survey or assessment leaves it free; headings
+  /// of a service, and of coming home.
   int free_starts = 8;
   /// A survey with a given start angle may be flown in either sense. Assessments are always flown
   /// counter-clockwise, so that vehicles on one circle keep their spacing.
@@ -99,7 +106,7 @@ struct CoupledProblem {
   CoupledWeights weights;
 };
 inline constexpr std::size_t kCoupledVehiclesMax = 64;
-inline constexpr std::size_t kCoupledTasksMax = 64;
+inline constexpr std::size_t kCoupledTasksMax = 128;
 
 /// One task of a plan.
 struct CoupledTask {
@@ -117,6 +124,7 @@ struct CoupledTask {
 
 struct CoupledPlan {
   std::vector<CoupledTask> tasks;  ///< by vehicle as in the problem, then by time
+  std::vector<SiteId> left_out;    ///< of the optional sites
   double objective = 0.0;          ///< by the problem's criterion
   /// No plan is better than this: an upper bound of J, a lower bound of seconds. Equal to the
   /// objective when proven; nothing where the method has none.

@@ -21,6 +21,8 @@ namespace skein::configuration {
 struct ExperimentSettings {
   std::optional<std::uint16_t> vehicles;  ///< of a random team
   std::optional<planning::AllocationMethod> allocation;
+  /// All sites are known, and tasked by it before take-off; absent: the team searches.
+  std::optional<planning::Criterion> tasked_by;
   std::optional<MeshKind> mesh;         ///< with it nobody is out of the protocol's reach
   std::optional<double> radio_range_m;  ///< r_n, of the radio and of the protocol
   std::optional<double> relay_orbit_m;  ///< 0: no relay orbits

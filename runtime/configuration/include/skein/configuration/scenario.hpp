@@ -20,6 +20,7 @@
 #include "skein/configuration/process_config.hpp"
 #include "skein/configuration/routes_config.hpp"
 #include "skein/configuration/site_config.hpp"
+#include "skein/configuration/tasking.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
@@ -141,6 +142,7 @@ struct Scenario {
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
   RoutesConfig routes;
+  TaskingConfig tasking;
   Ending ends = Ending::in_the_air;
   std::vector<Fault> faults;
   std::vector<ReferenceSite> reference;
@@ -156,6 +158,8 @@ struct Scenario {
   [[nodiscard]] bool flies_formation() const;
   /// Planned before the mission.
   [[nodiscard]] bool flies_routes() const { return !routes.approaches.empty(); }
+  /// Before the mission, too.
+  [[nodiscard]] bool tasks_sites() const { return !tasking.known.empty(); }
 };
 
 /// Fails with one line for every mistake in the file: "file:line: key: what is wrong; what to do".
