@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+//
+// Planted faults, one at a time: each is to be found by the tests or by a thousand missions
+// (docs/mutants.md).
+//   run.mjs check                    every mutant fits the tree, and the page has it
+//   run.mjs list
+//   run.mjs run [--again] [NAME...]  those that were not found yet, or the named ones
+import { spawnSync } from 'node:child_process';
+import { createHash } from 'node:crypto';
+import fs from 'node:fs';
+import path from 'node:path';
+import { fileURLToPath } from 'node:url';
+import { page } from './page.mjs';
+import coalition from './planted/coalition.mjs';
+import identity from './planted/identity.mjs';
+import judges from './planted/judges.mjs';
+import mission from './planted/mission.mjs';
+import planning from './planted/planning.mjs';
+
+const root = fileURLToPath(new URL('../..', import.meta.url));
+const pageFile = 'docs/mutants.md';
+const work = path.join(root, 'build/mutants');
+const source = path.join(work, 'source');
+const bin = path.join(source, 'build/release/bin');
+const original = path.join(work, 'original/skein-hil');
+const resultsFile = path.join(work, 'results.json');
+const jobs = process.env.SKEIN_JOBS ?? String(spawnSync('nproc', { encoding: 'utf8' }).stdout.trim());
+const testSeconds = 900;
+
+const groups = [
+  ['The contract net', coalition],
+  ['What a vehicle decides of its flight', mission],
+  ['Paths, formations, routes, bounds', planning],
+  ['Who may say what', identity],
+  ['The judges, and what they are given', judges],
+];
+const mutants = groups.flatMap(([, all]) => all);
+
+// Which test programs see what is in a folder, the nearest first: it ends with the first that fails.
+const seenBy = [
+  ['core/domain/', ['domain', 'planning', 'mission', 'simulator']],
+  ['core/planning/', ['planning', 'mission', 'simulator']],
+  ['core/coupled/', ['coupled', 'hindsight']],
+  ['core/coalition/', ['coalition', 'mission', 'simulator']],
+  ['core/formation/', ['formation', 'mission', 'simulator']],
+  ['core/routes/', ['routes']],
+  ['core/mission/', ['mission', 'simulator']],
+  ['runtime/identity/', ['identity', 'network']],
+  ['runtime/network/', ['network']],
+  ['runtime/seal/', ['seal', 'network']],
+  ['hil/bench/', ['bench']],
+  ['hil/checks/', ['checks']],
+  ['hil/hindsight/', ['hindsight']],
+  ['hil/simulator/', ['simulator']],
+];
+
+// What is flown where no test fails: 1,000 missions in all, as `skein-hil simulate` takes them.
+const flights = {
+  sites: [
+    ['faults-8', 'mixed', 400],
+    ['mixed-6', 'mixed', 200],
+    ['coalition-6', 'mixed', 200],
+    ['coalition-32', 'mixed', 200],
+  ],
+  formation: [['formation-5', 'mixed', 700], ['formation-planes-5', 'mixed', 300]],
+};
+const flownAtOnce = 50;
+
+function testsOf(mutant) {
+  const found = seenBy.find(([folder]) => mutant.file.startsWith(folder));
+  if (!found) throw new Error(`${mutant.name}: run.mjs does not know which tests see ${mutant.file}`);
+  return found[1];
+}
+function flightsOf(mutant) {
+  if (mutant.file.startsWith('core/formation/')) return flights.formation;
+  const flown = ['core/domain/', 'core/planning/', 'core/coalition/', 'core/mission/'];
+  return flown.some((folder) => mutant.file.startsWith(folder)) ? flights.sites : [];
+}
+
+const say = (text) => process.stderr.write(`mutants: ${text}\n`);
+function die(text) {
+  say(text);
+  process.exit(2);
+}
+
+// --- the mutants and the tree ------------------------------------------------------------------
+
+function countOf(text, part) {
+  return text.split(part).length - 1;
+}
+
+function mutated(mutant, text) {
+  return text.split(mutant.from).join(mutant.to);
+}
+
+function check() {
+  const wrong = [];
+  const names = new Set();
+  const told = fs.existsSync(path.join(root, pageFile)) ? fs.readFileSync(path.join(root, pageFile), 'utf8') : '';
+  for (const mutant of mutants) {
+    if (names.has(mutant.name)) wrong.push(`${mutant.name}: two mutants have this name`);
+    names.add(mutant.name);
+    testsOf(mutant);
+    const file = path.join(root, mutant.file);
+    const text = fs.existsSync(file) ? fs.readFileSync(file, 'utf8') : '';
+    const count = countOf(text, mutant.from);
+    if (count !== 1) wrong.push(`${mutant.name}: its text is ${count} times in ${mutant.file}, not once`);
+    if (mutant.from === mutant.to) wrong.push(`${mutant.name}: changes nothing`);
+    if (!told.includes(`| \`${mutant.name}\` |`)) {
+      wrong.push(`${mutant.name}: is not in ${pageFile}; './dev mutants' writes it`);
+    }
+  }
+  for (const [, name] of told.matchAll(/^\| `([^`]+)` \|/gm)) {
+    if (!names.has(name)) wrong.push(`${name}: is in ${pageFile}, and there is no such mutant`);
+  }
+  if (mutants.length < 30) wrong.push(`${mutants.length} mutants are fewer than 30`);
+  for (const text of wrong) say(text);
+  if (wrong.length > 0) process.exit(1);
+  say(`${mutants.length} mutants fit the tree`);
+}
+
+// --- the copy of the tree ----------------------------------------------------------------------
+
+function trackedFiles() {
+  const git = spawnSync('git', ['ls-files', '-z', '--cached', '--others', '--exclude-standard'],
+    { cwd: root, encoding: 'utf8', maxBuffer: 1 << 26 });
+  if (git.status !== 0) die('a clone is needed, to know which files are of the tree');
+  return git.stdout.split('\0').filter((file) => file && fs.existsSync(path.join(root, file)));
+}
+
+// What is equal keeps its time, so that nothing is built again for it.
+function copyTree() {
+  const files = trackedFiles();
+  for (const file of files) {
+    const from = path.join(root, file);
+    const to = path.join(source, file);
+    const bytes = fs.readFileSync(from);
+    if (fs.existsSync(to) && fs.readFileSync(to).equals(bytes)) continue;
+    fs.mkdirSync(path.dirname(to), { recursive: true });
+    fs.writeFileSync(to, bytes, { mode: fs.statSync(from).mode });
+  }
+  const known = new Set(files);
+  const copied = path.join(work, 'files');
+  const before = fs.existsSync(copied) ? fs.readFileSync(copied, 'utf8').split('\n') : [];
+  for (const file of before) {
+    if (file && !known.has(file)) fs.rmSync(path.join(source, file), { force: true });
+  }
+  fs.writeFileSync(copied, files.join('\n'));
+}
+
+// --- building and looking ----------------------------------------------------------------------
+
+function configure() {
+  const ready = path.join(source, 'build/release/build.ninja');
+  if (fs.existsSync(ready)) return;
+  const cmake = spawnSync('cmake', ['--preset', 'release'], { cwd: source, encoding: 'utf8' });
+  if (cmake.status !== 0) die(`cannot configure:\n${cmake.stdout}${cmake.stderr}`);
+}
+
+// '' where it was built, else what the compiler says.
+function build(...targets) {
+  const ninja = spawnSync('ninja', ['-C', 'build/release', '-j', jobs, ...targets],
+    { cwd: source, encoding: 'utf8', maxBuffer: 1 << 26 });
+  return ninja.status === 0 ? '' : ninja.stdout.slice(-4000);
+}
+
+// Which test of the program fails first; null where none does.
+function firstFailure(test) {
+  const run = spawnSync(path.join(bin, `${test}_test`), ['--gtest_fail_fast'],
+    { cwd: source, encoding: 'utf8', maxBuffer: 1 << 28, timeout: testSeconds * 1000, killSignal: 'SIGKILL' });
+  if (run.status === 0) return null;
+  const failed = run.stdout.match(/^\[ {2}FAILED {2}\] ([\w/.]+)/m);
+  if (failed) return failed[1];
+  const begun = [...run.stdout.matchAll(/^\[ RUN {6}\] ([\w/.]+)/gm)].at(-1);
+  return `${begun ? begun[1] : test} (${run.error?.code === 'ETIMEDOUT' ? 'does not end' : 'an assertion ends it'})`;
+}
+
+function simulate(program, scenario, faults, more) {
+  return spawnSync(program, ['simulate', `scenarios/${scenario}.yaml`, '--faults', faults, ...more],
+    { cwd: source, encoding: 'utf8', maxBuffer: 1 << 28 });
+}
+
+// The first mission that breaks a check here, and does not without the mutant.
+function firstViolation(mutant) {
+  const program = path.join(bin, 'skein-hil');
+  let flown = 0;
+  for (const [scenario, faults, runs] of flightsOf(mutant)) {
+    for (let first = 1; first <= runs; first += flownAtOnce) {
+      const many = simulate(program, scenario, faults,
+        ['--runs', String(flownAtOnce), '--seed', String(first), '--jobs', jobs]);
+      const crashed = many.status !== 0 && many.status !== 1;
+      const seeds = crashed ? Array.from({ length: flownAtOnce }, (_, i) => String(first + i))
+        : [...many.stdout.matchAll(/^seed (\d+) VIOLATED/gm)].map((found) => found[1]);
+      for (const seed of seeds) {
+        const here = simulate(program, scenario, faults, ['--seed', seed]);
+        if (here.status === 0 || simulate(original, scenario, faults, ['--seed', seed]).status !== 0) continue;
+        const broken = here.stdout.match(/VIOLATED:?\s+([\w ]+?)[:(]/);
+        return { how: `simulation ${flown + Number(seed) - first + 1}`,
+          what: `${scenario} --faults ${faults} --seed ${seed}${here.status === 1 && broken ? ` (${broken[1].trim()})` : ''}` };
+      }
+      flown += flownAtOnce;
+    }
+  }
+  return null;
+}
+
+function look(mutant) {
+  for (const test of testsOf(mutant)) {
+    const wrong = build(`${test}_test`);
+    if (wrong) return { how: 'does not compile', what: wrong };
+    const begun = Date.now();
+    const failed = firstFailure(test);
+    if (failed) return { how: `test ${test}`, what: failed, seconds: (Date.now() - begun) / 1000 };
+  }
+  if (flightsOf(mutant).length > 0) {
+    const wrong = build('skein-hil');
+    if (wrong) return { how: 'does not compile', what: wrong };
+    const begun = Date.now();
+    const found = firstViolation(mutant);
+    if (found) return { ...found, seconds: (Date.now() - begun) / 1000 };
+  }
+  return { how: 'survives', what: '' };
+}
+
+// --- a run -------------------------------------------------------------------------------------
+
+const keyOf = (mutant) => createHash('sha256').update(JSON.stringify([mutant.file, mutant.from, mutant.to])).digest('hex');
+
+function readResults() {
+  return fs.existsSync(resultsFile) ? JSON.parse(fs.readFileSync(resultsFile, 'utf8')) : {};
+}
+function keepResult(results, mutant, result) {
+  results[mutant.name] = { ...result, key: keyOf(mutant) };
+  fs.writeFileSync(`${resultsFile}.new`, `${JSON.stringify(results, null, 1)}\n`);
+  fs.renameSync(`${resultsFile}.new`, resultsFile);
+}
+const isFound = (result) => result !== undefined && !['survives', 'does not compile'].includes(result.how);
+
+// Without a mutant every test passes, or what fails with one shows nothing.
+function tryOriginal(wanted) {
+  const tests = [...new Set(wanted.flatMap(testsOf))];
+  const wrong = build(...tests.map((test) => `${test}_test`), 'skein-hil');
+  if (wrong) die(`the tree as it is does not build:\n${wrong}`);
+  for (const test of tests) {
+    const failed = firstFailure(test);
+    if (failed) die(`without any mutant ${failed} of ${test}_test fails`);
+  }
+  fs.mkdirSync(path.dirname(original), { recursive: true });
+  fs.copyFileSync(path.join(bin, 'skein-hil'), original);
+}
+
+function run(arguments_) {
+  const again = arguments_[0] === '--again';
+  const names = again ? arguments_.slice(1) : arguments_;
+  for (const name of names) {
+    if (!mutants.some((mutant) => mutant.name === name)) die(`there is no mutant '${name}'; 'run.mjs list' names them`);
+  }
+  fs.mkdirSync(source, { recursive: true });
+  const results = readResults();
+  const known = (mutant) => results[mutant.name]?.key === keyOf(mutant) && isFound(results[mutant.name]);
+  const wanted = mutants.filter((mutant) => (names.length > 0 ? names.includes(mutant.name) : again || !known(mutant)));
+  copyTree();
+  configure();
+  if (wanted.length > 0) {
+    say(`${wanted.length} of ${mutants.length} mutants; first the tree as it is`);
+    tryOriginal(wanted);
+  }
+  for (const mutant of wanted) {
+    const file = path.join(source, mutant.file);
+    const text = fs.readFileSync(file, 'utf8');
+    if (countOf(text, mutant.from) !== 1) die(`${mutant.name}: does not fit ${mutant.file}; see 'run.mjs check'`);
+    fs.writeFileSync(file, mutated(mutant, text));
+    const result = look(mutant);
+    fs.writeFileSync(file, text);
+    keepResult(results, mutant, result);
+    say(`${mutant.name}: ${result.how}${result.what ? `: ${result.what}` : ''}${result.seconds ? `, ${result.seconds.toFixed(1)} s` : ''}`);
+  }
+  const survivors = mutants.filter((mutant) => results[mutant.name] && !isFound(results[mutant.name]));
+  if (mutants.every(known)) {
+    fs.writeFileSync(path.join(root, pageFile), page(groups, results));
+    say(`${mutants.length} mutants found, ${pageFile} written`);
+  }
+  for (const mutant of survivors) say(`NOT FOUND: ${mutant.name} (${mutant.file}): ${mutant.slip}`);
+  process.exit(survivors.length > 0 ? 1 : 0);
+}
+
+const [command, ...rest] = process.argv.slice(2);
+if (command === 'check') check();
+else if (command === 'list') for (const mutant of mutants) console.log(`${mutant.name}\t${mutant.file}\t${mutant.slip}`);
+else if (command === 'run') run(rest);
+else die('run.mjs check, list, or run [--again] [NAME...]');
