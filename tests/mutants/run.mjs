@@ -36,15 +36,26 @@ const groups = [
 ];
 const mutants = groups.flatMap(([, all]) => all);
 
-// Which test programs see what is in a folder, the nearest first: it ends with the first that fails.
+// What is flown, as `skein-hil simulate` takes it: 1,000 missions in all.
+const missions = [
+  ['faults-8', 'mixed', 400],
+  ['mixed-6', 'mixed', 200],
+  ['coalition-6', 'mixed', 200],
+  ['coalition-32', 'mixed', 200],
+];
+const formations = [['formation-5', 'mixed', 700], ['formation-planes-5', 'mixed', 300]];
+const flownAtOnce = 50;
+
+// Which test programs see what is in a folder, and whether missions do; the nearest first, as it ends
+// with the first that finds it. Judges are to be found by their own tests.
 const seenBy = [
-  ['core/domain/', ['domain', 'planning', 'mission', 'simulator']],
-  ['core/planning/', ['planning', 'mission', 'simulator']],
+  ['core/domain/', ['domain', 'planning', 'mission', missions, 'simulator']],
+  ['core/planning/', ['planning', 'mission', missions, 'simulator']],
   ['core/coupled/', ['coupled', 'hindsight']],
-  ['core/coalition/', ['coalition', 'mission', 'simulator']],
-  ['core/formation/', ['formation', 'mission', 'simulator']],
+  ['core/coalition/', ['coalition', 'mission', missions, 'simulator']],
+  ['core/formation/', ['formation', 'mission', formations, 'simulator']],
   ['core/routes/', ['routes']],
-  ['core/mission/', ['mission', 'simulator']],
+  ['core/mission/', ['mission', missions, 'simulator']],
   ['runtime/identity/', ['identity', 'network']],
   ['runtime/network/', ['network']],
   ['runtime/seal/', ['seal', 'network']],
@@ -54,27 +65,10 @@ const seenBy = [
   ['hil/simulator/', ['simulator']],
 ];
 
-// What is flown where no test fails: 1,000 missions in all, as `skein-hil simulate` takes them.
-const flights = {
-  sites: [
-    ['faults-8', 'mixed', 400],
-    ['mixed-6', 'mixed', 200],
-    ['coalition-6', 'mixed', 200],
-    ['coalition-32', 'mixed', 200],
-  ],
-  formation: [['formation-5', 'mixed', 700], ['formation-planes-5', 'mixed', 300]],
-};
-const flownAtOnce = 50;
-
-function testsOf(mutant) {
+function ringsOf(mutant) {
   const found = seenBy.find(([folder]) => mutant.file.startsWith(folder));
   if (!found) throw new Error(`${mutant.name}: run.mjs does not know which tests see ${mutant.file}`);
   return found[1];
-}
-function flightsOf(mutant) {
-  if (mutant.file.startsWith('core/formation/')) return flights.formation;
-  const flown = ['core/domain/', 'core/planning/', 'core/coalition/', 'core/mission/'];
-  return flown.some((folder) => mutant.file.startsWith(folder)) ? flights.sites : [];
 }
 
 const say = (text) => process.stderr.write(`mutants: ${text}\n`);
@@ -100,7 +94,7 @@ function check() {
   for (const mutant of mutants) {
     if (names.has(mutant.name)) wrong.push(`${mutant.name}: two mutants have this name`);
     names.add(mutant.name);
-    testsOf(mutant);
+    ringsOf(mutant);
     const file = path.join(root, mutant.file);
     const text = fs.existsSync(file) ? fs.readFileSync(file, 'utf8') : '';
     const count = countOf(text, mutant.from);
@@ -161,17 +155,26 @@ function configure() {
 function build(...targets) {
   const ninja = spawnSync('ninja', ['-C', 'build/release', '-j', jobs, ...targets],
     { cwd: source, encoding: 'utf8', maxBuffer: 1 << 26 });
-  return ninja.status === 0 ? '' : ninja.stdout.slice(-4000);
+  if (ninja.status === 0) return '';
+  const errors = ninja.stdout.split('\n').filter((line) => /error|FAILED/.test(line) && !line.includes('-include'));
+  return errors.slice(0, 4).join('\n') || ninja.stdout.slice(-1000);
 }
+
+// What takes most of a program's time comes last.
+const longTests = { coalition: 'Coalition.RandomFaults*' };
 
 // Which test of the program fails first; null where none does.
 function firstFailure(test) {
-  const run = spawnSync(path.join(bin, `${test}_test`), ['--gtest_fail_fast'],
+  const long = longTests[test];
+  return long ? failureOf(test, `-${long}`) ?? failureOf(test, long) : failureOf(test, '*');
+}
+function failureOf(test, filter) {
+  const run = spawnSync(path.join(bin, `${test}_test`), ['--gtest_fail_fast', `--gtest_filter=${filter}`],
     { cwd: source, encoding: 'utf8', maxBuffer: 1 << 28, timeout: testSeconds * 1000, killSignal: 'SIGKILL' });
   if (run.status === 0) return null;
   const failed = run.stdout.match(/^\[ {2}FAILED {2}\] ([\w/.]+)/m);
   if (failed) return failed[1];
-  const begun = [...run.stdout.matchAll(/^\[ RUN {6}\] ([\w/.]+)/gm)].at(-1);
+  const begun = [...run.stdout.matchAll(/^\[ RUN {6}\] ([\w/.]+)/gm)].pop();
   return `${begun ? begun[1] : test} (${run.error?.code === 'ETIMEDOUT' ? 'does not end' : 'an assertion ends it'})`;
 }
 
@@ -181,10 +184,10 @@ function simulate(program, scenario, faults, more) {
 }
 
 // The first mission that breaks a check here, and does not without the mutant.
-function firstViolation(mutant) {
+function firstViolation(flights) {
   const program = path.join(bin, 'skein-hil');
   let flown = 0;
-  for (const [scenario, faults, runs] of flightsOf(mutant)) {
+  for (const [scenario, faults, runs] of flights) {
     for (let first = 1; first <= runs; first += flownAtOnce) {
       const many = simulate(program, scenario, faults,
         ['--runs', String(flownAtOnce), '--seed', String(first), '--jobs', jobs]);
@@ -204,22 +207,55 @@ function firstViolation(mutant) {
   return null;
 }
 
-function look(mutant) {
-  for (const test of testsOf(mutant)) {
-    const wrong = build(`${test}_test`);
+// --- what finds a mutant ---------------------------------------------------------------------
+
+// What was built and passes without any mutant; else what fails with one shows nothing.
+const sound = new Set();
+function tryOriginal(test) {
+  if (sound.has(test)) return;
+  const wrong = build(`${test}_test`);
+  if (wrong) die(`the tree as it is does not build:\n${wrong}`);
+  const failed = firstFailure(test);
+  if (failed) die(`without any mutant ${failed} of ${test}_test fails`);
+  sound.add(test);
+}
+function keepOriginalSimulator() {
+  if (sound.has(original)) return;
+  const wrong = build('skein-hil');
+  if (wrong) die(`the tree as it is does not build:\n${wrong}`);
+  fs.mkdirSync(path.dirname(original), { recursive: true });
+  fs.copyFileSync(path.join(bin, 'skein-hil'), original);
+  sound.add(original);
+}
+
+function withMutant(mutant, act) {
+  const file = path.join(source, mutant.file);
+  const text = fs.readFileSync(file, 'utf8');
+  if (countOf(text, mutant.from) !== 1) die(`${mutant.name}: does not fit ${mutant.file}; see 'run.mjs check'`);
+  fs.writeFileSync(file, mutated(mutant, text));
+  try {
+    return act();
+  } finally {
+    fs.writeFileSync(file, text);
+  }
+}
+
+// In the nearest test program, then in those farther away; null: not there.
+function lookIn(mutant, ring) {
+  const where = ringsOf(mutant)[ring];
+  if (where === undefined) return { how: 'survives', what: '' };
+  const flights = Array.isArray(where) ? where : null;
+  if (flights) keepOriginalSimulator();
+  else tryOriginal(where);
+  return withMutant(mutant, () => {
+    const wrong = build(flights ? 'skein-hil' : `${where}_test`);
     if (wrong) return { how: 'does not compile', what: wrong };
     const begun = Date.now();
-    const failed = firstFailure(test);
-    if (failed) return { how: `test ${test}`, what: failed, seconds: (Date.now() - begun) / 1000 };
-  }
-  if (flightsOf(mutant).length > 0) {
-    const wrong = build('skein-hil');
-    if (wrong) return { how: 'does not compile', what: wrong };
-    const begun = Date.now();
-    const found = firstViolation(mutant);
-    if (found) return { ...found, seconds: (Date.now() - begun) / 1000 };
-  }
-  return { how: 'survives', what: '' };
+    const found = flights ? firstViolation(flights) : firstFailure(where);
+    const seconds = (Date.now() - begun) / 1000;
+    if (found === null) return null;
+    return flights ? { ...found, seconds } : { how: `test ${where}`, what: found, seconds };
+  });
 }
 
 // --- a run -------------------------------------------------------------------------------------
@@ -236,19 +272,6 @@ function keepResult(results, mutant, result) {
 }
 const isFound = (result) => result !== undefined && !['survives', 'does not compile'].includes(result.how);
 
-// Without a mutant every test passes, or what fails with one shows nothing.
-function tryOriginal(wanted) {
-  const tests = [...new Set(wanted.flatMap(testsOf))];
-  const wrong = build(...tests.map((test) => `${test}_test`), 'skein-hil');
-  if (wrong) die(`the tree as it is does not build:\n${wrong}`);
-  for (const test of tests) {
-    const failed = firstFailure(test);
-    if (failed) die(`without any mutant ${failed} of ${test}_test fails`);
-  }
-  fs.mkdirSync(path.dirname(original), { recursive: true });
-  fs.copyFileSync(path.join(bin, 'skein-hil'), original);
-}
-
 function run(arguments_) {
   const again = arguments_[0] === '--again';
   const names = again ? arguments_.slice(1) : arguments_;
@@ -261,19 +284,16 @@ function run(arguments_) {
   const wanted = mutants.filter((mutant) => (names.length > 0 ? names.includes(mutant.name) : again || !known(mutant)));
   copyTree();
   configure();
-  if (wanted.length > 0) {
-    say(`${wanted.length} of ${mutants.length} mutants; first the tree as it is`);
-    tryOriginal(wanted);
-  }
-  for (const mutant of wanted) {
-    const file = path.join(source, mutant.file);
-    const text = fs.readFileSync(file, 'utf8');
-    if (countOf(text, mutant.from) !== 1) die(`${mutant.name}: does not fit ${mutant.file}; see 'run.mjs check'`);
-    fs.writeFileSync(file, mutated(mutant, text));
-    const result = look(mutant);
-    fs.writeFileSync(file, text);
-    keepResult(results, mutant, result);
-    say(`${mutant.name}: ${result.how}${result.what ? `: ${result.what}` : ''}${result.seconds ? `, ${result.seconds.toFixed(1)} s` : ''}`);
+  say(`${wanted.length} of ${mutants.length} mutants`);
+  let open = wanted;
+  for (let ring = 0; open.length > 0; ++ring) {
+    open = open.filter((mutant) => {
+      const result = lookIn(mutant, ring);
+      if (result === null) return true;
+      keepResult(results, mutant, result);
+      say(`${mutant.name}: ${result.how}: ${result.what}`);
+      return false;
+    });
   }
   const survivors = mutants.filter((mutant) => results[mutant.name] && !isFound(results[mutant.name]));
   if (mutants.every(known)) {

@@ -16,11 +16,11 @@ export default [
   },
   {
     name: 'award-after-its-lease',
-    slip: 'an award that comes after its own lease is accepted',
+    slip: 'an award that comes after its own lease is accepted, as a bid after its time is sent',
     promise: 'one owner a task',
     file: participant,
     from: 'if (mine.empty() || now >= message.lease_until) {',
-    to: 'if (mine.empty()) {',
+    to: 'if (mine.empty() || now > message.lease_until + params_.clock_guard) {',
   },
   {
     name: 'renewal-of-an-older-round',
@@ -45,14 +45,6 @@ export default [
     file: participant,
     from: 'if (now >= message.bids_until + params_.clock_guard) return;',
     to: 'if (now >= message.bids_until - params_.clock_guard) return;',
-  },
-  {
-    name: 'gives-back-what-has-begun',
-    slip: 'who bids anew ends the lease of what it has begun, too',
-    promise: 'what has begun is flown by who began it',
-    file: participant,
-    from: 'end_leases({Reason::bid_again}, true);',
-    to: 'end_leases({Reason::bid_again}, false);',
   },
   {
     name: 'lease-given-again-too-early',
@@ -118,7 +110,7 @@ export default [
     promise: 'who forgot its promise gives no authority',
     file: initiator,
     from: 'if (instance != message.instance) return;',
-    to: 'if (instance < message.instance) return;',
+    to: '',
   },
   {
     name: 'confirmation-of-an-older-round',
@@ -129,12 +121,12 @@ export default [
     to: 'if (member == confirmed_.end()) return;',
   },
   {
-    name: 'bid-after-close',
-    slip: 'a bid is taken that comes while the plan is being made',
-    promise: 'an award goes to who has bid for its round in time',
+    name: 'bid-of-an-older-round',
+    slip: 'a bid for the round before counts, with the pose that was to be then',
+    promise: 'an award goes to who has bid for its round',
     file: initiator,
     from: 'if (message.round != announcement_.round || !machine_.in(State::announcing)) return;',
-    to: 'if (message.round != announcement_.round) return;',
+    to: 'if (!machine_.in(State::announcing)) return;',
   },
   {
     name: 'award-to-two',

@@ -39,12 +39,12 @@ export default [
     to: 'return std::ranges::any_of(message.deliveries, is_ours);',
   },
   {
-    name: 'refusal-of-the-same-moment',
-    slip: 'a grant counts that is no newer than the refusal',
-    promise: 'the later decision counts, and of two at once the no',
+    name: 'older-refusal-hides-the-newer',
+    slip: 'the refusal that was heard last counts, not the one that was said last',
+    promise: 'the later decision counts, in whatever order they come',
     file: flyer,
-    from: 'if (refused != refused_at_.end() && message.decided_at <= refused->second) return false;',
-    to: 'if (refused != refused_at_.end() && message.decided_at < refused->second) return false;',
+    from: 'refused_at = std::max(refused_at, message.decided_at);',
+    to: 'refused_at = message.decided_at;',
   },
   {
     name: 'assessment-before-the-wait',
@@ -190,7 +190,7 @@ export default [
     slip: 'telemetry that comes late takes the place of newer',
     promise: 'the one picture is the newest that was heard',
     file: 'core/mission/fleet.cpp',
-    from: 'if (!older) entry.telemetry = telemetry;',
-    to: 'if (!older || entry.silent) entry.telemetry = telemetry;',
+    from: 'entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;',
+    to: 'entry.telemetry && changed && telemetry.state.time < entry.telemetry->state.time;',
   },
 ];
