@@ -2,8 +2,8 @@
 //
 // Planted faults, one at a time: each is to be found by the tests or by a thousand missions
 // (docs/mutants.md).
-//   run.mjs check                    every mutant fits the tree, and the page has it
-//   run.mjs list
+//   run.mjs check                    every mutant fits the tree, and the page is of what was found
+//   run.mjs list | page
 //   run.mjs run [--again] [NAME...]  those that were not found yet, or the named ones
 import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';
@@ -22,8 +22,8 @@ const pageFile = 'docs/mutants.md';
 const work = path.join(root, 'build/mutants');
 const source = path.join(work, 'source');
 const bin = path.join(source, 'build/release/bin');
-const original = path.join(work, 'original/skein-hil');
-const resultsFile = path.join(work, 'results.json');
+const originals = path.join(work, 'original');
+const resultsFile = path.join(root, 'tests/mutants/found.json');
 const jobs = process.env.SKEIN_JOBS ?? String(spawnSync('nproc', { encoding: 'utf8' }).stdout.trim());
 const testSeconds = 900;
 
@@ -90,7 +90,6 @@ function mutated(mutant, text) {
 function check() {
   const wrong = [];
   const names = new Set();
-  const told = fs.existsSync(path.join(root, pageFile)) ? fs.readFileSync(path.join(root, pageFile), 'utf8') : '';
   for (const mutant of mutants) {
     if (names.has(mutant.name)) wrong.push(`${mutant.name}: two mutants have this name`);
     names.add(mutant.name);
@@ -100,14 +99,12 @@ function check() {
     const count = countOf(text, mutant.from);
     if (count !== 1) wrong.push(`${mutant.name}: its text is ${count} times in ${mutant.file}, not once`);
     if (mutant.from === mutant.to) wrong.push(`${mutant.name}: changes nothing`);
-    if (!told.includes(`| \`${mutant.name}\` |`)) {
-      wrong.push(`${mutant.name}: is not in ${pageFile}; './dev mutants' writes it`);
-    }
-  }
-  for (const [, name] of told.matchAll(/^\| `([^`]+)` \|/gm)) {
-    if (!names.has(name)) wrong.push(`${name}: is in ${pageFile}, and there is no such mutant`);
   }
   if (mutants.length < 30) wrong.push(`${mutants.length} mutants are fewer than 30`);
+  const told = path.join(root, pageFile);
+  if (!fs.existsSync(told) || fs.readFileSync(told, 'utf8') !== pageOf(readResults())) {
+    wrong.push(`${pageFile} is not what was found; 'node tests/mutants/run.mjs page' writes it`);
+  }
   for (const text of wrong) say(text);
   if (wrong.length > 0) process.exit(1);
   say(`${mutants.length} mutants fit the tree`);
@@ -163,19 +160,28 @@ function build(...targets) {
 // What takes most of a program's time comes last.
 const longTests = { coalition: 'Coalition.RandomFaults*' };
 
-// Which test of the program fails first; null where none does.
-function firstFailure(test) {
-  const long = longTests[test];
-  return long ? failureOf(test, `-${long}`) ?? failureOf(test, long) : failureOf(test, '*');
+// The first test that fails with a mutant and passes without; null where none does. The tests that
+// are named as its file is come first.
+function firstFailure(test, mutant) {
+  const stem = path.basename(mutant.file, '.cpp');
+  const near = `${stem.replace(/(^|_)(\w)/g, (all, before, letter) => letter.toUpperCase())}*`;
+  const long = longTests[test] ?? 'None.None';
+  for (const filter of [near, `-${near}:${long}`, long]) {
+    const failed = failureOf(path.join(bin, `${test}_test`), filter);
+    if (failed && failureOf(path.join(originals, `${test}_test`), failed.name) === null) return failed.text;
+    if (failed) die(`without any mutant ${failed.name} of ${test}_test fails`);
+  }
+  return null;
 }
-function failureOf(test, filter) {
-  const run = spawnSync(path.join(bin, `${test}_test`), ['--gtest_fail_fast', `--gtest_filter=${filter}`],
+function failureOf(program, filter) {
+  const run = spawnSync(program, ['--gtest_fail_fast', `--gtest_filter=${filter}`],
     { cwd: source, encoding: 'utf8', maxBuffer: 1 << 28, timeout: testSeconds * 1000, killSignal: 'SIGKILL' });
   if (run.status === 0) return null;
   const failed = run.stdout.match(/^\[ {2}FAILED {2}\] ([\w/.]+)/m);
-  if (failed) return failed[1];
+  if (failed) return { name: failed[1], text: failed[1] };
   const begun = [...run.stdout.matchAll(/^\[ RUN {6}\] ([\w/.]+)/gm)].pop();
-  return `${begun ? begun[1] : test} (${run.error?.code === 'ETIMEDOUT' ? 'does not end' : 'an assertion ends it'})`;
+  const name = begun ? begun[1] : '*';
+  return { name, text: `${name} (${run.error?.code === 'ETIMEDOUT' ? 'does not end' : 'an assertion ends it'})` };
 }
 
 function simulate(program, scenario, faults, more) {
@@ -196,9 +202,9 @@ function firstViolation(flights) {
         : [...many.stdout.matchAll(/^seed (\d+) VIOLATED/gm)].map((found) => found[1]);
       for (const seed of seeds) {
         const here = simulate(program, scenario, faults, ['--seed', seed]);
-        if (here.status === 0 || simulate(original, scenario, faults, ['--seed', seed]).status !== 0) continue;
+        if (here.status === 0 || simulate(path.join(originals, 'skein-hil'), scenario, faults, ['--seed', seed]).status !== 0) continue;
         const broken = here.stdout.match(/VIOLATED:?\s+([\w ]+?)[:(]/);
-        return { how: `simulation ${flown + Number(seed) - first + 1}`,
+        return { how: `mission ${flown + Number(seed) - first + 1}`,
           what: `${scenario} --faults ${faults} --seed ${seed}${here.status === 1 && broken ? ` (${broken[1].trim()})` : ''}` };
       }
       flown += flownAtOnce;
@@ -209,23 +215,15 @@ function firstViolation(flights) {
 
 // --- what finds a mutant ---------------------------------------------------------------------
 
-// What was built and passes without any mutant; else what fails with one shows nothing.
-const sound = new Set();
-function tryOriginal(test) {
-  if (sound.has(test)) return;
-  const wrong = build(`${test}_test`);
+// The program without any mutant: what fails with one and fails here, too, shows nothing.
+const kept = new Set();
+function keepOriginal(program) {
+  if (kept.has(program)) return;
+  const wrong = build(program);
   if (wrong) die(`the tree as it is does not build:\n${wrong}`);
-  const failed = firstFailure(test);
-  if (failed) die(`without any mutant ${failed} of ${test}_test fails`);
-  sound.add(test);
-}
-function keepOriginalSimulator() {
-  if (sound.has(original)) return;
-  const wrong = build('skein-hil');
-  if (wrong) die(`the tree as it is does not build:\n${wrong}`);
-  fs.mkdirSync(path.dirname(original), { recursive: true });
-  fs.copyFileSync(path.join(bin, 'skein-hil'), original);
-  sound.add(original);
+  fs.mkdirSync(originals, { recursive: true });
+  fs.copyFileSync(path.join(bin, program), path.join(originals, program));
+  kept.add(program);
 }
 
 function withMutant(mutant, act) {
@@ -245,13 +243,13 @@ function lookIn(mutant, ring) {
   const where = ringsOf(mutant)[ring];
   if (where === undefined) return { how: 'survives', what: '' };
   const flights = Array.isArray(where) ? where : null;
-  if (flights) keepOriginalSimulator();
-  else tryOriginal(where);
+  const program = flights ? 'skein-hil' : `${where}_test`;
+  keepOriginal(program);
   return withMutant(mutant, () => {
-    const wrong = build(flights ? 'skein-hil' : `${where}_test`);
+    const wrong = build(program);
     if (wrong) return { how: 'does not compile', what: wrong };
     const begun = Date.now();
-    const found = flights ? firstViolation(flights) : firstFailure(where);
+    const found = flights ? firstViolation(flights) : firstFailure(where, mutant);
     const seconds = (Date.now() - begun) / 1000;
     if (found === null) return null;
     return flights ? { ...found, seconds } : { how: `test ${where}`, what: found, seconds };
@@ -260,14 +258,16 @@ function lookIn(mutant, ring) {
 
 // --- a run -------------------------------------------------------------------------------------
 
-const keyOf = (mutant) => createHash('sha256').update(JSON.stringify([mutant.file, mutant.from, mutant.to])).digest('hex');
+// What was found is of the mutant as it was then.
+const keyOf = (mutant) => createHash('sha256').update(JSON.stringify([mutant.file, mutant.from, mutant.to])).digest('hex').slice(0, 16);
 
 function readResults() {
   return fs.existsSync(resultsFile) ? JSON.parse(fs.readFileSync(resultsFile, 'utf8')) : {};
 }
 function keepResult(results, mutant, result) {
   results[mutant.name] = { ...result, key: keyOf(mutant) };
-  fs.writeFileSync(`${resultsFile}.new`, `${JSON.stringify(results, null, 1)}\n`);
+  const inOrder = Object.fromEntries(mutants.filter(({ name }) => results[name]).map(({ name }) => [name, results[name]]));
+  fs.writeFileSync(`${resultsFile}.new`, `${JSON.stringify(inOrder, null, 1)}\n`);
   fs.renameSync(`${resultsFile}.new`, resultsFile);
 }
 const isFound = (result) => result !== undefined && !['survives', 'does not compile'].includes(result.how);
@@ -295,17 +295,25 @@ function run(arguments_) {
       return false;
     });
   }
-  const survivors = mutants.filter((mutant) => results[mutant.name] && !isFound(results[mutant.name]));
-  if (mutants.every(known)) {
-    fs.writeFileSync(path.join(root, pageFile), page(groups, results));
-    say(`${mutants.length} mutants found, ${pageFile} written`);
+  writePage(results);
+  const missing = mutants.filter((mutant) => !known(mutant));
+  for (const mutant of missing) {
+    const state = results[mutant.name] ? 'NOT FOUND' : 'not looked for yet';
+    say(`${state}: ${mutant.name} (${mutant.file}): ${mutant.slip}`);
   }
-  for (const mutant of survivors) say(`NOT FOUND: ${mutant.name} (${mutant.file}): ${mutant.slip}`);
-  process.exit(survivors.length > 0 ? 1 : 0);
+  process.exit(missing.length > 0 ? 1 : 0);
 }
+
+function pageOf(results) {
+  const newest = Object.fromEntries(mutants.filter((mutant) => results[mutant.name]?.key === keyOf(mutant))
+    .map((mutant) => [mutant.name, results[mutant.name]]));
+  return page(groups, newest);
+}
+const writePage = (results) => fs.writeFileSync(path.join(root, pageFile), pageOf(results));
 
 const [command, ...rest] = process.argv.slice(2);
 if (command === 'check') check();
 else if (command === 'list') for (const mutant of mutants) console.log(`${mutant.name}\t${mutant.file}\t${mutant.slip}`);
+else if (command === 'page') writePage(readResults());
 else if (command === 'run') run(rest);
-else die('run.mjs check, list, or run [--again] [NAME...]');
+else die('run.mjs check, list, page, or run [--again] [NAME...]');
