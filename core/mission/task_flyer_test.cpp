@@ -154,6 +154,72 @@ TEST(TaskFlyer, TheOperatorsNewestWordCountsInWhateverOrderTheyCome) {
   EXPECT_EQ(other.reported(EventKind::task_done), 1);
 }
 
+TEST(TaskFlyer, ALateCopyOfAnOlderRefusalHidesNoNewerOne) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  f.decide(false, 4.0);
+  f.decide(false, 2.0);
+  f.decide(true, 3.0);
+  EXPECT_EQ(f.reported(EventKind::authorised), 0);
+  f.fly_until(65.0);
+  EXPECT_EQ(f.reported(EventKind::task_started), 0);
+}
+
+/// The turn away has begun by then, and control takes a new plan over only after some time.
+TEST(TaskFlyer, AGrantInTheLastMomentBeforeTheGateIsTooLate) {
+  constexpr double kGate_s = 56.0;  // 100 m before the site
+  for (const double heard_s : {kGate_s - 0.3, kGate_s - 0.1, kGate_s}) {
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    f.fly_until(heard_s);
+    f.be_at(heard_s);
+    f.grant();
+    f.fly_until(65.0);
+    const bool in_time = heard_s < kGate_s - 0.2;
+    EXPECT_EQ(f.reported(EventKind::task_started), in_time ? 1 : 0) << heard_s;
+    EXPECT_EQ(f.reported(EventKind::authorisation_late), in_time ? 0 : 1) << heard_s;
+  }
+}
+
+/// Of the last delivery, as who flew it has told its end.
+TEST(TaskFlyer, AnAssessmentBeginsOnlyAfterTheWait) {
+  constexpr double kArc_s = 60.0;
+  for (const double delivered_s : {45.0, 55.0}) {
+    Flying f;
+    Site site = test_site(1);
+    site.assessments.push_back({});
+    site.assessments[0].dwell = std::chrono::seconds{4};
+    site.assess_wait = std::chrono::seconds{10};
+    coalition::Announcement call;
+    call.round = kRound;
+    call.site = site;
+    call.tasks = tasks_after_survey(site);
+    call.bids_until = f.now + std::chrono::seconds{1};
+    call.formed_at = f.now + std::chrono::seconds{2};
+    f.hear(coalition::Message{call});
+    coalition::Award award;
+    award.round = kRound;
+    award.site = site;
+    award.formed_at = f.now + std::chrono::seconds{1};
+    award.assignments = {{{{1}, TaskKind::deliver, 0}, {77}, at_seconds(delivered_s)},
+                         {{{1}, TaskKind::assess, 0}, f.ownship.spec().id, at_seconds(kArc_s)}};
+    award.awarded_at = f.now;
+    award.lease_until = at_seconds(120.0);
+    f.hear(coalition::Message{award});
+    f.fly_until(delivered_s + 1.0);
+    coalition::MemberStatus status{kRound, {77}, {}};
+    status.tasks = {
+        {{{1}, TaskKind::deliver, 0}, coalition::TaskState::done, at_seconds(delivered_s)}};
+    f.hear(coalition::Message{status});
+    f.fly_until(kArc_s + 2.0);
+    const bool may = delivered_s + 10.0 < kArc_s;
+    EXPECT_EQ(f.reported(EventKind::task_started), may ? 1 : 0) << delivered_s;
+    EXPECT_EQ(f.reported(EventKind::authorisation_late), may ? 0 : 1) << delivered_s;
+  }
+}
+
 TEST(TaskFlyer, ASuccessorsPlanIsTakenBackToo) {
   Flying f;
   f.call();

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// A leader's side to the moment: how far it leases, and from when on a task is another's.
+#include "skein/coalition/initiator.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "team_test.hpp"
+
+namespace skein::coalition {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::SizeIs;
+
+constexpr VehicleId kSelf{1};
+constexpr VehicleId kFirst{2};
+constexpr VehicleId kSecond{3};
+constexpr InstanceId kStart{1};
+const CoalitionId kCoalition{kSelf, kStart, 1};
+constexpr Duration kTick{1};
+
+/// A leader whose tasks are all others'.
+struct Leader {
+  explicit Leader(std::size_t tasks) : self{params, kCoalition, site_with(tasks, 0), {}, {}, now} {}
+
+  void hears_bid(VehicleId bidder, std::uint32_t round) {
+    Bid bid;
+    bid.round = {kCoalition, round};
+    bid.bidder = bidder;
+    bid.instance = kStart;
+    bid.speed_mps = 20.0;
+    bid.planning_radius_m = 60.0;
+    self.on_bid(bid, now);
+  }
+  /// What it wants allocated when the time for bids is over.
+  std::optional<Initiator::AllocationWanted> bids_close() {
+    now = self.announcement().bids_until;
+    self.on_timeout(now);
+    return newest<Initiator::AllocationWanted>();
+  }
+  void awards(const std::vector<VehicleId>& owners) {
+    std::vector<TaskAssignment> assignments;
+    for (std::size_t i = 0; i < owners.size(); ++i) {
+      assignments.push_back({task(i), owners[i], now + 60s});
+    }
+    self.allocated(self.round(), std::move(assignments), now);
+  }
+  void hears_confirmation(VehicleId member, std::uint32_t round) {
+    self.on_confirmation({{kCoalition, round}, member, true, {}}, now);
+  }
+  /// In its first round, of those.
+  void stands(const std::vector<VehicleId>& owners) {
+    for (const VehicleId owner : owners) hears_bid(owner, 1);
+    ASSERT_TRUE(bids_close());
+    awards(owners);
+    for (const VehicleId owner : owners) hears_confirmation(owner, 1);
+    ASSERT_EQ(self.state(), Initiator::State::executing);
+  }
+  void hears_allegiance(VehicleId elector, Instant acknowledges) {
+    self.on_allegiance({kCoalition, elector, kStart, kSelf, acknowledges}, now);
+  }
+  /// Its next heartbeat.
+  LeaseRenewal renews() {
+    (void)newest_message<LeaseRenewal>();
+    now += params.heartbeat;
+    self.on_timeout(now);
+    return newest_message<LeaseRenewal>().value_or(LeaseRenewal{});
+  }
+  [[nodiscard]] static TaskId task(std::size_t i) {
+    return {SiteId{1}, TaskKind::deliver, static_cast<std::uint8_t>(i)};
+  }
+
+  template <class Output>
+  std::optional<Output> newest() {
+    std::optional<Output> found;
+    while (const auto output = self.poll_output()) {
+      if (const auto* wanted = std::get_if<Output>(&*output)) found = *wanted;
+    }
+    return found;
+  }
+  template <class Kind>
+  std::optional<Kind> newest_message() {
+    std::optional<Kind> found;
+    while (const auto message = self.poll_message()) {
+      if (const auto* wanted = std::get_if<Kind>(&*message)) found = *wanted;
+    }
+    return found;
+  }
+
+  ProtocolParams params;
+  Instant now = Instant{} + 100s;
+  Initiator self;
+};
+
+TEST(Initiator, ATaskIsAnothersOnlyAGuardAfterItsLease) {
+  Leader leader{1};
+  leader.stands({kFirst});
+  const Instant lease_until = leader.newest_message<Award>()->lease_until;
+  const Instant given_up = lease_until + leader.params.clock_guard;
+  leader.self.on_timeout(given_up - kTick);
+  EXPECT_FALSE(leader.newest<Initiator::TaskLost>());
+  leader.self.on_timeout(given_up);
+  EXPECT_TRUE(leader.newest<Initiator::TaskLost>());
+}
+
+/// A renewal reaches as far as half of the electors have promised, and no further.
+TEST(Initiator, LeasesNoFurtherThanItsElectorsPromise) {
+  Leader leader{2};
+  leader.stands({kFirst, kSecond});
+  EXPECT_EQ(leader.renews().lease_until, Instant{}) << "nobody has answered yet";
+  const Instant answered = leader.now;
+  leader.hears_allegiance(kFirst, answered);
+  EXPECT_EQ(leader.renews().lease_until, answered + leader.params.lease);
+  EXPECT_EQ(leader.renews().lease_until, answered + leader.params.lease);
+  const Instant again = leader.now;
+  leader.hears_allegiance(kFirst, again);
+  EXPECT_EQ(leader.renews().lease_until, again + leader.params.lease);
+}
+
+TEST(Initiator, NeedsHalfOfFiveElectorsBesidesItself) {
+  Leader leader{4};
+  const std::vector<VehicleId> others{kFirst, kSecond, VehicleId{4}, VehicleId{5}};
+  leader.stands(others);
+  (void)leader.renews();
+  leader.hears_allegiance(kFirst, leader.now);
+  EXPECT_EQ(leader.renews().lease_until, Instant{}) << "two of five";
+  leader.hears_allegiance(kSecond, leader.now);
+  EXPECT_GT(leader.renews().lease_until, leader.now) << "three of five";
+}
+
+TEST(Initiator, ABidIsOfItsRound) {
+  Leader leader{1};
+  ASSERT_TRUE(leader.bids_close());
+  leader.self.allocation_failed(leader.self.round(), "nobody bids", leader.now);
+  leader.now += leader.params.monitoring_interval;
+  leader.self.on_timeout(leader.now);
+  ASSERT_EQ(leader.self.round().number, 2U);
+  leader.hears_bid(kFirst, 1);  // late
+  leader.hears_bid(kSecond, 2);
+  const auto wanted = leader.bids_close();
+  ASSERT_TRUE(wanted);
+  ASSERT_THAT(wanted->bids, SizeIs(1));
+  EXPECT_EQ(wanted->bids[0].bidder, kSecond);
+}
+
+TEST(Initiator, AConfirmationIsOfItsRound) {
+  Leader leader{1};
+  leader.hears_bid(kFirst, 1);
+  ASSERT_TRUE(leader.bids_close());
+  leader.awards({kFirst});
+  leader.now += 3s;
+  leader.self.on_timeout(leader.now);  // nobody has confirmed
+  ASSERT_EQ(leader.self.state(), Initiator::State::monitoring);
+  leader.now += leader.params.first_lease() + leader.params.monitoring_interval;
+  leader.self.on_timeout(leader.now);
+  ASSERT_EQ(leader.self.round().number, 2U);
+  leader.hears_bid(kFirst, 2);
+  ASSERT_TRUE(leader.bids_close());
+  leader.awards({kFirst});
+  leader.hears_confirmation(kFirst, 1);  // late
+  EXPECT_EQ(leader.self.state(), Initiator::State::awarding);
+  leader.hears_confirmation(kFirst, 2);
+  EXPECT_EQ(leader.self.state(), Initiator::State::executing);
+}
+
+/// One task is lost and given away anew; then the owner of the other says that its own failed, by
+/// the round that it has it from.
+TEST(Initiator, WhatAnOwnerOfAnEarlierRoundGivesBackIsOpen) {
+  Leader leader{2};
+  leader.stands({kFirst, kSecond});
+  const Round first = leader.self.round();
+  const auto gives_back = [&](VehicleId owner, std::size_t task) {
+    leader.self.on_status({first, owner, {{Leader::task(task), TaskState::failed, leader.now}}},
+                          leader.now);
+  };
+  (void)leader.renews();
+  leader.hears_allegiance(kFirst, leader.now);
+  leader.hears_allegiance(kSecond, leader.now);
+  gives_back(kFirst, 0);
+  ASSERT_TRUE(leader.newest<Initiator::TaskLost>());
+  (void)leader.renews();
+  ASSERT_EQ(leader.self.round().number, 2U) << "the other flies on";
+  gives_back(kSecond, 1);
+  const auto lost = leader.newest<Initiator::TaskLost>();
+  ASSERT_TRUE(lost);
+  EXPECT_EQ(lost->assignment.task, Leader::task(1));
+}
+
+}  // namespace
+}  // namespace skein::coalition

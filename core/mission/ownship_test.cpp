@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a vehicle knows of itself: what is left of its range, and what it can fly.
+#include "ownship.hpp"
+
+#include <gtest/gtest.h>
+
+#include "agent_parts_test.hpp"
+
+namespace skein::mission {
+namespace {
+
+/// Whatever it does until it looks again, it comes home: a metre of flight brings it at most a
+/// metre further away, and the way back takes a turn.
+TEST(Ownship, LooksAtItsRangeAgainWhileItCanStillComeHome) {
+  PartsBench bench;
+  const double turn_m = kTwoPi * bench.ownship.planning_radius_m();
+  const double there_m = bench.ownship.spare_s(bench.now) * kTestSpeed_mps;
+  EXPECT_LE(2.0 * there_m + turn_m, bench.ownship.range_left(bench.now));
+  EXPECT_GT(2.0 * there_m + turn_m, 0.9 * bench.ownship.range_left(bench.now)) << "and no sooner";
+}
+
+/// With the margin that wind and gusts take.
+TEST(Ownship, PlansWithWiderTurnsThanItCanFly) {
+  VehicleAgentConfig config = plane_config();
+  config.vehicle.turn_radius_margin = 1.25;
+  PartsBench bench{config};
+  const planning::Candidate self = bench.ownship.candidate(Pose2{}, bench.now);
+  EXPECT_DOUBLE_EQ(self.planning_radius_m, 1.25 * config.vehicle.turn_radius_m);
+}
+
+TEST(Ownship, AnOrbitToEitherSideStaysInTheFence) {
+  VehicleAgentConfig config = plane_config();
+  config.fence.corners = {{-500.0, -500.0}, {1000.0, -500.0}, {1000.0, 900.0}, {-500.0, 900.0}};
+  config.fence.height_max_m = 500.0;
+  PartsBench bench{config};
+  constexpr double kRadius_m = 100.0;
+  for (const double side : {1.0, -1.0}) {
+    // Northwards beside the eastern edge, and beside the western one.
+    Path east{{900.0, 0.0, kPi / 2.0}, {}};
+    ASSERT_TRUE(east.append(Segment{0.0, 100.0}));
+    Path west{{-400.0, 0.0, kPi / 2.0}, {}};
+    ASSERT_TRUE(west.append(Segment{0.0, 100.0}));
+    EXPECT_EQ(bench.ownship.stays_in_fence(east, side / kRadius_m), side > 0.0);
+    EXPECT_EQ(bench.ownship.stays_in_fence(west, side / kRadius_m), side < 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace skein::mission

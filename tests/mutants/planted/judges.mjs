@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who judges: a check that is too kind makes everything else look true. Found by the judges' own
+// tests, or not at all.
+
+const protocol = 'hil/checks/protocol_checks.cpp';
+const flown = 'hil/checks/flown_checks.cpp';
+const hazards = 'hil/checks/hazard_checks.cpp';
+const plans = 'hil/checks/plan_checks.cpp';
+const separation = 'hil/checks/separation.cpp';
+
+export default [
+  {
+    name: 'judge-skips-the-last-sample',
+    slip: 'separation is judged but for the last moment of the tracks',
+    promise: 'the whole flight is judged',
+    file: separation,
+    from: 'grid.count = static_cast<std::size_t>((end - grid.begin) / kStep) + 1;',
+    to: 'grid.count = static_cast<std::size_t>((end - grid.begin) / kStep);',
+  },
+  {
+    name: 'judge-skips-between-slices',
+    slip: 'between two slices of time a step is not judged',
+    promise: 'the whole flight is judged',
+    file: separation,
+    from: 'watch.slice(from, std::min(from + kStepsPerSlice, grid.count - 1));',
+    to: 'watch.slice(from, std::min(from + kStepsPerSlice - 1, grid.count - 1));',
+  },
+  {
+    name: 'judge-ten-times-the-miss',
+    slip: 'deliveries may miss by ten times what is allowed',
+    promise: 'a delivery passes its site as nearly as is said',
+    file: flown,
+    from: 'if (d.miss_m > limits.miss_m) {',
+    to: 'if (d.miss_m > 10.0 * limits.miss_m) {',
+  },
+  {
+    name: 'judge-inside-the-ring',
+    slip: 'who flies inside the ring of a survey is on it',
+    promise: 'a survey is flown at its radius',
+    file: flown,
+    from: 'inside = inside && std::abs(error) <= allowed;',
+    to: 'inside = inside && error <= allowed;',
+  },
+  {
+    name: 'judge-asks-the-station-twice',
+    slip: 'whether the vehicle has heard of the authorisation is asked of the ground station',
+    promise: 'the vehicle knew that it was authorised before it began',
+    file: protocol,
+    from: 'const auto heard = decided(recorded->events, run.vehicle, run, EventKind::authorised);',
+    to: `const auto heard = recorded == nullptr
+                           ? std::nullopt
+                           : decided(record.ground_events, kGroundStation, run, EventKind::authorised);`,
+  },
+  {
+    name: 'judge-takes-any-round',
+    slip: 'the authorisation of an earlier round counts for a delivery',
+    promise: 'every delivery is authorised as it is flown',
+    file: protocol,
+    from: 'if (event.vehicle == teller && event.kind() == kind && event.round == run.round &&',
+    to: 'if (event.vehicle == teller && event.kind() == kind &&',
+  },
+  {
+    name: 'judge-of-neighbouring-leases',
+    slip: 'a lease is not compared with the next one in the list',
+    promise: 'one unexpired lease a task',
+    file: protocol,
+    from: 'for (std::size_t j = i + 1; j < all.size(); ++j) {',
+    to: 'for (std::size_t j = i + 2; j < all.size(); ++j) {',
+  },
+  {
+    name: 'judge-one-load-more',
+    slip: 'one delivery more than was carried is allowed',
+    promise: 'no vehicle delivers more than it carries',
+    file: protocol,
+    from: 'if (++used != vehicle.loads + std::size_t{1}) continue;',
+    to: 'if (used++ != vehicle.loads + std::size_t{1}) continue;',
+  },
+  {
+    name: 'judge-failed-is-done',
+    slip: 'a task that failed counts as done',
+    promise: 'every task is done, or it is said why not',
+    file: protocol,
+    from: 'if (run.done && !run.failed) done.insert(run.task);',
+    to: 'if (run.done || run.failed) done.insert(run.task);',
+  },
+  {
+    name: 'judge-held-takes-leases',
+    slip: 'who was told to hold may take a lease',
+    promise: 'who was told to hold takes up nothing',
+    file: protocol,
+    from: 'kind == EventKind::lease_granted || kind == EventKind::relief_begun;',
+    to: 'kind == EventKind::relief_begun;',
+  },
+  {
+    name: 'judge-without-the-hold',
+    slip: 'of a plan that ends in a hold the hold is not looked at',
+    promise: 'no plan enters a hazard, one round of its hold included',
+    file: hazards,
+    from: 'to = std::max(from, length) + kTwoPi / std::abs(plan.plan.tail_curvature_per_m);',
+    to: 'to = std::max(from, length) + kTwoPi * std::abs(plan.plan.tail_curvature_per_m);',
+  },
+  {
+    name: 'judge-fence-without-height',
+    slip: 'who is above the fence is in it',
+    promise: 'nobody is outside of the fence',
+    file: hazards,
+    from: 'std::min(record.fence.inside_m({s.x_m, s.y_m}), record.fence.height_max_m - s.z_m);',
+    to: 'std::min(record.fence.inside_m({s.x_m, s.y_m}), record.fence.height_max_m + s.z_m);',
+  },
+  {
+    name: 'judge-turns-to-the-left-only',
+    slip: 'of a plan only turns to the left are judged',
+    promise: 'no plan turns tighter than the vehicle can',
+    file: plans,
+    from: 'tightest = std::max(tightest, std::abs(segment.curvature_per_m));',
+    to: 'tightest = std::max(tightest, segment.curvature_per_m);',
+  },
+  {
+    name: 'judge-range-of-what-is-flown',
+    slip: 'what a plan has still before it is not added to what was flown',
+    promise: 'no vehicle plans to fly further than its range',
+    file: plans,
+    from: 'const double total = there->distance_flown_m + ahead;',
+    to: 'const double total = std::max(there->distance_flown_m, ahead);',
+  },
+  {
+    name: 'judge-first-gap',
+    slip: 'a gap at the begin of a track is not seen',
+    promise: 'every vehicle left a track without gaps',
+    file: 'hil/checks/check.cpp',
+    from: 'for (std::size_t i = 1; i < recorded->track.size(); ++i) {',
+    to: 'for (std::size_t i = 2; i < recorded->track.size(); ++i) {',
+  },
+  {
+    name: 'truth-of-another-aircraft',
+    slip: 'what another aircraft says on the same port is taken for this one\'s truth',
+    promise: 'a vehicle is judged by where it really was',
+    file: 'hil/bench/truth_recorder.cpp',
+    from: 'if (!told || packet.system != aircraft_.system_id) return;',
+    to: 'if (!told) return;',
+  },
+  {
+    name: 'truth-above-the-geoid',
+    slip: 'heights above the sea are taken for heights above the ellipsoid',
+    promise: 'a vehicle is judged by where it really was',
+    file: 'hil/bench/truth_recorder.cpp',
+    from: 'state.z_m = height_m - origin.origin().height_m;',
+    to: 'state.z_m = static_cast<double>(told.alt) - origin.origin().height_m;',
+  },
+  {
+    name: 'hindsight-without-hazards',
+    slip: 'the best that could have been flown flies through hazards',
+    promise: 'a mission is compared with what could have been flown',
+    file: 'hil/hindsight/hindsight.cpp',
+    from: 'for (const auto& known : record.hazards) problem.hazards.push_back(known.hazard);',
+    to: `for (const auto& known : record.hazards) {
+    if (known.known_from > Instant{}) problem.hazards.push_back(known.hazard);
+  }`,
+  },
+  {
+    name: 'hindsight-from-the-end',
+    slip: 'the best begins where the vehicles were at the end',
+    promise: 'a mission is compared with what could have been flown',
+    file: 'hil/hindsight/hindsight.cpp',
+    from: 'const auto& first = in_mission == recorded->track.end() ? recorded->track.back() : *in_mission;',
+    to: 'const auto& first = in_mission != recorded->track.end() ? recorded->track.back() : *in_mission;',
+  },
+  {
+    name: 'excused-without-a-grant',
+    slip: 'deliveries are excused as perhaps flown that the operator never granted',
+    promise: 'what was not done is excused only where it could not be',
+    file: 'hil/simulator/excuses.cpp',
+    from: 'if (event.kind() == mission::EventKind::task_unknown && granted.contains(event.task.site)) {',
+    to: 'if (event.kind() == mission::EventKind::task_unknown) {',
+  },
+  {
+    name: 'excused-by-who-has-no-load',
+    slip: 'a mission is not excused where nobody left has a load: vehicles without one count',
+    promise: 'what was not done is excused where it could not be',
+    file: 'hil/simulator/excuses.cpp',
+    from: '(open[task].kind != TaskKind::deliver || left[v]->loads > 0);',
+    to: '(open[task].kind != TaskKind::deliver || specs[v]->loads > 0);',
+  },
+  {
+    name: 'judge-kind-to-all-clocks',
+    slip: 'every mission is judged as if its clocks differed',
+    promise: 'a mission is judged by its own limits',
+    file: 'hil/simulator/judged_runs.cpp',
+    from: 'if (std::any_of(mission.faults.begin(), mission.faults.end(), off)) {',
+    to: 'if (!std::any_of(mission.faults.begin(), mission.faults.end(), off)) {',
+  },
+  {
+    name: 'judge-between-two-looks',
+    slip: 'two of a formation are judged where they are looked at, not where they pass in between',
+    promise: 'nobody passes nearer than the separation',
+    file: 'hil/simulator/airspace_judge.cpp',
+    from: 'const double apart = (begin + share * way).norm();',
+    to: 'const double apart = (share < 1.0 ? begin : end).norm();',
+  },
+];
