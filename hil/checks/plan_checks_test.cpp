@@ -49,6 +49,17 @@ TEST(PlanChecks, AGapWhileItsAutopilotHadItAloneIsNone) {
   EXPECT_FALSE(check_recordings(record, {}).held());
 }
 
+TEST(PlanChecks, AGapAtEitherEndOfATrackIsFound) {
+  RunRecord record = good_record();
+  auto& begin = of(record, kSurveyor).track;
+  begin.erase(begin.begin() + 1, begin.begin() + 41);
+  EXPECT_THAT(only_sentence(check_recordings(record, {})), HasSubstr("at 0.00 s has a gap"));
+  record = good_record();
+  auto& end = of(record, kSurveyor).track;
+  end.erase(end.end() - 41, end.end() - 1);
+  EXPECT_THAT(only_sentence(check_recordings(record, {})), HasSubstr("a gap of 2.05 s"));
+}
+
 TEST(PlanChecks, ATightSegmentIsFoundHoweverShort) {
   RunRecord record = good_record();
   auto& plan = of(record, kSurveyor).plans.front().plan;

@@ -205,6 +205,24 @@ TEST(ProtocolChecks, WhoTakesUpSomethingUnderAHoldIsFound) {
   EXPECT_FALSE(with(1.0, event::OrdersKnown{kAssessor}).held()) << "which has told it of the hold";
 }
 
+TEST(ProtocolChecks, WhoHoldsTakesUpNothingOfAnyKind) {
+  using mission::CommandKind;
+  namespace event = mission::event;
+  const auto holds = [](EventKind taken_up) {
+    RunRecord record = good_record();
+    of(record, kSurveyor).events = {
+        said_by_surveyor(1.0, event::Commanded{CommandKind::return_home}),
+        said_by_surveyor(5.0, mission::body_of(taken_up))};
+    return check_standing_orders(record, {}).held();
+  };
+  for (const EventKind kind :
+       {EventKind::survey_started, EventKind::announced, EventKind::bid_sent, EventKind::confirmed,
+        EventKind::lease_granted, EventKind::relief_begun}) {
+    EXPECT_FALSE(holds(kind)) << to_string(kind);
+  }
+  EXPECT_TRUE(holds(EventKind::task_started)) << "what it had begun";
+}
+
 TEST(ProtocolChecks, ADeliveryFlownTwiceIsFound) {
   RunRecord record = good_record();
   auto& events = of(record, kAssessor).events;
@@ -234,6 +252,13 @@ TEST(ProtocolChecks, ATaskBegunAndNotDoneIsFound) {
   erase_events(record, kAssessor, EventKind::task_done);
   EXPECT_THAT(only_sentence(check_completion(record, {})), HasSubstr("begun and never done"));
   EXPECT_THAT(failed(record), Contains("completion"));
+}
+
+TEST(ProtocolChecks, ATaskThatFailedIsNotDone) {
+  RunRecord record = good_record();
+  event_of(record, kAssessor, EventKind::task_done) =
+      event(kAssessor, 91.0, EventKind::task_failed, kAssessment);
+  EXPECT_THAT(only_sentence(check_completion(record, {})), HasSubstr("begun and never done"));
 }
 
 TEST(ProtocolChecks, AnArcThatIsLeftForWantOfALeaseAndFlownAgainAreTwoRuns) {

@@ -44,6 +44,19 @@ TEST(Separation, AHeadOnMeetingIsFoundAtItsNearest) {
   EXPECT_THAT(sentence, HasSubstr("came at 10.03 s within 12.0 m horizontally and 5.0 m vert"));
 }
 
+/// Whenever it is: at the end of what is looked at together, and at the end of the tracks.
+TEST(Separation, EveryStepOfTheFlightIsJudged) {
+  for (const double meets_s : {9.85, 9.95, 10.05, 19.95}) {
+    const double away_m = 60.0 * meets_s;
+    // In one layer for a tenth of a second only, as they pass.
+    const double rate_mps = 400.0;
+    const auto record = pair_of(straight(kFromWest, {-away_m, 0.0}, {60.0, 0.0}, 300.0, 0.0, 20.0),
+                                straight(kFromSouth, {away_m, 0.0}, {-60.0, 0.0},
+                                         300.0 - rate_mps * meets_s, rate_mps, 20.0));
+    EXPECT_FALSE(check_separation(record, {}).held()) << meets_s;
+  }
+}
+
 TEST(Separation, HeightOrDistanceIsEnough) {
   const auto meeting = [](double height, double beside) {
     return pair_of(straight(kFromWest, {-600.0, 0.0}, {60.0, 0.0}, 300.0, 0.0, 20.0),

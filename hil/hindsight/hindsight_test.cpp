@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <string>
 
+#include "skein/base/angles.hpp"
+#include "skein/base/vectors.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/judged_runs.hpp"
 #include "skein/hil/team_mission.hpp"
@@ -70,6 +73,26 @@ TEST(Hindsight, WhatWasNotDoneHasNoTimeAndNoReward) {
   EXPECT_FALSE(after->end_s.flown);
   EXPECT_EQ(after->reward.flown, 0.0);
   EXPECT_EQ(after->end_s.best, before->end_s.best) << "it does not depend on what was flown";
+}
+
+/// Whenever the team learnt of them: who knows all from the start flies around.
+TEST(Hindsight, TheBestFliesAroundHazards) {
+  Flown flown = fly("coalition-6.yaml", 3);
+  const auto best_end_s = [&flown] {
+    return look_back(flown.record, flown.limits, 500)->end_s.best;
+  };
+  const double free_s = best_end_s();
+  // All around the site's approaches but for a gap: every vehicle has to go a longer way.
+  const Site& site = flown.record.sites.front();
+  const double away_m = 1200.0;
+  for (std::uint16_t i = 0; i < 5; ++i) {
+    const Vec2 centre = site.position + away_m * unit_vector(i * kTwoPi / 5.0);
+    flown.record.hazards.push_back({{HazardId{i}, centre, 500.0}, Instant{}});
+  }
+  const double around_s = best_end_s();
+  EXPECT_GT(around_s, free_s);
+  for (auto& known : flown.record.hazards) known.known_from = Instant{} + std::chrono::seconds{90};
+  EXPECT_EQ(best_end_s(), around_s);
 }
 
 TEST(Hindsight, IsATableForPeople) {

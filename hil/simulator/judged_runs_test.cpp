@@ -4,16 +4,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "skein/checks/flown.hpp"
 #include "skein/hil/team_mission.hpp"
 
 namespace skein::hil {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 configuration::Scenario small() {
   auto scenario =
@@ -53,6 +58,27 @@ TEST(JudgedRuns, TheJudgesHoldAMissionToTheScenariosLimits) {
   auto scenario = small();
   scenario.expect.miss_distance_m = 0.0;
   EXPECT_THAT(names(fly(scenario, 1)), ElementsAre("deliveries"));
+}
+
+/// By a guard of clocks, and for no other missions.
+TEST(JudgedRuns, TimesAreJudgedMoreKindlyWhereClocksDiffer) {
+  const auto scenario = small();
+  auto mission = seeded_mission(scenario, 1, "none");
+  ASSERT_TRUE(mission);
+  auto limits = limits_of(scenario.expect);
+  checks::RunRecord record;
+  (void)fly_judged(*mission, limits, {}, &record);
+  double worst_s = 0.0;
+  for (const auto& delivery : checks::deliveries_flown(record, limits)) {
+    worst_s = std::max(worst_s, std::abs(delivery.time_error_s()));
+  }
+  ASSERT_GT(worst_s, 0.0);
+  limits.arrival_s = 0.5 * worst_s;
+  EXPECT_THAT(names(fly_judged(*mission, limits)), Contains("deliveries"));
+  Fault& differs = mission->faults.emplace_back();
+  differs.what =
+      ClockOff{mission->vehicles.front().spec.id, {}};  // by nothing: it is flown as before
+  EXPECT_THAT(names(fly_judged(*mission, limits)), Not(Contains("deliveries")));
 }
 
 TEST(JudgedRuns, MissionsOfOneAirspeedInWindHold) {
