@@ -5,7 +5,6 @@
 #include <charconv>
 #include <chrono>
 #include <cstdio>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>

@@ -27,7 +27,8 @@ constexpr Duration kTick{1};
 
 /// A leader whose tasks are all others'.
 struct Leader {
-  explicit Leader(std::size_t tasks) : self{params, kCoalition, site_with(tasks, 0), {}, {}, now} {}
+  explicit Leader(std::size_t deliveries, std::size_t assessments = 0)
+      : self{params, kCoalition, site_with(deliveries, assessments), {}, {}, now} {}
 
   void hears_bid(VehicleId bidder, std::uint32_t round) {
     Bid bid;
@@ -190,6 +191,46 @@ TEST(Initiator, WhatAnOwnerOfAnEarlierRoundGivesBackIsOpen) {
   const auto lost = leader.newest<Initiator::TaskLost>();
   ASSERT_TRUE(lost);
   EXPECT_EQ(lost->assignment.task, Leader::task(1));
+}
+
+/// Its delivery failed and was awarded again, for later: who assesses waits for it at its gate. An
+/// owner whose bids come too late would otherwise be asked in round after round, at once.
+TEST(Initiator, AnAssessmentIsNotLateBeforeADeliveryThatWasAwardedAgain) {
+  Leader leader{1, 1};
+  const TaskId delivery = Leader::task(0);
+  const TaskId assessment{SiteId{1}, TaskKind::assess, 0};
+  const Instant begin = leader.now;
+  const auto award = [&](std::vector<TaskAssignment> assignments) {
+    leader.self.allocated(leader.self.round(), std::move(assignments), leader.now);
+  };
+  const auto is_heard_until = [&](Instant end) {
+    while (leader.now < end) {
+      (void)leader.renews();
+      for (const VehicleId member : {kFirst, kSecond}) leader.hears_allegiance(member, leader.now);
+    }
+  };
+  for (const VehicleId member : {kFirst, kSecond}) leader.hears_bid(member, 1);
+  ASSERT_TRUE(leader.bids_close());
+  award({{delivery, kFirst, begin + 20s}, {assessment, kSecond, begin + 30s}});
+  for (const VehicleId member : {kFirst, kSecond}) leader.hears_confirmation(member, 1);
+  ASSERT_EQ(leader.self.state(), Initiator::State::executing);
+  is_heard_until(begin + 3s);
+  const MemberStatus failed{{kCoalition, 1}, kFirst, {{delivery, TaskState::failed, leader.now}}};
+  leader.self.on_status(failed, leader.now);
+  leader.self.on_timeout(leader.now);
+  ASSERT_EQ(leader.self.round().number, 2U);
+  leader.hears_bid(kFirst, 2);
+  ASSERT_TRUE(leader.bids_close());
+  award({{delivery, kFirst, begin + 60s}});
+  leader.hears_confirmation(kFirst, 2);
+  ASSERT_EQ(leader.self.state(), Initiator::State::executing);
+
+  is_heard_until(begin + 62s);
+  EXPECT_EQ(leader.self.round().number, 2U) << "it waits for its delivery";
+  const MemberStatus done{{kCoalition, 2}, kFirst, {{delivery, TaskState::done, begin + 60s}}};
+  leader.self.on_status(done, leader.now);
+  is_heard_until(begin + 80s);
+  EXPECT_GE(leader.self.round().number, 3U) << "now it is late";
 }
 
 }  // namespace

@@ -487,8 +487,8 @@ Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
     followed.reaches_last = i + 1 == waypoints.size();
   }
   double tail = append_hold(route, hazards, pieces_max);
-  // It may end where one cannot orbit, and have no room for the way to where one can, or there may be
-  // none: it ends before, and goes on from there.
+  // It may end where one cannot orbit, and have no room for the way to where one can, or there may
+  // be none: it ends before, and goes on from there.
   while (!orbit_keeps_clear(route.end(), tail, hazards) && !marks.empty()) {
     marks.pop_back();
     route = before[marks.size()];
