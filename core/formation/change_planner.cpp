@@ -89,6 +89,12 @@ class Planner {
   [[nodiscard]] double at_start_m(std::size_t a, std::size_t b) const {
     return stretched(request_.transfers[a].from - request_.transfers[b].from).norm();
   }
+  /// Nobody there is late, so no reserve is needed; and who is nearer already may leave.
+  [[nodiscard]] double keep_out_wanted_m(std::size_t vehicle, const KeepOut& keep_out) const {
+    const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
+    return std::min(request_.separation.horizontal_m, from_m - kRounding_m);
+  }
+  [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle) const;
   [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
   [[nodiscard]] bool leads_clear(const Transfer& way, std::size_t vehicle) const;
   [[nodiscard]] Change straight() const;
@@ -155,7 +161,6 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
     if (distance < wanted) result.conflicts.push_back(pair);
   };
   for (std::size_t a = 0; a < count_; ++a) {
-    const Vec3& from = request_.transfers[a].from;
     for (std::size_t b = a + 1; b < count_; ++b) {
       const double wanted = wanted_m(at_start_m(a, b));
       see(motion.least_distance_m(a, b, height_factor_, complete ? 0.0 : wanted), wanted, {a, b});
@@ -163,9 +168,7 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
     }
     for (std::size_t k = 0; k < request_.keep_outs.size(); ++k) {
       const KeepOut& keep_out = request_.keep_outs[k];
-      // Nobody there is late, so no reserve is needed; and who is nearer already may leave.
-      const double wanted = std::min(request_.separation.horizontal_m,
-                                     distance_m(from, keep_out, height_factor_) - kRounding_m);
+      const double wanted = keep_out_wanted_m(a, keep_out);
       const double d = keep_out_distance(motion, a, keep_out, wanted);
       if (d < wanted) see(d, wanted, {a, count_ + k});
       if (!complete && !result.conflicts.empty()) return result;
@@ -285,6 +288,14 @@ bool Planner::rests_too_near(std::size_t vehicle) const {
   return false;
 }
 
+bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle) const {
+  const ChangeMotion motion{change};
+  return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
+    const double wanted = keep_out_wanted_m(vehicle, keep_out);
+    return keep_out_distance(motion, vehicle, keep_out, wanted) >= wanted;
+  });
+}
+
 /// Of who moves alone: never nearer to anybody than at its start, and at its end far enough from
 /// all.
 bool Planner::leads_clear(const Transfer& way, std::size_t vehicle) const {
@@ -324,11 +335,9 @@ std::optional<PlannedChange> Planner::make_room(
         if (!leads_clear(way, vehicle) || !allowed(way)) continue;
         Change change = stays;
         change.movers[vehicle].points.back() = way.to;
-        const Nearness found = nearness(change, true);
-        // Those that stay are as near as they are; who moves must not come near a keep-out.
-        const bool barred = std::ranges::any_of(
-            found.conflicts, [this](const Pair& pair) { return pair.second >= count_; });
-        if (!barred) return planned(std::move(change), Way::straight, found.least_m);
+        if (!clear_of_keep_outs(change, vehicle)) continue;
+        const double least_m = nearness(change, true).least_m;
+        return planned(std::move(change), Way::straight, least_m);
       }
     }
   }

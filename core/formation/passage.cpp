@@ -62,8 +62,11 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
     others_[i].speed_mps = stretch * motion_.speed_max_mps(i);
     if (i == self_) continue;
     others_[i].least_m = motion_.least_distance_m(self_, i, height_factor_);
+    // Of who rests beside whom it leaves no more can be kept than there is.
+    const bool one_stays = others_[i].speed_mps == 0.0 || motion_.speed_max_mps(self_) == 0.0;
     const double at_start_m = (place(self_, 0) - place(i, 0)).norm();
-    others_[i].apart_m = std::min(separation_m_, at_start_m - 2.0 * kExact_m);
+    others_[i].apart_m =
+        one_stays ? std::min(separation_m_, at_start_m - 2.0 * kExact_m) : separation_m_;
   }
   look_at_[self_] = std::numeric_limits<std::int32_t>::max();
   block_look_at_.assign((look_at_.size() + kBlock - 1) / kBlock, 0);

@@ -457,6 +457,14 @@ std::size_t Flight::pieces_after(Instant at, Instant now) const {
   return before ? kPathSegmentsMax - before->segments.size() : 0;
 }
 
+namespace {
+bool is_clear_orbit(const Pose2& from, double curvature_per_m, const std::vector<Hazard>& hazards) {
+  Path orbit{from, {}};
+  return orbit.append(Segment{curvature_per_m, kTwoPi / std::abs(curvature_per_m)}) &&
+         planning::is_clear(orbit, hazards);
+}
+}  // namespace
+
 Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
                                 const std::vector<Hazard>& hazards, double range_m, Instant now) {
   Path route = forced_way(pose_at(at), hazards);
@@ -489,7 +497,7 @@ Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
   double tail = append_hold(route, hazards, pieces_max);
   // It may end where one cannot orbit, and have no room for the way to where one can, or there may
   // be none: it ends before, and goes on from there.
-  while (!orbit_keeps_clear(route.end(), tail, hazards) && !marks.empty()) {
+  while (!marks.empty() && !is_clear_orbit(route.end(), tail, hazards)) {
     marks.pop_back();
     route = before[marks.size()];
     followed.full = !marks.empty() || waypoints.size() > 1;

@@ -279,6 +279,14 @@ std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& membe
 
 /// Of whom this ground station cannot say where it may be, because another has commanded it.
 std::string FormationGround::unknown() const {
+  for (const auto& [vehicle, member] : members_) {  // it may be elsewhere by now
+    if (!member.heard && !member.lost) return name_of(vehicle) + " was not heard yet";
+  }
+  for (const Change& change : sent_) {
+    for (const formation::Mover& mover : change.movers) {
+      if (!members_.contains(mover.vehicle)) return name_of(mover.vehicle) + " was not heard yet";
+    }
+  }
   if (!succeeds_) return "";
   for (const VehicleId vehicle : config_.vehicles) {
     const auto found = members_.find(vehicle);
@@ -399,6 +407,7 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   // A ground station before this one has commanded it.
   succeeds_ = succeeds_ || status.progress.change > number_;
   member.lost = false;
+  member.heard = true;
   member.heard_at = now;
   const auto goal = goal_of(status.vehicle);
   if (!goal || status.progress.change != number_) return;

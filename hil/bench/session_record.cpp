@@ -27,6 +27,8 @@ using Kind = ProgramSpan::Kind;
 
 /// Without a point of its own for so long, a track is what the aircraft's simulator says.
 constexpr Duration kOwnGap = std::chrono::milliseconds{250};
+/// A program that stands still for less flies on as if it had not.
+constexpr Duration kBorne = std::chrono::seconds{1};
 
 bool leaves_less(const ProgramSpan& span) {
   return span.kind == Kind::down || span.kind == Kind::gone || span.kind == Kind::disk_full;
@@ -87,12 +89,12 @@ void fill(std::vector<TrackPoint>& track, const std::vector<TrackPoint>& truth) 
   track = std::move(filled);
 }
 
-/// A ground station with a full disk has no record of its grants; vehicles have, and fly by none
-/// that it has not signed.
-void add_grants_heard(checks::RunRecord& record) {
+/// A ground station has no record of what it has granted since its disk is full; vehicles have, and
+/// fly by none that it has not signed.
+void add_grants_heard(checks::RunRecord& record, Instant full_since) {
   for (const Recording& recorded : record.recordings) {
     for (mission::MissionEvent event : recorded.events) {
-      if (event.kind() != mission::EventKind::authorised) continue;
+      if (event.kind() != mission::EventKind::authorised || event.time < full_since) continue;
       event.vehicle = kGroundStation;
       record.ground_events.push_back(std::move(event));
     }
@@ -139,17 +141,18 @@ void add_faults_done(checks::RunRecord& record, const BenchOutcome& outcome) {
     if (span.kind == Kind::down || span.kind == Kind::gone) {
       record.agent_ends.push_back({span.node, span.from, span.until});
     }
-    if (span.kind != Kind::disk_full) {
+    // Short stops, and being slow, are what a program must bear.
+    const bool is_short = span.until && *span.until - span.from < kBorne;
+    if (span.kind != Kind::disk_full && span.kind != Kind::slow && !is_short) {
       record.left_alone.push_back(
           {span.node, span.from, span.until.value_or(outcome.ended_at + std::chrono::hours{1})});
     }
   }
   std::ranges::stable_sort(record.agent_ends, {}, &checks::AgentEnd::at);
-  if (std::ranges::any_of(outcome.spans, [](const ProgramSpan& span) {
-        return span.node == kGroundStation && span.kind == Kind::disk_full;
-      })) {
-    add_grants_heard(record);
-  }
+  const auto full = std::ranges::find_if(outcome.spans, [](const ProgramSpan& span) {
+    return span.node == kGroundStation && span.kind == Kind::disk_full;
+  });
+  if (full != outcome.spans.end()) add_grants_heard(record, full->from);
   for (Recording& recorded : record.recordings) {
     const auto of_it = [&](const ProgramSpan& span) { return span.node == recorded.vehicle; };
     if (std::ranges::none_of(outcome.spans, of_it)) continue;

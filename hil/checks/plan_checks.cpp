@@ -125,7 +125,7 @@ CheckResult check_turn_radius(const RunRecord& record, const Limits& limits) {
 
 CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
   CheckResult result{"continuity",
-                     "a new plan starts where the old one is, or the vehicle, within " +
+                     "a new plan starts where the old one is, within " +
                          fixed(limits.plan_jump_m, 0) + " m and " +
                          fixed(degrees(limits.plan_jump_rad), 0) + " deg",
                      0,
@@ -157,13 +157,6 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
       if (i > 0 && !program_ended && !taken_up) {
         const PlanRecord& old = recorded.plans[i - 1];
         before = plan_pose(old.plan, plan_distance_m(old.plan, plan.since));
-        // Who was blown off its plan plans on from where it is.
-        const auto flown = track_at(recorded.track, plan.since, limits.track_gap_s);
-        if (flown && (flown->horizontal - here.position()).norm() <
-                         (before.position() - here.position()).norm()) {
-          before = {flown->horizontal.x(), flown->horizontal.y(), before.heading_rad};
-          what = "the vehicle";
-        }
         if (plan.number <= old.number || plan.since < old.since) {
           result.violations.push_back({recorded.vehicle, plan.since,
                                        plan_name(recorded, plan) + " came after plan " +

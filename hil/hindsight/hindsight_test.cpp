@@ -82,12 +82,11 @@ TEST(Hindsight, TheBestFliesAroundHazards) {
     return look_back(flown.record, flown.limits, 500)->end_s.best;
   };
   const double free_s = best_end_s();
-  // All around the site's approaches but for a gap: every vehicle has to go a longer way.
+  // Where those that deliver would turn in to their approaches.
   const Site& site = flown.record.sites.front();
-  const double away_m = 1200.0;
-  for (std::uint16_t i = 0; i < 5; ++i) {
-    const Vec2 centre = site.position + away_m * unit_vector(i * kTwoPi / 5.0);
-    flown.record.hazards.push_back({{HazardId{i}, centre, 500.0}, Instant{}});
+  for (std::uint16_t i = 0; i < 6; ++i) {
+    const Vec2 centre = site.position + 330.0 * unit_vector((i + 0.5) * kTwoPi / 6.0);
+    flown.record.hazards.push_back({{HazardId{i}, centre, 70.0}, Instant{}});
   }
   const double around_s = best_end_s();
   EXPECT_GT(around_s, free_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "excuses.hpp"
+#include "skein/hil/excuses.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -523,6 +523,29 @@ Result<std::vector<Fault>> formation_faults(const std::string& profiles,
 
 namespace {
 
+/// What is left of the vehicles, and the air, all the mission long.
+void draw_surroundings(Random& random, TeamMission& mission, const FaultParams& params) {
+  for (std::size_t n = count(random, params.batteries); n > 0; --n) {
+    const VehicleId whose = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
+    const Instant at = Instant{} + between(random, seconds{1}, params.phase);
+    mission.faults.push_back(
+        {{.not_before = at}, {}, BatteryFalls{whose, random.uniform(20.0, 40.0)}});
+    // It comes home by itself; there the operator lands it.
+    for (const auto& [after, kind] : kBringDown) {
+      mission.faults.push_back({{.not_before = at + after}, {}, Ordered{whose, kind}});
+    }
+  }
+  if (params.wind_mps > 0.0) {
+    const double speed_mps = random.uniform(0.0, params.wind_mps);
+    mission.wind.steady_mps = speed_mps * unit_vector(random.uniform(-kPi, kPi));
+    mission.wind.gust_mps = random.uniform(0.0, kGustMax_mps);
+    mission.heeds_wind = true;
+  }
+  if (params.narrow) {
+    mission.radio.bytes_per_s = random.uniform(kNarrow_bytes_per_s, 2.0 * kNarrow_bytes_per_s);
+  }
+}
+
 /// The last goes to all: go on, once the radio has healed.
 void draw_orders(Random& random, TeamMission& mission, const FaultParams& params) {
   const std::size_t orders = count(random, params.orders);
@@ -628,23 +651,7 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
   if (params.planning > Duration{}) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
-  for (std::size_t n = count(random, params.batteries); n > 0; --n) {
-    const VehicleId whose = mission.vehicles[random.index(mission.vehicles.size())].spec.id;
-    const Instant at = Instant{} + between(random, seconds{1}, params.phase);
-    faults.push_back({{.not_before = at}, {}, BatteryFalls{whose, random.uniform(20.0, 40.0)}});
-    // It comes home by itself; there the operator lands it.
-    for (const auto& [after, kind] : kBringDown) {
-      faults.push_back({{.not_before = at + after}, {}, Ordered{whose, kind}});
-    }
-  }
-  if (params.wind_mps > 0.0) {
-    const double speed_mps = random.uniform(0.0, params.wind_mps);
-    mission.wind.steady_mps = speed_mps * unit_vector(random.uniform(-kPi, kPi));
-    mission.wind.gust_mps = random.uniform(0.0, kGustMax_mps);
-    mission.heeds_wind = true;
-  }
-  if (params.narrow)
-    mission.radio.bytes_per_s = random.uniform(kNarrow_bytes_per_s, 2.0 * kNarrow_bytes_per_s);
+  draw_surroundings(random, mission, params);
 }
 
 }  // namespace skein::hil

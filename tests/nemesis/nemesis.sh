@@ -54,7 +54,7 @@ for ((slot = 0; slot < jobs; ++slot)); do
   } &
 done
 wait
-held=$(count '^[0-9]+,held,' "$rows") all=$(count '^[0-9]' "$rows")
+held=$(count '^[0-9]+,held,' "$rows") all=${#seeds[@]}
 echo "$held of $all runs held every promise; rows: $rows"
 if ((held != all)); then
   awk -F, -v folder="$folder" '/^[0-9]/ && $2 != "held" {print "seed " $1 ": " $2 " " $NF "; " folder "/" $1 ".log ends with the command that repeats it"}' "$rows"

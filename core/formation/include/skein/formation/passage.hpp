@@ -24,8 +24,8 @@ struct PassageParams {
 /// brake in finite time and messages are late or lost: all vehicles slow down by at most one rate a
 /// slot, so that every message, however old, says how far its sender is by now at least. The
 /// reference speeds up only when, should it brake one slot later, it would at every moment keep the
-/// change's separation (from who starts nearer, as much as at the start) from wherever everyone
-/// behind it may be at that moment. Whoever is ahead in
+/// change's separation (where one of two stays that start nearer, as much as at the start) from
+/// wherever everyone behind it may be at that moment. Whoever is ahead in
 /// plan time does so; so one of each two always does, and no breach is possible while references
 /// are followed within tolerance. The last of all never waits, for what it needs is the separation
 /// that the plan has in plan time, so there is no deadlock once messages come through;

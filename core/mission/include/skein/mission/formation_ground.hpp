@@ -90,6 +90,7 @@ class FormationGround {
   struct Member {
     FormationStatus status;
     Instant heard_at{};
+    bool heard = false;                 ///< by this process, not only recalled
     bool lost = false;                  ///< silent, or far from its reference
     std::optional<Instant> arrived_at;  ///< in the newest change
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
