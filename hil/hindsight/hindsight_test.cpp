@@ -84,9 +84,12 @@ TEST(Hindsight, TheBestFliesAroundHazards) {
   const double free_s = best_end_s();
   // Where those that deliver would turn in to their approaches.
   const Site& site = flown.record.sites.front();
-  for (std::uint16_t i = 0; i < 6; ++i) {
-    const Vec2 centre = site.position + 330.0 * unit_vector((i + 0.5) * kTwoPi / 6.0);
-    flown.record.hazards.push_back({{HazardId{i}, centre, 70.0}, Instant{}});
+  std::uint16_t id = 0;
+  for (const auto& delivery : site.deliveries) {
+    for (const double side : {1.0, -1.0}) {
+      const Vec2 centre = site.position + side * 310.0 * unit_vector(delivery.bearing_rad);
+      flown.record.hazards.push_back({{HazardId{++id}, centre, 120.0}, Instant{}});
+    }
   }
   const double around_s = best_end_s();
   EXPECT_GT(around_s, free_s);
