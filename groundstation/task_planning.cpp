@@ -87,7 +87,9 @@ CoupledProblem tasking_problem(const Scenario& scenario) {
 
 Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::PlanningBudget& budget) {
   if (!scenario.tasks_sites()) {
-    return Error{"no site is known before take-off; name some under tasking.known"};
+    return Error{
+        "the mission plans no routes, and no site is known before take-off; name some under "
+        "tasking.known"};
   }
   PlannedTasks planned;
   planned.problem = tasking_problem(scenario);

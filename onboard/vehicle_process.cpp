@@ -7,9 +7,11 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -446,8 +448,8 @@ class Ear {
   mission::SetupFilter filter_;
 };
 
-/// Nothing where nothing is to be recorded, nor where nothing can be and the mission has begun: who
-/// starts anew has an aircraft to fly.
+/// Nothing where nothing is to be recorded, nor where nothing can be any more in the mission in
+/// which something was: who starts anew has an aircraft to fly.
 Result<std::optional<recording::Writer>> open_recording(const configuration::VehicleConfig& config,
                                                         InstanceId instance,
                                                         const process::MissionClock& clock) {
@@ -458,7 +460,10 @@ Result<std::optional<recording::Writer>> open_recording(const configuration::Veh
   options.bytes_max = config.recording_limit_mb * 1'000'000ULL;
   auto opened = recording::Writer::open(config.recording_folder, options);
   if (opened) return std::optional<recording::Writer>{std::move(*opened)};
-  if (clock.now() < Instant{}) return opened.error();
+  std::error_code nothing_there;
+  const bool was_recorded =
+      !std::filesystem::is_empty(config.recording_folder, nothing_there) && !nothing_there;
+  if (clock.now() < Instant{} || !was_recorded) return opened.error();
   spdlog::error("nothing is recorded: {}", opened.error().message);
   return std::optional<recording::Writer>{};
 }

@@ -25,6 +25,8 @@ constexpr double kLap_radii = 1.2;
 constexpr int kLapPoints = 4;
 constexpr int kLapsMax = 20;
 constexpr int kVisits = 3;  ///< of the site that may need it
+/// As many points as a search route in a file may have.
+constexpr std::size_t kWayMax = 256;
 
 bool is_clear_of(const std::vector<Hazard>& hazards, const Vec2& place, double room_m) {
   return std::ranges::all_of(hazards, [&](const Hazard& hazard) {
@@ -52,6 +54,7 @@ Vec2 waits_at(const CoupledProblem& problem, const CoupledVehicle& vehicle,
 void add_laps(std::vector<Vec2>& way, const CoupledVehicle& vehicle, const Vec2& place,
               double heading_rad, double seconds) {
   const double radius_m = kLap_radii * vehicle.planning_radius_m;
+  if (radius_m <= 0.0) return;  // it stands there
   const Vec2 centre = place + radius_m * left_of(unit_vector(heading_rad));
   const double laps = seconds * vehicle.speed_mps / (kTwoPi * radius_m);
   const int count = std::clamp(static_cast<int>(std::ceil(laps)), 0, kLapsMax);
@@ -194,6 +197,7 @@ std::vector<Intention> intentions_of(const CoupledProblem& problem, const Couple
         const double heading_rad = first->entry.heading_rad;
         add_laps(intention.way, vehicle, place, heading_rad, first->end_s + kPatience_s - there_s);
         add_other_site(intention.way, problem, vehicle, *hardest, heading_rad);
+        if (intention.way.size() > kWayMax) intention.way.resize(kWayMax);
       }
     }
     intentions.push_back(std::move(intention));

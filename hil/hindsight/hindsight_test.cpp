@@ -75,28 +75,6 @@ TEST(Hindsight, WhatWasNotDoneHasNoTimeAndNoReward) {
   EXPECT_EQ(after->end_s.best, before->end_s.best) << "it does not depend on what was flown";
 }
 
-/// Whenever the team learnt of them: who knows all from the start flies around.
-TEST(Hindsight, TheBestFliesAroundHazards) {
-  Flown flown = fly("coalition-6.yaml", 3);
-  const auto best_end_s = [&flown] {
-    return look_back(flown.record, flown.limits, 500)->end_s.best;
-  };
-  const double free_s = best_end_s();
-  // Where those that deliver would turn in to their approaches.
-  const Site& site = flown.record.sites.front();
-  std::uint16_t id = 0;
-  for (const auto& delivery : site.deliveries) {
-    for (const double side : {1.0, -1.0}) {
-      const Vec2 centre = site.position + side * 310.0 * unit_vector(delivery.bearing_rad);
-      flown.record.hazards.push_back({{HazardId{++id}, centre, 120.0}, Instant{}});
-    }
-  }
-  const double around_s = best_end_s();
-  EXPECT_GT(around_s, free_s);
-  for (auto& known : flown.record.hazards) known.known_from = Instant{} + std::chrono::seconds{90};
-  EXPECT_EQ(best_end_s(), around_s);
-}
-
 TEST(Hindsight, IsATableForPeople) {
   const Flown flown = fly("coalition-6.yaml", 3);
   const auto all = look_back(flown.record, flown.limits, 500);

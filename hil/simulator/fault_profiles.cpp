@@ -266,9 +266,9 @@ constexpr std::array<Profile, 22> kProfiles{{{"none", nullptr, no_fault},
                                              {"orders", orders},
                                              {"clock", wrong_clock},
                                              {"taken-back", grants_taken_back},
-                                             {"battery", batteries},
+                                             {"battery", batteries, nullptr, true},
                                              {"wind", wind, nullptr, true},
-                                             {"narrow", narrow}}};
+                                             {"narrow", narrow, nullptr, true}}};
 
 FaultParams mixed(std::uint64_t seed) {
   Random random{seed ^ kMixStream};
@@ -278,9 +278,7 @@ FaultParams mixed(std::uint64_t seed) {
   }
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
-  const std::size_t barred = all.wrong_clock ? 1 : 0;
-  all.batteries = std::min<std::size_t>(all.batteries, 1);
-  all.crashes = std::min(all.crashes, 2 - barred - all.batteries);
+  if (all.wrong_clock) all.crashes = std::min<std::size_t>(all.crashes, 1);
   return all;
 }
 
@@ -378,8 +376,7 @@ bool is_free(const Hazard& hazard, const TeamMission& mission) {
     if ((h.hazard.centre - hazard.centre).norm() < h.hazard.radius_m + hazard.radius_m + 4.0 * turn)
       return false;
   }
-  for (const auto& v : mission.vehicles) {  // where it waits, and at home, it must be able to wait
-    if ((v.start.position() - hazard.centre).norm() < hazard.radius_m + 3.0 * turn) return false;
+  for (const auto& v : mission.vehicles) {  // where it waits, it must be able to wait
     if (v.search.empty()) continue;
     if ((v.search.back() - hazard.centre).norm() < hazard.radius_m + 3.0 * turn) return false;
   }
